@@ -1,0 +1,385 @@
+//! What the user writes: a planar mechanism, in SI units, every number explicit.
+//!
+//! A [`Scene`] is plain data with every name resolved and every number checked; the spans point back into the
+//! text so that a later error (a mechanism that cannot close) still names file, line and field.
+
+mod error;
+mod reader;
+
+pub use error::{SceneError, Span};
+
+use error::Sources;
+use std::path::Path;
+
+/// A complete description of one simulation.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// One line that says what the scene is.
+    pub title: String,
+    /// Duration and gravity.
+    pub simulation: Simulation,
+    /// Time integration.
+    pub integrator: Integrator,
+    /// What is recorded.
+    pub output: Output,
+    /// Bodies in the order of the file; `ground` is one of them.
+    pub bodies: Vec<Body>,
+    /// Joints in the order of the file.
+    pub joints: Vec<Joint>,
+    /// Prescribed motions.
+    pub drives: Vec<Drive>,
+    /// Where the motion starts.
+    pub initial: Initial,
+    /// Values that the source of the scene does not give.
+    pub assumptions: Vec<Assumption>,
+    sources: Sources,
+}
+
+/// `[simulation]`
+#[derive(Debug, Clone)]
+pub struct Simulation {
+    /// Simulated time \[s\].
+    pub duration: f64,
+    /// Gravity vector \[m/s2\], absent when the scene names none.
+    pub gravity: Option<[f64; 2]>,
+}
+
+/// `[integrator]`
+#[derive(Debug, Clone)]
+pub struct Integrator {
+    /// Scheme and its parameters.
+    pub method: Method,
+    /// Step \[s\].
+    pub step: f64,
+    /// Largest error that Newton's method may leave in a velocity \[m/s\] (slope rates 1/s, angular velocities rad/s).
+    pub newton_tolerance: f64,
+    /// Largest |delta| of a located contact onset \[m\].
+    pub onset_tolerance: f64,
+    /// Where `integrator.step` stands.
+    pub step_span: Span,
+}
+
+/// Time integration scheme.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Method {
+    /// Bathe's two sub-steps; `gamma` in (0, 1) is the splitting of the step, 1/2 unless given.
+    Bathe {
+        /// First sub-step over step.
+        gamma: f64,
+    },
+}
+
+/// `[output]`
+#[derive(Debug, Clone)]
+pub struct Output {
+    /// Time between recorded rows \[s\], a whole multiple of the step.
+    pub interval: f64,
+    /// Channel names; `*` stands for any run of characters.
+    pub channels: Vec<ChannelPattern>,
+}
+
+/// One entry of `output.channels`.
+#[derive(Debug, Clone)]
+pub struct ChannelPattern {
+    /// A channel name or a pattern with `*`.
+    pub pattern: String,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// `[bodies.NAME]`
+#[derive(Debug, Clone)]
+pub struct Body {
+    /// The name the user wrote.
+    pub name: String,
+    /// Where the table stands.
+    pub span: Span,
+    /// What the body is.
+    pub kind: BodyKind,
+}
+
+/// The kinds of body.
+#[derive(Debug, Clone)]
+pub enum BodyKind {
+    /// Points that do not move.
+    Ground {
+        /// Named points \[m\].
+        points: Vec<Point>,
+    },
+    /// A slender uniform link with the points `start` (index 0) and `end` (index 1).
+    Link(Link),
+    /// A rigid body with the reference point in its centre of mass.
+    Rigid(RigidBody),
+}
+
+/// A named point.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// The name the user wrote.
+    pub name: String,
+    /// Coordinates in the frame of the body \[m\].
+    pub at: [f64; 2],
+}
+
+/// A slender uniform link.
+#[derive(Debug, Clone)]
+pub struct Link {
+    /// Length l \[m\].
+    pub length: f64,
+    /// Cross-section A \[m2\].
+    pub area: f64,
+    /// Second moment of area I about the axis normal to the plane \[m4\].
+    pub second_moment: f64,
+    /// Density \[kg/m3\].
+    pub density: f64,
+    /// Rigid or flexible.
+    pub model: LinkModel,
+}
+
+/// How a link deforms.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LinkModel {
+    /// Natural coordinates, constant length.
+    Rigid,
+    /// Planar cubic ANCF elements.
+    Flexible {
+        /// Number of equal elements.
+        elements: usize,
+        /// Young's modulus \[Pa\].
+        youngs_modulus: f64,
+    },
+}
+
+/// A rigid body in reference-point coordinates (x, y, theta).
+#[derive(Debug, Clone)]
+pub struct RigidBody {
+    /// Mass \[kg\].
+    pub mass: f64,
+    /// Moment of inertia about the centre of mass \[kg m2\].
+    pub inertia: f64,
+    /// Named points relative to the centre of mass at theta = 0 \[m\].
+    pub points: Vec<Point>,
+}
+
+/// A point of a body: indices into [`Scene::bodies`] and into the points of that body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PointRef {
+    /// Index of the body.
+    pub body: usize,
+    /// Index of the point; of a link 0 is `start`, 1 is `end`.
+    pub point: usize,
+}
+
+/// `[joints.NAME]`: a revolute joint between two points.
+#[derive(Debug, Clone)]
+pub struct Joint {
+    /// The name the user wrote.
+    pub name: String,
+    /// Where the table stands.
+    pub span: Span,
+    /// The point that carries the bearing (i of eq. 19).
+    pub bearing: PointRef,
+    /// The point that carries the journal (j of eq. 19).
+    pub journal: PointRef,
+    /// Ideal or with clearance.
+    pub model: JointModel,
+}
+
+/// How a joint connects its two points.
+#[derive(Debug, Clone)]
+pub enum JointModel {
+    /// The points coincide.
+    Ideal,
+    /// The journal moves inside the bearing and touches it.
+    Clearance(Contact),
+}
+
+/// Geometry and laws of a loose joint.
+#[derive(Debug, Clone)]
+pub struct Contact {
+    /// Bearing radius R_i \[m\].
+    pub bearing_radius: f64,
+    /// Radial clearance c = R_i - R_j \[m\].
+    pub clearance: f64,
+    /// Normal law.
+    pub law: NormalLawKind,
+    /// Contact stiffness K \[N/m^exponent\], typed or from eq. 25.
+    pub stiffness: f64,
+    /// Exponent n.
+    pub exponent: f64,
+    /// Restitution coefficient c_e as typed; 1 for Hertz.
+    pub restitution: f64,
+    /// Smallest impact velocity that the damping term divides by \[m/s\].
+    pub impact_velocity_floor: f64,
+    /// Friction, absent when the scene names none.
+    pub friction: Option<Friction>,
+}
+
+/// Names of the normal contact laws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NormalLawKind {
+    /// No damping.
+    Hertz,
+    /// Eq. 24.
+    LankaraniNikravesh,
+    /// Hunt & Crossley 1975.
+    HuntCrossley,
+    /// Flores et al. 2011.
+    Flores,
+}
+
+/// Friction of eq. 26.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Friction {
+    /// Coefficient c_f.
+    pub coefficient: f64,
+    /// Slip below which there is no friction \[m/s\].
+    pub v0: f64,
+    /// Slip above which friction is full \[m/s\].
+    pub v1: f64,
+    /// Which slip velocity enters.
+    pub slip: Slip,
+}
+
+/// The two readings of the slip velocity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Slip {
+    /// Eqs. 22-23 as printed: the contact points move with R_k dn/dt.
+    Paper,
+    /// The contact points move with the material of the two bodies.
+    Material,
+}
+
+/// `[drives.NAME]`: the joints follow the inverse kinematics of the ideal rigid mechanism while the body follows the path.
+#[derive(Debug, Clone)]
+pub struct Drive {
+    /// The name the user wrote.
+    pub name: String,
+    /// Where the table stands.
+    pub span: Span,
+    /// Actuated joints: indices into [`Scene::joints`].
+    pub joints: Vec<usize>,
+    /// Driven body: index into [`Scene::bodies`], a rigid body.
+    pub body: usize,
+    /// Path of its reference point and its angle.
+    pub path: Path2,
+}
+
+/// A path in (x, y, theta).
+#[derive(Debug, Clone)]
+pub enum Path2 {
+    /// center + radius (cos(2 pi frequency t + phase), sin(...)), constant theta.
+    Circle {
+        /// Centre \[m\].
+        center: [f64; 2],
+        /// Radius \[m\].
+        radius: f64,
+        /// Revolutions a second \[Hz\], negative for clockwise.
+        frequency: f64,
+        /// Angle at t = 0 \[rad\].
+        phase: f64,
+        /// Orientation of the body \[rad\].
+        theta: f64,
+    },
+    /// From one pose to another between t = 0 and `duration` along a straight line with the quintic
+    /// s = 10 u^3 - 15 u^4 + 6 u^5, at rest before and after.
+    Line {
+        /// Start x, y \[m\], theta \[rad\].
+        from: [f64; 3],
+        /// End x, y \[m\], theta \[rad\].
+        to: [f64; 3],
+        /// Time of travel \[s\].
+        duration: f64,
+    },
+    /// Rows t, x, y, theta joined by a natural cubic spline (twice continuously differentiable).
+    Table {
+        /// Rows \[t, x, y, theta\], times increasing, the first at or before 0, the last at or after the duration.
+        rows: Vec<[f64; 4]>,
+    },
+}
+
+/// `[initial]`
+#[derive(Debug, Clone)]
+pub struct Initial {
+    /// Approximate positions of joints \[m\]: they choose the branch; index into [`Scene::joints`].
+    pub sketch: Vec<SketchPoint>,
+    /// Exact states of bodies, for mechanisms without a drive.
+    pub bodies: Vec<BodyState>,
+    /// Where the table stands.
+    pub span: Span,
+}
+
+/// The approximate position of one joint at t = 0.
+#[derive(Debug, Clone)]
+pub struct SketchPoint {
+    /// Index into [`Scene::joints`].
+    pub joint: usize,
+    /// Approximate position \[m\].
+    pub at: [f64; 2],
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// Position and velocity of a body at t = 0. For a link (x, y) is its `start` and theta its direction.
+#[derive(Debug, Clone)]
+pub struct BodyState {
+    /// Index into [`Scene::bodies`].
+    pub body: usize,
+    /// x, y \[m\], theta \[rad\].
+    pub position: [f64; 3],
+    /// vx, vy \[m/s\], omega \[rad/s\]; rest when the scene gives none.
+    pub velocity: [f64; 3],
+    /// False when the scene leaves the velocity out.
+    pub velocity_given: bool,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A value that the source of the scene does not give.
+#[derive(Debug, Clone)]
+pub struct Assumption {
+    /// Path of the field.
+    pub path: String,
+    /// Its value as written.
+    pub value: String,
+    /// Why this value.
+    pub reason: String,
+}
+
+impl Scene {
+    /// Reads a scene file, applies `path=value` overrides in order, checks every field.
+    ///
+    /// # Errors
+    /// The first fault found, with the place it stands at.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
+        reader::load(path, overrides)
+    }
+
+    /// Reads a scene from text; `name` stands for the file in errors.
+    ///
+    /// # Errors
+    /// The first fault found, with the place it stands at.
+    pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Scene, SceneError> {
+        reader::parse(name, text, overrides)
+    }
+
+    /// Hexadecimal SHA-256 of the scene text and the overrides.
+    pub fn hash(&self) -> String {
+        self.sources.hash()
+    }
+
+    /// An error that points at `span`.
+    pub fn error(&self, span: Span, message: impl Into<String>, label: impl Into<String>) -> SceneError {
+        SceneError::new(&self.sources, span, message.into(), label.into())
+    }
+
+    /// Index of the body with this name.
+    pub fn body(&self, name: &str) -> Option<usize> {
+        self.bodies.iter().position(|b| b.name == name)
+    }
+
+    /// Index of the joint with this name.
+    pub fn joint(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|j| j.name == name)
+    }
+}
