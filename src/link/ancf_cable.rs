@@ -1,0 +1,237 @@
+//! Planar cubic ANCF element (eqs. 6-15), by the route that simulations take.
+//!
+//! The slope of the centre line is r' = phi_a(xi) u_a with three vectors u = ((r_j - r_i)/l, r_i', r_j') and
+//!
+//! ```text
+//! phi = (6 xi - 6 xi^2,  1 - 4 xi + 3 xi^2,  -2 xi + 3 xi^2),      phi_1 + phi_2 + phi_3 = 1
+//! ```
+//!
+//! so that eq. 14's invariants are one fully symmetric tensor T_abcd = int_0^1 phi_a phi_b phi_c phi_d dxi with fifteen
+//! distinct numbers. Because the phi add up to one, the strain is eps = 1/2 phi_c phi_d (u_c . u_d - 1): K_l1 and K_l2
+//! of eq. 12 merge before they are rounded, and an undeformed element has no force to the last digit.
+//!
+//! ```text
+//! W_ab = 1/2 T_abcd (u_c . u_d - 1)                      int eps phi_a phi_b dxi
+//! U = EA l/8 (u_a . u_b - 1) T_abcd (u_c . u_d - 1) + EI/(2 l) B_ab u_a . u_b
+//! dU/du_a = EA l W_ab u_b + EI/l B_ab u_b
+//! d2U/du_a du_b = (EA l W_ab + EI/l B_ab) I_2 + EA l T_abcd u_c u_d^T
+//! ```
+//!
+//! Eq. 11 prints U_l twice; the second is the bending energy EI/2 int r''.r'' dx, which is the energy of curvature only
+//! while the axial strain is small.
+
+use super::ElasticRoute;
+use crate::math::plane::{Vec2, add, dot, scale, sub};
+
+/// Index pairs (a, b) of a symmetric 3 x 3 matrix, in storage order.
+const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+
+/// T_abcd, rows ab and columns cd in the order of [`PAIRS`]; columns with c != d carry the factor 2 of their twin dc.
+#[rustfmt::skip]
+const T: [[f64; 6]; 6] = [
+    [72.0 / 35.0, -18.0 / 35.0,  -18.0 / 35.0,   3.0 / 35.0,          0.0,   3.0 / 35.0],
+    [-9.0 / 35.0,   6.0 / 35.0,           0.0,  1.0 / 140.0, -1.0 /  70.0, -1.0 / 140.0],
+    [-9.0 / 35.0,          0.0,    6.0 / 35.0, -1.0 / 140.0, -1.0 /  70.0,  1.0 / 140.0],
+    [ 3.0 / 35.0,  1.0 /  70.0,  -1.0 /  70.0,   2.0 / 35.0, -1.0 /  70.0,  1.0 / 210.0],
+    [        0.0, -1.0 /  70.0,  -1.0 /  70.0, -1.0 / 140.0,  1.0 / 105.0, -1.0 / 140.0],
+    [ 3.0 / 35.0, -1.0 /  70.0,   1.0 /  70.0,  1.0 / 210.0, -1.0 /  70.0,   2.0 / 35.0],
+];
+
+/// B_ab = int phi_a' phi_b' dxi.
+const B: [[f64; 3]; 3] = [[12.0, -6.0, -6.0], [-6.0, 4.0, 2.0], [-6.0, 2.0, 4.0]];
+
+/// Storage position of the pair (a, b).
+const PAIR_OF: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
+
+/// An element of given length, axial stiffness EA and bending stiffness EI.
+#[derive(Debug, Clone, Copy)]
+pub struct AncfCable {
+    length: f64,
+    axial_stiffness: f64,
+    bending_stiffness: f64,
+}
+
+/// T contracted with a symmetric matrix.
+#[inline]
+fn contract(m: &[f64; 6]) -> [f64; 6] {
+    let mut out = [0.0; 6];
+    for (row, o) in T.iter().zip(&mut out) {
+        *o = row[0] * m[0]
+            + row[1] * m[1]
+            + row[2] * m[2]
+            + row[3] * m[3]
+            + row[4] * m[4]
+            + row[5] * m[5];
+    }
+    out
+}
+
+impl AncfCable {
+    /// u = ((r_j - r_i)/l, r_i', r_j').
+    #[inline]
+    fn slopes(&self, q: &[f64; 8]) -> [Vec2; 3] {
+        let chord = scale(1.0 / self.length, sub([q[4], q[5]], [q[0], q[1]]));
+        [chord, [q[2], q[3]], [q[6], q[7]]]
+    }
+
+    /// u_a . u_b - 1 for the six pairs: twice the strain that each pair stands for.
+    #[inline]
+    fn stretches(u: &[Vec2; 3]) -> [f64; 6] {
+        PAIRS.map(|(a, b)| dot(u[a], u[b]) - 1.0)
+    }
+
+    /// u_2 - u_1 and u_3 - u_1. B annihilates equal vectors, so bending depends on these alone: a straight element has
+    /// none to the last digit.
+    #[inline]
+    fn bends(u: &[Vec2; 3]) -> [Vec2; 2] {
+        [sub(u[1], u[0]), sub(u[2], u[0])]
+    }
+
+    /// Adds the force conjugate to u, given the axial coefficients W.
+    #[inline]
+    fn add_force(&self, u: &[Vec2; 3], w: &[f64; 6], f: &mut [f64; 8]) {
+        let axial = self.axial_stiffness * self.length;
+        let mut g = [[0.0; 2]; 3];
+        for a in 0..3 {
+            for b in 0..3 {
+                g[a] = add(g[a], scale(axial * w[PAIR_OF[a][b]], u[b]));
+            }
+        }
+        let [start, end] = Self::bends(u);
+        let bending = self.bending_stiffness / self.length;
+        let moments = [
+            scale(bending, add(scale(4.0, start), scale(2.0, end))),
+            scale(bending, add(scale(2.0, start), scale(4.0, end))),
+        ];
+        g[0] = sub(g[0], add(moments[0], moments[1]));
+        g[1] = add(g[1], moments[0]);
+        g[2] = add(g[2], moments[1]);
+        let chord = scale(1.0 / self.length, g[0]);
+        for i in 0..2 {
+            f[i] -= chord[i];
+            f[2 + i] += g[1][i];
+            f[4 + i] += chord[i];
+            f[6 + i] += g[2][i];
+        }
+    }
+
+    /// Axial and bending strain energy \[J\].
+    pub fn energy(&self, q: &[f64; 8]) -> (f64, f64) {
+        let u = self.slopes(q);
+        let d = Self::stretches(&u);
+        let w = contract(&d);
+        let weights = [1.0, 2.0, 2.0, 1.0, 2.0, 1.0];
+        let axial: f64 = (0..6).map(|p| weights[p] * d[p] * w[p]).sum();
+        let [start, end] = Self::bends(&u);
+        let bending = 4.0 * (dot(start, start) + dot(start, end) + dot(end, end));
+        (
+            0.125 * self.axial_stiffness * self.length * axial,
+            0.5 * self.bending_stiffness / self.length * bending,
+        )
+    }
+
+    /// Green strain eps = 1/2 (r'.r' - 1) of the centre line at xi in \[0, 1\].
+    pub fn strain(&self, q: &[f64; 8], xi: f64) -> f64 {
+        let u = self.slopes(q);
+        let phi = [
+            6.0 * xi * (1.0 - xi),
+            (1.0 - xi) * (1.0 - 3.0 * xi),
+            xi * (3.0 * xi - 2.0),
+        ];
+        let d = Self::stretches(&u);
+        let mut eps = 0.0;
+        for a in 0..3 {
+            for b in 0..3 {
+                eps += 0.5 * phi[a] * phi[b] * d[PAIR_OF[a][b]];
+            }
+        }
+        eps
+    }
+
+    /// Constant mass matrix of eq. 10 for a mass per length rho A, in the scalar form m_ab that stands before I_2.
+    pub fn mass(length: f64, mass_per_length: f64) -> [[f64; 4]; 4] {
+        let (m, l) = (mass_per_length * length / 420.0, length);
+        [
+            [156.0 * m, 22.0 * l * m, 54.0 * m, -13.0 * l * m],
+            [
+                22.0 * l * m,
+                4.0 * l * l * m,
+                13.0 * l * m,
+                -3.0 * l * l * m,
+            ],
+            [54.0 * m, 13.0 * l * m, 156.0 * m, -22.0 * l * m],
+            [
+                -13.0 * l * m,
+                -3.0 * l * l * m,
+                -22.0 * l * m,
+                4.0 * l * l * m,
+            ],
+        ]
+    }
+}
+
+impl ElasticRoute for AncfCable {
+    fn new(length: f64, axial_stiffness: f64, bending_stiffness: f64) -> AncfCable {
+        AncfCable {
+            length,
+            axial_stiffness,
+            bending_stiffness,
+        }
+    }
+
+    #[inline]
+    fn force(&self, q: &[f64; 8], f: &mut [f64; 8]) {
+        let u = self.slopes(q);
+        let w = contract(&Self::stretches(&u)).map(|x| 0.5 * x);
+        self.add_force(&u, &w, f);
+    }
+
+    #[inline]
+    fn force_and_tangent(&self, q: &[f64; 8], f: &mut [f64; 8], k: &mut [[f64; 8]; 8]) {
+        let u = self.slopes(q);
+        let w = contract(&Self::stretches(&u)).map(|x| 0.5 * x);
+        self.add_force(&u, &w, f);
+
+        let xx = contract(&PAIRS.map(|(a, b)| u[a][0] * u[b][0]));
+        let yy = contract(&PAIRS.map(|(a, b)| u[a][1] * u[b][1]));
+        let xy = contract(&PAIRS.map(|(a, b)| 0.5 * (u[a][0] * u[b][1] + u[a][1] * u[b][0])));
+        let axial = self.axial_stiffness * self.length;
+        let bending = self.bending_stiffness / self.length;
+        let block = |p: usize, (a, b): (usize, usize)| {
+            let s = w[p];
+            let bend = bending * B[a][b];
+            [
+                axial * (s + xx[p]) + bend,
+                axial * xy[p],
+                axial * (s + yy[p]) + bend,
+            ]
+        };
+        let mut put = |row: usize, column: usize, sign: f64, h: [f64; 3]| {
+            k[row][column] += sign * h[0];
+            k[row][column + 1] += sign * h[1];
+            k[row + 1][column] += sign * h[1];
+            k[row + 1][column + 1] += sign * h[2];
+        };
+        let inverse = 1.0 / self.length;
+        // chord with chord
+        let h = block(0, PAIRS[0]).map(|x| x * inverse * inverse);
+        put(0, 0, 1.0, h);
+        put(4, 4, 1.0, h);
+        put(0, 4, -1.0, h);
+        put(4, 0, -1.0, h);
+        // chord with the slopes
+        for (p, slope) in [(1, 2), (2, 6)] {
+            let h = block(p, PAIRS[p]).map(|x| x * inverse);
+            put(0, slope, -1.0, h);
+            put(slope, 0, -1.0, h);
+            put(4, slope, 1.0, h);
+            put(slope, 4, 1.0, h);
+        }
+        // slopes with slopes
+        put(2, 2, 1.0, block(3, PAIRS[3]));
+        let h = block(4, PAIRS[4]);
+        put(2, 6, 1.0, h);
+        put(6, 2, 1.0, h);
+        put(6, 6, 1.0, block(5, PAIRS[5]));
+    }
+}

@@ -1,0 +1,180 @@
+//! A point or a rotation of a body as a function of the coordinates: what joints and forces act on.
+
+use crate::math::plane::{Vec2, add, cross, dot, perp, rotate, scale};
+
+/// A point that moves with a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Marker {
+    /// The coordinates x, x + 1 are the point: an end of a link, a point of the ground.
+    Node {
+        /// Index of its first coordinate.
+        x: usize,
+    },
+    /// A point of a rigid body with coordinates (x, y, theta) from index x: r = (x, y) + A(theta) s.
+    OnBody {
+        /// Index of the first coordinate of the body.
+        x: usize,
+        /// The point in the frame of the body \[m\].
+        s: Vec2,
+    },
+}
+
+impl Marker {
+    /// Index of its first coordinate.
+    pub fn x(&self) -> usize {
+        match *self {
+            Marker::Node { x } | Marker::OnBody { x, .. } => x,
+        }
+    }
+
+    /// Number of coordinates it depends on, consecutive from [`Marker::x`]: 2 or 3.
+    #[inline]
+    pub fn width(&self) -> usize {
+        match self {
+            Marker::Node { .. } => 2,
+            Marker::OnBody { .. } => 3,
+        }
+    }
+
+    /// A(theta) s; zero for a node.
+    #[inline]
+    pub fn arm(&self, q: &[f64]) -> Vec2 {
+        match *self {
+            Marker::Node { .. } => [0.0; 2],
+            Marker::OnBody { x, s } => {
+                let (sine, cosine) = q[x + 2].sin_cos();
+                rotate(cosine, sine, s)
+            }
+        }
+    }
+
+    /// Position \[m\], given the arm.
+    #[inline]
+    pub fn position(&self, q: &[f64], arm: Vec2) -> Vec2 {
+        let x = self.x();
+        add([q[x], q[x + 1]], arm)
+    }
+
+    /// Velocity \[m/s\], given the arm.
+    #[inline]
+    pub fn velocity(&self, v: &[f64], arm: Vec2) -> Vec2 {
+        match *self {
+            Marker::Node { x } => [v[x], v[x + 1]],
+            Marker::OnBody { x, .. } => add([v[x], v[x + 1]], scale(v[x + 2], perp(arm))),
+        }
+    }
+
+    /// Acceleration \[m/s2\], given the arm.
+    #[inline]
+    pub fn acceleration(&self, v: &[f64], a: &[f64], arm: Vec2) -> Vec2 {
+        match *self {
+            Marker::Node { x } => [a[x], a[x + 1]],
+            Marker::OnBody { x, .. } => {
+                let turning = add(scale(a[x + 2], perp(arm)), scale(-v[x + 2] * v[x + 2], arm));
+                add([a[x], a[x + 1]], turning)
+            }
+        }
+    }
+}
+
+/// The rotation of the material at a marker: its rate omega = b(q) . v and b itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Spin {
+    /// Ground: no rotation.
+    Fixed,
+    /// The angle at this index.
+    Angle {
+        /// Index of theta.
+        theta: usize,
+    },
+    /// The direction from the node at `from` to the node at `to`: a rigid link.
+    Chord {
+        /// Index of the first coordinate of one end.
+        from: usize,
+        /// Index of the first coordinate of the other end.
+        to: usize,
+    },
+    /// The slope vector r' at this index: an end of a flexible link.
+    Slope {
+        /// Index of its first coordinate.
+        x: usize,
+    },
+}
+
+impl Spin {
+    /// The direction vector d whose turning is the spin, and its rate.
+    fn direction(&self, q: &[f64], v: &[f64]) -> Option<(Vec2, Vec2)> {
+        match *self {
+            Spin::Fixed | Spin::Angle { .. } => None,
+            Spin::Chord { from, to } => Some((
+                [q[to] - q[from], q[to + 1] - q[from + 1]],
+                [v[to] - v[from], v[to + 1] - v[from + 1]],
+            )),
+            Spin::Slope { x } => Some(([q[x], q[x + 1]], [v[x], v[x + 1]])),
+        }
+    }
+
+    /// omega \[rad/s\].
+    pub fn rate(&self, q: &[f64], v: &[f64]) -> f64 {
+        match (*self, self.direction(q, v)) {
+            (Spin::Angle { theta }, _) => v[theta],
+            (_, Some((d, d_dot))) => cross(d, d_dot) / dot(d, d),
+            _ => 0.0,
+        }
+    }
+
+    /// The coordinates it depends on: first index and sign of d for each vector, or the angle.
+    pub fn coordinates(&self) -> Vec<usize> {
+        match *self {
+            Spin::Fixed => vec![],
+            Spin::Angle { theta } => vec![theta],
+            Spin::Chord { from, to } => vec![from, from + 1, to, to + 1],
+            Spin::Slope { x } => vec![x, x + 1],
+        }
+    }
+
+    /// b = d(omega)/dv, d(omega)/dq and d(b)/dq in the order of [`Spin::coordinates`], four numbers each way at most.
+    pub fn derivatives(&self, q: &[f64], v: &[f64]) -> SpinDerivatives {
+        let mut out = SpinDerivatives::default();
+        match (*self, self.direction(q, v)) {
+            (Spin::Angle { .. }, _) => out.b[0] = 1.0,
+            (_, Some((d, d_dot))) => {
+                let square = dot(d, d);
+                let b = scale(1.0 / square, perp(d));
+                // d(b_i)/d(d_j) = J_ij/|d|^2 - 2 perp(d)_i d_j/|d|^4 with J the quarter turn
+                let quarter = [[0.0, -1.0], [1.0, 0.0]];
+                let signs: &[f64] = if matches!(self, Spin::Chord { .. }) {
+                    &[-1.0, 1.0]
+                } else {
+                    &[1.0]
+                };
+                for (m, sm) in signs.iter().enumerate() {
+                    for i in 0..2 {
+                        out.b[2 * m + i] = sm * b[i];
+                        for (n, sn) in signs.iter().enumerate() {
+                            for j in 0..2 {
+                                let slope = quarter[i][j] / square - 2.0 * b[i] * d[j] / square;
+                                out.b_q[2 * m + i][2 * n + j] = sm * sn * slope;
+                                out.rate_q[2 * n + j] +=
+                                    if m == 0 { sn * d_dot[i] * slope } else { 0.0 };
+                            }
+                        }
+                    }
+                }
+            }
+            _ => {}
+        }
+        out
+    }
+}
+
+/// Derivatives of a spin in the order of its coordinates.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SpinDerivatives {
+    /// b_i = d(omega)/d(v_i).
+    pub b: [f64; 4],
+    /// d(omega)/d(q_i).
+    pub rate_q: [f64; 4],
+    /// d(b_i)/d(q_j).
+    pub b_q: [[f64; 4]; 4],
+}

@@ -1,0 +1,31 @@
+//! A straight line from pose to pose, from rest to rest.
+
+use super::{Motion, Path};
+
+/// p = from + (to - from) s(t/duration), s = 10 u^3 - 15 u^4 + 6 u^5, at rest before and after.
+#[derive(Debug, Clone, Copy)]
+pub struct Line {
+    /// Start pose.
+    pub from: [f64; 3],
+    /// End pose.
+    pub to: [f64; 3],
+    /// Time of travel \[s\].
+    pub duration: f64,
+}
+
+impl Path for Line {
+    fn at(&self, t: f64) -> Motion {
+        let u = (t / self.duration).clamp(0.0, 1.0);
+        let s = u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
+        let s_dot = 30.0 * u * u * (1.0 - u) * (1.0 - u) / self.duration;
+        let s_ddot = 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / (self.duration * self.duration);
+        let mut motion = Motion::default();
+        for i in 0..3 {
+            let way = self.to[i] - self.from[i];
+            motion.position[i] = self.from[i] + way * s;
+            motion.velocity[i] = way * s_dot;
+            motion.acceleration[i] = way * s_ddot;
+        }
+        motion
+    }
+}

@@ -1,0 +1,111 @@
+//! Prescribed paths in (x, y, theta) with exact first and second derivatives.
+
+mod circle;
+mod line;
+mod table;
+
+use crate::scene::Path2;
+
+/// Position, velocity and acceleration of (x, y, theta).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Motion {
+    /// x, y \[m\], theta \[rad\].
+    pub position: [f64; 3],
+    /// First derivatives.
+    pub velocity: [f64; 3],
+    /// Second derivatives.
+    pub acceleration: [f64; 3],
+}
+
+/// A path as a function of time.
+pub trait Path: std::fmt::Debug + Send + Sync {
+    /// The motion at time t \[s\].
+    fn at(&self, t: f64) -> Motion;
+}
+
+/// The path that a scene names.
+pub fn path(spec: &Path2) -> Box<dyn Path> {
+    match spec {
+        Path2::Circle {
+            center,
+            radius,
+            frequency,
+            phase,
+            theta,
+        } => Box::new(circle::Circle {
+            center: *center,
+            radius: *radius,
+            rate: 2.0 * std::f64::consts::PI * frequency,
+            phase: *phase,
+            theta: *theta,
+        }),
+        Path2::Line { from, to, duration } => Box::new(line::Line {
+            from: *from,
+            to: *to,
+            duration: *duration,
+        }),
+        Path2::Table { rows } => Box::new(table::Table::new(rows)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_are_the_derivatives() {
+        let paths = [
+            Path2::Circle {
+                center: [0.1, -0.2],
+                radius: 0.3,
+                frequency: -1.5,
+                phase: 0.4,
+                theta: 0.2,
+            },
+            Path2::Line {
+                from: [0.0, 0.1, 0.0],
+                to: [1.0, -0.5, 0.7],
+                duration: 2.0,
+            },
+            Path2::Table {
+                rows: vec![
+                    [0.0, 0.0, 1.0, 0.0],
+                    [0.5, 0.3, 0.2, 0.1],
+                    [1.2, 0.1, -0.4, 0.5],
+                    [2.0, 0.8, 0.0, 0.2],
+                ],
+            },
+        ];
+        for spec in &paths {
+            let path = path(spec);
+            for t in [0.1, 0.61, 1.3, 1.83] {
+                let (low, mid, high) = (path.at(t - 1e-6), path.at(t), path.at(t + 1e-6));
+                for i in 0..3 {
+                    let v = (high.position[i] - low.position[i]) / 2e-6;
+                    let a = (high.velocity[i] - low.velocity[i]) / 2e-6;
+                    // central differences: rounding 1e-16/1e-6 times rates up to 30
+                    assert!((v - mid.velocity[i]).abs() < 1e-8, "{spec:?}");
+                    assert!((a - mid.acceleration[i]).abs() < 1e-7, "{spec:?}");
+                    assert!(i == 2 || mid.acceleration[i] != 0.0, "nothing was tested");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_table_passes_through_its_rows() {
+        let rows = vec![
+            [0.0, 0.0, 1.0, 0.0],
+            [0.5, 0.3, 0.2, 0.1],
+            [1.2, 0.1, -0.4, 0.5],
+            [2.0, 0.8, 0.0, 0.2],
+        ];
+        let path = path(&Path2::Table { rows: rows.clone() });
+        for row in rows {
+            for i in 0..3 {
+                // interpolation is exact but for rounding
+                assert!((path.at(row[0]).position[i] - row[i + 1]).abs() < 1e-15);
+            }
+        }
+    }
+}
