@@ -3,7 +3,16 @@
 //! A [`Scene`] is plain data with every name resolved and every number checked; the spans point back into the
 //! text so that a later error (a mechanism that cannot close) still names file, line and field.
 
+mod bodies;
+mod document;
 mod error;
+mod field;
+mod fields;
+mod joints;
+mod materials;
+mod motion;
+mod names;
+mod overrides;
 mod reader;
 
 pub use error::{SceneError, Span};
@@ -368,8 +377,23 @@ impl Scene {
         self.sources.hash()
     }
 
+    /// The scene text as it was read, without the overrides.
+    pub fn text(&self) -> &str {
+        self.sources.text(0)
+    }
+
+    /// The overrides in the order they were applied.
+    pub fn overrides(&self) -> impl Iterator<Item = &str> {
+        self.sources.overrides()
+    }
+
     /// An error that points at `span`.
-    pub fn error(&self, span: Span, message: impl Into<String>, label: impl Into<String>) -> SceneError {
+    pub fn error(
+        &self,
+        span: Span,
+        message: impl Into<String>,
+        label: impl Into<String>,
+    ) -> SceneError {
         SceneError::new(&self.sources, span, message.into(), label.into())
     }
 

@@ -1,0 +1,284 @@
+//! From the tree to a [`Scene`]: the tables that stand alone; bodies, joints and motion have files of their own.
+
+use super::document::{Node, document};
+use super::error::{SceneError, Sources, Span, did_you_mean};
+use super::field::Field;
+use super::fields::Fields;
+use super::{Assumption, ChannelPattern, Integrator, Method, Output, Scene, Simulation};
+use super::{JointModel, bodies, joints, motion, overrides};
+use std::io::Read;
+use std::path::Path;
+
+/// Larger files are refused: a table of 100 000 rows takes about 5 MB.
+const LARGEST_FILE: u64 = 64 << 20;
+/// More steps than this are a slip of the pen: a week of computing at 20 microseconds a step.
+const MOST_STEPS: f64 = 1e10;
+/// Relative error allowed in `interval / step`: decimal fractions are not exact in binary.
+const WHOLE: f64 = 1e-9;
+
+pub(super) fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
+    let name = path.display().to_string();
+    let unreadable =
+        |cause: String| SceneError::unreadable(format!("cannot read `{name}`: {cause}"));
+    if path.is_dir() {
+        let help = "give the path of a scene file such as scenes/3rrr/case4.toml";
+        return Err(unreadable("it is a directory".into()).with_help(help));
+    }
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)
+        .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
+        .map_err(|e| unreadable(e.to_string()))?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        return Err(unreadable("it is larger than 64 MiB, not a scene".into()));
+    }
+    match String::from_utf8(bytes) {
+        Ok(text) => parse(&name, &text, overrides),
+        Err(error) => {
+            let at = error.utf8_error().valid_up_to();
+            let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
+            let sources = Sources::new(&name, &text, &[]);
+            // The replacement character takes three bytes at the same place.
+            let span = Span::new(0, at..at + char::REPLACEMENT_CHARACTER.len_utf8());
+            Err(SceneError::new(
+                &sources,
+                span,
+                "the scene is not UTF-8 text".into(),
+                "here".into(),
+            ))
+        }
+    }
+}
+
+pub(super) fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Scene, SceneError> {
+    let sources = Sources::new(name, text, overrides);
+    let mut tree = document(&sources)?;
+    overrides::apply(&sources, &mut tree)?;
+
+    let mut root = Fields::root(&sources, &tree)?;
+    let format = root.required("format", "the version of the scene language: `format = 1`")?;
+    if format.integer()? != 1 {
+        let message = format!(
+            "this program reads scene format 1, not {}",
+            format.written()
+        );
+        return Err(format.fault(message, "unknown format"));
+    }
+    root.only(&[
+        "format",
+        "title",
+        "assumptions",
+        "simulation",
+        "integrator",
+        "output",
+        "materials",
+        "sections",
+        "contacts",
+        "bodies",
+        "joints",
+        "drives",
+        "initial",
+    ])?;
+    let title = root.required("title", "one line that says what the scene is")?;
+    let title = title.text()?.to_owned();
+    let simulation = simulation(&root)?;
+    let bodies = bodies::read(&root)?;
+    let joints = joints::read(&root, &bodies)?;
+    let clearance = joints.values().filter_map(|joint| match &joint.model {
+        JointModel::Clearance(contact) => Some(contact.clearance),
+        JointModel::Ideal => None,
+    });
+    let integrator = integrator(&root, &simulation, clearance.reduce(f64::min))?;
+    let output = output(&root, &simulation, &integrator)?;
+    let drives = motion::drives(&root, &bodies, &joints, simulation.duration)?;
+    let initial = motion::initial(&root, &bodies, &joints)?;
+    let assumptions = assumptions(&root, &tree)?;
+    Ok(Scene {
+        title,
+        simulation,
+        integrator,
+        output,
+        bodies: bodies.bodies.into_values().collect(),
+        joints: joints.into_values().collect(),
+        drives,
+        initial,
+        assumptions,
+        sources,
+    })
+}
+
+fn simulation(root: &Fields) -> Result<Simulation, SceneError> {
+    let mut table = root
+        .required("simulation", "the table of duration and gravity")?
+        .fields()?;
+    table.only(&["duration", "gravity"])?;
+    let duration = table
+        .required("duration", "the simulated time [s]")?
+        .positive()?;
+    let gravity = table
+        .optional("gravity")
+        .map(|g| g.numbers("[gx, gy]"))
+        .transpose()?;
+    Ok(Simulation { duration, gravity })
+}
+
+/// `clearance` is the smallest one of the scene.
+fn integrator(
+    root: &Fields,
+    simulation: &Simulation,
+    clearance: Option<f64>,
+) -> Result<Integrator, SceneError> {
+    let mut table = root
+        .required("integrator", "the table of method, step and tolerances")?
+        .fields()?;
+    table.only(&[
+        "method",
+        "gamma",
+        "step",
+        "newton_tolerance",
+        "onset_tolerance",
+    ])?;
+    table
+        .required("method", "the integration scheme: \"bathe\"")?
+        .choice(&[("bathe", ())])?;
+    let mut gamma = 0.5;
+    if let Some(field) = table.optional("gamma") {
+        gamma = field.number()?;
+        if !(gamma > 0.0 && gamma < 1.0) {
+            return Err(field.must("lie between 0 and 1, both excluded"));
+        }
+    }
+    let field = table.required("step", "the time step [s]")?;
+    let step_span = field.node.span;
+    let step = field.positive()?;
+    if step > simulation.duration {
+        return Err(field.must(&format!(
+            "not be longer than the duration of {} s",
+            simulation.duration
+        )));
+    }
+    if simulation.duration / step > MOST_STEPS {
+        let steps = simulation.duration / step;
+        let message = format!("`{}` is too small: {steps:.1e} steps in all", field.path);
+        return Err(field.fault(message, "at most 1e10 steps"));
+    }
+    let purpose = "the largest error Newton's method may leave in a velocity [m/s]";
+    let newton_tolerance = table.required("newton_tolerance", purpose)?.positive()?;
+    let purpose =
+        "the largest |delta| of a located contact onset [m], needed since a joint has clearance";
+    let onset = match clearance {
+        Some(_) => Some(table.required("onset_tolerance", purpose)?),
+        None => table.optional("onset_tolerance"),
+    };
+    let mut onset_tolerance = 0.0;
+    if let Some(field) = onset {
+        onset_tolerance = field.positive()?;
+        if clearance.is_some_and(|c| onset_tolerance >= c) {
+            return Err(field.must("be less than every clearance"));
+        }
+    }
+    Ok(Integrator {
+        method: Method::Bathe { gamma },
+        step,
+        newton_tolerance,
+        onset_tolerance,
+        step_span,
+    })
+}
+
+fn output(
+    root: &Fields,
+    simulation: &Simulation,
+    integrator: &Integrator,
+) -> Result<Output, SceneError> {
+    let mut table = root
+        .required("output", "the table of what is recorded")?
+        .fields()?;
+    table.only(&["interval", "channels"])?;
+    let field = table.required("interval", "the time between recorded rows [s]")?;
+    let interval = field.positive()?;
+    check_interval(&field, interval, integrator.step)?;
+    if interval > simulation.duration {
+        return Err(field.must(&format!(
+            "not be longer than the duration of {} s",
+            simulation.duration
+        )));
+    }
+    let field = table.required(
+        "channels",
+        "the list of recorded channels, such as [\"platform.*\"]",
+    )?;
+    let mut channels = Vec::new();
+    for item in field.items()? {
+        channels.push(ChannelPattern {
+            pattern: item.text()?.to_owned(),
+            span: item.node.span,
+        });
+    }
+    if channels.is_empty() {
+        return Err(field.fault("`output.channels` names no channel", "empty"));
+    }
+    Ok(Output { interval, channels })
+}
+
+fn check_interval(field: &Field, interval: f64, step: f64) -> Result<(), SceneError> {
+    let ratio = interval / step;
+    let whole = ratio.round();
+    if whole >= 1.0 && (ratio - whole).abs() <= WHOLE * whole {
+        return Ok(());
+    }
+    let [below, above] = [ratio.floor() * step, (ratio.floor() + 1.0) * step].map(decimal);
+    let near = if ratio < 1.0 {
+        above
+    } else {
+        format!("{below} or {above}")
+    };
+    let message = format!(
+        "`{}` must be a whole multiple of `integrator.step` = {step:?}, not {}",
+        field.path,
+        field.written()
+    );
+    Err(field
+        .fault(message, format!("{} steps", decimal(ratio)))
+        .with_help(format!("nearest valid: {near}")))
+}
+
+/// Ten significant digits, without the dust of binary fractions.
+fn decimal(x: f64) -> String {
+    match format!("{x:.9e}").parse::<f64>() {
+        Ok(rounded) => format!("{rounded:?}"),
+        Err(_) => x.to_string(),
+    }
+}
+
+fn assumptions(root: &Fields, tree: &Node) -> Result<Vec<Assumption>, SceneError> {
+    let mut result = Vec::new();
+    let Some(table) = root.optional("assumptions") else {
+        return Ok(result);
+    };
+    for field in table.fields()?.entries() {
+        if field.is_table() {
+            let error = field.key_fault(format!("`{}` is a table", field.path), "not a path");
+            return Err(
+                error.with_help("write the path in quotes: \"materials.steel.density\" = \"why\"")
+            );
+        }
+        let mut node = tree;
+        let mut above = String::new();
+        for part in field.name.split('.') {
+            let Some(child) = node.child(part) else {
+                let near: Vec<String> = node.keys().map(|key| format!("{above}{key}")).collect();
+                let hint = did_you_mean(&format!("{above}{part}"), near.iter().map(String::as_str));
+                let message = format!("the scene has no `{above}{part}`{hint}");
+                return Err(field.key_fault(message, "no such field"));
+            };
+            node = child;
+            above = format!("{above}{part}.");
+        }
+        result.push(Assumption {
+            path: field.name.clone(),
+            value: root.sources.written(node.span).to_owned(),
+            reason: field.text()?.to_owned(),
+        });
+    }
+    Ok(result)
+}
