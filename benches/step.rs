@@ -1,0 +1,62 @@
+//! What one Bathe step of the paper's four cases costs, in the middle of its motion.
+#![expect(
+    missing_docs,
+    reason = "criterion_group generates an undocumented function"
+)]
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use looselink::newton::Newton;
+use looselink::scene::Scene;
+use looselink::simulate::{Control, Observer, Onset, Progress, Simulation};
+use looselink::stepper::stepper;
+use looselink::system::System;
+use std::path::Path;
+
+const STEP: f64 = 1e-5;
+
+/// Discards what a run tells.
+struct Silent;
+
+impl Observer for Silent {
+    fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
+        Ok(())
+    }
+    fn onset(&mut self, _: &Onset) -> std::io::Result<()> {
+        Ok(())
+    }
+    fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
+        Ok(Control::Continue)
+    }
+}
+
+fn steps(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("bathe_step");
+    for case in 1..=4 {
+        let path =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/3rrr/case{case}.toml"));
+        // a quarter of a cycle in, past the first impacts
+        let overrides = [
+            "simulation.duration=0.25",
+            "integrator.step=1e-5",
+            "output.interval=1e-2",
+        ];
+        let scene = Scene::load(&path, &overrides.map(str::to_owned))
+            .expect("a scene of the project is valid");
+        let mut simulation = Simulation::new(&scene).expect("a scene of the project compiles");
+        simulation
+            .run(&mut Silent)
+            .expect("a scene of the project runs");
+        let model = simulation.model();
+        let (from, mut to) = (simulation.state().clone(), simulation.state().clone());
+        let mut newton = Newton::new(model, scene.integrator.newton_tolerance);
+        let mut work = model.work();
+        let mut stepper = stepper(scene.integrator.method, model);
+        group.bench_function(format!("case{case}"), |b| {
+            b.iter(|| stepper.step(model, &from, from.t + STEP, &mut to, &mut newton, &mut work));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, steps);
+criterion_main!(benches);

@@ -1,0 +1,261 @@
+//! Which terms make up the force of an eliminated joint and the torque of an actuated one.
+
+use super::numbering::Connection;
+use super::terms::OwnTerm;
+use super::{Compiler, Role};
+use crate::model::{
+    Actuator, BodyCoordinates, DrivenForce, JointKind, Model, Reaction, Share, Source,
+};
+use crate::scene::{PointRef, SceneError};
+
+/// First coordinate of a link end or of a rigid body, and the number of coordinates there.
+fn place(model: &Model, point: PointRef) -> Option<(usize, usize)> {
+    match &model.bodies()[point.body].coordinates {
+        BodyCoordinates::Ground { .. } => None,
+        BodyCoordinates::Rigid { x } => Some((*x, 3)),
+        BodyCoordinates::RigidLink { ends } => Some((ends[point.point], 2)),
+        BodyCoordinates::FlexibleLink { nodes, .. } => Some((
+            if point.point == 0 {
+                nodes[0]
+            } else {
+                nodes[nodes.len() - 1]
+            },
+            2,
+        )),
+    }
+}
+
+/// Attachment points of a body: the two ends of a link; one, standing for all, of a rigid body.
+fn attachments(model: &Model, body: usize) -> Vec<PointRef> {
+    match model.bodies()[body].coordinates {
+        BodyCoordinates::Ground { .. } => vec![],
+        BodyCoordinates::Rigid { .. } => vec![PointRef { body, point: 0 }],
+        _ => vec![PointRef { body, point: 0 }, PointRef { body, point: 1 }],
+    }
+}
+
+/// The attachment point that stands for a point.
+fn attachment(model: &Model, point: PointRef) -> PointRef {
+    match model.bodies()[point.body].coordinates {
+        BodyCoordinates::Rigid { .. } => PointRef {
+            body: point.body,
+            point: 0,
+        },
+        _ => point,
+    }
+}
+
+/// The shares of all terms that belong to `point`: its body's own, and those of joints attached there.
+fn shares(c: &Compiler, model: &Model, connections: &[Connection], point: PointRef) -> Vec<Share> {
+    let Some((x, _)) = place(model, point) else {
+        return Vec::new();
+    };
+    let mut shares = Vec::new();
+    let mut add = |source: Source, coordinates: &[usize]| {
+        let found = coordinates.iter().position(|&i| i == x);
+        shares.extend(found.map(|local| Share { source, local }));
+    };
+    // the masses of a body come in the order of the bodies; a flexible link has one an element
+    let mut first = 0;
+    for (b, place) in model.bodies().iter().enumerate() {
+        let count = match &place.coordinates {
+            BodyCoordinates::Ground { .. } => 0,
+            BodyCoordinates::FlexibleLink { elements, .. } => elements.len(),
+            _ => 1,
+        };
+        if b == point.body {
+            for i in first..first + count {
+                add(Source::Inertia(i), &model.mass.parts[i].coordinates);
+            }
+            if let BodyCoordinates::FlexibleLink { elements, .. } = &place.coordinates {
+                for i in elements.clone() {
+                    add(Source::Element(i), &model.elements[i].block.coordinates);
+                }
+            }
+        }
+        first += count;
+    }
+    if let (BodyCoordinates::RigidLink { ends }, Role::Free) =
+        (&model.bodies()[point.body].coordinates, c.roles[point.body])
+    {
+        let own = model
+            .lengths
+            .iter()
+            .position(|l| [l.term.i, l.term.j] == *ends);
+        if let Some(i) = own {
+            add(Source::Length(i), &model.lengths[i].block.coordinates);
+        }
+    }
+    // joints with terms of their own, in the order in which those terms were built
+    let (mut constraints, mut loose, mut frictional) = (0, 0, 0);
+    for (j, joint) in c.scene.joints.iter().enumerate() {
+        let bodies = [joint.bearing.body, joint.journal.body];
+        let ends = [joint.bearing, joint.journal].map(|p| attachment(model, p));
+        let has_friction =
+            matches!(&joint.model, crate::scene::JointModel::Clearance(k) if k.friction.is_some());
+        match connections[j] {
+            Connection::Eliminated => {}
+            Connection::Constraint => {
+                if ends.contains(&point) {
+                    add(
+                        Source::Coincidence(constraints),
+                        &model.coincidences[constraints].block.coordinates,
+                    );
+                }
+                constraints += 1;
+            }
+            Connection::Contact if has_friction => {
+                // the couple of a friction force on a rigid link acts on both ends
+                if bodies.contains(&point.body) {
+                    add(
+                        Source::Frictional(frictional),
+                        &model.frictional[frictional].block.coordinates,
+                    );
+                }
+                frictional += 1;
+            }
+            Connection::Contact => {
+                if ends.contains(&point) {
+                    add(Source::Loose(loose), &model.loose[loose].block.coordinates);
+                }
+                loose += 1;
+            }
+        }
+    }
+    shares
+}
+
+/// What hangs on `from` when joint `cut` is taken away: over eliminated joints and through driven bodies. `None` where
+/// the ground hangs on it.
+fn hanging(
+    c: &Compiler,
+    model: &Model,
+    connections: &[Connection],
+    cut: usize,
+    from: PointRef,
+) -> Option<Vec<PointRef>> {
+    let mut found = vec![attachment(model, from)];
+    let mut next = 0;
+    while next < found.len() {
+        let point = found[next];
+        next += 1;
+        if c.roles[point.body] == Role::Ground {
+            return None;
+        }
+        let mut reached = Vec::new();
+        if c.roles[point.body] == Role::Driven {
+            reached.extend(attachments(model, point.body));
+        }
+        for (j, joint) in c.scene.joints.iter().enumerate() {
+            if j != cut && connections[j] == Connection::Eliminated {
+                let ends = [joint.bearing, joint.journal].map(|p| attachment(model, p));
+                for (near, far) in [(0, 1), (1, 0)] {
+                    if ends[near] == point {
+                        reached.push(ends[far]);
+                    }
+                }
+            }
+        }
+        for point in reached {
+            if !found.contains(&point) {
+                found.push(point);
+            }
+        }
+    }
+    Some(found)
+}
+
+/// Force and, where a drive acts on it, torque of joint `j`.
+pub(super) fn joint(
+    c: &Compiler,
+    model: &Model,
+    connections: &[Connection],
+    j: usize,
+    own: OwnTerm,
+) -> Result<(JointKind, Option<Actuator>), SceneError> {
+    let kind = match own {
+        OwnTerm::Constraint(i) => JointKind::Constraint(i),
+        OwnTerm::Loose(i) => JointKind::Loose(i),
+        OwnTerm::Frictional(i) => JointKind::Frictional(i),
+        OwnTerm::None => {
+            let joint = &c.scene.joints[j];
+            let journal_side =
+                hanging(c, model, connections, j, joint.journal).map(|side| (side, 1.0));
+            let side = journal_side.or_else(|| {
+                hanging(c, model, connections, j, joint.bearing).map(|side| (side, -1.0))
+            });
+            let Some((side, sign)) = side else {
+                let message = format!(
+                    "the reaction of joint {} is not determined: both sides are held",
+                    joint.name
+                );
+                return Err(c.joint_error(j, message, "redundant joint"));
+            };
+            let mut all = Vec::new();
+            let mut outboard = Vec::new();
+            for &point in &side {
+                let own = shares(c, model, connections, point);
+                all.extend_from_slice(&own);
+                if let Some((x, width)) = place(model, point) {
+                    outboard.push(DrivenForce {
+                        x,
+                        width,
+                        reaction: Reaction {
+                            shares: own,
+                            sign: 1.0,
+                        },
+                    });
+                }
+            }
+            let actuated = c.scene.drives.iter().any(|d| d.joints.contains(&j));
+            let actuator = actuated.then(|| Actuator {
+                bodies: [joint.bearing.body, joint.journal.body],
+                centre: c.marker(
+                    &model.bodies()[joint.bearing.body].coordinates,
+                    joint.bearing,
+                ),
+                outboard,
+                sign,
+            });
+            return Ok((
+                JointKind::Eliminated(Reaction { shares: all, sign }),
+                actuator,
+            ));
+        }
+    };
+    Ok((kind, None))
+}
+
+/// Forces on the coordinates of driven bodies.
+pub(super) fn driven_forces(
+    c: &Compiler,
+    model: &Model,
+    connections: &[Connection],
+) -> Vec<DrivenForce> {
+    let mut forces: Vec<DrivenForce> = Vec::new();
+    let all: Vec<PointRef> = (0..c.scene.bodies.len())
+        .flat_map(|b| attachments(model, b))
+        .collect();
+    for body in (0..c.scene.bodies.len()).filter(|&b| c.roles[b] == Role::Driven) {
+        for point in attachments(model, body) {
+            let Some((x, width)) = place(model, point) else {
+                continue;
+            };
+            if forces.iter().any(|f| f.x == x) {
+                continue;
+            }
+            let here = all
+                .iter()
+                .filter(|&&p| place(model, p).map(|(x, _)| x) == Some(x));
+            let shares = here
+                .flat_map(|&p| shares(c, model, connections, p))
+                .collect();
+            forces.push(DrivenForce {
+                x,
+                width,
+                reaction: Reaction { shares, sign: 1.0 },
+            });
+        }
+    }
+    forces
+}

@@ -1,0 +1,187 @@
+//! Inverse kinematics of the ideal rigid mechanism: the driven body follows its path, every other body follows it.
+//!
+//! The mechanism is compiled like any other, rigid and with ideal joints, the driven body known. Its constraints then
+//! determine all coordinates: Newton on Phi(q) = 0, and linear solves of Phi_q v = 0 and Phi_q a = gamma give exact rates.
+//! The linear systems are those of the acceleration level with unit masses, \[\[I, Phi_q^T\], \[Phi_q, 0\]\], whose
+//! solution is the one of least norm.
+
+use crate::math::plane::{norm, sub};
+use crate::model::Model;
+use crate::system::{Inner, PrescribeError, State, System, Weights};
+
+/// An update below this leaves, by the quadratic convergence of Newton's method, an error far below rounding.
+const LAST_UPDATE: f64 = 1e-9;
+
+/// The ideal mechanism and where its coordinates stand among those of the real one.
+#[derive(Debug)]
+pub struct Kinematics {
+    /// Rigid links, ideal joints, the driven body known.
+    pub(crate) mechanism: Box<Model>,
+    /// Index of its first coordinate in the real mechanism.
+    pub(crate) offset: usize,
+    /// Its coordinates at t = 0.
+    pub(crate) start: Vec<f64>,
+    /// Two links in series between known points: the loops whose closing can be told in words.
+    pub(crate) dyads: Vec<Dyad>,
+}
+
+/// Two links whose common joint is found by intersecting two circles.
+#[derive(Debug)]
+pub(crate) struct Dyad {
+    /// Known ends: first coordinate and the joint there.
+    pub ends: [(usize, String); 2],
+    /// Names and lengths of the links.
+    pub links: [(String, f64); 2],
+}
+
+impl Kinematics {
+    /// Work memory with a state whose fixed coordinates are set.
+    pub fn work(&self) -> Inner {
+        let shape = self.mechanism.shape();
+        let size = shape.unknowns + shape.multipliers;
+        Inner {
+            state: self.mechanism.blank_state(),
+            work: self.mechanism.work(),
+            r: vec![0.0; shape.coordinates],
+            phi: vec![0.0; shape.multipliers],
+            k: vec![0.0; self.mechanism.symbolic().len()],
+            b: vec![0.0; size],
+            solve: vec![0.0; size],
+        }
+    }
+
+    /// Sets the coordinates of the ideal mechanism in `to` at `to.t`, starting from those in `from`.
+    ///
+    /// # Errors
+    /// When the mechanism cannot close, or its pose is singular.
+    pub fn prescribe(
+        &self,
+        from: &State,
+        to: &mut State,
+        inner: &mut Inner,
+    ) -> Result<(), PrescribeError> {
+        let count = self.mechanism.shape().coordinates;
+        let here = self.offset..self.offset + count;
+        let dt = to.t - from.t;
+        let s = &mut inner.state;
+        s.t = to.t;
+        let rates = from.v[here.clone()].iter().zip(&from.a[here.clone()]);
+        for ((q, start), (v, a)) in s.q.iter_mut().zip(&from.q[here.clone()]).zip(rates) {
+            *q = start + dt * (v + 0.5 * dt * a);
+        }
+        self.solve(inner, 20)?;
+        to.q[here.clone()].copy_from_slice(&inner.state.q);
+        to.v[here.clone()].copy_from_slice(&inner.state.v);
+        to.a[here].copy_from_slice(&inner.state.a);
+        Ok(())
+    }
+
+    /// Closes the mechanism at the time of `inner.state` from the coordinates in it, then finds the rates.
+    ///
+    /// # Errors
+    /// When the mechanism cannot close, or its pose is singular.
+    pub fn solve(&self, inner: &mut Inner, max_iterations: usize) -> Result<(), PrescribeError> {
+        let mechanism = &*self.mechanism;
+        let n = mechanism.shape().unknowns;
+        mechanism.follow_path(&mut inner.state);
+        mechanism.ride(&mut inner.state);
+        inner.state.v[..n].fill(0.0);
+        inner.state.a[..n].fill(0.0);
+        let mut last = f64::INFINITY;
+        for _ in 0..max_iterations {
+            self.factor(inner)?;
+            self.least_norm(inner);
+            last = 0.0;
+            for (q, dq) in inner.state.q.iter_mut().zip(&inner.b[..n]) {
+                *q += dq;
+                // f64::max drops NaN
+                last = if dq.abs() <= last { last } else { dq.abs() };
+            }
+            if last <= LAST_UPDATE || last.is_nan() {
+                break;
+            }
+        }
+        // written so that NaN fails as well
+        if !(last <= LAST_UPDATE) {
+            return Err(self.cannot_close(&inner.state));
+        }
+        self.factor(inner)?;
+        mechanism.constraint_velocity(&inner.state, &mut inner.phi);
+        self.least_norm(inner);
+        inner.state.v[..n].copy_from_slice(&inner.b[..n]);
+        mechanism.constraint_acceleration(&inner.state, &mut inner.phi);
+        self.least_norm(inner);
+        inner.state.a[..n].copy_from_slice(&inner.b[..n]);
+        Ok(())
+    }
+
+    /// Phi and the factors of \[\[I, Phi_q^T\], \[Phi_q, 0\]\] at the current coordinates.
+    fn factor(&self, inner: &mut Inner) -> Result<(), PrescribeError> {
+        let Inner {
+            state,
+            work,
+            r,
+            phi,
+            k,
+            ..
+        } = inner;
+        self.mechanism
+            .linearise(state, Weights::ACCELERATION, r, phi, k, work);
+        self.mechanism.symbolic().factor(k).map_err(|weak| {
+            let name = self.mechanism.unknown_name(weak.index);
+            let closed = phi.iter().all(|x| x.abs() < LAST_UPDATE);
+            if closed {
+                let message = format!("the ideal rigid mechanism is in a singular pose ({name})");
+                PrescribeError {
+                    message,
+                    t: state.t,
+                }
+            } else {
+                self.cannot_close(state)
+            }
+        })
+    }
+
+    /// Solves Phi_q x = -phi for the x of least norm: the first entries of `inner.b`.
+    fn least_norm(&self, inner: &mut Inner) {
+        let n = self.mechanism.shape().unknowns;
+        inner.b[..n].fill(0.0);
+        for (b, phi) in inner.b[n..].iter_mut().zip(&inner.phi) {
+            *b = -phi;
+        }
+        self.mechanism
+            .symbolic()
+            .solve(&inner.k, &mut inner.b, &mut inner.solve);
+    }
+
+    /// Says which two links are too short or too long for the distance between their ends, if that is the reason.
+    fn cannot_close(&self, at: &State) -> PrescribeError {
+        let t = at.t;
+        for dyad in &self.dyads {
+            let [(i, from), (j, to)] = &dyad.ends;
+            let distance = norm(sub([at.q[*i], at.q[i + 1]], [at.q[*j], at.q[j + 1]]));
+            let [(first, l1), (second, l2)] = &dyad.links;
+            let ends =
+                format!("{first} and {second} cannot close: |{from} {to}| = {distance:.6} m");
+            if distance > l1 + l2 {
+                let message = format!("{ends} exceeds {l1} m + {l2} m = {:.6} m", l1 + l2);
+                return PrescribeError { message, t };
+            }
+            if distance < (l1 - l2).abs() {
+                let message = format!(
+                    "{ends} is less than |{l1} m - {l2} m| = {:.6} m",
+                    (l1 - l2).abs()
+                );
+                return PrescribeError { message, t };
+            }
+        }
+        let worst = self.mechanism.worst_constraint(at);
+        let message = match worst {
+            Some((value, _, name)) => {
+                format!("the ideal rigid mechanism cannot close: {name} is off by {value:.3e} m")
+            }
+            None => "the ideal rigid mechanism cannot follow the path".to_owned(),
+        };
+        PrescribeError { message, t }
+    }
+}

@@ -1,0 +1,273 @@
+//! What a model lets one measure: poses, strains, energies, joint forces, drive torques.
+
+use super::{Actuator, BodyCoordinates, JointKind, Model};
+use crate::marker::Marker;
+use crate::math::plane::{Vec2, add, cross, dot, norm, scale, sub};
+use crate::system::{State, Work};
+
+/// Position, velocity and acceleration of a body: centre of mass, and angle (of a link: of its chord).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Pose {
+    /// x, y \[m\], theta \[rad\].
+    pub position: [f64; 3],
+    /// vx, vy, omega.
+    pub velocity: [f64; 3],
+    /// ax, ay, alpha.
+    pub acceleration: [f64; 3],
+}
+
+/// Stored energies \[J\].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Energies {
+    /// 1/2 v^T M v, driven bodies included.
+    pub kinetic: f64,
+    /// EA/2 int eps^2 dx.
+    pub axial: f64,
+    /// EI/2 int r''.r'' dx.
+    pub bending: f64,
+    /// Conservative part of the contact laws.
+    pub contact: f64,
+    /// Potential of the weight.
+    pub gravity: f64,
+}
+
+impl Energies {
+    /// The sum.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.axial + self.bending + self.contact + self.gravity
+    }
+}
+
+/// Two entries of an array.
+#[inline]
+fn pair(x: &[f64], i: usize) -> Vec2 {
+    [x[i], x[i + 1]]
+}
+
+/// Sum over the nodes of a flexible link of the integral of the shape functions over the length, per length.
+fn mean(x: &[f64], nodes: &[usize], slopes: &[usize], element_length: f64) -> Vec2 {
+    let mut sum = [0.0; 2];
+    for (n, s) in nodes.windows(2).zip(slopes.windows(2)) {
+        sum = add(sum, scale(0.5, add(pair(x, n[0]), pair(x, n[1]))));
+        sum = add(
+            sum,
+            scale(element_length / 12.0, sub(pair(x, s[0]), pair(x, s[1]))),
+        );
+    }
+    scale(1.0 / (nodes.len() - 1) as f64, sum)
+}
+
+/// Pose of a link from its centre and its chord, each as (position, velocity, acceleration).
+fn link_pose(centre: [Vec2; 3], chord: [Vec2; 3]) -> Pose {
+    let [d, d_dot, d_ddot] = chord;
+    let square = dot(d, d);
+    let omega = cross(d, d_dot) / square;
+    let alpha = (cross(d, d_ddot) - 2.0 * omega * dot(d, d_dot)) / square;
+    Pose {
+        position: [centre[0][0], centre[0][1], d[1].atan2(d[0])],
+        velocity: [centre[1][0], centre[1][1], omega],
+        acceleration: [centre[2][0], centre[2][1], alpha],
+    }
+}
+
+impl Model {
+    /// Pose of body `index` of the scene; angles of links in (-pi, pi].
+    pub fn pose(&self, index: usize, at: &State) -> Pose {
+        let levels = [&at.q, &at.v, &at.a];
+        match &self.bodies[index].coordinates {
+            BodyCoordinates::Ground { .. } => Pose::default(),
+            BodyCoordinates::Rigid { x } => {
+                let [position, velocity, acceleration] =
+                    levels.map(|l| [l[*x], l[x + 1], l[x + 2]]);
+                Pose {
+                    position,
+                    velocity,
+                    acceleration,
+                }
+            }
+            BodyCoordinates::RigidLink { ends: [i, j] } => link_pose(
+                levels.map(|l| scale(0.5, add(pair(l, *i), pair(l, *j)))),
+                levels.map(|l| sub(pair(l, *j), pair(l, *i))),
+            ),
+            BodyCoordinates::FlexibleLink {
+                nodes,
+                slopes,
+                element_length,
+                ..
+            } => link_pose(
+                levels.map(|l| mean(l, nodes, slopes, *element_length)),
+                levels.map(|l| sub(pair(l, nodes[nodes.len() - 1]), pair(l, nodes[0]))),
+            ),
+        }
+    }
+
+    /// Pose that the drive prescribes for body `index`, if it does.
+    pub fn prescribed(&self, index: usize, at: &State) -> Option<Pose> {
+        self.bodies[index].prescribed.map(|x| {
+            let [position, velocity, acceleration] =
+                [&at.q, &at.v, &at.a].map(|l| [l[x], l[x + 1], l[x + 2]]);
+            Pose {
+                position,
+                velocity,
+                acceleration,
+            }
+        })
+    }
+
+    /// The axial strain of largest magnitude along a flexible link, sampled at eleven points of every element.
+    pub fn strain(&self, index: usize, at: &State) -> Option<f64> {
+        let BodyCoordinates::FlexibleLink { elements, .. } = &self.bodies[index].coordinates else {
+            return None;
+        };
+        let mut largest: f64 = 0.0;
+        for element in &self.elements[elements.clone()] {
+            let q = std::array::from_fn(|i| at.q[element.block.coordinates[i]]);
+            for k in 0..=10 {
+                let strain = element.kernel.strain(&q, f64::from(k) / 10.0);
+                if strain.abs() > largest.abs() {
+                    largest = strain;
+                }
+            }
+        }
+        Some(largest)
+    }
+
+    /// Stored energies.
+    pub fn energies(&self, at: &State) -> Energies {
+        let mut energies = Energies::default();
+        for (i, v) in at.v.iter().enumerate() {
+            let range = self.mass.row_start[i]..self.mass.row_start[i + 1];
+            let row = self.mass.columns[range.clone()]
+                .iter()
+                .zip(&self.mass.values[range]);
+            energies.kinetic += 0.5 * v * row.map(|(&j, m)| m * at.v[j]).sum::<f64>();
+        }
+        for element in &self.elements {
+            let q = std::array::from_fn(|i| at.q[element.block.coordinates[i]]);
+            let (axial, bending) = element.kernel.energy(&q);
+            energies.axial += axial;
+            energies.bending += bending;
+        }
+        for c in &self.loose {
+            energies.contact += closed_energy(&c.term, at, c.contact);
+        }
+        for c in &self.frictional {
+            energies.contact += closed_energy(&c.term.joint, at, c.contact);
+        }
+        energies.gravity = self
+            .weight
+            .iter()
+            .map(|&(i, weight)| weight * at.q[i])
+            .sum();
+        energies
+    }
+
+    /// Force of the bearing side on the journal side of joint `index` \[N\].
+    pub fn joint_force(&self, index: usize, at: &State, work: &mut Work) -> Vec2 {
+        match &self.joints[index].kind {
+            JointKind::Constraint(i) => pair(&at.lambda, self.coincidences[*i].row),
+            JointKind::Loose(i) => {
+                let c = &self.loose[*i];
+                let g = c.term.geometry(&at.q, &at.v);
+                c.term
+                    .normal_force(&g, at.z[c.contact])
+                    .map_or([0.0; 2], |force| scale(-force.value / g.eccentricity, g.e))
+            }
+            JointKind::Frictional(i) => {
+                let c = &self.frictional[*i];
+                c.term.journal_force(&at.q, &at.v, at.z[c.contact])
+            }
+            JointKind::Eliminated(reaction) => {
+                let force = self.reaction(reaction, 2, at, work);
+                [force[0], force[1]]
+            }
+        }
+    }
+
+    /// True for a joint with clearance.
+    pub fn is_loose(&self, index: usize) -> bool {
+        matches!(
+            self.joints[index].kind,
+            JointKind::Loose(_) | JointKind::Frictional(_)
+        )
+    }
+
+    /// Eccentricity vector, penetration and contact (closed and touching) of a loose joint.
+    pub fn clearance(&self, index: usize, at: &State) -> Option<(Vec2, f64, bool)> {
+        let (joint, contact) = match self.joints[index].kind {
+            JointKind::Loose(i) => (&self.loose[i].term, self.loose[i].contact),
+            JointKind::Frictional(i) => {
+                (&self.frictional[i].term.joint, self.frictional[i].contact)
+            }
+            JointKind::Constraint(_) | JointKind::Eliminated(_) => return None,
+        };
+        let g = joint.geometry(&at.q, &at.v);
+        Some((g.e, g.delta, at.z[contact] > 0.0 && g.delta > 0.0))
+    }
+
+    /// Angle (unwrapped only to (-pi, pi]), speed and torque of an actuated joint.
+    pub fn actuator(&self, actuator: &Actuator, at: &State, work: &mut Work) -> [f64; 3] {
+        let [bearing, journal] = actuator.bodies.map(|b| self.pose(b, at));
+        let centre = actuator.centre.position(&at.q, actuator.centre.arm(&at.q));
+        let mut torque = 0.0;
+        for driven in &actuator.outboard {
+            let force = self.reaction(&driven.reaction, driven.width, at, work);
+            torque += cross(sub(pair(&at.q, driven.x), centre), [force[0], force[1]]) + force[2];
+        }
+        torque *= actuator.sign;
+        [
+            journal.position[2] - bearing.position[2],
+            journal.velocity[2] - bearing.velocity[2],
+            torque,
+        ]
+    }
+
+    /// Index of the joint that owns contact memory `contact`.
+    pub fn contact_joint(&self, contact: usize) -> Option<usize> {
+        self.joints.iter().position(|joint| match joint.kind {
+            JointKind::Loose(i) => self.loose[i].contact == contact,
+            JointKind::Frictional(i) => self.frictional[i].contact == contact,
+            _ => false,
+        })
+    }
+
+    /// Largest |Phi| \[m\], the joint or link it belongs to, and the largest |Phi_q v|.
+    pub fn worst_constraint(&self, at: &State) -> Option<(f64, f64, String)> {
+        let mut worst: Option<(f64, f64, String)> = None;
+        let mut see = |value: f64, rate: f64, row: usize| {
+            let name = || self.names[self.shape.unknowns + row].clone();
+            match &mut worst {
+                Some(w) => {
+                    if value > w.0 {
+                        w.2 = name();
+                    }
+                    w.0 = w.0.max(value);
+                    w.1 = w.1.max(rate);
+                }
+                None => worst = Some((value, rate, name())),
+            }
+        };
+        for c in &self.lengths {
+            see(c.term.value(&at.q).abs(), c.term.velocity(at).abs(), c.row);
+        }
+        for c in &self.coincidences {
+            see(norm(c.term.value(&at.q)), norm(c.term.velocity(at)), c.row);
+        }
+        worst
+    }
+
+    /// Position of a marker.
+    pub fn position(&self, marker: &Marker, at: &State) -> Vec2 {
+        marker.position(&at.q, marker.arm(&at.q))
+    }
+}
+
+/// Potential of a contact that is closed.
+fn closed_energy(joint: &crate::force::ClearanceJoint, at: &State, contact: usize) -> f64 {
+    let delta = joint.geometry(&at.q, &at.v).delta;
+    if at.z[contact] > 0.0 {
+        joint.law.energy(delta)
+    } else {
+        0.0
+    }
+}

@@ -1,0 +1,144 @@
+//! Forces on coordinates that no multiplier belongs to: what the bodies on one side ask of a point.
+//!
+//! M a + f + Phi_q^T lambda of a group of terms is the force that the rest of the world must exert on it. Summed over
+//! the terms of one side of a joint it is the joint's force; over all terms at a driven coordinate it is the drive's.
+
+use super::{Effect, Model};
+use crate::force::WIDTH;
+use crate::link::ElasticRoute;
+use crate::system::{State, Work};
+
+/// What a term contributes to consecutive coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Share {
+    pub(crate) source: Source,
+    /// Local index of the first coordinate.
+    pub(crate) local: usize,
+}
+
+/// A term of the model, by its index in the list of its kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Source {
+    Inertia(usize),
+    Element(usize),
+    Length(usize),
+    Coincidence(usize),
+    Loose(usize),
+    Frictional(usize),
+}
+
+/// A sum of shares, all on the same physical point, times a sign.
+#[derive(Debug, Clone)]
+pub struct Reaction {
+    pub(crate) shares: Vec<Share>,
+    pub(crate) sign: f64,
+}
+
+/// The force on known coordinates that move: x, y of a node, or x, y, theta of a rigid body.
+#[derive(Debug, Clone)]
+pub(crate) struct DrivenForce {
+    pub x: usize,
+    pub width: usize,
+    pub reaction: Reaction,
+}
+
+impl Model {
+    /// Adds what `share` asks for in `width` coordinates.
+    fn add_share(
+        &self,
+        share: Share,
+        width: usize,
+        at: &State,
+        work: &mut Work,
+        out: &mut [f64; 3],
+    ) {
+        let mut add = |local: &[f64]| {
+            for (o, x) in out.iter_mut().zip(&local[share.local..share.local + width]) {
+                *o += x;
+            }
+        };
+        match share.source {
+            Source::Inertia(i) => {
+                let part = &self.mass.parts[i];
+                let n = part.coordinates.len();
+                for (o, row) in out.iter_mut().zip(share.local..share.local + width) {
+                    let values = &part.values[row * n..(row + 1) * n];
+                    let columns = part.coordinates.iter().zip(&part.field);
+                    *o += values
+                        .iter()
+                        .zip(columns)
+                        .map(|(m, (&j, g))| m * (at.a[j] - g))
+                        .sum::<f64>();
+                }
+            }
+            Source::Element(i) => {
+                work.tally[Effect::Elastic as usize] += 1;
+                let element = &self.elements[i];
+                let mut f = [0.0; 8];
+                let q = std::array::from_fn(|j| at.q[element.block.coordinates[j]]);
+                element.kernel.force(&q, &mut f);
+                add(&f);
+            }
+            Source::Length(i) => {
+                let c = &self.lengths[i];
+                add(&c.term.gradient(&at.q).map(|g| g * at.lambda[c.row]));
+            }
+            Source::Coincidence(i) => {
+                let c = &self.coincidences[i];
+                let gradient = c.term.gradient(&at.q);
+                for (d, row) in gradient.rows.iter().enumerate() {
+                    add(&row.map(|g| g * at.lambda[c.row + d]));
+                }
+            }
+            Source::Loose(i) => {
+                let c = &self.loose[i];
+                let mut f = [0.0; WIDTH];
+                if c.term
+                    .force(&at.q, &at.v, at.z[c.contact], &mut f)
+                    .is_some()
+                {
+                    work.tally[Effect::Contact as usize] += 1;
+                    add(&f);
+                }
+            }
+            Source::Frictional(i) => {
+                let c = &self.frictional[i];
+                let mut f = [0.0; WIDTH];
+                if c.term
+                    .force(&at.q, &at.v, at.z[c.contact], &mut f)
+                    .is_some()
+                {
+                    work.tally[Effect::Contact as usize] += 1;
+                    work.tally[Effect::Friction as usize] += 1;
+                    add(&f);
+                }
+            }
+        }
+    }
+
+    /// The sum of a reaction \[N\], and \[N m\] in the third place where `width` is 3.
+    pub(crate) fn reaction(
+        &self,
+        reaction: &Reaction,
+        width: usize,
+        at: &State,
+        work: &mut Work,
+    ) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for &share in &reaction.shares {
+            self.add_share(share, width, at, work, &mut sum);
+        }
+        sum.map(|x| reaction.sign * x)
+    }
+
+    /// Power of the forces on known coordinates \[W\].
+    pub(crate) fn drive_power(&self, at: &State, work: &mut Work) -> f64 {
+        let power = |driven: &DrivenForce| {
+            let force = self.reaction(&driven.reaction, driven.width, at, work);
+            (0..driven.width)
+                .map(|i| force[i] * at.v[driven.x + i])
+                .sum::<f64>()
+        };
+        self.driven.iter().map(power).sum()
+    }
+}

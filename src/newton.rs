@@ -1,0 +1,270 @@
+//! Newton's method on the equations of one stage, and the linear solves of the acceleration level.
+
+use crate::math::lu::DenseLu;
+use crate::system::{State, System, Weights, Work};
+
+/// A stage takes this many iterations at most; a stage that converges at all is far below.
+const MAX_ITERATIONS: usize = 15;
+/// The tangent is renewed when an update is not smaller than this part of the one before.
+const SLOW: f64 = 0.1;
+/// Updates that no longer shrink are rounding if they are below this many tolerances.
+const ROUNDING_BAND: f64 = 1e4;
+
+/// Counts of the work done.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Stages solved.
+    pub stages: u64,
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Factorisations of the tangent.
+    pub factorisations: u64,
+    /// Factorisations with row exchanges, because the fixed pivot order met a weak pivot.
+    pub fallbacks: u64,
+    /// Stages accepted because their updates had come down to rounding, above the tolerance.
+    pub stagnations: u64,
+}
+
+/// Why a stage has no solution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Failure {
+    /// Newton's method does not converge; the unknown with the largest last update and its size in velocity \[m/s\].
+    NoConvergence {
+        /// Unknown.
+        index: usize,
+        /// Update.
+        update: f64,
+    },
+    /// A state that is not finite; the unknown.
+    NotFinite {
+        /// Unknown.
+        index: usize,
+    },
+    /// The tangent is singular; the unknown with the weak pivot.
+    Singular {
+        /// Unknown.
+        index: usize,
+    },
+}
+
+/// Solver memory: allocated once, used for every stage.
+#[derive(Debug)]
+pub struct Newton {
+    tolerance: f64,
+    r: Vec<f64>,
+    phi: Vec<f64>,
+    k: Vec<f64>,
+    b: Vec<f64>,
+    solve: Vec<f64>,
+    dense: Option<DenseLu>,
+    /// Work done so far.
+    pub counters: Counters,
+}
+
+impl Newton {
+    /// Memory for a system; `tolerance` is the largest error left in a velocity \[m/s\].
+    pub fn new(system: &dyn System, tolerance: f64) -> Newton {
+        let shape = system.shape();
+        let size = shape.unknowns + shape.multipliers;
+        Newton {
+            tolerance,
+            r: vec![0.0; shape.coordinates],
+            phi: vec![0.0; shape.multipliers],
+            k: vec![0.0; system.symbolic().len()],
+            b: vec![0.0; size],
+            solve: vec![0.0; size],
+            dense: None,
+            counters: Counters::default(),
+        }
+    }
+
+    /// Factorises `self.k`, which `linearise` has just filled; `again` fills it once more for the fallback.
+    fn factor(
+        &mut self,
+        system: &dyn System,
+        at: &State,
+        w: Weights,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
+        self.counters.factorisations += 1;
+        self.dense = None;
+        let symbolic = system.symbolic();
+        if let Err(weak) = symbolic.factor(&mut self.k) {
+            self.counters.fallbacks += 1;
+            system.linearise(at, w, &mut self.r, &mut self.phi, &mut self.k, work);
+            self.dense = DenseLu::factor(symbolic, &self.k);
+            if self.dense.is_none() {
+                return Err(Failure::Singular { index: weak.index });
+            }
+        }
+        Ok(())
+    }
+
+    fn back_substitute(&mut self, system: &dyn System) {
+        match &self.dense {
+            None => system
+                .symbolic()
+                .solve(&self.k, &mut self.b, &mut self.solve),
+            Some(dense) => dense.solve(&mut self.b),
+        }
+    }
+
+    /// Solves M a + f + Phi_q^T lambda = 0, Phi = 0 for (a, lambda) with q = q_hat + w.q a, v = v_hat + w.v a.
+    ///
+    /// `s` holds the guess of (a, lambda) and the known coordinates, and takes the solution. Constraint rows are divided
+    /// by w.q, so that the matrix tends to the one of the acceleration level as the step shrinks. Converged when the
+    /// estimated error of every velocity is below the tolerance, which grows to the rounding of Phi seen through the
+    /// step, 16 eps |q| w.v/w.q, where there are constraints.
+    ///
+    /// # Errors
+    /// See [`Failure`].
+    pub fn solve_stage(
+        &mut self,
+        system: &dyn System,
+        w: Weights,
+        q_hat: &[f64],
+        v_hat: &[f64],
+        s: &mut State,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
+        let n = system.shape().unknowns;
+        self.counters.stages += 1;
+        let mut tolerance = self.tolerance;
+        if system.shape().multipliers > 0 {
+            let size = q_hat[..n].iter().fold(0.0_f64, |m, q| m.max(q.abs()));
+            tolerance = tolerance.max(16.0 * f64::EPSILON * size * w.v / w.q);
+        }
+        let (mut renew, mut last) = (true, f64::INFINITY);
+        let mut worst = 0;
+        for iteration in 0..MAX_ITERATIONS {
+            for i in 0..n {
+                s.q[i] = q_hat[i] + w.q * s.a[i];
+                s.v[i] = v_hat[i] + w.v * s.a[i];
+            }
+            self.counters.newton_iterations += 1;
+            if renew {
+                system.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
+            } else {
+                system.residual(s, &mut self.r, &mut self.phi, work);
+            }
+            if renew {
+                self.factor(system, s, w, work)?;
+            }
+            for i in 0..n {
+                self.b[i] = -self.r[i];
+            }
+            for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
+                *b = -phi / w.q;
+            }
+            self.back_substitute(system);
+            let mut update = 0.0;
+            for i in 0..n {
+                s.a[i] += self.b[i];
+                let size = w.v * self.b[i].abs();
+                // written so that NaN wins
+                if !(size <= update) {
+                    (update, worst) = (size, i);
+                }
+            }
+            for (lambda, d) in s.lambda.iter_mut().zip(&self.b[n..]) {
+                *lambda += d;
+            }
+            if !update.is_finite() {
+                return Err(Failure::NotFinite { index: worst });
+            }
+            let rate = update / last;
+            let error = if iteration == 0 || rate >= 1.0 {
+                update
+            } else {
+                rate / (1.0 - rate) * update
+            };
+            let rounding = iteration >= 2 && rate > 0.3 && update < ROUNDING_BAND * tolerance;
+            if error <= tolerance || rounding {
+                self.counters.stagnations += u64::from(error > tolerance);
+                for i in 0..n {
+                    s.q[i] = q_hat[i] + w.q * s.a[i];
+                    s.v[i] = v_hat[i] + w.v * s.a[i];
+                }
+                return Ok(());
+            }
+            renew = rate > SLOW && iteration > 0;
+            last = update;
+        }
+        Err(Failure::NoConvergence {
+            index: worst,
+            update: last,
+        })
+    }
+
+    /// Makes a state consistent at its (q, v): v is moved, by the least kinetic energy, to Phi_q v = 0, then
+    /// M a + Phi_q^T lambda = -f, Phi_q a = gamma give (a, lambda).
+    ///
+    /// Bathe's scheme on the position level leaves multipliers and constrained accelerations of order one; these are of
+    /// order two.
+    ///
+    /// # Errors
+    /// [`Failure::Singular`] where the constraints contradict or repeat each other.
+    pub fn make_consistent(
+        &mut self,
+        system: &dyn System,
+        s: &mut State,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
+        let n = system.shape().unknowns;
+        let w = Weights::ACCELERATION;
+        s.a[..n].fill(0.0);
+        s.lambda.fill(0.0);
+        system.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
+        self.factor(system, s, w, work)?;
+        if system.shape().multipliers > 0 {
+            system.constraint_velocity(s, &mut self.phi);
+            self.b[..n].fill(0.0);
+            self.move_by(system, |s| &mut s.v, s);
+            system.residual(s, &mut self.r, &mut self.phi, work);
+        }
+        system.constraint_acceleration(s, &mut self.phi);
+        for i in 0..n {
+            self.b[i] = -self.r[i];
+        }
+        self.move_by(system, |s| &mut s.a, s);
+        s.lambda.copy_from_slice(&self.b[n..]);
+        match s.a[..n].iter().position(|a| !a.is_finite()) {
+            Some(index) => Err(Failure::NotFinite { index }),
+            None => Ok(()),
+        }
+    }
+
+    /// Ends a stage: rates made consistent where there are constraints, then the integrands of the ledger. Returns the
+    /// number of clamped contacts.
+    ///
+    /// # Errors
+    /// As [`Newton::make_consistent`].
+    pub fn finish_stage(
+        &mut self,
+        system: &dyn System,
+        s: &mut State,
+        work: &mut Work,
+    ) -> Result<usize, Failure> {
+        if system.shape().multipliers > 0 {
+            self.make_consistent(system, s, work)?;
+        }
+        Ok(system.powers(s, work))
+    }
+
+    /// Solves for the right side `b` (unknowns set) and -phi, and adds the unknown part to a level of the state.
+    fn move_by(
+        &mut self,
+        system: &dyn System,
+        level: fn(&mut State) -> &mut Vec<f64>,
+        s: &mut State,
+    ) {
+        let n = system.shape().unknowns;
+        for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
+            *b = -phi;
+        }
+        self.back_substitute(system);
+        for (x, d) in level(s).iter_mut().zip(&self.b[..n]) {
+            *x += d;
+        }
+    }
+}

@@ -1,0 +1,432 @@
+//! Named channels with units: what a row of output contains.
+
+use crate::model::{Energies, Model, Pose};
+use crate::scene::{Scene, SceneError};
+use crate::system::{Integral, State, Work};
+use std::f64::consts::TAU;
+
+/// A recorded quantity.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Channel {
+    /// The name in the scene and in the header.
+    pub name: String,
+    /// The unit.
+    pub unit: &'static str,
+}
+
+/// What a channel shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Quantity {
+    Time,
+    /// Body, level (position, velocity, acceleration), component.
+    Pose(usize, usize, usize),
+    Joint(usize, JointQuantity),
+    /// Joint; angle, speed, torque.
+    Actuator(usize, usize),
+    Strain(usize),
+    /// Driven body, component.
+    Error(usize, usize),
+    Energy(Energy),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum JointQuantity {
+    Fx,
+    Fy,
+    Force,
+    Ex,
+    Ey,
+    Eccentricity,
+    Penetration,
+    Contact,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Energy {
+    Kinetic,
+    Axial,
+    Bending,
+    Contact,
+    Gravity,
+    Integral(Integral),
+    Numerical,
+}
+
+/// Fills rows.
+#[derive(Debug)]
+pub struct Recorder {
+    channels: Vec<Channel>,
+    quantities: Vec<Quantity>,
+    /// For channels that are angles known only to a full turn: channel, index of its rate's source, last value.
+    last: Vec<Option<(f64, f64, f64)>>,
+    row: Vec<f64>,
+    /// Energy at t = 0 \[J\].
+    initial_energy: f64,
+}
+
+/// The terms of the energy ledger \[J\].
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[expect(missing_docs, reason = "the names are those of the channels")]
+pub struct Ledger {
+    pub initial: f64,
+    pub kinetic: f64,
+    pub axial: f64,
+    pub bending: f64,
+    pub contact: f64,
+    pub gravity: f64,
+    pub work: f64,
+    pub contact_dissipated: f64,
+    pub friction_dissipated: f64,
+    pub damping_dissipated: f64,
+    pub clamp: f64,
+    pub numerical: f64,
+}
+
+/// Everything a scene can record, in a fixed order.
+fn available(model: &Model) -> Vec<(Channel, Quantity)> {
+    let mut list = vec![(
+        Channel {
+            name: "t".to_owned(),
+            unit: "s",
+        },
+        Quantity::Time,
+    )];
+    let mut add = |name: String, unit, quantity| list.push((Channel { name, unit }, quantity));
+    let levels = [
+        [("x", "m"), ("y", "m"), ("theta", "rad")],
+        [("vx", "m/s"), ("vy", "m/s"), ("omega", "rad/s")],
+        [("ax", "m/s2"), ("ay", "m/s2"), ("alpha", "rad/s2")],
+    ];
+    for (b, body) in model.bodies().iter().enumerate() {
+        if matches!(
+            body.coordinates,
+            crate::model::BodyCoordinates::Ground { .. }
+        ) {
+            continue;
+        }
+        for (l, level) in levels.iter().enumerate() {
+            for (i, (name, unit)) in level.iter().enumerate() {
+                add(
+                    format!("{}.{name}", body.name),
+                    unit,
+                    Quantity::Pose(b, l, i),
+                );
+            }
+        }
+        if matches!(
+            body.coordinates,
+            crate::model::BodyCoordinates::FlexibleLink { .. }
+        ) {
+            add(format!("{}.strain", body.name), "1", Quantity::Strain(b));
+        }
+        if body.prescribed.is_some() {
+            for (i, (name, unit)) in levels[0].iter().enumerate() {
+                add(format!("error.{name}"), unit, Quantity::Error(b, i));
+            }
+        }
+    }
+    for (j, joint) in model.joints().iter().enumerate() {
+        use JointQuantity::{Contact, Eccentricity, Ex, Ey, Force, Fx, Fy, Penetration};
+        let mut joint_channel = |name: &str, unit, q| {
+            add(
+                format!("{}.{name}", joint.name),
+                unit,
+                Quantity::Joint(j, q),
+            )
+        };
+        for (name, q) in [("fx", Fx), ("fy", Fy), ("force", Force)] {
+            joint_channel(name, "N", q);
+        }
+        if model.is_loose(j) {
+            for (name, q) in [
+                ("ex", Ex),
+                ("ey", Ey),
+                ("eccentricity", Eccentricity),
+                ("penetration", Penetration),
+            ] {
+                joint_channel(name, "m", q);
+            }
+            joint_channel("contact", "1", Contact);
+        }
+        if joint.actuator.is_some() {
+            for (k, (name, unit)) in [("angle", "rad"), ("speed", "rad/s"), ("torque", "N m")]
+                .into_iter()
+                .enumerate()
+            {
+                add(
+                    format!("{}.{name}", joint.name),
+                    unit,
+                    Quantity::Actuator(j, k),
+                );
+            }
+        }
+    }
+    for (name, energy) in [
+        ("kinetic", Energy::Kinetic),
+        ("axial", Energy::Axial),
+        ("bending", Energy::Bending),
+        ("contact", Energy::Contact),
+        ("gravity", Energy::Gravity),
+        ("work", Energy::Integral(Integral::Work)),
+        (
+            "contact_dissipated",
+            Energy::Integral(Integral::ContactDissipated),
+        ),
+        (
+            "friction_dissipated",
+            Energy::Integral(Integral::FrictionDissipated),
+        ),
+        (
+            "damping_dissipated",
+            Energy::Integral(Integral::DampingDissipated),
+        ),
+        ("clamp", Energy::Integral(Integral::Clamp)),
+        ("numerical", Energy::Numerical),
+    ] {
+        add(format!("energy.{name}"), "J", Quantity::Energy(energy));
+    }
+    list
+}
+
+/// True where `name` has the form of `pattern`, in which `*` stands for any run of characters.
+fn matches(pattern: &str, name: &str) -> bool {
+    let mut parts = pattern.split('*');
+    let first = parts.next().unwrap_or_default();
+    let Some(mut rest) = name.strip_prefix(first) else {
+        return false;
+    };
+    let parts: Vec<&str> = parts.collect();
+    let Some((last, middle)) = parts.split_last() else {
+        return rest.is_empty();
+    };
+    for part in middle {
+        match rest.find(part) {
+            Some(at) => rest = &rest[at + part.len()..],
+            None => return false,
+        }
+    }
+    rest.ends_with(last)
+}
+
+impl Recorder {
+    /// The channels that the scene asks for, time first, each once, in the order of the scene.
+    ///
+    /// # Errors
+    /// A pattern that no channel has.
+    pub fn new(scene: &Scene, model: &Model, initial_energy: f64) -> Result<Recorder, SceneError> {
+        let available = available(model);
+        let mut chosen: Vec<&(Channel, Quantity)> = vec![&available[0]];
+        for wanted in &scene.output.channels {
+            let before = chosen.len();
+            let mut known = false;
+            for entry in available
+                .iter()
+                .filter(|(c, _)| matches(&wanted.pattern, &c.name))
+            {
+                known = true;
+                if !chosen.iter().any(|(c, _)| c.name == entry.0.name) {
+                    chosen.push(entry);
+                }
+            }
+            if !known && chosen.len() == before {
+                let likeness = |name: &str| strsim::jaro_winkler(name, &wanted.pattern);
+                let nearest = available.iter().map(|(c, _)| c.name.as_str());
+                let nearest = nearest
+                    .max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
+                    .unwrap_or_default();
+                let message = format!(
+                    "no channel of this scene is named {:?}; the nearest is {nearest:?}",
+                    wanted.pattern
+                );
+                return Err(scene.error(wanted.span, message, "unknown channel"));
+            }
+        }
+        let (channels, quantities): (Vec<_>, Vec<_>) = chosen.into_iter().cloned().unzip();
+        let count = channels.len();
+        Ok(Recorder {
+            channels,
+            quantities,
+            last: vec![None; count],
+            row: vec![0.0; count],
+            initial_energy,
+        })
+    }
+
+    /// Names and units, in the order of a row.
+    pub fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    /// The ledger at a consistent state.
+    pub fn ledger(&self, model: &Model, at: &State) -> Ledger {
+        let e = model.energies(at);
+        let [
+            work,
+            contact_dissipated,
+            friction_dissipated,
+            damping_dissipated,
+            clamp,
+        ] = at.integrals;
+        let gone = contact_dissipated + friction_dissipated + damping_dissipated;
+        Ledger {
+            initial: self.initial_energy,
+            kinetic: e.kinetic,
+            axial: e.axial,
+            bending: e.bending,
+            contact: e.contact,
+            gravity: e.gravity,
+            work,
+            contact_dissipated,
+            friction_dissipated,
+            damping_dissipated,
+            clamp,
+            numerical: self.initial_energy + work - gone - e.total(),
+        }
+    }
+
+    /// The row at a consistent state.
+    pub fn row(&mut self, model: &Model, at: &State, work: &mut Work) -> &[f64] {
+        let mut cache = Cache::default();
+        for c in 0..self.quantities.len() {
+            let value = match self.quantities[c] {
+                Quantity::Time => at.t,
+                Quantity::Pose(b, level, i) => {
+                    let pose = cache.pose(model, b, at);
+                    let value = [pose.position, pose.velocity, pose.acceleration][level][i];
+                    if level == 0 && i == 2 {
+                        self.unwrap(c, value, pose.velocity[2], at.t)
+                    } else {
+                        value
+                    }
+                }
+                Quantity::Joint(j, quantity) => {
+                    joint_value(model, j, quantity, at, work, &mut cache)
+                }
+                Quantity::Actuator(j, k) => {
+                    let values = cache.actuator(model, j, at, work);
+                    if k == 0 {
+                        self.unwrap(c, values[0], values[1], at.t)
+                    } else {
+                        values[k]
+                    }
+                }
+                Quantity::Strain(b) => model.strain(b, at).unwrap_or_default(),
+                Quantity::Error(b, i) => {
+                    let prescribed = model.prescribed(b, at).unwrap_or_default();
+                    cache.pose(model, b, at).position[i] - prescribed.position[i]
+                }
+                Quantity::Energy(energy) => self.energy_value(model, energy, at, &mut cache),
+            };
+            self.row[c] = value;
+        }
+        &self.row
+    }
+
+    fn energy_value(&self, model: &Model, energy: Energy, at: &State, cache: &mut Cache) -> f64 {
+        let e = *cache.energies.get_or_insert_with(|| model.energies(at));
+        match energy {
+            Energy::Kinetic => e.kinetic,
+            Energy::Axial => e.axial,
+            Energy::Bending => e.bending,
+            Energy::Contact => e.contact,
+            Energy::Gravity => e.gravity,
+            Energy::Integral(integral) => at.integrals[integral as usize],
+            Energy::Numerical => {
+                let [work, contact, friction, damping, _] = at.integrals;
+                self.initial_energy + work - contact - friction - damping - e.total()
+            }
+        }
+    }
+
+    /// The angle nearest to where the last recorded one and the speeds since lead.
+    fn unwrap(&mut self, channel: usize, angle: f64, speed: f64, t: f64) -> f64 {
+        let value = match self.last[channel] {
+            None => angle,
+            Some((before, rate, then)) => {
+                let expected = before + 0.5 * (rate + speed) * (t - then);
+                angle + TAU * ((expected - angle) / TAU).round()
+            }
+        };
+        self.last[channel] = Some((value, speed, t));
+        value
+    }
+}
+
+/// Measurements of one instant, each taken once.
+#[derive(Default)]
+struct Cache {
+    pose: Option<(usize, Pose)>,
+    force: Option<(usize, [f64; 2])>,
+    actuator: Option<(usize, [f64; 3])>,
+    energies: Option<Energies>,
+}
+
+impl Cache {
+    fn pose(&mut self, model: &Model, b: usize, at: &State) -> Pose {
+        match self.pose {
+            Some((body, pose)) if body == b => pose,
+            _ => self.pose.insert((b, model.pose(b, at))).1,
+        }
+    }
+
+    fn force(&mut self, model: &Model, j: usize, at: &State, work: &mut Work) -> [f64; 2] {
+        match self.force {
+            Some((joint, force)) if joint == j => force,
+            _ => self.force.insert((j, model.joint_force(j, at, work))).1,
+        }
+    }
+
+    fn actuator(&mut self, model: &Model, j: usize, at: &State, work: &mut Work) -> [f64; 3] {
+        match (self.actuator, &model.joints()[j].actuator) {
+            (Some((joint, values)), _) if joint == j => values,
+            (_, Some(actuator)) => {
+                self.actuator
+                    .insert((j, model.actuator(actuator, at, work)))
+                    .1
+            }
+            (_, None) => [0.0; 3],
+        }
+    }
+}
+
+fn joint_value(
+    model: &Model,
+    j: usize,
+    quantity: JointQuantity,
+    at: &State,
+    work: &mut Work,
+    cache: &mut Cache,
+) -> f64 {
+    let clearance = || model.clearance(j, at).unwrap_or_default();
+    match quantity {
+        JointQuantity::Fx => cache.force(model, j, at, work)[0],
+        JointQuantity::Fy => cache.force(model, j, at, work)[1],
+        JointQuantity::Force => crate::math::plane::norm(cache.force(model, j, at, work)),
+        JointQuantity::Ex => clearance().0[0],
+        JointQuantity::Ey => clearance().0[1],
+        JointQuantity::Eccentricity => crate::math::plane::norm(clearance().0),
+        JointQuantity::Penetration => clearance().1,
+        JointQuantity::Contact => f64::from(u8::from(clearance().2)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::matches;
+
+    #[test]
+    fn patterns() {
+        for (pattern, name, expected) in [
+            ("platform.*", "platform.x", true),
+            ("platform.*", "error.x", false),
+            ("*.force", "B1.force", true),
+            ("*", "t", true),
+            ("B1.f*e", "B1.force", true),
+            ("B1.fx", "B1.fx", true),
+            ("B1.f", "B1.fx", false),
+            ("a*a", "a", false),
+        ] {
+            assert_eq!(matches(pattern, name), expected, "{pattern} {name}");
+        }
+    }
+}

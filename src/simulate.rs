@@ -1,0 +1,461 @@
+//! The loop: step, locate contact onset and loss, commit memory, record.
+
+mod report;
+
+pub use crate::record::Channel;
+pub use report::{Extreme, Inspection, Report, Status};
+
+use crate::compile::compile;
+use crate::initial;
+use crate::model::Model;
+use crate::newton::{Failure, Newton};
+use crate::record::Recorder;
+use crate::scene::{Scene, SceneError};
+use crate::stepper::{StepError, Stepper, stepper};
+use crate::system::{PrescribeError, State, System, Work};
+
+/// A step is halved this many times at most before the run gives up.
+const HALVINGS: i32 = 24;
+/// Part of a step below which a difference of times is rounding.
+const GRID_ROUNDING: f64 = 1e-6;
+/// Trials of one onset or loss; bisection alone needs 60.
+const LOCATION_TRIALS: usize = 100;
+
+/// A contact that closes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Onset<'a> {
+    /// When \[s\].
+    pub t: f64,
+    /// The joint.
+    pub joint: &'a str,
+    /// delta_dot at onset \[m/s\].
+    pub impact_velocity: f64,
+    /// Penetration at the located instant \[m\], zero but for the onset tolerance.
+    pub delta: f64,
+}
+
+/// Where a run is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Simulated time \[s\].
+    pub t: f64,
+    /// Duration of the scene \[s\].
+    pub duration: f64,
+    /// Contacts closed now.
+    pub contacts: usize,
+}
+
+/// Whether a run goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Control {
+    /// Go on.
+    Continue,
+    /// Stop after this step.
+    Stop,
+}
+
+/// Receives the results of a run as they come.
+pub trait Observer {
+    /// A recorded row, in the order of [`Simulation::channels`].
+    ///
+    /// # Errors
+    /// When it cannot be stored; the run stops.
+    fn row(&mut self, values: &[f64]) -> std::io::Result<()>;
+    /// A contact has closed.
+    ///
+    /// # Errors
+    /// When it cannot be stored; the run stops.
+    fn onset(&mut self, onset: &Onset) -> std::io::Result<()>;
+    /// A step has been taken.
+    ///
+    /// # Errors
+    /// When it cannot be told; the run stops.
+    fn step(&mut self, progress: &Progress) -> std::io::Result<Control>;
+}
+
+/// Why a run ended early.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The equations have no solution that the method finds.
+    #[error("{name}: {cause} at t = {t} s (step halved down to {step:.1e} s)")]
+    Physics {
+        /// Coordinate or constraint.
+        name: String,
+        /// What happened.
+        cause: String,
+        /// When \[s\].
+        t: f64,
+        /// The last step tried \[s\].
+        step: f64,
+    },
+    /// The prescribed motion cannot be followed.
+    #[error(transparent)]
+    Drive(#[from] PrescribeError),
+    /// The observer asked to stop.
+    #[error("interrupted at t = {t} s")]
+    Interrupted {
+        /// When \[s\].
+        t: f64,
+    },
+    /// Results could not be stored.
+    #[error("{0}")]
+    Output(#[from] std::io::Error),
+}
+
+/// Counts of the loop, beside those of Newton's method.
+#[derive(Debug, Clone, Copy, Default)]
+struct LoopCounters {
+    steps: u64,
+    rejected: u64,
+    location_trials: u64,
+    onsets: u64,
+    unlocated: u64,
+    clamps: u64,
+}
+
+/// One scene, compiled and under way.
+#[derive(Debug)]
+pub struct Simulation {
+    scene: Scene,
+    model: Model,
+    stepper: Box<dyn Stepper>,
+    newton: Newton,
+    work: Work,
+    state: State,
+    trial: State,
+    /// The accepted state made consistent, for output.
+    output: State,
+    recorder: Recorder,
+    extremes: Vec<Extreme>,
+    counters: LoopCounters,
+    delta: Vec<f64>,
+    rate: Vec<f64>,
+    started: Vec<(usize, f64, f64)>,
+    status: Status,
+    error: Option<String>,
+}
+
+impl Simulation {
+    /// Compiles a scene, closes its mechanism and makes its start consistent.
+    ///
+    /// # Errors
+    /// A mechanism that cannot close, be driven or start as the scene says.
+    pub fn new(scene: &Scene) -> Result<Simulation, SceneError> {
+        let model = compile(scene)?;
+        let mut state = initial::start(scene, &model)?;
+        let mut newton = Newton::new(&model, scene.integrator.newton_tolerance);
+        let mut work = model.work();
+        let shape = model.shape();
+        let mut started = Vec::with_capacity(shape.contacts);
+        model.commit(
+            &mut state,
+            scene.integrator.onset_tolerance,
+            &mut |c, v, d| started.push((c, v, d)),
+        );
+        newton
+            .make_consistent(&model, &mut state, &mut work)
+            .map_err(|failure| {
+                let (name, cause) = describe(&model, &failure);
+                scene.error(
+                    scene.initial.span,
+                    format!("the start has no accelerations: {name}: {cause}"),
+                    "this start",
+                )
+            })?;
+        model.powers(&mut state, &mut work);
+        let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
+        let extremes = vec![Extreme::default(); recorder.channels().len()];
+        Ok(Simulation {
+            stepper: stepper(scene.integrator.method, &model),
+            newton,
+            work,
+            trial: state.clone(),
+            output: state.clone(),
+            state,
+            recorder,
+            extremes,
+            counters: LoopCounters {
+                onsets: started.len() as u64,
+                ..LoopCounters::default()
+            },
+            delta: vec![0.0; shape.contacts],
+            rate: vec![0.0; shape.contacts],
+            started,
+            status: Status::Incomplete,
+            error: None,
+            model,
+            scene: scene.clone(),
+        })
+    }
+
+    /// What is recorded; the first channel is the time.
+    pub fn channels(&self) -> &[Channel] {
+        self.recorder.channels()
+    }
+
+    /// The compiled mechanism.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The last accepted state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Runs to the end of the scene.
+    ///
+    /// # Errors
+    /// See [`RunError`]; everything observed before it stands.
+    pub fn run(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
+        let result = self.run_to_end(observer);
+        (self.status, self.error) = match &result {
+            Ok(()) => (Status::Complete, None),
+            Err(RunError::Interrupted { .. }) => (Status::Incomplete, None),
+            Err(error) => (Status::Failed, Some(error.to_string())),
+        };
+        result
+    }
+
+    fn run_to_end(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
+        let (interval, duration) = (self.scene.output.interval, self.scene.simulation.duration);
+        // what is left of the duration below this is the rounding of duration/interval
+        let rows = (duration / interval + GRID_ROUNDING).floor() as u64;
+        self.tell_onsets(observer)?;
+        self.record(observer)?;
+        for k in 1..=rows {
+            self.advance((k as f64 * interval).min(duration), observer)?;
+            self.record(observer)?;
+        }
+        self.advance(duration, observer)
+    }
+
+    /// Steps to `target`, stopping at every contact onset and loss on the way.
+    ///
+    /// The grid of steps starts afresh there, so that the first step of a contact, over which the force grows as
+    /// t^1.5, is a whole one: its error then falls with the step as regularly as all others.
+    fn advance(&mut self, target: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
+        let step = self.scene.integrator.step;
+        let (mut anchor, mut count) = (self.state.t, 0.0);
+        while self.state.t < target {
+            count += 1.0;
+            let next = anchor + count * step;
+            let goal = if target - next < GRID_ROUNDING * step {
+                target
+            } else {
+                next
+            };
+            let (mut clamps, reached) = self.try_step(goal)?;
+            if self.model.shape().contacts > 0 {
+                clamps = self.locate_change(clamps, reached)?;
+            }
+            std::mem::swap(&mut self.state, &mut self.trial);
+            self.counters.steps += 1;
+            self.counters.clamps += clamps as u64;
+            self.commit(observer)?;
+            if self.state.t != goal {
+                (anchor, count) = (self.state.t, 0.0);
+            }
+            let contacts = self.state.z.iter().filter(|z| **z > 0.0).count();
+            let progress = Progress {
+                t: self.state.t,
+                duration: self.scene.simulation.duration,
+                contacts,
+            };
+            if observer.step(&progress)? == Control::Stop {
+                return Err(RunError::Interrupted { t: self.state.t });
+            }
+        }
+        Ok(())
+    }
+
+    /// Steps into `trial` towards `target`, halving the step while it fails; returns the clamps and the time reached.
+    fn try_step(&mut self, target: f64) -> Result<(usize, f64), RunError> {
+        let mut t = target;
+        loop {
+            match self.step_to(t) {
+                Ok(clamps) => return Ok((clamps, t)),
+                Err(error) => {
+                    self.counters.rejected += 1;
+                    let half = 0.5 * (t - self.state.t);
+                    if half < self.scene.integrator.step * 2.0_f64.powi(-HALVINGS) {
+                        return Err(self.failed(error, 2.0 * half));
+                    }
+                    t = self.state.t + half;
+                }
+            }
+        }
+    }
+
+    fn step_to(&mut self, t: f64) -> Result<usize, StepError> {
+        let Simulation {
+            stepper,
+            model,
+            state,
+            trial,
+            newton,
+            work,
+            ..
+        } = self;
+        stepper.step(model, state, t, trial, newton, work)
+    }
+
+    /// The contact of `trial` or, with `inside`, of its interior stages, that is furthest past its change: the distance
+    /// (an open one's penetration, a closed one's gap), its rate, and the time of the state.
+    fn furthest_past(&mut self, inside: bool) -> (f64, f64, f64) {
+        let states: &[State] = if inside {
+            self.stepper.interior()
+        } else {
+            std::slice::from_ref(&self.trial)
+        };
+        let mut furthest = (f64::NEG_INFINITY, 0.0, 0.0);
+        for s in states {
+            self.model.gaps(s, &mut self.delta, &mut self.rate);
+            for (c, z) in s.z.iter().enumerate() {
+                let sign = if *z == 0.0 { 1.0 } else { -1.0 };
+                if sign * self.delta[c] > furthest.0 {
+                    furthest = (sign * self.delta[c], sign * self.rate[c], s.t);
+                }
+            }
+        }
+        furthest
+    }
+
+    /// Cuts the trial step so that the first contact to close or to open does so at its end; returns the clamps of that
+    /// step.
+    ///
+    /// Until it changes, a contact follows one smooth law, so its penetration is a smooth function of the length of the
+    /// step: Newton's method on it, kept inside a bracket.
+    fn locate_change(&mut self, mut clamps: usize, mut t: f64) -> Result<usize, RunError> {
+        let tolerance = self.scene.integrator.onset_tolerance;
+        let (mut low, mut high) = (self.state.t, t);
+        let (inside, _, middle) = self.furthest_past(true);
+        let (mut past, mut rate, _) = self.furthest_past(false);
+        if past <= tolerance {
+            if inside <= tolerance {
+                return Ok(clamps);
+            }
+            // there and back again within the step
+            (clamps, t) = self.try_step(middle)?;
+            (past, rate, _) = self.furthest_past(false);
+            high = t;
+        }
+        for _ in 0..LOCATION_TRIALS {
+            if past.abs() <= tolerance {
+                return Ok(clamps);
+            }
+            if past > 0.0 {
+                high = t
+            } else {
+                low = t
+            }
+            let newton = t - past / rate;
+            let next = if newton > low && newton < high {
+                newton
+            } else {
+                low + 0.5 * (high - low)
+            };
+            if next <= low || next >= high {
+                break;
+            }
+            self.counters.location_trials += 1;
+            (clamps, t) = self.try_step(next)?;
+            (past, rate, _) = self.furthest_past(false);
+        }
+        // the gap jumps over zero between neighbouring instants; the later one is kept
+        self.counters.unlocated += 1;
+        if t != high {
+            (clamps, _) = self.try_step(high)?;
+        }
+        Ok(clamps)
+    }
+
+    /// Opens and closes contacts.
+    fn commit(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
+        let Simulation {
+            model,
+            state,
+            started,
+            ..
+        } = self;
+        started.clear();
+        let tolerance = self.scene.integrator.onset_tolerance;
+        let onsets = model.commit(state, tolerance, &mut |c, velocity, delta| {
+            started.push((c, velocity, delta))
+        });
+        self.counters.onsets += onsets as u64;
+        self.tell_onsets(observer)
+    }
+
+    fn tell_onsets(&self, observer: &mut dyn Observer) -> Result<(), RunError> {
+        for &(contact, impact_velocity, delta) in &self.started {
+            if let Some(j) = self.model.contact_joint(contact) {
+                let joint = &self.model.joints()[j].name;
+                observer.onset(&Onset {
+                    t: self.state.t,
+                    joint,
+                    impact_velocity,
+                    delta,
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Records a row at the accepted state, with accelerations and multipliers of the acceleration level.
+    fn record(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
+        let Simulation {
+            model,
+            state,
+            output,
+            newton,
+            work,
+            recorder,
+            extremes,
+            ..
+        } = self;
+        output.copy_from(state);
+        if let Err(failure) = newton.make_consistent(model, output, work) {
+            return Err(self.failed(failure.into(), 0.0));
+        }
+        let row = recorder.row(model, output, work);
+        for (extreme, value) in extremes.iter_mut().zip(row) {
+            extreme.see(*value, output.t);
+        }
+        observer.row(row)?;
+        Ok(())
+    }
+
+    fn failed(&self, error: StepError, step: f64) -> RunError {
+        match error {
+            StepError::Prescribe(error) => RunError::Drive(error),
+            StepError::Stage(failure) => {
+                let (name, cause) = describe(&self.model, &failure);
+                RunError::Physics {
+                    name,
+                    cause,
+                    t: self.state.t,
+                    step,
+                }
+            }
+        }
+    }
+}
+
+/// The unknown and what is wrong with it.
+fn describe(model: &Model, failure: &Failure) -> (String, String) {
+    match *failure {
+        Failure::NoConvergence { index, update } => (
+            model.unknown_name(index),
+            format!("Newton's method does not converge (last update {update:.1e} m/s)"),
+        ),
+        Failure::NotFinite { index } => (
+            model.unknown_name(index),
+            "the state is not finite".to_owned(),
+        ),
+        Failure::Singular { index } => (
+            model.unknown_name(index),
+            "the equations are singular".to_owned(),
+        ),
+    }
+}

@@ -1,0 +1,204 @@
+//! What a run reports of itself, and what a scene will be, before it runs.
+
+use super::Simulation;
+use crate::contact::normal_law;
+use crate::record::Ledger;
+use crate::scene::{JointModel, Scene};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// To the end of the scene.
+    Complete,
+    /// Still running, or stopped from outside.
+    Incomplete,
+    /// It could not go on.
+    Failed,
+}
+
+/// Least and greatest recorded value of a channel, and when.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Extreme {
+    /// Least value.
+    pub min: f64,
+    /// When \[s\].
+    pub t_min: f64,
+    /// Greatest value.
+    pub max: f64,
+    /// When \[s\].
+    pub t_max: f64,
+}
+
+impl Default for Extreme {
+    fn default() -> Extreme {
+        Extreme {
+            min: f64::INFINITY,
+            t_min: 0.0,
+            max: f64::NEG_INFINITY,
+            t_max: 0.0,
+        }
+    }
+}
+
+impl Extreme {
+    pub(super) fn see(&mut self, value: f64, t: f64) {
+        if value < self.min {
+            (self.min, self.t_min) = (value, t);
+        }
+        if value > self.max {
+            (self.max, self.t_max) = (value, t);
+        }
+    }
+}
+
+/// The report of a run; nothing in it differs when the run is repeated.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// How the run ended.
+    pub status: Status,
+    /// Why, for a run that could not go on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+    /// Time reached \[s\].
+    pub t: f64,
+    /// Evaluations of every effect present.
+    pub effects: BTreeMap<String, u64>,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Stages solved, those of rejected steps and of onset location among them.
+    pub stages: u64,
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Factorisations of the tangent.
+    pub factorisations: u64,
+    /// Factorisations that needed row exchanges.
+    pub fallbacks: u64,
+    /// Stages accepted at rounding, above the Newton tolerance.
+    pub stagnations: u64,
+    /// Steps that were halved because a stage had no solution.
+    pub rejected_steps: u64,
+    /// Steps tried to locate contact onsets and losses.
+    pub location_trials: u64,
+    /// Contacts closed.
+    pub onsets: u64,
+    /// Onsets and losses kept although the gap could not be brought within the tolerance.
+    pub unlocated_changes: u64,
+    /// Stages of accepted steps at which a contact force was clamped at zero.
+    pub clamps: u64,
+    /// Energy ledger at the end.
+    pub ledger: Ledger,
+    /// Largest axial strain at the end, of the flexible links.
+    pub strain: BTreeMap<String, f64>,
+    /// Extremes of the recorded channels.
+    pub extremes: BTreeMap<String, Extreme>,
+}
+
+/// What will be simulated.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Inspection {
+    /// Unknown coordinates.
+    pub unknowns: usize,
+    /// Multipliers.
+    pub multipliers: usize,
+    /// Contact terms.
+    pub contacts: usize,
+    /// Effects present.
+    pub effects: Vec<String>,
+    /// Values the scene assumes, and what the program makes of what it says.
+    pub assumptions: Vec<String>,
+    /// Names of the unknown coordinates.
+    pub coordinates: Vec<String>,
+    /// Names of the constraints, one a multiplier.
+    pub constraints: Vec<String>,
+}
+
+/// Notes on what the program makes of a scene.
+fn notes(scene: &Scene) -> Vec<String> {
+    let mut notes: Vec<String> = scene
+        .assumptions
+        .iter()
+        .map(|a| format!("{} = {}: {}", a.path, a.value, a.reason))
+        .collect();
+    for joint in &scene.joints {
+        if let JointModel::Clearance(contact) = &joint.model {
+            let law = normal_law(contact);
+            notes.push(format!(
+                "joint {}: {} with restitution {} typed returns {:.4} from a free impact",
+                joint.name,
+                law.name(),
+                contact.restitution,
+                law.delivered_restitution()
+            ));
+        }
+    }
+    for state in scene.initial.bodies.iter().filter(|s| !s.velocity_given) {
+        notes.push(format!(
+            "{} starts at rest: the scene gives no velocity",
+            scene.bodies[state.body].name
+        ));
+    }
+    notes
+}
+
+impl Simulation {
+    /// What will be simulated.
+    pub fn inspect(&self) -> Inspection {
+        let shape = self.model.shape();
+        let (coordinates, constraints) = self.model.unknown_names().split_at(shape.unknowns);
+        Inspection {
+            unknowns: shape.unknowns,
+            multipliers: shape.multipliers,
+            contacts: shape.contacts,
+            effects: self
+                .model
+                .effects()
+                .iter()
+                .map(|(_, name)| (*name).to_owned())
+                .collect(),
+            assumptions: notes(&self.scene),
+            coordinates: coordinates.to_vec(),
+            constraints: constraints.to_vec(),
+        }
+    }
+
+    /// The report at this moment.
+    pub fn report(&self) -> Report {
+        let newton = self.newton.counters;
+        let tally = |effect: crate::model::Effect| self.work.tally[effect as usize];
+        let bodies = self.model.bodies().iter().enumerate();
+        let names = self.recorder.channels().iter().map(|c| c.name.clone());
+        Report {
+            status: self.status,
+            error: self.error.clone(),
+            t: self.state.t,
+            effects: self
+                .model
+                .effects()
+                .iter()
+                .map(|(e, name)| ((*name).to_owned(), tally(*e)))
+                .collect(),
+            steps: self.counters.steps,
+            stages: newton.stages,
+            newton_iterations: newton.newton_iterations,
+            factorisations: newton.factorisations,
+            fallbacks: newton.fallbacks,
+            stagnations: newton.stagnations,
+            rejected_steps: self.counters.rejected,
+            location_trials: self.counters.location_trials,
+            onsets: self.counters.onsets,
+            unlocated_changes: self.counters.unlocated,
+            clamps: self.counters.clamps,
+            ledger: self.recorder.ledger(&self.model, &self.state),
+            strain: bodies
+                .filter_map(|(b, p)| Some((p.name.clone(), self.model.strain(b, &self.state)?)))
+                .collect(),
+            extremes: names
+                .zip(&self.extremes)
+                .map(|(name, e)| (name, *e))
+                .collect(),
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! The waist of the program: physics on one side, time integration on the other.
+//!
+//! One equation governs everything,
+//!
+//! ```text
+//! M a + f(t, q, v; z) + Phi_q^T lambda = 0        Phi(q) = 0
+//! ```
+//!
+//! q the coordinates (unknown ones first, known ones after them), v and a their rates, lambda the multipliers, z the
+//! contact memory, which changes only between accepted steps.
+
+use crate::math::lu::Symbolic;
+
+/// Sizes of a system.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shape {
+    /// Unknown coordinates.
+    pub unknowns: usize,
+    /// All coordinates: unknown and known.
+    pub coordinates: usize,
+    /// Multipliers.
+    pub multipliers: usize,
+    /// Contacts, each with one number of memory.
+    pub contacts: usize,
+}
+
+/// Quantities integrated over time beside the motion.
+pub const INTEGRALS: usize = 5;
+
+/// Names of the integrated quantities, all in joules: work of drives and applied forces, then what is dissipated in
+/// contact damping, friction and structural damping, then the contact energy dropped while a force is clamped (a part
+/// of the first dissipation).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(
+    missing_docs,
+    reason = "the names say it; the order is documented above"
+)]
+pub enum Integral {
+    Work = 0,
+    ContactDissipated = 1,
+    FrictionDissipated = 2,
+    DampingDissipated = 3,
+    Clamp = 4,
+}
+
+/// Everything that changes while time runs.
+#[derive(Debug, Clone)]
+pub struct State {
+    /// Time \[s\].
+    pub t: f64,
+    /// Coordinates: unknown, then known.
+    pub q: Vec<f64>,
+    /// Velocities.
+    pub v: Vec<f64>,
+    /// Accelerations.
+    pub a: Vec<f64>,
+    /// Multipliers.
+    pub lambda: Vec<f64>,
+    /// Contact memory: the impact velocity \[m/s\] of a closed contact, 0 while it is open.
+    pub z: Vec<f64>,
+    /// Integrals over time since the start \[J\].
+    pub integrals: [f64; INTEGRALS],
+    /// Their integrands \[W\].
+    pub powers: [f64; INTEGRALS],
+}
+
+impl State {
+    /// All zero.
+    pub fn zeros(shape: Shape) -> State {
+        State {
+            t: 0.0,
+            q: vec![0.0; shape.coordinates],
+            v: vec![0.0; shape.coordinates],
+            a: vec![0.0; shape.coordinates],
+            lambda: vec![0.0; shape.multipliers],
+            z: vec![0.0; shape.contacts],
+            integrals: [0.0; INTEGRALS],
+            powers: [0.0; INTEGRALS],
+        }
+    }
+
+    /// Copies everything from `other` without allocating.
+    pub fn copy_from(&mut self, other: &State) {
+        self.t = other.t;
+        self.q.copy_from_slice(&other.q);
+        self.v.copy_from_slice(&other.v);
+        self.a.copy_from_slice(&other.a);
+        self.lambda.copy_from_slice(&other.lambda);
+        self.z.copy_from_slice(&other.z);
+        self.integrals = other.integrals;
+        self.powers = other.powers;
+    }
+}
+
+/// Derivatives of (q, v) by the unknown of a stage, the acceleration; that of a is 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Weights {
+    /// dq/da \[s2\]; 0 for the acceleration-level matrix.
+    pub q: f64,
+    /// dv/da \[s\]; 0 for the acceleration-level matrix.
+    pub v: f64,
+}
+
+impl Weights {
+    /// The acceleration level: M and Phi_q alone.
+    pub const ACCELERATION: Weights = Weights { q: 0.0, v: 0.0 };
+}
+
+/// Memory that a system needs while it evaluates, and the counts of what it evaluated.
+#[derive(Debug, Clone)]
+pub struct Work {
+    /// Evaluations of each effect.
+    pub tally: Vec<u64>,
+    /// Memory of a system inside the system: the ideal mechanism that a drive follows.
+    pub inner: Option<Box<Inner>>,
+}
+
+/// State and solver memory of an inner system.
+#[derive(Debug, Clone)]
+pub struct Inner {
+    /// Its state.
+    pub state: State,
+    /// Its own work memory.
+    pub work: Work,
+    /// Residual, one number a coordinate.
+    pub r: Vec<f64>,
+    /// Constraint values.
+    pub phi: Vec<f64>,
+    /// Tangent.
+    pub k: Vec<f64>,
+    /// Right side, unknowns and multipliers.
+    pub b: Vec<f64>,
+    /// Work memory of the triangular solves.
+    pub solve: Vec<f64>,
+}
+
+/// A motion of the known coordinates that does not exist.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{message} at t = {t} s")]
+pub struct PrescribeError {
+    /// What cannot be followed, with the names the user wrote.
+    pub message: String,
+    /// When \[s\].
+    pub t: f64,
+}
+
+/// What time integration knows of the physics.
+///
+/// `r` and `phi` are overwritten. `r` has a row for every coordinate; the rows of known coordinates hold the force
+/// that must act on them. The tangent is the matrix of the stage equations in (a, lambda),
+/// \[\[M + w.v C + w.q K, Phi_q^T\], \[Phi_q, 0\]\] with C = df/dv and K = d(f + Phi_q^T lambda)/dq.
+pub trait System {
+    /// Sizes.
+    fn shape(&self) -> Shape;
+    /// Pattern of the tangent: unknown coordinates, then multipliers.
+    fn symbolic(&self) -> &Symbolic;
+    /// Fresh work memory.
+    fn work(&self) -> Work;
+    /// Sets the known coordinates and their rates in `to` at time `to.t`; `from` is a nearby state.
+    ///
+    /// # Errors
+    /// When the prescribed motion cannot be followed.
+    fn prescribe(
+        &self,
+        from: &State,
+        to: &mut State,
+        work: &mut Work,
+    ) -> Result<(), PrescribeError>;
+    /// r = M a + f + Phi_q^T lambda and phi = Phi.
+    fn residual(&self, at: &State, r: &mut [f64], phi: &mut [f64], work: &mut Work);
+    /// The residual, and the tangent with it.
+    fn linearise(
+        &self,
+        at: &State,
+        w: Weights,
+        r: &mut [f64],
+        phi: &mut [f64],
+        k: &mut [f64],
+        work: &mut Work,
+    );
+    /// Phi_q v.
+    fn constraint_velocity(&self, at: &State, out: &mut [f64]);
+    /// Phi_q a + d(Phi_q)/dt v.
+    fn constraint_acceleration(&self, at: &State, out: &mut [f64]);
+    /// Penetration delta of every contact \[m\] and its rate \[m/s\].
+    fn gaps(&self, at: &State, delta: &mut [f64], rate: &mut [f64]);
+    /// Opens and closes contacts: the only place where contact memory changes. Returns the number of onsets, and
+    /// calls `onset(contact, impact velocity, delta)` for each.
+    fn commit(
+        &self,
+        at: &mut State,
+        tolerance: f64,
+        onset: &mut dyn FnMut(usize, f64, f64),
+    ) -> usize;
+    /// Integrands of the ledger \[W\]; returns the number of contacts whose force is clamped.
+    fn powers(&self, at: &mut State, work: &mut Work) -> usize;
+    /// The name of an unknown or of a multiplier, for messages.
+    fn unknown_name(&self, index: usize) -> String;
+}

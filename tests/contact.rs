@@ -1,0 +1,119 @@
+//! The battery of contact laws: every law of the registry against the definitions.
+
+use approx::assert_relative_eq;
+use looselink::contact::{Ambrosio, Flores, Hertz, HuntCrossley, LankaraniNikravesh, NormalLaw};
+use proptest::prelude::*;
+
+const K: f64 = 1.2e11;
+
+fn laws(restitution: f64) -> Vec<Box<dyn NormalLaw>> {
+    vec![
+        Box::new(Hertz::new(K, 1.5)),
+        Box::new(LankaraniNikravesh::new(K, 1.5, restitution, 1e-6)),
+        Box::new(HuntCrossley::new(K, 1.5, restitution, 1e-6)),
+        Box::new(Flores::new(K, 1.5, restitution, 1e-6)),
+        Box::new(LankaraniNikravesh::new(3e8, 1.2, restitution, 1e-6)),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn slopes_are_the_derivatives(
+        delta in 1e-8..1e-5_f64, rate in -0.02..0.05_f64, impact in 0.01..0.1_f64, restitution in 0.5..0.99_f64,
+    ) {
+        for law in laws(restitution) {
+            let at = law.force(delta, rate, impact);
+            prop_assume!(!at.clamped);
+            let (hd, hr) = (1e-5 * delta, 1e-5 * impact);
+            let by_delta = (law.force(delta + hd, rate, impact).value - law.force(delta - hd, rate, impact).value) / (2.0 * hd);
+            let by_rate = (law.force(delta, rate + hr, impact).value - law.force(delta, rate - hr, impact).value) / (2.0 * hr);
+            // truncation (1e-5)^2 and rounding 1e-16/1e-5, both relative
+            prop_assert!((by_delta - at.by_delta).abs() <= 1e-9 * at.by_delta.abs(), "{}", law.name());
+            prop_assert!((by_rate - at.by_rate).abs() <= 1e-9 * at.value / impact, "{}", law.name());
+            // the elastic part is the derivative of the energy
+            let elastic = (law.energy(delta + hd) - law.energy(delta - hd)) / (2.0 * hd);
+            prop_assert!((elastic - at.elastic).abs() <= 1e-9 * at.elastic, "{}", law.name());
+        }
+    }
+
+    #[test]
+    fn a_contact_never_pulls(delta in 1e-9..1e-4_f64, rate in -10.0..10.0_f64, impact in 1e-9..1.0_f64) {
+        for law in laws(0.3) {
+            let force = law.force(delta, rate, impact);
+            prop_assert!(force.value >= 0.0 && force.value.is_finite());
+            prop_assert!(!force.clamped || force.value == 0.0);
+        }
+    }
+
+    #[test]
+    fn friction_is_odd_and_opposes_slip(slip in -2e-3..2e-3_f64, normal in 0.0..100.0_f64) {
+        let law = Ambrosio { coefficient: 0.1, v0: 1e-4, v1: 1e-3 };
+        let (there, back) = (law.force(slip, normal), law.force(-slip, normal));
+        prop_assert_eq!(there.value, -back.value);
+        prop_assert!(there.value * slip >= 0.0);
+        prop_assert!(there.value.abs() <= 0.1 * normal);
+        let away_from_kinks = [1e-4, 1e-3].iter().all(|k: &f64| (slip.abs() - k).abs() > 1e-6);
+        if away_from_kinks {
+            let h = 1e-7;
+            let by_slip = (law.force(slip + h, normal).value - law.force(slip - h, normal).value) / (2.0 * h);
+            let by_normal = law.force(slip, normal + 1.0).value - there.value;
+            // piecewise linear: rounding only
+            prop_assert!((by_slip - there.by_slip).abs() <= 1e-6 * (1.0 + there.by_slip));
+            prop_assert!((by_normal - there.by_normal).abs() <= 1e-12);
+        }
+    }
+}
+
+#[test]
+fn the_clamp_acts_and_is_flagged() {
+    let law = LankaraniNikravesh::new(K, 1.5, 0.3, 1e-6);
+    assert!(!law.force(1e-6, -0.01, 0.01).clamped);
+    let pulled = law.force(1e-6, -0.05, 0.01);
+    assert!(pulled.clamped && pulled.value == 0.0 && pulled.elastic > 0.0);
+}
+
+#[test]
+fn a_grazing_onset_is_floored() {
+    let law = LankaraniNikravesh::new(K, 1.5, 0.9, 1e-4);
+    let (grazing, floor) = (law.force(1e-6, 0.01, 1e-300), law.force(1e-6, 0.01, 1e-4));
+    assert_eq!(grazing, floor);
+}
+
+#[test]
+fn hertz_is_the_limit_of_all() {
+    let hertz = Hertz::new(K, 1.5).force(1e-6, 0.01, 0.02).value;
+    for law in laws(1.0).iter().take(4) {
+        assert_relative_eq!(
+            law.force(1e-6, 0.01, 0.02).value,
+            hertz,
+            max_relative = 1e-15
+        );
+        assert_eq!(law.delivered_restitution(), 1.0);
+    }
+}
+
+/// Closed-form map of typed to delivered restitution, chi (1 + e) = ln((1 + chi)/(1 - chi e)), evaluated elsewhere to
+/// 15 digits.
+#[test]
+fn delivered_restitution_follows_the_exact_map() {
+    let table = [
+        (
+            0.95,
+            0.953506045142133,
+            0.952370152820406,
+            0.946828831425267,
+        ),
+        (0.9, 0.913176677805581, 0.909015741349202, 0.893920692663378),
+        (0.7, 0.795972595365329, 0.767999789078476, 0.683184199730684),
+        (0.5, 0.725241114010197, 0.662962200001546, 0.47044477932674),
+        (0.3, 0.684224605749448, 0.581288041808574, 0.256207906679824),
+        (0.1, 0.66526540675515, 0.515832616400396, 0.0694442251515404),
+    ];
+    for (typed, ln, hc, flores) in table {
+        let [_, a, b, c, _] = <[Box<dyn NormalLaw>; 5]>::try_from(laws(typed)).unwrap();
+        for (law, expected) in [(a, ln), (b, hc), (c, flores)] {
+            // the equation is flat near e = 1: a rounding of chi^2 becomes 1e-16/chi
+            assert_relative_eq!(law.delivered_restitution(), expected, max_relative = 2e-14);
+        }
+    }
+}

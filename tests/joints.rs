@@ -1,0 +1,189 @@
+//! Loose joints: forces, tangents with all their couplings, and the balance of force and moment.
+
+use crate::differencing;
+use looselink::contact::{Ambrosio, LankaraniNikravesh};
+use looselink::force::{ClearanceJoint, FrictionalJoint};
+use looselink::marker::{Marker, Spin};
+use looselink::scene::Slip;
+use looselink::system::Weights;
+
+/// Coordinates: a node and a second node, a body, another body, a slope. Sizes near one, so that differences resolve.
+fn coordinates() -> (Vec<f64>, Vec<f64>) {
+    let q = vec![
+        0.0, 0.0, 0.9, 0.4, 0.05, 0.02, 0.7, -0.02, 0.03, -0.4, 1.1, 0.3,
+    ];
+    let v = vec![
+        0.2, -0.1, 0.3, 0.5, 0.6, 0.25, 0.9, 0.1, 0.35, -0.7, 0.2, 0.4,
+    ];
+    (q, v)
+}
+
+const NODE: Marker = Marker::Node { x: 0 };
+const BODY: Marker = Marker::OnBody {
+    x: 4,
+    s: [0.02, 0.05],
+};
+const OTHER: Marker = Marker::OnBody {
+    x: 7,
+    s: [-0.03, 0.01],
+};
+
+fn joint(bearing: Marker, journal: Marker) -> ClearanceJoint {
+    let law = Box::new(LankaraniNikravesh::new(50.0, 1.5, 0.7, 1e-6));
+    ClearanceJoint {
+        bearing,
+        journal,
+        clearance: 0.03,
+        law,
+    }
+}
+
+/// The local force and the tangents by q and by v of a term, gathered over all coordinates.
+type Evaluate<'a> = &'a dyn Fn(&[f64], &[f64], Weights, &mut [f64; 8], &mut [[f64; 8]; 8]) -> bool;
+
+fn check(name: &str, local: &[usize], evaluate: Evaluate) {
+    let (q, v) = coordinates();
+    let total = |q: &[f64], v: &[f64], w: Weights| {
+        let (mut f, mut k) = ([0.0; 8], [[0.0; 8]; 8]);
+        assert!(
+            evaluate(q, v, w, &mut f, &mut k),
+            "{name}: the surfaces must touch"
+        );
+        (f, k)
+    };
+    let n = local.len();
+    for (level, w) in [
+        ("q", Weights { q: 1.0, v: 0.0 }),
+        ("v", Weights { q: 0.0, v: 1.0 }),
+    ] {
+        let (_, k) = total(&q, &v, w);
+        let rows: Vec<Vec<f64>> = (0..n).map(|r| k[r][..n].to_vec()).collect();
+        let x: Vec<f64> = local
+            .iter()
+            .map(|&i| if level == "q" { q[i] } else { v[i] })
+            .collect();
+        let force = |x: &[f64]| {
+            let (mut q, mut v) = (q.clone(), v.clone());
+            for (&i, x) in local.iter().zip(x) {
+                if level == "q" { q[i] = *x } else { v[i] = *x }
+            }
+            total(&q, &v, w).0[..n].to_vec()
+        };
+        // by the velocities the normal force is linear and friction piecewise quadratic
+        differencing::check(
+            &format!("{name} by {level}"),
+            &force,
+            &rows,
+            &x,
+            1e-3,
+            level == "v",
+        );
+    }
+}
+
+#[test]
+fn tangents_without_friction() {
+    for (name, bearing, journal) in [
+        ("node-body", NODE, BODY),
+        ("body-node", BODY, NODE),
+        ("body-body", BODY, OTHER),
+    ] {
+        let joint = joint(bearing, journal);
+        check(name, &joint.coordinates(), &|q, v, w, f, k| {
+            joint.force_and_tangent(q, v, 0.5, w, f, k).is_some()
+        });
+    }
+}
+
+#[test]
+fn tangents_with_friction() {
+    // v0 < |slip| < v1: the sloping part of the law, where every term of the tangent counts
+    let law = Ambrosio {
+        coefficient: 0.3,
+        v0: 0.01,
+        v1: 3.0,
+    };
+    let spins = [
+        ("fixed", Spin::Fixed),
+        ("chord", Spin::Chord { from: 0, to: 2 }),
+        ("slope", Spin::Slope { x: 10 }),
+    ];
+    for slip in [Slip::Paper, Slip::Material] {
+        for (name, spin) in spins {
+            let friction = FrictionalJoint::new(
+                joint(NODE, BODY),
+                law,
+                slip,
+                0.2,
+                [spin, Spin::Angle { theta: 6 }],
+            );
+            let evaluate = |q: &[f64], v: &[f64], w, f: &mut [f64; 8], k: &mut [[f64; 8]; 8]| {
+                friction.force_and_tangent(q, v, 0.5, w, f, k).is_some()
+            };
+            check(
+                &format!("{slip:?} {name}"),
+                &friction.coordinates(),
+                &evaluate,
+            );
+        }
+    }
+}
+
+/// The force and moment on one side balance those on the other, and the moment is that of the contact point.
+#[test]
+fn friction_balances_and_dissipates() {
+    let (q, v) = coordinates();
+    let law = Ambrosio {
+        coefficient: 0.3,
+        v0: 0.01,
+        v1: 0.5,
+    };
+    let spins = [Spin::Angle { theta: 6 }, Spin::Angle { theta: 9 }];
+    let joint = FrictionalJoint::new(joint(BODY, OTHER), law, Slip::Material, 0.2, spins);
+    let mut f = [0.0; 8];
+    joint
+        .force(&q, &v, 0.5, &mut f)
+        .expect("the surfaces touch");
+    let scale = f[0].abs() + f[1].abs();
+    for i in 0..2 {
+        // action and reaction: a few roundings
+        assert!((f[i] + f[3 + i]).abs() <= 1e-15 * scale);
+    }
+    // the two contact points are delta apart along n, so the pair of tangential forces keeps the moment T delta
+    let moment = f[2] + f[5] + q[4] * f[1] - q[5] * f[0] + q[7] * f[4] - q[8] * f[3];
+    let g = joint.joint.geometry(&q, &v);
+    let (_, tangential) = joint.forces(&q, &v, 0.5).expect("the surfaces touch");
+    assert!(
+        (moment - tangential.value * g.delta).abs() <= 1e-14 * scale,
+        "{moment:e}"
+    );
+    assert!(joint.dissipation(&q, &v, 0.5) > 0.0);
+    // the work of the local force is what elastic and dissipated power add up to
+    let power: f64 = joint
+        .coordinates()
+        .iter()
+        .zip(f)
+        .map(|(&i, f)| f * v[i])
+        .sum();
+    let normal = joint
+        .joint
+        .normal_force(&g, 0.5)
+        .expect("the surfaces touch");
+    let expected = normal.value * ClearanceJoint::rate(&g) + joint.dissipation(&q, &v, 0.5);
+    assert!(
+        (power - expected).abs() <= 1e-14 * power.abs().max(scale),
+        "{power} {expected}"
+    );
+}
+
+#[test]
+fn no_normal_is_asked_for_at_the_centre() {
+    let joint = joint(NODE, BODY);
+    let (mut q, v) = coordinates();
+    let arm = BODY.arm(&q);
+    (q[4], q[5]) = (q[0] - arm[0], q[1] - arm[1]);
+    let mut f = [0.0; 8];
+    assert!(joint.force(&q, &v, 0.5, &mut f).is_none());
+    assert_eq!(f, [0.0; 8]);
+    assert!(ClearanceJoint::rate(&joint.geometry(&q, &v)) > 0.0);
+}

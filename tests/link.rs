@@ -1,0 +1,210 @@
+//! The battery of element kernels: mass, energy, force, tangent, every route of the registry.
+
+use crate::differencing;
+use looselink::link::{AncfCable, ElasticRoute, ROUTES};
+use proptest::prelude::*;
+
+const LENGTH: f64 = 0.242;
+const EA: f64 = 1.05e6;
+const EI: f64 = 2.1875;
+
+/// A physical state: an undeformed element moved rigidly, then stretched and bent within bounds.
+fn states() -> impl Strategy<Value = [f64; 8]> {
+    let bend = prop::array::uniform4(-1.0..1.0_f64);
+    (
+        -0.5..0.5_f64,
+        -0.5..0.5_f64,
+        -3.1..3.1_f64,
+        -9.0..-0.5_f64,
+        bend,
+    )
+        .prop_map(|(x, y, angle, log_size, d)| {
+            let size = 10.0_f64.powf(log_size);
+            let (s, c) = angle.sin_cos();
+            let mut q = [x, y, c, s, x + LENGTH * c, y + LENGTH * s, c, s];
+            for (i, d) in d.iter().enumerate() {
+                q[[2, 3, 6, 7][i]] += size * d;
+                q[4 + i % 2] += 0.3 * LENGTH * size * d;
+            }
+            q
+        })
+}
+
+fn straight(angle: f64) -> [f64; 8] {
+    let (s, c) = angle.sin_cos();
+    [0.1, -0.2, c, s, 0.1 + LENGTH * c, -0.2 + LENGTH * s, c, s]
+}
+
+fn evaluate(route: &dyn ElasticRoute, q: &[f64; 8]) -> ([f64; 8], [[f64; 8]; 8]) {
+    let (mut f, mut k) = ([0.0; 8], [[0.0; 8]; 8]);
+    route.force_and_tangent(q, &mut f, &mut k);
+    (f, k)
+}
+
+/// Rounding of the force: the strain is the difference of numbers near one, times EA, and bending EI/l^2; in the
+/// coordinates (r/l, r') both are forces.
+fn rounding(q: &[f64; 8]) -> f64 {
+    let slope = q[2].hypot(q[3]).max(q[6].hypot(q[7])).max(1.0);
+    1e-13 * (EA + EI / (LENGTH * LENGTH)) * slope.powi(3)
+}
+
+proptest! {
+    #[test]
+    fn mass_is_symmetric_positive_definite_and_sums_to_the_mass(l in 1e-3..10.0_f64, density in 1e-3..100.0_f64) {
+        let m = AncfCable::mass(l, density);
+        let matrix = nalgebra::Matrix4::from_fn(|i, j| m[i][j]);
+        prop_assert_eq!(matrix, matrix.transpose());
+        // scaled to (r, l r'): the condition number of the scaled matrix is below 1e4
+        let scaled = nalgebra::Matrix4::from_fn(|i, j| {
+            let size = |a: usize| if a % 2 == 1 { l } else { 1.0 };
+            m[i][j] / (size(i) * size(j) * density * l)
+        });
+        let eigenvalues = scaled.symmetric_eigenvalues();
+        prop_assert!(eigenvalues.min() > 1e-4, "{}", eigenvalues);
+        // translation: the position functions sum to one
+        let total = m[0][0] + 2.0 * m[0][2] + m[2][2];
+        prop_assert!((total - density * l).abs() <= 4.0 * f64::EPSILON * density * l);
+        // rotation of the undeformed element about its start: rho A l^3/3
+        let v = [0.0, 1.0, l, 1.0];
+        let inertia: f64 = (0..4).map(|i| (0..4).map(|j| v[i] * m[i][j] * v[j]).sum::<f64>()).sum();
+        prop_assert!((inertia - density * l.powi(3) / 3.0).abs() <= 1e-14 * density * l.powi(3));
+    }
+
+    #[test]
+    fn routes_agree(q in states()) {
+        let (force, tangent) = evaluate(&*(ROUTES[0].build)(LENGTH, EA, EI), &q);
+        let largest = tangent.iter().flatten().fold(0.0_f64, |m, k| m.max(k.abs()));
+        for route in &ROUTES[1..] {
+            let (f, k) = evaluate(&*(route.build)(LENGTH, EA, EI), &q);
+            let mut alone = [0.0; 8];
+            (route.build)(LENGTH, EA, EI).force(&q, &mut alone);
+            for i in 0..8 {
+                let to_force = if [0, 1, 4, 5].contains(&i) { 1.0 } else { 1.0 / LENGTH };
+                prop_assert!((f[i] - force[i]).abs() * to_force <= rounding(&q), "{}: {:e}", route.name, f[i] - force[i]);
+                prop_assert!((f[i] - alone[i]).abs() * to_force <= rounding(&q), "{}", route.name);
+                for j in 0..8 {
+                    prop_assert!((k[i][j] - tangent[i][j]).abs() <= 1e-12 * largest, "{}", route.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rigid_motion_stores_nothing_and_needs_no_force(angle in -10.0..10.0_f64, x in -1.0..1.0_f64) {
+        let mut q = straight(angle);
+        q[0] += x;
+        q[4] += x;
+        let cable = AncfCable::new(LENGTH, EA, EI);
+        let (axial, bending) = cable.energy(&q);
+        // energies are squares of strains and bends, which are rounded differences of numbers near one and |r|/l
+        prop_assert!(axial < EA * LENGTH * 1e-29 && bending < EI / LENGTH * 1e-28, "{axial:e} {bending:e}");
+        let mut f = [0.0; 8];
+        cable.force(&q, &mut f);
+        prop_assert!(f.iter().all(|x| x.abs() <= rounding(&q)));
+    }
+
+    #[test]
+    fn force_turns_with_the_frame(q in states(), angle in -3.0..3.0_f64) {
+        let (s, c) = f64::sin_cos(angle);
+        let turn = |v: &[f64; 8]| {
+            let mut out = *v;
+            for i in [0, 2, 4, 6] {
+                (out[i], out[i + 1]) = (c * v[i] - s * v[i + 1], s * v[i] + c * v[i + 1]);
+            }
+            out
+        };
+        let cable = AncfCable::new(LENGTH, EA, EI);
+        let (mut f, mut turned) = ([0.0; 8], [0.0; 8]);
+        cable.force(&q, &mut f);
+        cable.force(&turn(&q), &mut turned);
+        for (a, b) in turn(&f).iter().zip(turned) {
+            prop_assert!((a - b).abs() <= rounding(&q), "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn force_is_the_gradient_of_the_energy(q in states()) {
+        // differences of an energy of size EA l eps^2 resolve the force only for strains that are not tiny
+        let cable = AncfCable::new(1.0, 1.0, 0.01);
+        let q = q.map(|x| 2.0 * x);
+        let energy = |q: &[f64; 8]| { let (a, b) = cable.energy(q); a + b };
+        let mut f = [0.0; 8];
+        cable.force(&q, &mut f);
+        let size = f.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+        for i in 0..8 {
+            let moved = |by: f64| { let mut p = q; p[i] += by; energy(&p) };
+            let h = 1e-3;
+            // fourth-order difference: the energy is a quartic, so it is exact but for rounding 1e-16/1e-3
+            let slope = (8.0 * (moved(h) - moved(-h)) - (moved(2.0 * h) - moved(-2.0 * h))) / (12.0 * h);
+            prop_assert!((slope - f[i]).abs() <= 1e-11 * size, "{i}: {slope} {}", f[i]);
+        }
+    }
+}
+
+#[test]
+fn tangent_is_the_derivative_of_the_force() {
+    let bent = [0.1, -0.2, 1.05, 0.3, 0.31, -0.14, 0.8, -0.5];
+    let slack = [0.1, -0.2, 0.4, 0.1, 0.2, -0.1, 0.3, -0.2];
+    for route in ROUTES {
+        let kernel = (route.build)(LENGTH, EA, EI);
+        let force = |x: &[f64]| {
+            let mut f = [0.0; 8];
+            kernel.force(&std::array::from_fn(|i| x[i]), &mut f);
+            f.to_vec()
+        };
+        for (name, q) in [
+            ("straight", straight(0.0)),
+            ("turned", straight(2.2)),
+            ("bent", bent),
+            ("slack", slack),
+        ] {
+            let (_, k) = evaluate(&*kernel, &q);
+            let rows: Vec<Vec<f64>> = k.iter().map(|row| row.to_vec()).collect();
+            differencing::check(
+                &format!("{} {name}", route.name),
+                &force,
+                &rows,
+                &q,
+                1e-3,
+                false,
+            );
+            let asymmetry = (0..64)
+                .map(|n| (k[n / 8][n % 8] - k[n % 8][n / 8]).abs())
+                .fold(0.0_f64, f64::max);
+            let size = rows.iter().flatten().fold(0.0_f64, |m, k| m.max(k.abs()));
+            // a Hessian is symmetric; the routes sum in different orders
+            assert!(
+                asymmetry <= 1e-15 * size * 8.0,
+                "{}: {asymmetry:e}",
+                route.name
+            );
+        }
+    }
+}
+
+/// Force and tangent of one element computed once with plain quadrature, independently of this code.
+#[test]
+fn published_element() {
+    let q = [0.1, -0.2, 1.05, 0.3, 1.9, 0.4, 0.8, -0.5];
+    let (length, ea, ei) = (2.0, 1000.0, 7.0);
+    let force = [
+        -3.3165178571427774,
+        -26.253571428571394,
+        51.179166666666724,
+        8.733333333333345,
+        3.3165178571427774,
+        26.253571428571394,
+        -52.226488095238125,
+        -16.21190476190473,
+    ];
+    let (axial, bending) = AncfCable::new(length, ea, ei).energy(&q);
+    assert!((axial + bending - 15.735773809523824).abs() < 1e-12);
+    for route in ROUTES {
+        let (f, k) = evaluate(&*(route.build)(length, ea, ei), &q);
+        for i in 0..8 {
+            // fourteen digits of EA = 1000
+            assert!((f[i] - force[i]).abs() < 1e-11, "{}", route.name);
+        }
+        assert!((k[0][0] - 491.30357142857144).abs() < 1e-11 && (k[1][3] + 1.9375).abs() < 1e-11);
+    }
+}

@@ -1,0 +1,169 @@
+//! Cases 3 and 4 and the bouncing journal: joints with clearance.
+
+use crate::rrr;
+use crate::support::{assert_fitted_order, run};
+use looselink::contact::{LankaraniNikravesh, NormalLaw};
+
+/// Velocity of the journal after its first rebound over the velocity before, at a step that is a fraction of the
+/// contact time.
+fn rebound(restitution: f64, steps_a_contact: f64) -> f64 {
+    // duration of the contact of the scene's journal, 3.3 (m v^2/K)^(2/5)/v, and the instant of its first touch
+    let (mass, speed, clearance) = (0.05, 0.02, 2e-5);
+    let stiffness: f64 = 1.17e11;
+    let contact_time = 3.3 * (mass * speed * speed / stiffness).powf(0.4) / speed;
+    let step = contact_time / steps_a_contact;
+    let touch = clearance / speed;
+    let rows = ((touch + 3.0 * contact_time) / step).ceil();
+    let overrides = [
+        format!("integrator.step={step:e}"),
+        format!("output.interval={:e}", rows * step),
+        format!("simulation.duration={:e}", rows * step),
+        format!("contacts.aluminium.restitution={restitution}"),
+        r#"output.channels=["journal.vx", "*.contact"]"#.to_owned(),
+    ];
+    let overrides: Vec<&str> = overrides.iter().map(String::as_str).collect();
+    let (run, report) = run("bouncing-journal.toml", &overrides);
+    assert_eq!(report.onsets, 1, "one impact is looked at");
+    assert!(run.onsets[0].delta.abs() <= 1e-12);
+    assert!(
+        (run.onsets[0].impact_velocity / speed - 1.0).abs() < 1e-12,
+        "nothing acts before the impact"
+    );
+    let vx = run.get("journal.vx");
+    -vx[vx.len() - 1] / run.onsets[0].impact_velocity
+}
+
+#[test]
+fn a_bouncing_journal_delivers_the_restitution_of_the_formula() {
+    for typed in [0.95, 0.9, 0.7, 0.5, 0.3] {
+        let exact = LankaraniNikravesh::new(1.0, 1.5, typed, 1e-9).delivered_restitution();
+        let errors: Vec<(f64, f64)> = [50.0, 71.0, 100.0, 141.0, 200.0]
+            .iter()
+            .map(|n| (1.0 / n, (rebound(typed, *n) - exact).abs()))
+            .collect();
+        assert!(errors[0].1 < 2e-4, "typed {typed}: {errors:?}");
+        assert_fitted_order(&format!("restitution {typed}"), &errors, 1.6..2.4);
+    }
+}
+
+/// Instant and impact velocity of the fourth impact of the mechanism, the first that the method's error reaches (before
+/// it the loose links move freely); the reference is the same method at 6.25e-8 s.
+#[test]
+fn case_3_impacts_converge_at_order_two() {
+    let at = |h: f64| {
+        let step = format!("integrator.step={h:e}");
+        let overrides = [
+            &step,
+            "output.interval=5e-3",
+            "simulation.duration=5e-3",
+            "integrator.onset_tolerance=1e-15",
+        ];
+        run("3rrr/case3.toml", &overrides).0.onsets
+    };
+    let reference = at(6.25e-8);
+    let (mut instants, mut velocities) = (Vec::new(), Vec::new());
+    for h in [4e-6, 2.5e-6, 2e-6, 1.25e-6, 1e-6, 6.25e-7, 5e-7] {
+        let onsets = at(h);
+        assert!(onsets.iter().all(|o| o.delta.abs() <= 1e-12));
+        assert_eq!(onsets[3].joint, reference[3].joint);
+        // the first impact has no error of the method: what is left is rounding over the impact velocity
+        assert!((onsets[0].t - reference[0].t).abs() < 1e-9);
+        instants.push((h, (onsets[3].t - reference[3].t).abs()));
+        velocities.push((
+            h,
+            (onsets[3].impact_velocity - reference[3].impact_velocity).abs(),
+        ));
+    }
+    assert_fitted_order("instant of the fourth impact", &instants, 1.6..2.4);
+    assert_fitted_order("velocity of the fourth impact", &velocities, 1.6..2.4);
+}
+
+/// The triangle inequality of every leg, | |C - B| - l2 | <= |e_B| + |e_C|, at every recorded instant of 3 s; and the
+/// mechanism rides on its linearisation.
+#[test]
+fn case_3_keeps_within_its_clearances() {
+    let channels = r#"output.channels=["platform.*", "error.x", "*.eccentricity", "*.penetration", "*.contact"]"#;
+    let (run, report) = run(
+        "3rrr/case3.toml",
+        &["integrator.step=1e-5", "output.interval=1e-4", channels],
+    );
+    assert_eq!(report.unlocated_changes, 0);
+    let t = run.get("t");
+    let [x, y, theta] = ["platform.x", "platform.y", "platform.theta"].map(|n| run.get(n));
+    let eccentricity =
+        |joint: &str, leg: usize| run.get(&format!("{joint}{}.eccentricity", leg + 1));
+    let sides: Vec<_> = (0..3)
+        .map(|leg| (eccentricity("B", leg), eccentricity("C", leg)))
+        .collect();
+    for k in 0..run.len() {
+        for (leg, (b, c)) in sides.iter().enumerate() {
+            let angle = rrr::angle(leg) + theta[k];
+            let point =
+                nalgebra::Vector2::new(x[k] + rrr::L3 * angle.cos(), y[k] + rrr::L3 * angle.sin());
+            let stretch = ((point - rrr::pin(leg, t[k])).norm() - rrr::L2).abs();
+            // rounding of coordinates near 0.4 m
+            assert!(
+                stretch <= b[k] + c[k] + 1e-12,
+                "leg {leg} at {}: {stretch:e} {:e}",
+                t[k],
+                b[k] + c[k]
+            );
+        }
+    }
+    let error = run.get("error.x");
+    let ratio = (0..run.len()).filter(|&k| t[k] >= 1.0).map(|k| {
+        let inverse = rrr::jacobian(t[k])
+            .try_inverse()
+            .expect("no pose of the path is singular");
+        let bound: f64 = (0..3).map(|i| inverse[(0, i)].abs() * 2.0 * 2e-5).sum();
+        error[k].abs() / bound
+    });
+    let largest = ratio.fold(0.0, f64::max);
+    assert!((0.99..1.02).contains(&largest), "{largest}");
+}
+
+/// In the loose cases the integrator loses or gains little against what the contacts dissipate over the last two cycles.
+#[test]
+fn numerical_dissipation_is_small_against_that_of_the_contacts() {
+    for case in [3, 4] {
+        let channels = r#"output.channels=["energy.*"]"#;
+        let overrides = ["integrator.step=2e-6", "output.interval=1e-2", channels];
+        let (run, _) = run(&format!("3rrr/case{case}.toml"), &overrides);
+        let over_two_cycles = |name: &str| {
+            let values = run.get(name);
+            values[values.len() - 1] - values[100]
+        };
+        assert!((run.get("t")[100] - 1.0).abs() < 1e-12);
+        let (numerical, contact) = (
+            over_two_cycles("energy.numerical"),
+            over_two_cycles("energy.contact_dissipated"),
+        );
+        assert!(
+            contact > 1e-6,
+            "there is something to compare with: {contact:e}"
+        );
+        assert!(
+            numerical.abs() < 0.05 * contact,
+            "case {case}: {numerical:e} of {contact:e}"
+        );
+    }
+}
+
+#[test]
+fn no_friction_is_evaluated_unless_the_scene_names_it() {
+    let short = ["simulation.duration=0.01", "output.interval=1e-3"];
+    let (_, without) = run("3rrr/case4.toml", &short);
+    assert!(!without.effects.contains_key("friction_law"));
+    assert!(without.effects["contact_law"] > 0);
+    let (_, with) = run("3rrr/case4-friction.toml", &short);
+    assert!(with.effects["friction_law"] > 0);
+    assert!(with.ledger.friction_dissipated >= 0.0);
+    let material = [&short[..], &["contacts.pin.friction.slip=material"]].concat();
+    let (_, slipping) = run("3rrr/case4-friction.toml", &material);
+    // the printed slip is delta/e times the tangential rate of e: only the first impacts are fast enough for it
+    let (printed, material) = (
+        with.ledger.friction_dissipated,
+        slipping.ledger.friction_dissipated,
+    );
+    assert!(material > 2.0 * printed, "{material:e} {printed:e}");
+}

@@ -1,0 +1,120 @@
+//! Runs scenes of the project and keeps what they tell.
+
+use looselink::scene::Scene;
+use looselink::simulate::{Control, Observer, Onset, Progress, Report, Simulation};
+use std::path::PathBuf;
+
+/// An onset that was told.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Impact {
+    pub t: f64,
+    pub joint: String,
+    pub impact_velocity: f64,
+    pub delta: f64,
+}
+
+/// All rows and onsets of a run.
+#[derive(Debug, Default)]
+pub struct Recording {
+    names: Vec<String>,
+    rows: Vec<Vec<f64>>,
+    pub onsets: Vec<Impact>,
+}
+
+impl Recording {
+    /// A channel over time.
+    pub fn get(&self, name: &str) -> Vec<f64> {
+        let column = self
+            .names
+            .iter()
+            .position(|n| n == name)
+            .unwrap_or_else(|| panic!("no channel {name}"));
+        self.rows.iter().map(|row| row[column]).collect()
+    }
+
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+}
+
+impl Observer for Recording {
+    fn row(&mut self, values: &[f64]) -> std::io::Result<()> {
+        self.rows.push(values.to_vec());
+        Ok(())
+    }
+    fn onset(&mut self, onset: &Onset) -> std::io::Result<()> {
+        let (t, impact_velocity, delta) = (onset.t, onset.impact_velocity, onset.delta);
+        self.onsets.push(Impact {
+            t,
+            joint: onset.joint.to_owned(),
+            impact_velocity,
+            delta,
+        });
+        Ok(())
+    }
+    fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
+        Ok(Control::Continue)
+    }
+}
+
+/// The file of a scene of the project.
+pub fn path(scene: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("scenes")
+        .join(scene)
+}
+
+/// A scene with overrides.
+pub fn load(scene: &str, overrides: &[&str]) -> Scene {
+    let overrides: Vec<String> = overrides.iter().map(|s| (*s).to_owned()).collect();
+    Scene::load(&path(scene), &overrides).unwrap_or_else(|e| panic!("{scene}: {e}"))
+}
+
+/// Runs a scene to its end.
+pub fn run(scene: &str, overrides: &[&str]) -> (Recording, Report) {
+    let scene = load(scene, overrides);
+    let mut simulation = Simulation::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let names = simulation
+        .channels()
+        .iter()
+        .map(|c| c.name.clone())
+        .collect();
+    let mut recording = Recording {
+        names,
+        ..Recording::default()
+    };
+    simulation
+        .run(&mut recording)
+        .unwrap_or_else(|e| panic!("{e}"));
+    (recording, simulation.report())
+}
+
+/// Root mean square of the difference of two series of the same length.
+pub fn rms_difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let sum: f64 = a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum();
+    (sum / a.len() as f64).sqrt()
+}
+
+/// Asserts that errors at steps h, each half of the one before, fall with an order within the bounds, pair by pair.
+pub fn assert_order(name: &str, errors: &[(f64, f64)], bounds: std::ops::Range<f64>) {
+    for pair in errors.windows(2) {
+        let [(h, e), (h_next, e_next)] = [pair[0], pair[1]];
+        let order = (e / e_next).ln() / (h / h_next).ln();
+        assert!(
+            bounds.contains(&order),
+            "{name}: order {order:.3} between {h:e} and {h_next:e}; errors {errors:?}"
+        );
+    }
+}
+
+/// Asserts the order of errors whose constant varies from step to step, because events cut the grid at other places:
+/// the slope of the least-squares line through (log h, log error).
+pub fn assert_fitted_order(name: &str, errors: &[(f64, f64)], bounds: std::ops::Range<f64>) {
+    let logs: Vec<(f64, f64)> = errors.iter().map(|(h, e)| (h.ln(), e.ln())).collect();
+    let n = logs.len() as f64;
+    let (x, y) = logs.iter().fold((0.0, 0.0), |(x, y), l| (x + l.0 / n, y + l.1 / n));
+    let (up, down) = logs.iter().fold((0.0, 0.0), |(u, d), l| (u + (l.0 - x) * (l.1 - y), d + (l.0 - x).powi(2)));
+    let order = up / down;
+    assert!(bounds.contains(&order), "{name}: order {order:.3}; errors {errors:?}");
+}

@@ -1,0 +1,177 @@
+//! Compiled models as a whole: tangents by differencing, no allocation, repeatable bytes.
+
+use crate::support::{load, path};
+use looselink::newton::Newton;
+use looselink::scene::Scene;
+use looselink::simulate::{Control, Observer, Onset, Progress, Simulation};
+use looselink::stepper::stepper;
+use looselink::system::{State, System, Weights};
+
+/// Discards what a run tells.
+struct Silent;
+
+impl Observer for Silent {
+    fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
+        Ok(())
+    }
+    fn onset(&mut self, _: &Onset) -> std::io::Result<()> {
+        Ok(())
+    }
+    fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
+        Ok(Control::Continue)
+    }
+}
+
+fn scenes() -> Vec<String> {
+    let mut names = Vec::new();
+    for folder in ["", "3rrr"] {
+        for entry in std::fs::read_dir(path(folder)).unwrap() {
+            let name = entry.unwrap().path();
+            if name.extension().is_some_and(|e| e == "toml") {
+                names.push(
+                    name.strip_prefix(path(""))
+                        .unwrap()
+                        .to_str()
+                        .unwrap()
+                        .to_owned(),
+                );
+            }
+        }
+    }
+    names.sort();
+    names
+}
+
+/// A state some milliseconds into a scene, with closed contacts where it has contacts.
+fn state(scene: &Scene) -> (Simulation, State) {
+    let mut simulation = Simulation::new(scene).unwrap();
+    simulation.run(&mut Silent).unwrap();
+    let state = simulation.state().clone();
+    (simulation, state)
+}
+
+/// The stage matrix of every scene is the derivative of its residual by the acceleration.
+///
+/// Weights of 1e-4 s and 1e-8 s2 make all parts count. The difference is over accelerations of 0.03 m/s2, which move q by
+/// 3e-10 m: far less than the penetrations of about 1e-7 m, and enough to resolve.
+#[test]
+fn stage_matrices_are_the_derivatives() {
+    for name in scenes() {
+        let scene = load(
+            &name,
+            &["simulation.duration=0.008", "output.interval=0.001"],
+        );
+        let (simulation, start) = state(&scene);
+        let model = simulation.model();
+        let shape = model.shape();
+        let (n, m) = (shape.unknowns, shape.multipliers);
+        let w = Weights { q: 1e-8, v: 1e-4 };
+        let mut work = model.work();
+        let (mut r, mut phi) = (vec![0.0; shape.coordinates], vec![0.0; m]);
+        let mut k = vec![0.0; model.symbolic().len()];
+        model.linearise(&start, w, &mut r, &mut phi, &mut k, &mut work);
+        let dense = model.symbolic().to_dense(&k);
+        let mut evaluate = |s: &State| {
+            model.residual(s, &mut r, &mut phi, &mut work);
+            r[..n]
+                .iter()
+                .copied()
+                .chain(phi.iter().map(|p| p / w.q))
+                .collect::<Vec<f64>>()
+        };
+        for j in 0..n + m {
+            let mut moved = |by: f64| {
+                let mut s = start.clone();
+                if j < n {
+                    s.a[j] += by;
+                    s.v[j] += w.v * by;
+                    s.q[j] += w.q * by;
+                } else {
+                    s.lambda[j - n] += by;
+                }
+                evaluate(&s)
+            };
+            let h = 0.03;
+            let (low, high) = (moved(-h), moved(h));
+            let column: Vec<f64> = (0..n + m).map(|i| (high[i] - low[i]) / (2.0 * h)).collect();
+            let size = column.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            assert!(size > 0.0, "{name}: column {j} is empty");
+            for i in 0..n + m {
+                // positions are rounded at 1e-16/1e-8 in units of a; forces of EA = 1e6 N at 1e-10
+                assert!(
+                    (column[i] - dense[(i, j)]).abs() < 2e-6 * size.max(1e-2),
+                    "{name} ({i}, {j}): {} {}",
+                    column[i],
+                    dense[(i, j)]
+                );
+            }
+        }
+    }
+}
+
+/// A Bathe step allocates nothing, in any scene.
+#[test]
+fn steps_do_not_allocate() {
+    for name in scenes() {
+        let scene = load(
+            &name,
+            &["simulation.duration=0.004", "output.interval=0.001"],
+        );
+        let (simulation, from) = state(&scene);
+        let model = simulation.model();
+        let mut to = from.clone();
+        let mut newton = Newton::new(model, scene.integrator.newton_tolerance);
+        let mut work = model.work();
+        let mut stepper = stepper(scene.integrator.method, model);
+        let info = allocation_counter::measure(|| {
+            for k in 1..=3000 {
+                let t = from.t + scene.integrator.step * (1.0 + 1e-4 * f64::from(k));
+                stepper
+                    .step(model, &from, t, &mut to, &mut newton, &mut work)
+                    .unwrap();
+            }
+        });
+        assert_eq!(info.count_total, 0, "{name}");
+        assert_eq!(newton.counters.stages, 6000);
+    }
+}
+
+/// All scenes compile; a run repeated gives the same bytes.
+#[test]
+fn runs_are_repeatable() {
+    for name in scenes() {
+        let scene = load(
+            &name,
+            &["simulation.duration=0.01", "output.interval=0.001"],
+        );
+        let bits = |s: &State| {
+            s.q.iter()
+                .chain(&s.v)
+                .chain(&s.a)
+                .map(|x| x.to_bits())
+                .collect::<Vec<_>>()
+        };
+        let (first, second) = (state(&scene), state(&scene));
+        assert_eq!(bits(&first.1), bits(&second.1), "{name}");
+        assert_eq!(first.0.report(), second.0.report(), "{name}");
+    }
+}
+
+/// After every step velocities satisfy the constraints, and so do accelerations.
+#[test]
+fn accepted_states_are_consistent() {
+    for name in ["3rrr/case1.toml", "3rrr/case2.toml", "3rrr/case3.toml"] {
+        let scene = load(name, &["simulation.duration=0.02", "output.interval=0.001"]);
+        let (simulation, at) = state(&scene);
+        let model = simulation.model();
+        let mut rates = vec![1.0; model.shape().multipliers];
+        model.constraint_velocity(&at, &mut rates);
+        // rounding of velocities near 1 m/s
+        assert!(rates.iter().all(|r| r.abs() < 1e-14), "{name}: {rates:?}");
+        model.constraint_acceleration(&at, &mut rates);
+        // rounding of accelerations up to 1e3 m/s2
+        assert!(rates.iter().all(|r| r.abs() < 1e-11), "{name}: {rates:?}");
+        let (distance, ..) = model.worst_constraint(&at).unwrap();
+        assert!(distance < 1e-15, "{name}: {distance:e}");
+    }
+}
