@@ -113,8 +113,15 @@ pub fn assert_order(name: &str, errors: &[(f64, f64)], bounds: std::ops::Range<f
 pub fn assert_fitted_order(name: &str, errors: &[(f64, f64)], bounds: std::ops::Range<f64>) {
     let logs: Vec<(f64, f64)> = errors.iter().map(|(h, e)| (h.ln(), e.ln())).collect();
     let n = logs.len() as f64;
-    let (x, y) = logs.iter().fold((0.0, 0.0), |(x, y), l| (x + l.0 / n, y + l.1 / n));
-    let (up, down) = logs.iter().fold((0.0, 0.0), |(u, d), l| (u + (l.0 - x) * (l.1 - y), d + (l.0 - x).powi(2)));
+    let (x, y) = logs
+        .iter()
+        .fold((0.0, 0.0), |(x, y), l| (x + l.0 / n, y + l.1 / n));
+    let (up, down) = logs.iter().fold((0.0, 0.0), |(u, d), l| {
+        (u + (l.0 - x) * (l.1 - y), d + (l.0 - x).powi(2))
+    });
     let order = up / down;
-    assert!(bounds.contains(&order), "{name}: order {order:.3}; errors {errors:?}");
+    assert!(
+        bounds.contains(&order),
+        "{name}: order {order:.3}; errors {errors:?}"
+    );
 }

@@ -1,0 +1,300 @@
+//! Closed-form kinematics of the ideal 3-RRR and the exact bound it puts on the platform error of a loose mechanism.
+//!
+//! Leg i closes with ||C_i - B_i|| = l2, where B_i(t) is the driven crank pin and C_i = (x, y) + R(theta) c_i. A change
+//! dl_i of that length moves the platform by J (dx, dy, dtheta) = dl with the rows
+//!
+//! ```text
+//! J_i = (u_x, u_y, r_x u_y - r_y u_x),   u = (C_i - B_i) / l2,   r = R(theta) c_i
+//! ```
+//!
+//! By the triangle inequality | ||C_i - B_i|| - l2 | <= |e_B| + |e_C| for rigid links, hence
+//! |e_x| <= sum_i |J^-1|_{xi} (|e_B| + |e_C|)_i to first order in the eccentricities e.
+
+use looselink::scene::{BodyKind, JointModel, Path2, PointRef, Scene};
+use miette::{Result, miette};
+use std::f64::consts::TAU;
+
+/// A point or vector in the plane \[m\].
+pub type Vector = [f64; 2];
+
+/// By rows.
+type Matrix = [[f64; 3]; 3];
+
+/// Dimensions of a 3-RRR and the circle its platform is meant to follow.
+#[derive(Debug, Clone)]
+pub struct Geometry {
+    /// A_i \[m\].
+    pub base: [Vector; 3],
+    /// C_i in the frame of the platform \[m\].
+    pub platform: [Vector; 3],
+    /// l1 \[m\].
+    pub crank: f64,
+    /// l2 \[m\].
+    pub link: f64,
+    /// Side of the line A_i C_i on which B_i lies: the sign of (C - A) x (B - A).
+    pub elbow: [f64; 3],
+    /// Radius of the path \[m\].
+    pub radius: f64,
+    /// Revolutions a second \[Hz\].
+    pub frequency: f64,
+    /// Radial clearance of the joint B1 \[m\]; zero when it is ideal.
+    pub clearance: f64,
+}
+
+impl Geometry {
+    /// Reads the geometry of a scene with the names of the paper (A1, B1, C1, crank1, link1, platform).
+    ///
+    /// # Errors
+    /// When the scene is not such a mechanism.
+    pub fn of(scene: &Scene) -> Result<Geometry> {
+        let drive = scene
+            .drives
+            .first()
+            .ok_or_else(|| miette!("the scene has no drive"))?;
+        let Path2::Circle {
+            center: [0.0, 0.0],
+            radius,
+            frequency,
+            phase: 0.0,
+            theta: 0.0,
+        } = drive.path
+        else {
+            return Err(miette!(
+                "the path is not a circle about the origin that starts on the x axis"
+            ));
+        };
+        let mut base = [[0.0; 2]; 3];
+        let mut platform = [[0.0; 2]; 3];
+        let mut elbow = [0.0; 3];
+        for i in 0..3 {
+            base[i] = end_on(scene, &format!("A{}", i + 1), "ground")?;
+            platform[i] = end_on(scene, &format!("C{}", i + 1), "platform")?;
+            let pin = sketched(scene, &format!("B{}", i + 1))?;
+            let corner = [radius + platform[i][0], platform[i][1]];
+            elbow[i] = cross(minus(corner, base[i]), minus(pin, base[i])).signum();
+        }
+        let clearance = match scene.joint("B1").map(|j| &scene.joints[j].model) {
+            Some(JointModel::Clearance(contact)) => contact.clearance,
+            _ => 0.0,
+        };
+        let (crank, link) = (link_length(scene, "crank1")?, link_length(scene, "link1")?);
+        Ok(Geometry {
+            base,
+            platform,
+            crank,
+            link,
+            elbow,
+            radius,
+            frequency,
+            clearance,
+        })
+    }
+
+    /// Pose (x, y, theta) of the ideal platform.
+    pub fn pose(&self, t: f64) -> [f64; 3] {
+        let (sin, cos) = (TAU * self.frequency * t).sin_cos();
+        [self.radius * cos, self.radius * sin, 0.0]
+    }
+
+    /// Velocity along x of the ideal platform \[m/s\].
+    pub fn velocity_x(&self, t: f64) -> f64 {
+        -TAU * self.frequency * self.pose(t)[1]
+    }
+
+    /// Acceleration along x of the ideal platform \[m/s2\].
+    pub fn acceleration_x(&self, t: f64) -> f64 {
+        -(TAU * self.frequency).powi(2) * self.pose(t)[0]
+    }
+
+    /// C_i at a pose.
+    fn corner(&self, leg: usize, pose: [f64; 3]) -> Vector {
+        let r = self.arm(leg, pose);
+        [pose[0] + r[0], pose[1] + r[1]]
+    }
+
+    /// B_i of the ideal mechanism at a pose; NaN where the leg does not reach.
+    pub fn pin(&self, leg: usize, pose: [f64; 3]) -> Vector {
+        let a = self.base[leg];
+        let d = minus(self.corner(leg, pose), a);
+        let distance = d[0].hypot(d[1]);
+        let along =
+            (distance * distance + self.crank.powi(2) - self.link.powi(2)) / (2.0 * distance);
+        let aside = self.elbow[leg] * (self.crank.powi(2) - along * along).sqrt();
+        [
+            a[0] + (d[0] * along - d[1] * aside) / distance,
+            a[1] + (d[1] * along + d[0] * aside) / distance,
+        ]
+    }
+
+    /// The velocity Jacobian J of the three lengths by (x, y, theta), with the pins held.
+    fn jacobian(&self, pose: [f64; 3]) -> Matrix {
+        std::array::from_fn(|leg| {
+            let d = minus(self.corner(leg, pose), self.pin(leg, pose));
+            let u = [d[0] / self.link, d[1] / self.link];
+            [u[0], u[1], cross(self.arm(leg, pose), u)]
+        })
+    }
+
+    /// sum_i |J^-1|_{xi} slack_i at time t \[m\]; infinite where J is singular.
+    pub fn bound_x(&self, t: f64, slack: [f64; 3]) -> f64 {
+        let Some(inverse) = inverse(self.jacobian(self.pose(t))) else {
+            return f64::INFINITY;
+        };
+        (0..3).map(|i| inverse[0][i].abs() * slack[i]).sum()
+    }
+
+    /// The largest bound over one revolution for equal slacks, on 3600 poses \[m\].
+    pub fn largest_bound_x(&self, slack: f64) -> f64 {
+        let period = 1.0 / self.frequency;
+        (0..3600)
+            .map(|k| self.bound_x(period * f64::from(k) / 3600.0, [slack; 3]))
+            .fold(0.0, f64::max)
+    }
+
+    fn arm(&self, leg: usize, pose: [f64; 3]) -> Vector {
+        let (sin, cos) = pose[2].sin_cos();
+        let c = self.platform[leg];
+        [cos * c[0] - sin * c[1], sin * c[0] + cos * c[1]]
+    }
+}
+
+fn minus(a: Vector, b: Vector) -> Vector {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn cross(a: Vector, b: Vector) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// Inverse by cofactors; none where the determinant vanishes.
+fn inverse(m: Matrix) -> Option<Matrix> {
+    let minor = |r: usize, c: usize| {
+        let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
+        m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
+    };
+    let determinant: f64 = (0..3).map(|c| m[0][c] * minor(0, c)).sum();
+    (determinant != 0.0)
+        .then(|| std::array::from_fn(|r| std::array::from_fn(|c| minor(c, r) / determinant)))
+}
+
+/// Coordinates of the end of a joint that lies on a body, in the frame of that body.
+fn end_on(scene: &Scene, joint: &str, body: &str) -> Result<Vector> {
+    let missing = || miette!("the scene has no joint {joint} on the body {body}");
+    let joint = &scene.joints[scene.joint(joint).ok_or_else(missing)?];
+    let body = scene.body(body).ok_or_else(missing)?;
+    let on = |end: &PointRef| end.body == body;
+    let end = [joint.bearing, joint.journal]
+        .into_iter()
+        .find(on)
+        .ok_or_else(missing)?;
+    match &scene.bodies[body].kind {
+        BodyKind::Ground { points } => Ok(points[end.point].at),
+        BodyKind::Rigid(rigid) => Ok(rigid.points[end.point].at),
+        BodyKind::Link(_) => Err(missing()),
+    }
+}
+
+fn sketched(scene: &Scene, joint: &str) -> Result<Vector> {
+    let index = scene.joint(joint);
+    let point = scene.initial.sketch.iter().find(|p| Some(p.joint) == index);
+    point
+        .map(|p| p.at)
+        .ok_or_else(|| miette!("the scene does not sketch the joint {joint}"))
+}
+
+fn link_length(scene: &Scene, name: &str) -> Result<f64> {
+    match scene.body(name).map(|b| &scene.bodies[b].kind) {
+        Some(BodyKind::Link(link)) => Ok(link.length),
+        _ => Err(miette!("the scene has no link {name}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The mechanism of Table 1 with a circumradius `fixed` of the fixed platform.
+    fn table_1(fixed: f64, elbow: [f64; 3]) -> Geometry {
+        let at = |radius: f64| {
+            [210.0_f64, 330.0, 90.0]
+                .map(|a| a.to_radians())
+                .map(|a| [radius * a.cos(), radius * a.sin()])
+        };
+        let (base, platform) = (at(fixed), at(0.112));
+        let (crank, link, radius, frequency, clearance) = (0.245, 0.242, 0.1, 1.0, 2e-5);
+        Geometry {
+            base,
+            platform,
+            crank,
+            link,
+            elbow,
+            radius,
+            frequency,
+            clearance,
+        }
+    }
+
+    #[test]
+    fn legs_close_over_the_whole_path() {
+        let g = table_1(0.4, [1.0; 3]);
+        for k in 0..100 {
+            let pose = g.pose(f64::from(k) / 100.0);
+            for leg in 0..3 {
+                let (b, c) = (g.pin(leg, pose), g.corner(leg, pose));
+                let length = |a: Vector, b: Vector| minus(a, b)[0].hypot(minus(a, b)[1]);
+                // round-off of lengths below 1 m
+                assert!(
+                    (length(b, c) - g.link).abs() < 1e-14
+                        && (length(b, g.base[leg]) - g.crank).abs() < 1e-14
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn jacobian_is_the_derivative_of_the_leg_lengths() {
+        let g = table_1(0.4, [1.0, -1.0, 1.0]);
+        for pose in [[0.1, 0.0, 0.0], [-0.03, 0.09, 0.2], [0.02, -0.1, -0.4]] {
+            let jacobian = g.jacobian(pose);
+            for leg in 0..3 {
+                let pin = g.pin(leg, pose);
+                let length = |q: [f64; 3]| {
+                    let d = minus(g.corner(leg, q), pin);
+                    d[0].hypot(d[1])
+                };
+                for k in 0..3 {
+                    let step = 1e-6;
+                    let (mut up, mut down) = (pose, pose);
+                    up[k] += step;
+                    down[k] -= step;
+                    let difference = (length(up) - length(down)) / (2.0 * step);
+                    // central difference: round-off 1e-16 / 1e-6 and truncation 1e-12 / 0.24^2
+                    assert!((jacobian[leg][k] - difference).abs() < 1e-9, "{leg} {k}");
+                    assert!(jacobian[leg][k] != 0.0);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn inverse_times_matrix_is_the_identity() {
+        let m = table_1(0.4, [1.0; 3]).jacobian([0.1, 0.0, 0.0]);
+        let n = inverse(m).unwrap();
+        for r in 0..3 {
+            for c in 0..3 {
+                let product: f64 = (0..3).map(|k| m[r][k] * n[k][c]).sum();
+                assert!((product - f64::from(u8::from(r == c))).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn bounds_of_the_three_readings_of_the_geometry() {
+        let equal = table_1(0.4, [-1.0; 3]).largest_bound_x(4e-5);
+        let mirrored = table_1(0.4, [1.0; 3]).largest_bound_x(4e-5);
+        let side = table_1(0.4 / 3f64.sqrt(), [-1.0; 3]).largest_bound_x(4e-5);
+        let mixed = table_1(0.4, [1.0, -1.0, -1.0]).largest_bound_x(4e-5);
+        // equal elbows stay below the 0.2 mm of the paper, the two other readings do not
+        assert!(equal.max(mirrored) < 0.075e-3 && side > 2e-4 && mixed > 1e-3);
+    }
+}

@@ -1,0 +1,177 @@
+//! Runs scenes through the library, one a thread, and keeps their channels in memory.
+
+use looselink::scene::Scene;
+use looselink::simulate::{Control, Observer, Onset, Progress, Simulation};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// One run to make: a case of the paper and what is changed in its scene.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Case 1 to 4 of Table 2.
+    pub case: u32,
+    /// Step \[s\].
+    pub step: f64,
+    /// Time between recorded rows \[s\].
+    pub interval: f64,
+    /// Simulated time \[s\].
+    pub duration: f64,
+    /// Further overrides `path=value` of the scene.
+    pub overrides: Vec<String>,
+}
+
+/// What a run left behind.
+pub struct Recording {
+    /// The run.
+    pub plan: Plan,
+    /// The scene with the overrides applied.
+    pub scene: Scene,
+    /// Time \[s\].
+    pub t: Vec<f64>,
+    /// Instants of contact onset \[s\].
+    pub onsets: Vec<f64>,
+    /// The library's own account of the run.
+    pub report: serde_json::Value,
+    columns: HashMap<String, Vec<f64>>,
+}
+
+/// Channels that the figures and the tables read; a rigid link has no strain and an ideal joint no penetration.
+fn channels(case: u32) -> String {
+    let mut names = vec!["platform.*", "error.*", "*.force", "energy.*"];
+    if case == 2 || case == 4 {
+        names.push("*.strain");
+    }
+    if case >= 3 {
+        names.extend(["*.penetration", "*.eccentricity"]);
+    }
+    format!("output.channels={names:?}")
+}
+
+/// The root of the workspace.
+pub fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+impl Plan {
+    /// Path of the scene relative to the workspace.
+    pub fn scene_name(&self) -> String {
+        format!("scenes/3rrr/case{}.toml", self.case)
+    }
+
+    /// The same plan with one more override.
+    pub fn with(mut self, path: &str, value: impl std::fmt::Display) -> Plan {
+        self.overrides.push(format!("{path}={value}"));
+        self
+    }
+
+    /// Reads the scene with all overrides.
+    ///
+    /// # Errors
+    /// What the library says about the scene.
+    pub fn scene(&self) -> Result<Scene> {
+        let mut overrides = vec![
+            format!("integrator.step={:e}", self.step),
+            format!("output.interval={:e}", self.interval),
+            format!("simulation.duration={:?}", self.duration),
+            channels(self.case),
+        ];
+        overrides.extend_from_slice(&self.overrides);
+        Ok(Scene::load(
+            &workspace().join(self.scene_name()),
+            &overrides,
+        )?)
+    }
+
+    /// Runs to the end.
+    ///
+    /// # Errors
+    /// What the library says about the scene or the run.
+    pub fn run(&self) -> Result<Recording> {
+        let scene = self.scene()?;
+        let mut simulation = Simulation::new(&scene)?;
+        let names: Vec<String> = simulation
+            .channels()
+            .iter()
+            .map(|c| c.name.clone())
+            .collect();
+        let mut recorder = Recorder {
+            columns: vec![Vec::new(); names.len()],
+            onsets: Vec::new(),
+        };
+        simulation
+            .run(&mut recorder)
+            .into_diagnostic()
+            .wrap_err_with(|| self.scene_name())?;
+        let report = serde_json::to_value(simulation.report()).into_diagnostic()?;
+        let mut columns: HashMap<String, Vec<f64>> =
+            names.into_iter().zip(recorder.columns).collect();
+        let t = columns
+            .remove("t")
+            .ok_or_else(|| miette!("the recording has no time channel"))?;
+        Ok(Recording {
+            plan: self.clone(),
+            scene,
+            t,
+            onsets: recorder.onsets,
+            report,
+            columns,
+        })
+    }
+}
+
+/// Runs all plans, one a core, and returns the results in their order.
+pub fn run_all(plans: &[Plan]) -> Vec<Result<Recording>> {
+    plans.par_iter().with_max_len(1).map(Plan::run).collect()
+}
+
+impl Recording {
+    /// A channel.
+    ///
+    /// # Panics
+    /// When the run has no such channel: the callers name channels that their case has.
+    pub fn column(&self, name: &str) -> &[f64] {
+        self.columns
+            .get(name)
+            .unwrap_or_else(|| panic!("{} records no channel {name}", self.plan.scene_name()))
+    }
+
+    /// Rows with from <= t <= to, a rounding error wider at both ends.
+    pub fn rows(&self, from: f64, to: f64) -> Range<usize> {
+        let slack = 0.01 * self.plan.interval;
+        self.t.partition_point(|&t| t < from - slack)..self.t.partition_point(|&t| t <= to + slack)
+    }
+
+    /// Time and a channel between two instants.
+    pub fn between(&self, name: &str, from: f64, to: f64) -> (&[f64], &[f64]) {
+        let rows = self.rows(from, to);
+        (&self.t[rows.clone()], &self.column(name)[rows])
+    }
+}
+
+/// Collects rows by column.
+struct Recorder {
+    columns: Vec<Vec<f64>>,
+    onsets: Vec<f64>,
+}
+
+impl Observer for Recorder {
+    fn row(&mut self, row: &[f64]) -> io::Result<()> {
+        for (column, value) in self.columns.iter_mut().zip(row) {
+            column.push(*value);
+        }
+        Ok(())
+    }
+
+    fn onset(&mut self, onset: &Onset) -> io::Result<()> {
+        self.onsets.push(onset.t);
+        Ok(())
+    }
+
+    fn step(&mut self, _: &Progress) -> io::Result<Control> {
+        Ok(Control::Continue)
+    }
+}

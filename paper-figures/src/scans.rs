@@ -1,0 +1,124 @@
+//! Makes the parameter scans and reads off the numbers that are compared.
+
+use crate::campaign::{DURATION, FROM};
+use crate::kinematics::Geometry;
+use crate::plot::Axis;
+use crate::runs::{Plan, Recording};
+use crate::scans_list::{all, baseline};
+use crate::signal::{fraction, mean, peak, rms};
+use miette::Result;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// One scanned quantity.
+pub struct Scan {
+    /// Part of the file names.
+    pub slug: &'static str,
+    /// Heading.
+    pub title: &'static str,
+    /// Horizontal axis of the plots.
+    pub axis: Axis,
+    /// The runs.
+    pub entries: Vec<Entry>,
+}
+
+/// One run of a scan.
+pub struct Entry {
+    /// The value as written in tables.
+    pub label: String,
+    /// Its place on the axis.
+    pub at: f64,
+    /// Whether it is the printed or assumed value.
+    pub baseline: bool,
+    /// The run.
+    pub plan: Plan,
+    /// What came out, or why it failed.
+    pub outcome: Result<Values, String>,
+}
+
+/// What is read off a run, over the last two cycles.
+#[derive(Debug, Clone, Copy)]
+pub struct Values {
+    /// Largest |e_x| \[m\].
+    pub error_peak: f64,
+    /// Rms of e_x \[m\].
+    pub error_rms: f64,
+    /// Largest |acceleration along x| \[m/s2\].
+    pub acceleration_peak: f64,
+    /// Rms deviation of that acceleration from the ideal one \[m/s2\].
+    pub deviation_rms: f64,
+    /// Largest force in B1 \[N\].
+    pub force_peak: f64,
+    /// Mean force in B1 \[N\].
+    pub force_mean: f64,
+    /// Fraction of the time B1 is in contact; none for ideal joints.
+    pub contact: Option<f64>,
+}
+
+impl Values {
+    fn of(recording: &Recording) -> Result<Values> {
+        let geometry = Geometry::of(&recording.scene)?;
+        let between = |name: &str| recording.between(name, FROM, DURATION);
+        let (t, a) = between("platform.ax");
+        let deviation: Vec<f64> = t
+            .iter()
+            .zip(a)
+            .map(|(&t, a)| a - geometry.acceleration_x(t))
+            .collect();
+        let (error, force) = (between("error.x").1, between("B1.force").1);
+        Ok(Values {
+            error_peak: peak(error),
+            error_rms: rms(error),
+            acceleration_peak: peak(a),
+            deviation_rms: rms(&deviation),
+            force_peak: peak(force),
+            force_mean: mean(force),
+            contact: (recording.plan.case >= 3)
+                .then(|| fraction(between("B1.penetration").1, |d| d > 0.0)),
+        })
+    }
+}
+
+/// Makes all scans at one step, except the scan of the step itself.
+///
+/// # Errors
+/// When the baseline scene cannot be read; runs that fail are kept with their message.
+pub fn run(step: f64) -> Result<Vec<Scan>> {
+    let geometry = Geometry::of(&baseline(3, step).scene()?)?;
+    let mut scans = all(step, &geometry);
+    let mut unique: HashMap<String, Plan> = HashMap::new();
+    for entry in scans.iter().flat_map(|s| &s.entries) {
+        unique
+            .entry(key(&entry.plan))
+            .or_insert_with(|| entry.plan.clone());
+    }
+    let mut plans: Vec<(String, Plan)> = unique.into_iter().collect();
+    // the longest first, so that no core is left with one of them at the end
+    plans.sort_by(|a, b| a.1.step.total_cmp(&b.1.step).then_with(|| a.0.cmp(&b.0)));
+    let outcomes: HashMap<String, Result<Values, String>> = plans
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|(key, plan)| (key, measure(&plan)))
+        .collect();
+    for entry in scans.iter_mut().flat_map(|s| &mut s.entries) {
+        entry.outcome = outcomes[&key(&entry.plan)].clone();
+    }
+    Ok(scans)
+}
+
+fn measure(plan: &Plan) -> Result<Values, String> {
+    let chain = |error: miette::Report| {
+        error
+            .chain()
+            .map(ToString::to_string)
+            .collect::<Vec<_>>()
+            .join(": ")
+    };
+    plan.run()
+        .and_then(|recording| Values::of(&recording))
+        .map_err(chain)
+}
+
+fn key(plan: &Plan) -> String {
+    format!("{plan:?}")
+}

@@ -1,0 +1,293 @@
+//! Writes what the scans gave: one figure a scan and SCANS.md.
+
+use crate::campaign::{DURATION, FROM};
+use crate::fig05::CLAIMED;
+use crate::numbers::{Numbers, digits, percent, si};
+use crate::plot::{Axis, Color, Figure, Mark, Panel, palette};
+use crate::scans::{Scan, Values};
+use std::fmt::Write;
+
+/// What a panel shows: title, axis, main and secondary value.
+struct Quantity {
+    title: &'static str,
+    label: &'static str,
+    unit: &'static str,
+    factor: f64,
+    main: fn(&Values) -> Option<f64>,
+    second: fn(&Values) -> Option<f64>,
+}
+
+const QUANTITIES: [Quantity; 4] = [
+    Quantity {
+        title: "Displacement error",
+        label: "|eₓ|: largest, rms",
+        unit: "mm",
+        factor: 1e3,
+        main: |v| Some(v.error_peak),
+        second: |v| Some(v.error_rms),
+    },
+    Quantity {
+        title: "Acceleration",
+        label: "ẍ: peak, rms deviation",
+        unit: "m/s²",
+        factor: 1.0,
+        main: |v| Some(v.acceleration_peak),
+        second: |v| Some(v.deviation_rms),
+    },
+    Quantity {
+        title: "Force in joint B1",
+        label: "Force: peak, mean",
+        unit: "N",
+        factor: 1.0,
+        main: |v| Some(v.force_peak),
+        second: |v| Some(v.force_mean),
+    },
+    Quantity {
+        title: "Contact of joint B1",
+        label: "Time in contact",
+        unit: "%",
+        factor: 100.0,
+        main: |v| v.contact,
+        second: |_| None,
+    },
+];
+
+/// The figure of a scan.
+pub fn figure(scan: &Scan, step: f64) -> Figure {
+    let panels: Vec<Panel> = QUANTITIES
+        .iter()
+        .zip(["a", "b", "c", "d"])
+        .map(|(q, letter)| panel(scan, q, letter))
+        .collect();
+    let mut rows = panels.into_iter();
+    let rows = vec![rows.by_ref().take(2).collect(), rows.collect()];
+    let mut caption = format!(
+        "{}. Bathe method, {}, {FROM} s to {DURATION} s. Large dots and thick lines: the first quantity of the axis; small ones: the second.",
+        scan.title,
+        at_step(scan, step)
+    );
+    if scan.slug == "reading" {
+        let first = scan.entries[0].plan.case;
+        for entry in scan.entries.iter().filter(|e| e.plan.case == first) {
+            let _ = write!(caption, " {}: {}.", entry.at, entry.label);
+        }
+    }
+    let failed = scan.entries.iter().filter(|e| e.outcome.is_err()).count();
+    if failed > 0 {
+        let _ = write!(
+            caption,
+            " {failed} of {} runs failed and have no dot; the table says why.",
+            scan.entries.len()
+        );
+    }
+    Figure { rows, caption }
+}
+
+fn at_step(scan: &Scan, step: f64) -> String {
+    if scan.slug == "step" {
+        "steps as given".into()
+    } else {
+        format!("h = {}", si(step, "s"))
+    }
+}
+
+fn panel(scan: &Scan, quantity: &Quantity, letter: &str) -> Panel {
+    let mut marks = Vec::new();
+    for case in [2, 3, 4] {
+        let of = |read: fn(&Values) -> Option<f64>| -> (Vec<f64>, Vec<f64>) {
+            let entries = scan.entries.iter().filter(|e| e.plan.case == case);
+            entries
+                .filter_map(|e| Some((e.at, read(e.outcome.as_ref().ok()?)?)))
+                .unzip()
+        };
+        let (x, y) = of(quantity.main);
+        if !x.is_empty() {
+            marks.push(line(
+                scan,
+                &format!("Case {case}"),
+                color(case),
+                &x,
+                &y,
+                2 * size(case) / 3,
+            ));
+            marks.push(Mark::points("", color(case), &x, &y, size(case) + 2));
+        }
+        let (x, y) = of(quantity.second);
+        if !x.is_empty() {
+            marks.push(line(scan, "", color(case), &x, &y, size(case) / 3));
+            marks.push(Mark::points("", color(case), &x, &y, size(case) - 2));
+        }
+    }
+    let mut y = Axis::new(quantity.label, quantity.unit, quantity.factor);
+    if quantity.unit == "%" {
+        y = y.over(0.0, 1.0);
+    } else {
+        y = y.log();
+    }
+    if quantity.unit == "mm" {
+        marks.push(Mark::level("paper: 0.2 mm", palette::BLACK, CLAIMED));
+    }
+    Panel {
+        title: format!("{letter}) {}", quantity.title),
+        note: String::new(),
+        x: scan.axis.clone(),
+        y,
+        marks,
+    }
+}
+
+/// Readings have no order, so no line joins them: only the legend entry is drawn.
+fn line(scan: &Scan, label: &str, color: Color, x: &[f64], y: &[f64], width: u32) -> Mark {
+    let joined = if scan.slug == "reading" { 1 } else { x.len() };
+    Mark::curve(label, color, &x[..joined], &y[..joined]).width(width)
+}
+
+fn color(case: u32) -> Color {
+    match case {
+        2 => palette::GREEN,
+        3 => palette::BLUE,
+        _ => palette::VERMILION,
+    }
+}
+
+/// Marks of case 3 are larger, so that they show where those of case 4 lie on them.
+fn size(case: u32) -> u32 {
+    if case == 3 { 9 } else { 6 }
+}
+
+/// The page.
+pub fn page(scans: &[Scan], step: f64, numbers: &mut Numbers) -> String {
+    let mut page = format!(
+        "# Parameter scans\n\n\
+         Generated by `cargo run --release -p paper-figures -- scans`. One parameter at a time is moved away from its \
+         printed or assumed value (bold rows); everything else stays. All runs last {DURATION} s with the Bathe method \
+         at h = {} unless the step itself is scanned: coarser than the figures, so that all scans fit in ten minutes, \
+         and good for orders of magnitude of quantities that bouncing does not decide. Values are read from {FROM} s \
+         on; e_x is the displacement error, a the acceleration of the platform along x, its rms that of the deviation \
+         from the ideal one, F the force in B1. The dashed line is the ±0.2 mm that the paper reads off Fig. 5.\n\n",
+        si(step, "s")
+    );
+    for scan in scans {
+        let _ = write!(
+            page,
+            "## {}\n\n![{}](figures/scans-{}.png)\n\n",
+            scan.title, scan.title, scan.slug
+        );
+        page += &near_claim(scan);
+        page += "| value | case | largest \\|e_x\\| | rms e_x | peak a (m/s²) | rms a (m/s²) | peak F (N) | mean F (N) | B1 in contact |\n";
+        page += "|---|---|---|---|---|---|---|---|---|\n";
+        for entry in &scan.entries {
+            let emphasis = if entry.baseline { "**" } else { "" };
+            let _ = write!(
+                page,
+                "| {emphasis}{}{emphasis} | {} |",
+                entry.label, entry.plan.case
+            );
+            match &entry.outcome {
+                Ok(values) => page += &cells(values),
+                Err(message) => {
+                    let _ = write!(
+                        page,
+                        " failed: {} | | | | | | |",
+                        message.replace('|', "\\|").replace('\n', " ")
+                    );
+                }
+            }
+            page.push('\n');
+            keep(scan, entry, numbers);
+        }
+        page.push('\n');
+    }
+    page
+}
+
+fn cells(v: &Values) -> String {
+    let contact = v.contact.map_or("–".into(), percent);
+    format!(
+        " {} | {} | {} | {} | {} | {} | {contact} |",
+        si(v.error_peak, "m"),
+        si(v.error_rms, "m"),
+        digits(v.acceleration_peak),
+        digits(v.deviation_rms),
+        digits(v.force_peak),
+        digits(v.force_mean)
+    )
+}
+
+fn keep(scan: &Scan, entry: &crate::scans::Entry, numbers: &mut Numbers) {
+    let name = format!("{}.case{}.{}", scan.slug, entry.plan.case, entry.label);
+    match &entry.outcome {
+        Err(message) => numbers.put_value(format!("{name}.failed"), message.as_str().into()),
+        Ok(v) => {
+            let values = [
+                ("error_x_peak", v.error_peak),
+                ("error_x_rms", v.error_rms),
+                ("acceleration_peak", v.acceleration_peak),
+                ("acceleration_deviation_rms", v.deviation_rms),
+                ("force_b1_peak", v.force_peak),
+                ("force_b1_mean", v.force_mean),
+            ];
+            for (what, value) in values
+                .into_iter()
+                .chain(v.contact.map(|f| ("contact_fraction_b1", f)))
+            {
+                numbers.put(format!("{name}.{what}"), value);
+            }
+        }
+    }
+}
+
+/// Which runs come within a factor of two of the paper's error.
+fn near_claim(scan: &Scan) -> String {
+    let near = |v: &Values| (0.5..=2.0).contains(&(v.error_peak / CLAIMED));
+    let hits: Vec<String> = scan
+        .entries
+        .iter()
+        .filter(|e| e.outcome.as_ref().is_ok_and(near))
+        .map(|e| format!("{} (case {})", e.label, e.plan.case))
+        .collect();
+    let found = if hits.is_empty() {
+        "none".into()
+    } else {
+        hits.join(", ")
+    };
+    format!("Values whose largest |e_x| lies within a factor of two of 0.2 mm: {found}.\n\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::runs::Plan;
+    use crate::scans::Entry;
+
+    #[test]
+    fn a_failed_run_is_shown_with_its_message() {
+        let plan = Plan {
+            case: 3,
+            step: 1e-5,
+            interval: 1e-5,
+            duration: 3.0,
+            overrides: Vec::new(),
+        };
+        let outcome = Err("no convergence | t = 0.1 s".into());
+        let entries = vec![Entry {
+            label: "1".into(),
+            at: 1.0,
+            baseline: false,
+            plan,
+            outcome,
+        }];
+        let scan = Scan {
+            slug: "x",
+            title: "X",
+            axis: Axis::new("x", "", 1.0),
+            entries,
+        };
+        let mut numbers = Numbers::default();
+        assert!(
+            page(std::slice::from_ref(&scan), 1e-5, &mut numbers)
+                .contains("failed: no convergence \\| t = 0.1 s")
+        );
+        assert!(figure(&scan, 1e-5).caption.contains("1 of 1 runs failed"));
+    }
+}
