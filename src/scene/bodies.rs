@@ -138,7 +138,8 @@ fn link(
     })
 }
 
-/// Mass \[kg\] and moment of inertia \[kg m2\], typed or those of a uniform plate.
+/// Mass \[kg\] and moment of inertia \[kg m2\], typed or those of a uniform plate; a mass typed beside a plate
+/// replaces that of its material and scales the inertia with it.
 fn inertia(
     table: &Fields,
     materials: &IndexMap<String, Material>,
@@ -150,10 +151,9 @@ fn inertia(
         let purpose = "the moment of inertia about the centre of mass [kg m2]";
         return Ok((mass, table.required("inertia", purpose)?.positive()?));
     };
-    if let Some(typed) = table.optional("mass").or(table.optional("inertia")) {
+    if let Some(typed) = table.optional("inertia") {
         let message = format!("`{}` is given by the plate already", typed.path);
-        let error = typed.key_fault(message, "remove this or the plate");
-        return Err(error);
+        return Err(typed.key_fault(message, "remove this or the plate"));
     }
     #[derive(Clone, Copy)]
     enum Shape {
@@ -197,8 +197,11 @@ fn inertia(
     };
     let thickness = size("thickness", "the size normal to the plane [m]")?;
     let material = fields.required("material", "the name of a material")?;
-    let mass = material.lookup("material", materials)?.1.density * area * thickness;
-    let mass = derived(&plate, "a mass", mass)?;
+    let density = material.lookup("material", materials)?.1.density;
+    let mass = match table.optional("mass") {
+        Some(typed) => typed.positive()?,
+        None => derived(&plate, "a mass", density * area * thickness)?,
+    };
     Ok((
         mass,
         derived(&plate, "a moment of inertia", mass * gyration)?,

@@ -2,6 +2,7 @@
 
 use super::error::{SceneError, Sources, Span};
 use indexmap::IndexMap;
+use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
@@ -112,19 +113,19 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    fn span(&self, range: std::ops::Range<usize>) -> Span {
+    fn span(&self, range: Range<usize>) -> Span {
         Span::new(
             self.source,
             self.offset + range.start..self.offset + range.end,
         )
     }
 
-    fn error(&self, range: std::ops::Range<usize>, message: &str, label: &str) -> SceneError {
+    fn error(&self, range: Range<usize>, message: &str, label: &str) -> SceneError {
         SceneError::new(self.sources, self.span(range), message.into(), label.into())
     }
 
     fn syntax(&self, error: &Error) -> SceneError {
-        let range = error.span().unwrap_or(0..0);
+        let range = self.visible(error.span().unwrap_or(0..0));
         let written = self.sources.written(self.span(range.clone()));
         match error.message() {
             "duplicate key" => self.error(
@@ -134,6 +135,21 @@ impl Place<'_> {
             ),
             message => self.error(range, &format!("not valid TOML: {message}"), "here"),
         }
+    }
+
+    /// A fault between two characters is shown by the line it stands in or, at the end, follows.
+    fn visible(&self, range: Range<usize>) -> Range<usize> {
+        let text = &self.sources.text(self.source)[self.offset..];
+        if !range.is_empty() {
+            return range;
+        }
+        let end = text
+            .get(..range.start)
+            .map_or(0, |before| before.trim_end().len());
+        let start = text[..end].rfind('\n').map_or(0, |n| n + 1);
+        let line = text[start..].lines().next().unwrap_or("");
+        let indent = line.len() - line.trim_start().len();
+        start + indent..start + line.trim_end().len().max(indent)
     }
 
     fn value(&self, spanned: Spanned<DeValue<'_>>, depth: usize) -> Result<Node, SceneError> {
@@ -183,7 +199,7 @@ impl Place<'_> {
     fn table(
         &self,
         table: DeTable<'_>,
-        range: std::ops::Range<usize>,
+        range: Range<usize>,
         depth: usize,
     ) -> Result<Node, SceneError> {
         let mut entries: Vec<_> = table.into_iter().collect();

@@ -142,7 +142,7 @@ impl SceneError {
 /// The known name nearest to `name`, when it is near enough to be meant.
 pub(super) fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     // A third of the letters may differ: `lenght` finds `length`, `mass` does not find `model`.
-    let limit = (name.chars().count() / 3).max(1);
+    let limit = ((name.chars().count() + 1) / 3).max(1);
     known
         .into_iter()
         .map(|k| {

@@ -1,7 +1,7 @@
 //! From the tree to a [`Scene`]: the tables that stand alone; bodies, joints and motion have files of their own.
 
 use super::document::{Node, document};
-use super::error::{SceneError, Sources, Span, did_you_mean};
+use super::error::{SceneError, Sources, Span, nearest};
 use super::field::Field;
 use super::fields::Fields;
 use super::{Assumption, ChannelPattern, Integrator, Method, Output, Scene, Simulation};
@@ -266,8 +266,8 @@ fn assumptions(root: &Fields, tree: &Node) -> Result<Vec<Assumption>, SceneError
         let mut above = String::new();
         for part in field.name.split('.') {
             let Some(child) = node.child(part) else {
-                let near: Vec<String> = node.keys().map(|key| format!("{above}{key}")).collect();
-                let hint = did_you_mean(&format!("{above}{part}"), near.iter().map(String::as_str));
+                let near = nearest(part, node.keys());
+                let hint = near.map_or(String::new(), |n| format!("; did you mean `{above}{n}`?"));
                 let message = format!("the scene has no `{above}{part}`{hint}");
                 return Err(field.key_fault(message, "no such field"));
             };
