@@ -1,12 +1,16 @@
 //! All integration tests, in one binary.
 
+mod bad_input;
 mod bathe;
 mod contact;
 mod differencing;
+mod good_input;
+mod hostile_input;
 mod ideal;
 mod joints;
 mod link;
 mod loose;
+mod overrides;
 mod rrr;
 mod support;
 mod system;

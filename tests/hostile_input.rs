@@ -1,0 +1,113 @@
+//! Text that is no scene at all, files that are none, overrides that miss, and anything a fuzzer thinks of.
+
+use crate::bad_input::{CASE4, check, check_all, fault, rendered};
+use looselink::scene::Scene;
+use proptest::prelude::*;
+
+#[test]
+fn faults_of_the_text_itself() {
+    #[rustfmt::skip]
+    check_all(&[
+        ("length = 0.245", "length 0.245", "not valid TOML: key with no value", "length 0.245"),
+        ("length = 0.245", "length = 0.245\nlength = 0.3", "the key `length` stands here a second time", "length"),
+        ("[bodies.link1]", "[bodies.crank1]", "the key `crank1` stands here a second time", "crank1"),
+        ("title = \"3-RRR, case 4 with friction in B and C\"", "title = \"3-RRR", "not valid TOML", "title = \"3-RRR"),
+    ]);
+    check(&fault("", &[]), "empty", "the scene is empty", "");
+    check(
+        &fault("# nothing\n", &[]),
+        "comment",
+        "the scene is empty",
+        "",
+    );
+    check(
+        &fault("format = [", &[]),
+        "cut short",
+        "not valid TOML",
+        "format = [",
+    );
+}
+
+#[test]
+fn faults_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |name: &str| Scene::load(&folder.path().join(name), &[]).unwrap_err();
+    let error = read("absent.toml");
+    assert!(
+        error.to_string().contains("absent.toml`: No such file"),
+        "{error}"
+    );
+    assert!(read(".").to_string().contains("it is a directory"));
+    std::fs::write(
+        folder.path().join("latin1.toml"),
+        b"format = 1\ntitle = \"Gelenk f\xfcr\"\n",
+    )
+    .unwrap();
+    let error = read("latin1.toml");
+    assert!(error.to_string().contains("not UTF-8"), "{error}");
+    assert_eq!(
+        error.place().map(|(_, line, column)| (line, column)),
+        Some((2, 18))
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Whatever stands in the file, the answer is a scene or a fault that can be shown.
+    #[test]
+    fn mutated_scenes_never_panic(edits in prop::collection::vec((0..CASE4.len(), 0..40usize, any::<Vec<u8>>()), 1..4)) {
+        let mut bytes = CASE4.as_bytes().to_vec();
+        for (at, cut, insert) in edits {
+            let at = at.min(bytes.len());
+            let end = (at + cut).min(bytes.len());
+            bytes.splice(at..end, insert.into_iter().take(8));
+        }
+        let text = String::from_utf8_lossy(&bytes);
+        if let Err(error) = Scene::parse("scene.toml", &text, &[]) {
+            prop_assert!(!rendered(&error).is_empty());
+        }
+    }
+
+    /// The same for tokens of the language in any order, which reach deeper than bytes do.
+    #[test]
+    fn shuffled_lines_never_panic(order in prop::collection::vec(0..200usize, 0..200)) {
+        let lines: Vec<&str> = CASE4.lines().collect();
+        let text: String = order.iter().filter_map(|n| lines.get(*n)).flat_map(|l| [*l, "\n"]).collect();
+        if let Err(error) = Scene::parse("scene.toml", &text, &[]) {
+            prop_assert!(!rendered(&error).is_empty());
+        }
+    }
+
+    #[test]
+    fn arbitrary_overrides_never_panic(text in "[a-z.\"=\\[\\]{}0-9 é]{0,30}") {
+        if let Err(error) = Scene::parse("scene.toml", CASE4, &[text]) {
+            prop_assert!(!rendered(&error).is_empty());
+        }
+    }
+}
+
+#[test]
+fn deep_nesting_is_refused_not_followed() {
+    let deep = 200_000;
+    for text in [
+        format!("a = {}", "[".repeat(deep)),
+        format!("a = {}1{}", "[".repeat(70), "]".repeat(70)),
+        format!("a = {}", "{ a = ".repeat(deep)),
+        format!("a{} = 1", ".a".repeat(deep)),
+        format!("[a{}]", ".a".repeat(deep)),
+        format!(
+            "[a{0}]\na{0} = {1}",
+            ".a".repeat(70),
+            format!("{{ a{} = ", ".a".repeat(70)).repeat(70)
+        ),
+        format!(
+            "[a{0}]\na{0} = {1}1{2}",
+            ".a".repeat(70),
+            format!("{{ a{} = ", ".a".repeat(70)).repeat(70),
+            "}".repeat(70)
+        ),
+    ] {
+        assert!(!rendered(&fault(&text, &[])).is_empty());
+    }
+}
