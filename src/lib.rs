@@ -13,6 +13,7 @@ pub mod math;
 pub mod model;
 pub mod motion;
 pub mod newton;
+pub mod output;
 pub mod record;
 pub mod scene;
 pub mod simulate;

@@ -1,0 +1,247 @@
+//! A run on disk: channels and onsets as they come, and what describes them.
+//!
+//! | file | content |
+//! |---|---|
+//! | `channels.csv` | one row an output interval, `name [unit]` above each column |
+//! | `onsets.csv` | one row a contact that closes |
+//! | `scene.toml` | the scene as it was read; overrides are in the summary |
+//! | `summary.json` | status, counters, energy ledger, extremes |
+//! | `timing.json` | wall and processor time, machine, date |
+//!
+//! Only `timing.json` differs when a run is repeated. `summary.json` says `incomplete` from the first moment to the last,
+//! so that a run that was killed is not taken for a finished one.
+
+mod csv;
+mod timing;
+
+use crate::scene::Scene;
+use crate::simulate::{Channel, Onset, Report, Status};
+use csv::CsvFile;
+use serde::Serialize;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use timing::Stopwatch;
+
+const CHANNELS: &str = "channels.csv";
+const ONSETS: &str = "onsets.csv";
+const SCENE: &str = "scene.toml";
+const SUMMARY: &str = "summary.json";
+const TIMING: &str = "timing.json";
+
+/// Why results could not be stored.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The folder holds a result already.
+    #[error("`{}` holds a result already (`{file}`)", folder.display())]
+    Occupied {
+        /// The folder.
+        folder: PathBuf,
+        /// A file of the result.
+        file: &'static str,
+    },
+    /// The path of the folder is that of a file.
+    #[error("`{}` is not a directory", .0.display())]
+    NotADirectory(PathBuf),
+    /// The system refused; the message names the file.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+}
+
+/// A folder that may receive a result.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+    replace: bool,
+}
+
+/// A result being written.
+#[derive(Debug)]
+pub struct Results {
+    folder: PathBuf,
+    header: Header,
+    channels: CsvFile,
+    onsets: CsvFile,
+    stopwatch: Stopwatch,
+}
+
+/// What is known of a run before it starts.
+#[derive(Debug, Serialize)]
+struct Header {
+    title: String,
+    scene_hash: String,
+    overrides: Vec<String>,
+    version: &'static str,
+}
+
+#[derive(Serialize)]
+struct Summary<'a, R> {
+    #[serde(flatten)]
+    header: &'a Header,
+    #[serde(flatten)]
+    report: R,
+}
+
+#[derive(Serialize)]
+struct Pending {
+    status: Status,
+}
+
+impl Folder {
+    /// Looks at `path` without changing anything; with `replace` a result that stands there may be replaced.
+    ///
+    /// # Errors
+    /// A result that may not be replaced, or a path that is not a folder.
+    pub fn new(path: &Path, replace: bool) -> Result<Folder, OutputError> {
+        if path.exists() && !path.is_dir() {
+            return Err(OutputError::NotADirectory(path.to_owned()));
+        }
+        let ours = [SUMMARY, CHANNELS, ONSETS, SCENE, TIMING];
+        let present = |file: &&str| fs::symlink_metadata(path.join(file)).is_ok();
+        match ours.into_iter().find(present) {
+            Some(file) if !replace => Err(OutputError::Occupied {
+                folder: path.to_owned(),
+                file,
+            }),
+            _ => Ok(Folder {
+                path: path.to_owned(),
+                replace,
+            }),
+        }
+    }
+
+    /// Starts a result; files that are not part of one are left alone.
+    ///
+    /// # Errors
+    /// When the folder or a file cannot be written.
+    pub fn begin(self, scene: &Scene, channels: &[Channel]) -> Result<Results, OutputError> {
+        let folder = self.path;
+        fs::create_dir_all(&folder).map_err(|e| naming(&folder, e))?;
+        let header = Header {
+            title: scene.title.clone(),
+            scene_hash: scene.hash(),
+            overrides: scene.overrides().map(str::to_owned).collect(),
+            version: env!("CARGO_PKG_VERSION"),
+        };
+        if !self.replace {
+            claim(&folder)?;
+        }
+        let status = Status::Incomplete;
+        // First of all: from here on nobody takes what an older run left for a finished result.
+        write_summary(&folder, &header, Pending { status })?;
+        remove(&folder.join(TIMING))?;
+        replace(&folder, SCENE, scene.text().as_bytes())?;
+        let names = channels.iter().map(|c| format!("{} [{}]", c.name, c.unit));
+        let columns = ["t [s]", "joint", "impact_velocity [m/s]", "delta [m]"];
+        Ok(Results {
+            header,
+            channels: CsvFile::create(folder.join(CHANNELS), names)?,
+            onsets: CsvFile::create(folder.join(ONSETS), columns.map(str::to_owned))?,
+            folder,
+            stopwatch: Stopwatch::start(),
+        })
+    }
+}
+
+impl Results {
+    /// Appends a row of channels.
+    ///
+    /// # Errors
+    /// When it cannot be stored; the message names the file.
+    pub fn row(&mut self, values: &[f64]) -> io::Result<()> {
+        values.iter().for_each(|value| self.channels.number(*value));
+        self.channels.end_row()
+    }
+
+    /// Appends a contact onset.
+    ///
+    /// # Errors
+    /// When it cannot be stored; the message names the file.
+    pub fn onset(&mut self, onset: &Onset) -> io::Result<()> {
+        self.onsets.number(onset.t);
+        self.onsets.text(onset.joint);
+        self.onsets.number(onset.impact_velocity);
+        self.onsets.number(onset.delta);
+        self.onsets.end_row()
+    }
+
+    /// Hands everything so far to the system, for readers of a running simulation.
+    ///
+    /// # Errors
+    /// When it cannot be stored; the message names the file.
+    pub fn flush(&mut self) -> io::Result<()> {
+        self.channels.flush()?;
+        self.onsets.flush()
+    }
+
+    /// Ends the result: the rest of the rows, the timing, and last the summary.
+    ///
+    /// # Errors
+    /// When something cannot be stored; the summary then goes on saying `incomplete`.
+    pub fn finish(mut self, report: &Report) -> Result<(), OutputError> {
+        self.flush()?;
+        let timing = self.stopwatch.stop(report.t);
+        replace(&self.folder, TIMING, &json(&timing)?)?;
+        write_summary(&self.folder, &self.header, report)
+    }
+}
+
+/// Takes an empty folder for this run: of two runs that start together one fails.
+fn claim(folder: &Path) -> Result<(), OutputError> {
+    let path = folder.join(SUMMARY);
+    match OpenOptions::new().write(true).create_new(true).open(&path) {
+        Ok(_) => Ok(()),
+        Err(e) if e.kind() == io::ErrorKind::AlreadyExists => Err(OutputError::Occupied {
+            folder: folder.to_owned(),
+            file: SUMMARY,
+        }),
+        Err(e) => Err(naming(&path, e).into()),
+    }
+}
+
+fn write_summary(
+    folder: &Path,
+    header: &Header,
+    report: impl Serialize,
+) -> Result<(), OutputError> {
+    replace(folder, SUMMARY, &json(&Summary { header, report })?)
+}
+
+fn json(value: &impl Serialize) -> Result<Vec<u8>, OutputError> {
+    let mut bytes = serde_json::to_vec_pretty(value).map_err(io::Error::from)?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+/// Puts a whole file in its place at once: a reader sees the old one or the new one, never a part.
+fn replace(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
+    let temporary = folder.join(format!(".{name}.tmp"));
+    let write = || -> io::Result<()> {
+        let mut file = File::create(&temporary)?;
+        file.write_all(bytes)?;
+        // On disk before the name points at it.
+        file.sync_all()
+    };
+    write().map_err(|e| {
+        // What is left of it is of no use, and the first error is the one to report.
+        let _ = fs::remove_file(&temporary);
+        naming(&temporary, e)
+    })?;
+    let path = folder.join(name);
+    Ok(fs::rename(&temporary, &path).map_err(|e| naming(&path, e))?)
+}
+
+fn remove(path: &Path) -> Result<(), OutputError> {
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(naming(path, e).into()),
+        _ => Ok(()),
+    }
+}
+
+/// An error of the system that says which file it is about.
+fn naming(path: &Path, error: io::Error) -> io::Error {
+    io::Error::new(
+        error.kind(),
+        format!("cannot write `{}`: {error}", path.display()),
+    )
+}
