@@ -1,3 +1,10 @@
 //! The command line of Looselink.
 
-fn main() {}
+mod cli;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::main(&cli::Arguments::parse())
+}

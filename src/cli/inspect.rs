@@ -1,0 +1,85 @@
+//! `looselink inspect`
+
+use super::failure::Failure;
+use super::{SceneArguments, print};
+use clap::Args;
+use looselink::scene::Scene;
+use looselink::simulate::{Inspection, Simulation};
+use std::fmt::Write;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Machine-readable output.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Shows the compiled scene on standard output.
+pub fn inspect(arguments: &Arguments) -> Result<(), Failure> {
+    let (scene, simulation) = arguments.scene.load()?;
+    let inspection = simulation.inspect();
+    if !arguments.json {
+        return print(&text(&scene, &simulation, &inspection));
+    }
+    match serde_json::to_string_pretty(&inspection) {
+        Ok(json) => print(&format!("{json}\n")),
+        Err(e) => Err(Failure::system(e.to_string())),
+    }
+}
+
+fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> String {
+    let mut out = format!("{}\n\n", scene.title);
+    let duration = scene.simulation.duration;
+    let step = scene.integrator.step;
+    for (name, value) in [
+        ("bodies", scene.bodies.len().to_string()),
+        ("joints", scene.joints.len().to_string()),
+        ("unknown coordinates", inspection.unknowns.to_string()),
+        ("multipliers", inspection.multipliers.to_string()),
+        ("contacts", inspection.contacts.to_string()),
+        ("effects", inspection.effects.join(", ")),
+        (
+            "duration",
+            format!(
+                "{duration:?} s, about {:.0} steps of {step:?} s",
+                duration / step
+            ),
+        ),
+        (
+            "channels",
+            format!(
+                "{} every {:?} s",
+                simulation.channels().len(),
+                scene.output.interval
+            ),
+        ),
+        ("scene hash", scene.hash()),
+    ] {
+        line(&mut out, &format!("  {name:<22}{value}"));
+    }
+    list(&mut out, "Assumptions and notes", &inspection.assumptions);
+    list(&mut out, "Unknown coordinates", &inspection.coordinates);
+    list(&mut out, "Constraints", &inspection.constraints);
+    let channels = simulation
+        .channels()
+        .iter()
+        .map(|c| format!("{} [{}]", c.name, c.unit));
+    list(&mut out, "Channels", &channels.collect::<Vec<_>>());
+    out
+}
+
+fn list(out: &mut String, title: &str, entries: &[String]) {
+    if entries.is_empty() {
+        return;
+    }
+    line(out, &format!("\n{title}"));
+    entries
+        .iter()
+        .for_each(|entry| line(out, &format!("  {entry}")));
+}
+
+fn line(out: &mut String, text: &str) {
+    writeln!(out, "{text}").expect("a string takes any text");
+}

@@ -1,0 +1,90 @@
+//! Arguments, commands and exit codes.
+
+mod failure;
+mod inspect;
+mod progress;
+mod run;
+
+use clap::{Args, Parser, Subcommand};
+use failure::Failure;
+use looselink::scene::{Scene, SceneError};
+use looselink::simulate::Simulation;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Simulates planar mechanisms with flexible links and loose joints.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    after_help = "Exit codes: 0 done, 1 input or output failed, 2 bad input, 3 the run cannot go on, \
+    130 interrupted.\n\nExample:\n  looselink run scenes/3rrr/case4.toml --out out/case4"
+)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Simulate a scene and write its channels.
+    #[command(
+        after_help = "Example:\n  looselink run scenes/3rrr/case4.toml --out out/case4 --set integrator.step=5e-6"
+    )]
+    Run(run::Arguments),
+    /// Show what a scene will be, without running it.
+    #[command(after_help = "Example:\n  looselink inspect scenes/3rrr/case4.toml --json")]
+    Inspect(inspect::Arguments),
+    /// Read a scene, close its mechanism and report the first fault.
+    #[command(
+        after_help = "Example:\n  looselink check scenes/3rrr/case4.toml --set bodies.link1.elements=4"
+    )]
+    Check(SceneArguments),
+}
+
+/// A scene and changes to it.
+#[derive(Debug, Args)]
+struct SceneArguments {
+    /// The scene file.
+    scene: PathBuf,
+    /// Replace a field of the scene, for example `integrator.step=1e-6`; may be repeated.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+}
+
+impl SceneArguments {
+    fn load(&self) -> Result<(Scene, Simulation), SceneError> {
+        let scene = Scene::load(&self.scene, &self.overrides)?;
+        let simulation = Simulation::new(&scene)?;
+        Ok((scene, simulation))
+    }
+}
+
+/// Runs the command and says how it ended.
+pub fn main(arguments: &Arguments) -> ExitCode {
+    let result = match &arguments.command {
+        Command::Run(arguments) => run::run(arguments),
+        Command::Inspect(arguments) => inspect::inspect(arguments),
+        Command::Check(arguments) => check(arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.show(),
+    }
+}
+
+fn check(arguments: &SceneArguments) -> Result<(), Failure> {
+    let (scene, _) = arguments.load()?;
+    print(&format!("{}: no fault found\n", scene.title))
+}
+
+/// Writes to standard output; a reader that has gone away is no fault.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::system(format!(
+            "cannot write to standard output: {e}"
+        ))),
+        _ => Ok(()),
+    }
+}

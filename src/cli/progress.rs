@@ -1,0 +1,121 @@
+//! How far a run is: a bar on a terminal, a line now and then elsewhere.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use looselink::simulate::Progress;
+use std::io::{IsTerminal, Write};
+use std::time::{Duration, Instant};
+
+/// Steps of the bar.
+const FINE: f64 = 1000.0;
+/// Lines of a whole run elsewhere.
+const LINES: f64 = 10.0;
+
+/// Where progress is shown.
+pub enum Display {
+    /// Nowhere.
+    None,
+    /// On a terminal.
+    Bar(ProgressBar, Instant),
+    /// On standard error that is no terminal; the next line is due at this part of the duration.
+    Lines(f64, Instant),
+}
+
+impl Display {
+    /// A display on standard error.
+    pub fn new(quiet: bool) -> Display {
+        if quiet {
+            return Display::None;
+        }
+        if !std::io::stderr().is_terminal() {
+            return Display::Lines(1.0 / LINES, Instant::now());
+        }
+        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}")
+            .expect("the template is valid");
+        Display::Bar(
+            ProgressBar::new(FINE as u64).with_style(style),
+            Instant::now(),
+        )
+    }
+
+    /// Called after every step; `tick` is true a few times a second.
+    pub fn show(&mut self, progress: &Progress, tick: bool) {
+        let part = progress.t / progress.duration;
+        match self {
+            Display::Bar(bar, started) if tick => {
+                bar.set_position((part * FINE) as u64);
+                bar.set_message(message(progress, started));
+            }
+            Display::Lines(next, started) if part >= *next && part < 1.0 => {
+                *next = ((part * LINES).floor() + 1.0) / LINES;
+                say(&message(progress, started));
+            }
+            _ => {}
+        }
+    }
+
+    /// The last word; the bar disappears.
+    pub fn finish(&self, message: &str) {
+        match self {
+            Display::None => return,
+            Display::Bar(bar, _) => bar.finish_and_clear(),
+            Display::Lines(..) => {}
+        }
+        if !message.is_empty() {
+            say(message);
+        }
+    }
+}
+
+fn message(progress: &Progress, started: &Instant) -> String {
+    let Progress {
+        t,
+        duration,
+        contacts,
+    } = progress;
+    let factor = t / started.elapsed().as_secs_f64();
+    format!("t = {t:.4} of {duration} s, {factor:.3} x real time, {contacts} contacts closed")
+}
+
+fn say(line: &str) {
+    // A run does not fail because nobody listens.
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// Looks at the clock every 256 steps or so, more often when steps are slow.
+pub struct Pace {
+    every: u32,
+    count: u32,
+    last: Instant,
+}
+
+const TICK: Duration = Duration::from_millis(100);
+
+impl Pace {
+    /// Starts with a look at every step.
+    pub fn new() -> Pace {
+        Pace {
+            every: 1,
+            count: 0,
+            last: Instant::now(),
+        }
+    }
+
+    /// True about ten times a second.
+    pub fn tick(&mut self) -> bool {
+        self.count += 1;
+        if self.count < self.every {
+            return false;
+        }
+        self.count = 0;
+        let due = self.last.elapsed() >= TICK;
+        self.every = if due {
+            (self.every / 2).max(1)
+        } else {
+            (self.every * 2).min(256)
+        };
+        if due {
+            self.last = Instant::now();
+        }
+        due
+    }
+}

@@ -1,0 +1,116 @@
+//! `looselink run`
+
+use super::SceneArguments;
+use super::failure::{Failure, INTERRUPTED};
+use super::progress::{Display, Pace};
+use clap::Args;
+use looselink::output::{Folder, Results};
+use looselink::simulate::{Control, Observer, Onset, Progress};
+use std::io;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// The folder that receives the results; it is created.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Replace a result that stands in the folder.
+    #[arg(long)]
+    force: bool,
+    /// Show no progress.
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Rows reach the disk at least this often.
+const FLUSH: Duration = Duration::from_secs(1);
+
+/// Passes results on to the disk and to the user.
+struct Watch {
+    results: Results,
+    display: Display,
+    pace: Pace,
+    flushed: Instant,
+    stop: Arc<AtomicBool>,
+}
+
+impl Observer for Watch {
+    fn row(&mut self, values: &[f64]) -> io::Result<()> {
+        self.results.row(values)
+    }
+
+    fn onset(&mut self, onset: &Onset) -> io::Result<()> {
+        self.results.onset(onset)
+    }
+
+    fn step(&mut self, progress: &Progress) -> io::Result<Control> {
+        let tick = self.pace.tick();
+        if tick && self.flushed.elapsed() >= FLUSH {
+            self.results.flush()?;
+            self.flushed = Instant::now();
+        }
+        self.display.show(progress, tick);
+        Ok(if self.stop.load(Ordering::Relaxed) {
+            Control::Stop
+        } else {
+            Control::Continue
+        })
+    }
+}
+
+/// Simulates the scene; whatever ends the run, what was recorded up to there stands.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let stop = stop_on_interrupt()?;
+    let folder = Folder::new(&arguments.out, arguments.force)?;
+    let (scene, mut simulation) = arguments.scene.load()?;
+    let started = Instant::now();
+    let mut watch = Watch {
+        results: folder.begin(&scene, simulation.channels())?,
+        display: Display::new(arguments.quiet),
+        pace: Pace::new(),
+        flushed: started,
+        stop,
+    };
+    let ended = simulation.run(&mut watch);
+    let report = simulation.report();
+    let out = arguments.out.display();
+    let stored = watch.results.finish(&report);
+    match ended {
+        Ok(()) => {
+            watch.display.finish("");
+            stored?;
+            let wall = started.elapsed().as_secs_f64();
+            watch.display.finish(&format!(
+                "{} steps in {wall:.2} s, results in `{out}`",
+                report.steps
+            ));
+            Ok(())
+        }
+        Err(error) => {
+            watch.display.finish("");
+            let kept = match stored {
+                Ok(()) => format!("; the results up to there are in `{out}`"),
+                Err(second) => format!("; and the result in `{out}` is not closed: {second}"),
+            };
+            Err(Failure::run(&error).and(&kept))
+        }
+    }
+}
+
+/// The flag is raised by the first Ctrl-C; the second ends the program at once.
+fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let raised = stop.clone();
+    ctrlc::set_handler(move || {
+        if raised.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED.into());
+        }
+    })
+    .map_err(|e| Failure::system(format!("cannot watch for Ctrl-C: {e}")))?;
+    Ok(stop)
+}
