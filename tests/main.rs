@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod bathe;
+mod command_line;
 mod contact;
 mod differencing;
 mod good_input;

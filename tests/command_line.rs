@@ -1,0 +1,339 @@
+//! The command line: exit codes, messages, and a result folder that is never damaged.
+
+use assert_cmd::Command;
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+const SCENE: &str = "scenes/bouncing-journal.toml";
+
+fn looselink(arguments: &[&str]) -> Output {
+    Command::cargo_bin("looselink")
+        .unwrap()
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn run(out: &Path, more: &[&str]) -> Output {
+    let arguments = ["run", SCENE, "--out", out.to_str().unwrap()];
+    looselink(&[&arguments, more].concat())
+}
+
+#[track_caller]
+fn expect(output: &Output, code: i32, stderr: &str) {
+    let shown = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{shown}");
+    assert!(shown.contains(stderr), "`{stderr}` is not in\n{shown}");
+}
+
+fn read(folder: &Path, file: &str) -> String {
+    fs::read_to_string(folder.join(file)).unwrap_or_else(|e| panic!("{file}: {e}"))
+}
+
+fn summary(folder: &Path) -> serde_json::Value {
+    serde_json::from_str(&read(folder, "summary.json")).unwrap()
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> = entries
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_run_leaves_a_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("new/result");
+    let output = run(&out, &["--set", "simulation.duration=2e-3"]);
+    expect(&output, 0, "t = ");
+    assert!(output.stdout.is_empty());
+    assert_eq!(
+        files(&out),
+        [
+            "channels.csv",
+            "onsets.csv",
+            "scene.toml",
+            "summary.json",
+            "timing.json"
+        ]
+    );
+
+    assert_eq!(read(&out, "scene.toml"), fs::read_to_string(SCENE).unwrap());
+    let summary = summary(&out);
+    assert_eq!(summary["status"], "complete");
+    assert_eq!(summary["overrides"][0], "simulation.duration=2e-3");
+    assert_eq!(summary["scene_hash"].as_str().unwrap().len(), 64);
+    assert_eq!(summary["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(summary["onsets"], 1);
+    let timing: serde_json::Value = serde_json::from_str(&read(&out, "timing.json")).unwrap();
+    assert!(timing["wall_seconds"].as_f64().unwrap() > 0.0);
+
+    let channels = read(&out, "channels.csv");
+    let mut lines = channels.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(header[0], "t [s]");
+    assert!(header.contains(&"journal.x [m]"), "{header:?}");
+    let rows: Vec<Vec<f64>> = lines
+        .map(|l| l.split(',').map(|c| c.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(rows.len(), 1251);
+    assert!(rows.iter().all(|row| row.len() == header.len()));
+    // The first onset of a free journal: c / v, to the onset tolerance over the speed.
+    let onsets = read(&out, "onsets.csv");
+    let mut lines = onsets.lines();
+    assert_eq!(
+        lines.next(),
+        Some("t [s],joint,impact_velocity [m/s],delta [m]")
+    );
+    let onset: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(onset[1], "pin");
+    assert!((onset[0].parse::<f64>().unwrap() - 1e-3).abs() < 1e-13 / 0.02 + 1e-15);
+}
+
+#[test]
+fn a_repeated_run_differs_in_its_timing_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let [first, second] = ["first", "second"].map(|name| folder.path().join(name));
+    for out in [&first, &second] {
+        expect(&run(out, &["--quiet"]), 0, "");
+    }
+    for file in ["channels.csv", "onsets.csv", "scene.toml", "summary.json"] {
+        assert_eq!(read(&first, file), read(&second, file), "{file}");
+    }
+}
+
+#[test]
+fn quiet_is_silent() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &["--quiet"]);
+    expect(&output, 0, "");
+    assert!(output.stderr.is_empty() && output.stdout.is_empty());
+}
+
+#[test]
+fn a_result_is_replaced_only_on_demand() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    fs::write(out.join("notes.txt"), "mine").unwrap();
+    expect(&run(out, &[]), 0, "");
+    let before = ["channels.csv", "summary.json", "timing.json"].map(|file| read(out, file));
+
+    expect(&run(out, &[]), 2, "holds a result already");
+    expect(&run(out, &[]), 2, "--force");
+    // A scene that cannot be read or run replaces nothing, not even on demand.
+    expect(
+        &run(out, &["--force", "--set", "integrator.step=-1"]),
+        2,
+        "greater than zero",
+    );
+    expect(
+        &run(out, &["--force", "--set", "output.channels=[\"nothing\"]"]),
+        2,
+        "nothing",
+    );
+    let after = ["channels.csv", "summary.json", "timing.json"].map(|file| read(out, file));
+    assert_eq!(before, after);
+
+    expect(
+        &run(out, &["--force", "--set", "simulation.duration=1e-3"]),
+        0,
+        "",
+    );
+    assert_eq!(summary(out)["overrides"][0], "simulation.duration=1e-3");
+    assert!(read(out, "channels.csv").len() < before[0].len());
+    assert_eq!(read(out, "notes.txt"), "mine");
+}
+
+#[test]
+fn a_part_of_a_result_counts_as_one() {
+    for file in [
+        "channels.csv",
+        "onsets.csv",
+        "scene.toml",
+        "summary.json",
+        "timing.json",
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(file), "precious").unwrap();
+        expect(&run(folder.path(), &[]), 2, file);
+        assert_eq!(read(folder.path(), file), "precious");
+        assert_eq!(files(folder.path()), [file]);
+    }
+}
+
+#[test]
+fn a_scene_may_be_run_again_from_its_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    expect(&run(folder.path(), &["--quiet"]), 0, "");
+    let channels = read(folder.path(), "channels.csv");
+    let scene = folder.path().join("scene.toml");
+    expect(
+        &looselink(&["run", scene.to_str().unwrap(), "--out", out, "--force"]),
+        0,
+        "",
+    );
+    assert_eq!(read(folder.path(), "channels.csv"), channels);
+}
+
+#[test]
+fn bad_input_is_shown_with_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(SCENE).unwrap();
+    let scene = folder.path().join("typo.toml");
+    fs::write(&scene, text.replacen("restitution =", "restitutoin =", 1)).unwrap();
+    let scene = scene.to_str().unwrap();
+    let line = text
+        .lines()
+        .position(|l| l.starts_with("restitution"))
+        .unwrap()
+        + 1;
+    for command in [
+        &["check", scene][..],
+        &["inspect", scene],
+        &["run", scene, "--out", "unused"],
+    ] {
+        let output = looselink(command);
+        expect(
+            &output,
+            2,
+            "unknown key `restitutoin` in contacts.aluminium; did you mean `restitution`?",
+        );
+        expect(&output, 2, &format!("typo.toml:{line}:1"));
+        assert!(output.stdout.is_empty());
+    }
+    assert!(!Path::new("unused").exists());
+    expect(
+        &looselink(&["check", SCENE, "--set", "integrator.stepp=1"]),
+        2,
+        "--set:1:12",
+    );
+    expect(&looselink(&["check", "absent.toml"]), 2, "absent.toml");
+    expect(&looselink(&["check", "scenes"]), 2, "directory");
+}
+
+#[test]
+fn usage_errors() {
+    expect(&looselink(&[]), 2, "Usage");
+    expect(&looselink(&["run", SCENE]), 2, "--out");
+    expect(&looselink(&["fly"]), 2, "unrecognized subcommand");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "").unwrap();
+    expect(&run(&file, &[]), 2, "is not a directory");
+}
+
+#[test]
+fn check_and_inspect() {
+    let output = looselink(&["check", SCENE]);
+    expect(&output, 0, "");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("no fault found"));
+    let output = looselink(&["inspect", SCENE]);
+    expect(&output, 0, "");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains("unknown coordinates   3\n"), "{text}");
+    assert!(text.contains("0.9132"), "{text}");
+    let output = looselink(&["inspect", SCENE, "--json"]);
+    expect(&output, 0, "");
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        (json["unknowns"].as_u64(), json["contacts"].as_u64()),
+        (Some(3), Some(1))
+    );
+}
+
+#[test]
+fn every_command_has_help_with_an_example() {
+    for command in [
+        &["--help"][..],
+        &["run", "--help"],
+        &["inspect", "--help"],
+        &["check", "--help"],
+    ] {
+        let output = looselink(command);
+        expect(&output, 0, "");
+        let help = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(help.contains("Example:\n  looselink "), "{help}");
+    }
+}
+
+#[test]
+fn a_run_that_cannot_go_on_keeps_what_it_has() {
+    let folder = tempfile::tempdir().unwrap();
+    // A body without mass flies freely up to its first contact, whose force no step is short enough for.
+    let output = run(folder.path(), &["--set", "bodies.journal.mass=1e-300"]);
+    expect(&output, 3, "the run cannot go on: journal.");
+    expect(&output, 3, "the results up to there are in");
+    let summary = summary(folder.path());
+    assert_eq!(summary["status"], "failed");
+    assert!(summary["error"].as_str().unwrap().contains(" at t = "));
+    // The bearing is reached after 1 ms at 1.6 us a row.
+    assert!(read(folder.path(), "channels.csv").lines().count() > 625);
+}
+
+#[cfg(unix)]
+mod unix {
+    use super::*;
+    use std::io::Read;
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+
+    #[test]
+    fn a_full_disk_is_reported_with_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        std::os::unix::fs::symlink("/dev/full", folder.path().join("channels.csv")).unwrap();
+        let output = run(folder.path(), &["--force"]);
+        expect(&output, 1, "channels.csv");
+        assert_eq!(summary(folder.path())["status"], "incomplete");
+    }
+
+    #[test]
+    fn an_interrupted_run_is_readable_and_marked() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path();
+        let program = assert_cmd::cargo::cargo_bin("looselink");
+        let mut child = Command::new(program)
+            .args([
+                "run",
+                "scenes/3rrr/case4.toml",
+                "--out",
+                out.to_str().unwrap(),
+            ])
+            .args(["--set", "simulation.duration=1e4"])
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // Rows appear on disk while it runs.
+        let limit = Instant::now() + Duration::from_secs(60);
+        while fs::metadata(out.join("channels.csv")).map_or(0, |m| m.len()) < 10_000 {
+            assert!(Instant::now() < limit, "no rows after a minute");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        assert_eq!(summary(out)["status"], "incomplete");
+        Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status()
+            .unwrap();
+        let mut stderr = String::new();
+        child
+            .stderr
+            .take()
+            .unwrap()
+            .read_to_string(&mut stderr)
+            .unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{stderr}");
+        assert!(stderr.contains("interrupted at t = "), "{stderr}");
+        let summary = summary(out);
+        assert_eq!(summary["status"], "incomplete");
+        assert!(summary["steps"].as_u64().unwrap() > 0);
+        let channels = read(out, "channels.csv");
+        let width = channels.lines().next().unwrap().split(',').count();
+        assert!(
+            channels.ends_with('\n') && channels.lines().all(|l| l.split(',').count() == width)
+        );
+    }
+}
