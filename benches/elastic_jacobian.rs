@@ -1,8 +1,4 @@
 //! What an elastic force and its Jacobian cost, route by route.
-#![expect(
-    missing_docs,
-    reason = "criterion_group generates an undocumented function"
-)]
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use looselink::link::{AncfCable, ElasticRoute, GaussCable, LiteralCable};

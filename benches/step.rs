@@ -1,8 +1,4 @@
 //! What one Bathe step of the paper's four cases costs, in the middle of its motion.
-#![expect(
-    missing_docs,
-    reason = "criterion_group generates an undocumented function"
-)]
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use looselink::newton::Newton;

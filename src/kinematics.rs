@@ -101,8 +101,7 @@ impl Kinematics {
                 break;
             }
         }
-        // written so that NaN fails as well
-        if !(last <= LAST_UPDATE) {
+        if last.is_nan() || last > LAST_UPDATE {
             return Err(self.cannot_close(&inner.state));
         }
         self.factor(inner)?;

@@ -161,8 +161,7 @@ impl Newton {
             for i in 0..n {
                 s.a[i] += self.b[i];
                 let size = w.v * self.b[i].abs();
-                // written so that NaN wins
-                if !(size <= update) {
+                if size.is_nan() || size > update {
                     (update, worst) = (size, i);
                 }
             }

@@ -45,7 +45,7 @@ struct Arguments {
 enum Command {
     /// Scans one parameter at a time around the printed and assumed values.
     Scans {
-        /// Step [s] of all scans but that of the step itself.
+        /// Step (s) of all scans but that of the step itself.
         #[arg(long, default_value_t = 1e-5)]
         step: f64,
     },

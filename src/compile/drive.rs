@@ -162,7 +162,7 @@ fn sketch_of(
     mechanism: &Model,
     state: &State,
     point: PointRef,
-) -> Option<([f64; 2], [f64; 2])> {
+) -> Option<Pair> {
     let BodyKind::Rigid(rigid) = &c.scene.bodies[point.body].kind else {
         return None;
     };
@@ -188,10 +188,13 @@ fn sketch_of(
     })
 }
 
+/// A point in the frame of its body and its approximate position.
+type Pair = ([f64; 2], [f64; 2]);
+
 /// The pose (x, y, theta) that carries points of a body closest to given positions.
-fn fit(pairs: &[([f64; 2], [f64; 2])]) -> [f64; 3] {
+fn fit(pairs: &[Pair]) -> [f64; 3] {
     let count = pairs.len() as f64;
-    let mean = |pick: fn(&([f64; 2], [f64; 2])) -> [f64; 2]| {
+    let mean = |pick: fn(&Pair) -> [f64; 2]| {
         let sum = pairs
             .iter()
             .map(pick)

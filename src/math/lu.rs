@@ -176,8 +176,7 @@ impl Symbolic {
                 .chunks_exact(count.max(1));
             for a in 0..count {
                 let multiplier = values[lower + a] * inverse;
-                // written so that a NaN fails as well
-                if !(multiplier.abs() < LARGEST_MULTIPLIER) {
+                if multiplier.is_nan() || multiplier.abs() > LARGEST_MULTIPLIER {
                     return Err(WeakPivot {
                         index: self.order[k],
                     });
