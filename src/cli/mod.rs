@@ -1,5 +1,6 @@
 //! Arguments, commands and exit codes.
 
+mod closing;
 mod failure;
 mod inspect;
 mod progress;

@@ -1,6 +1,7 @@
 //! `looselink run`
 
 use super::SceneArguments;
+use super::closing;
 use super::failure::{Failure, INTERRUPTED};
 use super::progress::{Display, Pace};
 use clap::Args;
@@ -89,6 +90,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 "{} steps in {wall:.2} s, results in `{out}`",
                 report.steps
             ));
+            for line in closing::lines(&report) {
+                watch.display.finish(&line);
+            }
             Ok(())
         }
         Err(error) => {

@@ -157,12 +157,7 @@ fn guess(
 }
 
 /// (point in the body, approximate position) of a point of a rigid body, from a sketch or from a known partner.
-fn sketch_of(
-    c: &Compiler,
-    mechanism: &Model,
-    state: &State,
-    point: PointRef,
-) -> Option<Pair> {
+fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) -> Option<Pair> {
     let BodyKind::Rigid(rigid) = &c.scene.bodies[point.body].kind else {
         return None;
     };

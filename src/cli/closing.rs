@@ -1,0 +1,55 @@
+//! The last lines of a run: what was counted, and what the integrator did to the energy.
+
+use looselink::simulate::Report;
+
+/// Numerical dissipation beyond this part of the physical one is worth a word.
+const NOTABLE: f64 = 0.05;
+
+/// Lines about a finished run, most of them absent when there is nothing to say.
+pub fn lines(report: &Report) -> Vec<String> {
+    let mut lines = Vec::new();
+    let ledger = &report.ledger;
+    let dissipated =
+        ledger.contact_dissipated + ledger.friction_dissipated + ledger.damping_dissipated;
+    let verb = if ledger.numerical < 0.0 {
+        "gained"
+    } else {
+        "lost"
+    };
+    let numerical = ledger.numerical.abs();
+    if dissipated > 0.0 {
+        lines.push(format!(
+            "energy: {dissipated:.3e} J dissipated, {numerical:.1e} J {verb} by the integrator ({:.1} %)",
+            100.0 * numerical / dissipated
+        ));
+        if numerical > NOTABLE * dissipated {
+            lines.push(
+                "energy: a smaller integrator.step would make the integrator's part small"
+                    .to_owned(),
+            );
+        }
+    } else {
+        lines.push(format!(
+            "energy: {numerical:.1e} J {verb} by the integrator"
+        ));
+    }
+    let counts = [
+        (report.clamps, "stages with a contact force clamped at zero"),
+        (
+            report.rejected_steps,
+            "steps halved because a stage had no solution",
+        ),
+        (
+            report.stagnations,
+            "stages accepted at rounding, above the Newton tolerance",
+        ),
+        (report.fallbacks, "factorisations with row exchanges"),
+        (
+            report.unlocated_changes,
+            "contact changes kept outside the onset tolerance",
+        ),
+    ];
+    let counted = counts.iter().filter(|(count, _)| *count > 0);
+    lines.extend(counted.map(|(count, what)| format!("counted: {count} {what}")));
+    lines
+}
