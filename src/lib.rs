@@ -1,4 +1,36 @@
-//! Elastodynamics of planar mechanisms with flexible links and joint clearance.
+//! Elastodynamics of planar mechanisms whose links bend and whose joints have play.
+//!
+//! A scene describes a mechanism; [`simulate::Simulation`] compiles and runs it; an [`simulate::Observer`] receives rows of
+//! named channels as they come. The 3-RRR mechanism with rigid links and loose joints, for its first twelve milliseconds:
+//!
+//! ```
+//! use looselink::scene::Scene;
+//! use looselink::simulate::{Control, Observer, Onset, Progress, Simulation};
+//! use std::io::Result;
+//!
+//! struct Print;
+//! impl Observer for Print {
+//!     fn row(&mut self, values: &[f64]) -> Result<()> {
+//!         Ok(println!("{values:?}"))
+//!     }
+//!     fn onset(&mut self, o: &Onset) -> Result<()> {
+//!         Ok(println!("{} closes at {} s with {} m/s", o.joint, o.t, o.impact_velocity))
+//!     }
+//!     fn step(&mut self, _: &Progress) -> Result<Control> {
+//!         Ok(Control::Continue)
+//!     }
+//! }
+//!
+//! let overrides = ["simulation.duration=0.012".into(), "output.interval=0.004".into()];
+//! let scene = Scene::load("scenes/3rrr/case3.toml".as_ref(), &overrides)?;
+//! let mut simulation = Simulation::new(&scene)?;
+//! assert_eq!(simulation.inspect().unknowns, 15);
+//! simulation.run(&mut Print)?;
+//! assert!(simulation.report().onsets > 10);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! EQUATIONS.md maps the equations of the paper to functions, ARCHITECTURE.md the mechanics to folders.
 #![forbid(unsafe_code)]
 
 pub mod compile;

@@ -1,6 +1,7 @@
 //! All integration tests, in one binary.
 
 mod bad_input;
+mod bad_mechanism;
 mod bathe;
 mod command_line;
 mod contact;

@@ -223,9 +223,9 @@ fn sweep(
             .prescribe(&from, &mut to, &mut inner)
             .map_err(|e| {
                 scene.error(
-                    drive.span,
+                    drive.path_span,
                     format!("drive {}: {e}", drive.name),
-                    "the path of this drive is out of reach",
+                    "this path is out of reach",
                 )
             })?;
         from.copy_from(&to);

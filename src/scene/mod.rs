@@ -272,6 +272,8 @@ pub struct Drive {
     pub body: usize,
     /// Path of its reference point and its angle.
     pub path: Path2,
+    /// Where the path stands.
+    pub path_span: Span,
 }
 
 /// A path in (x, y, theta).

@@ -47,16 +47,15 @@ pub(super) fn drives(
             );
             return Err(body_field.fault(message, "not a rigid body"));
         }
-        let path = path(
-            &table.required("path", "the path of the driven body")?,
-            duration,
-        )?;
+        let path_field = table.required("path", "the path of the driven body")?;
+        let path = path(&path_field, duration)?;
         Ok(Drive {
             name: field.name.clone(),
             span: field.node.span,
             joints: actuated,
             body,
             path,
+            path_span: path_field.node.span,
         })
     })?;
     Ok(drives.into_values().collect())

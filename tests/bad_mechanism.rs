@@ -1,0 +1,132 @@
+//! Scenes that read well and cannot be simulated: the message names joint, body and time, the place is underlined.
+
+use crate::bad_input::{CASE4, check, rendered};
+use looselink::scene::{Scene, SceneError};
+use looselink::simulate::Simulation;
+
+fn fault(text: &str, overrides: &[&str]) -> SceneError {
+    let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
+    let scene =
+        Scene::parse("scene.toml", text, &overrides).unwrap_or_else(|e| panic!("{}", rendered(&e)));
+    match Simulation::new(&scene) {
+        Ok(_) => panic!("the scene can be simulated: {overrides:?}"),
+        Err(error) => error,
+    }
+}
+
+/// Overrides, parts of the message, the underlined text.
+type Case = (
+    &'static [&'static str],
+    &'static [&'static str],
+    &'static str,
+);
+
+const CASES: [Case; 10] = [
+    // within reach at the start, out of it some time into the motion
+    (
+        &[
+            "bodies.link1.length=0.14",
+            "initial.sketch.B1=[-0.135, -0.075]",
+        ],
+        &[
+            "drive input: crank1 and link1 cannot close: |A1 C1| = 0.385",
+            "exceeds 0.245 m + 0.14 m = 0.385000 m at t = 0.0",
+        ],
+        "{ type = \"circle\", center = [0.0, 0.0], radius = 0.1, frequency = 1.0, phase = 0.0, theta = 0.0 }",
+    ),
+    (
+        &["bodies.link1.length=0.05"],
+        &[
+            "drive input: crank1 and link1 cannot close: |A1 C1| = 0.377925 m",
+            "exceeds 0.245 m + 0.05 m = 0.295000 m at t = 0 s",
+        ],
+        "[drives.input]",
+    ),
+    (
+        &["bodies.link1.length=0.9"],
+        &[
+            "drive input: crank1 and link1 cannot close: |A1 C1| = 0.377925 m",
+            "is less than |0.245 m - 0.9 m| = 0.655000 m at t = 0 s",
+        ],
+        "[drives.input]",
+    ),
+    (
+        &["initial.sketch.B1=[-0.16, -0.04]"],
+        &[
+            "joint B1 closes at (",
+            "draw it closer to the branch you mean",
+        ],
+        "[-0.16, -0.04]",
+    ),
+    (
+        &[
+            "bodies.crank2.model=flexible",
+            "bodies.crank2.elements=1",
+            "bodies.crank2.material=passive",
+        ],
+        &["drive input cannot actuate joint A2: the body it moves is flexible"],
+        "[joints.A2]",
+    ),
+    (
+        &["joints.A3.model=clearance", "joints.A3.contact=pin"],
+        &["drive input cannot actuate joint A3: it has clearance"],
+        "[joints.A3]",
+    ),
+    (
+        &["drives.input.joints=[\"A1\", \"A2\", \"B1\"]"],
+        &["drive input cannot actuate joint B1: the body it moves is flexible"],
+        "[joints.B1]",
+    ),
+    (
+        &["initial.bodies={ crank1 = { x = 0.0, y = 0.0, theta = 0.0 } }"],
+        &["the motion of crank1 is prescribed; it cannot have a start of its own"],
+        "{ x = 0.0, y = 0.0, theta = 0.0 }",
+    ),
+    (
+        &[
+            "initial.bodies={ link1 = { x = 0.0, y = 0.0, theta = 0.0 } }",
+            "joints.B1.model=ideal",
+        ],
+        &["the start of link1 does not fit what its ends are joined to"],
+        "{ x = 0.0, y = 0.0, theta = 0.0 }",
+    ),
+    (
+        &["output.channels=[\"platfrm.x\"]"],
+        &["no channel of this scene is named \"platfrm.x\"; the nearest is \"platform.x\""],
+        "\"platfrm.x\"",
+    ),
+];
+
+#[test]
+fn mechanisms_that_cannot_move_as_asked() {
+    for (overrides, messages, underlined) in CASES {
+        let error = fault(CASE4, overrides);
+        for message in messages {
+            check(&error, &format!("{overrides:?}"), message, underlined);
+        }
+    }
+}
+
+/// A body nobody places, and one that is placed where its joint is not.
+#[test]
+fn starts_that_are_missing_or_wrong() {
+    let text = include_str!("../scenes/bouncing-journal.toml");
+    let (head, _) = text.split_once("[initial]").unwrap();
+    let error = fault(head, &[]);
+    check(
+        &error,
+        "no start",
+        "the scene does not say where journal starts",
+        "[bodies.journal]",
+    );
+    let error = fault(
+        text,
+        &["joints.pin.model=ideal", "initial.bodies.journal.x=0.001"],
+    );
+    check(
+        &error,
+        "off the pin",
+        "the start violates joint pin (x): by 1.000e-3 m",
+        "[initial]",
+    );
+}
