@@ -2,10 +2,12 @@
 
 mod bad_input;
 mod bad_mechanism;
+mod balance;
 mod bathe;
 mod command_line;
 mod contact;
 mod differencing;
+mod documents;
 mod good_input;
 mod hostile_input;
 mod ideal;

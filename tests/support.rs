@@ -70,10 +70,14 @@ pub fn load(scene: &str, overrides: &[&str]) -> Scene {
     Scene::load(&path(scene), &overrides).unwrap_or_else(|e| panic!("{scene}: {e}"))
 }
 
-/// Runs a scene to its end.
+/// Runs a scene of the project to its end.
 pub fn run(scene: &str, overrides: &[&str]) -> (Recording, Report) {
-    let scene = load(scene, overrides);
-    let mut simulation = Simulation::new(&scene).unwrap_or_else(|e| panic!("{e}"));
+    run_scene(&load(scene, overrides))
+}
+
+/// Runs a scene to its end.
+pub fn run_scene(scene: &Scene) -> (Recording, Report) {
+    let mut simulation = Simulation::new(scene).unwrap_or_else(|e| panic!("{e}"));
     let names = simulation
         .channels()
         .iter()

@@ -66,7 +66,7 @@ pub fn all(step: f64, geometry: &Geometry) -> Vec<Scan> {
                 return Vec::new();
             }
             vec![format!(
-                "contacts.pin.friction={{ coefficient = {c:?}, v0 = 1e-4, v1 = 1e-3, slip = \"{slip}\" }}"
+                "contacts.pin.friction={{ law = \"ambrosio\", coefficient = {c:?}, v0 = 1e-4, v1 = 1e-3, slip = \"{slip}\" }}"
             )]
         };
         entries(&[3, 4], step, &plain(&[0.0, 0.05, 0.1, 0.3]), 0.0, change)

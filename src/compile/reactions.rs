@@ -1,6 +1,5 @@
 //! Which terms make up the force of an eliminated joint and the torque of an actuated one.
 
-use super::numbering::Connection;
 use super::terms::OwnTerm;
 use super::{Compiler, Role};
 use crate::model::{
@@ -46,7 +45,7 @@ fn attachment(model: &Model, point: PointRef) -> PointRef {
 }
 
 /// The shares of all terms that belong to `point`: its body's own, and those of joints attached there.
-fn shares(c: &Compiler, model: &Model, connections: &[Connection], point: PointRef) -> Vec<Share> {
+fn shares_of(c: &Compiler, model: &Model, own: &[OwnTerm], point: PointRef) -> Vec<Share> {
     let Some((x, _)) = place(model, point) else {
         return Vec::new();
     };
@@ -78,48 +77,34 @@ fn shares(c: &Compiler, model: &Model, connections: &[Connection], point: PointR
     if let (BodyCoordinates::RigidLink { ends }, Role::Free) =
         (&model.bodies()[point.body].coordinates, c.roles[point.body])
     {
-        let own = model
-            .lengths
-            .iter()
-            .position(|l| [l.term.i, l.term.j] == *ends);
-        if let Some(i) = own {
+        let length = model.lengths.iter();
+        let mut length = length.map(|l| [l.term.i, l.term.j]);
+        if let Some(i) = length.position(|l| l == *ends) {
             add(Source::Length(i), &model.lengths[i].block.coordinates);
         }
     }
-    // joints with terms of their own, in the order in which those terms were built
-    let (mut constraints, mut loose, mut frictional) = (0, 0, 0);
-    for (j, joint) in c.scene.joints.iter().enumerate() {
-        let bodies = [joint.bearing.body, joint.journal.body];
+    for (joint, own) in c.scene.joints.iter().zip(own) {
         let ends = [joint.bearing, joint.journal].map(|p| attachment(model, p));
-        let has_friction =
-            matches!(&joint.model, crate::scene::JointModel::Clearance(k) if k.friction.is_some());
-        match connections[j] {
-            Connection::Eliminated => {}
-            Connection::Constraint => {
-                if ends.contains(&point) {
-                    add(
-                        Source::Coincidence(constraints),
-                        &model.coincidences[constraints].block.coordinates,
-                    );
-                }
-                constraints += 1;
+        let attached = ends.contains(&point);
+        // the couple of a friction force on a rigid link acts on both ends
+        let on_body = ends.iter().any(|end| end.body == point.body);
+        match *own {
+            OwnTerm::Constraint(i) if attached => {
+                add(
+                    Source::Coincidence(i),
+                    &model.coincidences[i].block.coordinates,
+                );
             }
-            Connection::Contact if has_friction => {
-                // the couple of a friction force on a rigid link acts on both ends
-                if bodies.contains(&point.body) {
-                    add(
-                        Source::Frictional(frictional),
-                        &model.frictional[frictional].block.coordinates,
-                    );
-                }
-                frictional += 1;
+            OwnTerm::Loose(i) if attached => {
+                add(Source::Loose(i), &model.loose[i].block.coordinates);
             }
-            Connection::Contact => {
-                if ends.contains(&point) {
-                    add(Source::Loose(loose), &model.loose[loose].block.coordinates);
-                }
-                loose += 1;
+            OwnTerm::Frictional(i) if on_body => {
+                add(
+                    Source::Frictional(i),
+                    &model.frictional[i].block.coordinates,
+                );
             }
+            _ => {}
         }
     }
     shares
@@ -130,7 +115,7 @@ fn shares(c: &Compiler, model: &Model, connections: &[Connection], point: PointR
 fn hanging(
     c: &Compiler,
     model: &Model,
-    connections: &[Connection],
+    own: &[OwnTerm],
     cut: usize,
     from: PointRef,
 ) -> Option<Vec<PointRef>> {
@@ -147,7 +132,7 @@ fn hanging(
             reached.extend(attachments(model, point.body));
         }
         for (j, joint) in c.scene.joints.iter().enumerate() {
-            if j != cut && connections[j] == Connection::Eliminated {
+            if j != cut && matches!(own[j], OwnTerm::Eliminated) {
                 let ends = [joint.bearing, joint.journal].map(|p| attachment(model, p));
                 for (near, far) in [(0, 1), (1, 0)] {
                     if ends[near] == point {
@@ -169,21 +154,18 @@ fn hanging(
 pub(super) fn joint(
     c: &Compiler,
     model: &Model,
-    connections: &[Connection],
+    own: &[OwnTerm],
     j: usize,
-    own: OwnTerm,
 ) -> Result<(JointKind, Option<Actuator>), SceneError> {
-    let kind = match own {
+    let kind = match own[j] {
         OwnTerm::Constraint(i) => JointKind::Constraint(i),
         OwnTerm::Loose(i) => JointKind::Loose(i),
         OwnTerm::Frictional(i) => JointKind::Frictional(i),
-        OwnTerm::None => {
+        OwnTerm::Eliminated => {
             let joint = &c.scene.joints[j];
-            let journal_side =
-                hanging(c, model, connections, j, joint.journal).map(|side| (side, 1.0));
-            let side = journal_side.or_else(|| {
-                hanging(c, model, connections, j, joint.bearing).map(|side| (side, -1.0))
-            });
+            let journal_side = hanging(c, model, own, j, joint.journal).map(|side| (side, 1.0));
+            let side = journal_side
+                .or_else(|| hanging(c, model, own, j, joint.bearing).map(|side| (side, -1.0)));
             let Some((side, sign)) = side else {
                 let message = format!(
                     "the reaction of joint {} is not determined: both sides are held",
@@ -194,16 +176,13 @@ pub(super) fn joint(
             let mut all = Vec::new();
             let mut outboard = Vec::new();
             for &point in &side {
-                let own = shares(c, model, connections, point);
-                all.extend_from_slice(&own);
+                let shares = shares_of(c, model, own, point);
+                all.extend_from_slice(&shares);
                 if let Some((x, width)) = place(model, point) {
                     outboard.push(DrivenForce {
                         x,
                         width,
-                        reaction: Reaction {
-                            shares: own,
-                            sign: 1.0,
-                        },
+                        reaction: Reaction { shares, sign: 1.0 },
                     });
                 }
             }
@@ -227,11 +206,7 @@ pub(super) fn joint(
 }
 
 /// Forces on the coordinates of driven bodies.
-pub(super) fn driven_forces(
-    c: &Compiler,
-    model: &Model,
-    connections: &[Connection],
-) -> Vec<DrivenForce> {
+pub(super) fn driven_forces(c: &Compiler, model: &Model, own: &[OwnTerm]) -> Vec<DrivenForce> {
     let mut forces: Vec<DrivenForce> = Vec::new();
     let all: Vec<PointRef> = (0..c.scene.bodies.len())
         .flat_map(|b| attachments(model, b))
@@ -247,9 +222,7 @@ pub(super) fn driven_forces(
             let here = all
                 .iter()
                 .filter(|&&p| place(model, p).map(|(x, _)| x) == Some(x));
-            let shares = here
-                .flat_map(|&p| shares(c, model, connections, p))
-                .collect();
+            let shares = here.flat_map(|&p| shares_of(c, model, own, p)).collect();
             forces.push(DrivenForce {
                 x,
                 width,

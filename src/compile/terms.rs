@@ -42,9 +42,9 @@ pub(super) fn build(
     for b in 0..c.scene.bodies.len() {
         body_terms(c, &mut numbering, b, &mut terms);
     }
-    let mut kinds = Vec::new();
+    let mut own = Vec::new();
     for (j, joint) in c.scene.joints.iter().enumerate() {
-        kinds.push(joint_terms(c, &numbering, j, joint, &mut terms)?);
+        own.push(joint_terms(c, &numbering, j, joint, &mut terms)?);
     }
 
     let n = numbering.unknowns;
@@ -180,9 +180,9 @@ pub(super) fn build(
         })
         .collect();
     if c.mode == Mode::Real {
-        model.driven = reactions::driven_forces(c, &model, &numbering.connections);
-        for (j, (joint, kind)) in c.scene.joints.iter().zip(kinds).enumerate() {
-            let (kind, actuator) = reactions::joint(c, &model, &numbering.connections, j, kind)?;
+        model.driven = reactions::driven_forces(c, &model, &own);
+        for (j, joint) in c.scene.joints.iter().enumerate() {
+            let (kind, actuator) = reactions::joint(c, &model, &own, j)?;
             model.joints.push(JointPlace {
                 name: joint.name.clone(),
                 kind,
@@ -319,12 +319,14 @@ fn kernel(link: &Link, element_length: f64) -> AncfCable {
     )
 }
 
-/// The kind of a joint that has terms of its own; `None` for an eliminated one.
+/// The term that a joint brings into the equations, by its index in the list of its kind.
+#[derive(Debug, Clone, Copy)]
 pub(super) enum OwnTerm {
     Constraint(usize),
     Loose(usize),
     Frictional(usize),
-    None,
+    /// None: the joint shares or eliminates coordinates.
+    Eliminated,
 }
 
 fn joint_terms(
@@ -337,7 +339,7 @@ fn joint_terms(
     let [bearing, journal] =
         [joint.bearing, joint.journal].map(|p| c.marker(&numbering.bodies[p.body], p));
     match (numbering.connections[j], &joint.model) {
-        (Connection::Eliminated, _) => Ok(OwnTerm::None),
+        (Connection::Eliminated, _) => Ok(OwnTerm::Eliminated),
         (Connection::Contact, JointModel::Clearance(contact)) => {
             let n = numbering.unknowns;
             if bearing.x() >= n && journal.x() >= n {

@@ -154,11 +154,9 @@ impl Model {
         for c in &self.frictional {
             energies.contact += closed_energy(&c.term.joint, at, c.contact);
         }
-        energies.gravity = self
-            .weight
-            .iter()
-            .map(|&(i, weight)| weight * at.q[i])
-            .sum();
+        for &(i, weight) in &self.weight {
+            energies.gravity += weight * at.q[i];
+        }
         energies
     }
 

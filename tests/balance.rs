@@ -1,0 +1,191 @@
+//! Newton's law from the outside: the recorded joint forces on every body add up to its mass times its recorded
+//! acceleration, whatever the joints are made of.
+
+use crate::support::{Recording, load, run_scene};
+use looselink::scene::{BodyKind, Scene};
+
+/// A chain of a rigid link, a flexible link and a rigid body under gravity, with every kind of joint in it: the first
+/// fixed to ground by a shared node, two links sharing a node, a constraint, and a second link on the same node.
+const CHAIN: &str = r#"
+format = 1
+title = "a chain"
+simulation = { duration = 0.02, gravity = [0.3, -9.81] }
+integrator = { method = "bathe", step = 1e-5, newton_tolerance = 1e-11, onset_tolerance = 1e-13 }
+output = { interval = 1e-3, channels = ["*"] }
+materials.steel = { density = 7800.0, youngs_modulus = 2e9 }
+sections.bar = { width = 0.004, height = 0.01 }
+bodies.ground = { type = "ground", points.O = [0.1, 0.2] }
+bodies.upper = { type = "link", model = "rigid", length = 0.3, section = "bar", material = "steel" }
+bodies.lower = { type = "link", model = "flexible", elements = 3, length = 0.2, section = "bar", material = "steel" }
+bodies.side = { type = "link", model = "rigid", length = 0.1, section = "bar", material = "steel" }
+bodies.bob = { type = "rigid_body", mass = 0.4, inertia = 1e-3, points.top = [0.01, 0.05] }
+joints.O = { type = "revolute", bearing = "ground.O", journal = "upper.start", model = "ideal" }
+joints.P = { type = "revolute", bearing = "lower.start", journal = "upper.end", model = "ideal" }
+joints.R = { type = "revolute", bearing = "upper.end", journal = "side.start", model = "ideal" }
+joints.Q = { type = "revolute", bearing = "lower.end", journal = "bob.top", model = "ideal" }
+[initial.bodies]
+upper = { x = 0.1, y = 0.2, theta = 0.0, vx = 0.0, vy = 0.0, omega = 0.0 }
+lower = { x = 0.4, y = 0.2, theta = 0.5, vx = 0.0, vy = 0.0, omega = 0.0 }
+side = { x = 0.4, y = 0.2, theta = -1.0, vx = 0.0, vy = 0.0, omega = 0.0 }
+bob = { x = 0.5655165123780746, y = 0.24588510772084061, theta = 0.0, vx = 0.0, vy = 0.0, omega = 0.0 }
+"#;
+
+fn mass(kind: &BodyKind) -> f64 {
+    match kind {
+        BodyKind::Ground { .. } => 0.0,
+        BodyKind::Link(link) => link.density * link.area * link.length,
+        BodyKind::Rigid(rigid) => rigid.mass,
+    }
+}
+
+/// Forces in every body, and the moment about the centre of mass of rigid bodies.
+fn check(name: &str, scene: &Scene, run: &Recording) {
+    let gravity = scene.simulation.gravity.unwrap_or([0.0; 2]);
+    for (b, body) in scene.bodies.iter().enumerate() {
+        let m = mass(&body.kind);
+        if m == 0.0 {
+            continue;
+        }
+        let joints: Vec<(f64, &looselink::scene::Joint, usize)> = scene
+            .joints
+            .iter()
+            .filter_map(|j| match (j.bearing.body == b, j.journal.body == b) {
+                (false, true) => Some((1.0, j, j.journal.point)),
+                (true, false) => Some((-1.0, j, j.bearing.point)),
+                _ => None,
+            })
+            .collect();
+        for k in 0..run.len() {
+            let mut scale = 0.0;
+            let mut sum = [0.0; 2];
+            let mut moment = 0.0;
+            for (sign, joint, point) in &joints {
+                let force = ["fx", "fy"].map(|q| sign * run.get(&format!("{}.{q}", joint.name))[k]);
+                sum = [sum[0] + force[0], sum[1] + force[1]];
+                scale += force[0].abs() + force[1].abs();
+                if let BodyKind::Rigid(rigid) = &body.kind {
+                    let (s, c) = run.get(&format!("{}.theta", body.name))[k].sin_cos();
+                    let [x, y] = rigid.points[*point].at;
+                    moment += (c * x - s * y) * force[1] - (s * x + c * y) * force[0];
+                }
+            }
+            let a = ["ax", "ay"].map(|q| run.get(&format!("{}.{q}", body.name))[k]);
+            // reactions come from a linear solve of well conditioned poses: rounding of the largest force
+            let tolerance = 1e-10 * (scale + m * (a[0].abs() + a[1].abs()) + 1.0);
+            for d in 0..2 {
+                let rest = sum[d] + m * (gravity[d] - a[d]);
+                assert!(
+                    rest.abs() < tolerance,
+                    "{name}: {} row {k}: {rest:e} of {scale:e}",
+                    body.name
+                );
+            }
+            if let BodyKind::Rigid(rigid) = &body.kind {
+                let alpha = run.get(&format!("{}.alpha", body.name))[k];
+                let rest = moment - rigid.inertia * alpha;
+                assert!(
+                    rest.abs() < tolerance,
+                    "{name}: moment on {} row {k}: {rest:e}",
+                    body.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn forces_on_every_body_are_mass_times_acceleration() {
+    let channels = r#"output.channels=["*"]"#;
+    for case in [
+        "case1",
+        "case2",
+        "case3",
+        "case4",
+        "case4-4elements",
+        "case4-friction",
+    ] {
+        let overrides = [
+            "simulation.duration=0.012",
+            "output.interval=4e-4",
+            channels,
+        ];
+        let scene = load(&format!("3rrr/{case}.toml"), &overrides);
+        check(case, &scene, &run_scene(&scene).0);
+    }
+    let scene = Scene::parse("chain", CHAIN, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let (run, report) = run_scene(&scene);
+    check("chain", &scene, &run);
+    assert_ne!(report.ledger.gravity, 0.0);
+    // energy is exchanged between weight, motion and strain, and hardly lost
+    let exchanged = report.ledger.kinetic;
+    assert!(
+        report.ledger.numerical.abs() < 1e-4 * exchanged,
+        "{:?}",
+        report.ledger
+    );
+}
+
+/// A uniform rod released from the horizontal: its pivot carries a quarter of its weight, its end falls with 3 g/2.
+#[test]
+fn a_released_rod_hangs_on_a_quarter_of_its_weight() {
+    let rod = |model: &str, bearing: &str, journal: &str| {
+        let text = format!(
+            r#"
+format = 1
+title = "a rod"
+simulation = {{ duration = 0.001, gravity = [0.0, -9.81] }}
+integrator = {{ method = "bathe", step = 1e-5, newton_tolerance = 1e-11 }}
+output = {{ interval = 1e-3, channels = ["*"] }}
+materials.steel = {{ density = 7800.0, youngs_modulus = 2e11 }}
+sections.bar = {{ width = 0.01, height = 0.01 }}
+bodies.ground = {{ type = "ground", points.O = [0.0, 0.0] }}
+bodies.rod = {model}
+joints.O = {{ type = "revolute", bearing = "{bearing}", journal = "{journal}", model = "ideal" }}
+initial.bodies.rod = {{ x = X, y = 0.0, theta = 0.0 }}
+"#
+        );
+        let x = if model.contains("rigid_body") {
+            "0.5"
+        } else {
+            "0.0"
+        };
+        let scene =
+            Scene::parse("rod", &text.replace("X", x), &[]).unwrap_or_else(|e| panic!("{e}"));
+        let run = run_scene(&scene).0;
+        (
+            run.get("O.fy")[0],
+            run.get("rod.ay")[0],
+            run.get("rod.alpha")[0],
+        )
+    };
+    let link = |model: &str| {
+        format!(
+            r#"{{ type = "link", model = "{model}", elements = 4, length = 1.0, section = "bar", material = "steel" }}"#
+        )
+    };
+    let body =
+        r#"{ type = "rigid_body", mass = 0.78, inertia = 0.065, points.start = [-0.5, 0.0] }"#;
+    let weight = 0.78 * 9.81;
+    for model in [link("rigid"), body.to_owned()] {
+        let (force, ay, alpha) = rod(&model, "ground.O", "rod.start");
+        // closed form; the start is at rest and exact
+        assert!(
+            (force / (0.25 * weight) - 1.0).abs() < 1e-12,
+            "{model}: {force}"
+        );
+        assert!((ay / (-0.75 * 9.81) - 1.0).abs() < 1e-12, "{model}: {ay}");
+        assert!(
+            (alpha / (-1.5 * 9.81) - 1.0).abs() < 1e-12,
+            "{model}: {alpha}"
+        );
+    }
+    // the force is that of the bearing on the journal, whichever carries which
+    for model in [link("rigid"), body.to_owned(), link("flexible")] {
+        let (force, ..) = rod(&model, "ground.O", "rod.start");
+        let (swapped, ..) = rod(&model, "rod.start", "ground.O");
+        assert!(
+            force > 0.1 * weight && (swapped + force).abs() < 1e-12 * weight,
+            "{model}: {swapped} {force}"
+        );
+    }
+}
