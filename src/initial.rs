@@ -2,7 +2,7 @@
 
 use crate::math::plane::{Vec2, add, norm, perp, scale, sub};
 use crate::model::{BodyCoordinates, Model};
-use crate::scene::{BodyKind, Scene, SceneError};
+use crate::scene::{BodyKind, JointModel, Scene, SceneError};
 use crate::system::State;
 
 /// Largest distance by which a start may miss a constraint \[m\] or a rate \[m/s\]: the digits of a typed position.
@@ -103,6 +103,21 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
                 body.name
             );
             return Err(scene.error(span, message, "this start violates a joint"));
+        }
+    }
+    for j in 0..scene.joints.len() {
+        let JointModel::Clearance(contact) = &scene.joints[j].model else {
+            continue;
+        };
+        let delta = model
+            .clearance(j, &state)
+            .map_or(0.0, |(_, delta, _)| delta);
+        if delta > contact.clearance {
+            let message = format!(
+                "joint {} starts {delta:.3e} m deep in the wall of its bearing, more than its clearance",
+                scene.joints[j].name
+            );
+            return Err(scene.error(scene.joints[j].span, message, "this joint"));
         }
     }
     if let Some((distance, rate, name)) = model.worst_constraint(&state)

@@ -1,8 +1,11 @@
 //! The loop: step, locate contact onset and loss, commit memory, record.
 
+mod change;
+mod observer;
 mod report;
 
 pub use crate::record::Channel;
+pub use observer::{Control, Observer, Onset, Progress};
 pub use report::{Extreme, Inspection, Report, Status};
 
 use crate::compile::compile;
@@ -18,60 +21,6 @@ use crate::system::{PrescribeError, State, System, Work};
 const HALVINGS: i32 = 24;
 /// Part of a step below which a difference of times is rounding.
 const GRID_ROUNDING: f64 = 1e-6;
-/// Trials of one onset or loss; bisection alone needs 60.
-const LOCATION_TRIALS: usize = 100;
-
-/// A contact that closes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Onset<'a> {
-    /// When \[s\].
-    pub t: f64,
-    /// The joint.
-    pub joint: &'a str,
-    /// delta_dot at onset \[m/s\].
-    pub impact_velocity: f64,
-    /// Penetration at the located instant \[m\], zero but for the onset tolerance.
-    pub delta: f64,
-}
-
-/// Where a run is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Progress {
-    /// Simulated time \[s\].
-    pub t: f64,
-    /// Duration of the scene \[s\].
-    pub duration: f64,
-    /// Contacts closed now.
-    pub contacts: usize,
-}
-
-/// Whether a run goes on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Control {
-    /// Go on.
-    Continue,
-    /// Stop after this step.
-    Stop,
-}
-
-/// Receives the results of a run as they come.
-pub trait Observer {
-    /// A recorded row, in the order of [`Simulation::channels`].
-    ///
-    /// # Errors
-    /// When it cannot be stored; the run stops.
-    fn row(&mut self, values: &[f64]) -> std::io::Result<()>;
-    /// A contact has closed.
-    ///
-    /// # Errors
-    /// When it cannot be stored; the run stops.
-    fn onset(&mut self, onset: &Onset) -> std::io::Result<()>;
-    /// A step has been taken.
-    ///
-    /// # Errors
-    /// When it cannot be told; the run stops.
-    fn step(&mut self, progress: &Progress) -> std::io::Result<Control>;
-}
 
 /// Why a run ended early.
 #[derive(Debug, thiserror::Error)]
@@ -127,6 +76,8 @@ pub struct Simulation {
     output: State,
     recorder: Recorder,
     extremes: Vec<Extreme>,
+    /// Axial strain of largest magnitude over the recorded rows, by body; 0 for bodies that do not deform.
+    strains: Vec<f64>,
     counters: LoopCounters,
     delta: Vec<f64>,
     rate: Vec<f64>,
@@ -174,6 +125,7 @@ impl Simulation {
             state,
             recorder,
             extremes,
+            strains: vec![0.0; scene.bodies.len()],
             counters: LoopCounters {
                 onsets: started.len() as u64,
                 ..LoopCounters::default()
@@ -304,76 +256,6 @@ impl Simulation {
         stepper.step(model, state, t, trial, newton, work)
     }
 
-    /// The contact of `trial` or, with `inside`, of its interior stages, that is furthest past its change: the distance
-    /// (an open one's penetration, a closed one's gap), its rate, and the time of the state.
-    fn furthest_past(&mut self, inside: bool) -> (f64, f64, f64) {
-        let states: &[State] = if inside {
-            self.stepper.interior()
-        } else {
-            std::slice::from_ref(&self.trial)
-        };
-        let mut furthest = (f64::NEG_INFINITY, 0.0, 0.0);
-        for s in states {
-            self.model.gaps(s, &mut self.delta, &mut self.rate);
-            for (c, z) in s.z.iter().enumerate() {
-                let sign = if *z == 0.0 { 1.0 } else { -1.0 };
-                if sign * self.delta[c] > furthest.0 {
-                    furthest = (sign * self.delta[c], sign * self.rate[c], s.t);
-                }
-            }
-        }
-        furthest
-    }
-
-    /// Cuts the trial step so that the first contact to close or to open does so at its end; returns the clamps of that
-    /// step.
-    ///
-    /// Until it changes, a contact follows one smooth law, so its penetration is a smooth function of the length of the
-    /// step: Newton's method on it, kept inside a bracket.
-    fn locate_change(&mut self, mut clamps: usize, mut t: f64) -> Result<usize, RunError> {
-        let tolerance = self.scene.integrator.onset_tolerance;
-        let (mut low, mut high) = (self.state.t, t);
-        let (inside, _, middle) = self.furthest_past(true);
-        let (mut past, mut rate, _) = self.furthest_past(false);
-        if past <= tolerance {
-            if inside <= tolerance {
-                return Ok(clamps);
-            }
-            // there and back again within the step
-            (clamps, t) = self.try_step(middle)?;
-            (past, rate, _) = self.furthest_past(false);
-            high = t;
-        }
-        for _ in 0..LOCATION_TRIALS {
-            if past.abs() <= tolerance {
-                return Ok(clamps);
-            }
-            if past > 0.0 {
-                high = t
-            } else {
-                low = t
-            }
-            let newton = t - past / rate;
-            let next = if newton > low && newton < high {
-                newton
-            } else {
-                low + 0.5 * (high - low)
-            };
-            if next <= low || next >= high {
-                break;
-            }
-            self.counters.location_trials += 1;
-            (clamps, t) = self.try_step(next)?;
-            (past, rate, _) = self.furthest_past(false);
-        }
-        // the gap jumps over zero between neighbouring instants; the later one is kept
-        self.counters.unlocated += 1;
-        if t != high {
-            (clamps, _) = self.try_step(high)?;
-        }
-        Ok(clamps)
-    }
-
     /// Opens and closes contacts.
     fn commit(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
         let Simulation {
@@ -416,6 +298,7 @@ impl Simulation {
             work,
             recorder,
             extremes,
+            strains,
             ..
         } = self;
         output.copy_from(state);
@@ -423,6 +306,12 @@ impl Simulation {
             return Err(self.failed(failure.into(), 0.0));
         }
         let row = recorder.row(model, output, work);
+        for (b, largest) in strains.iter_mut().enumerate() {
+            let strain = model.strain(b, output).unwrap_or_default();
+            if strain.abs() > largest.abs() {
+                *largest = strain;
+            }
+        }
         for (extreme, value) in extremes.iter_mut().zip(row) {
             extreme.see(*value, output.t);
         }

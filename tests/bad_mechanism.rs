@@ -21,7 +21,15 @@ type Case = (
     &'static str,
 );
 
-const CASES: [Case; 10] = [
+const CASES: [Case; 11] = [
+    (
+        &[
+            "initial.sketch.B1=[-0.228, 0.015]",
+            "initial.sketch={ B1 = [-0.228, 0.015], B2 = [0.116, -0.284], B3 = [0.230, 0.316], C1 = [5.0, 5.0] }",
+        ],
+        &["joint C1 closes at (0.0030, -0.0560) m, far from its sketch"],
+        "[5.0, 5.0]",
+    ),
     // within reach at the start, out of it some time into the motion
     (
         &[
@@ -129,4 +137,52 @@ fn starts_that_are_missing_or_wrong() {
         "the start violates joint pin (x): by 1.000e-3 m",
         "[initial]",
     );
+}
+
+/// The path of an arm about a pivot must keep the pivot where it is.
+#[test]
+fn a_path_that_pulls_a_joint_apart() {
+    let arm = |rows: &str| {
+        format!(
+            r#"
+format = 1
+title = "an arm on a pivot"
+simulation = {{ duration = 1.0 }}
+integrator = {{ method = "bathe", step = 1e-3, newton_tolerance = 1e-11 }}
+output = {{ interval = 0.1, channels = ["*"] }}
+bodies.ground = {{ type = "ground", points.O = [0.0, 0.0] }}
+bodies.arm = {{ type = "rigid_body", mass = 1.0, inertia = 0.1, points.pivot = [-0.3, 0.0] }}
+joints.O = {{ type = "revolute", bearing = "ground.O", journal = "arm.pivot", model = "ideal" }}
+drives.input = {{ type = "inverse_kinematics", joints = ["O"], body = "arm", path = {rows} }}
+initial = {{}}
+"#
+        )
+    };
+    let still = arm(r#"{ type = "table", rows = [[0.0, 0.3, 0.0, 0.0], [1.0, 0.3, 0.0, 0.0]] }"#);
+    let scene = Scene::parse("arm", &still, &[]).unwrap_or_else(|e| panic!("{}", rendered(&e)));
+    assert!(Simulation::new(&scene).is_ok());
+    let away =
+        arm(r#"{ type = "line", from = [0.3, 0.0, 0.0], to = [0.4, 0.0, 0.0], duration = 1.0 }"#);
+    check(
+        &fault(&away, &[]),
+        "line",
+        "the path pulls joint O apart, by ",
+        r#"{ type = "revolute", bearing = "ground.O", journal = "arm.pivot", model = "ideal" }"#,
+    );
+}
+
+/// A journal may start pressed into its bearing, but not outside it.
+#[test]
+fn a_journal_outside_its_bearing() {
+    let text = include_str!("../scenes/bouncing-journal.toml");
+    let error = fault(text, &["initial.bodies.journal.x=0.05"]);
+    check(
+        &error,
+        "outside",
+        "joint pin starts 4.998e-2 m deep in the wall",
+        "[joints.pin]",
+    );
+    let pressed = ["initial.bodies.journal.x=2.01e-5".to_owned()];
+    let scene = Scene::parse("scene.toml", text, &pressed).unwrap();
+    assert!(Simulation::new(&scene).is_ok());
 }

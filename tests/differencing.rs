@@ -20,9 +20,8 @@ fn error(force: &dyn Fn(&[f64]) -> Vec<f64>, tangent: &[Vec<f64>], x: &[f64], h:
 /// Asserts that `tangent` is the Jacobian of `force` at `x`: the central difference tends to it as h^2 (bounded on both
 /// sides) until rounding, and the two are neither zero nor equal to the last bit.
 ///
-/// `scale` is the size of the largest second difference quotient's rounding: force times 1e-16 over h is kept 100 times
-/// below the truncation errors compared. For a force that is at most quadratic in each coordinate the central
-/// difference is exact; pass `exact`.
+/// For a force that is at most quadratic in each coordinate the central difference has no truncation error; pass
+/// `exact`, and only rounding is allowed.
 pub fn check(
     name: &str,
     force: &dyn Fn(&[f64]) -> Vec<f64>,

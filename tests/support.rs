@@ -32,6 +32,11 @@ impl Recording {
         self.rows.iter().map(|row| row[column]).collect()
     }
 
+    /// Names of all channels.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
     pub fn len(&self) -> usize {
         self.rows.len()
     }

@@ -9,19 +9,19 @@ use miette::{Result, miette};
 #[derive(Debug, Clone, clap::Args)]
 pub struct Settings {
     /// Fine step (s): cases 2, 3 and 4.
-    #[arg(long, default_value_t = 1.6e-6)]
+    #[arg(long, default_value_t = 1.25e-6)]
     pub fine: f64,
     /// Coarse step (s): case 2 again, and case 1.
     #[arg(long, default_value_t = 1e-4)]
     pub coarse: f64,
     /// Time between recorded rows of the fine runs (s).
-    #[arg(long, default_value_t = 8e-6)]
+    #[arg(long, default_value_t = 1e-5)]
     pub interval: f64,
     /// Step of the many-period runs of the stroboscopic sections and of the comparisons (s).
     #[arg(long, default_value_t = 2e-5)]
     pub section_step: f64,
     /// Periods of the stroboscopic sections, after those that are left out.
-    #[arg(long, default_value_t = 40)]
+    #[arg(long, default_value_t = 32)]
     pub periods: u32,
     /// Periods left out at the start of the stroboscopic sections.
     #[arg(long, default_value_t = 2)]

@@ -1,15 +1,16 @@
 //! The drive: compiles the ideal rigid mechanism, closes it at the start, and follows its path to the end.
 
+use super::sketch::{close, marker};
 use super::{Compiler, Mode, Role, numbering, terms};
 use crate::kinematics::{Dyad, Kinematics};
-use crate::marker::Marker;
-use crate::math::plane::{cross, dot, norm, sub};
+use crate::math::plane::{norm, sub};
 use crate::model::{BodyCoordinates, Model};
-use crate::scene::{BodyKind, Drive, Link, LinkModel, PointRef, Scene, SceneError};
+use crate::motion;
+use crate::scene::{BodyKind, Drive, LinkModel, PointRef, Scene, SceneError};
 use crate::system::State;
 
-/// Poses tried along the path before the simulation, so that a path out of reach is found at once.
-const SWEEP: usize = 2000;
+/// Largest distance of two prescribed points that a joint holds together \[m\]: the digits of typed positions.
+const HELD_TOLERANCE: f64 = 1e-9;
 
 /// Compiles the ideal mechanism of a drive and checks that it can follow the path for the whole duration.
 pub(super) fn ideal_mechanism(
@@ -49,185 +50,45 @@ pub(super) fn ideal_mechanism(
         start: Vec::new(),
     };
     let start = close(&compiler, drive, &kinematics)?;
-    sweep(scene, drive, &kinematics, &start)?;
+    sweep(&compiler, drive, &kinematics, &start)?;
     kinematics.start = start.q;
     Ok(kinematics)
 }
 
-/// Closes the mechanism at t = 0 from the sketch.
-fn close(c: &Compiler, drive: &Drive, kinematics: &Kinematics) -> Result<State, SceneError> {
-    let mechanism = &*kinematics.mechanism;
-    let mut inner = kinematics.work();
-    mechanism.follow_path(&mut inner.state);
-    mechanism.ride(&mut inner.state);
-    let guessed = guess(c, mechanism, &mut inner.state)?;
-    kinematics.solve(&mut inner, 60).map_err(|e| {
-        c.scene.error(
-            drive.span,
-            format!("drive {}: {e}", drive.name),
-            "the mechanism of this drive",
-        )
-    })?;
-    for (x, sketch) in guessed {
-        let found = [inner.state.q[x], inner.state.q[x + 1]];
-        let (drawn, joint) = (
-            &c.scene.initial.sketch[sketch],
-            &c.scene.joints[c.scene.initial.sketch[sketch].joint],
-        );
-        let lengths =
-            [joint.bearing, joint.journal].map(|p| link(c, p).map_or(f64::INFINITY, |l| l.length));
-        let shortest = lengths[0].min(lengths[1]);
-        if norm(sub(found, drawn.at)) > 0.25 * shortest {
-            let message = format!(
-                "joint {} closes at ({:.4}, {:.4}) m, far from its sketch: draw it closer to the branch you mean",
-                joint.name, found[0], found[1]
-            );
-            return Err(c.scene.error(drawn.span, message, "the sketch"));
-        }
-    }
-    Ok(inner.state)
-}
-
-fn marker(c: &Compiler, mechanism: &Model, point: PointRef) -> Marker {
-    c.marker(&mechanism.bodies()[point.body].coordinates, point)
-}
-
-fn link<'a>(c: &Compiler<'a>, point: PointRef) -> Option<&'a Link> {
-    match &c.scene.bodies[point.body].kind {
-        BodyKind::Link(link) => Some(link),
-        _ => None,
-    }
-}
-
-/// Puts the sketched positions into the unknown nodes and fits the unknown rigid bodies to them; returns the nodes
-/// with the index of their sketch.
-fn guess(
-    c: &Compiler,
-    mechanism: &Model,
-    state: &mut State,
-) -> Result<Vec<(usize, usize)>, SceneError> {
-    let n = mechanism.shape().unknowns;
-    let mut known = vec![false; state.q.len()];
-    known[n..].fill(true);
-    let mut guessed = Vec::new();
-    for (k, sketch) in c.scene.initial.sketch.iter().enumerate() {
-        let joint = &c.scene.joints[sketch.joint];
-        for point in [joint.bearing, joint.journal] {
-            if let Marker::Node { x } = marker(c, mechanism, point) {
-                if x < n {
-                    state.q[x..x + 2].copy_from_slice(&sketch.at);
-                    guessed.push((x, k));
-                }
-                known[x] = true;
-            }
-        }
-    }
-    for (b, body) in c.scene.bodies.iter().enumerate() {
-        match (&mechanism.bodies()[b].coordinates, &body.kind) {
-            (BodyCoordinates::RigidLink { ends }, _) => {
-                if let Some(end) = (0..2).find(|&e| !known[ends[e]]) {
-                    let name = c.point_name(PointRef {
-                        body: b,
-                        point: end,
-                    });
-                    let message = format!(
-                        "the sketch does not say where {name} is: give the position of a joint there"
-                    );
-                    return Err(c.scene.error(body.span, message, "this body"));
-                }
-            }
-            (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid)) if *x < n => {
-                let pairs: Vec<_> = (0..rigid.points.len())
-                    .filter_map(|point| sketch_of(c, mechanism, state, PointRef { body: b, point }))
-                    .collect();
-                if pairs.len() < 2 {
-                    let message = format!(
-                        "the sketch must give the positions of two joints of {}",
-                        body.name
-                    );
-                    return Err(c.scene.error(body.span, message, "this body"));
-                }
-                let pose = fit(&pairs);
-                state.q[*x..x + 3].copy_from_slice(&pose);
-            }
-            _ => {}
-        }
-    }
-    Ok(guessed)
-}
-
-/// (point in the body, approximate position) of a point of a rigid body, from a sketch or from a known partner.
-fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) -> Option<Pair> {
-    let BodyKind::Rigid(rigid) = &c.scene.bodies[point.body].kind else {
-        return None;
-    };
-    let local = rigid.points[point.point].at;
-    c.scene.joints.iter().enumerate().find_map(|(j, joint)| {
-        let partner = match () {
-            () if joint.bearing == point => joint.journal,
-            () if joint.journal == point => joint.bearing,
-            () => return None,
-        };
-        let drawn = c
-            .scene
-            .initial
-            .sketch
-            .iter()
-            .find(|s| s.joint == j)
-            .map(|s| s.at);
-        let known = || {
-            c.is_known(partner)
-                .then(|| mechanism.position(&marker(c, mechanism, partner), state))
-        };
-        drawn.or_else(known).map(|at| (local, at))
-    })
-}
-
-/// A point in the frame of its body and its approximate position.
-type Pair = ([f64; 2], [f64; 2]);
-
-/// The pose (x, y, theta) that carries points of a body closest to given positions.
-fn fit(pairs: &[Pair]) -> [f64; 3] {
-    let count = pairs.len() as f64;
-    let mean = |pick: fn(&Pair) -> [f64; 2]| {
-        let sum = pairs
-            .iter()
-            .map(pick)
-            .fold([0.0; 2], |s, p| [s[0] + p[0], s[1] + p[1]]);
-        [sum[0] / count, sum[1] / count]
-    };
-    let (local, global) = (mean(|p| p.0), mean(|p| p.1));
-    let (mut sine, mut cosine) = (0.0, 0.0);
-    for (s, r) in pairs {
-        let (s, r) = (sub(*s, local), sub(*r, global));
-        sine += cross(s, r);
-        cosine += dot(s, r);
-    }
-    let theta = f64::atan2(sine, cosine);
-    let turned = crate::math::plane::rotate(theta.cos(), theta.sin(), local);
-    [global[0] - turned[0], global[1] - turned[1], theta]
-}
-
-/// Follows the path over the whole duration.
+/// Follows the path over the whole duration, pose by pose, and sees that joints between known points stay closed.
 fn sweep(
-    scene: &Scene,
+    c: &Compiler,
     drive: &Drive,
     kinematics: &Kinematics,
     start: &State,
 ) -> Result<(), SceneError> {
+    let mechanism = &*kinematics.mechanism;
     let mut inner = kinematics.work();
     let (mut from, mut to) = (start.clone(), start.clone());
-    for k in 1..=SWEEP {
-        to.t = scene.simulation.duration * k as f64 / SWEEP as f64;
+    let (horizon, poses) = motion::path(&drive.path).sweep(c.scene.simulation.duration);
+    for k in 0..=poses {
+        to.t = horizon * k as f64 / poses as f64;
         kinematics
             .prescribe(&from, &mut to, &mut inner)
             .map_err(|e| {
-                scene.error(
-                    drive.path_span,
-                    format!("drive {}: {e}", drive.name),
-                    "this path is out of reach",
-                )
+                let message = format!("drive {}: {e}", drive.name);
+                c.scene
+                    .error(drive.path_span, message, "this path is out of reach")
             })?;
+        for (j, joint) in c.scene.joints.iter().enumerate() {
+            let points = [joint.bearing, joint.journal];
+            if points.iter().all(|&p| c.is_known(p)) {
+                let [a, b] = points.map(|p| mechanism.position(&marker(c, mechanism, p), &to));
+                let distance = norm(sub(a, b));
+                if distance > HELD_TOLERANCE {
+                    let message = format!(
+                        "drive {}: the path pulls joint {} apart, by {distance:.3e} m at t = {} s",
+                        drive.name, joint.name, to.t
+                    );
+                    return Err(c.joint_error(j, message, "both of its points are prescribed"));
+                }
+            }
+        }
         from.copy_from(&to);
     }
     Ok(())

@@ -1,8 +1,10 @@
 //! Scene -> model: shares nodes, eliminates known coordinates, leaves out what the scene does not call for.
 
 mod drive;
+mod mass;
 mod numbering;
 mod reactions;
+mod sketch;
 mod terms;
 
 use crate::model::Model;

@@ -205,30 +205,34 @@ pub(super) fn joint(
     Ok((kind, None))
 }
 
-/// Forces on the coordinates of driven bodies.
+/// Forces on all known coordinates that can move: those of driven bodies, and the nodes that ride on them.
 pub(super) fn driven_forces(c: &Compiler, model: &Model, own: &[OwnTerm]) -> Vec<DrivenForce> {
+    let mut resting: Vec<usize> = model.fixed.iter().map(|&(x, _)| x).collect();
+    if let Some(kinematics) = &model.kinematics {
+        let inner = kinematics.mechanism.fixed.iter();
+        resting.extend(inner.map(|&(x, _)| x + kinematics.offset));
+    }
     let mut forces: Vec<DrivenForce> = Vec::new();
     let all: Vec<PointRef> = (0..c.scene.bodies.len())
         .flat_map(|b| attachments(model, b))
         .collect();
-    for body in (0..c.scene.bodies.len()).filter(|&b| c.roles[b] == Role::Driven) {
-        for point in attachments(model, body) {
-            let Some((x, width)) = place(model, point) else {
-                continue;
-            };
-            if forces.iter().any(|f| f.x == x) {
-                continue;
-            }
-            let here = all
-                .iter()
-                .filter(|&&p| place(model, p).map(|(x, _)| x) == Some(x));
-            let shares = here.flat_map(|&p| shares_of(c, model, own, p)).collect();
-            forces.push(DrivenForce {
-                x,
-                width,
-                reaction: Reaction { shares, sign: 1.0 },
-            });
+    for &point in &all {
+        let Some((x, width)) = place(model, point) else {
+            continue;
+        };
+        let known = x >= model.shape.unknowns && !resting.contains(&x);
+        if !known || forces.iter().any(|f| f.x == x) {
+            continue;
         }
+        let here = all
+            .iter()
+            .filter(|&&p| place(model, p).map(|(x, _)| x) == Some(x));
+        let shares = here.flat_map(|&p| shares_of(c, model, own, p)).collect();
+        forces.push(DrivenForce {
+            x,
+            width,
+            reaction: Reaction { shares, sign: 1.0 },
+        });
     }
     forces
 }

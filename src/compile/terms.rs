@@ -1,5 +1,6 @@
 //! Builds the lists of a model: masses, elements, constraints, joints, each with its place in the equations.
 
+use super::mass::{mass, planar_inertia, weight};
 use super::numbering::{Connection, Numbering, shifted};
 use super::{Compiler, Mode, Role, reactions};
 use crate::constraint::{Coincide, Length};
@@ -10,8 +11,8 @@ use crate::link::{AncfCable, ElasticRoute, natural_rigid};
 use crate::marker::Spin;
 use crate::math::lu::Symbolic;
 use crate::model::{
-    Block, BodyCoordinates, BodyPlace, Border, Contacting, Element, Inertia, JointPlace, Mass,
-    Model, PathRule, Placed,
+    Block, BodyCoordinates, BodyPlace, Border, Contacting, Element, Inertia, JointPlace, Model,
+    PathRule, Placed,
 };
 use crate::motion;
 use crate::scene::{BodyKind, Joint, JointModel, Link, LinkModel, PointRef, SceneError};
@@ -22,7 +23,8 @@ use crate::system::Shape;
 struct Terms {
     inertia: Vec<Inertia>,
     elements: Vec<(AncfCable, Vec<usize>)>,
-    lengths: Vec<(Length, String)>,
+    /// With the body.
+    lengths: Vec<(Length, usize)>,
     coincidences: Vec<(Coincide, String)>,
     loose: Vec<ClearanceJoint>,
     frictional: Vec<FrictionalJoint>,
@@ -48,26 +50,22 @@ pub(super) fn build(
     }
 
     let n = numbering.unknowns;
-    for (length, name) in &terms.lengths {
+    for &(length, body) in &terms.lengths {
         if length.i >= n && length.j >= n {
-            let message = format!("{name} repeats what the joints of both its ends already fix");
-            let body = c
-                .scene
-                .bodies
-                .iter()
-                .find(|b| name.ends_with(&b.name))
-                .map(|b| b.span);
-            return Err(c.scene.error(
-                body.unwrap_or(c.scene.initial.span),
-                message,
-                "redundant link",
-            ));
+            let body = &c.scene.bodies[body];
+            let message = format!(
+                "the length of {} repeats what the joints of both its ends already fix",
+                body.name
+            );
+            return Err(c.scene.error(body.span, message, "redundant link"));
         }
     }
     let multipliers = terms.lengths.len() + 2 * terms.coincidences.len();
     let symbolic = analyse(&terms, n, multipliers);
     let mut names = numbering.names.clone();
-    names.extend(terms.lengths.iter().map(|(_, name)| name.clone()));
+    let length_name =
+        |&(_, body): &(Length, usize)| format!("length of {}", c.scene.bodies[body].name);
+    names.extend(terms.lengths.iter().map(length_name));
     for (_, name) in &terms.coincidences {
         names.extend(["x", "y"].map(|d| format!("{name} ({d})")));
     }
@@ -219,33 +217,6 @@ fn path_rule(c: &Compiler, bodies: &[BodyCoordinates]) -> Option<PathRule> {
     }
 }
 
-/// m (x) I_2 on the positions and slopes that start at `firsts`; gravity acts on the positions.
-fn planar_inertia<const N: usize>(
-    m: [[f64; N]; N],
-    firsts: [usize; N],
-    positions: [bool; N],
-    g: [f64; 2],
-) -> Inertia {
-    let coordinates = firsts.iter().flat_map(|&x| [x, x + 1]).collect();
-    let mut values = vec![0.0; 4 * N * N];
-    for a in 0..N {
-        for b in 0..N {
-            for i in 0..2 {
-                values[(2 * a + i) * 2 * N + 2 * b + i] = m[a][b];
-            }
-        }
-    }
-    let field = positions
-        .iter()
-        .flat_map(|&p| if p { g } else { [0.0; 2] })
-        .collect();
-    Inertia {
-        coordinates,
-        values,
-        field,
-    }
-}
-
 fn body_terms(c: &Compiler, numbering: &mut Numbering, b: usize, terms: &mut Terms) {
     let body = &c.scene.bodies[b];
     let gravity = c.scene.simulation.gravity.unwrap_or([0.0; 2]);
@@ -272,9 +243,7 @@ fn body_terms(c: &Compiler, numbering: &mut Numbering, b: usize, terms: &mut Ter
                     j: ends[1],
                     length: link.length,
                 };
-                terms
-                    .lengths
-                    .push((length, format!("length of {}", body.name)));
+                terms.lengths.push((length, b));
             }
         }
         (
@@ -441,68 +410,4 @@ fn analyse(terms: &Terms, n: usize, multipliers: usize) -> Symbolic {
         clique(&joint.coordinates(), None);
     }
     Symbolic::analyse(n + multipliers, &cliques, &after)
-}
-
-/// Left-side forces of the weight, where there is any.
-fn weight(parts: &[Inertia], coordinates: usize) -> Vec<(usize, f64)> {
-    let mut forces = vec![0.0; coordinates];
-    for part in parts {
-        let n = part.coordinates.len();
-        for (row, &i) in part.coordinates.iter().enumerate() {
-            forces[i] -= (0..n)
-                .map(|k| part.values[row * n + k] * part.field[k])
-                .sum::<f64>();
-        }
-    }
-    forces
-        .into_iter()
-        .enumerate()
-        .filter(|(_, f)| *f != 0.0)
-        .collect()
-}
-
-/// Sums the parts; in the ideal mechanism every unknown has unit mass and the parts are dropped.
-fn mass(parts: Vec<Inertia>, numbering: &Numbering, symbolic: &Symbolic, mode: Mode) -> Mass {
-    let mut tangent = vec![0.0; symbolic.len()];
-    let parts = if mode == Mode::Ideal {
-        Vec::new()
-    } else {
-        parts
-    };
-    if mode == Mode::Ideal {
-        for i in 0..numbering.unknowns {
-            tangent[symbolic.slot(i, i) as usize] = 1.0;
-        }
-    }
-    let mut rows: Vec<std::collections::BTreeMap<usize, f64>> =
-        vec![Default::default(); numbering.coordinates];
-    for part in &parts {
-        let n = part.coordinates.len();
-        for (r, &i) in part.coordinates.iter().enumerate() {
-            for (s, &j) in part.coordinates.iter().enumerate() {
-                let m = part.values[r * n + s];
-                if m != 0.0 {
-                    *rows[i].entry(j).or_default() += m;
-                }
-            }
-        }
-    }
-    let mut mass = Mass {
-        parts,
-        row_start: vec![0],
-        columns: Vec::new(),
-        values: Vec::new(),
-        tangent,
-    };
-    for (i, row) in rows.iter().enumerate() {
-        for (&j, &m) in row {
-            mass.columns.push(j);
-            mass.values.push(m);
-            if i < numbering.unknowns && j < numbering.unknowns {
-                mass.tangent[symbolic.slot(i, j) as usize] = m;
-            }
-        }
-        mass.row_start.push(mass.columns.len());
-    }
-    mass
 }

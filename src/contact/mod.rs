@@ -157,14 +157,35 @@ macro_rules! damped_power_law {
 }
 pub(crate) use damped_power_law;
 
+/// Builds a law from stiffness K, exponent n, restitution coefficient c_e and the floor of the impact velocity.
+pub type Build = fn(f64, f64, f64, f64) -> Box<dyn NormalLaw>;
+
+/// All laws, by the kind that a scene names.
+pub const LAWS: [(NormalLawKind, Build); 4] = [
+    (NormalLawKind::Hertz, |k, n, _, _| {
+        Box::new(Hertz::new(k, n))
+    }),
+    (NormalLawKind::LankaraniNikravesh, |k, n, e, v| {
+        Box::new(LankaraniNikravesh::new(k, n, e, v))
+    }),
+    (NormalLawKind::HuntCrossley, |k, n, e, v| {
+        Box::new(HuntCrossley::new(k, n, e, v))
+    }),
+    (NormalLawKind::Flores, |k, n, e, v| {
+        Box::new(Flores::new(k, n, e, v))
+    }),
+];
+
 /// The normal law that a scene names.
 pub fn normal_law(contact: &Contact) -> Box<dyn NormalLaw> {
-    let (k, n) = (contact.stiffness, contact.exponent);
-    let (e, floor) = (contact.restitution, contact.impact_velocity_floor);
-    match contact.law {
-        NormalLawKind::Hertz => Box::new(Hertz::new(k, n)),
-        NormalLawKind::LankaraniNikravesh => Box::new(LankaraniNikravesh::new(k, n, e, floor)),
-        NormalLawKind::HuntCrossley => Box::new(HuntCrossley::new(k, n, e, floor)),
-        NormalLawKind::Flores => Box::new(Flores::new(k, n, e, floor)),
-    }
+    let (_, build) = LAWS
+        .iter()
+        .find(|(kind, _)| *kind == contact.law)
+        .expect("every kind of law is in the registry");
+    build(
+        contact.stiffness,
+        contact.exponent,
+        contact.restitution,
+        contact.impact_velocity_floor,
+    )
 }

@@ -203,7 +203,7 @@ impl Model {
         Some((g.e, g.delta, at.z[contact] > 0.0 && g.delta > 0.0))
     }
 
-    /// Angle (unwrapped only to (-pi, pi]), speed and torque of an actuated joint.
+    /// Angle (known to a full turn), speed and torque of an actuated joint.
     pub fn actuator(&self, actuator: &Actuator, at: &State, work: &mut Work) -> [f64; 3] {
         let [bearing, journal] = actuator.bodies.map(|b| self.pose(b, at));
         let centre = actuator.centre.position(&at.q, actuator.centre.arm(&at.q));

@@ -1,6 +1,6 @@
 //! Uniform motion on a circle with constant orientation (eq. 27).
 
-use super::{Motion, Path};
+use super::{Motion, POSES, Path};
 
 /// (x, y) = center + radius (cos, sin)(rate t + phase).
 #[derive(Debug, Clone, Copy)]
@@ -27,5 +27,10 @@ impl Path for Circle {
             velocity: [-w * y, w * x, 0.0],
             acceleration: [-w * w * x, -w * w * y, 0.0],
         }
+    }
+
+    fn sweep(&self, duration: f64) -> (f64, usize) {
+        let revolution = std::f64::consts::TAU / self.rate.abs();
+        (duration.min(revolution), POSES)
     }
 }

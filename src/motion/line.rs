@@ -1,6 +1,6 @@
 //! A straight line from pose to pose, from rest to rest.
 
-use super::{Motion, Path};
+use super::{Motion, POSES, Path};
 
 /// p = from + (to - from) s(t/duration), s = 10 u^3 - 15 u^4 + 6 u^5, at rest before and after.
 #[derive(Debug, Clone, Copy)]
@@ -27,5 +27,9 @@ impl Path for Line {
             motion.acceleration[i] = way * s_ddot;
         }
         motion
+    }
+
+    fn sweep(&self, duration: f64) -> (f64, usize) {
+        (duration.min(self.duration), POSES)
     }
 }

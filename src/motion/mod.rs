@@ -21,7 +21,13 @@ pub struct Motion {
 pub trait Path: std::fmt::Debug + Send + Sync {
     /// The motion at time t \[s\].
     fn at(&self, t: f64) -> Motion;
+    /// How to see all poses of the first `duration` seconds: the time after which none is new, and a number of poses
+    /// up to there that lie close together.
+    fn sweep(&self, duration: f64) -> (f64, usize);
 }
+
+/// Poses tried on one revolution, one line, or one row of a table at least.
+const POSES: usize = 720;
 
 /// The path that a scene names.
 pub fn path(spec: &Path2) -> Box<dyn Path> {

@@ -1,6 +1,6 @@
 //! A natural cubic spline through a table of poses.
 
-use super::{Motion, Path};
+use super::{Motion, POSES, Path};
 
 /// Twice continuously differentiable, with zero second derivatives at both ends.
 #[derive(Debug, Clone)]
@@ -63,5 +63,15 @@ impl Path for Table {
             motion.acceleration[i] = a * m0 + b * m1;
         }
         motion
+    }
+
+    fn sweep(&self, duration: f64) -> (f64, usize) {
+        let shortest = self.times.windows(2).map(|w| w[1] - w[0]);
+        let shortest = shortest.fold(f64::INFINITY, f64::min);
+        // 20 poses between neighbouring rows, wherever they are closest
+        (
+            duration,
+            POSES.max((20.0 * duration / shortest).ceil() as usize),
+        )
     }
 }

@@ -2,6 +2,7 @@
 
 use super::Simulation;
 use crate::contact::normal_law;
+use crate::model::BodyCoordinates;
 use crate::record::Ledger;
 use crate::scene::{JointModel, Scene};
 use serde::Serialize;
@@ -90,9 +91,9 @@ pub struct Report {
     pub clamps: u64,
     /// Energy ledger at the end.
     pub ledger: Ledger,
-    /// Largest axial strain at the end, of the flexible links.
+    /// Axial strain of largest magnitude over the recorded rows, of every flexible link.
     pub strain: BTreeMap<String, f64>,
-    /// Extremes of the recorded channels.
+    /// Extremes of the recorded channels, over the recorded rows.
     pub extremes: BTreeMap<String, Extreme>,
 }
 
@@ -193,7 +194,8 @@ impl Simulation {
             clamps: self.counters.clamps,
             ledger: self.recorder.ledger(&self.model, &self.state),
             strain: bodies
-                .filter_map(|(b, p)| Some((p.name.clone(), self.model.strain(b, &self.state)?)))
+                .filter(|(_, p)| matches!(p.coordinates, BodyCoordinates::FlexibleLink { .. }))
+                .map(|(b, p)| (p.name.clone(), self.strains[b]))
                 .collect(),
             extremes: names
                 .zip(&self.extremes)

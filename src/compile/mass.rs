@@ -1,0 +1,102 @@
+//! Masses and weights: the parts of the bodies and their sums.
+
+use super::Mode;
+use super::numbering::Numbering;
+use crate::math::lu::Symbolic;
+use crate::model::{Inertia, Mass};
+
+/// m (x) I_2 on the positions and slopes that start at `firsts`; gravity acts on the positions.
+pub(super) fn planar_inertia<const N: usize>(
+    m: [[f64; N]; N],
+    firsts: [usize; N],
+    positions: [bool; N],
+    g: [f64; 2],
+) -> Inertia {
+    let coordinates = firsts.iter().flat_map(|&x| [x, x + 1]).collect();
+    let mut values = vec![0.0; 4 * N * N];
+    for a in 0..N {
+        for b in 0..N {
+            for i in 0..2 {
+                values[(2 * a + i) * 2 * N + 2 * b + i] = m[a][b];
+            }
+        }
+    }
+    let field = positions
+        .iter()
+        .flat_map(|&p| if p { g } else { [0.0; 2] })
+        .collect();
+    Inertia {
+        coordinates,
+        values,
+        field,
+    }
+}
+
+/// Left-side forces of the weight, where there is any.
+pub(super) fn weight(parts: &[Inertia], coordinates: usize) -> Vec<(usize, f64)> {
+    let mut forces = vec![0.0; coordinates];
+    for part in parts {
+        let n = part.coordinates.len();
+        for (row, &i) in part.coordinates.iter().enumerate() {
+            forces[i] -= (0..n)
+                .map(|k| part.values[row * n + k] * part.field[k])
+                .sum::<f64>();
+        }
+    }
+    forces
+        .into_iter()
+        .enumerate()
+        .filter(|(_, f)| *f != 0.0)
+        .collect()
+}
+
+/// Sums the parts; in the ideal mechanism every unknown has unit mass and the parts are dropped.
+pub(super) fn mass(
+    parts: Vec<Inertia>,
+    numbering: &Numbering,
+    symbolic: &Symbolic,
+    mode: Mode,
+) -> Mass {
+    let mut tangent = vec![0.0; symbolic.len()];
+    let parts = if mode == Mode::Ideal {
+        Vec::new()
+    } else {
+        parts
+    };
+    if mode == Mode::Ideal {
+        for i in 0..numbering.unknowns {
+            tangent[symbolic.slot(i, i) as usize] = 1.0;
+        }
+    }
+    let mut rows: Vec<std::collections::BTreeMap<usize, f64>> =
+        vec![Default::default(); numbering.coordinates];
+    for part in &parts {
+        let n = part.coordinates.len();
+        for (r, &i) in part.coordinates.iter().enumerate() {
+            for (s, &j) in part.coordinates.iter().enumerate() {
+                let m = part.values[r * n + s];
+                if m != 0.0 {
+                    *rows[i].entry(j).or_default() += m;
+                }
+            }
+        }
+    }
+    let mut mass = Mass {
+        parts,
+        row_start: vec![0],
+        columns: Vec::new(),
+        values: Vec::new(),
+        tangent,
+    };
+    for (i, row) in rows.iter().enumerate() {
+        for (&j, &m) in row {
+            mass.columns.push(j);
+            mass.values.push(m);
+            if i < numbering.unknowns && j < numbering.unknowns {
+                mass.tangent[symbolic.slot(i, j) as usize] = m;
+            }
+        }
+        mass.row_start.push(mass.columns.len());
+    }
+    mass
+}

@@ -1,0 +1,167 @@
+//! Closing the ideal mechanism at t = 0: the sketch chooses the branch.
+
+use super::Compiler;
+use crate::kinematics::Kinematics;
+use crate::marker::Marker;
+use crate::math::plane::{cross, dot, norm, sub};
+use crate::model::{BodyCoordinates, Model};
+use crate::scene::{BodyKind, Drive, Link, PointRef, SceneError};
+use crate::system::State;
+
+/// Closes the mechanism at t = 0 from the sketch.
+pub(super) fn close(
+    c: &Compiler,
+    drive: &Drive,
+    kinematics: &Kinematics,
+) -> Result<State, SceneError> {
+    let mechanism = &*kinematics.mechanism;
+    let mut inner = kinematics.work();
+    mechanism.follow_path(&mut inner.state);
+    mechanism.ride(&mut inner.state);
+    let guessed = guess(c, mechanism, &mut inner.state)?;
+    kinematics.solve(&mut inner, 60).map_err(|e| {
+        c.scene.error(
+            drive.span,
+            format!("drive {}: {e}", drive.name),
+            "the mechanism of this drive",
+        )
+    })?;
+    for (x, sketch) in guessed {
+        let found = [inner.state.q[x], inner.state.q[x + 1]];
+        let (drawn, joint) = (
+            &c.scene.initial.sketch[sketch],
+            &c.scene.joints[c.scene.initial.sketch[sketch].joint],
+        );
+        let lengths =
+            [joint.bearing, joint.journal].map(|p| link(c, p).map_or(f64::INFINITY, |l| l.length));
+        let shortest = lengths[0].min(lengths[1]);
+        if norm(sub(found, drawn.at)) > 0.25 * shortest {
+            let message = format!(
+                "joint {} closes at ({:.4}, {:.4}) m, far from its sketch: draw it closer to the branch you mean",
+                joint.name, found[0], found[1]
+            );
+            return Err(c.scene.error(drawn.span, message, "the sketch"));
+        }
+    }
+    Ok(inner.state)
+}
+
+pub(super) fn marker(c: &Compiler, mechanism: &Model, point: PointRef) -> Marker {
+    c.marker(&mechanism.bodies()[point.body].coordinates, point)
+}
+
+fn link<'a>(c: &Compiler<'a>, point: PointRef) -> Option<&'a Link> {
+    match &c.scene.bodies[point.body].kind {
+        BodyKind::Link(link) => Some(link),
+        _ => None,
+    }
+}
+
+/// Puts the sketched positions into the unknown nodes and fits the unknown rigid bodies to them; returns all sketched
+/// nodes with the index of their sketch.
+fn guess(
+    c: &Compiler,
+    mechanism: &Model,
+    state: &mut State,
+) -> Result<Vec<(usize, usize)>, SceneError> {
+    let n = mechanism.shape().unknowns;
+    let mut known = vec![false; state.q.len()];
+    known[n..].fill(true);
+    let mut guessed = Vec::new();
+    for (k, sketch) in c.scene.initial.sketch.iter().enumerate() {
+        let joint = &c.scene.joints[sketch.joint];
+        for point in [joint.bearing, joint.journal] {
+            if let Marker::Node { x } = marker(c, mechanism, point) {
+                if x < n {
+                    state.q[x..x + 2].copy_from_slice(&sketch.at);
+                }
+                guessed.push((x, k));
+                known[x] = true;
+            }
+        }
+    }
+    for (b, body) in c.scene.bodies.iter().enumerate() {
+        match (&mechanism.bodies()[b].coordinates, &body.kind) {
+            (BodyCoordinates::RigidLink { ends }, _) => {
+                if let Some(end) = (0..2).find(|&e| !known[ends[e]]) {
+                    let name = c.point_name(PointRef {
+                        body: b,
+                        point: end,
+                    });
+                    let message = format!(
+                        "the sketch does not say where {name} is: give the position of a joint there"
+                    );
+                    return Err(c.scene.error(body.span, message, "this body"));
+                }
+            }
+            (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid)) if *x < n => {
+                let pairs: Vec<_> = (0..rigid.points.len())
+                    .filter_map(|point| sketch_of(c, mechanism, state, PointRef { body: b, point }))
+                    .collect();
+                if pairs.len() < 2 {
+                    let message = format!(
+                        "the sketch must give the positions of two joints of {}",
+                        body.name
+                    );
+                    return Err(c.scene.error(body.span, message, "this body"));
+                }
+                let pose = fit(&pairs);
+                state.q[*x..x + 3].copy_from_slice(&pose);
+            }
+            _ => {}
+        }
+    }
+    Ok(guessed)
+}
+
+/// (point in the body, approximate position) of a point of a rigid body, from a sketch or from a known partner.
+fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) -> Option<Pair> {
+    let BodyKind::Rigid(rigid) = &c.scene.bodies[point.body].kind else {
+        return None;
+    };
+    let local = rigid.points[point.point].at;
+    c.scene.joints.iter().enumerate().find_map(|(j, joint)| {
+        let partner = match () {
+            () if joint.bearing == point => joint.journal,
+            () if joint.journal == point => joint.bearing,
+            () => return None,
+        };
+        let drawn = c
+            .scene
+            .initial
+            .sketch
+            .iter()
+            .find(|s| s.joint == j)
+            .map(|s| s.at);
+        let known = || {
+            c.is_known(partner)
+                .then(|| mechanism.position(&marker(c, mechanism, partner), state))
+        };
+        drawn.or_else(known).map(|at| (local, at))
+    })
+}
+
+/// A point in the frame of its body and its approximate position.
+type Pair = ([f64; 2], [f64; 2]);
+
+/// The pose (x, y, theta) that carries points of a body closest to given positions.
+fn fit(pairs: &[Pair]) -> [f64; 3] {
+    let count = pairs.len() as f64;
+    let mean = |pick: fn(&Pair) -> [f64; 2]| {
+        let sum = pairs
+            .iter()
+            .map(pick)
+            .fold([0.0; 2], |s, p| [s[0] + p[0], s[1] + p[1]]);
+        [sum[0] / count, sum[1] / count]
+    };
+    let (local, global) = (mean(|p| p.0), mean(|p| p.1));
+    let (mut sine, mut cosine) = (0.0, 0.0);
+    for (s, r) in pairs {
+        let (s, r) = (sub(*s, local), sub(*r, global));
+        sine += cross(s, r);
+        cosine += dot(s, r);
+    }
+    let theta = f64::atan2(sine, cosine);
+    let turned = crate::math::plane::rotate(theta.cos(), theta.sin(), local);
+    [global[0] - turned[0], global[1] - turned[1], theta]
+}

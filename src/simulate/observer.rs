@@ -1,0 +1,53 @@
+//! What a run tells while it is under way.
+
+/// A contact that closes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Onset<'a> {
+    /// When \[s\].
+    pub t: f64,
+    /// The joint.
+    pub joint: &'a str,
+    /// delta_dot at onset \[m/s\].
+    pub impact_velocity: f64,
+    /// Penetration at the located instant \[m\], zero but for the onset tolerance.
+    pub delta: f64,
+}
+
+/// Where a run is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Simulated time \[s\].
+    pub t: f64,
+    /// Duration of the scene \[s\].
+    pub duration: f64,
+    /// Contacts closed now.
+    pub contacts: usize,
+}
+
+/// Whether a run goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Control {
+    /// Go on.
+    Continue,
+    /// Stop after this step.
+    Stop,
+}
+
+/// Receives the results of a run as they come.
+pub trait Observer {
+    /// A recorded row, in the order of [`Simulation::channels`].
+    ///
+    /// # Errors
+    /// When it cannot be stored; the run stops.
+    fn row(&mut self, values: &[f64]) -> std::io::Result<()>;
+    /// A contact has closed.
+    ///
+    /// # Errors
+    /// When it cannot be stored; the run stops.
+    fn onset(&mut self, onset: &Onset) -> std::io::Result<()>;
+    /// A step has been taken.
+    ///
+    /// # Errors
+    /// When it cannot be told; the run stops.
+    fn step(&mut self, progress: &Progress) -> std::io::Result<Control>;
+}
