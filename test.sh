@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 # Tests may be added, not lost: raise this number with them.
-fewest_tests=0
+fewest_tests=116
 
 cargo fmt --all --check
 cargo clippy --workspace --all-targets -- -D warnings

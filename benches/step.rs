@@ -3,27 +3,12 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use looselink::newton::Newton;
 use looselink::scene::Scene;
-use looselink::simulate::{Control, Observer, Onset, Progress, Simulation};
+use looselink::simulate::Simulation;
 use looselink::stepper::stepper;
 use looselink::system::System;
 use std::path::Path;
 
 const STEP: f64 = 1e-5;
-
-/// Discards what a run tells.
-struct Silent;
-
-impl Observer for Silent {
-    fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
-        Ok(())
-    }
-    fn onset(&mut self, _: &Onset) -> std::io::Result<()> {
-        Ok(())
-    }
-    fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
-        Ok(Control::Continue)
-    }
-}
 
 fn steps(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("bathe_step");
@@ -40,7 +25,7 @@ fn steps(criterion: &mut Criterion) {
             .expect("a scene of the project is valid");
         let mut simulation = Simulation::new(&scene).expect("a scene of the project compiles");
         simulation
-            .run(&mut Silent)
+            .run(&mut ())
             .expect("a scene of the project runs");
         let model = simulation.model();
         let (from, mut to) = (simulation.state().clone(), simulation.state().clone());

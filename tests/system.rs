@@ -3,24 +3,9 @@
 use crate::support::{load, path};
 use looselink::newton::Newton;
 use looselink::scene::Scene;
-use looselink::simulate::{Control, Observer, Onset, Progress, Simulation};
+use looselink::simulate::Simulation;
 use looselink::stepper::stepper;
 use looselink::system::{State, System, Weights};
-
-/// Discards what a run tells.
-struct Silent;
-
-impl Observer for Silent {
-    fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
-        Ok(())
-    }
-    fn onset(&mut self, _: &Onset) -> std::io::Result<()> {
-        Ok(())
-    }
-    fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
-        Ok(Control::Continue)
-    }
-}
 
 fn scenes() -> Vec<String> {
     let mut names = Vec::new();
@@ -45,7 +30,7 @@ fn scenes() -> Vec<String> {
 /// A state some milliseconds into a scene, with closed contacts where it has contacts.
 fn state(scene: &Scene) -> (Simulation, State) {
     let mut simulation = Simulation::new(scene).unwrap();
-    simulation.run(&mut Silent).unwrap();
+    simulation.run(&mut ()).unwrap();
     let state = simulation.state().clone();
     (simulation, state)
 }

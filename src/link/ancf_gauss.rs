@@ -3,7 +3,7 @@
 //! F = EA int eps S_l q dx + EI int S''^T S'' q dx with eps = 1/2 (q^T S_l q - 1), S_l = S'^T S'. The axial integrand has
 //! degree 8, the bending integrand degree 2: five points are exact for both.
 
-use super::ElasticRoute;
+use super::{ElasticRoute, shape_derivatives};
 use crate::math::plane::{Vec2, add, dot, scale};
 use crate::math::quadrature::GAUSS5;
 
@@ -28,18 +28,7 @@ impl ElasticRoute for GaussCable {
     fn new(length: f64, axial_stiffness: f64, bending_stiffness: f64) -> GaussCable {
         let l = length;
         let points = GAUSS5.map(|(x, weight)| {
-            let first = [
-                (6.0 * x * x - 6.0 * x) / l,
-                1.0 - 4.0 * x + 3.0 * x * x,
-                (6.0 * x - 6.0 * x * x) / l,
-                3.0 * x * x - 2.0 * x,
-            ];
-            let second = [
-                (12.0 * x - 6.0) / (l * l),
-                (6.0 * x - 4.0) / l,
-                (6.0 - 12.0 * x) / (l * l),
-                (6.0 * x - 2.0) / l,
-            ];
+            let (first, second) = shape_derivatives(x, l);
             (weight * l, first, second)
         });
         GaussCable {

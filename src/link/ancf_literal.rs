@@ -2,7 +2,7 @@
 //!
 //! Kept to measure what the reduced route gains; simulations never take it.
 
-use super::ElasticRoute;
+use super::{ElasticRoute, shape_derivatives};
 use crate::math::quadrature::GAUSS5;
 
 type Matrix = [[f64; 8]; 8];
@@ -54,18 +54,7 @@ impl ElasticRoute for LiteralCable {
         };
         for (x, weight) in GAUSS5 {
             let w = weight * l;
-            let first = [
-                (6.0 * x * x - 6.0 * x) / l,
-                1.0 - 4.0 * x + 3.0 * x * x,
-                (6.0 * x - 6.0 * x * x) / l,
-                3.0 * x * x - 2.0 * x,
-            ];
-            let second = [
-                (12.0 * x - 6.0) / (l * l),
-                (6.0 * x - 4.0) / l,
-                (6.0 - 12.0 * x) / (l * l),
-                (6.0 * x - 2.0) / l,
-            ];
+            let (first, second) = shape_derivatives(x, l);
             let mut s_l = [[0.0; 8]; 8];
             for i in 0..8 {
                 for j in (i % 2..8).step_by(2) {

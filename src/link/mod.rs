@@ -10,6 +10,21 @@ pub use ancf_cable::AncfCable;
 pub use ancf_gauss::GaussCable;
 pub use ancf_literal::LiteralCable;
 
+/// First and second derivatives by x \[1/m, 1/m2 times the unit of the shape function\] of the shape functions S_1 ... S_4
+/// of eq. 8 at xi = x/l.
+fn shape_derivatives(xi: f64, l: f64) -> ([f64; 4], [f64; 4]) {
+    let chord = 6.0 * xi * (1.0 - xi) / l;
+    let bend = (12.0 * xi - 6.0) / (l * l);
+    let first = [
+        -chord,
+        (1.0 - xi) * (1.0 - 3.0 * xi),
+        chord,
+        xi * (3.0 * xi - 2.0),
+    ];
+    let second = [bend, (6.0 * xi - 4.0) / l, -bend, (6.0 * xi - 2.0) / l];
+    (first, second)
+}
+
 /// The elastic force of the planar cubic ANCF element (eq. 11): one law, several routes to the same numbers.
 ///
 /// Local coordinates q = (r_i, r_i', r_j, r_j'), eq. 7, in m and 1; forces are conjugate to them.

@@ -51,3 +51,18 @@ pub trait Observer {
     /// When it cannot be told; the run stops.
     fn step(&mut self, progress: &Progress) -> std::io::Result<Control>;
 }
+
+/// Discards everything, for whoever looks at the final state and the report alone.
+impl Observer for () {
+    fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
+        Ok(())
+    }
+
+    fn onset(&mut self, _: &Onset) -> std::io::Result<()> {
+        Ok(())
+    }
+
+    fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
+        Ok(Control::Continue)
+    }
+}
