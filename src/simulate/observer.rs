@@ -35,7 +35,7 @@ pub enum Control {
 
 /// Receives the results of a run as they come.
 pub trait Observer {
-    /// A recorded row, in the order of [`Simulation::channels`].
+    /// A recorded row, in the order of [`super::Simulation::channels`].
     ///
     /// # Errors
     /// When it cannot be stored; the run stops.
