@@ -86,7 +86,8 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
                 return Err(redundant("both of its points are already fixed"));
             }
             nodes.parent[b] = a;
-            nodes.anchor[a] = nodes.anchor[a].or(nodes.anchor[b]);
+            // only the root of a class is tied
+            nodes.anchor[a] = nodes.anchor[a].or(nodes.anchor[b].take());
             Connection::Eliminated
         } else if free_end(bearing) && c.is_known(journal)
             || free_end(journal) && c.is_known(bearing)

@@ -37,6 +37,15 @@ struct SlipState {
     spins: [SpinDerivatives; 2],
 }
 
+/// A touching contact: geometry, slip and both forces.
+struct Sliding {
+    g: Geometry,
+    touch: Touch,
+    slip: SlipState,
+    normal: NormalForce,
+    tangential: TangentialForce,
+}
+
 impl FrictionalJoint {
     /// A joint whose bodies turn with the given spins; `bearing_radius` is R_i \[m\].
     pub fn new(
@@ -112,50 +121,47 @@ impl FrictionalJoint {
         s
     }
 
-    /// Slip velocity, normal and tangential force of a touching contact.
+    /// Everything about a touching contact; `None` where the surfaces are apart.
+    fn sliding(&self, q: &[f64], v: &[f64], impact_velocity: f64) -> Option<Sliding> {
+        let g = self.joint.geometry(q, v);
+        let normal = self.joint.normal_force(&g, impact_velocity)?;
+        let touch = self.joint.touch(v, &g);
+        let slip = self.slip_state(q, v, &g, &touch);
+        let tangential = self.law.force(slip.value, normal.value);
+        Some(Sliding {
+            g,
+            touch,
+            slip,
+            normal,
+            tangential,
+        })
+    }
+
+    /// Normal and tangential force of a touching contact.
     pub fn forces(
         &self,
         q: &[f64],
         v: &[f64],
         impact_velocity: f64,
     ) -> Option<(NormalForce, TangentialForce)> {
-        let g = self.joint.geometry(q, v);
-        let normal = self.joint.normal_force(&g, impact_velocity)?;
-        let slip = self.slip_state(q, v, &g, &self.joint.touch(v, &g)).value;
-        Some((normal, self.law.force(slip, normal.value)))
+        let s = self.sliding(q, v, impact_velocity)?;
+        Some((s.normal, s.tangential))
     }
 
     /// Force of the bearing on the journal \[N\].
     pub fn journal_force(&self, q: &[f64], v: &[f64], impact_velocity: f64) -> Vec2 {
-        let g = self.joint.geometry(q, v);
-        self.forces(q, v, impact_velocity)
-            .map_or([0.0; 2], |(normal, tangential)| {
-                let touch = self.joint.touch(v, &g);
-                scale(
-                    -1.0,
-                    add(
-                        scale(normal.value, touch.n),
-                        scale(tangential.value, touch.t),
-                    ),
-                )
-            })
+        self.sliding(q, v, impact_velocity).map_or([0.0; 2], |s| {
+            let normal = scale(s.normal.value, s.touch.n);
+            scale(-1.0, add(normal, scale(s.tangential.value, s.touch.t)))
+        })
     }
 
     /// Power taken by friction \[W\]: the tangential force on the velocities it acts on.
     pub fn dissipation(&self, q: &[f64], v: &[f64], impact_velocity: f64) -> f64 {
-        let g = self.joint.geometry(q, v);
-        self.forces(q, v, impact_velocity)
-            .map_or(0.0, |(_, tangential)| {
-                let touch = self.joint.touch(v, &g);
-                let lever = self.slip_state(q, v, &g, &touch).lever;
-                let speed: f64 = self
-                    .coordinates
-                    .iter()
-                    .zip(lever)
-                    .map(|(&i, l)| l * v[i])
-                    .sum();
-                tangential.value * speed
-            })
+        self.sliding(q, v, impact_velocity).map_or(0.0, |s| {
+            let levers = self.coordinates.iter().zip(s.slip.lever);
+            s.tangential.value * levers.map(|(&i, l)| l * v[i]).sum::<f64>()
+        })
     }
 
     /// Adds the local force to `f`; returns the normal force where the surfaces touch.
@@ -166,16 +172,16 @@ impl FrictionalJoint {
         impact_velocity: f64,
         f: &mut [f64; WIDTH],
     ) -> Option<NormalForce> {
-        let g = self.joint.geometry(q, v);
-        let normal = self.joint.normal_force(&g, impact_velocity)?;
-        let touch = self.joint.touch(v, &g);
-        let slip = self.slip_state(q, v, &g, &touch);
-        let tangential = self.law.force(slip.value, normal.value);
-        self.joint.add_force(&touch, &normal, f);
-        for (f, lever) in f.iter_mut().zip(slip.lever) {
-            *f += tangential.value * lever;
+        let s = self.sliding(q, v, impact_velocity)?;
+        self.add_force(&s, f);
+        Some(s.normal)
+    }
+
+    fn add_force(&self, s: &Sliding, f: &mut [f64; WIDTH]) {
+        self.joint.add_force(&s.touch, &s.normal, f);
+        for (f, lever) in f.iter_mut().zip(s.slip.lever) {
+            *f += s.tangential.value * lever;
         }
-        Some(normal)
     }
 
     /// Adds the local force to `f` and the tangent to `k`; returns the normal force where the surfaces touch.
@@ -188,18 +194,20 @@ impl FrictionalJoint {
         f: &mut [f64; WIDTH],
         k: &mut LocalMatrix,
     ) -> Option<NormalForce> {
-        let g = self.joint.geometry(q, v);
-        let normal = self.joint.normal_force(&g, impact_velocity)?;
-        let touch = self.joint.touch(v, &g);
-        let slip = self.slip_state(q, v, &g, &touch);
-        let tangential = self.law.force(slip.value, normal.value);
-        self.joint.add_force(&touch, &normal, f);
+        let s = self.sliding(q, v, impact_velocity)?;
+        self.add_force(&s, f);
+        let Sliding {
+            g,
+            touch,
+            slip,
+            normal,
+            tangential,
+        } = s;
         self.joint.add_tangent(&g, &touch, &normal, w, k);
 
         let normal_gradient = self.joint.force_gradient(&touch, &normal, w);
         let turning = w.q * tangential.value / g.eccentricity;
         for r in 0..self.coordinates.len() {
-            f[r] += tangential.value * slip.lever[r];
             for c in 0..self.coordinates.len() {
                 let slip_gradient = w.v * slip.by_v[c] + w.q * slip.by_q[c];
                 let gradient =
