@@ -2,10 +2,11 @@
 
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::figures::{caption, step_label, time_axis};
-use crate::numbers::{Numbers, digits, si};
-use crate::plot::{Axis, Figure, Mark, Panel, palette};
+use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::peak;
+use plot::{Axis, Figure, Mark, Panel, palette};
+use plot::{digits, si};
 
 /// The error the paper reads off its Figs. 5a and 5b \[m\].
 pub const CLAIMED: f64 = 2e-4;

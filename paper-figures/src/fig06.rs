@@ -2,15 +2,16 @@
 
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::figures::{caption, step_label, time_axis};
-use crate::numbers::{Numbers, digits};
-use crate::plot::{Axis, Figure, Mark, Panel, palette};
+use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::{peak, rms};
+use plot::digits;
+use plot::{Axis, Figure, Mark, Panel, palette};
 
 /// Draws the figure.
 pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
     let (t, a) = c.ideal.between("platform.ax", FROM, DURATION);
-    let mut panel = |title: &str, name: &str, shown: &[(&Recording, crate::plot::Color)]| {
+    let mut panel = |title: &str, name: &str, shown: &[(&Recording, plot::Color)]| {
         let first = shown[0].0;
         let largest = numbers.put(
             format!("fig6.{name}.peak"),

@@ -2,10 +2,11 @@
 
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::figures::{caption, step_label, time_axis};
-use crate::numbers::{Numbers, si};
-use crate::plot::{Axis, Color, Figure, Mark, Panel, palette};
+use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::{mean, peak};
+use plot::si;
+use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
 /// Draws the figure.
 pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {

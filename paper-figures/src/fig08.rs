@@ -3,10 +3,11 @@
 
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::figures::{caption, step_label, time_axis};
-use crate::numbers::{Numbers, percent, si};
-use crate::plot::{Axis, Figure, Mark, Panel, palette};
+use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::fraction;
+use plot::{Axis, Figure, Mark, Panel, palette};
+use plot::{percent, si};
 
 /// Draws the figure.
 pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {

@@ -3,10 +3,11 @@
 
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::figures::{caption, step_label};
-use crate::numbers::{Numbers, digits};
-use crate::plot::{Axis, Color, Figure, Mark, Panel, palette};
+use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::{mean, rms};
+use plot::digits;
+use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
 /// Draws the figure.
 pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {

@@ -1,12 +1,13 @@
 //! What Figs. 5 to 9 have in common, and the list of them.
 
 use crate::campaign::{Campaign, DURATION, FROM};
-use crate::numbers::{Numbers, si};
-use crate::plot::{Axis, Figure, save};
+use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::{fig05, fig06, fig07, fig08, fig09};
 use looselink::scene::Method;
 use miette::Result;
+use plot::si;
+use plot::{Axis, Figure, save};
 use rayon::prelude::*;
 use std::path::Path;
 

@@ -10,7 +10,6 @@ mod figures;
 mod kinematics;
 mod measures;
 mod numbers;
-mod plot;
 mod reproduction;
 mod runs;
 mod scans;

@@ -4,11 +4,12 @@ use crate::campaign::{Campaign, DURATION, FROM};
 use crate::fig05::CLAIMED;
 use crate::kinematics::Geometry;
 use crate::measures::AllMeasures;
-use crate::numbers::{Numbers, digits, si};
+use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::peak;
 use crate::{statements_acceleration, statements_contact, statements_error, statements_setup};
 use looselink::scene::{BodyKind, LinkModel};
+use plot::{digits, si};
 use std::fmt::Write;
 
 /// The page.

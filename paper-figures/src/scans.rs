@@ -2,11 +2,11 @@
 
 use crate::campaign::{DURATION, FROM};
 use crate::kinematics::Geometry;
-use crate::plot::Axis;
 use crate::runs::{Plan, Recording};
 use crate::scans_list::{all, baseline};
 use crate::signal::{fraction, mean, peak, rms};
 use miette::Result;
+use plot::Axis;
 use rayon::prelude::*;
 use std::collections::HashMap;
 

@@ -2,10 +2,10 @@
 
 use crate::campaign::DURATION;
 use crate::kinematics::Geometry;
-use crate::numbers::{digits, si};
-use crate::plot::Axis;
 use crate::runs::Plan;
 use crate::scans::{Entry, Scan};
+use plot::Axis;
+use plot::{digits, si};
 
 /// Thickness of the moving platform in Table 1 \[m\].
 const THICKNESS: f64 = 0.01;

@@ -2,9 +2,10 @@
 
 use crate::campaign::{DURATION, FROM};
 use crate::fig05::CLAIMED;
-use crate::numbers::{Numbers, digits, percent, si};
-use crate::plot::{Axis, Color, Figure, Mark, Panel, palette};
+use crate::numbers::Numbers;
 use crate::scans::{Scan, Values};
+use plot::{Axis, Color, Figure, Mark, Panel, palette};
+use plot::{digits, percent, si};
 use std::fmt::Write;
 
 /// What a panel shows: title, axis, main and secondary value.

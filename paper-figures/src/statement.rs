@@ -29,7 +29,7 @@ impl Statement {
         match self.factor {
             Some(factor) => format!(
                 "{words}; measured is {} of the paper's value",
-                crate::numbers::digits(factor)
+                plot::digits(factor)
             ),
             None => words.into(),
         }

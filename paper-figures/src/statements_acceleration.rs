@@ -2,9 +2,10 @@
 
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::measures::AllMeasures;
-use crate::numbers::{Numbers, digits, percent, si};
+use crate::numbers::Numbers;
 use crate::signal::{coincidence, peak, peaks, rms};
 use crate::statement::Statement;
+use plot::{digits, percent, si};
 
 /// Peaks that are compared with other events.
 pub const PEAKS: usize = 50;

@@ -3,11 +3,12 @@
 use crate::campaign::{Campaign, DURATION, FROM, TWIN_CHANGE, TWIN_DURATION, TWIN_STEP};
 use crate::fig09;
 use crate::measures::AllMeasures;
-use crate::numbers::{Numbers, digits, percent, si};
+use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::{coincidence, growth_rate, peak, peaks};
 use crate::statement::Statement;
 use crate::statements_acceleration::{PEAKS, PEAKS_APART, SIMULTANEOUS};
+use plot::{digits, percent, si};
 
 /// Cycles further apart than this fraction of their amplitude do not repeat.
 const REPEATS: f64 = 0.01;

@@ -3,10 +3,11 @@
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::fig05::CLAIMED;
 use crate::measures::AllMeasures;
-use crate::numbers::{Numbers, digits, percent, si};
+use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::{peak, rms, smooth};
 use crate::statement::Statement;
+use plot::{digits, percent, si};
 
 /// The statements.
 pub fn statements(c: &Campaign, m: &AllMeasures, numbers: &mut Numbers) -> Vec<Statement> {

@@ -2,11 +2,12 @@
 
 use crate::campaign::{Campaign, DURATION};
 use crate::measures::AllMeasures;
-use crate::numbers::{Numbers, digits, percent, si};
+use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::peak;
 use crate::statement::Statement;
 use looselink::scene::{BodyKind, JointModel, LinkModel, Method};
+use plot::{digits, percent, si};
 
 /// Young's modulus of aluminium \[Pa\].
 const ALUMINIUM: f64 = 70e9;

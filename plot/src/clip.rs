@@ -1,6 +1,6 @@
 //! Cuts polylines at the frame of a panel.
 
-use super::decimate::Point;
+use crate::decimate::Point;
 
 /// A rectangle in pixels, `low` and `high` corners inclusive.
 #[derive(Clone, Copy)]

@@ -7,11 +7,13 @@ mod clip;
 mod decimate;
 mod label;
 mod layout;
+mod number;
 mod output;
 mod panel;
 mod text;
 mod ticks;
 
+pub use number::{digits, percent, si};
 pub use output::save;
 pub use ticks::superscript;
 

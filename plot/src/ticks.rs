@@ -1,6 +1,6 @@
 //! Where the ticks of an axis stand and what is written at them.
 
-use super::{Axis, Scale};
+use crate::{Axis, Scale};
 
 /// A laid-out axis: the range in drawing values (after factor, power of ten and logarithm) and its ticks.
 pub struct Ticks {

@@ -1,7 +1,7 @@
 //! Where everything stands on the page, in pixels.
 
-use super::ticks::Ticks;
-use super::{Axis, Figure, Mark, Panel, Scale, Shape, text};
+use crate::ticks::Ticks;
+use crate::{Axis, Figure, Mark, Panel, Scale, Shape, text};
 
 /// Width of every figure: 178 mm at 300 dpi.
 pub const WIDTH: i32 = 2100;

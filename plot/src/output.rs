@@ -1,8 +1,8 @@
 //! Writes a figure as SVG and, rasterised from that SVG with the embedded font, as PNG.
 
-use super::label::Label;
-use super::layout::{SMALL, SMALL_LINE, WIDTH, page};
-use super::{Figure, panel, text};
+use crate::label::Label;
+use crate::layout::{SMALL, SMALL_LINE, WIDTH, page};
+use crate::{Figure, panel, text};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use plotters::prelude::{IntoDrawingArea, SVGBackend, WHITE};
 use resvg::{tiny_skia, usvg};
@@ -95,7 +95,7 @@ fn png(svg: &str) -> Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::{Axis, Mark, Panel, palette};
+    use crate::{Axis, Mark, Panel, palette};
 
     fn sample() -> Figure {
         let x: Vec<f64> = (0..300_000)

@@ -1,11 +1,11 @@
 //! Draws one panel with plotters.
 
-use super::clip::Frame;
-use super::decimate::{Point, envelope, portrait};
-use super::label::Label;
-use super::layout::{LABEL, Placed, SAMPLE, SMALL, SMALL_LINE, TITLE};
-use super::ticks::Ticks;
-use super::{Color, Mark, Shape, palette};
+use crate::clip::Frame;
+use crate::decimate::{Point, envelope, portrait};
+use crate::label::Label;
+use crate::layout::{LABEL, Placed, SAMPLE, SMALL, SMALL_LINE, TITLE};
+use crate::ticks::Ticks;
+use crate::{Color, Mark, Shape, palette};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::Color as _;

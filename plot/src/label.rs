@@ -1,7 +1,7 @@
 //! Lines of text.
 
-use super::panel::{Canvas, DrawError, rgb};
-use super::{palette, text};
+use crate::panel::{Canvas, DrawError, rgb};
+use crate::{palette, text};
 use plotters::prelude::*;
 use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
