@@ -50,6 +50,8 @@ pub struct State {
     pub t: f64,
     /// Coordinates: unknown, then known.
     pub q: Vec<f64>,
+    /// What rounding has taken off the unknown coordinates; q + `q_low` is what a stepper carries on.
+    pub q_low: Vec<f64>,
     /// Velocities.
     pub v: Vec<f64>,
     /// Accelerations.
@@ -70,6 +72,7 @@ impl State {
         State {
             t: 0.0,
             q: vec![0.0; shape.coordinates],
+            q_low: vec![0.0; shape.unknowns],
             v: vec![0.0; shape.coordinates],
             a: vec![0.0; shape.coordinates],
             lambda: vec![0.0; shape.multipliers],
@@ -83,6 +86,7 @@ impl State {
     pub fn copy_from(&mut self, other: &State) {
         self.t = other.t;
         self.q.copy_from_slice(&other.q);
+        self.q_low.copy_from_slice(&other.q_low);
         self.v.copy_from_slice(&other.v);
         self.a.copy_from_slice(&other.a);
         self.lambda.copy_from_slice(&other.lambda);

@@ -16,7 +16,7 @@
 //! and carry the rounding of Phi divided by g^2. Every stage is therefore ended by a projection of v on Phi_q v = 0 and
 //! an acceleration-level solve; what the next stage builds on, and what is recorded, is consistent and of order two.
 
-use super::{StepError, Stepper, integrate};
+use super::{StepError, Stepper, accumulate, integrate};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
 
@@ -30,6 +30,8 @@ pub struct Bathe {
     middle: [State; 1],
     q_hat: Vec<f64>,
     v_hat: Vec<f64>,
+    /// q_hat - q.
+    way: Vec<f64>,
 }
 
 impl Bathe {
@@ -45,6 +47,7 @@ impl Bathe {
             middle: [State::zeros(shape)],
             q_hat: vec![0.0; shape.unknowns],
             v_hat: vec![0.0; shape.unknowns],
+            way: vec![0.0; shape.unknowns],
         }
     }
 }
@@ -69,7 +72,8 @@ impl Stepper for Bathe {
         system.prescribe(from, middle, work)?;
         for i in 0..n {
             self.v_hat[i] = from.v[i] + g * from.a[i];
-            self.q_hat[i] = from.q[i] + g * (from.v[i] + self.v_hat[i]);
+            self.way[i] = g * (from.v[i] + self.v_hat[i]);
+            self.q_hat[i] = from.q[i] + self.way[i];
         }
         newton.solve_stage(
             system,
@@ -79,6 +83,7 @@ impl Stepper for Bathe {
             middle,
             work,
         )?;
+        accumulate(from, &self.way, g * g, middle);
         let mut clamps = newton.finish_stage(system, middle, work)?;
 
         let [c0, c1, c2] = self.weights;
@@ -88,8 +93,8 @@ impl Stepper for Bathe {
         system.prescribe(middle, to, work)?;
         for i in 0..n {
             self.v_hat[i] = from.v[i] + h * (c0 * from.a[i] + c1 * middle.a[i]);
-            self.q_hat[i] =
-                from.q[i] + h * (c0 * from.v[i] + c1 * middle.v[i] + c2 * self.v_hat[i]);
+            self.way[i] = h * (c0 * from.v[i] + c1 * middle.v[i] + c2 * self.v_hat[i]);
+            self.q_hat[i] = from.q[i] + self.way[i];
         }
         newton.solve_stage(
             system,
@@ -99,6 +104,7 @@ impl Stepper for Bathe {
             to,
             work,
         )?;
+        accumulate(from, &self.way, g * g, to);
         clamps += newton.finish_stage(system, to, work)?;
 
         let [w0, w1, w2] = self.quadrature;

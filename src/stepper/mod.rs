@@ -65,3 +65,16 @@ fn integrate(h: f64, weighted: &[(f64, &[f64; INTEGRALS])], integrals: &mut [f64
         }
     }
 }
+
+/// Sets q of a solved stage to q of `from` + `way` + `weight` a with a compensated sum (Kahan 1965, Commun. ACM 8:40).
+///
+/// Rounding q at every step shakes a stiff link at random: by eps |q| a step, which its highest modes turn into a velocity
+/// that grows with the square root of the number of steps. Measured in case 4 against IDA: an impact velocity off by
+/// 7e-9 m/s after 3.6 ms at a step of 6e-9 s, and growing as the step shrinks; 2e-11 m/s with the sum compensated.
+fn accumulate(from: &State, way: &[f64], weight: f64, to: &mut State) {
+    for (i, way) in way.iter().enumerate() {
+        let way = way + weight * to.a[i] + from.q_low[i];
+        to.q[i] = from.q[i] + way;
+        to.q_low[i] = way - (to.q[i] - from.q[i]);
+    }
+}
