@@ -1,0 +1,63 @@
+#include "newton.hpp"
+
+// With W = M^-1 Phi_q^T, dv = c dq + W dmu - M^-1 b1 from the first row and nu = dlambda + c dmu the rest becomes
+//
+//     [ c^2 M + c C + K   Phi_q^T ] [ dq ]   [ b2 + c b1 + C (M^-1 b1 - W dmu) ]
+//     [ Phi_q             0       ] [ nu ] = [ b3                              ]
+//
+//     (Phi_q W) dmu = b4 - c b3 + Phi_q M^-1 b1 - d(Phi_q v + Phi_t)/dq dq
+//
+// where K = d(f + Phi_q^T lambda)/dq and C = df/dv. In C W dmu the last term of dmu, smaller than the others by the
+// step over the time scale of the motion, is left out, and so is d(Phi_q^T mu)/dq, since mu vanishes with the
+// tolerance; Newton's method corrects what little they do. Then one matrix of n + m and one of m rows are factorised
+// instead of one of 2 (n + m). The first block is divided by c^2 so that it tends to the acceleration-level matrix.
+
+NewtonMatrix::NewtonMatrix(const System &system) : system_(system) {}
+
+void NewtonMatrix::assemble(double c, const std::vector<CrankAngle> &cranks, const VectorXd &q, const VectorXd &v,
+                            const VectorXd &z, const VectorXd &lambda) {
+    const int n = system_.coordinates(), m = system_.constraints();
+    c_ = c;
+    damped_ = (z.array() > 0.0).any();
+    system_.force_derivatives(q, v, z, by_q_, by_v_);
+    system_.constraint_rows(cranks, q, phi_, phi_q_, phi_t_);
+    system_.constraint_derivatives(cranks, q, v, lambda, by_q_, rate_by_q_);
+
+    kkt_.setZero(n + m, n + m);
+    kkt_.topLeftCorner(n, n) = system_.mass() + by_q_ / (c * c);
+    if (damped_) kkt_.topLeftCorner(n, n) += by_v_ / c;
+    kkt_.topRightCorner(n, m) = phi_q_.transpose();
+    kkt_.bottomLeftCorner(m, n) = phi_q_;
+    lu_.compute(kkt_);
+
+    if (m == 0) return;
+    system_.reduce_mass(phi_q_, w_, s_);
+    projection_.compute(s_);
+}
+
+void NewtonMatrix::solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd> x) const {
+    const int n = system_.coordinates(), m = system_.constraints();
+    const auto b1 = b.segment(0, n), b2 = b.segment(n, n), b3 = b.segment(2 * n, m), b4 = b.segment(2 * n + m, m);
+    const VectorXd m_b1 = system_.inverse_mass() * b1;
+
+    VectorXd drift, w_mu = VectorXd::Zero(n);
+    if (m > 0) {
+        drift = b4 - c_ * b3 + phi_q_ * m_b1;
+        w_mu = w_ * projection_.solve(drift);
+    }
+    VectorXd rhs(n + m);
+    rhs.head(n) = b2 + c_ * b1;
+    if (damped_) rhs.head(n) += by_v_ * (m_b1 - w_mu);
+    rhs.head(n) /= c_ * c_;
+    rhs.tail(m) = b3;
+    const VectorXd y = lu_.solve(rhs);
+    const auto dq = y.head(n);
+
+    x.segment(0, n) = dq;
+    x.segment(n, n) = c_ * dq - m_b1;
+    if (m == 0) return;
+    const VectorXd dmu = projection_.solve(drift - rate_by_q_ * dq);
+    x.segment(n, n) += w_ * dmu;
+    x.segment(2 * n, m) = c_ * c_ * y.tail(m) - c_ * dmu;
+    x.segment(2 * n + m, m) = dmu;
+}

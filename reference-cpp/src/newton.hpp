@@ -1,0 +1,28 @@
+// The linear systems of the stabilised index-2 equations (Gear, Gupta, Leimkuhler)
+//
+//     r1 = M (q' - v) + Phi_q^T mu          r3 = Phi(t, q)
+//     r2 = M v' + f + Phi_q^T lambda        r4 = Phi_q v + Phi_t
+//
+// for the implicit step q' ~ c q, v' ~ c v.
+#pragma once
+
+#include "system.hpp"
+
+class NewtonMatrix {
+public:
+    explicit NewtonMatrix(const System &system);
+
+    void assemble(double c, const std::vector<CrankAngle> &cranks, const VectorXd &q, const VectorXd &v,
+                  const VectorXd &z, const VectorXd &lambda);
+    // x = J^-1 b, both ordered (q, v, lambda, mu)
+    void solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd> x) const;
+
+private:
+    const System &system_;
+    double c_ = 0.0;
+    bool damped_ = false; // df/dv is not zero
+    VectorXd phi_, phi_t_;
+    MatrixXd by_q_, by_v_, phi_q_, rate_by_q_, kkt_, w_, s_;
+    Eigen::PartialPivLU<MatrixXd> lu_;
+    Eigen::LDLT<MatrixXd> projection_;
+};

@@ -1,0 +1,97 @@
+// Integration in time by IDA, with located onsets and losses of contact.
+#pragma once
+
+#include <optional>
+
+#include "failure.hpp"
+#include "newton.hpp"
+#include "sundials.hpp"
+#include "system.hpp"
+
+// Integrals of System::powers.
+using Ledger = Powers;
+
+class Run {
+public:
+    Run(const System &system, double t, const VectorXd &q, const VectorXd &v, const ls_tolerances &tolerances);
+
+    void advance(double t, ls_row &row);
+    const std::vector<ls_event> &events() const { return events_; }
+    ls_statistics statistics() const;
+
+private:
+    // what the events of one loose joint are decided by, at one instant
+    struct Watch {
+        double gap = 0.0;  // (|e|^2 - c^2) / (2 c): differentiable at e = 0, and delta near contact
+        double rate = 0.0; // its rate
+    };
+
+    // callbacks of IDA
+    static int residual(double t, N_Vector y, N_Vector yp, N_Vector r, void *run);
+    static int jacobian(double t, double c, N_Vector y, N_Vector yp, N_Vector r, SUNMatrix, void *run, N_Vector,
+                        N_Vector, N_Vector);
+    static int roots(double t, N_Vector y, N_Vector yp, double *g, void *run);
+    static int weights(N_Vector y, N_Vector w, void *run);
+    static int solve_linear(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, double);
+    template <class Work>
+    int guarded(Work work);
+
+    void check(int flag);
+    void set_up(const ls_tolerances &tolerances);
+    const std::vector<CrankAngle> &cranks(double t);
+
+    void step();
+    void restart();
+    double first_step();
+    void apply_pending_events();
+
+    void find_events(const int *flagged);
+    double crossing(int joint, const Watch &then, bool flagged);
+    template <class Function>
+    double bisect(double from, double to, Function f, int joint);
+    Watch watch(int joint, const double *y) const;
+    Watch interpolated(int joint, double t);
+    bool closed(int joint) const { return z_[joint] > 0.0; }
+    void watch_clamps();
+
+    void state_at(double t, VectorXd &q, VectorXd &v);
+    Ledger integral(double to);
+    std::vector<double> kinks(double to);
+    void describe(double t, ls_row &row);
+    void collect_statistics();
+
+    System system_;
+    ls_tolerances tolerances_;
+    int n_, m_;
+
+    // the last interval IDA has covered without a restart inside; t_ is reached, a restart may be pending there
+    double before_, t_;
+    double target_;                   // the time asked for
+    VectorXd q_, v_, z_;              // z: impact velocities, 0 while open
+    Ledger ledger_before_, ledger_;
+    std::vector<Watch> watch_before_; // by loose joint, at before_
+    std::vector<char> clamped_;       // by loose joint
+    std::vector<int> pending_;        // joints whose contact closes or opens at t_
+    bool restart_pending_ = true;
+    std::vector<ls_event> events_;
+    ls_statistics statistics_{};
+
+    Acceleration acceleration_;
+    NewtonMatrix newton_;
+    std::optional<Failure> failure_;  // in a callback
+    double cranks_time_;
+    std::vector<CrankAngle> cranks_;
+    VectorXd qs_, vs_, f_, phi_, phi_t_; // work arrays
+    MatrixXd phi_q_;
+
+    // arrays a row points to
+    VectorXd row_q_, row_v_, joint_force_, penetration_, torque_;
+
+    // released from the last to the first: IDA before what it uses
+    ida::ErrorText errors_;
+    ida::Context context_;
+    ida::Vector y_, yp_, scratch_;
+    ida::Matrix matrix_;
+    ida::LinearSolver solver_;
+    ida::Integrator ida_;
+};

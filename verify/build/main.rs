@@ -1,0 +1,64 @@
+//! Compiles `../reference-cpp` and finds the libraries it needs.
+
+mod locate;
+
+use locate::Libraries;
+use std::path::{Path, PathBuf};
+
+fn main() {
+    let libraries = locate::libraries().unwrap_or_else(|missing| {
+        eprintln!("{missing}");
+        std::process::exit(1);
+    });
+    compile(&libraries);
+    link(&libraries);
+    for variable in locate::VARIABLES {
+        println!("cargo:rerun-if-env-changed={variable}");
+    }
+}
+
+fn compile(libraries: &Libraries) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../reference-cpp");
+    println!("cargo:rerun-if-changed={}", root.display());
+    let mut build = cc::Build::new();
+    build
+        .cpp(true)
+        .std("c++17")
+        .opt_level(3) // the cost of the reference is compared; Eigen needs inlining in every profile
+        .warnings(true)
+        .extra_warnings(true)
+        .include(root.join("include"))
+        .files(sources(&root.join("src")));
+    for include in &libraries.includes {
+        // the compiler looks in /usr/include by itself, and last, where C++ wants it
+        if include == Path::new("/usr/include") {
+            continue;
+        }
+        // as system headers: their warnings are not ours
+        build.flag("-isystem").flag(include.display().to_string());
+    }
+    build.compile("looselink_reference");
+}
+
+/// All C++ files, in an order that does not depend on the file system.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder)
+        .unwrap_or_else(|e| panic!("cannot read {}: {e}", folder.display()));
+    let mut files: Vec<PathBuf> = entries
+        .map(|entry| entry.expect("the folder can be listed").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "cpp"))
+        .collect();
+    files.sort();
+    files
+}
+
+fn link(libraries: &Libraries) {
+    if let Some(folder) = &libraries.folder {
+        println!("cargo:rustc-link-search=native={}", folder.display());
+        println!("cargo:rustc-link-arg=-Wl,-rpath,{}", folder.display());
+    }
+    for name in libraries.names() {
+        println!("cargo:rustc-link-lib={name}");
+    }
+    println!("cargo:rustc-env=EIGEN_VERSION={}", libraries.eigen);
+}

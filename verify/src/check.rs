@@ -1,0 +1,120 @@
+//! One agreement: two numbers, their difference, what is allowed and why.
+
+/// A row of the table.
+#[derive(Debug, Clone)]
+pub struct Agreement {
+    /// What is compared.
+    pub quantity: String,
+    /// Where.
+    pub scene: String,
+    /// Looselink's number, at the place of the largest difference.
+    pub rust: f64,
+    /// The reference's number there.
+    pub cpp: f64,
+    /// The difference, in the measure of the tolerance.
+    pub difference: f64,
+    /// The largest difference that passes.
+    pub tolerance: f64,
+    /// The measure of the difference and the reason of the tolerance.
+    pub reason: String,
+}
+
+impl Agreement {
+    /// True when the difference is a number within the tolerance.
+    pub fn holds(&self) -> bool {
+        self.difference <= self.tolerance
+    }
+}
+
+/// Asserts every row, and names those that fail.
+///
+/// # Panics
+/// When a row fails or there is none.
+pub fn assert_all(rows: &[Agreement]) {
+    assert!(!rows.is_empty(), "nothing was compared");
+    let failed: Vec<String> = rows
+        .iter()
+        .filter(|row| !row.holds())
+        .map(|r| {
+            format!(
+                "{} of {}: {:e} and {:e} differ by {:e}, allowed {:e} ({})",
+                r.quantity, r.scene, r.rust, r.cpp, r.difference, r.tolerance, r.reason
+            )
+        })
+        .collect();
+    assert!(failed.is_empty(), "\n{}", failed.join("\n"));
+}
+
+/// The largest of many differences, with the two numbers at its place.
+#[derive(Debug, Clone, Copy)]
+pub struct Worst {
+    pub rust: f64,
+    pub cpp: f64,
+    /// -1 before anything is compared.
+    pub difference: f64,
+}
+
+impl Default for Worst {
+    fn default() -> Worst {
+        Worst {
+            rust: 0.0,
+            cpp: 0.0,
+            difference: -1.0,
+        }
+    }
+}
+
+impl Worst {
+    /// Looks at two numbers whose difference is measured in units of `scale`. A difference that is not a number stays;
+    /// among equal ones the larger numbers are kept.
+    pub fn see(&mut self, rust: f64, cpp: f64, scale: f64) {
+        let difference = (rust - cpp).abs() / scale;
+        let larger = difference == self.difference && cpp.abs() > self.cpp.abs();
+        if difference.is_nan() || difference > self.difference || larger {
+            *self = Worst {
+                rust,
+                cpp,
+                difference,
+            };
+        }
+    }
+
+    /// Looks at two vectors, measured in units of the largest entry of the second; two zero vectors agree.
+    pub fn see_all(&mut self, rust: &[f64], cpp: &[f64]) {
+        let size = largest(cpp);
+        self.see_scaled(rust, cpp, if size > 0.0 { size } else { 1.0 });
+    }
+
+    /// Looks at two vectors, measured in units of `scale`.
+    pub fn see_scaled(&mut self, rust: &[f64], cpp: &[f64], scale: f64) {
+        assert_eq!(rust.len(), cpp.len(), "vectors of one length are compared");
+        for (r, c) in rust.iter().zip(cpp) {
+            self.see(*r, *c, scale);
+        }
+    }
+
+    /// The row.
+    ///
+    /// # Panics
+    /// When nothing was compared.
+    pub fn row(self, quantity: &str, scene: &str, tolerance: f64, reason: &str) -> Agreement {
+        assert!(
+            self.difference.is_nan() || self.difference >= 0.0,
+            "{quantity} of {scene}: nothing was compared"
+        );
+        Agreement {
+            quantity: quantity.into(),
+            scene: scene.into(),
+            rust: self.rust,
+            cpp: self.cpp,
+            difference: self.difference,
+            tolerance,
+            reason: reason.into(),
+        }
+    }
+}
+
+/// The largest magnitude of a vector.
+pub fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |m, x| m.max(x.abs()))
+}

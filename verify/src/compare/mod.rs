@@ -1,0 +1,11 @@
+//! What is compared, one file each. Every function returns rows that the tests assert and the report prints.
+
+pub mod classes;
+pub mod cost;
+pub mod elements;
+pub mod equations;
+pub mod flexible;
+pub mod impacts;
+pub mod laws;
+pub mod rigid;
+pub mod statistics;

@@ -1,0 +1,280 @@
+//! The page: tables of agreements, pictures, costs, seeded faults, and what is not cross-checked.
+
+use crate::check::Agreement;
+use crate::compare::cost::{Curves, ERRORS, time_at};
+use crate::compare::statistics::{QUANTITIES, RELATIVE, STEPS, Spread};
+use crate::faults::{Fault, Outcome};
+use crate::reference;
+use plot::{digits, si};
+use std::fmt::Write;
+
+/// Everything the page is made of.
+pub struct Report {
+    /// Title of a table, a sentence about it, its rows.
+    pub sections: Vec<(&'static str, String, Vec<Agreement>)>,
+    /// File name and title of the pictures of trajectories.
+    pub overlays: Vec<(&'static str, String)>,
+    pub spreads: Vec<Spread>,
+    pub costs: Vec<Curves>,
+    pub faults: Vec<(Fault, Outcome)>,
+    /// Channels of Looselink without a counterpart.
+    pub missing: Vec<String>,
+}
+
+/// What no row of the report confirms.
+const NOT_CHECKED: [(&str, &str); 9] = [
+    (
+        "Hertz's law",
+        "the reference has Lankarani-Nikravesh, Hunt-Crossley and Flores; Hertz is their limit without damping",
+    ),
+    (
+        "the floor of the impact velocity",
+        "every impact of the compared stretches is far above it",
+    ),
+    (
+        "clamped forces in motion",
+        "the law is compared where it is clamped; no impact of the first fifteen gets there",
+    ),
+    (
+        "paths `line` and `table`",
+        "the reference knows the circle of eq. 27",
+    ),
+    (
+        "scenes without a drive, other mechanisms than the 3-RRR",
+        "the reference's interface takes any tree and loop of these bodies and joints, but nothing of that kind is \
+         compared yet; the bouncing journal has its own exact test",
+    ),
+    (
+        "angles of links, eccentricity vectors, gravity and structural damping",
+        "channels without a counterpart (listed below); gravity and damping are zero in these scenes",
+    ),
+    (
+        "what both sides take from EQUATIONS.md",
+        "a wrong reading of the paper written down there would be in both: the sign conventions, the choice of the branch, \
+         the values that the paper does not give",
+    ),
+    (
+        "the scene's TOML syntax",
+        "both sides parse it with the same library, each in its own way",
+    ),
+    (
+        "the command line and the files it writes",
+        "they have tests of their own",
+    ),
+];
+
+impl Report {
+    /// The page in Markdown.
+    pub fn page(&self) -> String {
+        let mut page = String::new();
+        self.head(&mut page);
+        for (title, text, rows) in &self.sections {
+            table(&mut page, title, text, rows);
+        }
+        self.pictures(&mut page);
+        self.chaos(&mut page);
+        self.cost(&mut page);
+        self.seeded(&mut page);
+        self.unchecked(&mut page);
+        page
+    }
+
+    fn head(&self, page: &mut String) {
+        let rows = self.sections.iter().flat_map(|s| &s.2);
+        let (mut all, mut held) = (0, 0);
+        for row in rows {
+            all += 1;
+            held += usize::from(row.holds());
+        }
+        put(
+            page,
+            format!(
+                "# Looselink against a second implementation\n\n\
+                 [reference-cpp](../reference-cpp/README.md) is a C++ program written from the paper and \
+                 [EQUATIONS.md](../EQUATIONS.md) alone, by other routes: Gauss quadrature, automatic differentiation, every \
+                 joint a constraint, a stabilised index-2 system, IDA's variable-order BDF with root finding. It shares the \
+                 numbers of the scene with Looselink and nothing else; even the scene is read twice.\n\n\
+                 **{held} of {all} agreements hold.** This page is written by `cargo run --release -p verify`; \
+                 `cargo test -p verify` asserts the same rows. {}.\n",
+                reference::versions()
+            ),
+        );
+    }
+
+    fn pictures(&self, page: &mut String) {
+        put(page, "## Pictures\n".into());
+        put(
+            page,
+            "![Case 2: difference from IDA against the step](figures/convergence.png)\n".into(),
+        );
+        for (name, title) in &self.overlays {
+            put(page, format!("![{title}](figures/{name}.png)\n"));
+        }
+    }
+
+    fn chaos(&self, page: &mut String) {
+        put(
+            page,
+            "## Beyond the horizon: each side's own spread\n\n\
+             Loose joints are chaotic: after some tens of milliseconds two runs share no impact, even two of the same code. \
+             What they share is in this table: the measures of cycles 2 and 3 at three steps of Looselink and three \
+             tolerances of IDA.\n"
+                .into(),
+        );
+        for spread in &self.spreads {
+            let steps = STEPS.map(|h| format!("h = {}", si(h, "s"))).join(" | ");
+            let tolerances = RELATIVE.map(|r| format!("IDA {r:.0e}")).join(" | ");
+            put(
+                page,
+                format!(
+                    "| case {} | {steps} | {tolerances} |\n|---|---|---|---|---|---|---|",
+                    spread.case
+                ),
+            );
+            for (i, (name, unit, ..)) in QUANTITIES.iter().enumerate() {
+                let both = spread.rust.iter().chain(&spread.cpp);
+                let cells: Vec<String> = both.map(|m| four(m.values[i])).collect();
+                let name = name.replace('|', "\\|");
+                put(page, format!("| {name} [{unit}] | {} |", cells.join(" | ")));
+            }
+            let both = spread.rust.iter().chain(&spread.cpp);
+            let cells: Vec<String> = both.map(|m| digits(m.seconds)).collect();
+            put(
+                page,
+                format!(
+                    "| processor time of the whole run [s] | {} |",
+                    cells.join(" | ")
+                ),
+            );
+            put(page, String::new());
+        }
+    }
+
+    fn cost(&self, page: &mut String) {
+        put(
+            page,
+            "## Cost at the same error\n\n\
+             ![Processor time against achieved error](figures/cost.png)\n\n\
+             Processor time of the integration on one core, interpolated on the curves of the picture; an empty cell is \
+             outside a curve. A step of IDA costs several of Looselink's, but its order rises to 5 where Bathe's stays 2: the \
+             tighter the accuracy, the better IDA does.\n\n\
+             | scene | error of the platform | Looselink | reference | reference / Looselink |\n|---|---|---|---|---|"
+                .into(),
+        );
+        for curves in &self.costs {
+            for error in ERRORS {
+                let (rust, cpp) = (time_at(&curves.rust, error), time_at(&curves.cpp, error));
+                if rust.is_none() && cpp.is_none() {
+                    continue;
+                }
+                let time = |t: Option<f64>| t.map_or(String::new(), |t| si(t, "s"));
+                let ratio = rust.zip(cpp).map_or(String::new(), |(r, c)| digits(c / r));
+                let scene = format!("{}, {}", curves.plan.name(), si(curves.plan.duration, "s"));
+                put(
+                    page,
+                    format!(
+                        "| {scene} | {} | {} | {} | {ratio} |",
+                        si(error, "m"),
+                        time(rust),
+                        time(cpp)
+                    ),
+                );
+            }
+        }
+        put(page, String::new());
+    }
+
+    fn seeded(&self, page: &mut String) {
+        put(
+            page,
+            format!(
+                "## Seeded faults\n\n\
+                 {} mistakes, put in one at a time by `cargo run --release -p verify --bin faults` \
+                 ([faults.toml](faults.toml) has the changed lines), and the tests that failed then. Tests that take a \
+                 minute are asked only when the quick ones catch nothing.\n\n\
+                 | in | mistake | caught by |\n|---|---|---|",
+                self.faults.len()
+            ),
+        );
+        for (fault, outcome) in &self.faults {
+            let side = if fault.is_in_reference() {
+                "C++"
+            } else {
+                "Rust"
+            };
+            let tests: Vec<String> = outcome.caught_by.iter().map(|t| format!("`{t}`")).collect();
+            put(
+                page,
+                format!(
+                    "| {side} `{}` | {} | {} |",
+                    fault.file,
+                    fault.name,
+                    tests.join(", ")
+                ),
+            );
+        }
+        put(page, String::new());
+    }
+
+    fn unchecked(&self, page: &mut String) {
+        put(page, "## What is not cross-checked\n".into());
+        for (what, why) in NOT_CHECKED {
+            put(page, format!("* {what}: {why}."));
+        }
+        let names: Vec<String> = self.missing.iter().map(|n| format!("`{n}`")).collect();
+        put(
+            page,
+            format!(
+                "\nChannels of case 4 with friction that the reference has no counterpart for: {}.",
+                names.join(", ")
+            ),
+        );
+    }
+}
+
+fn put(page: &mut String, line: String) {
+    writeln!(page, "{line}").expect("a string can be written to");
+}
+
+fn table(page: &mut String, title: &str, text: &str, rows: &[Agreement]) {
+    put(
+        page,
+        format!(
+            "## {title}\n\n{text}\n\n\
+             | | quantity | scene | Looselink | reference | difference | allowed | measure and reason |\n\
+             |---|---|---|---|---|---|---|---|"
+        ),
+    );
+    for row in rows {
+        let verdict = if row.holds() { "✓" } else { "✗" };
+        let cells = [
+            row.quantity.clone(),
+            row.scene.clone(),
+            number(row.rust),
+            number(row.cpp),
+            format!("{:.1e}", row.difference),
+            format!("{:.0e}", row.tolerance),
+            row.reason.clone(),
+        ];
+        let cells = cells.map(|cell| cell.replace('|', "\\|"));
+        put(page, format!("| {verdict} | {} |", cells.join(" | ")));
+    }
+    put(page, String::new());
+}
+
+/// Enough digits to see the agreement.
+fn number(x: f64) -> String {
+    if x == x.trunc() && x.abs() < 1e6 {
+        return format!("{x}");
+    }
+    format!("{x:.9e}")
+}
+
+/// Four digits, or powers of ten for small numbers.
+fn four(x: f64) -> String {
+    if x.abs() < 1e-2 {
+        format!("{x:.3e}")
+    } else {
+        format!("{x:.4}")
+    }
+}
