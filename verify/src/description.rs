@@ -208,6 +208,10 @@ fn entries<T: for<'a> Deserialize<'a>>(table: &mut Table, key: &str) -> Result<V
 
 impl Text {
     fn read(mut table: Table) -> Result<Text> {
+        let simulation = table.get("simulation").and_then(Value::as_table);
+        if simulation.is_some_and(|s| s.contains_key("gravity")) {
+            return Err(miette!("the reference has no gravity"));
+        }
         let initial = table.remove("initial").map(Value::try_into::<InitialText>);
         Ok(Text {
             materials: entries(&mut table, "materials")?.into_iter().collect(),

@@ -54,6 +54,20 @@ fn bad_mechanisms_are_refused_by_name() {
     }
 }
 
+/// What the reference lacks is refused, not left out.
+#[test]
+fn scenes_beyond_the_reference_are_refused() {
+    for (text, missing) in [
+        ("simulation.gravity=[0, -9.81]", "gravity"),
+        ("contacts.pin.law=\"hertz\"", "hertz"),
+        ("drives.input.path={type=\"line\"}", "drives.input"),
+    ] {
+        let plan = Plan::new("3rrr/case3", 0.01, 1e-3).with("", &[text.to_owned()]);
+        let error = format!("{:?}", plan.description().unwrap_err());
+        assert!(error.contains(missing), "{error}");
+    }
+}
+
 #[test]
 fn a_path_out_of_reach_is_refused_with_its_time() {
     let mut mechanism = mechanism("3rrr/case1");
