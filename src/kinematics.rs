@@ -83,7 +83,7 @@ impl Kinematics {
     pub fn solve(&self, inner: &mut Inner, max_iterations: usize) -> Result<(), PrescribeError> {
         let mechanism = &*self.mechanism;
         let n = mechanism.shape().unknowns;
-        mechanism.follow_path(&mut inner.state);
+        mechanism.follow_rules(&mut inner.state);
         mechanism.ride(&mut inner.state);
         inner.state.v[..n].fill(0.0);
         inner.state.a[..n].fill(0.0);

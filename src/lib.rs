@@ -49,5 +49,6 @@ pub mod output;
 pub mod record;
 pub mod scene;
 pub mod simulate;
+pub mod statics;
 pub mod stepper;
 pub mod system;

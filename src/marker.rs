@@ -2,6 +2,41 @@
 
 use crate::math::plane::{Vec2, add, cross, dot, perp, rotate, scale};
 
+/// Derivatives of a vector by the coordinates it depends on, four at most.
+#[derive(Debug, Clone, Copy)]
+pub struct Columns {
+    vectors: [Vec2; 4],
+    count: usize,
+}
+
+impl Columns {
+    const UNIT: [Vec2; 2] = [[1.0, 0.0], [0.0, 1.0]];
+
+    fn new(columns: &[Vec2]) -> Columns {
+        let mut vectors = [[0.0; 2]; 4];
+        vectors[..columns.len()].copy_from_slice(columns);
+        Columns {
+            vectors,
+            count: columns.len(),
+        }
+    }
+
+    /// The columns in local order.
+    pub fn iter(&self) -> std::slice::Iter<'_, Vec2> {
+        self.vectors[..self.count].iter()
+    }
+
+    /// Number of columns.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// True of a constant vector.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+}
+
 /// A point that moves with a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Marker {
@@ -17,6 +52,15 @@ pub enum Marker {
         /// The point in the frame of the body \[m\].
         s: Vec2,
     },
+    /// A point between two nodes, r = (1 - share) r_from + share r_to: an inner point of a link that is taken as rigid.
+    OnChord {
+        /// Index of the first coordinate of one node.
+        from: usize,
+        /// Index of the first coordinate of the other.
+        to: usize,
+        /// Where it is between them, 0 to 1.
+        share: f64,
+    },
 }
 
 impl Marker {
@@ -24,23 +68,34 @@ impl Marker {
     pub fn x(&self) -> usize {
         match *self {
             Marker::Node { x } | Marker::OnBody { x, .. } => x,
+            Marker::OnChord { from, .. } => from,
         }
     }
 
-    /// Number of coordinates it depends on, consecutive from [`Marker::x`]: 2 or 3.
+    /// Number of coordinates it depends on.
     #[inline]
     pub fn width(&self) -> usize {
         match self {
             Marker::Node { .. } => 2,
             Marker::OnBody { .. } => 3,
+            Marker::OnChord { .. } => 4,
         }
     }
 
-    /// A(theta) s; zero for a node.
+    /// The coordinates it depends on, in local order.
+    pub fn coordinates(&self) -> Vec<usize> {
+        match *self {
+            Marker::Node { x } => vec![x, x + 1],
+            Marker::OnBody { x, .. } => vec![x, x + 1, x + 2],
+            Marker::OnChord { from, to, .. } => vec![from, from + 1, to, to + 1],
+        }
+    }
+
+    /// A(theta) s; zero for a node and on a chord.
     #[inline]
     pub fn arm(&self, q: &[f64]) -> Vec2 {
         match *self {
-            Marker::Node { .. } => [0.0; 2],
+            Marker::Node { .. } | Marker::OnChord { .. } => [0.0; 2],
             Marker::OnBody { x, s } => {
                 let (sine, cosine) = q[x + 2].sin_cos();
                 rotate(cosine, sine, s)
@@ -51,8 +106,24 @@ impl Marker {
     /// Position \[m\], given the arm.
     #[inline]
     pub fn position(&self, q: &[f64], arm: Vec2) -> Vec2 {
-        let x = self.x();
-        add([q[x], q[x + 1]], arm)
+        match *self {
+            Marker::Node { x } | Marker::OnBody { x, .. } => add([q[x], q[x + 1]], arm),
+            Marker::OnChord { from, to, share } => between(q, from, to, share),
+        }
+    }
+
+    /// dr/dq in the order of the coordinates.
+    #[inline]
+    pub fn columns(&self, q: &[f64]) -> Columns {
+        let [x, y] = Columns::UNIT;
+        match self {
+            Marker::Node { .. } => Columns::new(&[x, y]),
+            Marker::OnBody { .. } => Columns::new(&[x, y, perp(self.arm(q))]),
+            Marker::OnChord { share, .. } => {
+                let (far, near) = (*share, 1.0 - share);
+                Columns::new(&[scale(near, x), scale(near, y), scale(far, x), scale(far, y)])
+            }
+        }
     }
 
     /// Velocity \[m/s\], given the arm.
@@ -61,6 +132,7 @@ impl Marker {
         match *self {
             Marker::Node { x } => [v[x], v[x + 1]],
             Marker::OnBody { x, .. } => add([v[x], v[x + 1]], scale(v[x + 2], perp(arm))),
+            Marker::OnChord { from, to, share } => between(v, from, to, share),
         }
     }
 
@@ -73,8 +145,18 @@ impl Marker {
                 let turning = add(scale(a[x + 2], perp(arm)), scale(-v[x + 2] * v[x + 2], arm));
                 add([a[x], a[x + 1]], turning)
             }
+            Marker::OnChord { from, to, share } => between(a, from, to, share),
         }
     }
+}
+
+/// (1 - share) of one pair of entries, and `share` of another.
+#[inline]
+fn between(x: &[f64], from: usize, to: usize, share: f64) -> Vec2 {
+    add(
+        scale(1.0 - share, [x[from], x[from + 1]]),
+        scale(share, [x[to], x[to + 1]]),
+    )
 }
 
 /// The rotation of the material at a marker: its rate omega = b(q) . v and b itself.
@@ -106,11 +188,49 @@ impl Spin {
     fn direction(&self, q: &[f64], v: &[f64]) -> Option<(Vec2, Vec2)> {
         match *self {
             Spin::Fixed | Spin::Angle { .. } => None,
-            Spin::Chord { from, to } => Some((
-                [q[to] - q[from], q[to + 1] - q[from + 1]],
-                [v[to] - v[from], v[to + 1] - v[from + 1]],
-            )),
-            Spin::Slope { x } => Some(([q[x], q[x + 1]], [v[x], v[x + 1]])),
+            Spin::Chord { .. } | Spin::Slope { .. } => Some((self.vector(q), self.vector(v))),
+        }
+    }
+
+    /// The direction d that turns with the material: (1, 0) of the ground, (cos theta, sin theta), the chord, the slope.
+    pub fn vector(&self, q: &[f64]) -> Vec2 {
+        match *self {
+            Spin::Fixed => [1.0, 0.0],
+            Spin::Angle { theta } => [q[theta].cos(), q[theta].sin()],
+            Spin::Chord { from, to } => [q[to] - q[from], q[to + 1] - q[from + 1]],
+            Spin::Slope { x } => [q[x], q[x + 1]],
+        }
+    }
+
+    /// dd/dt.
+    pub fn vector_rate(&self, q: &[f64], v: &[f64]) -> Vec2 {
+        match *self {
+            Spin::Fixed => [0.0; 2],
+            Spin::Angle { theta } => scale(v[theta], perp(self.vector(q))),
+            Spin::Chord { .. } | Spin::Slope { .. } => self.vector(v),
+        }
+    }
+
+    /// d2d/dt2.
+    pub fn vector_acceleration(&self, q: &[f64], v: &[f64], a: &[f64]) -> Vec2 {
+        match *self {
+            Spin::Fixed => [0.0; 2],
+            Spin::Angle { theta } => {
+                let d = self.vector(q);
+                add(scale(a[theta], perp(d)), scale(-v[theta] * v[theta], d))
+            }
+            Spin::Chord { .. } | Spin::Slope { .. } => self.vector(a),
+        }
+    }
+
+    /// dd/dq in the order of [`Spin::coordinates`].
+    pub fn columns(&self, q: &[f64]) -> Columns {
+        let [x, y] = Columns::UNIT;
+        match self {
+            Spin::Fixed => Columns::new(&[]),
+            Spin::Angle { .. } => Columns::new(&[perp(self.vector(q))]),
+            Spin::Chord { .. } => Columns::new(&[[-1.0, 0.0], [0.0, -1.0], x, y]),
+            Spin::Slope { .. } => Columns::new(&[x, y]),
         }
     }
 
@@ -120,6 +240,17 @@ impl Spin {
             (Spin::Angle { theta }, _) => v[theta],
             (_, Some((d, d_dot))) => cross(d, d_dot) / dot(d, d),
             _ => 0.0,
+        }
+    }
+
+    /// Number of coordinates it depends on.
+    #[inline]
+    pub fn width(&self) -> usize {
+        match self {
+            Spin::Fixed => 0,
+            Spin::Angle { .. } => 1,
+            Spin::Slope { .. } => 2,
+            Spin::Chord { .. } => 4,
         }
     }
 

@@ -25,6 +25,19 @@ pub struct Counters {
     pub stagnations: u64,
 }
 
+impl Counters {
+    /// The sum of both.
+    pub fn with(&self, other: &Counters) -> Counters {
+        Counters {
+            stages: self.stages + other.stages,
+            newton_iterations: self.newton_iterations + other.newton_iterations,
+            factorisations: self.factorisations + other.factorisations,
+            fallbacks: self.fallbacks + other.fallbacks,
+            stagnations: self.stagnations + other.stagnations,
+        }
+    }
+}
+
 /// Why a stage has no solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Failure {

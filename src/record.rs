@@ -32,6 +32,7 @@ pub struct Ledger {
     pub bending: f64,
     pub contact: f64,
     pub gravity: f64,
+    pub springs: f64,
     pub work: f64,
     pub contact_dissipated: f64,
     pub friction_dissipated: f64,
@@ -46,7 +47,7 @@ impl Recorder {
     /// # Errors
     /// A pattern that no channel has.
     pub fn new(scene: &Scene, model: &Model, initial_energy: f64) -> Result<Recorder, SceneError> {
-        let available = available(model);
+        let available = available(model, scene.simulation.analysis);
         let mut chosen: Vec<&(Channel, Quantity)> = vec![&available[0]];
         for wanted in &scene.output.channels {
             let before = chosen.len();
@@ -107,6 +108,7 @@ impl Recorder {
             bending: e.bending,
             contact: e.contact,
             gravity: e.gravity,
+            springs: e.springs,
             work,
             contact_dissipated,
             friction_dissipated,
@@ -147,6 +149,11 @@ impl Recorder {
                     let prescribed = model.prescribed(b, at).unwrap_or_default();
                     cache.pose(model, b, at).position[i] - prescribed.position[i]
                 }
+                Quantity::Point(b, p, level, i) => model.point(b, p, at)[level][i],
+                Quantity::Slope(b, p, i) => model.bodies()[b].points[p]
+                    .slope
+                    .map_or(0.0, |x| at.q[x + i]),
+                Quantity::Force(f, k) => model.named_force(f, at)[k],
                 Quantity::Energy(energy) => self.energy_value(model, energy, at, &mut cache),
             };
             self.row[c] = value;
@@ -162,6 +169,7 @@ impl Recorder {
             Energy::Bending => e.bending,
             Energy::Contact => e.contact,
             Energy::Gravity => e.gravity,
+            Energy::Springs => e.springs,
             Energy::Integral(integral) => at.integrals[integral as usize],
             Energy::Numerical => {
                 let [work, contact, friction, damping, _] = at.integrals;
@@ -239,5 +247,10 @@ fn joint_value(
         JointQuantity::Eccentricity => crate::math::plane::norm(clearance().0),
         JointQuantity::Penetration => clearance().1,
         JointQuantity::Contact => f64::from(u8::from(clearance().2)),
+        JointQuantity::Couple => model.joint_couple(j, at),
+        JointQuantity::Angle => model.turned(j, at)[0],
+        JointQuantity::Speed => model.turned(j, at)[1],
+        JointQuantity::Travel => model.travel(j, at)[0],
+        JointQuantity::TravelRate => model.travel(j, at)[1],
     }
 }

@@ -1,6 +1,7 @@
 //! The loop: step, locate contact onset and loss, commit memory, record.
 
 mod change;
+mod equilibrium;
 mod observer;
 mod report;
 
@@ -9,11 +10,12 @@ pub use observer::{Control, Observer, Onset, Progress};
 pub use report::{Extreme, Inspection, Report, Status};
 
 use crate::compile::compile;
-use crate::initial;
+use crate::initial::{self, redundancy};
 use crate::model::Model;
 use crate::newton::{Failure, Newton};
 use crate::record::Recorder;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Analysis, Scene, SceneError};
+use crate::statics::Statics;
 use crate::stepper::{StepError, Stepper, stepper};
 use crate::system::{PrescribeError, State, System, Work};
 
@@ -69,6 +71,7 @@ pub struct Simulation {
     model: Model,
     stepper: Box<dyn Stepper>,
     newton: Newton,
+    statics: Option<Statics>,
     work: Work,
     state: State,
     trial: State,
@@ -92,8 +95,9 @@ impl Simulation {
     /// # Errors
     /// A mechanism that cannot close, be driven or start as the scene says.
     pub fn new(scene: &Scene) -> Result<Simulation, SceneError> {
-        let model = compile(scene)?;
+        let mut model = compile(scene)?;
         let mut state = initial::start(scene, &model)?;
+        keep_independent(scene, &mut model, &state)?;
         let mut newton = Newton::new(&model, scene.integrator.newton_tolerance);
         let mut work = model.work();
         let shape = model.shape();
@@ -103,22 +107,26 @@ impl Simulation {
             scene.integrator.onset_tolerance,
             &mut |c, v, d| started.push((c, v, d)),
         );
-        newton
-            .make_consistent(&model, &mut state, &mut work)
-            .map_err(|failure| {
-                let (name, cause) = describe(&model, &failure);
-                scene.error(
-                    scene.initial.span,
-                    format!("the start has no accelerations: {name}: {cause}"),
-                    "this start",
-                )
-            })?;
+        let statics = equilibrium::prepare(scene, &model, &mut state, &mut work)?;
+        if scene.simulation.analysis == Analysis::Dynamic {
+            newton
+                .make_consistent(&model, &mut state, &mut work)
+                .map_err(|failure| {
+                    let (name, cause) = describe(&model, &failure);
+                    scene.error(
+                        scene.initial.span,
+                        format!("the start has no accelerations: {name}: {cause}"),
+                        "this start",
+                    )
+                })?;
+        }
         model.powers(&mut state, &mut work);
         let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
         let extremes = vec![Extreme::default(); recorder.channels().len()];
         Ok(Simulation {
             stepper: stepper(scene.integrator.method, &model),
             newton,
+            statics,
             work,
             trial: state.clone(),
             output: state.clone(),
@@ -160,7 +168,10 @@ impl Simulation {
     /// # Errors
     /// See [`RunError`]; everything observed before it stands.
     pub fn run(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
-        let result = self.run_to_end(observer);
+        let result = match self.scene.simulation.analysis {
+            Analysis::Dynamic => self.run_to_end(observer),
+            Analysis::Static => self.run_loads(observer),
+        };
         (self.status, self.error) = match &result {
             Ok(()) => (Status::Complete, None),
             Err(RunError::Interrupted { .. }) => (Status::Incomplete, None),
@@ -302,7 +313,9 @@ impl Simulation {
             ..
         } = self;
         output.copy_from(state);
-        if let Err(failure) = newton.make_consistent(model, output, work) {
+        if self.scene.simulation.analysis == Analysis::Dynamic
+            && let Err(failure) = newton.make_consistent(model, output, work)
+        {
             return Err(self.failed(failure.into(), 0.0));
         }
         let row = recorder.row(model, output, work);
@@ -331,6 +344,23 @@ impl Simulation {
                     step,
                 }
             }
+        }
+    }
+}
+
+/// Takes constraints out of the equations that repeat others.
+fn keep_independent(scene: &Scene, model: &mut Model, start: &State) -> Result<(), SceneError> {
+    match redundancy::find(model, start) {
+        redundancy::Redundancy::Rows(rows) => {
+            model.drop_rows(&rows);
+            Ok(())
+        }
+        redundancy::Redundancy::SingularStart(name) => {
+            let message = format!(
+                "the start is a singular pose: there {name} depends on the other constraints"
+            );
+            let error = scene.error(scene.initial.span, message, "this start");
+            Err(error.with_help("start a little away from the dead centre"))
         }
     }
 }

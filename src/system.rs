@@ -22,6 +22,8 @@ pub struct Shape {
     pub multipliers: usize,
     /// Contacts, each with one number of memory.
     pub contacts: usize,
+    /// Relative angles whose full turns are counted, each with one number of memory.
+    pub angles: usize,
 }
 
 /// Quantities integrated over time beside the motion.
@@ -60,6 +62,8 @@ pub struct State {
     pub lambda: Vec<f64>,
     /// Contact memory: the impact velocity \[m/s\] of a closed contact, 0 while it is open.
     pub z: Vec<f64>,
+    /// Angle memory: the relative angles of the last accepted step \[rad\].
+    pub angles: Vec<f64>,
     /// Integrals over time since the start \[J\].
     pub integrals: [f64; INTEGRALS],
     /// Their integrands \[W\].
@@ -77,6 +81,7 @@ impl State {
             a: vec![0.0; shape.coordinates],
             lambda: vec![0.0; shape.multipliers],
             z: vec![0.0; shape.contacts],
+            angles: vec![0.0; shape.angles],
             integrals: [0.0; INTEGRALS],
             powers: [0.0; INTEGRALS],
         }
@@ -91,6 +96,7 @@ impl State {
         self.a.copy_from_slice(&other.a);
         self.lambda.copy_from_slice(&other.lambda);
         self.z.copy_from_slice(&other.z);
+        self.angles.copy_from_slice(&other.angles);
         self.integrals = other.integrals;
         self.powers = other.powers;
     }
@@ -188,7 +194,7 @@ pub trait System {
     fn constraint_acceleration(&self, at: &State, out: &mut [f64]);
     /// Penetration delta of every contact \[m\] and its rate \[m/s\].
     fn gaps(&self, at: &State, delta: &mut [f64], rate: &mut [f64]);
-    /// Opens and closes contacts: the only place where contact memory changes. Returns the number of onsets, and
+    /// Opens and closes contacts and counts turns: the only place where memory changes. Returns the number of onsets, and
     /// calls `onset(contact, impact velocity, delta)` for each.
     fn commit(
         &self,

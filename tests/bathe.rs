@@ -59,6 +59,7 @@ impl System for Chain {
             coordinates: n,
             multipliers: 0,
             contacts: 0,
+            angles: 0,
         }
     }
     fn symbolic(&self) -> &Symbolic {

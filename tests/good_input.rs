@@ -25,7 +25,7 @@ fn edited(from: &str, to: &str) -> Scene {
 pub fn contact(scene: &Scene, joint: &str) -> Option<looselink::scene::Contact> {
     match &scene.joints[scene.joint(joint).unwrap()].model {
         JointModel::Clearance(contact) => Some(contact.clone()),
-        JointModel::Ideal => None,
+        _ => None,
     }
 }
 

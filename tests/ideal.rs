@@ -159,7 +159,7 @@ fn case_2_numerical_dissipation_has_order_two() {
             "3rrr/case2.toml",
             &[&step, "output.interval=1e-3", "simulation.duration=0.02"],
         );
-        report.ledger.numerical.abs()
+        report.ledger.unwrap().numerical.abs()
     };
     let errors: Vec<_> = steps.iter().map(|&h| (h, numerical(h))).collect();
     assert_order("numerical dissipation", &errors, 1.8..2.2);

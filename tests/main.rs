@@ -18,3 +18,4 @@ mod overrides;
 mod rrr;
 mod support;
 mod system;
+mod terms;

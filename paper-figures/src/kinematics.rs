@@ -190,7 +190,7 @@ fn end_on(scene: &Scene, joint: &str, body: &str) -> Result<Vector> {
     match &scene.bodies[body].kind {
         BodyKind::Ground { points } => Ok(points[end.point].at),
         BodyKind::Rigid(rigid) => Ok(rigid.points[end.point].at),
-        BodyKind::Link(_) => Err(missing()),
+        _ => Err(missing()),
     }
 }
 

@@ -65,7 +65,7 @@ fn coordinates(c: &Campaign, numbers: &mut Numbers) -> Statement {
             LinkModel::Rigid => 0,
         },
         BodyKind::Rigid(_) => 3,
-        BodyKind::Ground { .. } => 0,
+        _ => 0,
     };
     let count: usize = c.both.scene.bodies.iter().map(|b| of(&b.kind)).sum();
     numbers.put("case4.coordinates", count as f64);
@@ -151,7 +151,7 @@ fn normal_clearance(c: &Campaign, numbers: &mut Numbers) -> Statement {
         .joint("B1")
         .and_then(|j| match &c.both.scene.joints[j].model {
             JointModel::Clearance(contact) => Some(contact.bearing_radius),
-            JointModel::Ideal => None,
+            _ => None,
         });
     let relative = numbers.put(
         "relative_clearance",

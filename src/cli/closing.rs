@@ -1,5 +1,6 @@
 //! The last lines of a run: what was counted, and what the integrator did to the energy.
 
+use looselink::record::Ledger;
 use looselink::simulate::Report;
 
 /// Numerical dissipation beyond this part of the physical one is worth a word.
@@ -8,31 +9,14 @@ const NOTABLE: f64 = 0.05;
 /// Lines about a finished run, most of them absent when there is nothing to say.
 pub fn lines(report: &Report) -> Vec<String> {
     let mut lines = Vec::new();
-    let ledger = &report.ledger;
-    let dissipated =
-        ledger.contact_dissipated + ledger.friction_dissipated + ledger.damping_dissipated;
-    let verb = if ledger.numerical < 0.0 {
-        "gained"
-    } else {
-        "lost"
-    };
-    let numerical = ledger.numerical.abs();
-    if dissipated > 0.0 {
-        lines.push(format!(
-            "energy: {dissipated:.3e} J dissipated, {numerical:.1e} J {verb} by the integrator ({:.1} %)",
-            100.0 * numerical / dissipated
-        ));
-        if numerical > NOTABLE * dissipated {
-            lines.push(
-                "energy: a smaller integrator.step would make the integrator's part small"
-                    .to_owned(),
-            );
-        }
-    } else {
-        lines.push(format!(
-            "energy: {numerical:.1e} J {verb} by the integrator"
-        ));
+    if let Some(ledger) = &report.ledger {
+        lines.extend(energy(ledger));
     }
+    lines.extend(report.redundant.iter().map(|name| {
+        format!(
+            "{name} repeats other constraints: the forces in its loop are one choice among many"
+        )
+    }));
     let counts = [
         (report.clamps, "stages with a contact force clamped at zero"),
         (
@@ -51,5 +35,32 @@ pub fn lines(report: &Report) -> Vec<String> {
     ];
     let counted = counts.iter().filter(|(count, _)| *count > 0);
     lines.extend(counted.map(|(count, what)| format!("counted: {count} {what}")));
+    lines
+}
+
+/// What the integrator did to the energy.
+fn energy(ledger: &Ledger) -> Vec<String> {
+    let dissipated =
+        ledger.contact_dissipated + ledger.friction_dissipated + ledger.damping_dissipated;
+    let verb = if ledger.numerical < 0.0 {
+        "gained"
+    } else {
+        "lost"
+    };
+    let numerical = ledger.numerical.abs();
+    if dissipated <= 0.0 {
+        return vec![format!(
+            "energy: {numerical:.1e} J {verb} by the integrator"
+        )];
+    }
+    let mut lines = vec![format!(
+        "energy: {dissipated:.3e} J dissipated, {numerical:.1e} J {verb} by the integrator ({:.1} %)",
+        100.0 * numerical / dissipated
+    )];
+    if numerical > NOTABLE * dissipated {
+        lines.push(
+            "energy: a smaller integrator.step would make the integrator's part small".to_owned(),
+        );
+    }
     lines
 }

@@ -50,7 +50,7 @@ pub(super) fn weight(parts: &[Inertia], coordinates: usize) -> Vec<(usize, f64)>
         .collect()
 }
 
-/// Sums the parts; in the ideal mechanism every unknown has unit mass and the parts are dropped.
+/// Sums the parts; in the ideal mechanism they are kept, but every unknown has unit mass.
 pub(super) fn mass(
     parts: Vec<Inertia>,
     numbering: &Numbering,
@@ -58,11 +58,6 @@ pub(super) fn mass(
     mode: Mode,
 ) -> Mass {
     let mut tangent = vec![0.0; symbolic.len()];
-    let parts = if mode == Mode::Ideal {
-        Vec::new()
-    } else {
-        parts
-    };
     if mode == Mode::Ideal {
         for i in 0..numbering.unknowns {
             tangent[symbolic.slot(i, i) as usize] = 1.0;
@@ -70,7 +65,8 @@ pub(super) fn mass(
     }
     let mut rows: Vec<std::collections::BTreeMap<usize, f64>> =
         vec![Default::default(); numbering.coordinates];
-    for part in &parts {
+    let summed = if mode == Mode::Real { &parts[..] } else { &[] };
+    for part in summed {
         let n = part.coordinates.len();
         for (r, &i) in part.coordinates.iter().enumerate() {
             for (s, &j) in part.coordinates.iter().enumerate() {

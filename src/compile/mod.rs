@@ -1,6 +1,8 @@
 //! Scene -> model: shares nodes, eliminates known coordinates, leaves out what the scene does not call for.
 
+pub(crate) mod assembly;
 mod drive;
+mod loads;
 mod mass;
 mod numbering;
 mod reactions;
@@ -8,7 +10,7 @@ mod sketch;
 mod terms;
 
 use crate::model::Model;
-use crate::scene::{BodyKind, JointModel, PointRef, Scene, SceneError};
+use crate::scene::{BodyKind, JointModel, LinkModel, MotionKind, PointRef, Scene, SceneError};
 
 /// What determines the motion of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,8 +19,10 @@ pub(crate) enum Role {
     Ground,
     /// The equations of motion.
     Free,
-    /// The path of a drive (in the ideal mechanism).
+    /// A path: that of a body of its own, or that of a drive (in the ideal mechanism).
     Path,
+    /// The motion of this index, about a point of the ground.
+    Turned(usize),
     /// The ideal mechanism (in the real one).
     Driven,
 }
@@ -42,15 +46,21 @@ pub(crate) struct Compiler<'a> {
 impl Compiler<'_> {
     /// True where the joint is ideal in this mechanism.
     pub fn is_ideal(&self, joint: usize) -> bool {
-        self.mode == Mode::Ideal || matches!(self.scene.joints[joint].model, JointModel::Ideal)
+        let model = &self.scene.joints[joint].model;
+        self.mode == Mode::Ideal || !matches!(model, JointModel::Clearance(_))
     }
 
     pub fn is_known(&self, point: PointRef) -> bool {
         self.roles[point.body] != Role::Free
     }
 
-    pub fn is_link(&self, body: usize) -> bool {
-        matches!(self.scene.bodies[body].kind, BodyKind::Link(_))
+    /// True of a point that is a node which joints can share: an end of a link, a point mass.
+    pub fn is_node(&self, point: PointRef) -> bool {
+        match self.scene.bodies[point.body].kind {
+            BodyKind::Link(_) => point.point < 2,
+            BodyKind::PointMass { .. } => true,
+            _ => false,
+        }
     }
 
     /// An error at joint `joint`.
@@ -63,12 +73,50 @@ impl Compiler<'_> {
     pub fn point_name(&self, point: PointRef) -> String {
         let body = &self.scene.bodies[point.body];
         let name = match &body.kind {
-            BodyKind::Ground { points } => points[point.point].name.as_str(),
+            BodyKind::Ground { points } | BodyKind::Moving { points, .. } => {
+                points[point.point].name.as_str()
+            }
             BodyKind::Rigid(rigid) => rigid.points[point.point].name.as_str(),
-            BodyKind::Link(_) => ["start", "end"][point.point],
+            BodyKind::PointMass { .. } => "center",
+            BodyKind::Link(link) => match point.point {
+                0 => "start",
+                1 => "end",
+                inner => link.points[inner - 2].name.as_str(),
+            },
         };
         format!("{}.{name}", body.name)
     }
+}
+
+/// Roles that a scene gives directly: ground, bodies on paths, rigid bodies turned about a point of the ground.
+fn known_roles(scene: &Scene) -> Vec<Role> {
+    let role = |b: &crate::scene::Body| match b.kind {
+        BodyKind::Ground { .. } => Role::Ground,
+        BodyKind::Moving { .. } => Role::Path,
+        _ => Role::Free,
+    };
+    let mut roles: Vec<Role> = scene.bodies.iter().map(role).collect();
+    for (m, motion) in scene.motions.iter().enumerate() {
+        let MotionKind::Angle { joint, .. } = motion.kind else {
+            continue;
+        };
+        let joint = &scene.joints[joint];
+        let (i, j) = (joint.bearing.body, joint.journal.body);
+        let turned = match (roles[i], roles[j]) {
+            (Role::Ground, Role::Free) => j,
+            (Role::Free, Role::Ground) => i,
+            _ => continue,
+        };
+        let rigid = match &scene.bodies[turned].kind {
+            BodyKind::Rigid(_) => true,
+            BodyKind::Link(link) => link.model == LinkModel::Rigid,
+            _ => false,
+        };
+        if rigid && matches!(joint.model, JointModel::Ideal) {
+            roles[turned] = Role::Turned(m);
+        }
+    }
+    roles
 }
 
 /// Compiles a scene into the mechanism it describes.
@@ -76,12 +124,7 @@ impl Compiler<'_> {
 /// # Errors
 /// A mechanism that cannot close or be driven as asked, or whose constraints repeat each other.
 pub fn compile(scene: &Scene) -> Result<Model, SceneError> {
-    let ground = |b: &crate::scene::Body| matches!(b.kind, BodyKind::Ground { .. });
-    let mut roles: Vec<Role> = scene
-        .bodies
-        .iter()
-        .map(|b| if ground(b) { Role::Ground } else { Role::Free })
-        .collect();
+    let mut roles = known_roles(scene);
     let kinematics = match scene.drives.as_slice() {
         [] => None,
         [drive] => {

@@ -3,7 +3,7 @@
 use super::{Compiler, Mode, Role};
 use crate::marker::Marker;
 use crate::model::{BodyCoordinates, Model, Rider};
-use crate::scene::{BodyKind, LinkModel, PointRef, SceneError};
+use crate::scene::{BodyKind, JointModel, LinkModel, MotionKind, PointRef, SceneError};
 
 /// How a joint of this mechanism connects its points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,9 +72,11 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
             c.joint_error(j, message, "redundant joint")
         };
         let (bearing, journal) = (joint.bearing, joint.journal);
-        let free_end = |p: PointRef| !c.is_known(p) && c.is_link(p.body);
+        let free_end = |p: PointRef| !c.is_known(p) && c.is_node(p);
         connections.push(if !c.is_ideal(j) {
             Connection::Contact
+        } else if matches!(joint.model, JointModel::Prismatic { .. }) {
+            Connection::Constraint
         } else if c.is_known(bearing) && c.is_known(journal) {
             Connection::Eliminated
         } else if free_end(bearing) && free_end(journal) {
@@ -129,16 +131,21 @@ pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, S
         let mut node_of = |end: usize, take: &mut dyn FnMut(&[String]) -> usize| {
             let class = nodes.find(2 * b + end);
             if nodes.anchor[class].is_none() && nodes.x[class].is_none() {
-                nodes.x[class] = Some(take(&xy(format!(
-                    "{}.{}",
-                    body.name,
-                    ["start", "end"][end]
-                ))));
+                let point = PointRef {
+                    body: b,
+                    point: end,
+                };
+                nodes.x[class] = Some(take(&xy(c.point_name(point))));
             }
             nodes.x[class].unwrap_or(usize::MAX)
         };
         bodies[b] = match &body.kind {
-            BodyKind::Ground { .. } => BodyCoordinates::Ground { points: Vec::new() },
+            BodyKind::Ground { .. } | BodyKind::Moving { .. } => {
+                unreachable!("these bodies are not free")
+            }
+            BodyKind::PointMass { .. } => BodyCoordinates::PointMass {
+                x: node_of(0, &mut take),
+            },
             BodyKind::Rigid(_) => {
                 let labels = ["x", "y", "theta"].map(|s| format!("{}.{s}", body.name));
                 BodyCoordinates::Rigid { x: take(&labels) }
@@ -164,6 +171,10 @@ pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, S
                         slopes,
                         elements: 0..0,
                         element_length,
+                        points: [0, elements]
+                            .into_iter()
+                            .chain(link.points.iter().map(|p| p.node))
+                            .collect(),
                     }
                 }
             },
@@ -195,12 +206,17 @@ pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, S
                 }
                 numbering.bodies[b] = BodyCoordinates::Ground { points: firsts };
             }
-            (_, Role::Path) => {
+            (_, Role::Path) | (BodyKind::Rigid(_), Role::Turned(_)) => {
                 numbering.bodies[b] = BodyCoordinates::Rigid {
                     x: numbering.known(3),
                 }
             }
             _ => {}
+        }
+    }
+    for b in 0..c.scene.bodies.len() {
+        if let (BodyKind::Link(_), Role::Turned(m)) = (&c.scene.bodies[b].kind, c.roles[b]) {
+            numbering.bodies[b] = numbering.turned_link(c, b, m);
         }
     }
     let anchored: Vec<usize> = (0..nodes.parent.len())
@@ -224,7 +240,7 @@ pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, S
         };
         let x = match c.marker(&numbering.bodies[point.body], point) {
             Marker::Node { x } => x,
-            marker @ Marker::OnBody { .. } => {
+            marker => {
                 let x = numbering.known(2);
                 numbering.riders.push(Rider { x, marker });
                 x
@@ -248,6 +264,7 @@ pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, S
                 positions[0] = x(0).unwrap_or(positions[0]);
                 positions[last] = x(1).unwrap_or(positions[last]);
             }
+            BodyCoordinates::PointMass { x: own } => *own = x(0).unwrap_or(*own),
             _ => {}
         }
     }
@@ -265,18 +282,26 @@ impl Compiler<'_> {
             (BodyCoordinates::Ground { points }, _) => Marker::Node {
                 x: points[point.point],
             },
-            (BodyCoordinates::FlexibleLink { nodes, .. }, _) => Marker::Node {
-                x: if point.point == 0 {
-                    nodes[0]
-                } else {
-                    nodes[nodes.len() - 1]
-                },
+            (BodyCoordinates::Rigid { x }, BodyKind::Moving { points, .. }) => Marker::OnBody {
+                x: *x,
+                s: points[point.point].at,
             },
+            (BodyCoordinates::FlexibleLink { nodes, points, .. }, _) => Marker::Node {
+                x: nodes[points[point.point]],
+            },
+            (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) if point.point > 1 => {
+                Marker::OnChord {
+                    from: ends[0],
+                    to: ends[1],
+                    share: link.share(point.point),
+                }
+            }
             (BodyCoordinates::RigidLink { ends }, _) => Marker::Node {
                 x: ends[point.point],
             },
+            (BodyCoordinates::PointMass { x }, _) => Marker::Node { x: *x },
             (BodyCoordinates::Rigid { .. }, _) => {
-                unreachable!("only a rigid body has reference-point coordinates")
+                unreachable!("only these bodies have reference-point coordinates")
             }
         }
     }
@@ -286,7 +311,10 @@ impl Compiler<'_> {
         let Some(point) = nodes.anchor[class] else {
             return false;
         };
-        matches!(self.scene.bodies[point.body].kind, BodyKind::Rigid(_))
+        matches!(
+            self.scene.bodies[point.body].kind,
+            BodyKind::Rigid(_) | BodyKind::Moving { .. }
+        )
     }
 }
 
@@ -302,6 +330,24 @@ pub(crate) fn shifted(coordinates: &BodyCoordinates, offset: usize) -> BodyCoord
 }
 
 impl Numbering {
+    /// Coordinates of a link that motion `m` turns about a point of the ground: that point, and a known end.
+    fn turned_link(&mut self, c: &Compiler, b: usize, m: usize) -> BodyCoordinates {
+        let MotionKind::Angle { joint, .. } = c.scene.motions[m].kind else {
+            unreachable!("only an angle turns a body");
+        };
+        let joint = &c.scene.joints[joint];
+        let (own, ground) = if joint.journal.body == b {
+            (joint.journal, joint.bearing)
+        } else {
+            (joint.bearing, joint.journal)
+        };
+        let mut ends = [self.known(2); 2];
+        if let BodyCoordinates::Ground { points } = &self.bodies[ground.body] {
+            ends[own.point] = points[ground.point];
+        }
+        BodyCoordinates::RigidLink { ends }
+    }
+
     fn known(&mut self, count: usize) -> usize {
         self.coordinates += count;
         self.coordinates - count

@@ -1,11 +1,11 @@
 //! Which terms make up the force of an eliminated joint and the torque of an actuated one.
 
-use super::terms::OwnTerm;
+use super::terms::{Own, OwnTerm};
 use super::{Compiler, Role};
 use crate::model::{
     Actuator, BodyCoordinates, DrivenForce, JointKind, Model, Reaction, Share, Source,
 };
-use crate::scene::{PointRef, SceneError};
+use crate::scene::{BodyKind, MotionKind, PointRef, SceneError};
 
 /// First coordinate of a link end or of a rigid body, and the number of coordinates there.
 fn place(model: &Model, point: PointRef) -> Option<(usize, usize)> {
@@ -13,14 +13,10 @@ fn place(model: &Model, point: PointRef) -> Option<(usize, usize)> {
         BodyCoordinates::Ground { .. } => None,
         BodyCoordinates::Rigid { x } => Some((*x, 3)),
         BodyCoordinates::RigidLink { ends } => Some((ends[point.point], 2)),
-        BodyCoordinates::FlexibleLink { nodes, .. } => Some((
-            if point.point == 0 {
-                nodes[0]
-            } else {
-                nodes[nodes.len() - 1]
-            },
-            2,
-        )),
+        BodyCoordinates::PointMass { x } => Some((*x, 2)),
+        BodyCoordinates::FlexibleLink { nodes, points, .. } => {
+            Some((nodes[points[point.point]], 2))
+        }
     }
 }
 
@@ -28,7 +24,9 @@ fn place(model: &Model, point: PointRef) -> Option<(usize, usize)> {
 fn attachments(model: &Model, body: usize) -> Vec<PointRef> {
     match model.bodies()[body].coordinates {
         BodyCoordinates::Ground { .. } => vec![],
-        BodyCoordinates::Rigid { .. } => vec![PointRef { body, point: 0 }],
+        BodyCoordinates::Rigid { .. } | BodyCoordinates::PointMass { .. } => {
+            vec![PointRef { body, point: 0 }]
+        }
         _ => vec![PointRef { body, point: 0 }, PointRef { body, point: 1 }],
     }
 }
@@ -45,7 +43,7 @@ fn attachment(model: &Model, point: PointRef) -> PointRef {
 }
 
 /// The shares of all terms that belong to `point`: its body's own, and those of joints attached there.
-fn shares_of(c: &Compiler, model: &Model, own: &[OwnTerm], point: PointRef) -> Vec<Share> {
+fn shares_of(c: &Compiler, model: &Model, own: &[Own], point: PointRef) -> Vec<Share> {
     let Some((x, _)) = place(model, point) else {
         return Vec::new();
     };
@@ -57,9 +55,9 @@ fn shares_of(c: &Compiler, model: &Model, own: &[OwnTerm], point: PointRef) -> V
     // the masses of a body come in the order of the bodies; a flexible link has one an element
     let mut first = 0;
     for (b, place) in model.bodies().iter().enumerate() {
-        let count = match &place.coordinates {
-            BodyCoordinates::Ground { .. } => 0,
-            BodyCoordinates::FlexibleLink { elements, .. } => elements.len(),
+        let count = match (&place.coordinates, &c.scene.bodies[b].kind) {
+            (BodyCoordinates::FlexibleLink { elements, .. }, _) => elements.len(),
+            (_, BodyKind::Ground { .. } | BodyKind::Moving { .. }) => 0,
             _ => 1,
         };
         if b == point.body {
@@ -74,27 +72,34 @@ fn shares_of(c: &Compiler, model: &Model, own: &[OwnTerm], point: PointRef) -> V
         }
         first += count;
     }
-    if let (BodyCoordinates::RigidLink { ends }, Role::Free) =
-        (&model.bodies()[point.body].coordinates, c.roles[point.body])
-    {
-        let length = model.lengths.iter();
-        let mut length = length.map(|l| [l.term.i, l.term.j]);
-        if let Some(i) = length.position(|l| l == *ends) {
-            add(Source::Length(i), &model.lengths[i].block.coordinates);
-        }
+    let mut add_owned = |source: Source, coordinates: &[usize], owners: &[usize]| {
+        let mut places = coordinates.iter().zip(owners).enumerate();
+        // a body may stand twice in a term, as the point and as the direction of one side
+        let own = places
+            .by_ref()
+            .filter(|(_, (i, b))| **i == x && **b == point.body);
+        shares.extend(own.map(|(local, _)| Share { source, local }));
+    };
+    for (i, placed) in model.constraints.iter().enumerate() {
+        add_owned(
+            Source::Constraint(i),
+            &placed.block.coordinates,
+            &placed.owners,
+        );
     }
+    for (i, acting) in model.forces.iter().enumerate() {
+        add_owned(Source::Force(i), &acting.block.coordinates, &acting.owners);
+    }
+    let mut add = |source: Source, coordinates: &[usize]| {
+        let found = coordinates.iter().position(|&i| i == x);
+        shares.extend(found.map(|local| Share { source, local }));
+    };
     for (joint, own) in c.scene.joints.iter().zip(own) {
         let ends = [joint.bearing, joint.journal].map(|p| attachment(model, p));
         let attached = ends.contains(&point);
         // the couple of a friction force on a rigid link acts on both ends
         let on_body = ends.iter().any(|end| end.body == point.body);
-        match *own {
-            OwnTerm::Constraint(i) if attached => {
-                add(
-                    Source::Coincidence(i),
-                    &model.coincidences[i].block.coordinates,
-                );
-            }
+        match own.force {
             OwnTerm::Loose(i) if attached => {
                 add(Source::Loose(i), &model.loose[i].block.coordinates);
             }
@@ -115,7 +120,7 @@ fn shares_of(c: &Compiler, model: &Model, own: &[OwnTerm], point: PointRef) -> V
 fn hanging(
     c: &Compiler,
     model: &Model,
-    own: &[OwnTerm],
+    own: &[Own],
     cut: usize,
     from: PointRef,
 ) -> Option<Vec<PointRef>> {
@@ -128,11 +133,11 @@ fn hanging(
             return None;
         }
         let mut reached = Vec::new();
-        if c.roles[point.body] == Role::Driven {
+        if matches!(c.roles[point.body], Role::Driven | Role::Turned(_)) {
             reached.extend(attachments(model, point.body));
         }
         for (j, joint) in c.scene.joints.iter().enumerate() {
-            if j != cut && matches!(own[j], OwnTerm::Eliminated) {
+            if j != cut && matches!(own[j].force, OwnTerm::Eliminated) {
                 let ends = [joint.bearing, joint.journal].map(|p| attachment(model, p));
                 for (near, far) in [(0, 1), (1, 0)] {
                     if ends[near] == point {
@@ -154,10 +159,10 @@ fn hanging(
 pub(super) fn joint(
     c: &Compiler,
     model: &Model,
-    own: &[OwnTerm],
+    own: &[Own],
     j: usize,
 ) -> Result<(JointKind, Option<Actuator>), SceneError> {
-    let kind = match own[j] {
+    let kind = match own[j].force {
         OwnTerm::Constraint(i) => JointKind::Constraint(i),
         OwnTerm::Loose(i) => JointKind::Loose(i),
         OwnTerm::Frictional(i) => JointKind::Frictional(i),
@@ -186,7 +191,14 @@ pub(super) fn joint(
                     });
                 }
             }
-            let actuated = c.scene.drives.iter().any(|d| d.joints.contains(&j));
+            let turned = |m: &usize| match c.scene.motions[*m].kind {
+                MotionKind::Angle { joint, .. } => joint == j,
+                MotionKind::Point { .. } => false,
+            };
+            let actuated = c.scene.drives.iter().any(|d| d.joints.contains(&j))
+                || c.roles
+                    .iter()
+                    .any(|r| matches!(r, Role::Turned(m) if turned(m)));
             let actuator = actuated.then(|| Actuator {
                 bodies: [joint.bearing.body, joint.journal.body],
                 centre: c.marker(
@@ -206,7 +218,7 @@ pub(super) fn joint(
 }
 
 /// Forces on all known coordinates that can move: those of driven bodies, and the nodes that ride on them.
-pub(super) fn driven_forces(c: &Compiler, model: &Model, own: &[OwnTerm]) -> Vec<DrivenForce> {
+pub(super) fn driven_forces(c: &Compiler, model: &Model, own: &[Own]) -> Vec<DrivenForce> {
     let mut resting: Vec<usize> = model.fixed.iter().map(|&(x, _)| x).collect();
     if let Some(kinematics) = &model.kinematics {
         let inner = kinematics.mechanism.fixed.iter();

@@ -16,7 +16,7 @@ pub(super) fn close(
 ) -> Result<State, SceneError> {
     let mechanism = &*kinematics.mechanism;
     let mut inner = kinematics.work();
-    mechanism.follow_path(&mut inner.state);
+    mechanism.follow_rules(&mut inner.state);
     mechanism.ride(&mut inner.state);
     let guessed = guess(c, mechanism, &mut inner.state)?;
     kinematics.solve(&mut inner, 60).map_err(|e| {
@@ -142,10 +142,10 @@ fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) ->
 }
 
 /// A point in the frame of its body and its approximate position.
-type Pair = ([f64; 2], [f64; 2]);
+pub(super) type Pair = ([f64; 2], [f64; 2]);
 
 /// The pose (x, y, theta) that carries points of a body closest to given positions.
-fn fit(pairs: &[Pair]) -> [f64; 3] {
+pub(super) fn fit(pairs: &[Pair]) -> [f64; 3] {
     let count = pairs.len() as f64;
     let mean = |pick: fn(&Pair) -> [f64; 2]| {
         let sum = pairs

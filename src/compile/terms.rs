@@ -1,37 +1,100 @@
-//! Builds the lists of a model: masses, elements, constraints, joints, each with its place in the equations.
+//! Builds the lists of a model: masses, elements, constraints, forces, joints, each with its place in the equations.
 
 use super::mass::{mass, planar_inertia, weight};
 use super::numbering::{Connection, Numbering, shifted};
-use super::{Compiler, Mode, Role, reactions};
-use crate::constraint::{Coincide, Length};
+use super::{Compiler, Mode, Role, loads, reactions};
+use crate::constraint::{Align, ClampSlope, Coincide, Constraint, Length, Place, Slide};
 use crate::contact::{Ambrosio, normal_law};
-use crate::force::{ClearanceJoint, FrictionalJoint};
+use crate::force::{ClearanceJoint, Force, FrictionalJoint};
 use crate::kinematics::Kinematics;
 use crate::link::{AncfCable, ElasticRoute, natural_rigid};
 use crate::marker::Spin;
 use crate::math::lu::Symbolic;
 use crate::model::{
-    Block, BodyCoordinates, BodyPlace, Border, Contacting, Element, Inertia, JointPlace, Model,
-    PathRule, Placed,
+    Acting, Block, BodyCoordinates, BodyPlace, Border, Contacting, Effect, Element, Inertia,
+    JointPlace, Model, Placed, PointPlace, Rule,
 };
 use crate::motion;
-use crate::scene::{BodyKind, Joint, JointModel, Link, LinkModel, PointRef, SceneError};
+use crate::scene::{
+    BodyKind, Function, Joint, JointModel, Link, LinkModel, MotionKind, PointRef, SceneError,
+    SlopeClamp,
+};
 use crate::system::Shape;
+
+/// A constraint before it has slots.
+struct Row {
+    term: Box<dyn Constraint>,
+    effect: Effect,
+    /// One name a row.
+    names: Vec<String>,
+    /// Bodies of its two sides.
+    sides: [usize; 2],
+}
 
 /// Terms before they have slots: what they are, on which coordinates.
 #[derive(Default)]
-struct Terms {
-    inertia: Vec<Inertia>,
+pub(super) struct Terms {
+    pub inertia: Vec<Inertia>,
     elements: Vec<(AncfCable, Vec<usize>)>,
-    /// With the body.
-    lengths: Vec<(Length, usize)>,
-    coincidences: Vec<(Coincide, String)>,
+    rows: Vec<Row>,
+    /// With the bodies of its two sides.
+    pub forces: Vec<(Box<dyn Force>, [usize; 2])>,
+    pub named_forces: Vec<(String, usize)>,
     loose: Vec<ClearanceJoint>,
     frictional: Vec<FrictionalJoint>,
     /// Contact memory of each loose and each frictional joint.
     loose_contacts: Vec<usize>,
     frictional_contacts: Vec<usize>,
     contacts: usize,
+    /// Angle memories.
+    pub angles: usize,
+}
+
+impl Terms {
+    /// Adds a constraint whose rows are called `name` and what `parts` says; returns its index.
+    fn constrain(
+        &mut self,
+        term: impl Constraint + 'static,
+        effect: Effect,
+        name: &str,
+        parts: &[&str],
+        sides: [usize; 2],
+    ) -> usize {
+        debug_assert_eq!(parts.len(), term.rows());
+        let names = parts.iter().map(|part| match *part {
+            "" => name.to_owned(),
+            part => format!("{name} ({part})"),
+        });
+        self.rows.push(Row {
+            names: names.collect(),
+            term: Box::new(term),
+            effect,
+            sides,
+        });
+        self.rows.len() - 1
+    }
+}
+
+/// What a joint brings into the equations, by index in the list of its kind.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Own {
+    pub force: OwnTerm,
+    /// Constraint of directions.
+    pub couple: Option<usize>,
+    /// Directions whose angle a motion prescribes.
+    pub turned: Option<[Spin; 2]>,
+    /// The line of a prismatic joint.
+    pub slide: Option<Slide>,
+}
+
+/// The term that carries the force of a joint.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum OwnTerm {
+    Constraint(usize),
+    Loose(usize),
+    Frictional(usize),
+    /// None: the joint shares or eliminates coordinates.
+    Eliminated,
 }
 
 /// Builds the model.
@@ -42,33 +105,22 @@ pub(super) fn build(
 ) -> Result<Model, SceneError> {
     let mut terms = Terms::default();
     for b in 0..c.scene.bodies.len() {
-        body_terms(c, &mut numbering, b, &mut terms);
+        body_terms(c, &mut numbering, b, &mut terms)?;
     }
     let mut own = Vec::new();
     for (j, joint) in c.scene.joints.iter().enumerate() {
         own.push(joint_terms(c, &numbering, j, joint, &mut terms)?);
     }
+    motion_terms(c, &numbering, &mut own, &mut terms);
+    if c.mode == Mode::Real {
+        loads::add(c, &numbering, &mut terms);
+    }
 
     let n = numbering.unknowns;
-    for &(length, body) in &terms.lengths {
-        if length.i >= n && length.j >= n {
-            let body = &c.scene.bodies[body];
-            let message = format!(
-                "the length of {} repeats what the joints of both its ends already fix",
-                body.name
-            );
-            return Err(c.scene.error(body.span, message, "redundant link"));
-        }
-    }
-    let multipliers = terms.lengths.len() + 2 * terms.coincidences.len();
+    let multipliers = terms.rows.iter().map(|row| row.names.len()).sum();
     let symbolic = analyse(&terms, n, multipliers);
     let mut names = numbering.names.clone();
-    let length_name =
-        |&(_, body): &(Length, usize)| format!("length of {}", c.scene.bodies[body].name);
-    names.extend(terms.lengths.iter().map(length_name));
-    for (_, name) in &terms.coincidences {
-        names.extend(["x", "y"].map(|d| format!("{name} ({d})")));
-    }
+    names.extend(terms.rows.iter().flat_map(|row| row.names.iter().cloned()));
 
     let weight = if c.mode == Mode::Real {
         weight(&terms.inertia, numbering.coordinates)
@@ -77,7 +129,6 @@ pub(super) fn build(
     };
     let mass = mass(terms.inertia, &numbering, &symbolic, c.mode);
     let place = |coordinates: Vec<usize>| Block::new(coordinates, &symbolic, n);
-    let border = |coordinates: &[usize], row| Border::new(coordinates, row, &symbolic, n);
     let elements = terms
         .elements
         .into_iter()
@@ -86,36 +137,34 @@ pub(super) fn build(
             block: place(coordinates),
         })
         .collect();
-    let lengths: Vec<_> = terms
-        .lengths
-        .into_iter()
-        .enumerate()
-        .map(|(row, (term, _))| {
-            let coordinates = term.coordinates().to_vec();
-            Placed {
-                term,
-                row,
-                border: vec![border(&coordinates, row)],
-                block: place(coordinates),
-            }
-        })
-        .collect();
-    let coincidences = terms
-        .coincidences
-        .into_iter()
-        .enumerate()
-        .map(|(i, (term, _))| {
-            let row = lengths.len() + 2 * i;
-            let coordinates = term.coordinates();
-            let borders = vec![border(&coordinates, row), border(&coordinates, row + 1)];
-            Placed {
-                term,
-                row,
-                border: borders,
-                block: place(coordinates),
-            }
-        })
-        .collect();
+    let mut row = 0;
+    let constraints = terms.rows.into_iter().map(|r| {
+        let coordinates = r.term.coordinates();
+        let rows = r.term.rows();
+        let border = |d| Border::new(&coordinates, row + d, &symbolic, n);
+        let placed = Placed {
+            border: (0..rows).map(border).collect(),
+            owners: owners(&coordinates, r.term.split(), r.sides),
+            block: place(coordinates),
+            effect: r.effect,
+            row,
+            rows,
+            kept: [1.0; 2],
+            term: r.term,
+        };
+        row += rows;
+        placed
+    });
+    let constraints: Vec<Placed> = constraints.collect();
+    let forces = terms.forces.into_iter().map(|(term, sides)| {
+        let coordinates = term.coordinates();
+        Acting {
+            owners: owners(&coordinates, term.split(), sides),
+            block: place(coordinates),
+            term,
+        }
+    });
+    let forces = forces.collect();
     let loose = terms
         .loose
         .into_iter()
@@ -142,6 +191,7 @@ pub(super) fn build(
         coordinates: numbering.coordinates,
         multipliers,
         contacts: terms.contacts,
+        angles: terms.angles,
     };
     let mut model = Model {
         shape,
@@ -149,13 +199,14 @@ pub(super) fn build(
         names,
         mass,
         elements,
-        lengths,
-        coincidences,
+        constraints,
+        forces,
+        named_forces: terms.named_forces,
         loose,
         frictional,
         weight,
-        fixed: numbering.fixed,
-        path: path_rule(c, &numbering.bodies),
+        fixed: numbering.fixed.clone(),
+        rules: rules(c, &numbering),
         kinematics: kinematics.map(|k| Kinematics {
             offset: numbering.offset,
             ..k
@@ -173,6 +224,7 @@ pub(super) fn build(
         .enumerate()
         .map(|(b, (body, coordinates))| BodyPlace {
             name: body.name.clone(),
+            points: points(c, &coordinates, b),
             coordinates,
             prescribed: prescribed(c, &model, b),
         })
@@ -185,10 +237,48 @@ pub(super) fn build(
                 name: joint.name.clone(),
                 kind,
                 actuator,
+                couple: own[j].couple,
+                turned: own[j].turned,
+                slide: own[j].slide,
             });
         }
     }
     Ok(model)
+}
+
+/// The body of each local coordinate: the first `split` belong to the first side.
+fn owners(coordinates: &[usize], split: usize, sides: [usize; 2]) -> Vec<usize> {
+    (0..coordinates.len())
+        .map(|c| sides[usize::from(c >= split)])
+        .collect()
+}
+
+/// Named points of a body that moves.
+fn points(c: &Compiler, coordinates: &BodyCoordinates, body: usize) -> Vec<PointPlace> {
+    let count = match &c.scene.bodies[body].kind {
+        BodyKind::Ground { .. } => 0,
+        BodyKind::Link(link) => 2 + link.points.len(),
+        BodyKind::Rigid(rigid) => rigid.points.len(),
+        BodyKind::PointMass { .. } => 1,
+        BodyKind::Moving { points, .. } => points.len(),
+    };
+    let place = |point| {
+        let point = PointRef { body, point };
+        let name = c.point_name(point);
+        PointPlace {
+            name: name
+                .split_once('.')
+                .map_or(name.clone(), |(_, p)| p.to_owned()),
+            marker: c.marker(coordinates, point),
+            slope: match coordinates {
+                BodyCoordinates::FlexibleLink { slopes, points, .. } => {
+                    Some(slopes[points[point.point]])
+                }
+                _ => None,
+            },
+        }
+    };
+    (0..count).map(place).collect()
 }
 
 /// First coordinate of what the drive prescribes for body `b`.
@@ -206,18 +296,74 @@ fn prescribed(c: &Compiler, model: &Model, b: usize) -> Option<usize> {
     }
 }
 
-fn path_rule(c: &Compiler, bodies: &[BodyCoordinates]) -> Option<PathRule> {
-    let drive = c.scene.drives.first().filter(|_| c.mode == Mode::Ideal)?;
-    match bodies[drive.body] {
-        BodyCoordinates::Rigid { x } => Some(PathRule {
-            x,
-            path: motion::path(&drive.path),
-        }),
+/// What moves as a function of time: bodies on paths, bodies that turn about a point of the ground.
+fn rules(c: &Compiler, numbering: &Numbering) -> Vec<Rule> {
+    let mut rules = Vec::new();
+    for (b, body) in c.scene.bodies.iter().enumerate() {
+        let coordinates = &numbering.bodies[b];
+        let path = match (&body.kind, c.roles[b]) {
+            (BodyKind::Moving { path, .. }, _) => Some(path),
+            (_, Role::Path) => c.scene.drives.first().map(|d| &d.path),
+            _ => None,
+        };
+        if let (Some(path), BodyCoordinates::Rigid { x }) = (path, coordinates) {
+            rules.push(Rule::Path {
+                x: *x,
+                path: motion::path(path),
+            });
+        }
+        if let Role::Turned(motion) = c.roles[b] {
+            rules.extend(turn(c, numbering, b, motion));
+        }
+    }
+    rules
+}
+
+/// The rule of a body that motion `m` turns about a point of the ground.
+fn turn(c: &Compiler, numbering: &Numbering, b: usize, m: usize) -> Option<Rule> {
+    let MotionKind::Angle { joint, angle } = &c.scene.motions[m].kind else {
+        return None;
+    };
+    let joint = &c.scene.joints[*joint];
+    // the angle is that of the journal's body relative to the bearing's
+    let (own, ground, angle) = if joint.journal.body == b {
+        (joint.journal, joint.bearing, angle.clone())
+    } else {
+        (joint.bearing, joint.journal, angle.negated())
+    };
+    let pivot = match &numbering.bodies[ground.body] {
+        BodyCoordinates::Ground { points } => points[ground.point],
+        _ => return None,
+    };
+    match (&numbering.bodies[b], &c.scene.bodies[b].kind) {
+        (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid)) => {
+            let s = rigid.points[own.point].at;
+            Some(Rule::Turn {
+                pivot,
+                point: (*x, [-s[0], -s[1]]),
+                theta: Some(x + 2),
+                angle,
+            })
+        }
+        (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
+            let sign = if own.point == 0 { 1.0 } else { -1.0 };
+            Some(Rule::Turn {
+                pivot,
+                point: (ends[1 - own.point], [sign * link.length, 0.0]),
+                theta: None,
+                angle,
+            })
+        }
         _ => None,
     }
 }
 
-fn body_terms(c: &Compiler, numbering: &mut Numbering, b: usize, terms: &mut Terms) {
+fn body_terms(
+    c: &Compiler,
+    numbering: &mut Numbering,
+    b: usize,
+    terms: &mut Terms,
+) -> Result<(), SceneError> {
     let body = &c.scene.bodies[b];
     let gravity = c.scene.simulation.gravity.unwrap_or([0.0; 2]);
     match (&body.kind, &mut numbering.bodies[b]) {
@@ -229,6 +375,11 @@ fn body_terms(c: &Compiler, numbering: &mut Numbering, b: usize, terms: &mut Ter
                 field: vec![gravity[0], gravity[1], 0.0],
             });
         }
+        (BodyKind::PointMass { mass }, BodyCoordinates::PointMass { x }) => {
+            terms
+                .inertia
+                .push(planar_inertia([[*mass]], [*x], [true], gravity));
+        }
         (BodyKind::Link(link), BodyCoordinates::RigidLink { ends }) => {
             let mass = link.density * link.area * link.length;
             terms.inertia.push(planar_inertia(
@@ -238,12 +389,21 @@ fn body_terms(c: &Compiler, numbering: &mut Numbering, b: usize, terms: &mut Ter
                 gravity,
             ));
             if c.roles[b] == Role::Free {
+                let [i, j] = *ends;
+                if i >= numbering.unknowns && j >= numbering.unknowns {
+                    let message = format!(
+                        "the length of {} repeats what the joints of both its ends already fix",
+                        body.name
+                    );
+                    return Err(c.scene.error(body.span, message, "redundant link"));
+                }
                 let length = Length {
-                    i: ends[0],
-                    j: ends[1],
+                    i,
+                    j,
                     length: link.length,
                 };
-                terms.lengths.push((length, b));
+                let name = format!("length of {}", body.name);
+                terms.constrain(length, Effect::Length, &name, &[""], [b, b]);
             }
         }
         (
@@ -253,6 +413,7 @@ fn body_terms(c: &Compiler, numbering: &mut Numbering, b: usize, terms: &mut Ter
                 slopes,
                 elements,
                 element_length,
+                ..
             },
         ) => {
             let first = terms.elements.len();
@@ -274,6 +435,7 @@ fn body_terms(c: &Compiler, numbering: &mut Numbering, b: usize, terms: &mut Ter
         }
         _ => {}
     }
+    Ok(())
 }
 
 fn kernel(link: &Link, element_length: f64) -> AncfCable {
@@ -288,27 +450,20 @@ fn kernel(link: &Link, element_length: f64) -> AncfCable {
     )
 }
 
-/// The term that a joint brings into the equations, by its index in the list of its kind.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum OwnTerm {
-    Constraint(usize),
-    Loose(usize),
-    Frictional(usize),
-    /// None: the joint shares or eliminates coordinates.
-    Eliminated,
-}
-
 fn joint_terms(
     c: &Compiler,
     numbering: &Numbering,
     j: usize,
     joint: &Joint,
     terms: &mut Terms,
-) -> Result<OwnTerm, SceneError> {
-    let [bearing, journal] =
-        [joint.bearing, joint.journal].map(|p| c.marker(&numbering.bodies[p.body], p));
-    match (numbering.connections[j], &joint.model) {
-        (Connection::Eliminated, _) => Ok(OwnTerm::Eliminated),
+) -> Result<Own, SceneError> {
+    let points = [joint.bearing, joint.journal];
+    let sides = points.map(|p| p.body);
+    let [bearing, journal] = points.map(|p| c.marker(&numbering.bodies[p.body], p));
+    let name = format!("joint {}", joint.name);
+    let mut line = None;
+    let force = match (numbering.connections[j], &joint.model) {
+        (Connection::Eliminated, _) => OwnTerm::Eliminated,
         (Connection::Contact, JointModel::Clearance(contact)) => {
             let n = numbering.unknowns;
             if bearing.x() >= n && journal.x() >= n {
@@ -330,7 +485,7 @@ fn joint_terms(
                 None => {
                     terms.loose.push(term);
                     terms.loose_contacts.push(terms.contacts - 1);
-                    Ok(OwnTerm::Loose(terms.loose.len() - 1))
+                    OwnTerm::Loose(terms.loose.len() - 1)
                 }
                 Some(f) => {
                     let law = Ambrosio {
@@ -338,41 +493,155 @@ fn joint_terms(
                         v0: f.v0,
                         v1: f.v1,
                     };
-                    let spins = [joint.bearing, joint.journal].map(|p| spin(numbering, p));
+                    let spins = points.map(|p| spin(numbering, p));
                     let term =
                         FrictionalJoint::new(term, law, f.slip, contact.bearing_radius, spins);
                     terms.frictional.push(term);
                     terms.frictional_contacts.push(terms.contacts - 1);
-                    Ok(OwnTerm::Frictional(terms.frictional.len() - 1))
+                    OwnTerm::Frictional(terms.frictional.len() - 1)
                 }
             }
         }
+        (_, JointModel::Prismatic { direction, .. }) => {
+            let slide = Slide {
+                guide: bearing,
+                spin: spin(numbering, joint.bearing),
+                angle: *direction,
+                scale: c.inverse_size(joint.bearing.body, numbering),
+                slider: journal,
+            };
+            line = Some(slide);
+            let row = terms.constrain(slide, Effect::Slide, &name, &["line"], sides);
+            OwnTerm::Constraint(row)
+        }
         _ => {
-            terms.coincidences.push((
-                Coincide { bearing, journal },
-                format!("joint {}", joint.name),
-            ));
-            Ok(OwnTerm::Constraint(terms.coincidences.len() - 1))
+            let coincide = Coincide { bearing, journal };
+            let row = terms.constrain(coincide, Effect::Coincidence, &name, &["x", "y"], sides);
+            OwnTerm::Constraint(row)
+        }
+    };
+    Ok(Own {
+        force,
+        couple: couple(c, numbering, joint, terms),
+        turned: None,
+        slide: line,
+    })
+}
+
+/// The constraint of directions of a weld or of a guide that does not turn.
+fn couple(c: &Compiler, numbering: &Numbering, joint: &Joint, terms: &mut Terms) -> Option<usize> {
+    let points = [joint.bearing, joint.journal];
+    let (angle, slope) = match joint.model {
+        JointModel::Weld { angle, slope } => (angle, slope),
+        JointModel::Prismatic { locked, .. } => (locked?, SlopeClamp::Direction),
+        JointModel::Ideal | JointModel::Clearance(_) => return None,
+    };
+    if points.iter().all(|&p| c.is_known(p)) {
+        return None;
+    }
+    let name = format!("joint {}", joint.name);
+    let spins = points.map(|p| spin(numbering, p));
+    let sides = points.map(|p| p.body);
+    // a slope is held relative to the other side, whichever side it is on
+    let held = match (slope, spins) {
+        (SlopeClamp::Vector, [_, Spin::Slope { x }]) => Some((0, x, angle)),
+        (SlopeClamp::Vector, [Spin::Slope { x }, _]) => Some((1, x, -angle)),
+        _ => None,
+    };
+    Some(match held {
+        Some((other, slope, angle)) => {
+            let clamp = ClampSlope {
+                first: spins[other],
+                slope,
+                angle,
+                scale: c.inverse_size(sides[other], numbering),
+            };
+            let sides = [sides[other], sides[1 - other]];
+            terms.constrain(
+                clamp,
+                Effect::Direction,
+                &name,
+                &["slope x", "slope y"],
+                sides,
+            )
+        }
+        None => {
+            let align = Align {
+                first: spins[0],
+                second: spins[1],
+                angle: Function::Constant(angle),
+                scale: sides.map(|b| c.inverse_size(b, numbering)).iter().product(),
+            };
+            terms.constrain(align, Effect::Direction, &name, &["angle"], sides)
+        }
+    })
+}
+
+/// Prescribed motions that are not rules of known coordinates.
+fn motion_terms(c: &Compiler, numbering: &Numbering, own: &mut [Own], terms: &mut Terms) {
+    for (m, motion) in c.scene.motions.iter().enumerate() {
+        let name = format!("drive {}", motion.name);
+        match &motion.kind {
+            MotionKind::Angle { joint, angle } => {
+                if c.roles.contains(&Role::Turned(m)) {
+                    continue;
+                }
+                let points = [
+                    c.scene.joints[*joint].bearing,
+                    c.scene.joints[*joint].journal,
+                ];
+                let sides = points.map(|p| p.body);
+                let [first, second] = points.map(|p| spin(numbering, p));
+                let align = Align {
+                    first,
+                    second,
+                    angle: angle.clone(),
+                    scale: sides.map(|b| c.inverse_size(b, numbering)).iter().product(),
+                };
+                let row = terms.constrain(align, Effect::Direction, &name, &["angle"], sides);
+                own[*joint].couple = Some(row);
+                own[*joint].turned = Some([first, second]);
+            }
+            MotionKind::Point { point, coordinates } => {
+                for (i, value) in coordinates.iter().enumerate() {
+                    if let Some(value) = value {
+                        let place = Place {
+                            marker: c.marker(&numbering.bodies[point.body], *point),
+                            direction: [[1.0, 0.0], [0.0, 1.0]][i],
+                            value: value.clone(),
+                        };
+                        let part = [["x"], ["y"]][i];
+                        let sides = [point.body, point.body];
+                        terms.constrain(place, Effect::Place, &name, &part, sides);
+                    }
+                }
+            }
         }
     }
 }
 
 /// How the material at a point turns.
-fn spin(numbering: &Numbering, point: PointRef) -> Spin {
+pub(super) fn spin(numbering: &Numbering, point: PointRef) -> Spin {
     match &numbering.bodies[point.body] {
-        BodyCoordinates::Ground { .. } => Spin::Fixed,
+        BodyCoordinates::Ground { .. } | BodyCoordinates::PointMass { .. } => Spin::Fixed,
         BodyCoordinates::Rigid { x } => Spin::Angle { theta: x + 2 },
         BodyCoordinates::RigidLink { ends } => Spin::Chord {
             from: ends[0],
             to: ends[1],
         },
-        BodyCoordinates::FlexibleLink { slopes, .. } => Spin::Slope {
-            x: if point.point == 0 {
-                slopes[0]
-            } else {
-                slopes[slopes.len() - 1]
-            },
+        BodyCoordinates::FlexibleLink { slopes, points, .. } => Spin::Slope {
+            x: slopes[points[point.point]],
         },
+    }
+}
+
+impl Compiler<'_> {
+    /// 1/|d| of the undeformed direction of a body: of a chord its length, else 1.
+    pub fn inverse_size(&self, body: usize, numbering: &Numbering) -> f64 {
+        match (&numbering.bodies[body], &self.scene.bodies[body].kind) {
+            (BodyCoordinates::RigidLink { .. }, BodyKind::Link(link)) => 1.0 / link.length,
+            _ => 1.0,
+        }
     }
 }
 
@@ -394,14 +663,15 @@ fn analyse(terms: &Terms, n: usize, multipliers: usize) -> Symbolic {
     for (_, coordinates) in &terms.elements {
         clique(coordinates, None);
     }
-    for (row, (length, _)) in terms.lengths.iter().enumerate() {
-        clique(&length.coordinates(), Some(row));
-    }
-    for (i, (coincide, _)) in terms.coincidences.iter().enumerate() {
-        let row = terms.lengths.len() + 2 * i;
-        for d in 0..2 {
-            clique(&coincide.coordinates(), Some(row + d));
+    let mut row = 0;
+    for constraint in &terms.rows {
+        for _ in 0..constraint.names.len() {
+            clique(&constraint.term.coordinates(), Some(row));
+            row += 1;
         }
+    }
+    for (force, _) in &terms.forces {
+        clique(&force.coordinates(), None);
     }
     for joint in &terms.loose {
         clique(&joint.coordinates(), None);

@@ -1,5 +1,6 @@
 //! Constant distance of two nodes (eq. 2).
 
+use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
 use crate::math::plane::{Vec2, dot, scale};
 use crate::system::State;
 
@@ -18,46 +19,62 @@ pub struct Length {
 }
 
 impl Length {
-    /// The coordinates in local order.
-    pub fn coordinates(&self) -> [usize; 4] {
-        [self.i, self.i + 1, self.j, self.j + 1]
-    }
-
     #[inline]
     fn difference(&self, x: &[f64]) -> Vec2 {
         [x[self.j] - x[self.i], x[self.j + 1] - x[self.i + 1]]
     }
+}
 
-    /// Phi \[m\].
+impl Constraint for Length {
+    fn rows(&self) -> usize {
+        1
+    }
+
+    fn coordinates(&self) -> Vec<usize> {
+        vec![self.i, self.i + 1, self.j, self.j + 1]
+    }
+
+    fn split(&self) -> usize {
+        2
+    }
+
     #[inline]
-    pub fn value(&self, q: &[f64]) -> f64 {
-        let d = self.difference(q);
+    fn value(&self, at: &State) -> [f64; ROWS] {
+        let d = self.difference(&at.q);
         // (|d|^2 - l^2) as a product of nearly equal numbers' difference: |d| - l is what matters
         let distance = dot(d, d).sqrt();
-        (distance - self.length) * (distance + self.length) / (2.0 * self.length)
+        [
+            (distance - self.length) * (distance + self.length) / (2.0 * self.length),
+            0.0,
+        ]
     }
 
-    /// Phi_q in local order.
     #[inline]
-    pub fn gradient(&self, q: &[f64]) -> [f64; 4] {
-        let d = scale(1.0 / self.length, self.difference(q));
-        [-d[0], -d[1], d[0], d[1]]
+    fn gradient(&self, at: &State) -> Gradient {
+        let d = scale(1.0 / self.length, self.difference(&at.q));
+        let mut gradient = [[0.0; WIDTH]; ROWS];
+        gradient[0][..4].copy_from_slice(&[-d[0], -d[1], d[0], d[1]]);
+        gradient
     }
 
-    /// d(Phi_q^T lambda)/dq = lambda/l (\[I, -I\], \[-I, I\]): the number before the identity blocks.
+    /// lambda/l (\[I, -I\], \[-I, I\]).
     #[inline]
-    pub fn curvature(&self, lambda: f64) -> f64 {
-        lambda / self.length
+    fn curvature(&self, _: &State, lambda: [f64; ROWS], out: &mut Curvature) {
+        let s = lambda[0] / self.length;
+        for i in 0..4 {
+            out.add(i, i, s);
+            out.add(i, (i + 2) % 4, -s);
+        }
     }
 
-    /// Phi_q v.
-    pub fn velocity(&self, at: &State) -> f64 {
-        dot(self.difference(&at.q), self.difference(&at.v)) / self.length
+    fn velocity(&self, at: &State) -> [f64; ROWS] {
+        let rate = dot(self.difference(&at.q), self.difference(&at.v));
+        [rate / self.length, 0.0]
     }
 
-    /// Phi_q a + d(Phi_q)/dt v.
-    pub fn acceleration(&self, at: &State) -> f64 {
+    fn acceleration(&self, at: &State) -> [f64; ROWS] {
         let rate = self.difference(&at.v);
-        (dot(self.difference(&at.q), self.difference(&at.a)) + dot(rate, rate)) / self.length
+        let second = dot(self.difference(&at.q), self.difference(&at.a)) + dot(rate, rate);
+        [second / self.length, 0.0]
     }
 }

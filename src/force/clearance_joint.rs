@@ -59,8 +59,7 @@ pub(super) struct Touch {
 impl ClearanceJoint {
     /// The coordinates in local order: bearing, journal.
     pub fn coordinates(&self) -> Vec<usize> {
-        let of = |m: &Marker| m.x()..m.x() + m.width();
-        of(&self.bearing).chain(of(&self.journal)).collect()
+        [self.bearing.coordinates(), self.journal.coordinates()].concat()
     }
 
     /// Number of local coordinates.
@@ -120,6 +119,9 @@ impl ClearanceJoint {
             .into_iter()
             .enumerate()
         {
+            if let Marker::OnChord { .. } = marker {
+                unreachable!("links of a mechanism with contacts have nodes where joints are");
+            }
             for i in 0..2 {
                 touch.normal[column + i] = sign * n[i];
                 touch.tangent[column + i] = sign * t[i];

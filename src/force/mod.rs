@@ -1,13 +1,59 @@
-//! Forces between bodies.
+//! Forces between bodies and from outside, one kind a file.
 
 mod clearance_joint;
+mod element_damping;
 mod friction;
+mod mass_damping;
+mod point_force;
+mod spring_damper;
+mod torque;
+mod torsion_spring;
 
 pub use clearance_joint::{ClearanceJoint, Geometry};
+pub use element_damping::ElementDamping;
 pub use friction::FrictionalJoint;
+pub use mass_damping::MassDamping;
+pub use point_force::PointForce;
+pub use spring_damper::SpringDamper;
+pub use torque::Torque;
+pub use torsion_spring::TorsionSpring;
 
-/// Most coordinates that one joint can depend on: a node, and another node that fixes its spin, on both sides.
+use crate::model::Effect;
+use crate::system::{INTEGRALS, State, Weights};
+
+/// Most coordinates that one force can depend on: an element, or a node and another node that fixes its spin, on both
+/// sides.
 pub const WIDTH: usize = 8;
 
-/// A square block in the local coordinates of a joint.
+/// A square block in the local coordinates of a force.
 pub type LocalMatrix = [[f64; WIDTH]; WIDTH];
+
+/// A force without memory. Its local coordinates may name a coordinate twice; what belongs to it is then the sum.
+pub trait Force: std::fmt::Debug + Send + Sync {
+    /// What it is counted as.
+    fn effect(&self) -> Effect;
+    /// The coordinates in local order: those of the first side, then those of the second.
+    fn coordinates(&self) -> Vec<usize>;
+    /// How many of them belong to the first side.
+    fn split(&self) -> usize;
+    /// Adds the local force f (left side of the equations of motion).
+    fn force(&self, at: &State, f: &mut [f64; WIDTH]);
+    /// Adds the local force and its tangent w.q df/dq + w.v df/dv.
+    fn force_and_tangent(&self, at: &State, w: Weights, f: &mut [f64; WIDTH], k: &mut LocalMatrix);
+    /// Stored energy \[J\].
+    fn energy(&self, _at: &State) -> f64 {
+        0.0
+    }
+    /// Adds what it does and dissipates to the integrands of the ledger \[W\].
+    fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]);
+    /// Updates memory at an accepted state.
+    fn remember(&self, _at: &mut State) {}
+    /// Names and units of what [`Force::measure`] gives, three at most.
+    fn quantities(&self) -> &'static [(&'static str, &'static str)] {
+        &[]
+    }
+    /// The quantities.
+    fn measure(&self, _at: &State) -> [f64; 3] {
+        [0.0; 3]
+    }
+}

@@ -12,7 +12,7 @@ pub use ancf_literal::LiteralCable;
 
 /// First and second derivatives by x \[1/m, 1/m2 times the unit of the shape function\] of the shape functions S_1 ... S_4
 /// of eq. 8 at xi = x/l.
-fn shape_derivatives(xi: f64, l: f64) -> ([f64; 4], [f64; 4]) {
+pub(crate) fn shape_derivatives(xi: f64, l: f64) -> ([f64; 4], [f64; 4]) {
     let chord = 6.0 * xi * (1.0 - xi) / l;
     let bend = (12.0 * xi - 6.0) / (l * l);
     let first = [

@@ -1,5 +1,6 @@
 //! Small mathematics that the mechanics stands on.
 
+pub mod dense;
 pub mod lu;
 pub mod plane;
 pub mod quadrature;

@@ -1,9 +1,11 @@
 //! The equations of a model: residual, tangent, rates, contact memory, powers.
 
-use super::{Effect, Model};
+use super::{Effect, Model, Rule};
+use crate::constraint::Curvature;
 use crate::force::{ClearanceJoint, WIDTH};
 use crate::link::ElasticRoute;
 use crate::math::lu::Symbolic;
+use crate::math::plane::{perp, rotate};
 use crate::system::{INTEGRALS, Integral, PrescribeError, Shape, State, System, Weights, Work};
 
 /// Local coordinates of an element.
@@ -31,37 +33,100 @@ impl Model {
     /// Adds Phi_q^T lambda to r and sets phi.
     #[inline]
     fn constraints(&self, at: &State, r: &mut [f64], phi: &mut [f64]) {
-        for c in &self.lengths {
-            let gradient = c.term.gradient(&at.q);
-            let lambda = at.lambda[c.row];
-            phi[c.row] = c.term.value(&at.q);
-            c.block.add_vector(&gradient.map(|g| g * lambda), r);
-        }
-        for c in &self.coincidences {
-            let gradient = c.term.gradient(&at.q);
-            let value = c.term.value(&at.q);
-            phi[c.row..c.row + 2].copy_from_slice(&value);
-            for (d, row) in gradient.rows.iter().enumerate() {
+        for c in &self.constraints {
+            let (value, gradient) = (c.term.value(at), c.term.gradient(at));
+            for d in 0..c.rows {
                 let lambda = at.lambda[c.row + d];
-                c.block.add_vector(&row.map(|g| g * lambda), r);
+                phi[c.row + d] = c.kept[d] * value[d];
+                c.block.add_vector(&gradient[d].map(|g| g * lambda), r);
             }
+        }
+    }
+
+    /// As [`Model::constraints`], and the tangent with it.
+    #[inline]
+    fn linearised_constraints(
+        &self,
+        at: &State,
+        w: Weights,
+        r: &mut [f64],
+        phi: &mut [f64],
+        k: &mut [f64],
+    ) {
+        for c in &self.constraints {
+            let (value, gradient) = (c.term.value(at), c.term.gradient(at));
+            for d in 0..c.rows {
+                let lambda = at.lambda[c.row + d];
+                phi[c.row + d] = c.kept[d] * value[d];
+                c.block.add_vector(&gradient[d].map(|g| g * lambda), r);
+                c.border[d].add(&gradient[d], k);
+            }
+            let mut out = Curvature {
+                slots: &c.block.slots,
+                columns: c.block.coordinates.len(),
+                weight: w.q,
+                tangent: k,
+            };
+            c.term.curvature(at, c.multipliers(at), &mut out);
+        }
+    }
+
+    /// Adds the forces without memory to r.
+    #[inline]
+    fn forces(&self, at: &State, r: &mut [f64], work: &mut Work) {
+        for acting in &self.forces {
+            work.tally[acting.term.effect() as usize] += 1;
+            let mut f = [0.0; WIDTH];
+            acting.term.force(at, &mut f);
+            acting.block.add_vector(&f, r);
         }
     }
 
     fn count(&self, work: &mut Work) {
         work.tally[Effect::Elastic as usize] += self.elements.len() as u64;
-        work.tally[Effect::Length as usize] += self.lengths.len() as u64;
-        work.tally[Effect::Coincidence as usize] += self.coincidences.len() as u64;
+        for c in &self.constraints {
+            work.tally[c.effect as usize] += 1;
+        }
         work.tally[Effect::Gravity as usize] += u64::from(!self.weight.is_empty());
     }
 
-    /// Sets the coordinates of the path-driven body at time `to.t`.
-    pub(crate) fn follow_path(&self, to: &mut State) {
-        if let Some(rule) = &self.path {
-            let motion = rule.path.at(to.t);
-            to.q[rule.x..rule.x + 3].copy_from_slice(&motion.position);
-            to.v[rule.x..rule.x + 3].copy_from_slice(&motion.velocity);
-            to.a[rule.x..rule.x + 3].copy_from_slice(&motion.acceleration);
+    /// Sets the coordinates that are functions of time, at time `to.t`.
+    pub(crate) fn follow_rules(&self, to: &mut State) {
+        for rule in &self.rules {
+            match rule {
+                Rule::Path { x, path } => {
+                    let motion = path.at(to.t);
+                    to.q[*x..x + 3].copy_from_slice(&motion.position);
+                    to.v[*x..x + 3].copy_from_slice(&motion.velocity);
+                    to.a[*x..x + 3].copy_from_slice(&motion.acceleration);
+                }
+                Rule::Turn {
+                    pivot,
+                    point: (x, s),
+                    theta,
+                    angle,
+                } => {
+                    let [phi, rate, growth] = angle.at(to.t);
+                    let (sine, cosine) = phi.sin_cos();
+                    let arm = rotate(cosine, sine, *s);
+                    let turn = perp(arm);
+                    for i in 0..2 {
+                        to.q[x + i] = to.q[pivot + i] + arm[i];
+                        to.v[x + i] = rate * turn[i];
+                        to.a[x + i] = growth * turn[i] - rate * rate * arm[i];
+                    }
+                    if let Some(theta) = *theta {
+                        (to.q[theta], to.v[theta], to.a[theta]) = (phi, rate, growth);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Counts turns: sets the angle memory.
+    pub(crate) fn remember_angles(&self, at: &mut State) {
+        for acting in &self.forces {
+            acting.term.remember(at);
         }
     }
 
@@ -114,7 +179,7 @@ impl System for Model {
         to.q[n..].copy_from_slice(&from.q[n..]);
         to.v[n..].copy_from_slice(&from.v[n..]);
         to.a[n..].copy_from_slice(&from.a[n..]);
-        self.follow_path(to);
+        self.follow_rules(to);
         if let Some(kinematics) = &self.kinematics {
             work.tally[Effect::InverseKinematics as usize] += 1;
             let inner = work
@@ -137,6 +202,7 @@ impl System for Model {
             e.block.add_vector(&f, r);
         }
         self.constraints(at, r, phi);
+        self.forces(at, r, work);
         for c in &self.loose {
             let mut f = [0.0; WIDTH];
             if c.term
@@ -179,26 +245,13 @@ impl System for Model {
             e.block.add_vector(&f, r);
             e.block.add_matrix(&tangent, w.q, k);
         }
-        self.constraints(at, r, phi);
-        for c in &self.lengths {
-            let s = w.q * c.term.curvature(at.lambda[c.row]);
-            let n = 4;
-            for i in 0..n {
-                k[c.block.slots[i * n + i] as usize] += s;
-                k[c.block.slots[i * n + (i + 2) % n] as usize] -= s;
-            }
-            c.border[0].set(&c.term.gradient(&at.q), k);
-        }
-        for c in &self.coincidences {
-            let n = c.block.coordinates.len();
-            let lambda = [at.lambda[c.row], at.lambda[c.row + 1]];
-            for (i, bend) in c.term.curvature(&at.q, lambda).into_iter().flatten() {
-                k[c.block.slots[i * n + i] as usize] += w.q * bend;
-            }
-            let gradient = c.term.gradient(&at.q);
-            for (border, row) in c.border.iter().zip(&gradient.rows) {
-                border.set(&row[..gradient.columns], k);
-            }
+        self.linearised_constraints(at, w, r, phi, k);
+        for acting in &self.forces {
+            work.tally[acting.term.effect() as usize] += 1;
+            let (mut f, mut tangent) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
+            acting.term.force_and_tangent(at, w, &mut f, &mut tangent);
+            acting.block.add_vector(&f, r);
+            acting.block.add_matrix(&tangent, 1.0, k);
         }
         for c in &self.loose {
             let (mut f, mut tangent) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
@@ -226,20 +279,20 @@ impl System for Model {
     }
 
     fn constraint_velocity(&self, at: &State, out: &mut [f64]) {
-        for c in &self.lengths {
-            out[c.row] = c.term.velocity(at);
-        }
-        for c in &self.coincidences {
-            out[c.row..c.row + 2].copy_from_slice(&c.term.velocity(at));
+        for c in &self.constraints {
+            let rate = c.term.velocity(at);
+            for d in 0..c.rows {
+                out[c.row + d] = c.kept[d] * rate[d];
+            }
         }
     }
 
     fn constraint_acceleration(&self, at: &State, out: &mut [f64]) {
-        for c in &self.lengths {
-            out[c.row] = c.term.acceleration(at);
-        }
-        for c in &self.coincidences {
-            out[c.row..c.row + 2].copy_from_slice(&c.term.acceleration(at));
+        for c in &self.constraints {
+            let rate = c.term.acceleration(at);
+            for d in 0..c.rows {
+                out[c.row + d] = c.kept[d] * rate[d];
+            }
         }
     }
 
@@ -271,6 +324,7 @@ impl System for Model {
                 at.z[contact] = 0.0;
             }
         }
+        self.remember_angles(at);
         onsets
     }
 
@@ -293,6 +347,9 @@ impl System for Model {
         for c in &self.frictional {
             powers[Integral::FrictionDissipated as usize] +=
                 c.term.dissipation(&at.q, &at.v, at.z[c.contact]);
+        }
+        for acting in &self.forces {
+            acting.term.powers(at, &mut powers);
         }
         at.powers = powers;
         clamps

@@ -74,12 +74,20 @@ impl Border {
         }
     }
 
-    /// Writes the gradient into both halves of the border.
+    /// A place that nothing reads.
+    pub fn nowhere(columns: usize, symbolic: &Symbolic) -> Border {
+        Border {
+            column: vec![symbolic.unread(); columns],
+            row: vec![symbolic.unread(); columns],
+        }
+    }
+
+    /// Adds the gradient to both halves of the border.
     #[inline]
-    pub fn set(&self, gradient: &[f64], k: &mut [f64]) {
+    pub fn add(&self, gradient: &[f64], k: &mut [f64]) {
         for ((&c, &r), g) in self.column.iter().zip(&self.row).zip(gradient) {
-            k[c as usize] = *g;
-            k[r as usize] = *g;
+            k[c as usize] += *g;
+            k[r as usize] += *g;
         }
     }
 }

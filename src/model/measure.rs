@@ -29,12 +29,14 @@ pub struct Energies {
     pub contact: f64,
     /// Potential of the weight.
     pub gravity: f64,
+    /// Potential of springs.
+    pub springs: f64,
 }
 
 impl Energies {
     /// The sum.
     pub fn total(&self) -> f64 {
-        self.kinetic + self.axial + self.bending + self.contact + self.gravity
+        self.kinetic + self.axial + self.bending + self.contact + self.gravity + self.springs
     }
 }
 
@@ -85,6 +87,14 @@ impl Model {
                     acceleration,
                 }
             }
+            BodyCoordinates::PointMass { x } => {
+                let [position, velocity, acceleration] = levels.map(|l| [l[*x], l[x + 1], 0.0]);
+                Pose {
+                    position,
+                    velocity,
+                    acceleration,
+                }
+            }
             BodyCoordinates::RigidLink { ends: [i, j] } => link_pose(
                 levels.map(|l| scale(0.5, add(pair(l, *i), pair(l, *j)))),
                 levels.map(|l| sub(pair(l, *j), pair(l, *i))),
@@ -99,6 +109,17 @@ impl Model {
                 levels.map(|l| sub(pair(l, nodes[nodes.len() - 1]), pair(l, nodes[0]))),
             ),
         }
+    }
+
+    /// Position, velocity and acceleration of point `point` of body `body`.
+    pub fn point(&self, body: usize, point: usize, at: &State) -> [Vec2; 3] {
+        let marker = self.bodies[body].points[point].marker;
+        let arm = marker.arm(&at.q);
+        [
+            marker.position(&at.q, arm),
+            marker.velocity(&at.v, arm),
+            marker.acceleration(&at.v, &at.a, arm),
+        ]
     }
 
     /// Pose that the drive prescribes for body `index`, if it does.
@@ -154,6 +175,9 @@ impl Model {
         for c in &self.frictional {
             energies.contact += closed_energy(&c.term.joint, at, c.contact);
         }
+        for acting in &self.forces {
+            energies.springs += acting.term.energy(at);
+        }
         for &(i, weight) in &self.weight {
             energies.gravity += weight * at.q[i];
         }
@@ -163,7 +187,10 @@ impl Model {
     /// Force of the bearing side on the journal side of joint `index` \[N\].
     pub fn joint_force(&self, index: usize, at: &State, work: &mut Work) -> Vec2 {
         match &self.joints[index].kind {
-            JointKind::Constraint(i) => pair(&at.lambda, self.coincidences[*i].row),
+            JointKind::Constraint(i) => {
+                let c = &self.constraints[*i];
+                c.term.force(at, c.multipliers(at))
+            }
             JointKind::Loose(i) => {
                 let c = &self.loose[*i];
                 let g = c.term.geometry(&at.q, &at.v);
@@ -180,6 +207,46 @@ impl Model {
                 [force[0], force[1]]
             }
         }
+    }
+
+    /// Couple of the first side on the second of a joint that holds an angle \[N m\].
+    pub fn joint_couple(&self, index: usize, at: &State) -> f64 {
+        self.joints[index].couple.map_or(0.0, |i| {
+            let c = &self.constraints[i];
+            c.term.couple(at, c.multipliers(at))
+        })
+    }
+
+    /// Angle (known to a full turn) and speed of the second side of a joint relative to the first, where a motion prescribes
+    /// them by a constraint.
+    pub fn turned(&self, index: usize, at: &State) -> [f64; 2] {
+        self.joints[index]
+            .turned
+            .map_or([0.0; 2], |[first, second]| {
+                let (a, b) = (first.vector(&at.q), second.vector(&at.q));
+                let speed = second.rate(&at.q, &at.v) - first.rate(&at.q, &at.v);
+                [cross(a, b).atan2(dot(a, b)), speed]
+            })
+    }
+
+    /// Distance along the line of a prismatic joint \[m\] and its rate \[m/s\].
+    pub fn travel(&self, index: usize, at: &State) -> [f64; 2] {
+        self.joints[index]
+            .slide
+            .map_or([0.0; 2], |slide| slide.travel(at))
+    }
+
+    /// Names of the named forces and what they can be asked for.
+    pub fn named_forces(
+        &self,
+    ) -> impl Iterator<Item = (&str, &'static [(&'static str, &'static str)])> {
+        let forces = self.named_forces.iter();
+        forces.map(|(name, i)| (name.as_str(), self.forces[*i].term.quantities()))
+    }
+
+    /// What named force `index` is asked for.
+    pub fn named_force(&self, index: usize, at: &State) -> [f64; 3] {
+        self.forces[self.named_forces[index].1].term.measure(at)
     }
 
     /// True for a joint with clearance.
@@ -245,11 +312,8 @@ impl Model {
                 None => worst = Some((value, rate, name())),
             }
         };
-        for c in &self.lengths {
-            see(c.term.value(&at.q).abs(), c.term.velocity(at).abs(), c.row);
-        }
-        for c in &self.coincidences {
-            see(norm(c.term.value(&at.q)), norm(c.term.velocity(at)), c.row);
+        for c in &self.constraints {
+            see(norm(c.term.value(at)), norm(c.term.velocity(at)), c.row);
         }
         worst
     }

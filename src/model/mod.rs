@@ -10,13 +10,14 @@ pub use measure::{Energies, Pose};
 pub(crate) use reaction::{DrivenForce, Source};
 pub use reaction::{Reaction, Share};
 
-use crate::constraint::{Coincide, Length};
-use crate::force::{ClearanceJoint, FrictionalJoint};
+use crate::constraint::{Constraint, ROWS, Slide};
+use crate::force::{ClearanceJoint, Force, FrictionalJoint};
 use crate::kinematics::Kinematics;
 use crate::link::AncfCable;
-use crate::marker::Marker;
+use crate::marker::{Marker, Spin};
 use crate::math::lu::Symbolic;
-use crate::motion::Path;
+use crate::math::plane::Vec2;
+use crate::motion::{Function, Path};
 use crate::system::{Shape, State};
 
 /// A mechanism ready to be integrated.
@@ -28,15 +29,18 @@ pub struct Model {
     pub(crate) names: Vec<String>,
     pub(crate) mass: Mass,
     pub(crate) elements: Vec<Element>,
-    pub(crate) lengths: Vec<Placed<Length>>,
-    pub(crate) coincidences: Vec<Placed<Coincide>>,
+    pub(crate) constraints: Vec<Placed>,
+    pub(crate) forces: Vec<Acting>,
+    /// Forces with a name of their own, as indices into the forces.
+    pub(crate) named_forces: Vec<(String, usize)>,
     pub(crate) loose: Vec<Contacting<ClearanceJoint>>,
     pub(crate) frictional: Vec<Contacting<FrictionalJoint>>,
     /// Weight: (coordinate, force on the left side of the equations of motion) \[N\].
     pub(crate) weight: Vec<(usize, f64)>,
     /// Known coordinates that never change, with their values.
     pub(crate) fixed: Vec<(usize, f64)>,
-    pub(crate) path: Option<PathRule>,
+    /// What is known as a function of time.
+    pub(crate) rules: Vec<Rule>,
     pub(crate) kinematics: Option<Kinematics>,
     /// Forces on known coordinates that move.
     pub(crate) driven: Vec<DrivenForce>,
@@ -65,11 +69,29 @@ pub enum Effect {
     Gravity = 5,
     /// Inverse kinematics of the ideal rigid mechanism.
     InverseKinematics = 6,
+    /// Prescribed relative angle or held slope: welds, guides that do not turn, driven joints.
+    Direction = 7,
+    /// Point on a line.
+    Slide = 8,
+    /// Prescribed coordinate of a point.
+    Place = 9,
+    /// Translational spring-damper.
+    SpringDamper = 10,
+    /// Torsional spring-damper.
+    TorsionSpring = 11,
+    /// Applied force.
+    PointForce = 12,
+    /// Applied torque.
+    Torque = 13,
+    /// Kelvin-Voigt damping of an element.
+    ElementDamping = 14,
+    /// Damping proportional to mass.
+    MassDamping = 15,
 }
 
 impl Effect {
     /// All effects, with their names in reports.
-    pub const ALL: [(Effect, &'static str); 7] = [
+    pub const ALL: [(Effect, &'static str); 16] = [
         (Effect::Elastic, "ancf_elastic_force"),
         (Effect::Length, "length_constraint"),
         (Effect::Coincidence, "ideal_joint_constraint"),
@@ -77,14 +99,33 @@ impl Effect {
         (Effect::Friction, "friction_law"),
         (Effect::Gravity, "gravity"),
         (Effect::InverseKinematics, "inverse_kinematics"),
+        (Effect::Direction, "direction_constraint"),
+        (Effect::Slide, "sliding_constraint"),
+        (Effect::Place, "prescribed_coordinate"),
+        (Effect::SpringDamper, "spring_damper"),
+        (Effect::TorsionSpring, "torsion_spring"),
+        (Effect::PointForce, "applied_force"),
+        (Effect::Torque, "applied_torque"),
+        (Effect::ElementDamping, "element_damping"),
+        (Effect::MassDamping, "mass_damping"),
     ];
 }
 
-/// A path-driven rigid body whose coordinates start at `x`.
+/// Known coordinates as a function of time.
 #[derive(Debug)]
-pub(crate) struct PathRule {
-    pub x: usize,
-    pub path: Box<dyn Path>,
+pub(crate) enum Rule {
+    /// (x, y, theta) from index `x` follow a path.
+    Path { x: usize, path: Box<dyn Path> },
+    /// A rigid body turns about a fixed node.
+    Turn {
+        /// First coordinate of the fixed node.
+        pivot: usize,
+        /// First coordinate of a point of the body and its place relative to the pivot at angle zero \[m\].
+        point: (usize, Vec2),
+        /// The angle as a coordinate, of a body that has it.
+        theta: Option<usize>,
+        angle: Function,
+    },
 }
 
 /// A known node at `x` that follows a marker on a known body.
@@ -96,12 +137,45 @@ pub(crate) struct Rider {
 
 /// A constraint with its place in the equations.
 #[derive(Debug)]
-pub(crate) struct Placed<T> {
-    pub term: T,
+pub(crate) struct Placed {
+    pub term: Box<dyn Constraint>,
+    pub effect: Effect,
     /// Index of its first multiplier among the multipliers.
     pub row: usize,
+    pub rows: usize,
     pub block: Block,
     pub border: Vec<Border>,
+    /// The body that each local coordinate stands for.
+    pub owners: Vec<usize>,
+    /// 0 for a row that repeats others and is left out of the equations, else 1.
+    pub kept: [f64; ROWS],
+}
+
+impl Placed {
+    /// Takes row `d` out of the equations: in its place stands lambda = 0.
+    fn drop_row(&mut self, d: usize, symbolic: &Symbolic, unknowns: usize, tangent: &mut [f64]) {
+        let m = unknowns + self.row + d;
+        self.kept[d] = 0.0;
+        self.border[d] = Border::nowhere(self.block.coordinates.len(), symbolic);
+        tangent[symbolic.slot(m, m) as usize] = 1.0;
+    }
+
+    /// Its multipliers.
+    #[inline]
+    pub fn multipliers(&self, at: &State) -> [f64; ROWS] {
+        let mut lambda = [0.0; ROWS];
+        lambda[..self.rows].copy_from_slice(&at.lambda[self.row..self.row + self.rows]);
+        lambda
+    }
+}
+
+/// A force without memory, with its place in the equations.
+#[derive(Debug)]
+pub(crate) struct Acting {
+    pub term: Box<dyn Force>,
+    pub block: Block,
+    /// The body that each local coordinate stands for.
+    pub owners: Vec<usize>,
 }
 
 /// A loose joint with its place in the equations.
@@ -150,6 +224,19 @@ pub struct BodyPlace {
     pub coordinates: BodyCoordinates,
     /// Its coordinates in the ideal mechanism that the drive follows, for the driven body.
     pub prescribed: Option<usize>,
+    /// Its named points, where it moves.
+    pub points: Vec<PointPlace>,
+}
+
+/// A named point of a body.
+#[derive(Debug, Clone)]
+pub struct PointPlace {
+    /// The name the user wrote.
+    pub name: String,
+    /// Where it is.
+    pub marker: Marker,
+    /// Index of the first coordinate of r' there, of a flexible link.
+    pub slope: Option<usize>,
 }
 
 /// Coordinates of a body.
@@ -162,6 +249,11 @@ pub enum BodyCoordinates {
     },
     /// x, y, theta from this index.
     Rigid {
+        /// Index of x.
+        x: usize,
+    },
+    /// x, y from this index.
+    PointMass {
         /// Index of x.
         x: usize,
     },
@@ -180,6 +272,8 @@ pub enum BodyCoordinates {
         elements: std::ops::Range<usize>,
         /// Length of one element \[m\].
         element_length: f64,
+        /// Node of each point: start, end, inner points.
+        points: Vec<usize>,
     },
 }
 
@@ -192,12 +286,18 @@ pub struct JointPlace {
     pub kind: JointKind,
     /// Present when a drive actuates it and it moves a body.
     pub actuator: Option<Actuator>,
+    /// Constraint of directions that carries its couple: index into the constraints.
+    pub couple: Option<usize>,
+    /// The directions whose angle a motion prescribes by a constraint.
+    pub turned: Option<[Spin; 2]>,
+    /// The line of a prismatic joint.
+    pub slide: Option<Slide>,
 }
 
 /// How a joint appears in the equations.
 #[derive(Debug)]
 pub enum JointKind {
-    /// Two constraint rows: index into the coincidences.
+    /// By constraint rows: index into the constraints.
     Constraint(usize),
     /// Contact without friction: index into the loose joints.
     Loose(usize),
@@ -230,12 +330,14 @@ impl Model {
     pub fn effects(&self) -> Vec<(Effect, &'static str)> {
         let present = |effect: Effect| match effect {
             Effect::Elastic => !self.elements.is_empty(),
-            Effect::Length => !self.lengths.is_empty(),
-            Effect::Coincidence => !self.coincidences.is_empty(),
             Effect::Contact => self.shape.contacts > 0,
             Effect::Friction => !self.frictional.is_empty(),
             Effect::Gravity => !self.weight.is_empty(),
             Effect::InverseKinematics => self.kinematics.is_some(),
+            other => {
+                self.constraints.iter().any(|c| c.effect == other)
+                    || self.forces.iter().any(|f| f.term.effect() == other)
+            }
         };
         Effect::ALL
             .into_iter()
@@ -256,6 +358,64 @@ impl Model {
     /// Joints in the order of the scene.
     pub fn joints(&self) -> &[JointPlace] {
         &self.joints
+    }
+
+    /// Takes rows, as (constraint, row of it), out of the equations.
+    pub(crate) fn drop_rows(&mut self, rows: &[(usize, usize)]) {
+        for &(i, d) in rows {
+            let tangent = &mut self.mass.tangent;
+            self.constraints[i].drop_row(d, &self.symbolic, self.shape.unknowns, tangent);
+        }
+    }
+
+    /// Takes the masses out of a tangent; what stands for dropped rows stays.
+    pub(crate) fn remove_mass(&self, k: &mut [f64]) {
+        for (k, m) in k.iter_mut().zip(&self.mass.tangent) {
+            *k -= m;
+        }
+        for p in &self.constraints {
+            for d in (0..p.rows).filter(|&d| p.kept[d] == 0.0) {
+                let m = self.shape.unknowns + p.row + d;
+                k[self.symbolic.slot(m, m) as usize] = 1.0;
+            }
+        }
+    }
+
+    /// Adds s Phi_q^T Phi_q to a tangent and s Phi_q^T Phi to the residual, s the largest entry on its diagonal, and
+    /// multiplies the borders by s. Returns s.
+    pub(crate) fn stiffen(&self, at: &State, r: &mut [f64], k: &mut [f64]) -> f64 {
+        let diagonal = (0..self.shape.unknowns).map(|i| k[self.symbolic.slot(i, i) as usize].abs());
+        let s = diagonal.fold(f64::MIN_POSITIVE, f64::max);
+        for p in &self.constraints {
+            let (value, gradient) = (p.term.value(at), p.term.gradient(at));
+            let columns = p.block.coordinates.len();
+            for d in (0..p.rows).filter(|&d| p.kept[d] != 0.0) {
+                p.border[d].add(&gradient[d].map(|g| (s - 1.0) * g), k);
+                for i in 0..columns {
+                    r[p.block.coordinates[i]] += s * gradient[d][i] * value[d];
+                    for j in 0..columns {
+                        let slot = p.block.slots[i * columns + j] as usize;
+                        k[slot] += s * gradient[d][i] * gradient[d][j];
+                    }
+                }
+            }
+        }
+        s
+    }
+
+    /// True where a spring stores energy.
+    pub fn has_springs(&self) -> bool {
+        let spring = |e: Effect| matches!(e, Effect::SpringDamper | Effect::TorsionSpring);
+        self.forces.iter().any(|f| spring(f.term.effect()))
+    }
+
+    /// Names of the rows that are left out because they repeat others.
+    pub fn redundant(&self) -> Vec<String> {
+        let rows = self.constraints.iter().flat_map(|p| {
+            let dropped = (0..p.rows).filter(|&d| p.kept[d] == 0.0);
+            dropped.map(|d| self.names[self.shape.unknowns + p.row + d].clone())
+        });
+        rows.collect()
     }
 }
 

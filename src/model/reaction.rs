@@ -21,8 +21,8 @@ pub struct Share {
 pub(crate) enum Source {
     Inertia(usize),
     Element(usize),
-    Length(usize),
-    Coincidence(usize),
+    Constraint(usize),
+    Force(usize),
     Loose(usize),
     Frictional(usize),
 }
@@ -79,16 +79,19 @@ impl Model {
                 element.kernel.force(&q, &mut f);
                 add(&f);
             }
-            Source::Length(i) => {
-                let c = &self.lengths[i];
-                add(&c.term.gradient(&at.q).map(|g| g * at.lambda[c.row]));
-            }
-            Source::Coincidence(i) => {
-                let c = &self.coincidences[i];
-                let gradient = c.term.gradient(&at.q);
-                for (d, row) in gradient.rows.iter().enumerate() {
-                    add(&row.map(|g| g * at.lambda[c.row + d]));
+            Source::Constraint(i) => {
+                let c = &self.constraints[i];
+                let gradient = c.term.gradient(at);
+                for d in 0..c.rows {
+                    add(&gradient[d].map(|g| g * at.lambda[c.row + d]));
                 }
+            }
+            Source::Force(i) => {
+                let term = &self.forces[i].term;
+                work.tally[term.effect() as usize] += 1;
+                let mut f = [0.0; WIDTH];
+                term.force(at, &mut f);
+                add(&f);
             }
             Source::Loose(i) => {
                 let c = &self.loose[i];

@@ -13,12 +13,21 @@ pub struct Line {
     pub duration: f64,
 }
 
+/// s(u) = 10 u^3 - 15 u^4 + 6 u^5 between 0 and 1 with its derivatives by u; constant outside.
+pub(super) fn quintic(u: f64) -> [f64; 3] {
+    let u = u.clamp(0.0, 1.0);
+    [
+        u * u * u * (10.0 + u * (-15.0 + 6.0 * u)),
+        30.0 * u * u * (1.0 - u) * (1.0 - u),
+        60.0 * u * (1.0 - u) * (1.0 - 2.0 * u),
+    ]
+}
+
 impl Path for Line {
     fn at(&self, t: f64) -> Motion {
-        let u = (t / self.duration).clamp(0.0, 1.0);
-        let s = u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
-        let s_dot = 30.0 * u * u * (1.0 - u) * (1.0 - u) / self.duration;
-        let s_ddot = 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / (self.duration * self.duration);
+        let [s, by_u, by_u2] = quintic(t / self.duration);
+        let s_dot = by_u / self.duration;
+        let s_ddot = by_u2 / (self.duration * self.duration);
         let mut motion = Motion::default();
         for i in 0..3 {
             let way = self.to[i] - self.from[i];

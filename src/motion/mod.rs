@@ -1,8 +1,12 @@
-//! Prescribed paths in (x, y, theta) with exact first and second derivatives.
+//! Prescribed paths in (x, y, theta), and functions of time, with exact first and second derivatives.
 
 mod circle;
+mod function;
 mod line;
 mod table;
+
+pub use function::Function;
+pub(crate) use table::Table;
 
 use crate::scene::Path2;
 
@@ -50,7 +54,10 @@ pub fn path(spec: &Path2) -> Box<dyn Path> {
             to: *to,
             duration: *duration,
         }),
-        Path2::Table { rows } => Box::new(table::Table::new(rows)),
+        Path2::Table { rows } => Box::new(Table::new(
+            rows.iter().map(|r| r[0]).collect(),
+            rows.iter().map(|r| [r[1], r[2], r[3]]).collect(),
+        )),
     }
 }
 

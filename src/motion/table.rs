@@ -1,37 +1,35 @@
-//! A natural cubic spline through a table of poses.
+//! A natural cubic spline through a table.
 
 use super::{Motion, POSES, Path};
 
 /// Twice continuously differentiable, with zero second derivatives at both ends.
 #[derive(Debug, Clone)]
-pub struct Table {
+pub struct Table<const N: usize> {
     times: Vec<f64>,
-    values: Vec<[f64; 3]>,
+    values: Vec<[f64; N]>,
     /// Second derivatives at the knots.
-    curvatures: Vec<[f64; 3]>,
+    curvatures: Vec<[f64; N]>,
 }
 
-impl Table {
-    /// A spline through rows (t, x, y, theta) with increasing times, two rows at least.
-    pub fn new(rows: &[[f64; 4]]) -> Table {
-        let times: Vec<f64> = rows.iter().map(|r| r[0]).collect();
-        let values: Vec<[f64; 3]> = rows.iter().map(|r| [r[1], r[2], r[3]]).collect();
-        let n = rows.len();
-        let mut curvatures = vec![[0.0; 3]; n];
+impl<const N: usize> Table<N> {
+    /// A spline through values at increasing times, two at least.
+    pub fn new(times: Vec<f64>, values: Vec<[f64; N]>) -> Table<N> {
+        let n = times.len();
+        let mut curvatures = vec![[0.0; N]; n];
         // tridiagonal system h_{k-1} m_{k-1} + 2 (h_{k-1} + h_k) m_k + h_k m_{k+1} = 6 (slope_k - slope_{k-1})
         let mut factor = vec![0.0; n];
         for k in 1..n - 1 {
             let (before, after) = (times[k] - times[k - 1], times[k + 1] - times[k]);
             let pivot = 2.0 * (before + after) - before * factor[k - 1];
             factor[k] = after / pivot;
-            for i in 0..3 {
+            for i in 0..N {
                 let slopes = (values[k + 1][i] - values[k][i]) / after
                     - (values[k][i] - values[k - 1][i]) / before;
                 curvatures[k][i] = (6.0 * slopes - before * curvatures[k - 1][i]) / pivot;
             }
         }
         for k in (1..n - 1).rev() {
-            for i in 0..3 {
+            for i in 0..N {
                 curvatures[k][i] -= factor[k] * curvatures[k + 1][i];
             }
         }
@@ -43,26 +41,45 @@ impl Table {
     }
 }
 
-impl Path for Table {
-    fn at(&self, t: f64) -> Motion {
+impl<const N: usize> Table<N> {
+    /// The spline with the opposite sign.
+    pub fn negated(mut self) -> Table<N> {
+        for row in self.values.iter_mut().chain(&mut self.curvatures) {
+            *row = row.map(|x| -x);
+        }
+        self
+    }
+
+    /// Values, first and second derivatives at time t.
+    pub fn derivatives(&self, t: f64) -> [[f64; N]; 3] {
         let k = self
             .times
             .partition_point(|&x| x <= t)
             .clamp(1, self.times.len() - 1);
         let h = self.times[k] - self.times[k - 1];
         let (a, b) = ((self.times[k] - t) / h, (t - self.times[k - 1]) / h);
-        let mut motion = Motion::default();
-        for i in 0..3 {
+        let mut result = [[0.0; N]; 3];
+        for i in 0..N {
             let (y0, y1) = (self.values[k - 1][i], self.values[k][i]);
             let (m0, m1) = (self.curvatures[k - 1][i], self.curvatures[k][i]);
             let sixth = h * h / 6.0;
-            motion.position[i] =
-                a * y0 + b * y1 + sixth * ((a * a * a - a) * m0 + (b * b * b - b) * m1);
-            motion.velocity[i] =
+            result[0][i] = a * y0 + b * y1 + sixth * ((a * a * a - a) * m0 + (b * b * b - b) * m1);
+            result[1][i] =
                 (y1 - y0) / h + h / 6.0 * ((3.0 * b * b - 1.0) * m1 - (3.0 * a * a - 1.0) * m0);
-            motion.acceleration[i] = a * m0 + b * m1;
+            result[2][i] = a * m0 + b * m1;
         }
-        motion
+        result
+    }
+}
+
+impl Path for Table<3> {
+    fn at(&self, t: f64) -> Motion {
+        let [position, velocity, acceleration] = self.derivatives(t);
+        Motion {
+            position,
+            velocity,
+            acceleration,
+        }
     }
 
     fn sweep(&self, duration: f64) -> (f64, usize) {

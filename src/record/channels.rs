@@ -1,6 +1,7 @@
 //! The names of all channels of a mechanism, and what each shows.
 
 use crate::model::Model;
+use crate::scene::Analysis;
 use crate::system::Integral;
 
 /// A recorded quantity.
@@ -22,6 +23,12 @@ pub(super) enum Quantity {
     /// Joint; angle, speed, torque.
     Actuator(usize, usize),
     Strain(usize),
+    /// Body, point, level, component.
+    Point(usize, usize, usize, usize),
+    /// Body, point, component of the slope.
+    Slope(usize, usize, usize),
+    /// Named force, which of its quantities.
+    Force(usize, usize),
     /// Driven body, component.
     Error(usize, usize),
     Energy(Energy),
@@ -37,6 +44,12 @@ pub(super) enum JointQuantity {
     Eccentricity,
     Penetration,
     Contact,
+    /// Couple of the first side on the second.
+    Couple,
+    Angle,
+    Speed,
+    Travel,
+    TravelRate,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,12 +59,13 @@ pub(super) enum Energy {
     Bending,
     Contact,
     Gravity,
+    Springs,
     Integral(Integral),
     Numerical,
 }
 
 /// Everything a scene can record, in a fixed order.
-pub(super) fn available(model: &Model) -> Vec<(Channel, Quantity)> {
+pub(super) fn available(model: &Model, analysis: Analysis) -> Vec<(Channel, Quantity)> {
     let mut list = vec![(
         Channel {
             name: "t".to_owned(),
@@ -94,7 +108,10 @@ pub(super) fn available(model: &Model) -> Vec<(Channel, Quantity)> {
         }
     }
     for (j, joint) in model.joints().iter().enumerate() {
-        use JointQuantity::{Contact, Eccentricity, Ex, Ey, Force, Fx, Fy, Penetration};
+        use JointQuantity::{
+            Angle, Contact, Couple, Eccentricity, Ex, Ey, Force, Fx, Fy, Penetration, Speed,
+            Travel, TravelRate,
+        };
         let mut joint_channel = |name: &str, unit, q| {
             add(
                 format!("{}.{name}", joint.name),
@@ -116,6 +133,19 @@ pub(super) fn available(model: &Model) -> Vec<(Channel, Quantity)> {
             }
             joint_channel("contact", "1", Contact);
         }
+        if joint.couple.is_some() {
+            let turned = joint
+                .turned
+                .map(|_| [("angle", "rad", Angle), ("speed", "rad/s", Speed)]);
+            for (name, unit, q) in turned.into_iter().flatten() {
+                joint_channel(name, unit, q);
+            }
+            joint_channel("torque", "N m", Couple);
+        }
+        if joint.slide.is_some() {
+            joint_channel("travel", "m", Travel);
+            joint_channel("travel_rate", "m/s", TravelRate);
+        }
         if joint.actuator.is_some() {
             for (k, (name, unit)) in [("angle", "rad"), ("speed", "rad/s"), ("torque", "N m")]
                 .into_iter()
@@ -129,12 +159,33 @@ pub(super) fn available(model: &Model) -> Vec<(Channel, Quantity)> {
             }
         }
     }
+    for (b, body) in model.bodies().iter().enumerate() {
+        for (p, point) in body.points.iter().enumerate() {
+            let name = |quantity| format!("points.{}.{}.{quantity}", body.name, point.name);
+            for (l, level) in levels.iter().enumerate() {
+                for (i, (quantity, unit)) in level[..2].iter().enumerate() {
+                    add(name(quantity), unit, Quantity::Point(b, p, l, i));
+                }
+            }
+            if point.slope.is_some() {
+                for (i, quantity) in ["slope_x", "slope_y"].iter().enumerate() {
+                    add(name(quantity), "1", Quantity::Slope(b, p, i));
+                }
+            }
+        }
+    }
+    for (f, (force, quantities)) in model.named_forces().enumerate() {
+        for (k, (name, unit)) in quantities.iter().enumerate() {
+            add(format!("{force}.{name}"), unit, Quantity::Force(f, k));
+        }
+    }
     for (name, energy) in [
         ("kinetic", Energy::Kinetic),
         ("axial", Energy::Axial),
         ("bending", Energy::Bending),
         ("contact", Energy::Contact),
         ("gravity", Energy::Gravity),
+        ("springs", Energy::Springs),
         ("work", Energy::Integral(Integral::Work)),
         (
             "contact_dissipated",
@@ -151,7 +202,15 @@ pub(super) fn available(model: &Model) -> Vec<(Channel, Quantity)> {
         ("clamp", Energy::Integral(Integral::Clamp)),
         ("numerical", Energy::Numerical),
     ] {
-        add(format!("energy.{name}"), "J", Quantity::Energy(energy));
+        let present = match energy {
+            // a load path has no balance of powers
+            Energy::Integral(_) | Energy::Numerical => analysis == Analysis::Dynamic,
+            Energy::Springs => model.has_springs(),
+            _ => true,
+        };
+        if present {
+            add(format!("energy.{name}"), "J", Quantity::Energy(energy));
+        }
     }
     list
 }

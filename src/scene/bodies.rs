@@ -4,8 +4,8 @@ use super::error::SceneError;
 use super::field::Field;
 use super::fields::Fields;
 use super::materials::{Material, Section, lacks, material, section};
-use super::names::{check_name, derived, named};
-use super::{Body, BodyKind, Link, LinkModel, Point, RigidBody};
+use super::names::{RESERVED, check_name, derived, named};
+use super::{Body, BodyKind, Damping, Link, LinkModel, LinkPoint, Point, RigidBody, motion};
 use indexmap::IndexMap;
 use std::f64::consts::PI;
 
@@ -18,14 +18,14 @@ pub(super) struct Bodies {
     pub materials: IndexMap<String, Material>,
 }
 
-pub(super) fn read(root: &Fields) -> Result<Bodies, SceneError> {
+pub(super) fn read(root: &Fields, duration: f64) -> Result<Bodies, SceneError> {
     let materials = named(root.optional("materials"), material)?;
     let sections = named(root.optional("sections"), section)?;
     let table = root.required("bodies", "the tables of ground, links and rigid bodies")?;
     let bodies = named(Some(table), |field| {
-        check_name(field, &["error", "energy", "t"])?;
+        check_name(field, &RESERVED)?;
         let span = field.node.span;
-        let kind = body(field, &materials, &sections)?;
+        let kind = body(field, &materials, &sections, duration)?;
         Ok(Body {
             name: field.name.clone(),
             span,
@@ -56,20 +56,26 @@ fn body(
     field: &Field,
     materials: &IndexMap<String, Material>,
     sections: &IndexMap<String, Section>,
+    duration: f64,
 ) -> Result<BodyKind, SceneError> {
     #[derive(Clone, Copy)]
     enum Type {
         Ground,
         Link,
         Rigid,
+        PointMass,
+        Moving,
     }
     let mut table = field.fields()?;
     let types = [
         ("ground", Type::Ground),
         ("link", Type::Link),
         ("rigid_body", Type::Rigid),
+        ("point_mass", Type::PointMass),
+        ("moving", Type::Moving),
     ];
-    let purpose = "the kind of body: \"ground\", \"link\" or \"rigid_body\"";
+    let purpose =
+        "the kind of body: \"ground\", \"link\", \"rigid_body\", \"point_mass\" or \"moving\"";
     match table.required("type", purpose)?.choice(&types)? {
         Type::Ground => {
             table.only(&["type", "points"])?;
@@ -78,17 +84,54 @@ fn body(
             })
         }
         Type::Link => {
-            table.only(&["type", "model", "length", "section", "material", "elements"])?;
+            table.only(&[
+                "type",
+                "model",
+                "length",
+                "section",
+                "material",
+                "elements",
+                "points",
+                "kelvin_voigt",
+                "rayleigh",
+            ])?;
             Ok(BodyKind::Link(link(&table, materials, sections)?))
         }
         Type::Rigid => {
-            table.only(&["type", "mass", "inertia", "plate", "points"])?;
+            table.only(&[
+                "type",
+                "mass",
+                "inertia",
+                "plate",
+                "center_of_mass",
+                "points",
+            ])?;
             let (mass, inertia) = inertia(&table, materials)?;
+            let center = table.optional("center_of_mass");
+            let center = center.map(|c| c.numbers::<2>("[x, y]")).transpose()?;
+            let center = center.unwrap_or([0.0; 2]);
+            let mut points = points(&table)?;
+            for point in &mut points {
+                point.at = [point.at[0] - center[0], point.at[1] - center[1]];
+            }
             Ok(BodyKind::Rigid(RigidBody {
                 mass,
                 inertia,
-                points: points(&table)?,
+                points,
             }))
+        }
+        Type::PointMass => {
+            table.only(&["type", "mass"])?;
+            let mass = table.required("mass", "the mass [kg]")?.positive()?;
+            Ok(BodyKind::PointMass { mass })
+        }
+        Type::Moving => {
+            table.only(&["type", "path", "points"])?;
+            let path = table.required("path", "the path of its reference point and its angle")?;
+            Ok(BodyKind::Moving {
+                path: motion::path(&path, duration)?,
+                points: points(&table)?,
+            })
         }
     }
 }
@@ -135,7 +178,73 @@ fn link(
         second_moment: section.second_moment,
         density: material.density,
         model,
+        points: link_points(table, length, elements, flexible)?,
+        damping: damping(table, flexible)?,
     })
+}
+
+/// Inner points of a flexible link, as their distance from `start`.
+fn link_points(
+    table: &Fields,
+    length: f64,
+    elements: usize,
+    flexible: bool,
+) -> Result<Vec<LinkPoint>, SceneError> {
+    let points = table.optional("points");
+    if let Some(field) = points.as_ref().filter(|_| !flexible) {
+        let message = format!(
+            "`{}`: a rigid link has no points but `start` and `end`",
+            field.path
+        );
+        let error = field.key_fault(message, "not on a rigid link");
+        return Err(error.with_help("a body of type \"rigid_body\" has points anywhere"));
+    }
+    let points = named(points, |field| {
+        if ["start", "end"].contains(&field.name.as_str()) {
+            let message = format!("every link has a point `{}` of its own", field.name);
+            return Err(field.key_fault(message, "taken"));
+        }
+        let place = field.number()? / length * elements as f64;
+        let node = place.round();
+        if !(node > 0.0 && node < elements as f64 && (place - node).abs() <= 1e-9 * node) {
+            let requirement = format!(
+                "lie at a node between the ends: a multiple of {:?} m below {length:?} m",
+                length / elements as f64
+            );
+            return Err(field.must(&requirement));
+        }
+        Ok(LinkPoint {
+            name: field.name.clone(),
+            node: node as usize,
+        })
+    })?;
+    Ok(points.into_values().collect())
+}
+
+/// `kelvin_voigt` and `rayleigh = { mass, stiffness }`; none where all of them are zero.
+fn damping(table: &Fields, flexible: bool) -> Result<Option<Damping>, SceneError> {
+    let mut damping = Damping {
+        strain: 0.0,
+        mass: 0.0,
+    };
+    let fields = ["kelvin_voigt", "rayleigh"].map(|key| table.optional(key));
+    if let Some(field) = fields.iter().flatten().next().filter(|_| !flexible) {
+        let message = format!("`{}`: a rigid link has no structural damping", field.path);
+        return Err(field.key_fault(message, "not on a rigid link"));
+    }
+    let [kelvin_voigt, rayleigh] = fields;
+    if let Some(field) = kelvin_voigt {
+        damping.strain = field.non_negative()?;
+    }
+    if let Some(field) = rayleigh {
+        let mut table = field.fields()?;
+        table.only(&["mass", "stiffness"])?;
+        let purpose = "the factor of the mass matrix [1/s]";
+        damping.mass = table.required("mass", purpose)?.non_negative()?;
+        let purpose = "the factor of the stiffness [s]; it acts on strain rates, as `kelvin_voigt`";
+        damping.strain += table.required("stiffness", purpose)?.non_negative()?;
+    }
+    Ok((damping.strain > 0.0 || damping.mass > 0.0).then_some(damping))
 }
 
 /// Mass \[kg\] and moment of inertia \[kg m2\], typed or those of a uniform plate; a mass typed beside a plate

@@ -19,7 +19,7 @@ pub(super) enum Value {
     Text(String),
     Integer(i64),
     Float(f64),
-    Boolean,
+    Boolean(bool),
     Date,
     Array(Vec<Node>),
     Table(Table),
@@ -45,7 +45,7 @@ impl Value {
             Value::Text(_) => "a string",
             Value::Integer(_) => "an integer",
             Value::Float(_) => "a number",
-            Value::Boolean => "a boolean",
+            Value::Boolean(_) => "a boolean",
             Value::Date => "a date",
             Value::Array(_) => "an array",
             Value::Table(_) => "a table",
@@ -175,7 +175,7 @@ impl Place<'_> {
                 Ok(x) => Value::Float(x),
                 Err(_) => return Err(self.error(range, "this is not a number", "here")),
             },
-            DeValue::Boolean(_) => Value::Boolean,
+            DeValue::Boolean(x) => Value::Boolean(x),
             DeValue::Datetime(_) => Value::Date,
             DeValue::Array(mut items) => Value::Array(
                 items

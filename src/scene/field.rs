@@ -96,6 +96,14 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// `true` or `false`.
+    pub(super) fn boolean(&self) -> Result<bool, SceneError> {
+        match self.node.value {
+            Value::Boolean(x) => Ok(x),
+            _ => Err(self.wrong_type("true or false")),
+        }
+    }
+
     /// Text that is not empty.
     pub(super) fn text(&self) -> Result<&'a str, SceneError> {
         match &self.node.value {

@@ -1,17 +1,18 @@
 //! `[contacts]` and `[joints]`.
 
+use super::SlopeClamp;
 use super::bodies::Bodies;
 use super::error::SceneError;
 use super::field::Field;
 use super::fields::Fields;
-use super::names::{check_name, derived, named};
+use super::names::{RESERVED, check_name, derived, named};
 use super::{BodyKind, Contact, Friction, Joint, JointModel, NormalLawKind, PointRef, Slip};
 use indexmap::IndexMap;
 
 pub(super) fn read(root: &Fields, bodies: &Bodies) -> Result<IndexMap<String, Joint>, SceneError> {
     let contacts = named(root.optional("contacts"), |field| contact(field, bodies))?;
     named(root.optional("joints"), |field| {
-        check_name(field, &["error", "energy", "t"])?;
+        check_name(field, &RESERVED)?;
         if bodies.bodies.contains_key(&field.name) {
             let message = format!("`{}` is the name of a body and of a joint", field.name);
             let help = "channels are called `name.quantity`, so names must differ";
@@ -28,25 +29,84 @@ fn joint(
     bodies: &Bodies,
     contacts: &IndexMap<String, Contact>,
 ) -> Result<Joint, SceneError> {
+    #[derive(Clone, Copy)]
+    enum Type {
+        Revolute,
+        Prismatic,
+        Weld,
+    }
+    let types = [
+        ("revolute", Type::Revolute),
+        ("prismatic", Type::Prismatic),
+        ("weld", Type::Weld),
+    ];
     let mut table = field.fields()?;
-    table.only(&["type", "bearing", "journal", "model", "contact"])?;
-    table
-        .required("type", "the kind of joint: \"revolute\"")?
-        .choice(&[("revolute", ())])?;
-    let bearing = table.required(
-        "bearing",
-        "the point that carries the bearing, as \"body.point\"",
-    )?;
-    let bearing = point(&bearing, bodies)?;
-    let journal_field = table.required(
-        "journal",
-        "the point that carries the journal, as \"body.point\"",
-    )?;
-    let journal = point(&journal_field, bodies)?;
+    let purpose = "the kind of joint: \"revolute\", \"prismatic\" or \"weld\"";
+    let kind = table.required("type", purpose)?.choice(&types)?;
+    let sides: [(&'static str, &str); 2] = match kind {
+        Type::Revolute => {
+            table.only(&["type", "bearing", "journal", "model", "contact"])?;
+            [
+                ("bearing", "that carries the bearing"),
+                ("journal", "that carries the journal"),
+            ]
+        }
+        Type::Prismatic => {
+            table.only(&["type", "guide", "direction", "slider", "rotation", "angle"])?;
+            [
+                ("guide", "on the line, of the body that carries it"),
+                ("slider", "that slides"),
+            ]
+        }
+        Type::Weld => {
+            table.only(&["type", "first", "second", "angle", "slope"])?;
+            [("first", "of one body"), ("second", "of the other")]
+        }
+    };
+    let side = |(key, role): (&'static str, &str)| {
+        let field = table.required(key, &format!("the point {role}, as \"body.point\""))?;
+        Ok((point(&field, bodies)?, field))
+    };
+    let (bearing, _) = side(sides[0])?;
+    let (journal, journal_field) = side(sides[1])?;
     if bearing.body == journal.body {
         let message = format!("`{}` connects a body to itself", field.path);
-        return Err(journal_field.fault(message, "on the same body as the bearing"));
+        let label = format!("on the same body as the {}", sides[0].0);
+        return Err(journal_field.fault(message, label));
     }
+    let model = match kind {
+        Type::Revolute => revolute(&table, contacts)?,
+        Type::Prismatic => prismatic(&table)?,
+        Type::Weld => weld(&table)?,
+    };
+    let turning = match model {
+        JointModel::Weld { .. } => vec![bearing, journal],
+        JointModel::Prismatic {
+            locked: Some(_), ..
+        } => vec![bearing, journal],
+        JointModel::Prismatic { locked: None, .. } => vec![bearing],
+        JointModel::Ideal | JointModel::Clearance(_) => vec![],
+    };
+    for p in turning {
+        let (name, body) = bodies.bodies.get_index(p.body).expect("a point has a body");
+        if matches!(body.kind, BodyKind::PointMass { .. }) {
+            let message = format!("`{}` needs a direction of {name}, a point mass", field.path);
+            return Err(field.key_fault(message, "a point has no direction"));
+        }
+    }
+    Ok(Joint {
+        name: field.name.clone(),
+        span: field.node.span,
+        bearing,
+        journal,
+        model,
+    })
+}
+
+fn revolute(
+    table: &Fields,
+    contacts: &IndexMap<String, Contact>,
+) -> Result<JointModel, SceneError> {
     let purpose = "how the joint connects: \"ideal\" or \"clearance\"";
     let loose = table
         .required("model", purpose)?
@@ -59,21 +119,50 @@ fn joint(
     let contact = contact
         .map(|name| name.lookup("contact", contacts))
         .transpose()?;
-    let model = match contact {
+    Ok(match contact {
         Some((_, contact)) if loose => JointModel::Clearance(contact.clone()),
         _ => JointModel::Ideal,
-    };
-    Ok(Joint {
-        name: field.name.clone(),
-        span: field.node.span,
-        bearing,
-        journal,
-        model,
+    })
+}
+
+fn prismatic(table: &Fields) -> Result<JointModel, SceneError> {
+    let purpose = "the direction of the line in the frame of its body, [dx, dy]";
+    let field = table.required("direction", purpose)?;
+    let [dx, dy] = field.numbers("[dx, dy]")?;
+    if dx == 0.0 && dy == 0.0 {
+        return Err(field.must("not be zero"));
+    }
+    let purpose = "whether the sliding body may turn: \"free\" or \"locked\"";
+    let locked = table
+        .required("rotation", purpose)?
+        .choice(&[("free", false), ("locked", true)])?;
+    let angle = table.optional("angle");
+    if let Some(angle) = angle.as_ref().filter(|_| !locked) {
+        let message = format!("`{}` holds an angle that is free", angle.path);
+        return Err(angle.key_fault(message, "remove this, or lock the rotation"));
+    }
+    let angle = angle.map(|a| a.number()).transpose()?.unwrap_or(0.0);
+    Ok(JointModel::Prismatic {
+        direction: dy.atan2(dx),
+        locked: locked.then_some(angle),
+    })
+}
+
+fn weld(table: &Fields) -> Result<JointModel, SceneError> {
+    let angle = table.optional("angle").map(|a| a.number()).transpose()?;
+    let clamps = [
+        ("direction", SlopeClamp::Direction),
+        ("vector", SlopeClamp::Vector),
+    ];
+    let slope = table.optional("slope").map(|s| s.choice(&clamps));
+    Ok(JointModel::Weld {
+        angle: angle.unwrap_or(0.0),
+        slope: slope.transpose()?.unwrap_or(SlopeClamp::Direction),
     })
 }
 
 /// `"body.point"`
-fn point(field: &Field, bodies: &Bodies) -> Result<PointRef, SceneError> {
+pub(super) fn point(field: &Field, bodies: &Bodies) -> Result<PointRef, SceneError> {
     let text = field.text()?;
     let Some((body, point)) = text.split_once('.') else {
         let message = format!("`{}` must be \"body.point\", not \"{text}\"", field.path);
@@ -83,8 +172,14 @@ fn point(field: &Field, bodies: &Bodies) -> Result<PointRef, SceneError> {
         return Err(field.dangling("body", body, bodies.bodies.keys().map(String::as_str)));
     };
     let names: Vec<&str> = match &found.kind {
-        BodyKind::Link(_) => vec!["start", "end"],
-        BodyKind::Ground { points } => points.iter().map(|p| p.name.as_str()).collect(),
+        BodyKind::Link(link) => {
+            let inner = link.points.iter().map(|p| p.name.as_str());
+            ["start", "end"].into_iter().chain(inner).collect()
+        }
+        BodyKind::PointMass { .. } => vec!["center"],
+        BodyKind::Ground { points } | BodyKind::Moving { points, .. } => {
+            points.iter().map(|p| p.name.as_str()).collect()
+        }
         BodyKind::Rigid(rigid) => rigid.points.iter().map(|p| p.name.as_str()).collect(),
     };
     match names.iter().position(|name| *name == point) {

@@ -8,6 +8,8 @@ mod document;
 mod error;
 mod field;
 mod fields;
+mod forces;
+mod functions;
 mod joints;
 mod materials;
 mod motion;
@@ -15,6 +17,7 @@ mod names;
 mod overrides;
 mod reader;
 
+pub use crate::motion::Function;
 pub use error::{SceneError, Span};
 
 use error::Sources;
@@ -35,8 +38,12 @@ pub struct Scene {
     pub bodies: Vec<Body>,
     /// Joints in the order of the file.
     pub joints: Vec<Joint>,
-    /// Prescribed motions.
+    /// Motions prescribed by inverse kinematics.
     pub drives: Vec<Drive>,
+    /// Motions prescribed directly.
+    pub motions: Vec<Motion>,
+    /// Springs and loads.
+    pub forces: Vec<Force>,
     /// Where the motion starts.
     pub initial: Initial,
     /// Values that the source of the scene does not give.
@@ -44,10 +51,21 @@ pub struct Scene {
     sources: Sources,
 }
 
+/// What is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Analysis {
+    /// Motion over time.
+    Dynamic,
+    /// Equilibrium under loads that grow with t from 0 to the duration.
+    Static,
+}
+
 /// `[simulation]`
 #[derive(Debug, Clone)]
 pub struct Simulation {
-    /// Simulated time \[s\].
+    /// Motion or equilibrium.
+    pub analysis: Analysis,
+    /// Simulated time \[s\]; of a static analysis the t of the full load.
     pub duration: f64,
     /// Gravity vector \[m/s2\], absent when the scene names none.
     pub gravity: Option<[f64; 2]>,
@@ -115,10 +133,22 @@ pub enum BodyKind {
         /// Named points \[m\].
         points: Vec<Point>,
     },
-    /// A slender uniform link with the points `start` (index 0) and `end` (index 1).
+    /// A slender uniform link with the points `start` (index 0), `end` (index 1) and, if flexible, points at its nodes.
     Link(Link),
     /// A rigid body with the reference point in its centre of mass.
     Rigid(RigidBody),
+    /// A point with mass; its only point is `center`.
+    PointMass {
+        /// Mass \[kg\].
+        mass: f64,
+    },
+    /// A body without mass of its own that follows a path.
+    Moving {
+        /// Path of its reference point and its angle.
+        path: Path2,
+        /// Named points relative to the reference point at theta = 0 \[m\].
+        points: Vec<Point>,
+    },
 }
 
 /// A named point.
@@ -143,6 +173,41 @@ pub struct Link {
     pub density: f64,
     /// Rigid or flexible.
     pub model: LinkModel,
+    /// Named points of a flexible link between its ends, each at a node.
+    pub points: Vec<LinkPoint>,
+    /// Structural damping, absent when the scene names none.
+    pub damping: Option<Damping>,
+}
+
+impl Link {
+    /// Where point `index` of the link is, as a share of its length.
+    pub fn share(&self, index: usize) -> f64 {
+        match (index, self.model) {
+            (0, _) => 0.0,
+            (1, _) | (_, LinkModel::Rigid) => 1.0,
+            (inner, LinkModel::Flexible { elements, .. }) => {
+                self.points[inner - 2].node as f64 / elements as f64
+            }
+        }
+    }
+}
+
+/// A named inner point of a flexible link.
+#[derive(Debug, Clone)]
+pub struct LinkPoint {
+    /// The name the user wrote.
+    pub name: String,
+    /// Index of the node, counted from `start`.
+    pub node: usize,
+}
+
+/// Structural damping of a flexible link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Damping {
+    /// Retardation time of the strain rates \[s\]: Kelvin-Voigt, or the second half of Rayleigh's.
+    pub strain: f64,
+    /// Damping proportional to mass \[1/s\], the first half of Rayleigh's.
+    pub mass: f64,
 }
 
 /// How a link deforms.
@@ -179,18 +244,18 @@ pub struct PointRef {
     pub point: usize,
 }
 
-/// `[joints.NAME]`: a revolute joint between two points.
+/// `[joints.NAME]`: a joint between two points.
 #[derive(Debug, Clone)]
 pub struct Joint {
     /// The name the user wrote.
     pub name: String,
     /// Where the table stands.
     pub span: Span,
-    /// The point that carries the bearing (i of eq. 19).
+    /// The point that carries the bearing (i of eq. 19), the guide, or the first side of a weld.
     pub bearing: PointRef,
-    /// The point that carries the journal (j of eq. 19).
+    /// The point that carries the journal (j of eq. 19), the slider, or the second side of a weld.
     pub journal: PointRef,
-    /// Ideal or with clearance.
+    /// What it allows.
     pub model: JointModel,
 }
 
@@ -201,6 +266,29 @@ pub enum JointModel {
     Ideal,
     /// The journal moves inside the bearing and touches it.
     Clearance(Contact),
+    /// The points coincide and the bodies keep their relative angle.
+    Weld {
+        /// Direction of the second body relative to the first \[rad\].
+        angle: f64,
+        /// What of the slope of a flexible end is held.
+        slope: SlopeClamp,
+    },
+    /// The second point stays on a line of the first body.
+    Prismatic {
+        /// Direction of the line in the frame of the first body \[rad\].
+        direction: f64,
+        /// Angle of the second body relative to the first \[rad\]; absent for a pin in a slot.
+        locked: Option<f64>,
+    },
+}
+
+/// What a weld holds of the slope r' of a flexible end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SlopeClamp {
+    /// Its direction: the stretch is free.
+    Direction,
+    /// Direction and stretch.
+    Vector,
 }
 
 /// Geometry and laws of a loose joint.
@@ -276,6 +364,94 @@ pub struct Drive {
     pub path_span: Span,
 }
 
+/// `[drives.NAME]` of type `angle` or `point`: a motion prescribed directly.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    /// The name the user wrote.
+    pub name: String,
+    /// Where the table stands.
+    pub span: Span,
+    /// What is prescribed.
+    pub kind: MotionKind,
+}
+
+/// What a motion prescribes.
+#[derive(Debug, Clone)]
+pub enum MotionKind {
+    /// The angle of the journal's body relative to the bearing's in a revolute joint \[rad\].
+    Angle {
+        /// Index into [`Scene::joints`].
+        joint: usize,
+        /// The angle \[rad\].
+        angle: Function,
+    },
+    /// Coordinates of a point relative to the ground \[m\].
+    Point {
+        /// The point.
+        point: PointRef,
+        /// x and y, each free when absent.
+        coordinates: [Option<Function>; 2],
+    },
+}
+
+/// `[forces.NAME]`
+#[derive(Debug, Clone)]
+pub struct Force {
+    /// The name the user wrote.
+    pub name: String,
+    /// Where the table stands.
+    pub span: Span,
+    /// What acts.
+    pub kind: ForceKind,
+}
+
+/// The kinds of force.
+#[derive(Debug, Clone)]
+pub enum ForceKind {
+    /// Between two points along their line.
+    SpringDamper {
+        /// One end.
+        from: PointRef,
+        /// The other.
+        to: PointRef,
+        /// Stiffness \[N/m\].
+        stiffness: f64,
+        /// Damping \[N s/m\].
+        damping: f64,
+        /// Rest length \[m\].
+        rest_length: f64,
+    },
+    /// Between the two bodies of a revolute joint.
+    TorsionSpring {
+        /// Index into [`Scene::joints`].
+        joint: usize,
+        /// Stiffness \[N m/rad\].
+        stiffness: f64,
+        /// Damping \[N m s/rad\].
+        damping: f64,
+        /// Rest angle of the journal's body relative to the bearing's \[rad\].
+        rest_angle: f64,
+    },
+    /// At a point.
+    PointForce {
+        /// Where it acts.
+        point: PointRef,
+        /// Components \[N\].
+        components: [Function; 2],
+        /// True where the direction turns with the body.
+        follower: bool,
+    },
+    /// On a body, at a point of it.
+    Torque {
+        /// The point at whose material it acts.
+        point: PointRef,
+        /// The point whose body takes the reaction; the ground when absent.
+        reaction: Option<PointRef>,
+        /// Torque \[N m\].
+        value: Function,
+    },
+}
+
 /// A path in (x, y, theta).
 #[derive(Debug, Clone)]
 pub enum Path2 {
@@ -316,6 +492,10 @@ pub struct Initial {
     pub sketch: Vec<SketchPoint>,
     /// Exact states of bodies, for mechanisms without a drive.
     pub bodies: Vec<BodyState>,
+    /// Single velocities; the others follow with the least kinetic energy.
+    pub velocities: Vec<GivenVelocity>,
+    /// The start is the equilibrium under the loads at t = 0.
+    pub equilibrium: bool,
     /// Where the table stands.
     pub span: Span,
 }
@@ -342,6 +522,19 @@ pub struct BodyState {
     pub velocity: [f64; 3],
     /// False when the scene leaves the velocity out.
     pub velocity_given: bool,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// One velocity at t = 0.
+#[derive(Debug, Clone)]
+pub struct GivenVelocity {
+    /// Index into [`Scene::bodies`].
+    pub body: usize,
+    /// 0, 1, 2 for vx, vy \[m/s\] (of a link: of its `start`), omega \[rad/s\].
+    pub component: usize,
+    /// Its value.
+    pub value: f64,
     /// Where it stands.
     pub span: Span,
 }

@@ -4,64 +4,153 @@ use super::bodies::Bodies;
 use super::error::SceneError;
 use super::field::Field;
 use super::fields::Fields;
+use super::functions::{Use, function, rows};
+use super::joints;
 use super::names::named;
-use super::{Body, BodyKind, BodyState, Drive, Initial, Joint, Path2, SketchPoint};
+use super::{Body, BodyKind, BodyState, Drive, GivenVelocity, Initial, Joint, JointModel};
+use super::{Motion, MotionKind, Path2, SketchPoint};
 use indexmap::IndexMap;
 
 const POSE: &str = "[x, y, theta]";
+
+/// What `[drives]` prescribes.
+#[derive(Default)]
+pub(super) struct Drives {
+    pub kinematics: Vec<Drive>,
+    pub motions: Vec<Motion>,
+}
 
 pub(super) fn drives(
     root: &Fields,
     bodies: &Bodies,
     joints: &IndexMap<String, Joint>,
     duration: f64,
-) -> Result<Vec<Drive>, SceneError> {
+) -> Result<Drives, SceneError> {
+    #[derive(Clone, Copy)]
+    enum Type {
+        InverseKinematics,
+        Angle,
+        Point,
+    }
+    let types = [
+        ("inverse_kinematics", Type::InverseKinematics),
+        ("angle", Type::Angle),
+        ("point", Type::Point),
+    ];
     let mut driven = Vec::new();
-    let drives = named(root.optional("drives"), |field| {
+    let mut drives = Drives::default();
+    named(root.optional("drives"), |field| {
         let mut table = field.fields()?;
-        table.only(&["type", "joints", "body", "path"])?;
-        let purpose = "the kind of drive: \"inverse_kinematics\"";
-        table
-            .required("type", purpose)?
-            .choice(&[("inverse_kinematics", ())])?;
-        let list = table.required("joints", "the list of actuated joints")?;
-        let mut actuated = Vec::new();
-        for item in list.items()? {
-            let (index, joint) = item.lookup("joint", joints)?;
-            if driven.contains(&index) {
-                let message = format!("the joint `{}` is driven twice", joint.name);
-                return Err(item.fault(message, "a second time"));
+        let purpose = "the kind of drive: \"inverse_kinematics\", \"angle\" or \"point\"";
+        let kind = match table.required("type", purpose)?.choice(&types)? {
+            Type::InverseKinematics => {
+                table.only(&["type", "joints", "body", "path"])?;
+                let drive =
+                    inverse_kinematics(field, &table, bodies, joints, duration, &mut driven)?;
+                drives.kinematics.push(drive);
+                return Ok(());
             }
-            driven.push(index);
-            actuated.push(index);
-        }
-        if actuated.is_empty() {
-            return Err(list.fault(format!("`{}` names no joint", list.path), "empty"));
-        }
-        let body_field = table.required("body", "the name of the driven rigid body")?;
-        let (body, found) = body_field.lookup("body", &bodies.bodies)?;
-        if !matches!(found.kind, BodyKind::Rigid(_)) {
-            let message = format!(
-                "`{}` must be a body of type \"rigid_body\"",
-                body_field.path
-            );
-            return Err(body_field.fault(message, "not a rigid body"));
-        }
-        let path_field = table.required("path", "the path of the driven body")?;
-        let path = path(&path_field, duration)?;
-        Ok(Drive {
+            Type::Angle => {
+                table.only(&["type", "joint", "angle"])?;
+                let name = table.required("joint", "the name of a revolute joint")?;
+                let joint = actuated(&name, joints, &mut driven)?;
+                let angle = table.required("angle", "the angle as a function of time [rad]")?;
+                MotionKind::Angle {
+                    joint,
+                    angle: function(&angle, Use::Motion, duration)?,
+                }
+            }
+            Type::Point => {
+                table.only(&["type", "point", "x", "y"])?;
+                let point = table.required("point", "the point, as \"body.point\"")?;
+                let coordinate = |key| {
+                    let field = table.optional(key);
+                    field
+                        .map(|f| function(&f, Use::Motion, duration))
+                        .transpose()
+                };
+                let coordinates = [coordinate("x")?, coordinate("y")?];
+                if coordinates.iter().all(Option::is_none) {
+                    let message = format!("`{}` prescribes neither x nor y", field.path);
+                    return Err(field.key_fault(message, "needs `x`, `y` or both"));
+                }
+                MotionKind::Point {
+                    point: joints::point(&point, bodies)?,
+                    coordinates,
+                }
+            }
+        };
+        drives.motions.push(Motion {
             name: field.name.clone(),
             span: field.node.span,
-            joints: actuated,
-            body,
-            path,
-            path_span: path_field.node.span,
-        })
+            kind,
+        });
+        Ok(())
     })?;
-    Ok(drives.into_values().collect())
+    Ok(drives)
 }
 
-fn path(field: &Field, duration: f64) -> Result<Path2, SceneError> {
+/// The revolute joint that a field names, driven for the first time.
+fn actuated(
+    field: &Field,
+    joints: &IndexMap<String, Joint>,
+    driven: &mut Vec<usize>,
+) -> Result<usize, SceneError> {
+    let (index, joint) = field.lookup("joint", joints)?;
+    if !matches!(joint.model, JointModel::Ideal | JointModel::Clearance(_)) {
+        let message = format!(
+            "the joint `{}` is not revolute: it cannot be turned",
+            joint.name
+        );
+        return Err(field.fault(message, "not a revolute joint"));
+    }
+    if driven.contains(&index) {
+        let message = format!("the joint `{}` is driven twice", joint.name);
+        return Err(field.fault(message, "a second time"));
+    }
+    driven.push(index);
+    Ok(index)
+}
+
+fn inverse_kinematics(
+    field: &Field,
+    table: &Fields,
+    bodies: &Bodies,
+    joints: &IndexMap<String, Joint>,
+    duration: f64,
+    driven: &mut Vec<usize>,
+) -> Result<Drive, SceneError> {
+    let list = table.required("joints", "the list of actuated joints")?;
+    let items = list.items()?;
+    let indices: Result<Vec<usize>, _> = items
+        .iter()
+        .map(|item| actuated(item, joints, driven))
+        .collect();
+    let indices = indices?;
+    if indices.is_empty() {
+        return Err(list.fault(format!("`{}` names no joint", list.path), "empty"));
+    }
+    let body_field = table.required("body", "the name of the driven rigid body")?;
+    let (body, found) = body_field.lookup("body", &bodies.bodies)?;
+    if !matches!(found.kind, BodyKind::Rigid(_)) {
+        let message = format!(
+            "`{}` must be a body of type \"rigid_body\"",
+            body_field.path
+        );
+        return Err(body_field.fault(message, "not a rigid body"));
+    }
+    let path_field = table.required("path", "the path of the driven body")?;
+    Ok(Drive {
+        name: field.name.clone(),
+        span: field.node.span,
+        joints: indices,
+        body,
+        path: path(&path_field, duration)?,
+        path_span: path_field.node.span,
+    })
+}
+
+pub(super) fn path(field: &Field, duration: f64) -> Result<Path2, SceneError> {
     #[derive(Clone, Copy)]
     enum Type {
         Circle,
@@ -114,49 +203,12 @@ fn path(field: &Field, duration: f64) -> Result<Path2, SceneError> {
         }
         Type::Table => {
             table.only(&["type", "rows"])?;
-            let rows = table.required("rows", "the rows [t, x, y, theta]")?;
+            let table_rows = table.required("rows", "the rows [t, x, y, theta]")?;
             Ok(Path2::Table {
-                rows: self::rows(&rows, duration)?,
+                rows: rows(&table_rows, duration, "[t, x, y, theta]")?,
             })
         }
     }
-}
-
-fn rows(field: &Field, duration: f64) -> Result<Vec<[f64; 4]>, SceneError> {
-    let items = field.items()?;
-    let mut rows: Vec<[f64; 4]> = Vec::with_capacity(items.len());
-    for item in &items {
-        let row = item.numbers("[t, x, y, theta]")?;
-        if let Some(last) = rows.last().filter(|last| row[0] <= last[0]) {
-            let message = format!(
-                "the times of `{}` must increase: {:?} after {:?}",
-                field.path, row[0], last[0]
-            );
-            return Err(item.fault(message, "not later than the row before"));
-        }
-        rows.push(row);
-    }
-    let [first, .., last] = &rows[..] else {
-        return Err(field.fault(
-            format!("`{}` needs two rows or more", field.path),
-            "too short",
-        ));
-    };
-    if first[0] > 0.0 {
-        let message = format!(
-            "the first time of `{}` must not be later than 0",
-            field.path
-        );
-        return Err(items[0].fault(message, "starts too late"));
-    }
-    if last[0] < duration {
-        let message = format!(
-            "the last time of `{}` must reach the duration of {duration} s",
-            field.path
-        );
-        return Err(items[items.len() - 1].fault(message, "ends too early"));
-    }
-    Ok(rows)
 }
 
 pub(super) fn initial(
@@ -168,11 +220,13 @@ pub(super) fn initial(
         return Ok(Initial {
             sketch: Vec::new(),
             bodies: Vec::new(),
+            velocities: Vec::new(),
+            equilibrium: false,
             span: root.span,
         });
     };
     let mut table = field.fields()?;
-    table.only(&["sketch", "bodies"])?;
+    table.only(&["sketch", "bodies", "velocities", "equilibrium"])?;
     let sketch = named(table.optional("sketch"), |field| {
         let Some(joint) = joints.get_index_of(&field.name) else {
             return Err(field.dangling_key("joint", joints.keys().map(String::as_str)));
@@ -186,20 +240,75 @@ pub(super) fn initial(
     let states = named(table.optional("bodies"), |field| {
         state(field, &bodies.bodies)
     })?;
+    let mut velocities = Vec::new();
+    named(table.optional("velocities"), |field| {
+        velocities.extend(given_velocities(field, &bodies.bodies)?);
+        Ok(())
+    })?;
+    let equilibrium = table.optional("equilibrium").map(|f| f.boolean());
     Ok(Initial {
         sketch: sketch.into_values().collect(),
         bodies: states.into_values().collect(),
+        velocities,
+        equilibrium: equilibrium.transpose()?.unwrap_or(false),
         span: table.span,
     })
 }
 
-fn state(field: &Field, bodies: &IndexMap<String, Body>) -> Result<BodyState, SceneError> {
+/// `velocities.BODY = { vx, vy, omega }`, any of them.
+fn given_velocities(
+    field: &Field,
+    bodies: &IndexMap<String, Body>,
+) -> Result<Vec<GivenVelocity>, SceneError> {
+    let body = moving_body(field, bodies)?;
+    let mut table = field.fields()?;
+    table.only(&["vx", "vy", "omega"])?;
+    let mut given = Vec::new();
+    for (component, key) in ["vx", "vy", "omega"].into_iter().enumerate() {
+        if let Some(value) = table.optional(key) {
+            if component == 2 && matches!(bodies[body].kind, BodyKind::PointMass { .. }) {
+                let message = format!("`{}` is a point mass and does not turn", field.name);
+                return Err(value.key_fault(message, "not here"));
+            }
+            given.push(GivenVelocity {
+                body,
+                component,
+                value: value.number()?,
+                span: value.node.span,
+            });
+        }
+    }
+    if given.is_empty() {
+        return Err(field.key_fault(format!("`{}` gives no velocity", field.path), "empty"));
+    }
+    Ok(given)
+}
+
+/// The body that a key names, one that has a state of its own.
+fn moving_body(field: &Field, bodies: &IndexMap<String, Body>) -> Result<usize, SceneError> {
     let Some((body, _, found)) = bodies.get_full(&field.name) else {
         return Err(field.dangling_key("body", bodies.keys().map(String::as_str)));
     };
-    if matches!(found.kind, BodyKind::Ground { .. }) {
-        let message = format!("`{}` is ground and has no state", field.name);
-        return Err(field.key_fault(message, "does not move"));
+    match found.kind {
+        BodyKind::Ground { .. } => {
+            let message = format!("`{}` is ground and has no state", field.name);
+            Err(field.key_fault(message, "does not move"))
+        }
+        BodyKind::Moving { .. } => {
+            let message = format!(
+                "`{}` follows its path; it cannot have a start of its own",
+                field.name
+            );
+            Err(field.key_fault(message, "prescribed"))
+        }
+        _ => Ok(body),
+    }
+}
+
+fn state(field: &Field, bodies: &IndexMap<String, Body>) -> Result<BodyState, SceneError> {
+    let body = moving_body(field, bodies)?;
+    if let BodyKind::PointMass { .. } = bodies[body].kind {
+        return point_state(field, body);
     }
     let mut table = field.fields()?;
     table.only(&["x", "y", "theta", "vx", "vy", "omega"])?;
@@ -222,6 +331,30 @@ fn state(field: &Field, bodies: &IndexMap<String, Body>) -> Result<BodyState, Sc
         for (v, key) in velocity.iter_mut().zip(["vx", "vy", "omega"]) {
             *v = table
                 .required(key, "a velocity; give all three or none")?
+                .number()?;
+        }
+    }
+    Ok(BodyState {
+        body,
+        position,
+        velocity,
+        velocity_given,
+        span: field.node.span,
+    })
+}
+
+/// The state of a point mass, which has no angle.
+fn point_state(field: &Field, body: usize) -> Result<BodyState, SceneError> {
+    let mut table = field.fields()?;
+    table.only(&["x", "y", "vx", "vy"])?;
+    let number = |key: &'static str| table.required(key, "of the point mass")?.number();
+    let position = [number("x")?, number("y")?, 0.0];
+    let velocity_given = ["vx", "vy"].iter().any(|key| table.optional(key).is_some());
+    let mut velocity = [0.0; 3];
+    if velocity_given {
+        for (v, key) in velocity.iter_mut().zip(["vx", "vy"]) {
+            *v = table
+                .required(key, "a velocity; give both or none")?
                 .number()?;
         }
     }

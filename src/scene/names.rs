@@ -4,6 +4,9 @@ use super::error::SceneError;
 use super::field::Field;
 use indexmap::IndexMap;
 
+/// First parts of the names of channels that belong to no body, joint or force.
+pub(super) const RESERVED: [&str; 4] = ["error", "energy", "points", "t"];
+
 /// Reads a table whose keys are names the user chose.
 pub(super) fn named<T>(
     table: Option<Field>,

@@ -4,8 +4,8 @@ use super::document::{Node, document};
 use super::error::{SceneError, Sources, Span, nearest};
 use super::field::Field;
 use super::fields::Fields;
+use super::{Analysis, JointModel, bodies, forces, joints, motion, overrides};
 use super::{Assumption, ChannelPattern, Integrator, Method, Output, Scene, Simulation};
-use super::{JointModel, bodies, joints, motion, overrides};
 use std::io::Read;
 use std::path::Path;
 
@@ -76,20 +76,22 @@ pub(super) fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Scen
         "bodies",
         "joints",
         "drives",
+        "forces",
         "initial",
     ])?;
     let title = root.required("title", "one line that says what the scene is")?;
     let title = title.text()?.to_owned();
     let simulation = simulation(&root)?;
-    let bodies = bodies::read(&root)?;
+    let bodies = bodies::read(&root, simulation.duration)?;
     let joints = joints::read(&root, &bodies)?;
     let clearance = joints.values().filter_map(|joint| match &joint.model {
         JointModel::Clearance(contact) => Some(contact.clearance),
-        JointModel::Ideal => None,
+        _ => None,
     });
     let integrator = integrator(&root, &simulation, clearance.reduce(f64::min))?;
     let output = output(&root, &simulation, &integrator)?;
     let drives = motion::drives(&root, &bodies, &joints, simulation.duration)?;
+    let forces = forces::read(&root, &bodies, &joints, simulation.duration)?;
     let initial = motion::initial(&root, &bodies, &joints)?;
     let assumptions = assumptions(&root, &tree)?;
     Ok(Scene {
@@ -99,7 +101,9 @@ pub(super) fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Scen
         output,
         bodies: bodies.bodies.into_values().collect(),
         joints: joints.into_values().collect(),
-        drives,
+        drives: drives.kinematics,
+        motions: drives.motions,
+        forces,
         initial,
         assumptions,
         sources,
@@ -110,7 +114,10 @@ fn simulation(root: &Fields) -> Result<Simulation, SceneError> {
     let mut table = root
         .required("simulation", "the table of duration and gravity")?
         .fields()?;
-    table.only(&["duration", "gravity"])?;
+    table.only(&["analysis", "duration", "gravity"])?;
+    let kinds = [("dynamic", Analysis::Dynamic), ("static", Analysis::Static)];
+    let analysis = table.optional("analysis").map(|a| a.choice(&kinds));
+    let analysis = analysis.transpose()?.unwrap_or(Analysis::Dynamic);
     let duration = table
         .required("duration", "the simulated time [s]")?
         .positive()?;
@@ -118,7 +125,11 @@ fn simulation(root: &Fields) -> Result<Simulation, SceneError> {
         .optional("gravity")
         .map(|g| g.numbers("[gx, gy]"))
         .transpose()?;
-    Ok(Simulation { duration, gravity })
+    Ok(Simulation {
+        analysis,
+        duration,
+        gravity,
+    })
 }
 
 /// `clearance` is the smallest one of the scene.

@@ -4,7 +4,7 @@ use super::Simulation;
 use crate::contact::normal_law;
 use crate::model::BodyCoordinates;
 use crate::record::Ledger;
-use crate::scene::{JointModel, Scene};
+use crate::scene::{Analysis, JointModel, Scene};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -89,8 +89,13 @@ pub struct Report {
     pub unlocated_changes: u64,
     /// Stages of accepted steps at which a contact force was clamped at zero.
     pub clamps: u64,
-    /// Energy ledger at the end.
-    pub ledger: Ledger,
+    /// Energy ledger at the end; a static analysis keeps none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ledger: Option<Ledger>,
+    /// Constraints left out because they repeat others: their multipliers are zero, and the forces of the joints of that
+    /// loop are one choice among many.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub redundant: Vec<String>,
     /// Axial strain of largest magnitude over the recorded rows, of every flexible link.
     pub strain: BTreeMap<String, f64>,
     /// Extremes of the recorded channels, over the recorded rows.
@@ -159,7 +164,12 @@ impl Simulation {
                 .iter()
                 .map(|(_, name)| (*name).to_owned())
                 .collect(),
-            assumptions: notes(&self.scene),
+            assumptions: notes(&self.scene)
+                .into_iter()
+                .chain(self.model.redundant().iter().map(|name| {
+                    format!("{name} repeats other constraints: left out, so that the forces in its loop are one choice among many")
+                }))
+                .collect(),
             coordinates: coordinates.to_vec(),
             constraints: constraints.to_vec(),
         }
@@ -167,7 +177,10 @@ impl Simulation {
 
     /// The report at this moment.
     pub fn report(&self) -> Report {
-        let newton = self.newton.counters;
+        let newton = match &self.statics {
+            Some(statics) => self.newton.counters.with(&statics.counters),
+            None => self.newton.counters,
+        };
         let tally = |effect: crate::model::Effect| self.work.tally[effect as usize];
         let bodies = self.model.bodies().iter().enumerate();
         let names = self.recorder.channels().iter().map(|c| c.name.clone());
@@ -192,7 +205,9 @@ impl Simulation {
             onsets: self.counters.onsets,
             unlocated_changes: self.counters.unlocated,
             clamps: self.counters.clamps,
-            ledger: self.recorder.ledger(&self.model, &self.state),
+            ledger: (self.scene.simulation.analysis == Analysis::Dynamic)
+                .then(|| self.recorder.ledger(&self.model, &self.state)),
+            redundant: self.model.redundant(),
             strain: bodies
                 .filter(|(_, p)| matches!(p.coordinates, BodyCoordinates::FlexibleLink { .. }))
                 .map(|(b, p)| (p.name.clone(), self.strains[b]))

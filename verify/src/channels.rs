@@ -78,6 +78,7 @@ impl<'a> Channels<'a> {
                         self.put(format!("{name}.{quantity}"), *value);
                     }
                 }
+                self.points_of_rigid(b, levels);
             }
             body_kind::RIGID_LINK => {
                 self.link(name, levels, |u| [0.5 * (u[0] + u[2]), 0.5 * (u[1] + u[3])]);
@@ -87,8 +88,40 @@ impl<'a> Channels<'a> {
                 let length = body.length / n as f64;
                 self.link(name, levels, |u| centre(u, n, length));
                 self.put(format!("{name}.strain"), strain(levels[0], n, length));
+                for (point, first) in [("start", 0), ("end", 4 * n)] {
+                    for (i, quantity) in ["slope_x", "slope_y"].into_iter().enumerate() {
+                        let value = levels[0][first + 2 + i];
+                        self.put(format!("points.{name}.{point}.{quantity}"), value);
+                    }
+                }
             }
             _ => {}
+        }
+    }
+
+    /// r + A s of every named point of a rigid body, and its rates.
+    fn points_of_rigid(&mut self, b: usize, levels: [&[f64]; 3]) {
+        let name = &self.description.bodies[b].clone();
+        let [q, v, a] = levels;
+        let (sine, cosine) = q[2].sin_cos();
+        for (body, point, [x, y]) in self.description.points.clone() {
+            if body != b {
+                continue;
+            }
+            let arm = [x * cosine - y * sine, x * sine + y * cosine];
+            let values = [
+                [q[0] + arm[0], q[1] + arm[1]],
+                [v[0] - v[2] * arm[1], v[1] + v[2] * arm[0]],
+                [
+                    a[0] - a[2] * arm[1] - v[2] * v[2] * arm[0],
+                    a[1] + a[2] * arm[0] - v[2] * v[2] * arm[1],
+                ],
+            ];
+            for (names, value) in LEVELS.iter().zip(values) {
+                for (quantity, value) in names.iter().zip(value) {
+                    self.put(format!("points.{name}.{point}.{quantity}"), value);
+                }
+            }
         }
     }
 
@@ -104,6 +137,16 @@ impl<'a> Channels<'a> {
         } else {
             levels[0].len() - 4
         };
+        for (point, first) in [("start", 0), ("end", last)] {
+            for (names, level) in LEVELS.iter().zip(levels) {
+                for (i, quantity) in names[..2].iter().enumerate() {
+                    self.put(
+                        format!("points.{name}.{point}.{quantity}"),
+                        level[first + i],
+                    );
+                }
+            }
+        }
         let [d, d_dot, d_ddot] = levels.map(|u| [u[last] - u[0], u[last + 1] - u[1]]);
         let square = dot(d, d);
         let omega = cross(d, d_dot) / square;

@@ -19,6 +19,8 @@ pub struct Description {
     pub bodies: Vec<String>,
     /// Names of the joints, in the order of the mechanism.
     pub joints: Vec<String>,
+    /// Named points of rigid bodies: body, name, place in its frame \[m\].
+    pub points: Vec<(usize, String, [f64; 2])>,
 }
 
 #[derive(Deserialize)]
@@ -212,6 +214,11 @@ impl Text {
         if simulation.is_some_and(|s| s.contains_key("gravity")) {
             return Err(miette!("the reference has no gravity"));
         }
+        if let Some(forces) = table.get("forces").and_then(Value::as_table)
+            && !forces.is_empty()
+        {
+            return Err(miette!("the reference has no forces but those of joints"));
+        }
         let initial = table.remove("initial").map(Value::try_into::<InitialText>);
         Ok(Text {
             materials: entries(&mut table, "materials")?.into_iter().collect(),
@@ -244,9 +251,23 @@ impl Text {
             mechanism,
             bodies: self.bodies.iter().map(|(name, _)| name.clone()).collect(),
             joints: self.joints.iter().map(|(name, _)| name.clone()).collect(),
+            points: self.rigid_points(),
         };
         self.drive(&mut description)?;
         Ok(description)
+    }
+
+    /// Named points of rigid bodies, by name.
+    fn rigid_points(&self) -> Vec<(usize, String, [f64; 2])> {
+        let mut found = Vec::new();
+        for (b, (_, body)) in self.bodies.iter().enumerate() {
+            if let BodyText::RigidBody { points, .. } = body {
+                let points = points.iter().map(|(name, at)| (b, name.clone(), at.xy()));
+                found.extend(points);
+            }
+        }
+        found.sort_by(|a, b| (a.0, &a.1).cmp(&(b.0, &b.1)));
+        found
     }
 
     fn material(&self, name: &str) -> Result<&Material> {

@@ -30,6 +30,7 @@ impl Embedding {
             match &found.coordinates {
                 BodyCoordinates::Ground { .. } => {}
                 BodyCoordinates::Rigid { x } => source.extend(*x..x + 3),
+                BodyCoordinates::PointMass { x } => source.extend(*x..x + 2),
                 BodyCoordinates::RigidLink { ends } => {
                     source.extend(ends.iter().flat_map(|&x| [x, x + 1]));
                 }

@@ -5,10 +5,11 @@ use crate::trajectory::Trajectory;
 use std::f64::consts::TAU;
 
 /// Kinds: name and the quantities of it.
-pub const CLASSES: [(&str, &[&str]); 11] = [
-    ("positions of bodies", &["x", "y"]),
-    ("velocities of bodies", &["vx", "vy"]),
-    ("accelerations of bodies", &["ax", "ay"]),
+pub const CLASSES: [(&str, &[&str]); 12] = [
+    ("positions of bodies and points", &["x", "y"]),
+    ("velocities of bodies and points", &["vx", "vy"]),
+    ("accelerations of bodies and points", &["ax", "ay"]),
+    ("slopes of links", &["slope_x", "slope_y"]),
     ("angular velocities", &["omega"]),
     ("angular accelerations", &["alpha"]),
     ("joint forces", &["fx", "fy", "force"]),
@@ -40,7 +41,8 @@ fn members<'a>(
         .iter()
         .filter_map(|(name, r)| Some((name, &r[..], &cpp.columns.get(name)?[..])));
     both.filter(move |(name, ..)| {
-        let (owner, quantity) = name.split_once('.').unwrap_or_default();
+        let owner = name.split('.').next().unwrap_or_default();
+        let quantity = name.rsplit('.').next().unwrap_or_default();
         // deviations are small: the table has rows of their own for them
         owner != "error"
             && quantities.contains(&quantity)

@@ -1,5 +1,8 @@
 //! Where the motion starts: poses of the ideal mechanism or of the scene, then consistent rates.
 
+pub(crate) mod redundancy;
+
+use crate::compile::assembly::{assemble, link_start};
 use crate::math::plane::{Vec2, add, norm, perp, scale, sub};
 use crate::model::{BodyCoordinates, Model};
 use crate::scene::{BodyKind, JointModel, Scene, SceneError};
@@ -9,6 +12,7 @@ use crate::system::State;
 const START_TOLERANCE: f64 = 1e-9;
 
 /// Position and velocity of a body: of a rigid body (x, y, theta), of a link its `start` and its direction.
+#[derive(Debug, Clone, Copy)]
 struct Start {
     position: [f64; 3],
     velocity: [f64; 3],
@@ -47,6 +51,7 @@ impl Writer<'_> {
 /// A body without a start, or a start that violates a constraint.
 pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
     let mut state = model.blank_state();
+    model.follow_rules(&mut state);
     if let Some(kinematics) = &model.kinematics {
         let mut inner = kinematics.work();
         inner.state.q.copy_from_slice(&kinematics.start);
@@ -58,6 +63,7 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
         state.a[here].copy_from_slice(&inner.state.a);
     }
     model.ride(&mut state);
+    let starts = starts(scene, model, &state)?;
 
     let unknowns = model.shape().unknowns;
     let mut writer = Writer {
@@ -65,38 +71,11 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
         state: &mut state,
         unknowns,
     };
-    for (b, body) in scene.bodies.iter().enumerate() {
-        let free = match &model.bodies()[b].coordinates {
-            BodyCoordinates::Ground { .. } => false,
-            BodyCoordinates::Rigid { x } => *x < unknowns,
-            BodyCoordinates::RigidLink { ends } => ends.iter().any(|&x| x < unknowns),
-            BodyCoordinates::FlexibleLink { .. } => true,
-        };
-        let given = scene.initial.bodies.iter().find(|s| s.body == b);
-        if !free {
-            if let Some(given) = given {
-                let message = format!(
-                    "the motion of {} is prescribed; it cannot have a start of its own",
-                    body.name
-                );
-                return Err(scene.error(given.span, message, "remove this"));
-            }
-            continue;
-        }
-        let start = match given {
-            Some(given) => Start {
-                position: given.position,
-                velocity: given.velocity,
-            },
-            None => ideal_start(model, b, writer.state).ok_or_else(|| {
-                let message = format!(
-                    "the scene does not say where {} starts: give it in [initial] bodies",
-                    body.name
-                );
-                scene.error(body.span, message, "this body")
-            })?,
-        };
-        if !place(model, b, body_length(&body.kind), &start, &mut writer) {
+    for (b, start) in starts.iter().enumerate() {
+        let Some(start) = start else { continue };
+        let body = &scene.bodies[b];
+        if !place(model, b, body_length(&body.kind), start, &mut writer) {
+            let given = scene.initial.bodies.iter().find(|s| s.body == b);
             let span = given.map_or(body.span, |g| g.span);
             let message = format!(
                 "the start of {} does not fit what its ends are joined to",
@@ -126,7 +105,63 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
         let message = format!("the start violates {name}: by {distance:.3e} m and {rate:.3e} m/s");
         return Err(scene.error(scene.initial.span, message, "this start"));
     }
+    model.remember_angles(&mut state);
     Ok(state)
+}
+
+/// The start of every body that moves freely.
+fn starts(scene: &Scene, model: &Model, state: &State) -> Result<Vec<Option<Start>>, SceneError> {
+    let free: Vec<bool> = (0..scene.bodies.len()).map(|b| is_free(model, b)).collect();
+    let given = |b: usize| scene.initial.bodies.iter().find(|s| s.body == b);
+    for (b, body) in scene.bodies.iter().enumerate() {
+        if let Some(given) = given(b).filter(|_| !free[b]) {
+            let message = format!(
+                "the motion of {} is prescribed; it cannot have a start of its own",
+                body.name
+            );
+            return Err(scene.error(given.span, message, "remove this"));
+        }
+    }
+    if let (Some(kinematics), Some(given)) = (&model.kinematics, scene.initial.velocities.first()) {
+        let message = format!(
+            "the velocities of this scene are those of the ideal mechanism that {} moves",
+            kinematics.mechanism.bodies()[given.body].name
+        );
+        return Err(scene.error(given.span, message, "remove this"));
+    }
+    let exact = |b: usize| {
+        given(b).map(|g| Start {
+            position: g.position,
+            velocity: g.velocity,
+        })
+    };
+    let incomplete = (0..scene.bodies.len()).any(|b| free[b] && given(b).is_none());
+    let assembled = model.kinematics.is_none()
+        && (incomplete || !scene.initial.sketch.is_empty() || !scene.initial.velocities.is_empty());
+    if assembled {
+        let assembly = assemble(scene)?;
+        let of = |b: usize| ideal_start(&assembly.mechanism, b, &assembly.state, 0);
+        return Ok((0..free.len())
+            .map(|b| free[b].then(|| of(b)).flatten())
+            .collect());
+    }
+    let ideal = |b: usize| {
+        let kinematics = model.kinematics.as_ref()?;
+        ideal_start(&kinematics.mechanism, b, state, kinematics.offset)
+    };
+    Ok((0..free.len())
+        .map(|b| free[b].then(|| exact(b).or_else(|| ideal(b))).flatten())
+        .collect())
+}
+
+fn is_free(model: &Model, b: usize) -> bool {
+    let unknowns = model.shape().unknowns;
+    match &model.bodies()[b].coordinates {
+        BodyCoordinates::Ground { .. } => false,
+        BodyCoordinates::Rigid { x } | BodyCoordinates::PointMass { x } => *x < unknowns,
+        BodyCoordinates::RigidLink { ends } => ends.iter().any(|&x| x < unknowns),
+        BodyCoordinates::FlexibleLink { .. } => true,
+    }
 }
 
 fn body_length(kind: &BodyKind) -> f64 {
@@ -136,30 +171,31 @@ fn body_length(kind: &BodyKind) -> f64 {
     }
 }
 
-/// Start of a body in the ideal mechanism, whose coordinates are in place.
-fn ideal_start(model: &Model, b: usize, state: &State) -> Option<Start> {
-    let kinematics = model.kinematics.as_ref()?;
+/// Start of a body in the ideal mechanism, whose coordinates stand in `state` from `offset` on.
+fn ideal_start(mechanism: &Model, b: usize, state: &State, offset: usize) -> Option<Start> {
     let at = |x: usize| {
-        let x = x + kinematics.offset;
+        let x = x + offset;
         ([state.q[x], state.q[x + 1]], [state.v[x], state.v[x + 1]])
     };
-    match kinematics.mechanism.bodies()[b].coordinates {
+    match mechanism.bodies()[b].coordinates {
         BodyCoordinates::Rigid { x } => {
-            let x = x + kinematics.offset;
+            let x = x + offset;
             let of = |level: &[f64]| [level[x], level[x + 1], level[x + 2]];
             Some(Start {
                 position: of(&state.q),
                 velocity: of(&state.v),
             })
         }
-        BodyCoordinates::RigidLink { ends: [i, j] } => {
-            let ((from, from_rate), (to, to_rate)) = (at(i), at(j));
-            let (d, d_dot) = (sub(to, from), sub(to_rate, from_rate));
-            let omega = crate::math::plane::cross(d, d_dot) / crate::math::plane::dot(d, d);
+        BodyCoordinates::PointMass { x } => {
+            let (p, v) = at(x);
             Some(Start {
-                position: [from[0], from[1], d[1].atan2(d[0])],
-                velocity: [from_rate[0], from_rate[1], omega],
+                position: [p[0], p[1], 0.0],
+                velocity: [v[0], v[1], 0.0],
             })
+        }
+        BodyCoordinates::RigidLink { ends: [i, j] } => {
+            let (position, velocity) = link_start([at(i), at(j)]);
+            Some(Start { position, velocity })
         }
         _ => None,
     }
@@ -179,6 +215,7 @@ fn place(model: &Model, b: usize, length: f64, start: &Start, writer: &mut Write
     };
     match &model.bodies()[b].coordinates {
         BodyCoordinates::Ground { .. } => true,
+        BodyCoordinates::PointMass { x } => writer.node(*x, [x0, y0], [vx, vy]),
         BodyCoordinates::Rigid { x } => {
             writer.set(*x, [x0, y0], [vx, vy]);
             writer.state.q[x + 2] = theta;

@@ -1,0 +1,140 @@
+//! Prescribed relative angle of two directions: welds, guides that do not turn, driven joints.
+
+use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use crate::marker::Spin;
+use crate::math::plane::{Vec2, add, cross, dot, perp, rotate, scale};
+use crate::motion::Function;
+use crate::system::State;
+
+/// Phi = s (R(phi(t)) d_1) x d_2 with directions d of two bodies, R the rotation by the prescribed angle of the second
+/// relative to the first, and s = 1/(|d_1| |d_2|) of the undeformed bodies.
+///
+/// One row. For a slope it asks for the direction of the tangent, r'_y = 0 along a fixed first side, and leaves the
+/// stretch free. The second zero, d_2 turned by half a turn, is excluded when the mechanism is assembled.
+#[derive(Debug)]
+pub struct Align {
+    /// The first direction.
+    pub first: Spin,
+    /// The second.
+    pub second: Spin,
+    /// phi(t) \[rad\].
+    pub angle: Function,
+    /// 1/(|d_1| |d_2|) \[1 over the units of the directions\].
+    pub scale: f64,
+}
+
+/// Everything about both directions at one instant.
+struct Directions {
+    cosine: f64,
+    sine: f64,
+    /// R d_1 and d_2.
+    d: [Vec2; 2],
+}
+
+impl Align {
+    fn directions(&self, at: &State) -> Directions {
+        let (sine, cosine) = self.angle.at(at.t)[0].sin_cos();
+        let first = rotate(cosine, sine, self.first.vector(&at.q));
+        Directions {
+            cosine,
+            sine,
+            d: [first, self.second.vector(&at.q)],
+        }
+    }
+
+    /// cos of the angle error times |d_1| |d_2|.
+    fn along(&self, at: &State) -> f64 {
+        let Directions { d, .. } = self.directions(at);
+        dot(d[0], d[1])
+    }
+}
+
+impl Constraint for Align {
+    fn rows(&self) -> usize {
+        1
+    }
+
+    fn coordinates(&self) -> Vec<usize> {
+        let mut coordinates = self.first.coordinates();
+        coordinates.extend(self.second.coordinates());
+        coordinates
+    }
+
+    fn split(&self) -> usize {
+        self.first.width()
+    }
+
+    fn value(&self, at: &State) -> [f64; ROWS] {
+        let Directions { d, .. } = self.directions(at);
+        [self.scale * cross(d[0], d[1]), 0.0]
+    }
+
+    fn gradient(&self, at: &State) -> Gradient {
+        let Directions { cosine, sine, d } = self.directions(at);
+        let (first, second) = (self.first.columns(&at.q), self.second.columns(&at.q));
+        let mut gradient = [[0.0; WIDTH]; ROWS];
+        for (g, column) in gradient[0].iter_mut().zip(first.iter()) {
+            *g = self.scale * cross(rotate(cosine, sine, *column), d[1]);
+        }
+        for (g, column) in gradient[0][first.len()..].iter_mut().zip(second.iter()) {
+            *g = self.scale * cross(d[0], *column);
+        }
+        gradient
+    }
+
+    fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {
+        let Directions { cosine, sine, d } = self.directions(at);
+        let (first, second) = (self.first.columns(&at.q), self.second.columns(&at.q));
+        let s = lambda[0] * self.scale;
+        for (i, a) in first.iter().enumerate() {
+            for (j, b) in second.iter().enumerate() {
+                let mixed = s * cross(rotate(cosine, sine, *a), *b);
+                out.add(i, first.len() + j, mixed);
+                out.add(first.len() + j, i, mixed);
+            }
+        }
+        // the second derivative of a unit direction by its angle is minus itself
+        let bend = -s * cross(d[0], d[1]);
+        if let Spin::Angle { .. } = self.first {
+            out.add(0, 0, bend);
+        }
+        if let Spin::Angle { .. } = self.second {
+            out.add(first.len(), first.len(), bend);
+        }
+    }
+
+    fn velocity(&self, at: &State) -> [f64; ROWS] {
+        let Directions { cosine, sine, d } = self.directions(at);
+        let turning = self.angle.at(at.t)[1];
+        let first = rotate(cosine, sine, self.first.vector_rate(&at.q, &at.v));
+        let first = add(first, scale(turning, perp(d[0])));
+        let second = self.second.vector_rate(&at.q, &at.v);
+        [self.scale * (cross(first, d[1]) + cross(d[0], second)), 0.0]
+    }
+
+    fn acceleration(&self, at: &State) -> [f64; ROWS] {
+        let Directions { cosine, sine, d } = self.directions(at);
+        let [_, turning, growing] = self.angle.at(at.t);
+        let turned = |x: Vec2| rotate(cosine, sine, x);
+        let rate = turned(self.first.vector_rate(&at.q, &at.v));
+        let first_dot = add(rate, scale(turning, perp(d[0])));
+        let mut first_ddot = turned(self.first.vector_acceleration(&at.q, &at.v, &at.a));
+        first_ddot = add(first_ddot, scale(2.0 * turning, perp(rate)));
+        first_ddot = add(first_ddot, scale(growing, perp(d[0])));
+        first_ddot = add(first_ddot, scale(-turning * turning, d[0]));
+        let second_dot = self.second.vector_rate(&at.q, &at.v);
+        let second_ddot = self.second.vector_acceleration(&at.q, &at.v, &at.a);
+        let sum =
+            cross(first_ddot, d[1]) + 2.0 * cross(first_dot, second_dot) + cross(d[0], second_ddot);
+        [self.scale * sum, 0.0]
+    }
+
+    fn half_turn(&self, at: &State) -> bool {
+        self.along(at) < 0.0
+    }
+
+    /// -lambda dPhi/d(angle of the second direction).
+    fn couple(&self, at: &State, lambda: [f64; ROWS]) -> f64 {
+        -lambda[0] * self.scale * self.along(at)
+    }
+}

@@ -1,0 +1,89 @@
+//! A slope vector held in full: the second kind of clamp of a flexible end.
+
+use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use crate::marker::Spin;
+use crate::math::plane::{Vec2, cross, rotate, scale, sub};
+use crate::system::State;
+
+/// Phi = r' - s R d_1, two rows: direction and stretch of the slope r' of the second side follow the direction d_1 of the
+/// first, turned by a constant angle; s = 1/|d_1| of the undeformed body.
+///
+/// With a bending energy EI/2 r''.r'' this is another boundary condition than holding the direction alone, with another
+/// limit under mesh refinement.
+#[derive(Debug, Clone, Copy)]
+pub struct ClampSlope {
+    /// The first direction.
+    pub first: Spin,
+    /// Index of the first coordinate of r'.
+    pub slope: usize,
+    /// Angle of r' relative to the first direction \[rad\].
+    pub angle: f64,
+    /// 1/|d_1|.
+    pub scale: f64,
+}
+
+impl ClampSlope {
+    fn turned(&self, x: Vec2) -> Vec2 {
+        let (sine, cosine) = self.angle.sin_cos();
+        scale(self.scale, rotate(cosine, sine, x))
+    }
+
+    fn slope(&self, x: &[f64]) -> Vec2 {
+        [x[self.slope], x[self.slope + 1]]
+    }
+}
+
+impl Constraint for ClampSlope {
+    fn rows(&self) -> usize {
+        2
+    }
+
+    fn coordinates(&self) -> Vec<usize> {
+        let mut coordinates = self.first.coordinates();
+        coordinates.extend([self.slope, self.slope + 1]);
+        coordinates
+    }
+
+    fn split(&self) -> usize {
+        self.first.width()
+    }
+
+    fn value(&self, at: &State) -> [f64; ROWS] {
+        sub(self.slope(&at.q), self.turned(self.first.vector(&at.q)))
+    }
+
+    fn gradient(&self, at: &State) -> Gradient {
+        let columns = self.first.columns(&at.q);
+        let mut gradient = [[0.0; WIDTH]; ROWS];
+        for (c, column) in columns.iter().enumerate() {
+            let turned = self.turned(*column);
+            gradient[0][c] = -turned[0];
+            gradient[1][c] = -turned[1];
+        }
+        gradient[0][columns.len()] = 1.0;
+        gradient[1][columns.len() + 1] = 1.0;
+        gradient
+    }
+
+    fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {
+        if let Spin::Angle { .. } = self.first {
+            let d = self.turned(self.first.vector(&at.q));
+            out.add(0, 0, lambda[0] * d[0] + lambda[1] * d[1]);
+        }
+    }
+
+    fn velocity(&self, at: &State) -> [f64; ROWS] {
+        let first = self.first.vector_rate(&at.q, &at.v);
+        sub(self.slope(&at.v), self.turned(first))
+    }
+
+    fn acceleration(&self, at: &State) -> [f64; ROWS] {
+        let first = self.first.vector_acceleration(&at.q, &at.v, &at.a);
+        sub(self.slope(&at.a), self.turned(first))
+    }
+
+    /// -lambda . dr'/d(angle) with r' turned as a whole; the part of lambda along r' holds the stretch and has none.
+    fn couple(&self, at: &State, lambda: [f64; ROWS]) -> f64 {
+        -cross(self.slope(&at.q), lambda)
+    }
+}

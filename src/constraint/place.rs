@@ -1,0 +1,74 @@
+//! A prescribed coordinate of a point.
+
+use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use crate::marker::Marker;
+use crate::math::plane::{Vec2, dot, scale};
+use crate::motion::Function;
+use crate::system::State;
+
+/// Phi = n . r - f(t), one row: the coordinate of a point along the constant unit vector n follows a function of time. The
+/// multiplier is the force that the point exerts along n \[N\].
+#[derive(Debug)]
+pub struct Place {
+    /// The point.
+    pub marker: Marker,
+    /// n.
+    pub direction: Vec2,
+    /// f(t) \[m\].
+    pub value: Function,
+}
+
+impl Constraint for Place {
+    fn rows(&self) -> usize {
+        1
+    }
+
+    fn coordinates(&self) -> Vec<usize> {
+        self.marker.coordinates()
+    }
+
+    fn split(&self) -> usize {
+        0
+    }
+
+    fn value(&self, at: &State) -> [f64; ROWS] {
+        let position = self.marker.position(&at.q, self.marker.arm(&at.q));
+        [dot(self.direction, position) - self.value.at(at.t)[0], 0.0]
+    }
+
+    fn gradient(&self, at: &State) -> Gradient {
+        let mut gradient = [[0.0; WIDTH]; ROWS];
+        for (g, column) in gradient[0]
+            .iter_mut()
+            .zip(self.marker.columns(&at.q).iter())
+        {
+            *g = dot(self.direction, *column);
+        }
+        gradient
+    }
+
+    fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {
+        if let Marker::OnBody { .. } = self.marker {
+            let bend = -dot(self.direction, self.marker.arm(&at.q));
+            out.add(2, 2, lambda[0] * bend);
+        }
+    }
+
+    fn velocity(&self, at: &State) -> [f64; ROWS] {
+        let velocity = self.marker.velocity(&at.v, self.marker.arm(&at.q));
+        [dot(self.direction, velocity) - self.value.at(at.t)[1], 0.0]
+    }
+
+    fn acceleration(&self, at: &State) -> [f64; ROWS] {
+        let arm = self.marker.arm(&at.q);
+        let acceleration = self.marker.acceleration(&at.v, &at.a, arm);
+        [
+            dot(self.direction, acceleration) - self.value.at(at.t)[2],
+            0.0,
+        ]
+    }
+
+    fn force(&self, _: &State, lambda: [f64; ROWS]) -> Vec2 {
+        scale(-lambda[0], self.direction)
+    }
+}

@@ -1,0 +1,128 @@
+//! A torsional spring and damper between two bodies.
+
+use super::{Force, LocalMatrix, WIDTH};
+use crate::marker::{Spin, SpinDerivatives};
+use crate::math::plane::{cross, dot};
+use crate::model::Effect;
+use crate::system::{INTEGRALS, Integral, State, Weights};
+use std::f64::consts::TAU;
+
+/// Torque M = k (phi - phi_0) + c phi_dot that turns the second body back to the first; phi is the angle from the first
+/// direction to the second, full turns counted from the start, where it lies within half a turn of phi_0.
+#[derive(Debug, Clone, Copy)]
+pub struct TorsionSpring {
+    /// The first direction.
+    pub first: Spin,
+    /// The second.
+    pub second: Spin,
+    /// k \[N m/rad\].
+    pub stiffness: f64,
+    /// c \[N m s/rad\].
+    pub damping: f64,
+    /// phi_0 \[rad\].
+    pub rest_angle: f64,
+    /// Index of its angle memory.
+    pub memory: usize,
+}
+
+impl TorsionSpring {
+    /// phi \[rad\]: the one nearest to the memory.
+    fn angle(&self, at: &State) -> f64 {
+        let (a, b) = (self.first.vector(&at.q), self.second.vector(&at.q));
+        let last = at.angles[self.memory];
+        let change = cross(a, b).atan2(dot(a, b)) - last;
+        last + change - TAU * (change / TAU).round()
+    }
+
+    fn rate(&self, at: &State) -> f64 {
+        self.second.rate(&at.q, &at.v) - self.first.rate(&at.q, &at.v)
+    }
+
+    /// M \[N m\], phi and its rate.
+    fn state(&self, at: &State) -> [f64; 3] {
+        let (angle, rate) = (self.angle(at), self.rate(at));
+        let torque = self.stiffness * (angle - self.rest_angle) + self.damping * rate;
+        [torque, angle, rate]
+    }
+
+    /// Each side: sign, derivatives of its spin, its first local index and its number of coordinates.
+    fn sides(&self, at: &State) -> [(f64, SpinDerivatives, usize, usize); 2] {
+        let derivatives = |s: &Spin| s.derivatives(&at.q, &at.v);
+        let (m, n) = (self.first.width(), self.second.width());
+        [
+            (-1.0, derivatives(&self.first), 0, m),
+            (1.0, derivatives(&self.second), m, n),
+        ]
+    }
+}
+
+impl Force for TorsionSpring {
+    fn effect(&self) -> Effect {
+        Effect::TorsionSpring
+    }
+
+    fn coordinates(&self) -> Vec<usize> {
+        let mut coordinates = self.first.coordinates();
+        coordinates.extend(self.second.coordinates());
+        coordinates
+    }
+
+    fn split(&self) -> usize {
+        self.first.width()
+    }
+
+    fn force(&self, at: &State, f: &mut [f64; WIDTH]) {
+        let [torque, ..] = self.state(at);
+        for (sign, d, first, count) in self.sides(at) {
+            for i in 0..count {
+                f[first + i] += torque * sign * d.b[i];
+            }
+        }
+    }
+
+    fn force_and_tangent(&self, at: &State, w: Weights, f: &mut [f64; WIDTH], k: &mut LocalMatrix) {
+        let [torque, ..] = self.state(at);
+        let sides = self.sides(at);
+        let (mut lever, mut by_stage) = ([0.0; WIDTH], [0.0; WIDTH]);
+        for (sign, d, first, count) in &sides {
+            for i in 0..*count {
+                let b = sign * d.b[i];
+                lever[first + i] = b;
+                by_stage[first + i] = (w.q * self.stiffness + w.v * self.damping) * b
+                    + w.q * self.damping * sign * d.rate_q[i];
+                for j in 0..*count {
+                    k[first + i][first + j] += w.q * torque * sign * d.b_q[i][j];
+                }
+            }
+        }
+        let columns = sides[1].2 + sides[1].3;
+        for r in 0..columns {
+            f[r] += torque * lever[r];
+            for c in 0..columns {
+                k[r][c] += lever[r] * by_stage[c];
+            }
+        }
+    }
+
+    fn energy(&self, at: &State) -> f64 {
+        let turn = self.angle(at) - self.rest_angle;
+        0.5 * self.stiffness * turn * turn
+    }
+
+    fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
+        let rate = self.rate(at);
+        powers[Integral::DampingDissipated as usize] += self.damping * rate * rate;
+    }
+
+    fn remember(&self, at: &mut State) {
+        at.angles[self.memory] = self.angle(at);
+    }
+
+    fn quantities(&self) -> &'static [(&'static str, &'static str)] {
+        &[("torque", "N m"), ("angle", "rad"), ("speed", "rad/s")]
+    }
+
+    fn measure(&self, at: &State) -> [f64; 3] {
+        self.state(at)
+    }
+}

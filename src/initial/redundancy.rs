@@ -1,0 +1,76 @@
+//! Constraints that repeat others: found at the start, kept out of the equations, named.
+
+use crate::compile::assembly::{closing_step, row};
+use crate::math::dense::{Added, Equations};
+use crate::model::Model;
+use crate::system::State;
+
+/// How far the mechanism is moved to tell a singular start from a redundant constraint, in units of its coordinates.
+const EXCURSION: f64 = 1e-2;
+/// Steps of Newton's method that close it again.
+const CLOSING: usize = 12;
+
+/// The rows that depend on those before them, as (constraint, row of it).
+fn dependent(model: &Model, state: &State) -> Vec<(usize, usize)> {
+    let mut equations = Equations::default();
+    let mut found = Vec::new();
+    for (i, placed) in model.constraints.iter().enumerate() {
+        for d in 0..placed.rows {
+            let added = equations.add(&row(model, state, i, d), 0.0);
+            if let Added::Dependent(_) = added {
+                found.push((i, d));
+            }
+        }
+    }
+    found
+}
+
+/// What the constraints of a start are.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Redundancy {
+    /// Rows that repeat others wherever the mechanism is, as (constraint, row of it); often none.
+    Rows(Vec<(usize, usize)>),
+    /// The start is a singular pose: the row of this name depends on others there, and nowhere else.
+    SingularStart(String),
+}
+
+/// Finds rows that depend on others at the start and in a pose near it.
+///
+/// A redundant bar of a parallelogram repeats the others all along the motion; a constraint of a mechanism in a dead
+/// centre does so in that pose only.
+pub(crate) fn find(model: &Model, start: &State) -> Redundancy {
+    let here = dependent(model, start);
+    if here.is_empty() {
+        return Redundancy::Rows(here);
+    }
+    let n = model.shape().unknowns;
+    let mut equations = Equations::default();
+    for (i, placed) in model.constraints.iter().enumerate() {
+        for d in 0..placed.rows {
+            equations.add(&row(model, start, i, d), 0.0);
+        }
+    }
+    // any direction will do that no constraint forbids and that no symmetry of a mechanism shares
+    let direction: Vec<f64> = (0..n).map(|i| (1.0 + 2.4 * i as f64).sin()).collect();
+    let free = equations.free_part(&direction);
+    let size = free.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if size <= 1e-9 * (n as f64).sqrt() {
+        // nothing can move: what depends on others here does so for good
+        return Redundancy::Rows(here);
+    }
+    let mut moved = start.clone();
+    for (q, x) in moved.q.iter_mut().zip(&free) {
+        *q += EXCURSION * x / size;
+    }
+    let held = vec![false; n];
+    for _ in 0..CLOSING {
+        closing_step(model, &mut moved, &held);
+    }
+    let there = dependent(model, &moved);
+    match here.iter().find(|row| !there.contains(row)) {
+        Some(&(i, d)) if there.len() < here.len() => {
+            Redundancy::SingularStart(model.names[n + model.constraints[i].row + d].clone())
+        }
+        _ => Redundancy::Rows(here),
+    }
+}

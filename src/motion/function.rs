@@ -1,0 +1,258 @@
+//! Scalar functions of time with exact first and second derivatives: prescribed coordinates, angles, loads.
+
+use super::{Table, line::quintic};
+use std::f64::consts::TAU;
+
+/// A function of time.
+#[derive(Debug, Clone)]
+pub enum Function {
+    /// The same value at all times.
+    Constant(f64),
+    /// c_0 + c_1 t + c_2 t^2 + ...
+    Polynomial(Vec<f64>),
+    /// mean + amplitude sin(2 pi frequency t + phase).
+    Harmonic {
+        /// Value it swings about.
+        mean: f64,
+        /// Largest deviation from it.
+        amplitude: f64,
+        /// Periods a second \[Hz\].
+        frequency: f64,
+        /// Phase at t = 0 \[rad\].
+        phase: f64,
+    },
+    /// From one value to another, linear in time, constant before and after; its second derivative is left at zero.
+    Ramp {
+        /// Value before.
+        from: f64,
+        /// Value after.
+        to: f64,
+        /// When it begins \[s\].
+        start: f64,
+        /// How long it takes \[s\].
+        duration: f64,
+    },
+    /// From one value to another by the quintic 10 u^3 - 15 u^4 + 6 u^5, twice continuously differentiable.
+    SmoothStep {
+        /// Value before.
+        from: f64,
+        /// Value after.
+        to: f64,
+        /// When it begins \[s\].
+        start: f64,
+        /// How long it takes \[s\].
+        duration: f64,
+    },
+    /// start + speed/T (t^2/2 + (T/2 pi)^2 (cos(2 pi t/T) - 1)) up to T = `duration`, then at constant `speed`
+    /// (Simo and Vu-Quoc 1986).
+    SpinUp {
+        /// Value at t = 0.
+        start: f64,
+        /// Final rate \[1/s\].
+        speed: f64,
+        /// T \[s\].
+        duration: f64,
+    },
+    /// A natural cubic spline through (t, value).
+    Table(Table<1>),
+}
+
+impl Function {
+    /// A spline through rows (t, value) with increasing times, two rows at least.
+    pub fn table(rows: &[[f64; 2]]) -> Function {
+        Function::Table(Table::new(
+            rows.iter().map(|r| r[0]).collect(),
+            rows.iter().map(|r| [r[1]]).collect(),
+        ))
+    }
+
+    /// Value, first and second derivative at time t \[s\].
+    pub fn at(&self, t: f64) -> [f64; 3] {
+        match self {
+            Function::Constant(value) => [*value, 0.0, 0.0],
+            Function::Polynomial(coefficients) => {
+                let mut value = [0.0; 3];
+                for c in coefficients.iter().rev() {
+                    value[2] = value[2] * t + 2.0 * value[1];
+                    value[1] = value[1] * t + value[0];
+                    value[0] = value[0] * t + c;
+                }
+                value
+            }
+            Function::Harmonic {
+                mean,
+                amplitude,
+                frequency,
+                phase,
+            } => {
+                let omega = TAU * frequency;
+                let (sine, cosine) = (omega * t + phase).sin_cos();
+                [
+                    mean + amplitude * sine,
+                    amplitude * omega * cosine,
+                    -amplitude * omega * omega * sine,
+                ]
+            }
+            Function::Ramp {
+                from,
+                to,
+                start,
+                duration,
+            } => {
+                let u = (t - start) / duration;
+                let inside = (0.0..1.0).contains(&u);
+                let slope = if inside { (to - from) / duration } else { 0.0 };
+                [from + (to - from) * u.clamp(0.0, 1.0), slope, 0.0]
+            }
+            Function::SmoothStep {
+                from,
+                to,
+                start,
+                duration,
+            } => {
+                let [s, by_u, by_u2] = quintic((t - start) / duration);
+                let way = to - from;
+                [
+                    from + way * s,
+                    way * by_u / duration,
+                    way * by_u2 / (duration * duration),
+                ]
+            }
+            Function::SpinUp {
+                start,
+                speed,
+                duration,
+            } => {
+                if t >= *duration {
+                    return [start + speed * (t - 0.5 * duration), *speed, 0.0];
+                }
+                let omega = TAU / duration;
+                let (sine, cosine) = (omega * t).sin_cos();
+                let rate = speed / duration;
+                [
+                    start + rate * (0.5 * t * t + (cosine - 1.0) / (omega * omega)),
+                    rate * (t - sine / omega),
+                    rate * (1.0 - cosine),
+                ]
+            }
+            Function::Table(table) => table.derivatives(t).map(|[x]| x),
+        }
+    }
+
+    /// The function with the opposite sign.
+    pub fn negated(&self) -> Function {
+        match self.clone() {
+            Function::Constant(value) => Function::Constant(-value),
+            Function::Polynomial(c) => Function::Polynomial(c.into_iter().map(|c| -c).collect()),
+            Function::Harmonic {
+                mean,
+                amplitude,
+                frequency,
+                phase,
+            } => Function::Harmonic {
+                mean: -mean,
+                amplitude: -amplitude,
+                frequency,
+                phase,
+            },
+            Function::Ramp {
+                from,
+                to,
+                start,
+                duration,
+            } => Function::Ramp {
+                from: -from,
+                to: -to,
+                start,
+                duration,
+            },
+            Function::SmoothStep {
+                from,
+                to,
+                start,
+                duration,
+            } => Function::SmoothStep {
+                from: -from,
+                to: -to,
+                start,
+                duration,
+            },
+            Function::SpinUp {
+                start,
+                speed,
+                duration,
+            } => Function::SpinUp {
+                start: -start,
+                speed: -speed,
+                duration,
+            },
+            Function::Table(table) => Function::Table(table.negated()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_are_the_derivatives() {
+        let functions = [
+            Function::Polynomial(vec![0.3, -1.2, 0.7, 0.4]),
+            Function::Harmonic {
+                mean: 0.2,
+                amplitude: 1.3,
+                frequency: 0.8,
+                phase: 0.4,
+            },
+            Function::SmoothStep {
+                from: 0.2,
+                to: -1.1,
+                start: 0.1,
+                duration: 1.7,
+            },
+            Function::SpinUp {
+                start: 0.1,
+                speed: 6.0,
+                duration: 1.0,
+            },
+            Function::table(&[[0.0, 0.1], [0.4, 0.9], [1.1, -0.3], [2.0, 0.5]]),
+        ];
+        for f in &functions {
+            for t in [0.15, 0.61, 1.3, 1.73] {
+                let (low, mid, high) = (f.at(t - 1e-6), f.at(t), f.at(t + 1e-6));
+                assert_eq!(f.negated().at(t), mid.map(|x| -x));
+                // central differences: rounding 1e-16/1e-6 times rates up to 30
+                assert!(((high[0] - low[0]) / 2e-6 - mid[1]).abs() < 1e-8, "{f:?}");
+                assert!(((high[1] - low[1]) / 2e-6 - mid[2]).abs() < 1e-7, "{f:?}");
+            }
+            assert_ne!(f.at(0.61)[2], 0.0, "nothing was tested");
+        }
+    }
+
+    #[test]
+    fn ramps_begin_and_end_where_they_should() {
+        for smooth in [false, true] {
+            let (from, to, start, duration) = (1.0, 3.0, 0.5, 2.0);
+            let f = if smooth {
+                Function::SmoothStep {
+                    from,
+                    to,
+                    start,
+                    duration,
+                }
+            } else {
+                Function::Ramp {
+                    from,
+                    to,
+                    start,
+                    duration,
+                }
+            };
+            for (t, value) in [(0.0, 1.0), (0.5, 1.0), (1.5, 2.0), (2.5, 3.0), (9.0, 3.0)] {
+                // exact in binary
+                assert_eq!(f.at(t)[0], value);
+            }
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Static runs: a load path, and the equilibrium that a motion starts from.
+
+use super::{Control, GRID_ROUNDING, HALVINGS, Observer, Progress, RunError, Simulation, describe};
+use crate::model::Model;
+use crate::scene::{Analysis, JointModel, Scene, SceneError};
+use crate::statics::Statics;
+use crate::stepper::StepError;
+use crate::system::{State, System, Work};
+
+/// The solver that a scene needs, and the start in equilibrium where it asks for that.
+pub(super) fn prepare(
+    scene: &Scene,
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+) -> Result<Option<Statics>, SceneError> {
+    let start = scene.initial.equilibrium;
+    let path = scene.simulation.analysis == Analysis::Static;
+    if !start && !path {
+        return Ok(None);
+    }
+    for joint in &scene.joints {
+        if let JointModel::Clearance(_) = joint.model {
+            let message = format!(
+                "joint {} has clearance: its bodies have no equilibrium before it closes",
+                joint.name
+            );
+            let error = scene.error(joint.span, message, "loose");
+            return Err(
+                error.with_help("make it ideal for the static analysis, or let the motion settle")
+            );
+        }
+    }
+    if let Some(drive) = scene.drives.first() {
+        let message = "statics have no inverse kinematics";
+        return Err(scene.error(drive.span, message, "remove this"));
+    }
+    let mut statics = Statics::new(model);
+    if start {
+        let moving = scene.initial.bodies.iter().map(|b| (b.velocity, b.span));
+        if let Some((_, span)) = moving.into_iter().find(|(v, _)| *v != [0.0; 3]) {
+            let message = "a start in equilibrium is at rest";
+            return Err(scene.error(span, message, "this body moves"));
+        }
+        if let Some(given) = scene.initial.velocities.first() {
+            let message = "a start in equilibrium is at rest";
+            return Err(scene.error(given.span, message, "this body moves"));
+        }
+        let known = model.shape().unknowns..;
+        let rates = (
+            state.v[known.clone()].to_vec(),
+            state.a[known.clone()].to_vec(),
+        );
+        statics.settle(model, state, work).map_err(|failure| {
+            let (name, cause) = describe(model, &failure);
+            let message = format!("no equilibrium was found to start from: {name}: {cause}");
+            scene.error(scene.initial.span, message, "this start")
+        })?;
+        state.v[known.clone()].copy_from_slice(&rates.0);
+        state.a[known].copy_from_slice(&rates.1);
+        model.remember_angles(state);
+    }
+    Ok(Some(statics))
+}
+
+impl Simulation {
+    /// Equilibria under loads that grow with t, a row at every interval.
+    pub(super) fn run_loads(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
+        let (interval, duration) = (self.scene.output.interval, self.scene.simulation.duration);
+        let rows = (duration / interval + GRID_ROUNDING).floor() as u64;
+        self.load_to(0.0, observer)?;
+        self.record(observer)?;
+        for k in 1..=rows {
+            self.load_to((k as f64 * interval).min(duration), observer)?;
+            self.record(observer)?;
+        }
+        self.load_to(duration, observer)
+    }
+
+    /// Equilibria up to the loads at `target`, in steps that are halved where they fail.
+    fn load_to(&mut self, target: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
+        let mut step = self.scene.integrator.step;
+        let smallest = step * 2.0_f64.powi(-HALVINGS);
+        loop {
+            let left = target - self.state.t;
+            // the load factor is a path, not a clock: what is left below this is rounding
+            let next = if left <= (1.0 + GRID_ROUNDING) * step {
+                target
+            } else {
+                self.state.t + step
+            };
+            match self.equilibrium_at(next) {
+                Ok(()) => {
+                    std::mem::swap(&mut self.state, &mut self.trial);
+                    self.model.remember_angles(&mut self.state);
+                    self.counters.steps += 1;
+                    let progress = Progress {
+                        t: self.state.t,
+                        duration: self.scene.simulation.duration,
+                        contacts: 0,
+                    };
+                    if observer.step(&progress)? == Control::Stop {
+                        return Err(RunError::Interrupted { t: self.state.t });
+                    }
+                    if self.state.t == target {
+                        return Ok(());
+                    }
+                    step = (2.0 * step).min(self.scene.integrator.step);
+                }
+                Err(error) => {
+                    self.counters.rejected += 1;
+                    step = 0.5 * step.min(left);
+                    if step < smallest {
+                        return Err(self.failed(error, step));
+                    }
+                }
+            }
+        }
+    }
+
+    /// The equilibrium at t, in `trial`.
+    fn equilibrium_at(&mut self, t: f64) -> Result<(), StepError> {
+        let Simulation {
+            model,
+            state,
+            trial,
+            statics,
+            work,
+            scene,
+            ..
+        } = self;
+        trial.copy_from(state);
+        trial.t = t;
+        model.prescribe(state, trial, work)?;
+        let statics = statics
+            .as_mut()
+            .expect("a static scene has a static solver");
+        Ok(statics.solve(model, trial, t / scene.simulation.duration, work)?)
+    }
+}

@@ -1,0 +1,173 @@
+//! Equilibrium: f(q) + Phi_q^T lambda = 0, Phi = 0, everything at rest.
+//!
+//! Without inertia the stiffness K of the coordinates may be singular until the constraints are taken in: a beam that is
+//! held in its direction only can turn. K + s Phi_q^T Phi_q is not, and has the same solution with s Phi_q^T Phi added to
+//! the residual, for any s > 0; s is the largest stiffness on the diagonal. With s Phi = 0 for Phi = 0 and lambda/s for
+//! lambda all entries of the matrix are of one size.
+
+use crate::math::lu::DenseLu;
+use crate::model::Model;
+use crate::newton::{Counters, Failure};
+use crate::system::{State, System, Weights, Work};
+
+/// Newton iterations of one load step; one that converges at all needs fewer.
+const MAX_ITERATIONS: usize = 40;
+/// An update below this part of the largest coordinate is followed by a last one, whose error is its square.
+const LAST_UPDATE: f64 = 1e-8;
+/// An update that stays below this part of the largest coordinate, but does not shrink, is rounding.
+const ROUNDING: f64 = 1e-12;
+/// The way from the undeformed start to equilibrium is halved this many times at most.
+const HALVINGS: i32 = 20;
+
+/// Solver memory: allocated once, used for every load step.
+#[derive(Debug)]
+pub struct Statics {
+    r: Vec<f64>,
+    phi: Vec<f64>,
+    k: Vec<f64>,
+    b: Vec<f64>,
+    solve: Vec<f64>,
+    /// Residual that is taken off: zero but on the way to an equilibrium start.
+    offset: Vec<f64>,
+    /// Work done so far.
+    pub counters: Counters,
+}
+
+impl Statics {
+    /// Memory for a model.
+    pub fn new(model: &Model) -> Statics {
+        let shape = model.shape();
+        let size = shape.unknowns + shape.multipliers;
+        Statics {
+            r: vec![0.0; shape.coordinates],
+            phi: vec![0.0; shape.multipliers],
+            k: vec![0.0; model.symbolic().len()],
+            b: vec![0.0; size],
+            solve: vec![0.0; size],
+            offset: vec![0.0; shape.unknowns],
+            counters: Counters::default(),
+        }
+    }
+
+    /// Equilibrium at the known coordinates and loads of `s`, from the q and lambda in it; `gravity` is the part of the
+    /// weight that acts.
+    ///
+    /// # Errors
+    /// See [`Failure`]; updates are told in units of coordinates. `s` is then undefined.
+    pub fn solve(
+        &mut self,
+        model: &Model,
+        s: &mut State,
+        gravity: f64,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
+        let n = model.shape().unknowns;
+        s.v.fill(0.0);
+        s.a.fill(0.0);
+        self.counters.stages += 1;
+        let (mut last, mut worst, mut finishing) = (f64::INFINITY, 0, false);
+        for _ in 0..MAX_ITERATIONS {
+            self.counters.newton_iterations += 1;
+            let scale = self.evaluate(model, s, gravity, work);
+            for i in 0..n {
+                self.b[i] = self.offset[i] - self.r[i];
+            }
+            for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
+                *b = -scale * phi;
+            }
+            self.factor_and_solve(model)?;
+            let mut update = 0.0;
+            for i in 0..n {
+                s.q[i] += self.b[i];
+                let size = self.b[i].abs();
+                if size.is_nan() || size > update {
+                    (update, worst) = (size, i);
+                }
+            }
+            for (lambda, d) in s.lambda.iter_mut().zip(&self.b[n..]) {
+                *lambda += scale * d;
+            }
+            if !update.is_finite() {
+                return Err(Failure::NotFinite { index: worst });
+            }
+            let size = s.q.iter().fold(f64::MIN_POSITIVE, |m, q| m.max(q.abs()));
+            if finishing && (update < last || update <= ROUNDING * size) {
+                s.q_low.fill(0.0);
+                return Ok(());
+            }
+            finishing = update <= LAST_UPDATE * size;
+            last = update;
+        }
+        Err(Failure::NoConvergence {
+            index: worst,
+            update: last,
+        })
+    }
+
+    /// Residual and tangent without inertia, stiffened where constraints act; returns the scale of the multipliers.
+    fn evaluate(&mut self, model: &Model, s: &State, gravity: f64, work: &mut Work) -> f64 {
+        let w = Weights { q: 1.0, v: 0.0 };
+        model.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
+        model.remove_mass(&mut self.k);
+        for &(i, weight) in &model.weight {
+            self.r[i] -= (1.0 - gravity) * weight;
+        }
+        model.stiffen(s, &mut self.r, &mut self.k)
+    }
+
+    fn factor_and_solve(&mut self, model: &Model) -> Result<(), Failure> {
+        self.counters.factorisations += 1;
+        let symbolic = model.symbolic();
+        let full = self.k.clone();
+        match symbolic.factor(&mut self.k) {
+            Ok(()) => symbolic.solve(&self.k, &mut self.b, &mut self.solve),
+            Err(weak) => {
+                self.counters.fallbacks += 1;
+                let dense = DenseLu::factor(symbolic, &full);
+                dense
+                    .ok_or(Failure::Singular { index: weak.index })?
+                    .solve(&mut self.b);
+            }
+        }
+        Ok(())
+    }
+
+    /// Equilibrium under the loads of `s` as they are, from an undeformed start: the residual of the start is taken off
+    /// in parts, r(q) = (1 - p) r(q_0) with p from 0 to 1, in steps that halve where they fail.
+    ///
+    /// # Errors
+    /// The failure of the smallest step.
+    pub fn settle(&mut self, model: &Model, s: &mut State, work: &mut Work) -> Result<(), Failure> {
+        let n = model.shape().unknowns;
+        s.v.fill(0.0);
+        s.a.fill(0.0);
+        s.lambda.fill(0.0);
+        self.evaluate(model, s, 1.0, work);
+        let first: Vec<f64> = self.r[..n].to_vec();
+        let (mut part, mut step) = (0.0_f64, 1.0_f64);
+        let mut reached = s.clone();
+        while part < 1.0 {
+            let next = (part + step).min(1.0);
+            for (o, r) in self.offset.iter_mut().zip(&first) {
+                *o = (1.0 - next) * r;
+            }
+            match self.solve(model, s, 1.0, work) {
+                Ok(()) => {
+                    part = next;
+                    step *= 2.0;
+                    reached.copy_from(s);
+                }
+                Err(failure) if step < 2.0_f64.powi(-HALVINGS) => {
+                    self.offset.fill(0.0);
+                    return Err(failure);
+                }
+                Err(_) => {
+                    step *= 0.5;
+                    s.copy_from(&reached);
+                }
+            }
+        }
+        self.offset.fill(0.0);
+        Ok(())
+    }
+}

@@ -1,0 +1,480 @@
+//! Every constraint and every force by differencing: gradients, curvatures, rates, tangents, powers. The states are
+//! random, with a straight undeformed beam among them.
+
+use looselink::constraint::{
+    Align, ClampSlope, Coincide, Constraint, Curvature, Length, Place, Slide,
+};
+use looselink::force::{
+    ElementDamping, Force, MassDamping, PointForce, SpringDamper, Torque, TorsionSpring, WIDTH,
+};
+use looselink::marker::{Marker, Spin};
+use looselink::motion::Function;
+use looselink::system::{INTEGRALS, Integral, Shape, State, Weights};
+
+/// Coordinates: two bodies (0..3, 3..6), nodes and slopes of an element (6..14), two more nodes (14..18).
+const COUNT: usize = 18;
+
+/// A smooth motion of all coordinates: state k is c + b sin(w t + p) with numbers that differ from one to the next.
+fn state(k: usize, t: f64) -> State {
+    let shape = Shape {
+        unknowns: COUNT,
+        coordinates: COUNT,
+        multipliers: 0,
+        contacts: 0,
+        angles: 1,
+    };
+    let mut s = State::zeros(shape);
+    s.t = t;
+    for i in 0..COUNT {
+        let x = (k * COUNT + i) as f64;
+        let centre = match i {
+            6..14 if k == 0 => [0.1, 0.2, 0.8, 0.6, 0.1 + 0.4, 0.2 + 0.3, 0.8, 0.6][i - 6],
+            6..14 => [0.1, 0.2, 0.8, 0.6, 0.5, 0.5, 0.8, 0.6][i - 6] + 0.1 * (1.7 * x).sin(),
+            _ => (2.3 * x).sin(),
+        };
+        // the first state is a straight undeformed beam at t = 0 that is moving
+        let (size, rate, phase) = (
+            0.2,
+            1.0 + 0.3 * (1.1 * x).cos(),
+            if k == 0 { 0.0 } else { x },
+        );
+        let (sine, cosine) = (rate * t + phase).sin_cos();
+        s.q[i] = centre + size * sine;
+        s.v[i] = size * rate * cosine;
+        s.a[i] = -size * rate * rate * sine;
+    }
+    s
+}
+
+fn constraints() -> Vec<(&'static str, Box<dyn Constraint>)> {
+    let body = |x, s| Marker::OnBody { x, s };
+    let angle = Function::Polynomial(vec![0.3, 0.7, -0.2]);
+    vec![
+        (
+            "length",
+            Box::new(Length {
+                i: 14,
+                j: 16,
+                length: 0.7,
+            }),
+        ),
+        (
+            "coincide, body and node",
+            Box::new(Coincide {
+                bearing: body(0, [0.3, -0.1]),
+                journal: Marker::Node { x: 6 },
+            }),
+        ),
+        (
+            "coincide, chord and body",
+            Box::new(Coincide {
+                bearing: Marker::OnChord {
+                    from: 14,
+                    to: 16,
+                    share: 0.3,
+                },
+                journal: body(3, [0.2, 0.4]),
+            }),
+        ),
+        (
+            "align, bodies",
+            Box::new(Align {
+                first: Spin::Angle { theta: 2 },
+                second: Spin::Angle { theta: 5 },
+                angle: angle.clone(),
+                scale: 1.0,
+            }),
+        ),
+        (
+            "align, chord and slope",
+            Box::new(Align {
+                first: Spin::Chord { from: 14, to: 16 },
+                second: Spin::Slope { x: 8 },
+                angle,
+                scale: 0.6,
+            }),
+        ),
+        (
+            "align, ground and slope",
+            Box::new(Align {
+                first: Spin::Fixed,
+                second: Spin::Slope { x: 8 },
+                angle: Function::Constant(0.2),
+                scale: 1.0,
+            }),
+        ),
+        (
+            "clamped slope on a body",
+            Box::new(ClampSlope {
+                first: Spin::Angle { theta: 2 },
+                slope: 8,
+                angle: 0.4,
+                scale: 1.0,
+            }),
+        ),
+        (
+            "clamped slope on a chord",
+            Box::new(ClampSlope {
+                first: Spin::Chord { from: 14, to: 16 },
+                slope: 12,
+                angle: -0.3,
+                scale: 1.3,
+            }),
+        ),
+        (
+            "slide on a body",
+            Box::new(Slide {
+                guide: body(0, [0.1, 0.2]),
+                spin: Spin::Angle { theta: 2 },
+                angle: 0.7,
+                scale: 1.0,
+                slider: body(3, [-0.2, 0.3]),
+            }),
+        ),
+        (
+            "slide on a chord",
+            Box::new(Slide {
+                guide: Marker::Node { x: 14 },
+                spin: Spin::Chord { from: 14, to: 16 },
+                angle: 0.0,
+                scale: 1.2,
+                slider: Marker::Node { x: 6 },
+            }),
+        ),
+        (
+            "place",
+            Box::new(Place {
+                marker: body(3, [0.4, 0.1]),
+                direction: [0.6, 0.8],
+                value: Function::Harmonic {
+                    mean: 0.1,
+                    amplitude: 0.4,
+                    frequency: 0.3,
+                    phase: 0.2,
+                },
+            }),
+        ),
+    ]
+}
+
+/// Sum over the columns of local values at their global coordinates.
+fn global(coordinates: &[usize], local: &[f64]) -> Vec<f64> {
+    let mut sum = vec![0.0; COUNT];
+    for (&i, x) in coordinates.iter().zip(local) {
+        sum[i] += x;
+    }
+    sum
+}
+
+/// The state with coordinate i moved.
+fn moved(s: &State, i: usize, by: f64) -> State {
+    let mut s = s.clone();
+    s.q[i] += by;
+    s
+}
+
+#[test]
+fn constraints_agree_with_their_differences() {
+    // central differences of quantities near one: h^2 and eps/h are 1e-10
+    let (h, tolerance) = (1e-5, 3e-9);
+    for (name, c) in constraints() {
+        for k in 0..8 {
+            let s = state(k, 0.0);
+            let coordinates = c.coordinates();
+            let rows = c.rows();
+            assert!(c.split() <= coordinates.len());
+            let gradient = c.gradient(&s);
+            let (mut touched, mut bent) = (false, false);
+            for i in 0..COUNT {
+                let (low, high) = (c.value(&moved(&s, i, -h)), c.value(&moved(&s, i, h)));
+                for d in 0..rows {
+                    let exact = global(&coordinates, &gradient[d])[i];
+                    touched |= exact != 0.0;
+                    assert!(
+                        (exact - (high[d] - low[d]) / (2.0 * h)).abs() < tolerance,
+                        "{name} {k} {i}"
+                    );
+                }
+            }
+            // d(Phi_q^T lambda)/dq, through a dense local matrix
+            let lambda = [0.7, -1.3];
+            let n = coordinates.len();
+            let slots: Vec<u32> = (0..(n * n) as u32).collect();
+            let mut local = vec![0.0; n * n];
+            let mut out = Curvature {
+                slots: &slots,
+                columns: n,
+                weight: 1.0,
+                tangent: &mut local,
+            };
+            c.curvature(&s, lambda, &mut out);
+            let force = |s: &State| {
+                let gradient = c.gradient(s);
+                let mut sum = vec![0.0; COUNT];
+                for d in 0..rows {
+                    let row = global(&coordinates, &gradient[d]);
+                    sum.iter_mut()
+                        .zip(row)
+                        .for_each(|(f, g)| *f += lambda[d] * g);
+                }
+                sum
+            };
+            for j in 0..COUNT {
+                let (low, high) = (force(&moved(&s, j, -h)), force(&moved(&s, j, h)));
+                for i in 0..COUNT {
+                    let mut exact = 0.0;
+                    for (r, &gi) in coordinates.iter().enumerate() {
+                        for (q, &gj) in coordinates.iter().enumerate() {
+                            exact += if (gi, gj) == (i, j) {
+                                local[r * n + q]
+                            } else {
+                                0.0
+                            };
+                        }
+                    }
+                    bent |= exact != 0.0;
+                    assert!(
+                        (exact - (high[i] - low[i]) / (2.0 * h)).abs() < tolerance,
+                        "{name} {k} {i} {j}"
+                    );
+                }
+            }
+            assert!(touched, "{name}");
+            let flat = matches!(name, "clamped slope on a chord" | "align, ground and slope");
+            assert_eq!(bent, !flat, "{name}: curvature");
+            // rates along the motion
+            let (low, high) = (state(k, -h), state(k, h));
+            let (velocity, acceleration) = (c.velocity(&s), c.acceleration(&s));
+            for d in 0..rows {
+                let rate = (c.value(&high)[d] - c.value(&low)[d]) / (2.0 * h);
+                assert!(
+                    (velocity[d] - rate).abs() < tolerance,
+                    "{name} {k}: velocity"
+                );
+                let rate = (c.velocity(&high)[d] - c.velocity(&low)[d]) / (2.0 * h);
+                assert!(
+                    (acceleration[d] - rate).abs() < tolerance,
+                    "{name} {k}: acceleration"
+                );
+            }
+        }
+    }
+}
+
+fn forces() -> Vec<(&'static str, Box<dyn Force>)> {
+    let body = |x, s| Marker::OnBody { x, s };
+    let element: Vec<usize> = (6..14).collect();
+    vec![
+        (
+            "spring-damper between bodies",
+            Box::new(SpringDamper {
+                from: body(0, [0.3, -0.1]),
+                to: body(3, [0.2, 0.4]),
+                stiffness: 3.0,
+                damping: 0.7,
+                rest_length: 0.4,
+            }),
+        ),
+        (
+            "spring without rest length",
+            Box::new(SpringDamper {
+                from: Marker::Node { x: 6 },
+                to: Marker::Node { x: 14 },
+                stiffness: 3.0,
+                damping: 0.0,
+                rest_length: 0.0,
+            }),
+        ),
+        (
+            "torsion spring, slope and chord",
+            Box::new(TorsionSpring {
+                first: Spin::Slope { x: 8 },
+                second: Spin::Chord { from: 14, to: 16 },
+                stiffness: 2.0,
+                damping: 0.4,
+                rest_angle: 0.3,
+                memory: 0,
+            }),
+        ),
+        (
+            "torsion spring, ground and body",
+            Box::new(TorsionSpring {
+                first: Spin::Fixed,
+                second: Spin::Angle { theta: 5 },
+                stiffness: 2.0,
+                damping: 0.4,
+                rest_angle: -0.2,
+                memory: 0,
+            }),
+        ),
+        (
+            "dead force on a body",
+            Box::new(PointForce {
+                marker: body(0, [0.3, -0.1]),
+                spin: Spin::Fixed,
+                components: [
+                    Function::Constant(1.3),
+                    Function::Polynomial(vec![0.2, 0.5]),
+                ],
+            }),
+        ),
+        (
+            "follower force on a beam",
+            Box::new(PointForce {
+                marker: Marker::Node { x: 10 },
+                spin: Spin::Slope { x: 12 },
+                components: [Function::Constant(0.4), Function::Constant(-0.9)],
+            }),
+        ),
+        (
+            "follower force on a body",
+            Box::new(PointForce {
+                marker: body(3, [0.3, 0.2]),
+                spin: Spin::Angle { theta: 5 },
+                components: [Function::Constant(0.4), Function::Constant(-0.9)],
+            }),
+        ),
+        (
+            "torque between a slope and a chord",
+            Box::new(Torque {
+                first: Spin::Slope { x: 8 },
+                second: Spin::Chord { from: 14, to: 16 },
+                value: Function::Constant(0.8),
+            }),
+        ),
+        (
+            "torque on a slope",
+            Box::new(Torque {
+                first: Spin::Fixed,
+                second: Spin::Slope { x: 12 },
+                value: Function::Constant(0.8),
+            }),
+        ),
+        (
+            "element damping",
+            Box::new(ElementDamping::new(element.clone(), 0.5, 2.0, 0.3)),
+        ),
+        (
+            "mass damping",
+            Box::new(MassDamping {
+                values: (0..64)
+                    .map(|i| if i % 9 == 0 { 1.5 } else { 0.0 })
+                    .collect(),
+                coordinates: element,
+            }),
+        ),
+    ]
+}
+
+#[test]
+fn forces_agree_with_their_differences() {
+    // central differences of quantities near ten: h^2 and eps/h are 1e-10
+    let (h, tolerance) = (1e-5, 3e-8);
+    for (name, term) in forces() {
+        for k in 0..8 {
+            let mut s = state(k, 0.0);
+            term.remember(&mut s);
+            let coordinates = term.coordinates();
+            assert!(term.split() <= coordinates.len());
+            let force = |s: &State| {
+                let mut f = [0.0; WIDTH];
+                term.force(s, &mut f);
+                global(&coordinates, &f)
+            };
+            let mut resists = false;
+            for w in [Weights { q: 1.0, v: 0.0 }, Weights { q: 0.0, v: 1.0 }] {
+                let (mut f, mut local) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
+                term.force_and_tangent(&s, w, &mut f, &mut local);
+                assert_eq!(global(&coordinates, &f), force(&s), "{name}");
+                for j in 0..COUNT {
+                    let pushed = |by: f64| {
+                        let mut s = s.clone();
+                        s.q[j] += w.q * by;
+                        s.v[j] += w.v * by;
+                        force(&s)
+                    };
+                    let (low, high) = (pushed(-h), pushed(h));
+                    for i in 0..COUNT {
+                        let mut exact = 0.0;
+                        for (r, &gi) in coordinates.iter().enumerate() {
+                            for (c, &gj) in coordinates.iter().enumerate() {
+                                exact += if (gi, gj) == (i, j) { local[r][c] } else { 0.0 };
+                            }
+                        }
+                        resists |= exact != 0.0;
+                        let difference = (high[i] - low[i]) / (2.0 * h);
+                        assert!(
+                            (exact - difference).abs() < tolerance,
+                            "{name} {k} {i} {j}: {exact} {difference}"
+                        );
+                    }
+                }
+            }
+            assert!(resists, "{name}");
+            // the power of the force is what is stored, dissipated and put in
+            let mut powers = [0.0; INTEGRALS];
+            term.powers(&s, &mut powers);
+            let stored = (term.energy(&state_with(&s, k, h)) - term.energy(&state_with(&s, k, -h)))
+                / (2.0 * h);
+            let lost = powers[Integral::DampingDissipated as usize];
+            let power: f64 = force(&s).iter().zip(&s.v).map(|(f, v)| f * v).sum();
+            let balance = stored + lost - powers[Integral::Work as usize];
+            assert!(
+                (power - balance).abs() < tolerance,
+                "{name} {k}: {power} {balance}"
+            );
+            assert!(lost >= 0.0, "{name}");
+        }
+    }
+}
+
+/// The state at another instant with the memory of `s`.
+fn state_with(s: &State, k: usize, t: f64) -> State {
+    let mut other = state(k, t);
+    other.angles.copy_from_slice(&s.angles);
+    other
+}
+
+/// A rigid motion of a bent beam is not damped inside.
+#[test]
+fn element_damping_does_not_see_rigid_motions() {
+    let damping = ElementDamping::new((6..14).collect(), 0.5, 2.0, 0.3);
+    let mut s = state(3, 0.0);
+    let omega = 1.7;
+    for x in (6..14).step_by(2) {
+        let drift = if x == 6 || x == 10 {
+            [0.3, -0.8]
+        } else {
+            [0.0; 2]
+        };
+        s.v[x] = drift[0] - omega * s.q[x + 1];
+        s.v[x + 1] = drift[1] + omega * s.q[x];
+    }
+    let mut f = [0.0; WIDTH];
+    damping.force(&s, &mut f);
+    // rounding of forces near one
+    assert!(f.iter().all(|f| f.abs() < 1e-14), "{f:?}");
+}
+
+/// Full turns are counted: two turns of the second body wind a spring twice.
+#[test]
+fn torsion_springs_count_turns() {
+    let spring = TorsionSpring {
+        first: Spin::Fixed,
+        second: Spin::Slope { x: 8 },
+        stiffness: 2.0,
+        damping: 0.0,
+        rest_angle: 0.0,
+        memory: 0,
+    };
+    let mut s = state(1, 0.0);
+    let last = 4.0 * std::f64::consts::PI;
+    for step in 0..=40 {
+        let angle = last * f64::from(step) / 40.0;
+        (s.q[8], s.q[9]) = (angle.cos(), angle.sin());
+        spring.remember(&mut s);
+    }
+    // rounding of 12.6
+    assert!((spring.measure(&s)[1] - last).abs() < 1e-14);
+    assert!((spring.energy(&s) - last * last).abs() < 1e-12);
+}
