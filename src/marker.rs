@@ -112,13 +112,13 @@ impl Marker {
         }
     }
 
-    /// dr/dq in the order of the coordinates.
+    /// dr/dq in the order of the coordinates, given the arm.
     #[inline]
-    pub fn columns(&self, q: &[f64]) -> Columns {
+    pub fn columns(&self, arm: Vec2) -> Columns {
         let [x, y] = Columns::UNIT;
         match self {
             Marker::Node { .. } => Columns::new(&[x, y]),
-            Marker::OnBody { .. } => Columns::new(&[x, y, perp(self.arm(q))]),
+            Marker::OnBody { .. } => Columns::new(&[x, y, perp(arm)]),
             Marker::OnChord { share, .. } => {
                 let (far, near) = (*share, 1.0 - share);
                 Columns::new(&[scale(near, x), scale(near, y), scale(far, x), scale(far, y)])

@@ -3,7 +3,7 @@
 use super::mass::{mass, planar_inertia, weight};
 use super::numbering::{Connection, Numbering, shifted};
 use super::{Compiler, Mode, Role, loads, reactions};
-use crate::constraint::{Align, ClampSlope, Coincide, Constraint, Length, Place, Slide};
+use crate::constraint::{Align, ClampSlope, Coincide, Length, Place, Slide};
 use crate::contact::{Ambrosio, normal_law};
 use crate::force::{ClearanceJoint, Force, FrictionalJoint};
 use crate::kinematics::Kinematics;
@@ -11,8 +11,8 @@ use crate::link::{AncfCable, ElasticRoute, natural_rigid};
 use crate::marker::Spin;
 use crate::math::lu::Symbolic;
 use crate::model::{
-    Acting, Block, BodyCoordinates, BodyPlace, Border, Contacting, Effect, Element, Inertia,
-    JointPlace, Model, Placed, PointPlace, Rule,
+    Acting, Block, BodyCoordinates, BodyPlace, Border, ConstraintTerm, Contacting, Effect, Element,
+    Inertia, JointPlace, Model, Placed, PointPlace, Rule,
 };
 use crate::motion;
 use crate::scene::{
@@ -23,7 +23,7 @@ use crate::system::Shape;
 
 /// A constraint before it has slots.
 struct Row {
-    term: Box<dyn Constraint>,
+    term: ConstraintTerm,
     effect: Effect,
     /// One name a row.
     names: Vec<String>,
@@ -54,7 +54,7 @@ impl Terms {
     /// Adds a constraint whose rows are called `name` and what `parts` says; returns its index.
     fn constrain(
         &mut self,
-        term: impl Constraint + 'static,
+        term: ConstraintTerm,
         effect: Effect,
         name: &str,
         parts: &[&str],
@@ -67,7 +67,7 @@ impl Terms {
         });
         self.rows.push(Row {
             names: names.collect(),
-            term: Box::new(term),
+            term,
             effect,
             sides,
         });
@@ -201,6 +201,7 @@ pub(super) fn build(
         elements,
         constraints,
         forces,
+        counts: Vec::new(),
         named_forces: terms.named_forces,
         loose,
         frictional,
@@ -216,6 +217,7 @@ pub(super) fn build(
         bodies: Vec::new(),
         joints: Vec::new(),
     };
+    model.count_effects();
     model.bodies = c
         .scene
         .bodies
@@ -403,7 +405,13 @@ fn body_terms(
                     length: link.length,
                 };
                 let name = format!("length of {}", body.name);
-                terms.constrain(length, Effect::Length, &name, &[""], [b, b]);
+                terms.constrain(
+                    ConstraintTerm::Length(length),
+                    Effect::Length,
+                    &name,
+                    &[""],
+                    [b, b],
+                );
             }
         }
         (
@@ -511,12 +519,24 @@ fn joint_terms(
                 slider: journal,
             };
             line = Some(slide);
-            let row = terms.constrain(slide, Effect::Slide, &name, &["line"], sides);
+            let row = terms.constrain(
+                ConstraintTerm::Other(Box::new(slide)),
+                Effect::Slide,
+                &name,
+                &["line"],
+                sides,
+            );
             OwnTerm::Constraint(row)
         }
         _ => {
             let coincide = Coincide { bearing, journal };
-            let row = terms.constrain(coincide, Effect::Coincidence, &name, &["x", "y"], sides);
+            let row = terms.constrain(
+                ConstraintTerm::Coincide(coincide),
+                Effect::Coincidence,
+                &name,
+                &["x", "y"],
+                sides,
+            );
             OwnTerm::Constraint(row)
         }
     };
@@ -558,7 +578,7 @@ fn couple(c: &Compiler, numbering: &Numbering, joint: &Joint, terms: &mut Terms)
             };
             let sides = [sides[other], sides[1 - other]];
             terms.constrain(
-                clamp,
+                ConstraintTerm::Other(Box::new(clamp)),
                 Effect::Direction,
                 &name,
                 &["slope x", "slope y"],
@@ -572,7 +592,13 @@ fn couple(c: &Compiler, numbering: &Numbering, joint: &Joint, terms: &mut Terms)
                 angle: Function::Constant(angle),
                 scale: sides.map(|b| c.inverse_size(b, numbering)).iter().product(),
             };
-            terms.constrain(align, Effect::Direction, &name, &["angle"], sides)
+            terms.constrain(
+                ConstraintTerm::Other(Box::new(align)),
+                Effect::Direction,
+                &name,
+                &["angle"],
+                sides,
+            )
         }
     })
 }
@@ -598,7 +624,13 @@ fn motion_terms(c: &Compiler, numbering: &Numbering, own: &mut [Own], terms: &mu
                     angle: angle.clone(),
                     scale: sides.map(|b| c.inverse_size(b, numbering)).iter().product(),
                 };
-                let row = terms.constrain(align, Effect::Direction, &name, &["angle"], sides);
+                let row = terms.constrain(
+                    ConstraintTerm::Other(Box::new(align)),
+                    Effect::Direction,
+                    &name,
+                    &["angle"],
+                    sides,
+                );
                 own[*joint].couple = Some(row);
                 own[*joint].turned = Some([first, second]);
             }
@@ -612,7 +644,13 @@ fn motion_terms(c: &Compiler, numbering: &Numbering, own: &mut [Own], terms: &mu
                         };
                         let part = [["x"], ["y"]][i];
                         let sides = [point.body, point.body];
-                        terms.constrain(place, Effect::Place, &name, &part, sides);
+                        terms.constrain(
+                            ConstraintTerm::Other(Box::new(place)),
+                            Effect::Place,
+                            &name,
+                            &part,
+                            sides,
+                        );
                     }
                 }
             }

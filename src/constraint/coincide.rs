@@ -27,25 +27,48 @@ impl Constraint for Coincide {
         self.bearing.width()
     }
 
-    #[inline]
     fn value(&self, at: &State) -> [f64; ROWS] {
         let point = |m: &Marker| m.position(&at.q, m.arm(&at.q));
         sub(point(&self.bearing), point(&self.journal))
     }
 
-    #[inline]
     fn gradient(&self, at: &State) -> Gradient {
+        self.value_and_gradient(at).1
+    }
+
+    #[inline]
+    fn value_and_gradient(&self, at: &State) -> ([f64; ROWS], Gradient) {
         let mut rows = [[0.0; WIDTH]; ROWS];
+        let mut value = [0.0; ROWS];
         let mut first = 0;
         for (marker, sign) in [(&self.bearing, 1.0), (&self.journal, -1.0)] {
-            let columns = marker.columns(&at.q);
-            for (c, column) in columns.iter().enumerate() {
-                rows[0][first + c] = sign * column[0];
-                rows[1][first + c] = sign * column[1];
+            let arm = marker.arm(&at.q);
+            let mut put = |column: usize, x: f64, y: f64| {
+                rows[0][first + column] = sign * x;
+                rows[1][first + column] = sign * y;
+            };
+            match *marker {
+                Marker::Node { .. } => {
+                    put(0, 1.0, 0.0);
+                    put(1, 0.0, 1.0);
+                }
+                Marker::OnBody { .. } => {
+                    put(0, 1.0, 0.0);
+                    put(1, 0.0, 1.0);
+                    put(2, -arm[1], arm[0]);
+                }
+                Marker::OnChord { share, .. } => {
+                    put(0, 1.0 - share, 0.0);
+                    put(1, 0.0, 1.0 - share);
+                    put(2, share, 0.0);
+                    put(3, 0.0, share);
+                }
             }
-            first += columns.len();
+            let position = marker.position(&at.q, arm);
+            value = [value[0] + sign * position[0], value[1] + sign * position[1]];
+            first += marker.width();
         }
-        rows
+        (value, rows)
     }
 
     #[inline]

@@ -63,6 +63,10 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
     fn value(&self, at: &State) -> [f64; ROWS];
     /// Phi_q.
     fn gradient(&self, at: &State) -> Gradient;
+    /// Both at once, for kinds that share work between them.
+    fn value_and_gradient(&self, at: &State) -> ([f64; ROWS], Gradient) {
+        (self.value(at), self.gradient(at))
+    }
     /// d(Phi_q^T lambda)/dq.
     fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature);
     /// d(Phi)/dt = Phi_q v + Phi_t.

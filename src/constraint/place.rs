@@ -40,7 +40,7 @@ impl Constraint for Place {
         let mut gradient = [[0.0; WIDTH]; ROWS];
         for (g, column) in gradient[0]
             .iter_mut()
-            .zip(self.marker.columns(&at.q).iter())
+            .zip(self.marker.columns(self.marker.arm(&at.q)).iter())
         {
             *g = dot(self.direction, *column);
         }

@@ -71,13 +71,18 @@ impl Constraint for Slide {
         let (spin, slider) = self.firsts();
         let mut gradient = [[0.0; WIDTH]; ROWS];
         let row = &mut gradient[0];
-        for (c, column) in self.guide.columns(&at.q).iter().enumerate() {
+        for (c, column) in self.guide.columns(self.guide.arm(&at.q)).iter().enumerate() {
             row[c] = -cross(u, *column);
         }
         for (c, column) in self.spin.columns(&at.q).iter().enumerate() {
             row[spin + c] = cross(self.turned(*column), e);
         }
-        for (c, column) in self.slider.columns(&at.q).iter().enumerate() {
+        for (c, column) in self
+            .slider
+            .columns(self.slider.arm(&at.q))
+            .iter()
+            .enumerate()
+        {
             row[slider + c] = cross(u, *column);
         }
         gradient
@@ -91,7 +96,7 @@ impl Constraint for Slide {
             let d = self.turned(*d);
             let points = [(&self.guide, -1.0, 0), (&self.slider, 1.0, slider)];
             for (marker, sign, first) in points {
-                for (j, column) in marker.columns(&at.q).iter().enumerate() {
+                for (j, column) in marker.columns(marker.arm(&at.q)).iter().enumerate() {
                     let mixed = s * sign * cross(d, *column);
                     out.add(spin + i, first + j, mixed);
                     out.add(first + j, spin + i, mixed);

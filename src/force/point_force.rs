@@ -51,7 +51,10 @@ impl Force for PointForce {
 
     fn force(&self, at: &State, f: &mut [f64; WIDTH]) {
         let value = self.value(at);
-        for (f, column) in f.iter_mut().zip(self.marker.columns(&at.q).iter()) {
+        for (f, column) in f
+            .iter_mut()
+            .zip(self.marker.columns(self.marker.arm(&at.q)).iter())
+        {
             *f -= dot(value, *column);
         }
     }
@@ -65,7 +68,12 @@ impl Force for PointForce {
         // F turns with the body: dF = perp(F) d(angle)
         let spin = self.spin.derivatives(&at.q, &at.v);
         let first = self.marker.width();
-        for (r, column) in self.marker.columns(&at.q).iter().enumerate() {
+        for (r, column) in self
+            .marker
+            .columns(self.marker.arm(&at.q))
+            .iter()
+            .enumerate()
+        {
             for c in 0..self.spin.width() {
                 k[r][first + c] -= w.q * dot(perp(value), *column) * spin.b[c];
             }

@@ -68,7 +68,7 @@ impl SpringDamper {
             count: 0,
         };
         for (marker, sign) in [(&self.from, -1.0), (&self.to, 1.0)] {
-            for column in marker.columns(&at.q).iter() {
+            for column in marker.columns(marker.arm(&at.q)).iter() {
                 line.columns[line.count] = scale(sign, *column);
                 line.along[line.count] = sign * dot(n, *column);
                 line.count += 1;

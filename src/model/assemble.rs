@@ -34,11 +34,10 @@ impl Model {
     #[inline]
     fn constraints(&self, at: &State, r: &mut [f64], phi: &mut [f64]) {
         for c in &self.constraints {
-            let (value, gradient) = (c.term.value(at), c.term.gradient(at));
+            let (value, gradient) = c.term.value_and_gradient(at);
             for d in 0..c.rows {
-                let lambda = at.lambda[c.row + d];
                 phi[c.row + d] = c.kept[d] * value[d];
-                c.block.add_vector(&gradient[d].map(|g| g * lambda), r);
+                c.block.add_scaled(at.lambda[c.row + d], &gradient[d], r);
             }
         }
     }
@@ -54,28 +53,29 @@ impl Model {
         k: &mut [f64],
     ) {
         for c in &self.constraints {
-            let (value, gradient) = (c.term.value(at), c.term.gradient(at));
+            let (value, gradient) = c.term.value_and_gradient(at);
             for d in 0..c.rows {
-                let lambda = at.lambda[c.row + d];
                 phi[c.row + d] = c.kept[d] * value[d];
-                c.block.add_vector(&gradient[d].map(|g| g * lambda), r);
+                c.block.add_scaled(at.lambda[c.row + d], &gradient[d], r);
                 c.border[d].add(&gradient[d], k);
             }
-            let mut out = Curvature {
-                slots: &c.block.slots,
-                columns: c.block.coordinates.len(),
-                weight: w.q,
-                tangent: k,
-            };
-            c.term.curvature(at, c.multipliers(at), &mut out);
+            // the acceleration level has none
+            if w.q > 0.0 {
+                let mut out = Curvature {
+                    slots: &c.block.slots,
+                    columns: c.block.coordinates.len(),
+                    weight: w.q,
+                    tangent: k,
+                };
+                c.term.curvature(at, c.multipliers(at), &mut out);
+            }
         }
     }
 
     /// Adds the forces without memory to r.
     #[inline]
-    fn forces(&self, at: &State, r: &mut [f64], work: &mut Work) {
+    fn forces(&self, at: &State, r: &mut [f64]) {
         for acting in &self.forces {
-            work.tally[acting.term.effect() as usize] += 1;
             let mut f = [0.0; WIDTH];
             acting.term.force(at, &mut f);
             acting.block.add_vector(&f, r);
@@ -83,11 +83,9 @@ impl Model {
     }
 
     fn count(&self, work: &mut Work) {
-        work.tally[Effect::Elastic as usize] += self.elements.len() as u64;
-        for c in &self.constraints {
-            work.tally[c.effect as usize] += 1;
+        for &(effect, count) in &self.counts {
+            work.tally[effect as usize] += count;
         }
-        work.tally[Effect::Gravity as usize] += u64::from(!self.weight.is_empty());
     }
 
     /// Sets the coordinates that are functions of time, at time `to.t`.
@@ -202,7 +200,7 @@ impl System for Model {
             e.block.add_vector(&f, r);
         }
         self.constraints(at, r, phi);
-        self.forces(at, r, work);
+        self.forces(at, r);
         for c in &self.loose {
             let mut f = [0.0; WIDTH];
             if c.term
@@ -247,7 +245,6 @@ impl System for Model {
         }
         self.linearised_constraints(at, w, r, phi, k);
         for acting in &self.forces {
-            work.tally[acting.term.effect() as usize] += 1;
             let (mut f, mut tangent) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
             acting.term.force_and_tangent(at, w, &mut f, &mut tangent);
             acting.block.add_vector(&f, r);

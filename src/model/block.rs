@@ -33,6 +33,14 @@ impl Block {
         }
     }
 
+    /// r += factor local
+    #[inline]
+    pub fn add_scaled(&self, factor: f64, local: &[f64], r: &mut [f64]) {
+        for (&i, x) in self.coordinates.iter().zip(local) {
+            r[i] += factor * x;
+        }
+    }
+
     /// k += weight local, for a local matrix stored in rows of length W.
     #[inline]
     pub fn add_matrix<const W: usize>(&self, local: &[[f64; W]; W], weight: f64, k: &mut [f64]) {

@@ -10,7 +10,7 @@ pub use measure::{Energies, Pose};
 pub(crate) use reaction::{DrivenForce, Source};
 pub use reaction::{Reaction, Share};
 
-use crate::constraint::{Constraint, ROWS, Slide};
+use crate::constraint::{Coincide, Constraint, Curvature, Gradient, Length, ROWS, Slide};
 use crate::force::{ClearanceJoint, Force, FrictionalJoint};
 use crate::kinematics::Kinematics;
 use crate::link::AncfCable;
@@ -31,6 +31,8 @@ pub struct Model {
     pub(crate) elements: Vec<Element>,
     pub(crate) constraints: Vec<Placed>,
     pub(crate) forces: Vec<Acting>,
+    /// How often each effect is evaluated with the residual, but for contacts, which may be open.
+    pub(crate) counts: Vec<(Effect, u64)>,
     /// Forces with a name of their own, as indices into the forces.
     pub(crate) named_forces: Vec<(String, usize)>,
     pub(crate) loose: Vec<Contacting<ClearanceJoint>>,
@@ -135,10 +137,50 @@ pub(crate) struct Rider {
     pub marker: Marker,
 }
 
+/// A constraint: the kinds that every mechanism has many of by themselves, so that the step loop calls them directly.
+#[derive(Debug)]
+pub(crate) enum ConstraintTerm {
+    Length(Length),
+    Coincide(Coincide),
+    Other(Box<dyn Constraint>),
+}
+
+impl ConstraintTerm {
+    #[inline]
+    pub fn value_and_gradient(&self, at: &State) -> ([f64; ROWS], Gradient) {
+        match self {
+            ConstraintTerm::Length(term) => term.value_and_gradient(at),
+            ConstraintTerm::Coincide(term) => term.value_and_gradient(at),
+            ConstraintTerm::Other(term) => term.value_and_gradient(at),
+        }
+    }
+
+    #[inline]
+    pub fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {
+        match self {
+            ConstraintTerm::Length(term) => term.curvature(at, lambda, out),
+            ConstraintTerm::Coincide(term) => term.curvature(at, lambda, out),
+            ConstraintTerm::Other(term) => term.curvature(at, lambda, out),
+        }
+    }
+}
+
+impl std::ops::Deref for ConstraintTerm {
+    type Target = dyn Constraint;
+
+    fn deref(&self) -> &(dyn Constraint + 'static) {
+        match self {
+            ConstraintTerm::Length(term) => term,
+            ConstraintTerm::Coincide(term) => term,
+            ConstraintTerm::Other(term) => &**term,
+        }
+    }
+}
+
 /// A constraint with its place in the equations.
 #[derive(Debug)]
 pub(crate) struct Placed {
-    pub term: Box<dyn Constraint>,
+    pub term: ConstraintTerm,
     pub effect: Effect,
     /// Index of its first multiplier among the multipliers.
     pub row: usize,
@@ -401,6 +443,23 @@ impl Model {
             }
         }
         s
+    }
+
+    /// How often each effect but contact is evaluated with every residual.
+    pub(crate) fn count_effects(&mut self) {
+        let effects = [
+            vec![Effect::Elastic; self.elements.len()],
+            self.constraints.iter().map(|c| c.effect).collect(),
+            self.forces.iter().map(|f| f.term.effect()).collect(),
+            vec![Effect::Gravity; usize::from(!self.weight.is_empty())],
+        ]
+        .concat();
+        for (effect, _) in Effect::ALL {
+            let count = effects.iter().filter(|e| **e == effect).count() as u64;
+            if count > 0 {
+                self.counts.push((effect, count));
+            }
+        }
     }
 
     /// True where a spring stores energy.
