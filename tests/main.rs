@@ -15,6 +15,7 @@ mod joints;
 mod link;
 mod loose;
 mod overrides;
+mod published;
 mod rrr;
 mod support;
 mod system;

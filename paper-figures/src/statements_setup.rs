@@ -81,7 +81,10 @@ fn coordinates(c: &Campaign, numbers: &mut Numbers) -> Statement {
 }
 
 fn bathe(c: &Campaign) -> Statement {
-    let Method::Bathe { gamma } = c.both.scene.integrator.method;
+    let gamma = match c.both.scene.integrator.method {
+        Method::Bathe { gamma } => gamma,
+        Method::Trapezoidal => f64::NAN,
+    };
     Statement {
         place: "Abstract, Sect. 5",
         says: "The two-step Bathe method with two equal sub-steps solves the motion equations.",

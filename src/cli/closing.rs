@@ -27,6 +27,10 @@ pub fn lines(report: &Report) -> Vec<String> {
             report.stagnations,
             "stages accepted at rounding, above the Newton tolerance",
         ),
+        (
+            report.singular_poses,
+            "stages in a nearly singular pose, one direction left out",
+        ),
         (report.fallbacks, "factorisations with row exchanges"),
         (
             report.unlocated_changes,

@@ -196,6 +196,13 @@ impl Symbolic {
         Ok(())
     }
 
+    /// Smallest over largest pivot of the unknowns from `first` on, in the factors of [`Symbolic::factor`].
+    pub fn pivot_range(&self, values: &[f64], first: usize) -> f64 {
+        let pivots = (first..self.n()).map(|i| values[self.start[self.position[i]]].abs());
+        let (low, high) = pivots.fold((f64::INFINITY, 0.0_f64), |(l, h), p| (l.min(p), h.max(p)));
+        low / high
+    }
+
     /// Solves L U x = b with the factors of [`Symbolic::factor`]; `b` in, x out; `work` has length n.
     pub fn solve(&self, values: &[f64], b: &mut [f64], work: &mut [f64]) {
         let n = self.n();

@@ -1,6 +1,7 @@
 //! Prescribed paths in (x, y, theta), and functions of time, with exact first and second derivatives.
 
 mod circle;
+mod coordinates;
 mod function;
 mod line;
 mod table;
@@ -54,6 +55,9 @@ pub fn path(spec: &Path2) -> Box<dyn Path> {
             to: *to,
             duration: *duration,
         }),
+        Path2::Coordinates { functions } => Box::new(coordinates::Coordinates {
+            functions: functions.clone(),
+        }),
         Path2::Table { rows } => Box::new(Table::new(
             rows.iter().map(|r| r[0]).collect(),
             rows.iter().map(|r| [r[1], r[2], r[3]]).collect(),
@@ -79,6 +83,13 @@ mod tests {
                 from: [0.0, 0.1, 0.0],
                 to: [1.0, -0.5, 0.7],
                 duration: 2.0,
+            },
+            Path2::Coordinates {
+                functions: [
+                    Function::Polynomial(vec![0.2, 0.1, 0.7]),
+                    Function::Polynomial(vec![0.1, -0.4, 0.2, 0.3]),
+                    Function::Constant(0.4),
+                ],
             },
             Path2::Table {
                 rows: vec![

@@ -94,6 +94,8 @@ pub enum Method {
         /// First sub-step over step.
         gamma: f64,
     },
+    /// The trapezoidal rule.
+    Trapezoidal,
 }
 
 /// `[output]`
@@ -477,6 +479,11 @@ pub enum Path2 {
         to: [f64; 3],
         /// Time of travel \[s\].
         duration: f64,
+    },
+    /// Each coordinate a function of time of its own.
+    Coordinates {
+        /// x, y \[m\], theta \[rad\].
+        functions: [Function; 3],
     },
     /// Rows t, x, y, theta joined by a natural cubic spline (twice continuously differentiable).
     Table {

@@ -156,15 +156,17 @@ pub(super) fn path(field: &Field, duration: f64) -> Result<Path2, SceneError> {
         Circle,
         Line,
         Table,
+        Coordinates,
     }
     let mut table = field.fields()?;
     let types = [
         ("circle", Type::Circle),
         ("line", Type::Line),
         ("table", Type::Table),
+        ("coordinates", Type::Coordinates),
     ];
     match table
-        .required("type", "\"circle\", \"line\" or \"table\"")?
+        .required("type", "\"circle\", \"line\", \"table\" or \"coordinates\"")?
         .choice(&types)?
     {
         Type::Circle => {
@@ -199,6 +201,20 @@ pub(super) fn path(field: &Field, duration: f64) -> Result<Path2, SceneError> {
                 duration: table
                     .required("duration", "the time of travel [s]")?
                     .positive()?,
+            })
+        }
+        Type::Coordinates => {
+            table.only(&["type", "x", "y", "theta"])?;
+            let coordinate = |key, purpose| {
+                let field = table.required(key, purpose)?;
+                function(&field, Use::Motion, duration)
+            };
+            Ok(Path2::Coordinates {
+                functions: [
+                    coordinate("x", "x as a function of time [m]")?,
+                    coordinate("y", "y as a function of time [m]")?,
+                    coordinate("theta", "theta as a function of time [rad]")?,
+                ],
             })
         }
         Type::Table => {

@@ -148,11 +148,16 @@ fn integrator(
         "newton_tolerance",
         "onset_tolerance",
     ])?;
-    table
-        .required("method", "the integration scheme: \"bathe\"")?
-        .choice(&[("bathe", ())])?;
+    let purpose = "the integration scheme: \"bathe\" or \"trapezoidal\"";
+    let bathe = table
+        .required("method", purpose)?
+        .choice(&[("bathe", true), ("trapezoidal", false)])?;
     let mut gamma = 0.5;
     if let Some(field) = table.optional("gamma") {
+        if !bathe {
+            let message = "`integrator.gamma` belongs to method \"bathe\"";
+            return Err(field.key_fault(message, "remove this"));
+        }
         gamma = field.number()?;
         if !(gamma > 0.0 && gamma < 1.0) {
             return Err(field.must("lie between 0 and 1, both excluded"));
@@ -188,7 +193,11 @@ fn integrator(
         }
     }
     Ok(Integrator {
-        method: Method::Bathe { gamma },
+        method: if bathe {
+            Method::Bathe { gamma }
+        } else {
+            Method::Trapezoidal
+        },
         step,
         newton_tolerance,
         onset_tolerance,

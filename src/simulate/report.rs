@@ -79,6 +79,8 @@ pub struct Report {
     pub fallbacks: u64,
     /// Stages accepted at rounding, above the Newton tolerance.
     pub stagnations: u64,
+    /// Stages that ended in a nearly singular pose, where the singular direction was left out.
+    pub singular_poses: u64,
     /// Steps that were halved because a stage had no solution.
     pub rejected_steps: u64,
     /// Steps tried to locate contact onsets and losses.
@@ -200,6 +202,7 @@ impl Simulation {
             factorisations: newton.factorisations,
             fallbacks: newton.fallbacks,
             stagnations: newton.stagnations,
+            singular_poses: newton.singular_poses,
             rejected_steps: self.counters.rejected,
             location_trials: self.counters.location_trials,
             onsets: self.counters.onsets,

@@ -1,8 +1,10 @@
 //! Time integration: a step as a short list of stages, each solved for the acceleration.
 
 mod bathe;
+mod trapezoidal;
 
 pub use bathe::Bathe;
+pub use trapezoidal::Trapezoidal;
 
 use crate::newton::{Failure, Newton};
 use crate::scene::Method;
@@ -54,6 +56,7 @@ pub trait Stepper: std::fmt::Debug + Send {
 pub fn stepper(method: Method, system: &dyn System) -> Box<dyn Stepper> {
     match method {
         Method::Bathe { gamma } => Box::new(Bathe::new(gamma, system.shape())),
+        Method::Trapezoidal => Box::new(Trapezoidal::new(system.shape())),
     }
 }
 

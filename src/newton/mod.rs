@@ -1,7 +1,10 @@
 //! Newton's method on the equations of one stage, and the linear solves of the acceleration level.
 
+mod singular;
+
 use crate::math::lu::DenseLu;
 use crate::system::{State, System, Weights, Work};
+use singular::{SINGULAR, Truncated};
 
 /// A stage takes this many iterations at most; a stage that converges at all is far below.
 const MAX_ITERATIONS: usize = 15;
@@ -23,6 +26,8 @@ pub struct Counters {
     pub fallbacks: u64,
     /// Stages accepted because their updates had come down to rounding, above the tolerance.
     pub stagnations: u64,
+    /// Stages that ended in a nearly singular pose, where the singular direction was left out.
+    pub singular_poses: u64,
 }
 
 impl Counters {
@@ -34,6 +39,7 @@ impl Counters {
             factorisations: self.factorisations + other.factorisations,
             fallbacks: self.fallbacks + other.fallbacks,
             stagnations: self.stagnations + other.stagnations,
+            singular_poses: self.singular_poses + other.singular_poses,
         }
     }
 }
@@ -212,7 +218,7 @@ impl Newton {
     /// M a + Phi_q^T lambda = -f, Phi_q a = gamma give (a, lambda).
     ///
     /// Bathe's scheme on the position level leaves multipliers and constrained accelerations of order one; these are of
-    /// order two.
+    /// order two. A direction in which the constraints have lost rank is left out, and counted.
     ///
     /// # Errors
     /// [`Failure::Singular`] where the constraints contradict or repeat each other.
@@ -228,6 +234,11 @@ impl Newton {
         s.lambda.fill(0.0);
         system.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
         self.factor(system, s, w, work)?;
+        if system.shape().multipliers > 0
+            && (self.dense.is_some() || system.symbolic().pivot_range(&self.k, n) < SINGULAR)
+        {
+            return self.make_consistent_in_singular_pose(system, s, work);
+        }
         if system.shape().multipliers > 0 {
             system.constraint_velocity(s, &mut self.phi);
             self.b[..n].fill(0.0);
@@ -240,6 +251,34 @@ impl Newton {
         }
         self.move_by(system, |s| &mut s.a, s);
         s.lambda.copy_from_slice(&self.b[n..]);
+        match s.a[..n].iter().position(|a| !a.is_finite()) {
+            Some(index) => Err(Failure::NotFinite { index }),
+            None => Ok(()),
+        }
+    }
+
+    /// As [`Newton::make_consistent`], without the directions in which the constraints have lost rank. It allocates.
+    fn make_consistent_in_singular_pose(
+        &mut self,
+        system: &dyn System,
+        s: &mut State,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
+        let n = system.shape().unknowns;
+        let w = Weights::ACCELERATION;
+        self.counters.singular_poses += 1;
+        system.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
+        let Some(truncated) = Truncated::new(system.symbolic(), &self.k, n) else {
+            return Err(Failure::Singular { index: n });
+        };
+        system.constraint_velocity(s, &mut self.phi);
+        let change = truncated.projection(&self.phi);
+        s.v.iter_mut().zip(&change).for_each(|(v, d)| *v += d);
+        system.residual(s, &mut self.r, &mut self.phi, work);
+        system.constraint_acceleration(s, &mut self.phi);
+        let (a, lambda) = truncated.accelerations(&self.r[..n], &self.phi);
+        s.a[..n].copy_from_slice(&a);
+        s.lambda.copy_from_slice(&lambda);
         match s.a[..n].iter().position(|a| !a.is_finite()) {
             Some(index) => Err(Failure::NotFinite { index }),
             None => Ok(()),

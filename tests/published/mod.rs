@@ -1,0 +1,88 @@
+//! Published and exact cases: digits that nobody on this project computed, one family a file.
+//!
+//! Status of every number, as its source has it: E exact or closed form, P published, I computed once by others with
+//! quadrature, DOP853 or extended precision.
+
+mod cantilever;
+mod four_bar;
+mod impact;
+mod large_bending;
+mod pendulum;
+mod rotating_beam;
+mod schemes;
+mod spring_pendulum;
+
+use crate::support::{Recording, run_scene};
+use looselink::scene::Scene;
+
+/// A scene from text.
+fn scene(text: &str, overrides: &[String]) -> Scene {
+    Scene::parse("published", text, overrides).unwrap_or_else(|e| panic!("{e} at {:?}", e.place()))
+}
+
+/// Runs a scene to its end.
+fn run(text: &str, overrides: &[String]) -> Recording {
+    run_scene(&scene(text, overrides)).0
+}
+
+/// The last value of a channel.
+fn last(run: &Recording, channel: &str) -> f64 {
+    run.get(channel).last().copied().unwrap_or(f64::NAN)
+}
+
+/// A flexible link from EA, EI and rho A: a section of unit height and the width that gives EI/EA = width^2/12.
+fn beam(length: f64, axial: f64, bending: f64, mass_per_length: f64, elements: usize) -> String {
+    let width = (12.0 * bending / axial).sqrt();
+    format!(
+        r#"
+[materials.beam]
+density = {:?}
+youngs_modulus = {:?}
+[sections.beam]
+width = {width:?}
+height = 1.0
+[bodies.ground]
+type = "ground"
+points.O = [0.0, 0.0]
+[bodies.beam]
+type = "link"
+model = "flexible"
+length = {length:?}
+section = "beam"
+material = "beam"
+elements = {elements}
+"#,
+        mass_per_length / width,
+        axial / width,
+    )
+}
+
+/// Head of a static scene with one row at the full load, reached in `steps` steps.
+fn statics(steps: usize) -> String {
+    format!(
+        r#"
+format = 1
+title = "equilibrium"
+[simulation]
+analysis = "static"
+duration = 1.0
+[integrator]
+method = "bathe"
+step = {:?}
+newton_tolerance = 1e-11
+[output]
+interval = 1.0
+channels = ["points.*", "beam.strain", "energy.axial", "energy.bending"]
+[initial]
+bodies.beam = {{ x = 0.0, y = 0.0, theta = 0.0 }}
+"#,
+        1.0 / steps as f64
+    )
+}
+
+const CLAMP: &str = r#"
+[joints.clamp]
+type = "weld"
+first = "ground.O"
+second = "beam.start"
+"#;
