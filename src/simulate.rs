@@ -2,10 +2,13 @@
 
 mod change;
 mod equilibrium;
+mod impacts;
 mod observer;
 mod report;
 
 pub use crate::record::Channel;
+pub use impacts::Impact;
+use impacts::Impacts;
 pub use observer::{Control, Observer, Onset, Progress};
 pub use report::{Extreme, Inspection, Report, Status};
 
@@ -81,6 +84,7 @@ pub struct Simulation {
     extremes: Vec<Extreme>,
     /// Axial strain of largest magnitude over the recorded rows, by body; 0 for bodies that do not deform.
     strains: Vec<f64>,
+    impacts: Impacts,
     counters: LoopCounters,
     delta: Vec<f64>,
     rate: Vec<f64>,
@@ -121,6 +125,12 @@ impl Simulation {
                 })?;
         }
         model.powers(&mut state, &mut work);
+        let mut impacts = Impacts::new();
+        for &(contact, velocity, _) in &started {
+            if let Some(joint) = model.contact_joint(contact) {
+                impacts.begin(&model, joint, velocity, &state);
+            }
+        }
         let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
         let extremes = vec![Extreme::default(); recorder.channels().len()];
         Ok(Simulation {
@@ -134,6 +144,7 @@ impl Simulation {
             recorder,
             extremes,
             strains: vec![0.0; scene.bodies.len()],
+            impacts,
             counters: LoopCounters {
                 onsets: started.len() as u64,
                 ..LoopCounters::default()
@@ -217,7 +228,9 @@ impl Simulation {
             std::mem::swap(&mut self.state, &mut self.trial);
             self.counters.steps += 1;
             self.counters.clamps += clamps as u64;
+            let taken = self.state.t - self.trial.t;
             self.commit(observer)?;
+            self.impacts.step(&self.model, taken, &self.state);
             if !self.started.is_empty() {
                 (anchor, count) = (self.state.t, -0.5);
             } else if self.state.t != goal {
@@ -281,6 +294,11 @@ impl Simulation {
             started.push((c, velocity, delta))
         });
         self.counters.onsets += onsets as u64;
+        for &(contact, velocity, _) in started.iter() {
+            if let Some(joint) = model.contact_joint(contact) {
+                self.impacts.begin(model, joint, velocity, state);
+            }
+        }
         self.tell_onsets(observer)
     }
 

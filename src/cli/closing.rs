@@ -6,12 +6,27 @@ use looselink::simulate::Report;
 /// Numerical dissipation beyond this part of the physical one is worth a word.
 const NOTABLE: f64 = 0.05;
 
+/// Impacts that are shown; summary.json lists more.
+const SHOWN: usize = 3;
+
 /// Lines about a finished run, most of them absent when there is nothing to say.
 pub fn lines(report: &Report) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(ledger) = &report.ledger {
         lines.extend(energy(ledger));
     }
+    let first = report.impacts.iter().take(SHOWN).enumerate();
+    lines.extend(first.map(|(k, impact)| {
+        format!(
+            "impact {}: {} at {:.9} s with {:.6e} m/s at {:.4} degrees, {:.6e} m deep",
+            k + 1,
+            impact.joint,
+            impact.t,
+            impact.impact_velocity,
+            impact.angle.to_degrees(),
+            impact.deepest_penetration
+        )
+    }));
     lines.extend(report.redundant.iter().map(|name| {
         format!(
             "{name} repeats other constraints: the forces in its loop are one choice among many"

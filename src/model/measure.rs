@@ -270,6 +270,20 @@ impl Model {
         Some((g.e, g.delta, at.z[contact] > 0.0 && g.delta > 0.0))
     }
 
+    /// Penetration of a loose joint, its rate, and whether the contact is closed.
+    pub fn penetration(&self, index: usize, at: &State) -> Option<(f64, f64, bool)> {
+        let (joint, contact) = match self.joints[index].kind {
+            JointKind::Loose(i) => (&self.loose[i].term, self.loose[i].contact),
+            JointKind::Frictional(i) => {
+                (&self.frictional[i].term.joint, self.frictional[i].contact)
+            }
+            JointKind::Constraint(_) | JointKind::Eliminated(_) => return None,
+        };
+        let g = joint.geometry(&at.q, &at.v);
+        let rate = crate::force::ClearanceJoint::rate(&g);
+        Some((g.delta, rate, at.z[contact] > 0.0))
+    }
+
     /// Angle (known to a full turn), speed and torque of an actuated joint.
     pub fn actuator(&self, actuator: &Actuator, at: &State, work: &mut Work) -> [f64; 3] {
         let [bearing, journal] = actuator.bodies.map(|b| self.pose(b, at));

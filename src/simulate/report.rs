@@ -1,6 +1,6 @@
 //! What a run reports of itself, and what a scene will be, before it runs.
 
-use super::Simulation;
+use super::{Impact, Simulation};
 use crate::contact::normal_law;
 use crate::model::BodyCoordinates;
 use crate::record::Ledger;
@@ -87,6 +87,9 @@ pub struct Report {
     pub location_trials: u64,
     /// Contacts closed.
     pub onsets: u64,
+    /// The first impacts.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub impacts: Vec<Impact>,
     /// Onsets and losses kept although the gap could not be brought within the tolerance.
     pub unlocated_changes: u64,
     /// Stages of accepted steps at which a contact force was clamped at zero.
@@ -206,6 +209,7 @@ impl Simulation {
             rejected_steps: self.counters.rejected,
             location_trials: self.counters.location_trials,
             onsets: self.counters.onsets,
+            impacts: self.impacts.listed.clone(),
             unlocated_changes: self.counters.unlocated,
             clamps: self.counters.clamps,
             ledger: (self.scene.simulation.analysis == Analysis::Dynamic)
