@@ -177,6 +177,7 @@ fn moved(s: &State, i: usize, by: f64) -> State {
 fn constraints_agree_with_their_differences() {
     // central differences of quantities near one: h^2 and eps/h are 1e-10
     let (h, tolerance) = (1e-5, 3e-9);
+    let mut drifts = 0;
     for (name, c) in constraints() {
         for k in 0..8 {
             let s = state(k, 0.0);
@@ -242,6 +243,17 @@ fn constraints_agree_with_their_differences() {
             assert!(touched, "{name}");
             let flat = matches!(name, "clamped slope on a chord" | "align, ground and slope");
             assert_eq!(bent, !flat, "{name}: curvature");
+            // rates by time alone
+            let at = |t: f64| {
+                let mut later = s.clone();
+                later.t += t;
+                c.value(&later)
+            };
+            let (low, high) = (at(-h), at(h));
+            let rate = (high[0] - low[0]) / (2.0 * h);
+            assert!((c.drift(&s) - rate).abs() < tolerance, "{name} {k}: drift");
+            assert_eq!(low[1], high[1], "{name} {k}: drift of the second row");
+            drifts += usize::from(c.drift(&s) != 0.0);
             // rates along the motion
             let (low, high) = (state(k, -h), state(k, h));
             let (velocity, acceleration) = (c.velocity(&s), c.acceleration(&s));
@@ -259,6 +271,7 @@ fn constraints_agree_with_their_differences() {
             }
         }
     }
+    assert!(drifts > 0, "no constraint depends on time");
 }
 
 fn forces() -> Vec<(&'static str, Box<dyn Force>)> {

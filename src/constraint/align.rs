@@ -112,6 +112,11 @@ impl Constraint for Align {
         [self.scale * (cross(first, d[1]) + cross(d[0], second)), 0.0]
     }
 
+    /// s phi_t (perp(R d_1) x d_2).
+    fn drift(&self, at: &State) -> f64 {
+        -self.scale * self.angle.at(at.t)[1] * self.along(at)
+    }
+
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
         let Directions { cosine, sine, d } = self.directions(at);
         let [_, turning, growing] = self.angle.at(at.t);

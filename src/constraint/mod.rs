@@ -73,6 +73,10 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
     fn velocity(&self, at: &State) -> [f64; ROWS];
     /// d2(Phi)/dt2, with the accelerations in `at`.
     fn acceleration(&self, at: &State) -> [f64; ROWS];
+    /// Phi_t of its first row, the only one that may depend on time itself.
+    fn drift(&self, _at: &State) -> f64 {
+        0.0
+    }
     /// True in the second zero of an angle, half a turn off.
     fn half_turn(&self, _at: &State) -> bool {
         false

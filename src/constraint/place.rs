@@ -59,6 +59,10 @@ impl Constraint for Place {
         [dot(self.direction, velocity) - self.value.at(at.t)[1], 0.0]
     }
 
+    fn drift(&self, at: &State) -> f64 {
+        -self.value.at(at.t)[1]
+    }
+
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
         let arm = self.marker.arm(&at.q);
         let acceleration = self.marker.acceleration(&at.v, &at.a, arm);

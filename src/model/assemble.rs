@@ -328,7 +328,7 @@ impl System for Model {
     fn powers(&self, at: &mut State, work: &mut Work) -> usize {
         let mut powers = [0.0; INTEGRALS];
         let mut clamps = 0;
-        powers[Integral::Work as usize] = self.drive_power(at, work);
+        powers[Integral::Work as usize] = self.drive_power(at, work) + self.drift_power(at);
         for (joint, contact) in self.clearances() {
             let g = joint.geometry(&at.q, &at.v);
             if let Some(force) = joint.normal_force(&g, at.z[contact]) {

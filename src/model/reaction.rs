@@ -3,7 +3,7 @@
 //! M a + f + Phi_q^T lambda of a group of terms is the force that the rest of the world must exert on it. Summed over
 //! the terms of one side of a joint it is the joint's force; over all terms at a driven coordinate it is the drive's.
 
-use super::{Effect, Model};
+use super::{ConstraintTerm, Effect, Model};
 use crate::force::WIDTH;
 use crate::link::ElasticRoute;
 use crate::system::{State, Work};
@@ -143,5 +143,14 @@ impl Model {
                 .sum::<f64>()
         };
         self.driven.iter().map(power).sum()
+    }
+
+    /// Power of the constraints that depend on time, lambda Phi_t \[W\]: Phi_q v = -Phi_t, and -Phi_q^T lambda acts.
+    pub(crate) fn drift_power(&self, at: &State) -> f64 {
+        let powers = self.constraints.iter().map(|placed| match &placed.term {
+            ConstraintTerm::Other(term) => placed.multipliers(at)[0] * term.drift(at),
+            ConstraintTerm::Length(_) | ConstraintTerm::Coincide(_) => 0.0,
+        });
+        powers.sum()
     }
 }
