@@ -134,7 +134,11 @@ impl Recorder {
                     }
                 }
                 Quantity::Joint(j, quantity) => {
-                    joint_value(model, j, quantity, at, work, &mut cache)
+                    let value = joint_value(model, j, quantity, at, work, &mut cache);
+                    match quantity {
+                        JointQuantity::Angle => self.unwrap(c, value, model.turned(j, at)[1], at.t),
+                        _ => value,
+                    }
                 }
                 Quantity::Actuator(j, k) => {
                     let values = cache.actuator(model, j, at, work);
