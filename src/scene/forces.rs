@@ -136,10 +136,16 @@ fn force(
                 turns(&field, place, bodies)?;
                 Ok(place)
             });
+            let reaction = reaction.transpose()?;
+            let fixed = |p: PointRef| matches!(bodies.bodies[p.body].kind, BodyKind::Ground { .. });
+            if fixed(place) && reaction.is_none_or(fixed) {
+                let message = format!("`{}` turns the ground, which does not move", field.path);
+                return Err(point_field.fault(message, "does nothing"));
+            }
             let value = table.required("value", "the torque [N m]")?;
             Ok(ForceKind::Torque {
                 point: place,
-                reaction: reaction.transpose()?,
+                reaction,
                 value: function(&value, Use::Load, duration)?,
             })
         }
@@ -164,7 +170,8 @@ fn rates(
     Ok((stiffness, damping))
 }
 
-fn turns(field: &Field, point: PointRef, bodies: &Bodies) -> Result<(), SceneError> {
+/// Refuses a point whose body has no direction.
+pub(super) fn turns(field: &Field, point: PointRef, bodies: &Bodies) -> Result<(), SceneError> {
     match bodies.bodies.get_index(point.body) {
         Some((name, body)) if matches!(body.kind, BodyKind::PointMass { .. }) => {
             let message = format!("`{}` needs a direction of {name}, a point mass", field.path);

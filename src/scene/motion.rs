@@ -5,10 +5,10 @@ use super::error::SceneError;
 use super::field::Field;
 use super::fields::Fields;
 use super::functions::{Use, function, rows};
-use super::joints;
 use super::names::named;
 use super::{Body, BodyKind, BodyState, Drive, GivenVelocity, Initial, Joint, JointModel};
 use super::{Motion, MotionKind, Path2, SketchPoint};
+use super::{forces, joints};
 use indexmap::IndexMap;
 
 const POSE: &str = "[x, y, theta]";
@@ -54,6 +54,9 @@ pub(super) fn drives(
                 table.only(&["type", "joint", "angle"])?;
                 let name = table.required("joint", "the name of a revolute joint")?;
                 let joint = actuated(&name, joints, &mut driven)?;
+                for side in [joints[joint].bearing, joints[joint].journal] {
+                    forces::turns(&name, side, bodies)?;
+                }
                 let angle = table.required("angle", "the angle as a function of time [rad]")?;
                 MotionKind::Angle {
                     joint,
@@ -62,7 +65,13 @@ pub(super) fn drives(
             }
             Type::Point => {
                 table.only(&["type", "point", "x", "y"])?;
-                let point = table.required("point", "the point, as \"body.point\"")?;
+                let point_field = table.required("point", "the point, as \"body.point\"")?;
+                let point = joints::point(&point_field, bodies)?;
+                let (name, body) = bodies.bodies.get_index(point.body).expect("it is there");
+                if let BodyKind::Ground { .. } | BodyKind::Moving { .. } = body.kind {
+                    let message = format!("the motion of {name} is given; it cannot be driven");
+                    return Err(point_field.fault(message, "not a free body"));
+                }
                 let coordinate = |key| {
                     let field = table.optional(key);
                     field
@@ -74,10 +83,7 @@ pub(super) fn drives(
                     let message = format!("`{}` prescribes neither x nor y", field.path);
                     return Err(field.key_fault(message, "needs `x`, `y` or both"));
                 }
-                MotionKind::Point {
-                    point: joints::point(&point, bodies)?,
-                    coordinates,
-                }
+                MotionKind::Point { point, coordinates }
             }
         };
         drives.motions.push(Motion {
