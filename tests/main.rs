@@ -12,6 +12,7 @@ mod good_input;
 mod hostile_input;
 mod ideal;
 mod joints;
+mod language;
 mod link;
 mod loose;
 mod overrides;
