@@ -102,7 +102,6 @@ impl Simulation {
         let mut model = compile(scene)?;
         let mut state = initial::start(scene, &model)?;
         keep_independent(scene, &mut model, &state)?;
-        see_directions(scene, &model, &state)?;
         let mut newton = Newton::new(&model, scene.integrator.newton_tolerance);
         let mut work = model.work();
         let shape = model.shape();
@@ -382,20 +381,6 @@ fn keep_independent(scene: &Scene, model: &mut Model, start: &State) -> Result<(
             Err(error.with_help("start a little away from the dead centre"))
         }
     }
-}
-
-/// Sees that no spring with a rest length starts where its ends meet.
-fn see_directions(scene: &Scene, model: &Model, start: &State) -> Result<(), SceneError> {
-    for (f, force) in scene.forces.iter().enumerate() {
-        if model.named_force(f, start).iter().any(|x| !x.is_finite()) {
-            let message = format!(
-                "the ends of {} meet at the start: it has no direction there",
-                force.name
-            );
-            return Err(scene.error(force.span, message, "this force"));
-        }
-    }
-    Ok(())
 }
 
 /// The unknown and what is wrong with it.

@@ -373,7 +373,7 @@ model = "ideal"
         (
             "[forces.f]\ntype = 'spring_damper'\nfrom = 'crank.end'\nto = 'rod.start'
             stiffness = 1.0\ndamping = 0.0\nrest_length = 0.1",
-            "the ends of f meet at the start: it has no direction there",
+            "the ends of f coincide: a spring with a rest length has no direction there",
         ),
     ] {
         let text = format!("{base}{bob}{addition}");

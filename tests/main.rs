@@ -15,6 +15,8 @@ mod joints;
 mod language;
 mod link;
 mod loose;
+mod malformed;
+mod mechanisms;
 mod overrides;
 mod published;
 mod rrr;

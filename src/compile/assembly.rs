@@ -7,9 +7,9 @@
 use super::sketch::fit;
 use super::{Compiler, Mode, Role, known_roles, numbering, terms};
 use crate::math::dense::{Added, Equations};
-use crate::math::plane::{add, cross, dot, norm, perp, scale, sub};
+use crate::math::plane::{add, cross, dot, norm, perp, rotate, scale, sub};
 use crate::model::{BodyCoordinates, Model};
-use crate::scene::{BodyKind, BodyState, PointRef, Scene, SceneError};
+use crate::scene::{BodyKind, BodyState, JointModel, MotionKind, PointRef, Scene, SceneError};
 use crate::system::{State, System};
 use faer::Mat;
 
@@ -70,12 +70,8 @@ impl Placed<'_> {
             return Some(self.position(point, state));
         }
         let joints = self.c.scene.joints.iter().enumerate();
-        let prismatic = |j: usize| {
-            matches!(
-                self.c.scene.joints[j].model,
-                crate::scene::JointModel::Prismatic { .. }
-            )
-        };
+        let prismatic =
+            |j: usize| matches!(self.c.scene.joints[j].model, JointModel::Prismatic { .. });
         joints
             .filter_map(|(j, joint)| {
                 let partner = match () {
@@ -136,6 +132,76 @@ impl Placed<'_> {
             }
             _ => {}
         }
+    }
+
+    /// Places a rigid body of which one point is known, at the angle that its joints with placed bodies suggest: that of a
+    /// weld, a locked guide or a drive, or that of a slot towards its pin. False for a body that cannot be placed so.
+    fn place_at_point(&mut self, b: usize, state: &mut State) -> bool {
+        let (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid), false) = (
+            &self.mechanism.bodies()[b].coordinates,
+            &self.c.scene.bodies[b].kind,
+            self.done[b],
+        ) else {
+            return false;
+        };
+        let point = |point| PointRef { body: b, point };
+        let mut points = rigid.points.iter().enumerate();
+        let Some((local, at)) =
+            points.find_map(|(i, p)| Some((p.at, self.known(point(i), state)?)))
+        else {
+            return false;
+        };
+        let Some(angle) = self.suggested_angle(b, at, state) else {
+            return false;
+        };
+        let arm = rotate(angle.cos(), angle.sin(), local);
+        state.q[*x..x + 3].copy_from_slice(&[at[0] - arm[0], at[1] - arm[1], angle]);
+        self.done[b] = true;
+        true
+    }
+
+    fn suggested_angle(&self, b: usize, at: [f64; 2], state: &State) -> Option<f64> {
+        let direction = |body: usize| match &self.mechanism.bodies()[body].coordinates {
+            BodyCoordinates::Rigid { x } => state.q[x + 2],
+            BodyCoordinates::RigidLink { ends: [i, j] } => {
+                (state.q[j + 1] - state.q[i + 1]).atan2(state.q[*j] - state.q[*i])
+            }
+            _ => 0.0,
+        };
+        let driven = |j: usize| {
+            self.c.scene.motions.iter().find_map(|m| match &m.kind {
+                MotionKind::Angle { joint, angle } if *joint == j => Some(angle.at(0.0)[0]),
+                _ => None,
+            })
+        };
+        self.c
+            .scene
+            .joints
+            .iter()
+            .enumerate()
+            .find_map(|(j, joint)| {
+                let (first, second) = (joint.bearing.body, joint.journal.body);
+                let angle = match joint.model {
+                    JointModel::Weld { angle, .. } => Some(angle),
+                    JointModel::Prismatic { locked, .. } => locked,
+                    JointModel::Ideal | JointModel::Clearance(_) => driven(j),
+                };
+                match (angle, joint.model.clone()) {
+                    (Some(angle), _) if second == b && self.done[first] => {
+                        Some(direction(first) + angle)
+                    }
+                    (Some(angle), _) if first == b && self.done[second] => {
+                        Some(direction(second) - angle)
+                    }
+                    (None, JointModel::Prismatic { direction, .. })
+                        if first == b && self.done[second] =>
+                    {
+                        let to_pin = sub(self.position(joint.journal, state), at);
+                        Some(to_pin[1].atan2(to_pin[0]) - direction)
+                    }
+                    _ => None,
+                }
+            })
     }
 
     /// Puts both ends of a link where they are unknown.
@@ -199,7 +265,9 @@ fn guess(c: &Compiler, mechanism: &Model, state: &mut State) -> Result<Vec<bool>
                 placed.place(b, state);
             }
         }
-        if placed.done.iter().filter(|d| **d).count() == before {
+        let stuck = placed.done.iter().filter(|d| **d).count() == before;
+        // one body at a time is drawn by a single point, so that its neighbours may follow it exactly
+        if stuck && !(0..c.scene.bodies.len()).any(|b| placed.place_at_point(b, state)) {
             break;
         }
     }
@@ -283,14 +351,7 @@ fn close(
         return Ok(());
     };
     if open.is_nan() || open > CLOSED {
-        let message =
-            format!("the mechanism cannot be assembled: {name} stays open by {open:.3e} m");
-        let error = c
-            .scene
-            .error(c.scene.initial.span, message, "from this start");
-        return Err(error.with_help(
-            "check the lengths, the given poses, and that the sketch draws the mechanism closed",
-        ));
+        return Err(cannot_close(c, open, &name));
     }
     for (placed, name) in mechanism.constraints.iter().zip(names(mechanism)) {
         if placed.term.half_turn(state) {
@@ -302,6 +363,58 @@ fn close(
         }
     }
     Ok(())
+}
+
+/// Names the body that is larger than all others together, if there is one, or else the constraint that stays open.
+fn cannot_close(c: &Compiler, open: f64, name: &str) -> SceneError {
+    let sizes: Vec<f64> = (0..c.scene.bodies.len()).map(|b| size(c, b)).collect();
+    let total: f64 = sizes.iter().sum();
+    if let Some(b) = sizes.iter().position(|s| *s > total - s) {
+        let body = &c.scene.bodies[b];
+        let message = format!(
+            "the mechanism cannot be assembled: {} is {:?} m long, more than all other bodies together ({:.4} m)",
+            body.name,
+            sizes[b],
+            total - sizes[b]
+        );
+        return c.scene.error(
+            body.span,
+            message,
+            "too large, or its unit is not the metre",
+        );
+    }
+    let message = format!("the mechanism cannot be assembled: {name} stays open by {open:.3e} m");
+    let error = c
+        .scene
+        .error(c.scene.initial.span, message, "from this start");
+    error.with_help(
+        "check the lengths, the given poses, and that the sketch draws the mechanism closed",
+    )
+}
+
+/// Largest distance of two points of a body that joints use.
+fn size(c: &Compiler, b: usize) -> f64 {
+    let points = match &c.scene.bodies[b].kind {
+        BodyKind::Link(link) => return link.length,
+        BodyKind::PointMass { .. } => return 0.0,
+        BodyKind::Ground { points } | BodyKind::Moving { points, .. } => points,
+        BodyKind::Rigid(rigid) => &rigid.points,
+    };
+    let used = |i: usize| {
+        let point = PointRef { body: b, point: i };
+        let joints = c.scene.joints.iter();
+        joints
+            .into_iter()
+            .any(|j| j.bearing == point || j.journal == point)
+    };
+    let used: Vec<_> = (0..points.len())
+        .filter(|&i| used(i))
+        .map(|i| points[i].at)
+        .collect();
+    let pairs = used
+        .iter()
+        .flat_map(|p| used.iter().map(move |q| norm(sub(*p, *q))));
+    pairs.fold(0.0, f64::max)
 }
 
 fn names(model: &Model) -> impl Iterator<Item = &String> {

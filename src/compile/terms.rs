@@ -17,7 +17,7 @@ use crate::model::{
 use crate::motion;
 use crate::scene::{
     BodyKind, Function, Joint, JointModel, Link, LinkModel, MotionKind, PointRef, SceneError,
-    SlopeClamp,
+    SlopeClamp, Span,
 };
 use crate::system::Shape;
 
@@ -29,6 +29,8 @@ struct Row {
     names: Vec<String>,
     /// Bodies of its two sides.
     sides: [usize; 2],
+    /// What the user wrote it with.
+    span: Span,
 }
 
 /// Terms before they have slots: what they are, on which coordinates.
@@ -59,6 +61,7 @@ impl Terms {
         name: &str,
         parts: &[&str],
         sides: [usize; 2],
+        span: Span,
     ) -> usize {
         debug_assert_eq!(parts.len(), term.rows());
         let names = parts.iter().map(|part| match *part {
@@ -70,6 +73,7 @@ impl Terms {
             term,
             effect,
             sides,
+            span,
         });
         self.rows.len() - 1
     }
@@ -117,6 +121,14 @@ pub(super) fn build(
     }
 
     let n = numbering.unknowns;
+    if let Some(row) = terms
+        .rows
+        .iter()
+        .find(|r| r.term.coordinates().iter().all(|&i| i >= n))
+    {
+        let message = format!("{} constrains only what is known already", row.names[0]);
+        return Err(c.scene.error(row.span, message, "nothing here can move"));
+    }
     let multipliers = terms.rows.iter().map(|row| row.names.len()).sum();
     let symbolic = analyse(&terms, n, multipliers);
     let mut names = numbering.names.clone();
@@ -411,6 +423,7 @@ fn body_terms(
                     &name,
                     &[""],
                     [b, b],
+                    body.span,
                 );
             }
         }
@@ -525,6 +538,7 @@ fn joint_terms(
                 &name,
                 &["line"],
                 sides,
+                joint.span,
             );
             OwnTerm::Constraint(row)
         }
@@ -536,6 +550,7 @@ fn joint_terms(
                 &name,
                 &["x", "y"],
                 sides,
+                joint.span,
             );
             OwnTerm::Constraint(row)
         }
@@ -556,9 +571,6 @@ fn couple(c: &Compiler, numbering: &Numbering, joint: &Joint, terms: &mut Terms)
         JointModel::Prismatic { locked, .. } => (locked?, SlopeClamp::Direction),
         JointModel::Ideal | JointModel::Clearance(_) => return None,
     };
-    if points.iter().all(|&p| c.is_known(p)) {
-        return None;
-    }
     let name = format!("joint {}", joint.name);
     let spins = points.map(|p| spin(numbering, p));
     let sides = points.map(|p| p.body);
@@ -583,6 +595,7 @@ fn couple(c: &Compiler, numbering: &Numbering, joint: &Joint, terms: &mut Terms)
                 &name,
                 &["slope x", "slope y"],
                 sides,
+                joint.span,
             )
         }
         None => {
@@ -598,6 +611,7 @@ fn couple(c: &Compiler, numbering: &Numbering, joint: &Joint, terms: &mut Terms)
                 &name,
                 &["angle"],
                 sides,
+                joint.span,
             )
         }
     })
@@ -630,6 +644,7 @@ fn motion_terms(c: &Compiler, numbering: &Numbering, own: &mut [Own], terms: &mu
                     &name,
                     &["angle"],
                     sides,
+                    motion.span,
                 );
                 own[*joint].couple = Some(row);
                 own[*joint].turned = Some([first, second]);
@@ -650,6 +665,7 @@ fn motion_terms(c: &Compiler, numbering: &Numbering, own: &mut [Own], terms: &mu
                             &name,
                             &part,
                             sides,
+                            motion.span,
                         );
                     }
                 }

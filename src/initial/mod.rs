@@ -5,7 +5,7 @@ pub(crate) mod redundancy;
 use crate::compile::assembly::{assemble, link_start};
 use crate::math::plane::{Vec2, add, norm, perp, scale, sub};
 use crate::model::{BodyCoordinates, Model};
-use crate::scene::{BodyKind, JointModel, Scene, SceneError};
+use crate::scene::{BodyKind, ForceKind, JointModel, Scene, SceneError};
 use crate::system::State;
 
 /// Largest distance by which a start may miss a constraint \[m\] or a rate \[m/s\]: the digits of a typed position.
@@ -97,6 +97,19 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
                 scene.joints[j].name
             );
             return Err(scene.error(scene.joints[j].span, message, "this joint"));
+        }
+    }
+    for (f, force) in scene.forces.iter().enumerate() {
+        let length = model.named_force(f, &state)[1];
+        if let ForceKind::SpringDamper { rest_length, .. } = force.kind
+            && rest_length > 0.0
+            && (length.is_nan() || length <= START_TOLERANCE)
+        {
+            let message = format!(
+                "the ends of {} coincide: a spring with a rest length has no direction there",
+                force.name
+            );
+            return Err(scene.error(force.span, message, "this spring"));
         }
     }
     if let Some((distance, rate, name)) = model.worst_constraint(&state)

@@ -1,0 +1,440 @@
+//! Mechanisms with every kind of joint, force and drive, against closed forms and balances.
+
+use crate::support::{Recording, run_scene};
+use looselink::scene::Scene;
+use looselink::simulate::Report;
+use std::f64::consts::TAU;
+
+fn run(text: &str) -> (Recording, Report) {
+    let scene =
+        Scene::parse("mechanism", text, &[]).unwrap_or_else(|e| panic!("{e} at {:?}", e.place()));
+    run_scene(&scene)
+}
+
+fn head(duration: f64, step: f64, interval: f64, gravity: [f64; 2], channels: &str) -> String {
+    format!(
+        r#"
+format = 1
+title = "mechanism"
+[simulation]
+duration = {duration:?}
+gravity = {gravity:?}
+[integrator]
+method = "bathe"
+step = {step:?}
+newton_tolerance = 1e-12
+[output]
+interval = {interval:?}
+channels = [{channels}]
+[materials.steel]
+density = 7800.0
+youngs_modulus = 2.1e11
+[sections.bar]
+width = 0.01
+height = 0.02
+[bodies.ground]
+type = "ground"
+points.O = [0.0, 0.0]
+"#
+    )
+}
+
+/// Flores' slider-crank with ideal joints: closed-form kinematics, and forces by Newton and Euler.
+#[test]
+fn an_ideal_slider_crank_is_the_closed_form() {
+    let omega = 523.598775598299;
+    let text = head(
+        0.012,
+        2e-6,
+        1e-4,
+        [0.0, 0.0],
+        r#""slider.*", "rod.*", "guide.*", "pin.*", "B.*", "O.torque""#,
+    ) + &format!(
+        r#"
+[bodies.crank]
+type = "link"
+model = "rigid"
+length = 0.05
+section = "bar"
+material = "steel"
+[bodies.rod]
+type = "rigid_body"
+mass = 0.21
+inertia = 2.5e-4
+center_of_mass = [0.06, 0.0]
+points.B = [0.0, 0.0]
+points.C = [0.12, 0.0]
+[bodies.slider]
+type = "rigid_body"
+mass = 0.14
+inertia = 1e-5
+points.C = [0.0, 0.0]
+[joints.O]
+type = "revolute"
+bearing = "ground.O"
+journal = "crank.start"
+model = "ideal"
+[joints.B]
+type = "revolute"
+bearing = "crank.end"
+journal = "rod.B"
+model = "ideal"
+[joints.pin]
+type = "revolute"
+bearing = "slider.C"
+journal = "rod.C"
+model = "ideal"
+[joints.guide]
+type = "prismatic"
+guide = "ground.O"
+direction = [1.0, 0.0]
+slider = "slider.C"
+rotation = "locked"
+[drives.motor]
+type = "angle"
+joint = "O"
+angle = {{ type = "polynomial", coefficients = [0.3, {omega:?}] }}
+[initial.sketch]
+B = [0.048, 0.015]
+pin = [0.167, 0.0]
+"#
+    );
+    let (run, report) = run(&text);
+    assert_eq!(
+        report.rejected_steps + report.fallbacks + report.singular_poses,
+        0
+    );
+    let (r, l) = (0.05, 0.12);
+    let get = |name: &str| run.get(name);
+    let t = get("t");
+    for k in 0..t.len() {
+        let phi = 0.3 + omega * t[k];
+        // rod angle psi from l sin psi = -r sin phi, and its rates
+        let (s, c) = phi.sin_cos();
+        let psi = (-r * s / l).asin();
+        let psi_dot = -r * omega * c / (l * psi.cos());
+        let psi_ddot =
+            (r * omega * omega * s + l * psi_dot * psi_dot * psi.sin()) / (l * psi.cos());
+        let x = r * c + l * psi.cos();
+        let ax =
+            -r * omega * omega * c - l * (psi_ddot * psi.sin() + psi_dot * psi_dot * psi.cos());
+        // the mechanism has no freedom: only the scheme's position error, nil, and rounding
+        assert!((get("slider.x")[k] - x).abs() < 1e-12);
+        assert!((get("rod.omega")[k] - psi_dot).abs() < 1e-8 * omega);
+        assert!((get("slider.ax")[k] - ax).abs() < 1e-7 * r * omega * omega);
+        // the slider takes its force from the rod (pin: slider on rod) and from the guide
+        let scale = 0.21 * r * omega * omega;
+        assert!((get("pin.fx")[k] + 0.14 * ax).abs() < 1e-7 * scale);
+        assert!((get("guide.fy")[k] - get("pin.fy")[k]).abs() < 1e-7 * scale);
+        assert!(
+            get("guide.fx")[k].abs() < 1e-7 * scale && get("guide.torque")[k].abs() < 1e-9 * scale
+        );
+        // the rod: forces of both pins are its inertia
+        let rod = [get("rod.ax")[k], get("rod.ay")[k]];
+        assert!((get("B.fx")[k] + get("pin.fx")[k] - 0.21 * rod[0]).abs() < 1e-7 * scale);
+        assert!((get("B.fy")[k] + get("pin.fy")[k] - 0.21 * rod[1]).abs() < 1e-7 * scale);
+        // the motor holds the moment of the rod's force about O; the crank turns evenly
+        let torque = r * (c * get("B.fy")[k] - s * get("B.fx")[k]);
+        assert!((get("O.torque")[k] - torque).abs() < 1e-7 * scale * r);
+    }
+    assert!(
+        get("O.torque").iter().any(|m| m.abs() > 10.0),
+        "nothing was tested"
+    );
+}
+
+/// A rod driven about a moving body takes the torque of its inertia and weight: the drive is a constraint there.
+#[test]
+fn a_drive_between_moving_bodies_reports_its_torque() {
+    let text = head(
+        1.0,
+        1e-4,
+        0.05,
+        [0.0, -9.81],
+        r#""arm.*", "elbow.*", "energy.*""#,
+    ) + r#"
+[bodies.base]
+type = "rigid_body"
+mass = 2.0
+inertia = 0.1
+points.foot = [0.0, 0.0]
+points.elbow = [0.0, 0.3]
+[bodies.arm]
+type = "rigid_body"
+mass = 1.5
+inertia = 0.02
+points.elbow = [-0.25, 0.0]
+[joints.foot]
+type = "weld"
+first = "ground.O"
+second = "base.foot"
+[joints.elbow]
+type = "revolute"
+bearing = "base.elbow"
+journal = "arm.elbow"
+model = "ideal"
+[drives.motor]
+type = "angle"
+joint = "elbow"
+angle = { type = "harmonic", mean = 0.4, amplitude = 0.8, frequency = 1.3, phase = 0.2 }
+[initial.sketch]
+foot = [0.0, 0.0]
+elbow = [0.0, 0.3]
+"#;
+    let (run, report) = run(&text);
+    let inertia = 0.02 + 1.5 * 0.25 * 0.25;
+    let t = run.get("t");
+    for k in 0..t.len() {
+        let phase = TAU * 1.3 * t[k] + 0.2;
+        let angle = 0.4 + 0.8 * phase.sin();
+        let growth = -0.8 * (TAU * 1.3).powi(2) * phase.sin();
+        let torque = inertia * growth + 1.5 * 9.81 * 0.25 * angle.cos();
+        assert!(
+            (run.get("elbow.torque")[k] - torque).abs() < 1e-6,
+            "{k}: {}",
+            run.get("elbow.torque")[k]
+        );
+        assert!((run.get("elbow.angle")[k] - angle).abs() < 1e-10);
+        assert!((run.get("elbow.speed")[k] - 0.8 * TAU * 1.3 * phase.cos()).abs() < 1e-9);
+    }
+    // work of the motor against kinetic and potential energy: quadrature of order 2 or better of some joules
+    assert!(
+        report.ledger.unwrap().numerical.abs() < 1e-5,
+        "{:?}",
+        report.ledger
+    );
+}
+
+/// A beam that starts in equilibrium under its weight stays there.
+#[test]
+fn a_start_in_equilibrium_stays_at_rest() {
+    let text = head(
+        0.1,
+        1e-4,
+        0.01,
+        [0.0, -9.81],
+        r#""points.*", "energy.*", "clamp.*""#,
+    ) + r#"
+[bodies.beam]
+type = "link"
+model = "flexible"
+length = 2.0
+section = "bar"
+material = "steel"
+elements = 4
+[joints.clamp]
+type = "weld"
+first = "ground.O"
+second = "beam.start"
+angle = 0.5
+[initial]
+equilibrium = true
+bodies.beam = { x = 0.0, y = 0.0, theta = 0.5 }
+"#;
+    let (run, _) = run(&text);
+    let y = run.get("points.beam.end.y");
+    assert!(y[0] < 2.0 * 0.5_f64.sin() - 0.01, "it hangs: {}", y[0]);
+    for value in &y {
+        // Newton's last update
+        assert!((value - y[0]).abs() < 1e-10);
+    }
+    let weight = 7800.0 * 2e-4 * 2.0 * 9.81;
+    assert!((run.get("clamp.fy")[0] - weight).abs() < 1e-6 * weight);
+    let lever: f64 = run.get("clamp.torque")[0] / weight;
+    // the centre of mass of the bent beam lies near half its length along the clamp's direction
+    assert!((lever - 0.5_f64.cos()).abs() < 0.02, "{lever}");
+}
+
+/// A frame of rigid bars with a flexible link welded into it, a rigid body that hangs on its middle by a loose joint, and a
+/// spring with a damper across: the ledger closes at the order of the scheme.
+#[test]
+fn a_frame_with_a_hanging_body_balances() {
+    let text = |step: f64| {
+        head(
+            0.04,
+            step,
+            0.04,
+            [0.0, -9.81],
+            r#""body.*", "hook.*", "strut.*", "energy.*""#,
+        )
+        .replace(
+            "newton_tolerance",
+            "onset_tolerance = 1e-14\nnewton_tolerance",
+        ) + r#"
+[contacts.pin]
+law = "lankarani_nikravesh"
+bearing_radius = 0.01
+clearance = 1e-4
+stiffness = 1e9
+exponent = 1.5
+restitution = 0.8
+impact_velocity_floor = 1e-6
+[bodies.left]
+type = "rigid_body"
+mass = 3.0
+inertia = 0.05
+points.foot = [0.0, -0.2]
+points.top = [0.0, 0.2]
+[bodies.right]
+type = "rigid_body"
+mass = 3.0
+inertia = 0.05
+points.foot = [0.0, -0.2]
+points.top = [0.0, 0.2]
+[bodies.beam]
+type = "link"
+model = "flexible"
+length = 1.0
+section = "bar"
+material = "steel"
+elements = 4
+points.middle = 0.5
+kelvin_voigt = 1e-4
+[bodies.body]
+type = "rigid_body"
+mass = 1.0
+inertia = 0.01
+points.eye = [0.0, 0.1]
+points.side = [0.1, 0.0]
+[joints.foot]
+type = "revolute"
+bearing = "ground.O"
+journal = "left.foot"
+model = "ideal"
+[joints.skid]
+type = "prismatic"
+guide = "ground.O"
+direction = [1.0, 0.0]
+slider = "right.foot"
+rotation = "free"
+[joints.corner1]
+type = "weld"
+first = "left.top"
+second = "beam.start"
+[joints.corner2]
+type = "weld"
+first = "right.top"
+second = "beam.end"
+slope = "vector"
+[joints.hook]
+type = "revolute"
+bearing = "beam.middle"
+journal = "body.eye"
+model = "clearance"
+contact = "pin"
+[forces.strut]
+type = "spring_damper"
+from = "left.foot"
+to = "body.side"
+stiffness = 2000.0
+damping = 3.0
+rest_length = 0.6
+[initial]
+bodies.left = { x = 0.0, y = 0.2, theta = 0.0 }
+bodies.right = { x = 1.0, y = 0.2, theta = 0.0 }
+bodies.beam = { x = 0.0, y = 0.4, theta = 0.0 }
+bodies.body = { x = 0.5, y = 0.3, theta = 0.0 }
+"#
+    };
+    let numerical = |step: f64| {
+        let (_, report) = run(&text(step));
+        assert!(report.onsets >= 1, "the hook closes");
+        let ledger = report.ledger.unwrap();
+        assert!(
+            ledger.damping_dissipated > 0.0
+                && ledger.contact_dissipated > 0.0
+                && ledger.springs > 0.0
+        );
+        (
+            ledger.numerical.abs(),
+            ledger.damping_dissipated + ledger.contact_dissipated,
+        )
+    };
+    let ((coarse, _), (fine, lost)) = (numerical(4e-6), numerical(1e-6));
+    assert!(fine < 0.01 * lost, "{fine:e} of {lost:e}");
+    assert!(fine < coarse, "{fine:e} {coarse:e}");
+}
+
+/// Mass-proportional damping slows a free beam by exp(-alpha t); strain-rate damping does not see the flight.
+#[test]
+fn damping_of_a_free_beam() {
+    let text = |damping: &str| {
+        head(0.5, 1e-4, 0.5, [0.0, 0.0], r#""beam.*", "energy.*""#)
+            + r#"
+[bodies.beam]
+type = "link"
+model = "flexible"
+length = 0.5
+section = "bar"
+material = "steel"
+elements = 2
+"# + damping + r#"
+[initial]
+bodies.beam = { x = 0.0, y = 0.0, theta = 0.3, vx = 1.0, vy = -0.4, omega = 0.0 }
+"#
+    };
+    let (mass, report) = run(&text("rayleigh = { mass = 0.7, stiffness = 0.0 }"));
+    let last = |run: &Recording, name: &str| run.get(name)[1];
+    // the scheme's error of (alpha h)^2
+    assert!((last(&mass, "beam.vx") - (-0.35_f64).exp()).abs() < 1e-8);
+    assert!((last(&mass, "beam.vy") + 0.4 * (-0.35_f64).exp()).abs() < 1e-8);
+    assert!(report.ledger.unwrap().numerical.abs() < 1e-7);
+    let (strain, report) = run(&text("kelvin_voigt = 1e-3"));
+    assert!((last(&strain, "beam.vx") - 1.0).abs() < 1e-12);
+    assert!(report.ledger.unwrap().damping_dissipated.abs() < 1e-15);
+}
+
+/// A pin in a slot of a turning lever: the quick-return mechanism's lever angle is that of the crank pin seen from its pivot.
+#[test]
+fn a_pin_in_a_slot_turns_the_lever() {
+    let text = head(0.5, 1e-4, 0.02, [0.0, 0.0], r#""lever.*", "slot.*""#).replace(
+        "points.O = [0.0, 0.0]",
+        "points.O = [0.0, 0.0]\npoints.P = [0.0, -0.3]",
+    ) + r#"
+[bodies.crank]
+type = "link"
+model = "rigid"
+length = 0.1
+section = "bar"
+material = "steel"
+[bodies.lever]
+type = "rigid_body"
+mass = 1.0
+inertia = 0.02
+points.pivot = [-0.25, 0.0]
+[joints.O]
+type = "revolute"
+bearing = "ground.O"
+journal = "crank.start"
+model = "ideal"
+[joints.P]
+type = "revolute"
+bearing = "ground.P"
+journal = "lever.pivot"
+model = "ideal"
+[joints.slot]
+type = "prismatic"
+guide = "lever.pivot"
+direction = [1.0, 0.0]
+slider = "crank.end"
+rotation = "free"
+[drives.motor]
+type = "angle"
+joint = "O"
+angle = { type = "polynomial", coefficients = [0.0, 12.0] }
+[initial.sketch]
+P = [0.0, -0.3]
+slot = [0.1, 0.0]
+"#;
+    let (run, _) = run(&text);
+    let t = run.get("t");
+    for k in 0..t.len() {
+        let pin = [0.1 * (12.0 * t[k]).cos(), 0.1 * (12.0 * t[k]).sin() + 0.3];
+        let angle = pin[1].atan2(pin[0]);
+        assert!((run.get("lever.theta")[k] - angle).abs() < 1e-10, "{k}");
+        assert!((run.get("slot.travel")[k] - pin[0].hypot(pin[1])).abs() < 1e-12);
+        let along = (pin[0] * -1.2 * (12.0 * t[k]).sin() + pin[1] * 1.2 * (12.0 * t[k]).cos())
+            / pin[0].hypot(pin[1]);
+        assert!((run.get("slot.travel_rate")[k] - along).abs() < 1e-9);
+    }
+}
