@@ -4,6 +4,7 @@ mod bad_input;
 mod bad_mechanism;
 mod balance;
 mod bathe;
+mod chain;
 mod command_line;
 mod contact;
 mod differencing;

@@ -1,11 +1,11 @@
 //! Published tables of time integration schemes: the three-spring model of Bathe and Noh 2012, and spectra (E).
 
 use super::run;
-use looselink::math::lu::Symbolic;
+use crate::chain::Chain;
 use looselink::newton::Newton;
 use looselink::scene::Method;
 use looselink::stepper::stepper;
-use looselink::system::{PrescribeError, Shape, State, System, Weights, Work};
+use looselink::system::{State, System};
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// k1 = 1e7 between the moving point and node 2, k2 = 1 between nodes 2 and 3, u1 = sin 1.2 t: springs without rest
@@ -96,71 +96,11 @@ fn the_three_spring_model_follows_the_tables_step_by_step() {
     }
 }
 
-/// m = 1, k = omega^2.
-struct Oscillator {
-    stiffness: f64,
-    symbolic: Symbolic,
-}
-
-impl System for Oscillator {
-    fn shape(&self) -> Shape {
-        Shape {
-            unknowns: 1,
-            coordinates: 1,
-            multipliers: 0,
-            contacts: 0,
-            angles: 0,
-        }
-    }
-    fn symbolic(&self) -> &Symbolic {
-        &self.symbolic
-    }
-    fn work(&self) -> Work {
-        Work {
-            tally: vec![],
-            inner: None,
-        }
-    }
-    fn prescribe(&self, _: &State, _: &mut State, _: &mut Work) -> Result<(), PrescribeError> {
-        Ok(())
-    }
-    fn residual(&self, at: &State, r: &mut [f64], _: &mut [f64], _: &mut Work) {
-        r[0] = at.a[0] + self.stiffness * at.q[0];
-    }
-    fn linearise(
-        &self,
-        at: &State,
-        w: Weights,
-        r: &mut [f64],
-        phi: &mut [f64],
-        k: &mut [f64],
-        work: &mut Work,
-    ) {
-        self.residual(at, r, phi, work);
-        k[0] = 1.0 + w.q * self.stiffness;
-    }
-    fn constraint_velocity(&self, _: &State, _: &mut [f64]) {}
-    fn constraint_acceleration(&self, _: &State, _: &mut [f64]) {}
-    fn gaps(&self, _: &State, _: &mut [f64], _: &mut [f64]) {}
-    fn commit(&self, _: &mut State, _: f64, _: &mut dyn FnMut(usize, f64, f64)) -> usize {
-        0
-    }
-    fn powers(&self, _: &mut State, _: &mut Work) -> usize {
-        0
-    }
-    fn unknown_name(&self, _: usize) -> String {
-        "x".into()
-    }
-}
-
 /// Spectral radius, period elongation and amplitude decay a period of a scheme at a step of dt/T periods, from its matrix
 /// on (q, v/omega), which two steps of length 1 determine.
 fn spectrum(method: Method, dt_over_period: f64) -> [f64; 3] {
     let omega = TAU * dt_over_period;
-    let oscillator = Oscillator {
-        stiffness: omega * omega,
-        symbolic: Symbolic::analyse(1, &[vec![0]], &[vec![]]),
-    };
+    let oscillator = Chain::new(vec![1.0], vec![omega * omega, 0.0]);
     let column = |q: f64, v: f64| {
         let mut newton = Newton::new(&oscillator, 1e-16);
         let mut work = oscillator.work();

@@ -1,0 +1,111 @@
+//! A linear system against the trait that mechanisms implement: masses and springs in a row.
+
+use looselink::math::lu::Symbolic;
+use looselink::system::{PrescribeError, Shape, State, System, Weights, Work};
+
+/// Masses and springs in series between walls: m_i a_i + (K q)_i = 0, undamped.
+#[derive(Debug)]
+pub struct Chain {
+    masses: Vec<f64>,
+    springs: Vec<f64>,
+    symbolic: Symbolic,
+}
+
+impl Chain {
+    pub fn new(masses: Vec<f64>, springs: Vec<f64>) -> Chain {
+        let n = masses.len();
+        assert_eq!(springs.len(), n + 1);
+        let cliques: Vec<Vec<usize>> = (0..n)
+            .map(|i| if i + 1 < n { vec![i, i + 1] } else { vec![i] })
+            .collect();
+        Chain {
+            masses,
+            springs,
+            symbolic: Symbolic::analyse(n, &cliques, &vec![vec![]; n]),
+        }
+    }
+
+    fn stretch(&self, i: usize, q: &[f64]) -> f64 {
+        let at = |k: usize| if k == 0 || k > q.len() { 0.0 } else { q[k - 1] };
+        at(i + 1) - at(i)
+    }
+
+    pub fn energy(&self, s: &State) -> f64 {
+        let kinetic: f64 = self
+            .masses
+            .iter()
+            .zip(&s.v)
+            .map(|(m, v)| 0.5 * m * v * v)
+            .sum();
+        let stored = self
+            .springs
+            .iter()
+            .enumerate()
+            .map(|(i, k)| 0.5 * k * self.stretch(i, &s.q).powi(2));
+        kinetic + stored.sum::<f64>()
+    }
+}
+
+impl System for Chain {
+    fn shape(&self) -> Shape {
+        let n = self.masses.len();
+        Shape {
+            unknowns: n,
+            coordinates: n,
+            multipliers: 0,
+            contacts: 0,
+            angles: 0,
+        }
+    }
+    fn symbolic(&self) -> &Symbolic {
+        &self.symbolic
+    }
+    fn work(&self) -> Work {
+        Work {
+            tally: vec![],
+            inner: None,
+        }
+    }
+    fn prescribe(&self, _: &State, _: &mut State, _: &mut Work) -> Result<(), PrescribeError> {
+        Ok(())
+    }
+    fn residual(&self, at: &State, r: &mut [f64], _: &mut [f64], _: &mut Work) {
+        for i in 0..self.masses.len() {
+            let pull = self.springs[i] * self.stretch(i, &at.q)
+                - self.springs[i + 1] * self.stretch(i + 1, &at.q);
+            r[i] = self.masses[i] * at.a[i] + pull;
+        }
+    }
+    fn linearise(
+        &self,
+        at: &State,
+        w: Weights,
+        r: &mut [f64],
+        phi: &mut [f64],
+        k: &mut [f64],
+        work: &mut Work,
+    ) {
+        self.residual(at, r, phi, work);
+        k.fill(0.0);
+        for i in 0..self.masses.len() {
+            k[self.symbolic.slot(i, i) as usize] =
+                self.masses[i] + w.q * (self.springs[i] + self.springs[i + 1]);
+            if i + 1 < self.masses.len() {
+                k[self.symbolic.slot(i, i + 1) as usize] = -w.q * self.springs[i + 1];
+                k[self.symbolic.slot(i + 1, i) as usize] = -w.q * self.springs[i + 1];
+            }
+        }
+    }
+    fn constraint_velocity(&self, _: &State, _: &mut [f64]) {}
+    fn constraint_acceleration(&self, _: &State, _: &mut [f64]) {}
+    fn gaps(&self, _: &State, _: &mut [f64], _: &mut [f64]) {}
+    fn commit(&self, _: &mut State, _: f64, _: &mut dyn FnMut(usize, f64, f64)) -> usize {
+        0
+    }
+    fn powers(&self, _: &mut State, _: &mut Work) -> usize {
+        0
+    }
+    fn unknown_name(&self, index: usize) -> String {
+        format!("mass {index}")
+    }
+}
