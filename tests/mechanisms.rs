@@ -438,3 +438,92 @@ slot = [0.1, 0.0]
         assert!((run.get("slot.travel_rate")[k] - along).abs() < 1e-9);
     }
 }
+
+/// The reaction of a hinge that has no multiplier, because its node is known, counts springs, dampers and loads at either
+/// end of the link: with them it is mass times acceleration, for a rigid link and for a flexible one.
+#[test]
+fn reactions_without_multipliers_count_all_forces() {
+    for model in [
+        "model = \"rigid\"",
+        "model = \"flexible\"\nelements = 2\nkelvin_voigt = 1e-3",
+    ] {
+        let text = head(
+            0.3,
+            1e-5,
+            0.01,
+            [0.3, -9.81],
+            r#""bar.*", "points.bar.*", "O.*", "rope.*", "twist.*""#,
+        )
+        .replace(
+            "points.O = [0.0, 0.0]",
+            "points.O = [0.0, 0.0]\npoints.P = [0.5, 0.7]",
+        ) + "[bodies.bar]\ntype = \"link\"\n"
+            + model
+            + r#"
+length = 1.0
+section = "bar"
+material = "steel"
+[joints.O]
+type = "revolute"
+bearing = "ground.O"
+journal = "bar.start"
+model = "ideal"
+[forces.rope]
+type = "spring_damper"
+from = "ground.P"
+to = "bar.end"
+stiffness = 40.0
+damping = 2.0
+rest_length = 0.3
+[forces.twist]
+type = "torsion_spring"
+joint = "O"
+stiffness = 3.0
+damping = 0.1
+rest_angle = 0.4
+[forces.push]
+type = "force"
+point = "bar.end"
+x = 2.0
+y = { type = "harmonic", mean = 1.0, amplitude = 3.0, frequency = 2.0, phase = 0.0 }
+frame = "body"
+[forces.foot]
+type = "force"
+point = "bar.start"
+x = 5.0
+y = -4.0
+frame = "ground"
+[initial]
+bodies.bar = { x = 0.0, y = 0.0, theta = 0.1 }
+"#;
+        let (run, report) = run(&text.replace("\"twist.*\"", "\"twist.*\", \"push.*\""));
+        let get = |name: &str| run.get(name);
+        let mass = 7800.0 * 2e-4;
+        for k in 0..run.len() {
+            let end = [get("points.bar.end.x")[k], get("points.bar.end.y")[k]];
+            let to_peg = [0.5 - end[0], 0.7 - end[1]];
+            let pull = get("rope.force")[k] / to_peg[0].hypot(to_peg[1]);
+            for (i, (acceleration, force, push, foot, gravity)) in [
+                ("bar.ax", "O.fx", "push.fx", 5.0, 0.3),
+                ("bar.ay", "O.fy", "push.fy", -4.0, -9.81),
+            ]
+            .into_iter()
+            .enumerate()
+            {
+                let applied = mass * gravity + pull * to_peg[i] + get(push)[k] + foot;
+                let reaction = mass * get(acceleration)[k] - applied;
+                // rounding of EA = 4e7 N times 1e-16 over the strain of a flexible link
+                assert!(
+                    (get(force)[k] - reaction).abs() < 1e-6,
+                    "{model} {k} {force}"
+                );
+            }
+        }
+        // some joules of work and storage; order 2 of the scheme
+        assert!(
+            report.ledger.unwrap().numerical.abs() < 1e-4,
+            "{:?}",
+            report.ledger
+        );
+    }
+}
