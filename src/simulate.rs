@@ -240,7 +240,7 @@ impl Simulation {
             let progress = Progress {
                 t: self.state.t,
                 duration: self.scene.simulation.duration,
-                contacts,
+                contacts: Some(contacts),
             };
             if observer.step(&progress)? == Control::Stop {
                 return Err(RunError::Interrupted { t: self.state.t });

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::{SceneArguments, print};
 use clap::Args;
-use looselink::scene::Scene;
+use looselink::scene::{Analysis, Scene};
 use looselink::simulate::{Inspection, Simulation};
 use std::fmt::Write;
 
@@ -42,10 +42,16 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
         ("effects", inspection.effects.join(", ")),
         (
             "duration",
-            format!(
-                "{duration:?} s, about {:.0} steps of {step:?} s",
-                duration / step
-            ),
+            match scene.simulation.analysis {
+                Analysis::Dynamic => format!(
+                    "{duration:?} s, about {:.0} steps of {step:?} s",
+                    duration / step
+                ),
+                Analysis::Static => format!(
+                    "load path to t = {duration:?} in about {:.0} steps",
+                    duration / step
+                ),
+            },
         ),
         (
             "channels",

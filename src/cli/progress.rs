@@ -72,6 +72,9 @@ fn message(progress: &Progress, started: &Instant) -> String {
         duration,
         contacts,
     } = progress;
+    let Some(contacts) = contacts else {
+        return format!("equilibrium at t = {t:.4} of {duration}");
+    };
     let factor = t / started.elapsed().as_secs_f64();
     format!("t = {t:.4} of {duration} s, {factor:.3} x real time, {contacts} contacts closed")
 }

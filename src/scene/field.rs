@@ -238,7 +238,7 @@ fn dangling<'k>(
         sources,
         span,
         format!("there is no {kind} `{name}`{hint}"),
-        format!("no such {kind}"),
+        format!("no such {}", kind.split_whitespace().next().unwrap_or(kind)),
     );
     match known.is_empty() {
         true => error.with_help(format!("the scene has no {kind} at all")),

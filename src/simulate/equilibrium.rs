@@ -97,7 +97,7 @@ impl Simulation {
                     let progress = Progress {
                         t: self.state.t,
                         duration: self.scene.simulation.duration,
-                        contacts: 0,
+                        contacts: None,
                     };
                     if observer.step(&progress)? == Control::Stop {
                         return Err(RunError::Interrupted { t: self.state.t });

@@ -20,8 +20,8 @@ pub struct Progress {
     pub t: f64,
     /// Duration of the scene \[s\].
     pub duration: f64,
-    /// Contacts closed now.
-    pub contacts: usize,
+    /// Contacts closed now; a static analysis has none.
+    pub contacts: Option<usize>,
 }
 
 /// Whether a run goes on.

@@ -4,7 +4,7 @@ use super::{Impact, Simulation};
 use crate::contact::normal_law;
 use crate::model::BodyCoordinates;
 use crate::record::Ledger;
-use crate::scene::{Analysis, JointModel, Scene};
+use crate::scene::{Analysis, BodyState, JointModel, Scene};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -145,7 +145,12 @@ fn notes(scene: &Scene) -> Vec<String> {
             ));
         }
     }
-    for state in scene.initial.bodies.iter().filter(|s| !s.velocity_given) {
+    let unsaid = |s: &&BodyState| {
+        !s.velocity_given
+            && scene.simulation.analysis == Analysis::Dynamic
+            && scene.initial.velocities.is_empty()
+    };
+    for state in scene.initial.bodies.iter().filter(unsaid) {
         notes.push(format!(
             "{} starts at rest: the scene gives no velocity",
             scene.bodies[state.body].name
