@@ -42,6 +42,16 @@ pub enum RunError {
         /// The last step tried \[s\].
         step: f64,
     },
+    /// No equilibrium was found.
+    #[error("no equilibrium at t = {t}: {name}: {cause}")]
+    Equilibrium {
+        /// Coordinate or constraint.
+        name: String,
+        /// What happened.
+        cause: String,
+        /// The load factor.
+        t: f64,
+    },
     /// The prescribed motion cannot be followed.
     #[error(transparent)]
     Drive(#[from] PrescribeError),

@@ -2,6 +2,7 @@
 
 use super::{Control, GRID_ROUNDING, HALVINGS, Observer, Progress, RunError, Simulation, describe};
 use crate::model::Model;
+use crate::newton::Failure;
 use crate::scene::{Analysis, JointModel, Scene, SceneError};
 use crate::statics::Statics;
 use crate::stepper::StepError;
@@ -36,6 +37,11 @@ pub(super) fn prepare(
         return Err(scene.error(drive.span, message, "remove this"));
     }
     let mut statics = Statics::new(model);
+    if start && path {
+        let message =
+            "a static analysis starts from the undeformed shape: it has no `initial.equilibrium`";
+        return Err(scene.error(scene.initial.span, message, "remove it"));
+    }
     if start {
         let moving = scene.initial.bodies.iter().map(|b| (b.velocity, b.span));
         if let Some((_, span)) = moving.into_iter().find(|(v, _)| *v != [0.0; 3]) {
@@ -52,7 +58,7 @@ pub(super) fn prepare(
             state.a[known.clone()].to_vec(),
         );
         statics.settle(model, state, work).map_err(|failure| {
-            let (name, cause) = describe(model, &failure);
+            let (name, cause) = explain(model, &failure);
             let message = format!("no equilibrium was found to start from: {name}: {cause}");
             scene.error(scene.initial.span, message, "this start")
         })?;
@@ -61,6 +67,22 @@ pub(super) fn prepare(
         model.remember_angles(state);
     }
     Ok(Some(statics))
+}
+
+/// The unknown and what is wrong with it, in the words of statics.
+fn explain(model: &Model, failure: &Failure) -> (String, String) {
+    match failure {
+        Failure::Singular { index } => (
+            model.unknown_name(*index),
+            "it is free to move: statics need a spring, a drive or a joint that holds it"
+                .to_owned(),
+        ),
+        Failure::NoConvergence { index, .. } => (
+            model.unknown_name(*index),
+            "Newton's method does not converge; try a smaller step".to_owned(),
+        ),
+        Failure::NotFinite { .. } => describe(model, failure),
+    }
 }
 
 impl Simulation {
@@ -111,9 +133,19 @@ impl Simulation {
                     self.counters.rejected += 1;
                     step = 0.5 * step.min(left);
                     if step < smallest {
-                        return Err(self.failed(error, step));
+                        return Err(self.no_equilibrium(error, next));
                     }
                 }
+            }
+        }
+    }
+
+    fn no_equilibrium(&self, error: StepError, t: f64) -> RunError {
+        match error {
+            StepError::Prescribe(error) => RunError::Drive(error),
+            StepError::Stage(failure) => {
+                let (name, cause) = explain(&self.model, &failure);
+                RunError::Equilibrium { name, cause, t }
             }
         }
     }
