@@ -14,6 +14,7 @@ mod hostile_input;
 mod ideal;
 mod joints;
 mod language;
+mod library;
 mod link;
 mod loose;
 mod malformed;
