@@ -1,6 +1,7 @@
 //! Scenes that must load, and what they load as.
 
 use crate::bad_input::CASE4;
+use crate::support::{all_scenes, path};
 use looselink::scene::{
     BodyKind, JointModel, LinkModel, Method, NormalLawKind, Path2, Scene, Slip,
 };
@@ -31,18 +32,11 @@ pub fn contact(scene: &Scene, joint: &str) -> Option<looselink::scene::Contact> 
 
 #[test]
 fn every_scene_of_the_folder_loads() {
-    let mut count = 0;
-    for folder in ["scenes", "scenes/3rrr"] {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.extension().is_some_and(|e| e == "toml") {
-                Scene::load(&path, &[])
-                    .unwrap_or_else(|e| panic!("{}: {e} at {:?}", path.display(), e.place()));
-                count += 1;
-            }
-        }
+    let names = all_scenes();
+    for name in &names {
+        Scene::load(&path(name), &[]).unwrap_or_else(|e| panic!("{name}: {e} at {:?}", e.place()));
     }
-    assert!(count >= 8, "only {count} scenes found");
+    assert!(names.len() >= 26, "only {names:?} found");
 }
 
 #[test]

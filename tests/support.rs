@@ -2,7 +2,7 @@
 
 use looselink::scene::Scene;
 use looselink::simulate::{Control, Observer, Onset, Progress, Report, Simulation};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// An onset that was told.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,6 +67,25 @@ pub fn path(scene: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
         .join("scenes")
         .join(scene)
+}
+
+/// The files of all scenes of the project, below the folder of scenes, in order.
+pub fn all_scenes() -> Vec<String> {
+    fn walk(folder: &Path, names: &mut Vec<String>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let found = entry.unwrap().path();
+            if found.is_dir() {
+                walk(&found, names);
+            } else if found.extension().is_some_and(|e| e == "toml") {
+                let name = found.strip_prefix(path("")).unwrap();
+                names.push(name.to_str().unwrap().to_owned());
+            }
+        }
+    }
+    let mut names = Vec::new();
+    walk(&path(""), &mut names);
+    names.sort();
+    names
 }
 
 /// A scene with overrides.
