@@ -120,8 +120,9 @@ fn place(panel: &Panel, head: Head, frame: [i32; 4], cell_left: i32, top: i32) -
                 .map(move |&(mark, x)| (mark, frame[0] + x, y))
         })
         .collect();
-    let x = horizontal(panel, frame[2] - frame[0]);
-    let y = Ticks::new(&panel.y, extent(panel, &panel.y, false), 6);
+    let (across, up) = axes(panel, [frame[2] - frame[0], frame[3] - frame[1]]);
+    let x = horizontal(panel, &across, frame[2] - frame[0]);
+    let y = Ticks::new(&up, extent(panel, &up, false), 6);
     Placed {
         panel,
         x,
@@ -177,12 +178,33 @@ impl Head {
     }
 }
 
+/// The axes of a panel with a frame of this width and height in pixels; equal ones get their ranges here.
+fn axes(panel: &Panel, size: [i32; 2]) -> (Axis, Axis) {
+    let (x, y) = (panel.x.clone(), panel.y.clone());
+    if !x.equal {
+        return (x, y);
+    }
+    let ranges = [extent(panel, &x, true), extent(panel, &y, false)];
+    // data per pixel of the tighter axis, with a margin of 8 % on both sides
+    let scale = (0..2)
+        .map(|i| (ranges[i].1 - ranges[i].0) / (0.84 * f64::from(size[i])))
+        .filter(|scale| scale.is_finite())
+        .fold(f64::MIN_POSITIVE, f64::max);
+    let widened = |i: usize| {
+        let middle = 0.5 * (ranges[i].0 + ranges[i].1);
+        let half = 0.5 * scale * f64::from(size[i]);
+        (middle - half, middle + half)
+    };
+    let [(left, right), (low, high)] = [widened(0), widened(1)];
+    (x.over(left, right), y.over(low, high))
+}
+
 /// As many labels as fit with a clear gap between them.
-fn horizontal(panel: &Panel, width: i32) -> Ticks {
-    let data = extent(panel, &panel.x, true);
+fn horizontal(panel: &Panel, axis: &Axis, width: i32) -> Ticks {
+    let data = extent(panel, axis, true);
     let mut wanted = 7;
     loop {
-        let ticks = Ticks::new(&panel.x, data, wanted);
+        let ticks = Ticks::new(axis, data, wanted);
         let needed: i32 = ticks
             .major
             .iter()
@@ -203,7 +225,8 @@ fn left_margin(panel: &Panel) -> i32 {
         .map(|(_, t)| text::width(t, SMALL))
         .max()
         .unwrap_or(0);
-    widest + 70
+    // the widened range of equal axes may ask for longer labels
+    widest + if panel.x.equal { 85 } else { 70 }
 }
 
 fn right_margin(row: &[Panel]) -> i32 {
@@ -243,4 +266,27 @@ fn extent(panel: &Panel, axis: &Axis, horizontal: bool) -> (f64, f64) {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| {
             (a.0.min(b.0), a.1.max(b.1))
         })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_axes_have_one_scale_and_hold_all_data() {
+        for (x, y) in [([0.0, 1.0], [0.0, 5.0]), ([0.0, 9.0], [2.0, 2.0])] {
+            let panel = Panel {
+                title: String::new(),
+                note: String::new(),
+                x: Axis::new("x", "m", 1.0).equal(),
+                y: Axis::new("y", "m", 1.0),
+                marks: vec![Mark::curve("", (0, 0, 0), &x, &y)],
+            };
+            let (across, up) = axes(&panel, [800, 500]);
+            let [(left, right), (low, high)] = [across.range.unwrap(), up.range.unwrap()];
+            // rounding of a quotient
+            assert!(((right - left) / 800.0 - (high - low) / 500.0).abs() < 1e-12);
+            assert!(left < x[0] && x[1] < right && low < y[0] && y[1] < high);
+        }
+    }
 }

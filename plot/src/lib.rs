@@ -71,6 +71,8 @@ pub struct Axis {
     pub scale: Scale,
     /// Range in SI; from the data when absent.
     pub range: Option<(f64, f64)>,
+    /// On the horizontal axis of a panel: both axes are drawn to one scale, the shorter range is widened.
+    pub equal: bool,
 }
 
 /// Spacing of an axis.
@@ -142,6 +144,15 @@ impl Axis {
             factor,
             scale: Scale::Linear,
             range: None,
+            equal: false,
+        }
+    }
+
+    /// The same horizontal axis, to one scale with the vertical one; both linear, with the same factor.
+    pub fn equal(self) -> Axis {
+        Axis {
+            equal: true,
+            ..self
         }
     }
 
