@@ -9,7 +9,7 @@ const INSTANTS: usize = 5;
 /// Samples of the curve between two nodes of a flexible link.
 const SAMPLES: usize = 8;
 /// Samples closer than this part of its length to the line through their neighbours are left out.
-const STRAIGHT: f64 = 5e-4;
+const STRAIGHT: f64 = 2e-4;
 /// Colour of the first instant; the last has that of the palette.
 const EARLY: Color = (185, 205, 220);
 

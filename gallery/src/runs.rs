@@ -64,7 +64,7 @@ const SHOWN: [Show; 19] = [
     show("frame", "load.theta", "Angle of the body"),
     show("n-four-bar", "points.crank0.end.x", "B0, x").drawn(1.2),
     show("pendulum", "points.rod.bob.x", "Point at 1 m, x").drawn(1.18),
-    show("quick-return", "ram.vx", "Velocity of the ram").drawn(0.5),
+    show("quick-return", "ram.vx", "Velocity of the ram").drawn(0.6),
     show("roll-up", "points.beam.end.y", "Tip, y"),
     show("slider-crank/", "slider.ax", "Acceleration of the slider").drawn(0.0096),
     show("soft-pendulum", "points.rod.end.y", "Tip, y"),
