@@ -49,10 +49,10 @@ fn springs() {
     let (pendulum, _) = run("stiff-spring-pendulum.toml", &[]);
     // IVP test set
     let expected = [
-        ("points.bob.center.x", -0.811576367657398601),
-        ("points.bob.center.y", -0.584249351678194584),
-        ("points.bob.center.vx", -0.631552659557417462),
-        ("points.bob.center.vy", 0.877289510510234183),
+        ("points.bob.center.x", -0.8115763676573986),
+        ("points.bob.center.y", -0.5842493516781946),
+        ("points.bob.center.vx", -0.6315526595574175),
+        ("points.bob.center.vy", 0.8772895105102342),
     ];
     check("stiff-spring-pendulum", &pendulum, 10.0, &expected, 2.5e-8);
 
