@@ -33,19 +33,20 @@ impl Constraint for Coincide {
     }
 
     fn gradient(&self, at: &State) -> Gradient {
-        self.value_and_gradient(at).1
+        let mut gradient = [[0.0; WIDTH]; ROWS];
+        self.value_and_gradient(at, &mut gradient);
+        gradient
     }
 
     #[inline]
-    fn value_and_gradient(&self, at: &State) -> ([f64; ROWS], Gradient) {
-        let mut rows = [[0.0; WIDTH]; ROWS];
+    fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
         let mut value = [0.0; ROWS];
         let mut first = 0;
         for (marker, sign) in [(&self.bearing, 1.0), (&self.journal, -1.0)] {
             let arm = marker.arm(&at.q);
             let mut put = |column: usize, x: f64, y: f64| {
-                rows[0][first + column] = sign * x;
-                rows[1][first + column] = sign * y;
+                gradient[0][first + column] = sign * x;
+                gradient[1][first + column] = sign * y;
             };
             match *marker {
                 Marker::Node { .. } => {
@@ -68,7 +69,7 @@ impl Constraint for Coincide {
             value = [value[0] + sign * position[0], value[1] + sign * position[1]];
             first += marker.width();
         }
-        (value, rows)
+        value
     }
 
     #[inline]

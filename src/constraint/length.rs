@@ -38,23 +38,28 @@ impl Constraint for Length {
         2
     }
 
-    #[inline]
     fn value(&self, at: &State) -> [f64; ROWS] {
+        self.value_and_gradient(at, &mut [[0.0; WIDTH]; ROWS])
+    }
+
+    fn gradient(&self, at: &State) -> Gradient {
+        let mut gradient = [[0.0; WIDTH]; ROWS];
+        self.value_and_gradient(at, &mut gradient);
+        gradient
+    }
+
+    #[inline]
+    fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
         let d = self.difference(&at.q);
+        let inverse = 1.0 / self.length;
+        let [x, y] = scale(inverse, d);
+        gradient[0][..4].copy_from_slice(&[-x, -y, x, y]);
         // (|d|^2 - l^2) as a product of nearly equal numbers' difference: |d| - l is what matters
         let distance = dot(d, d).sqrt();
         [
             (distance - self.length) * (distance + self.length) / (2.0 * self.length),
             0.0,
         ]
-    }
-
-    #[inline]
-    fn gradient(&self, at: &State) -> Gradient {
-        let d = scale(1.0 / self.length, self.difference(&at.q));
-        let mut gradient = [[0.0; WIDTH]; ROWS];
-        gradient[0][..4].copy_from_slice(&[-d[0], -d[1], d[0], d[1]]);
-        gradient
     }
 
     /// lambda/l (\[I, -I\], \[-I, I\]).

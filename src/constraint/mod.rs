@@ -63,9 +63,11 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
     fn value(&self, at: &State) -> [f64; ROWS];
     /// Phi_q.
     fn gradient(&self, at: &State) -> Gradient;
-    /// Both at once, for kinds that share work between them.
-    fn value_and_gradient(&self, at: &State) -> ([f64; ROWS], Gradient) {
-        (self.value(at), self.gradient(at))
+    /// Phi, and Phi_q into `gradient`, of which the columns that the constraint has are overwritten: for kinds that are
+    /// evaluated often.
+    fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
+        *gradient = self.gradient(at);
+        self.value(at)
     }
     /// d(Phi_q^T lambda)/dq.
     fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature);

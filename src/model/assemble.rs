@@ -1,7 +1,7 @@
 //! The equations of a model: residual, tangent, rates, contact memory, powers.
 
 use super::{Effect, Model, Rule};
-use crate::constraint::Curvature;
+use crate::constraint::{self, Curvature, ROWS};
 use crate::force::{ClearanceJoint, WIDTH};
 use crate::link::ElasticRoute;
 use crate::math::lu::Symbolic;
@@ -33,8 +33,9 @@ impl Model {
     /// Adds Phi_q^T lambda to r and sets phi.
     #[inline]
     fn constraints(&self, at: &State, r: &mut [f64], phi: &mut [f64]) {
+        let mut gradient = [[0.0; constraint::WIDTH]; ROWS];
         for c in &self.constraints {
-            let (value, gradient) = c.term.value_and_gradient(at);
+            let value = c.term.value_and_gradient(at, &mut gradient);
             for d in 0..c.rows {
                 phi[c.row + d] = c.kept[d] * value[d];
                 c.block.add_scaled(at.lambda[c.row + d], &gradient[d], r);
@@ -52,8 +53,9 @@ impl Model {
         phi: &mut [f64],
         k: &mut [f64],
     ) {
+        let mut gradient = [[0.0; constraint::WIDTH]; ROWS];
         for c in &self.constraints {
-            let (value, gradient) = c.term.value_and_gradient(at);
+            let value = c.term.value_and_gradient(at, &mut gradient);
             for d in 0..c.rows {
                 phi[c.row + d] = c.kept[d] * value[d];
                 c.block.add_scaled(at.lambda[c.row + d], &gradient[d], r);

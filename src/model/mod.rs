@@ -147,11 +147,11 @@ pub(crate) enum ConstraintTerm {
 
 impl ConstraintTerm {
     #[inline]
-    pub fn value_and_gradient(&self, at: &State) -> ([f64; ROWS], Gradient) {
+    pub fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
         match self {
-            ConstraintTerm::Length(term) => term.value_and_gradient(at),
-            ConstraintTerm::Coincide(term) => term.value_and_gradient(at),
-            ConstraintTerm::Other(term) => term.value_and_gradient(at),
+            ConstraintTerm::Length(term) => term.value_and_gradient(at, gradient),
+            ConstraintTerm::Coincide(term) => term.value_and_gradient(at, gradient),
+            ConstraintTerm::Other(term) => term.value_and_gradient(at, gradient),
         }
     }
 
