@@ -2,7 +2,7 @@
 
 use super::{Force, LocalMatrix, WIDTH};
 use crate::link::shape_derivatives;
-use crate::math::plane::{Vec2, add, cross, dot, perp, scale, sub};
+use crate::math::plane::{Vec2, cross, dot, perp};
 use crate::math::quadrature::GAUSS5;
 use crate::model::Effect;
 use crate::system::{INTEGRALS, Integral, State, Weights};
@@ -48,19 +48,18 @@ impl ElementDamping {
         }
     }
 
-    /// sum_a s_a x_a over the four local vectors.
-    fn combine(&self, s: &[f64; 4], x: &[f64]) -> Vec2 {
-        let mut sum = [0.0; 2];
-        for (a, s) in s.iter().enumerate() {
-            let i = [self.coordinates[2 * a], self.coordinates[2 * a + 1]];
-            sum = add(sum, scale(*s, [x[i[0]], x[i[1]]]));
-        }
-        sum
+    /// Local q and v.
+    fn gather(&self, at: &State) -> [[f64; WIDTH]; 2] {
+        [&at.q, &at.v].map(|x| std::array::from_fn(|i| x[self.coordinates[i]]))
     }
 
-    fn rates(&self, first: &[f64; 4], second: &[f64; 4], at: &State) -> Rates {
-        let r = [self.combine(first, &at.q), self.combine(second, &at.q)];
-        let v = [self.combine(first, &at.v), self.combine(second, &at.v)];
+    fn rates(first: &[f64; 4], second: &[f64; 4], [q, v]: &[[f64; WIDTH]; 2]) -> Rates {
+        // sum_a s_a x_a over the four local vectors
+        let combine = |s: &[f64; 4], x: &[f64; WIDTH]| {
+            [0, 1].map(|i| s[0] * x[i] + s[1] * x[2 + i] + s[2] * x[4 + i] + s[3] * x[6 + i])
+        };
+        let r = [combine(first, q), combine(second, q)];
+        let v = [combine(first, v), combine(second, v)];
         Rates {
             eps: dot(r[0], v[0]),
             kappa: cross(v[0], r[1]) + cross(r[0], v[1]),
@@ -69,12 +68,17 @@ impl ElementDamping {
         }
     }
 
-    /// deps/dq_a and dkappa/dq_a, or their rates where `r` are the rates of r' and r''.
-    fn slopes(a: usize, first: &[f64; 4], second: &[f64; 4], r: &[Vec2; 2]) -> [Vec2; 2] {
-        [
-            scale(first[a], r[0]),
-            sub(scale(second[a], perp(r[0])), scale(first[a], perp(r[1]))),
-        ]
+    /// deps/dq and dkappa/dq, or their rates where `r` are the rates of r' and r''.
+    fn slopes(first: &[f64; 4], second: &[f64; 4], r: &[Vec2; 2]) -> [[f64; WIDTH]; 2] {
+        let (mut eps, mut kappa) = ([0.0; WIDTH], [0.0; WIDTH]);
+        let turned = [perp(r[0]), perp(r[1])];
+        for a in 0..4 {
+            for i in 0..2 {
+                eps[2 * a + i] = first[a] * r[0][i];
+                kappa[2 * a + i] = second[a] * turned[0][i] - first[a] * turned[1][i];
+            }
+        }
+        [eps, kappa]
     }
 }
 
@@ -92,50 +96,57 @@ impl Force for ElementDamping {
     }
 
     fn force(&self, at: &State, f: &mut [f64; WIDTH]) {
+        let local = self.gather(at);
         for (weight, first, second) in &self.points {
-            let rates = self.rates(first, second, at);
-            for a in 0..4 {
-                let [eps, kappa] = Self::slopes(a, first, second, &rates.r);
-                for i in 0..2 {
-                    f[2 * a + i] += weight
-                        * (self.axial * rates.eps * eps[i] + self.bending * rates.kappa * kappa[i]);
-                }
+            let rates = Self::rates(first, second, &local);
+            let [eps, kappa] = Self::slopes(first, second, &rates.r);
+            let axial = weight * self.axial * rates.eps;
+            let bending = weight * self.bending * rates.kappa;
+            for i in 0..WIDTH {
+                f[i] += axial * eps[i] + bending * kappa[i];
             }
         }
     }
 
     fn force_and_tangent(&self, at: &State, w: Weights, f: &mut [f64; WIDTH], k: &mut LocalMatrix) {
-        self.force(at, f);
+        let local = self.gather(at);
         for (weight, first, second) in &self.points {
-            let rates = self.rates(first, second, at);
+            let rates = Self::rates(first, second, &local);
             let (axial, bending) = (weight * self.axial, weight * self.bending);
+            let [eps, kappa] = Self::slopes(first, second, &rates.r);
+            let [eps_dot, kappa_dot] = Self::slopes(first, second, &rates.v);
+            let by_stage = |slope: &[f64; WIDTH], slope_dot: &[f64; WIDTH]| -> [f64; WIDTH] {
+                std::array::from_fn(|i| w.v * slope[i] + w.q * slope_dot[i])
+            };
+            let eps_stage = by_stage(&eps, &eps_dot);
+            let kappa_stage = by_stage(&kappa, &kappa_dot);
+            let (pull, moment) = (axial * rates.eps, bending * rates.kappa);
+            for r in 0..WIDTH {
+                let (along, across) = (axial * eps[r], bending * kappa[r]);
+                f[r] += pull * eps[r] + moment * kappa[r];
+                for c in 0..WIDTH {
+                    k[r][c] += along * eps_stage[c] + across * kappa_stage[c];
+                }
+            }
+            // second derivatives of eps and kappa
+            let (straight, turned) = (w.q * pull, w.q * moment);
             for a in 0..4 {
-                let [eps_a, kappa_a] = Self::slopes(a, first, second, &rates.r);
                 for b in 0..4 {
-                    let [eps_b, kappa_b] = Self::slopes(b, first, second, &rates.r);
-                    let [eps_dot_b, kappa_dot_b] = Self::slopes(b, first, second, &rates.v);
-                    let straight = w.q * axial * rates.eps * first[a] * first[b];
-                    let turned =
-                        w.q * bending * rates.kappa * (first[a] * second[b] - second[a] * first[b]);
-                    for i in 0..2 {
-                        for j in 0..2 {
-                            k[2 * a + i][2 * b + j] += axial
-                                * eps_a[i]
-                                * (w.v * eps_b[j] + w.q * eps_dot_b[j])
-                                + bending * kappa_a[i] * (w.v * kappa_b[j] + w.q * kappa_dot_b[j]);
-                        }
-                        k[2 * a + i][2 * b + i] += straight;
-                    }
-                    k[2 * a][2 * b + 1] += turned;
-                    k[2 * a + 1][2 * b] -= turned;
+                    let stretch = straight * first[a] * first[b];
+                    let turn = turned * (first[a] * second[b] - second[a] * first[b]);
+                    k[2 * a][2 * b] += stretch;
+                    k[2 * a + 1][2 * b + 1] += stretch;
+                    k[2 * a][2 * b + 1] += turn;
+                    k[2 * a + 1][2 * b] -= turn;
                 }
             }
         }
     }
 
     fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
+        let local = self.gather(at);
         for (weight, first, second) in &self.points {
-            let rates = self.rates(first, second, at);
+            let rates = Self::rates(first, second, &local);
             powers[Integral::DampingDissipated as usize] += weight
                 * (self.axial * rates.eps * rates.eps + self.bending * rates.kappa * rates.kappa);
         }
