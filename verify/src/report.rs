@@ -40,9 +40,10 @@ const NOT_CHECKED: [(&str, &str); 9] = [
         "the reference knows the circle of eq. 27",
     ),
     (
-        "scenes without a drive, other mechanisms than the 3-RRR",
-        "the reference's interface takes any tree and loop of these bodies and joints, but nothing of that kind is \
-         compared yet; the bouncing journal has its own exact test",
+        "other mechanisms than the 3-RRR, and what only they have",
+        "prismatic joints, welds, point masses, moving bodies, springs, applied loads, structural damping, directly \
+         prescribed motions, redundant constraints, singular poses, equilibria: they have published and exact answers in \
+         tests/published, tests/mechanisms.rs and tests/library.rs",
     ),
     (
         "angles of links, eccentricity vectors, gravity and structural damping",
