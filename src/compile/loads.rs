@@ -1,8 +1,9 @@
 //! Springs, applied loads and structural damping of a scene as terms.
 
 use super::Compiler;
+use super::joints::spin;
 use super::numbering::Numbering;
-use super::terms::{Terms, spin};
+use super::terms::Terms;
 use crate::force::{ElementDamping, MassDamping, PointForce, SpringDamper, Torque, TorsionSpring};
 use crate::link::AncfCable;
 use crate::marker::Spin;

@@ -2,10 +2,12 @@
 
 pub(crate) mod assembly;
 mod drive;
+mod joints;
 mod loads;
 mod mass;
 mod numbering;
 mod reactions;
+mod rules;
 mod sketch;
 mod terms;
 

@@ -1,0 +1,246 @@
+//! The guess that assembly starts from: given poses, sketched joints, and what hangs on them.
+
+use super::super::sketch::fit;
+use super::super::{Compiler, Role};
+use crate::math::plane::{add, rotate, sub};
+use crate::model::{BodyCoordinates, Model};
+use crate::scene::{BodyKind, JointModel, MotionKind, PointRef, SceneError};
+use crate::system::State;
+
+/// Which bodies have a place, and where their points are.
+struct Placed<'a> {
+    c: &'a Compiler<'a>,
+    mechanism: &'a Model,
+    done: Vec<bool>,
+}
+
+impl Placed<'_> {
+    fn position(&self, point: PointRef, state: &State) -> [f64; 2] {
+        let coordinates = &self.mechanism.bodies()[point.body].coordinates;
+        let marker = self.c.marker(coordinates, point);
+        self.mechanism.position(&marker, state)
+    }
+
+    /// Where a point is, as far as the sketch, a placed partner or a shared node tells.
+    fn known(&self, point: PointRef, state: &State) -> Option<[f64; 2]> {
+        if self.done[point.body] {
+            return Some(self.position(point, state));
+        }
+        let joints = self.c.scene.joints.iter().enumerate();
+        let prismatic =
+            |j: usize| matches!(self.c.scene.joints[j].model, JointModel::Prismatic { .. });
+        joints
+            .filter_map(|(j, joint)| {
+                let partner = match () {
+                    () if joint.bearing == point => joint.journal,
+                    () if joint.journal == point => joint.bearing,
+                    () => return None,
+                };
+                let drawn = self.c.scene.initial.sketch.iter().find(|s| s.joint == j);
+                let partner = (self.done[partner.body] && !prismatic(j))
+                    .then(|| self.position(partner, state));
+                partner.or(drawn.map(|s| s.at))
+            })
+            .next()
+    }
+
+    /// Places body `b` where two of its points, or the only one it has, are known.
+    fn place(&mut self, b: usize, state: &mut State) {
+        let known = |local: usize, at: [f64; 2]| {
+            self.known(
+                PointRef {
+                    body: b,
+                    point: local,
+                },
+                state,
+            )
+            .map(|r| (at, r))
+        };
+        match (
+            &self.mechanism.bodies()[b].coordinates,
+            &self.c.scene.bodies[b].kind,
+        ) {
+            (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid)) => {
+                let points = rigid.points.iter().enumerate();
+                let pairs: Vec<_> = points.filter_map(|(i, p)| known(i, p.at)).collect();
+                let apart = pairs.iter().any(|p| p.0 != pairs[0].0);
+                if apart {
+                    state.q[*x..x + 3].copy_from_slice(&fit(&pairs));
+                    self.done[b] = true;
+                }
+            }
+            (BodyCoordinates::PointMass { x }, _) => {
+                if let Some((_, at)) = known(0, [0.0; 2]) {
+                    state.q[*x..x + 2].copy_from_slice(&at);
+                    self.done[b] = true;
+                }
+            }
+            (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
+                let count = 2 + link.points.len();
+                let pairs: Vec<_> = (0..count)
+                    .filter_map(|i| known(i, [link.share(i) * link.length, 0.0]))
+                    .collect();
+                let apart = pairs.iter().any(|p| p.0 != pairs[0].0);
+                if apart {
+                    let pose = fit(&pairs);
+                    self.write_link(*ends, link.length, pose, state);
+                    self.done[b] = true;
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Places a rigid body of which one point is known, at the angle that its joints with placed bodies suggest: that of a
+    /// weld, a locked guide or a drive, or that of a slot towards its pin. False for a body that cannot be placed so.
+    fn place_at_point(&mut self, b: usize, state: &mut State) -> bool {
+        let (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid), false) = (
+            &self.mechanism.bodies()[b].coordinates,
+            &self.c.scene.bodies[b].kind,
+            self.done[b],
+        ) else {
+            return false;
+        };
+        let point = |point| PointRef { body: b, point };
+        let mut points = rigid.points.iter().enumerate();
+        let Some((local, at)) =
+            points.find_map(|(i, p)| Some((p.at, self.known(point(i), state)?)))
+        else {
+            return false;
+        };
+        let Some(angle) = self.suggested_angle(b, at, state) else {
+            return false;
+        };
+        let arm = rotate(angle.cos(), angle.sin(), local);
+        state.q[*x..x + 3].copy_from_slice(&[at[0] - arm[0], at[1] - arm[1], angle]);
+        self.done[b] = true;
+        true
+    }
+
+    fn suggested_angle(&self, b: usize, at: [f64; 2], state: &State) -> Option<f64> {
+        let direction = |body: usize| match &self.mechanism.bodies()[body].coordinates {
+            BodyCoordinates::Rigid { x } => state.q[x + 2],
+            BodyCoordinates::RigidLink { ends: [i, j] } => {
+                (state.q[j + 1] - state.q[i + 1]).atan2(state.q[*j] - state.q[*i])
+            }
+            _ => 0.0,
+        };
+        let driven = |j: usize| {
+            self.c.scene.motions.iter().find_map(|m| match &m.kind {
+                MotionKind::Angle { joint, angle } if *joint == j => Some(angle.at(0.0)[0]),
+                _ => None,
+            })
+        };
+        self.c
+            .scene
+            .joints
+            .iter()
+            .enumerate()
+            .find_map(|(j, joint)| {
+                let (first, second) = (joint.bearing.body, joint.journal.body);
+                let angle = match joint.model {
+                    JointModel::Weld { angle, .. } => Some(angle),
+                    JointModel::Prismatic { locked, .. } => locked,
+                    JointModel::Ideal | JointModel::Clearance(_) => driven(j),
+                };
+                match (angle, joint.model.clone()) {
+                    (Some(angle), _) if second == b && self.done[first] => {
+                        Some(direction(first) + angle)
+                    }
+                    (Some(angle), _) if first == b && self.done[second] => {
+                        Some(direction(second) - angle)
+                    }
+                    (None, JointModel::Prismatic { direction, .. })
+                        if first == b && self.done[second] =>
+                    {
+                        let to_pin = sub(self.position(joint.journal, state), at);
+                        Some(to_pin[1].atan2(to_pin[0]) - direction)
+                    }
+                    _ => None,
+                }
+            })
+    }
+
+    /// Puts both ends of a link where they are unknown.
+    fn write_link(&self, ends: [usize; 2], length: f64, pose: [f64; 3], state: &mut State) {
+        let n = self.mechanism.shape().unknowns;
+        let way = [length * pose[2].cos(), length * pose[2].sin()];
+        let points = [[pose[0], pose[1]], add([pose[0], pose[1]], way)];
+        for (x, at) in ends.into_iter().zip(points) {
+            if x < n {
+                state.q[x..x + 2].copy_from_slice(&at);
+            }
+        }
+    }
+}
+
+/// Poses from the given states, the sketch, and what hangs together; returns the coordinates of given poses.
+pub(super) fn guess(
+    c: &Compiler,
+    mechanism: &Model,
+    state: &mut State,
+) -> Result<Vec<bool>, SceneError> {
+    let n = mechanism.shape().unknowns;
+    let mut placed = Placed {
+        c,
+        mechanism,
+        done: c.roles.iter().map(|r| *r != Role::Free).collect(),
+    };
+    let mut held = vec![false; n];
+    for given in &c.scene.initial.bodies {
+        let body = &c.scene.bodies[given.body];
+        if c.roles[given.body] != Role::Free {
+            let message = format!(
+                "the motion of {} is prescribed; it cannot have a start of its own",
+                body.name
+            );
+            return Err(c.scene.error(given.span, message, "remove this"));
+        }
+        let mut hold = |x: usize, count: usize| {
+            for h in held.iter_mut().skip(x).take(count) {
+                *h = true;
+            }
+        };
+        match (&mechanism.bodies()[given.body].coordinates, &body.kind) {
+            (BodyCoordinates::Rigid { x }, _) => {
+                state.q[*x..x + 3].copy_from_slice(&given.position);
+                hold(*x, 3);
+            }
+            (BodyCoordinates::PointMass { x }, _) => {
+                state.q[*x..x + 2].copy_from_slice(&given.position[..2]);
+                hold(*x, 2);
+            }
+            (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
+                placed.write_link(*ends, link.length, given.position, state);
+                hold(ends[0], 2);
+                hold(ends[1], 2);
+            }
+            _ => {}
+        }
+        placed.done[given.body] = true;
+    }
+    loop {
+        let before = placed.done.iter().filter(|d| **d).count();
+        for b in 0..c.scene.bodies.len() {
+            if !placed.done[b] {
+                placed.place(b, state);
+            }
+        }
+        let stuck = placed.done.iter().filter(|d| **d).count() == before;
+        // one body at a time is drawn by a single point, so that its neighbours may follow it exactly
+        if stuck && !(0..c.scene.bodies.len()).any(|b| placed.place_at_point(b, state)) {
+            break;
+        }
+    }
+    match placed.done.iter().position(|d| !d) {
+        None => Ok(held),
+        Some(b) => {
+            let body = &c.scene.bodies[b];
+            let message = format!(
+                "the scene does not say where {} starts: give it in [initial] bodies, or draw two of its joints in [initial] sketch",
+                body.name
+            );
+            Err(c.scene.error(body.span, message, "this body"))
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Velocities at the start, from a few of them.
+
+use super::super::{Compiler, Role};
+use super::{AGREEING, row};
+use crate::math::dense::{Added, Equations};
+use crate::math::plane::{dot, perp, scale, sub};
+use crate::model::{BodyCoordinates, Model};
+use crate::scene::{BodyState, SceneError};
+use crate::system::{State, System};
+use faer::Mat;
+
+/// Velocities of least kinetic energy under the constraints and the given ones.
+pub(super) fn velocities(
+    c: &Compiler,
+    mechanism: &Model,
+    state: &mut State,
+) -> Result<(), SceneError> {
+    let n = mechanism.shape().unknowns;
+    state.v[..n].fill(0.0);
+    let mut rates = vec![0.0; mechanism.shape().multipliers];
+    mechanism.constraint_velocity(state, &mut rates);
+    let mut equations = Equations::default();
+    for (i, placed) in mechanism.constraints.iter().enumerate() {
+        for d in 0..placed.rows {
+            let added = equations.add(&row(mechanism, state, i, d), -rates[placed.row + d]);
+            if let Added::Dependent(off) = added
+                && off.abs() > AGREEING
+            {
+                let name = &mechanism.names[n + placed.row + d];
+                let message = format!(
+                    "the prescribed motions contradict each other at t = 0: {name} is off by {off:.3e} m/s"
+                );
+                return Err(c.scene.error(c.scene.initial.span, message, "this start"));
+            }
+        }
+    }
+    for given in c.scene.initial.bodies.iter().filter(|g| g.velocity_given) {
+        for component in 0..3 {
+            let Some((a, known)) = velocity_row(mechanism, state, given.body, component) else {
+                continue;
+            };
+            let added = equations.add(&a, given.velocity[component] - known);
+            if let Added::Dependent(off) = added
+                && off.abs() > AGREEING
+            {
+                return Err(contradiction(c, given, component, off));
+            }
+        }
+    }
+    for given in &c.scene.initial.velocities {
+        let body = &c.scene.bodies[given.body].name;
+        let key = ["vx", "vy", "omega"][given.component];
+        if c.roles[given.body] != Role::Free {
+            let message = format!("the motion of {body} is prescribed; it cannot be given {key}");
+            return Err(c.scene.error(given.span, message, "remove this"));
+        }
+        let Some((a, known)) = velocity_row(mechanism, state, given.body, given.component) else {
+            continue;
+        };
+        if let Added::Dependent(off) = equations.add(&a, given.value - known) {
+            let implied = given.value - off;
+            let message = if off.abs() > AGREEING {
+                format!(
+                    "{key} of {body} contradicts what is given before: that makes it {implied:.6}"
+                )
+            } else {
+                format!("{key} of {body} repeats what is given before: that makes it {implied:.6}")
+            };
+            return Err(c.scene.error(given.span, message, "leave this out"));
+        }
+    }
+    let (mass, momentum) = mass(mechanism, state);
+    let v = equations.least_energy(&mass, &momentum);
+    state.v[..n].copy_from_slice(&v);
+    mechanism.ride(state);
+    Ok(())
+}
+
+fn contradiction(c: &Compiler, given: &BodyState, component: usize, off: f64) -> SceneError {
+    let message = format!(
+        "the velocity of {} contradicts the constraints: {} is off by {off:.3e}",
+        c.scene.bodies[given.body].name,
+        ["vx", "vy", "omega"][component]
+    );
+    c.scene.error(given.span, message, "this velocity")
+}
+
+/// A velocity of a body as a row over the unknown ones, and the part that known coordinates have in it. `None` for a
+/// point mass's angular velocity.
+fn velocity_row(
+    mechanism: &Model,
+    state: &State,
+    body: usize,
+    component: usize,
+) -> Option<(Vec<f64>, f64)> {
+    let n = mechanism.shape().unknowns;
+    let entries: Vec<(usize, f64)> = match (&mechanism.bodies()[body].coordinates, component) {
+        (BodyCoordinates::Rigid { x }, _) => vec![(x + component, 1.0)],
+        (BodyCoordinates::PointMass { x }, 0 | 1) => vec![(x + component, 1.0)],
+        (BodyCoordinates::RigidLink { ends }, 0 | 1) => vec![(ends[0] + component, 1.0)],
+        (BodyCoordinates::RigidLink { ends: [i, j] }, _) => {
+            let d = sub([state.q[*j], state.q[j + 1]], [state.q[*i], state.q[i + 1]]);
+            let b = scale(1.0 / dot(d, d), perp(d));
+            vec![(*i, -b[0]), (i + 1, -b[1]), (*j, b[0]), (j + 1, b[1])]
+        }
+        _ => return None,
+    };
+    let (mut row, mut known) = (vec![0.0; n], 0.0);
+    for (i, value) in entries {
+        if i < n {
+            row[i] += value;
+        } else {
+            known += value * state.v[i];
+        }
+    }
+    Some((row, known))
+}
+
+/// Mass matrix over the unknowns, and the momentum that known velocities give them.
+fn mass(mechanism: &Model, state: &State) -> (Mat<f64>, Vec<f64>) {
+    let n = mechanism.shape().unknowns;
+    let (mut m, mut momentum) = (Mat::zeros(n, n), vec![0.0; n]);
+    for part in &mechanism.mass.parts {
+        let count = part.coordinates.len();
+        for (r, &i) in part.coordinates.iter().enumerate().filter(|(_, i)| **i < n) {
+            for (s, &j) in part.coordinates.iter().enumerate() {
+                let value = part.values[r * count + s];
+                if j < n {
+                    m[(i, j)] += value;
+                } else {
+                    momentum[i] += value * state.v[j];
+                }
+            }
+        }
+    }
+    (m, momentum)
+}
