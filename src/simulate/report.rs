@@ -145,10 +145,16 @@ fn notes(scene: &Scene) -> Vec<String> {
             ));
         }
     }
+    let initial = &scene.initial;
+    let drawn = !initial.sketch.is_empty() || !initial.velocities.is_empty();
+    let assembled = scene.drives.is_empty() && drawn;
+    if assembled && scene.simulation.analysis == Analysis::Dynamic {
+        notes.push(
+            "velocities that the scene does not give are those of least kinetic energy".to_owned(),
+        );
+    }
     let unsaid = |s: &&BodyState| {
-        !s.velocity_given
-            && scene.simulation.analysis == Analysis::Dynamic
-            && scene.initial.velocities.is_empty()
+        !s.velocity_given && !assembled && scene.simulation.analysis == Analysis::Dynamic
     };
     for state in scene.initial.bodies.iter().filter(unsaid) {
         notes.push(format!(
