@@ -206,5 +206,13 @@ fn published_element() {
             assert!((f[i] - force[i]).abs() < 1e-11, "{}", route.name);
         }
         assert!((k[0][0] - 491.30357142857144).abs() < 1e-11 && (k[1][3] + 1.9375).abs() < 1e-11);
+        let trace: f64 = (0..8).map(|i| k[i][i]).sum();
+        let square: f64 = k.iter().flatten().map(|x| x * x).sum();
+        assert!(
+            (trace / 1827.619047619047 - 1.0).abs() < 1e-12,
+            "{}",
+            route.name
+        );
+        assert!((square.sqrt() / 1326.7286049150268 - 1.0).abs() < 1e-12);
     }
 }

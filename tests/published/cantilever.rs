@@ -2,6 +2,7 @@
 
 use super::{CLAMP, beam, last, run, statics};
 use crate::support::Recording;
+use std::f64::consts::TAU;
 
 /// Relative accuracy of the listed digits of tip displacements: they are printed to 1e-12 m.
 const DIGITS: f64 = 1e-8;
@@ -127,6 +128,37 @@ fn elastica_in_the_thin_limit() {
         // the load stretches what hangs along it by P/EA = (P L^2/EI) EI/(EA L^2), which passes 5 for the largest
         let factor = load.max(5.0);
         assert!(error < factor * slenderness, "P L^2/EI = {load}: {error:e}");
+    }
+}
+
+/// P: a dead force -P and a moment 2.5 P at the tip, L = 2 pi, EI = 2 (Harsch, Capobianco and Eugster 2021), inextensible.
+#[test]
+fn elastica_under_force_and_moment() {
+    let (length, bending, slenderness) = (TAU, 2.0, 1e-6);
+    let axial = bending / (slenderness * length * length);
+    for (alpha, x, y) in [
+        (10.0 / 9.0, 6.2098293744871, -0.9023055347978),
+        (50.0 / 9.0, 5.4772678584927, -2.8698731964526),
+        (10.0, 4.9785345669, -3.4676357007),
+    ] {
+        let load = alpha * bending / (length * length);
+        let moment = format!(
+            "[forces.moment]\ntype = \"torque\"\npoint = \"beam.end\"\nvalue = {:?}\n",
+            2.5 * load
+        );
+        let text = statics(20)
+            + &beam(length, axial, bending, 1.0, 128)
+            + CLAMP
+            + &tip_load([0.0, -load])
+            + &moment;
+        let run = run(&text, &[]);
+        let error =
+            (last(&run, "points.beam.end.x") - x).hypot(last(&run, "points.beam.end.y") - y);
+        // as above, the moment's curvature of 2.5 P/EI = 2.5 alpha/L^2 among the loads
+        assert!(
+            error < 10.0 * slenderness * length,
+            "alpha = {alpha}: {error:e}"
+        );
     }
 }
 
