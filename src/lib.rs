@@ -30,7 +30,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! EQUATIONS.md maps the equations of the paper to functions, ARCHITECTURE.md the mechanics to folders.
+//! [`simulate::Recording`] is an observer that keeps everything in memory. EQUATIONS.md maps the equations of the paper
+//! to functions, ARCHITECTURE.md the mechanics to folders.
 #![forbid(unsafe_code)]
 
 pub mod compile;

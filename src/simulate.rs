@@ -4,12 +4,14 @@ mod change;
 mod equilibrium;
 mod impacts;
 mod observer;
+mod recording;
 mod report;
 
 pub use crate::record::Channel;
 pub use impacts::Impact;
 use impacts::Impacts;
 pub use observer::{Control, Observer, Onset, Progress};
+pub use recording::{RecordedOnset, Recording};
 pub use report::{Extreme, Inspection, Report, Status};
 
 use crate::compile::compile;

@@ -1,64 +1,32 @@
 //! Runs scenes of the project and keeps what they tell.
 
 use looselink::scene::Scene;
-use looselink::simulate::{Control, Observer, Onset, Progress, Report, Simulation};
+use looselink::simulate::{self, RecordedOnset, Report, Simulation};
 use std::path::{Path, PathBuf};
 
-/// An onset that was told.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Impact {
-    pub t: f64,
-    pub joint: String,
-    pub impact_velocity: f64,
-    pub delta: f64,
-}
-
 /// All rows and onsets of a run.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Recording {
-    names: Vec<String>,
-    rows: Vec<Vec<f64>>,
-    pub onsets: Vec<Impact>,
+    kept: simulate::Recording,
+    pub onsets: Vec<RecordedOnset>,
 }
 
 impl Recording {
     /// A channel over time.
     pub fn get(&self, name: &str) -> Vec<f64> {
-        let column = self
-            .names
-            .iter()
-            .position(|n| n == name)
-            .unwrap_or_else(|| panic!("no channel {name}"));
-        self.rows.iter().map(|row| row[column]).collect()
+        let column = self.kept.get(name);
+        column
+            .unwrap_or_else(|| panic!("no channel {name}"))
+            .to_vec()
     }
 
     /// Names of all channels.
     pub fn names(&self) -> &[String] {
-        &self.names
+        self.kept.names()
     }
 
     pub fn len(&self) -> usize {
-        self.rows.len()
-    }
-}
-
-impl Observer for Recording {
-    fn row(&mut self, values: &[f64]) -> std::io::Result<()> {
-        self.rows.push(values.to_vec());
-        Ok(())
-    }
-    fn onset(&mut self, onset: &Onset) -> std::io::Result<()> {
-        let (t, impact_velocity, delta) = (onset.t, onset.impact_velocity, onset.delta);
-        self.onsets.push(Impact {
-            t,
-            joint: onset.joint.to_owned(),
-            impact_velocity,
-            delta,
-        });
-        Ok(())
-    }
-    fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
-        Ok(Control::Continue)
+        self.kept.rows()
     }
 }
 
@@ -102,18 +70,10 @@ pub fn run(scene: &str, overrides: &[&str]) -> (Recording, Report) {
 /// Runs a scene to its end.
 pub fn run_scene(scene: &Scene) -> (Recording, Report) {
     let mut simulation = Simulation::new(scene).unwrap_or_else(|e| panic!("{e}"));
-    let names = simulation
-        .channels()
-        .iter()
-        .map(|c| c.name.clone())
-        .collect();
-    let mut recording = Recording {
-        names,
-        ..Recording::default()
-    };
-    simulation
-        .run(&mut recording)
-        .unwrap_or_else(|e| panic!("{e}"));
+    let mut kept = simulate::Recording::new(&simulation);
+    simulation.run(&mut kept).unwrap_or_else(|e| panic!("{e}"));
+    let onsets = kept.onsets.clone();
+    let recording = Recording { kept, onsets };
     (recording, simulation.report())
 }
 

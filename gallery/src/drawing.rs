@@ -38,7 +38,7 @@ fn channel(run: &Run) -> Panel {
         note: String::new(),
         x: Axis::new(label, unit, 1.0).over(0.0, t.last().copied().unwrap_or(1.0)),
         y: Axis::new(run.show.label, symbol(run.unit(name)), 1.0),
-        marks: vec![Mark::series("", palette::BLUE, &t, &y)],
+        marks: vec![Mark::series("", palette::BLUE, t, y)],
     }
 }
 
@@ -60,7 +60,7 @@ fn mechanism(run: &Run) -> Panel {
     let mut marks = paths(run);
     for k in 0..INSTANTS {
         let share = k as f64 / (INSTANTS - 1) as f64;
-        let row = nearest(&t, share * end);
+        let row = nearest(t, share * end);
         let color = blend(EARLY, palette::BLUE, share);
         let label = match unit {
             "" => format!("{:.2}", t[row]),
@@ -275,7 +275,7 @@ fn paths(run: &Run) -> Vec<Mark> {
         if let [name] = &names[..] {
             let of = |q| run.get(&format!("points.{}.{name}.{q}", body.name));
             let (x, y) = (of("x").unwrap_or_default(), of("y").unwrap_or_default());
-            marks.push(Mark::curve("", palette::GREY, &x, &y).width(1));
+            marks.push(Mark::curve("", palette::GREY, x, y).width(1));
         }
     }
     marks

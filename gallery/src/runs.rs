@@ -1,8 +1,7 @@
 //! The runs: which scenes there are, what is shown of each, and what a run leaves.
 
 use looselink::scene::{BodyKind, LinkModel, Scene};
-use looselink::simulate::{Channel, Control, Inspection, Observer, Onset, Progress};
-use looselink::simulate::{Report, Simulation};
+use looselink::simulate::{Channel, Inspection, Recording, Report, Simulation};
 use miette::{IntoDiagnostic, Result, miette};
 use std::path::Path;
 
@@ -89,7 +88,7 @@ pub struct Run {
     /// How the run went.
     pub report: Report,
     channels: Vec<Channel>,
-    rows: Vec<Vec<f64>>,
+    recording: Recording,
 }
 
 impl Run {
@@ -99,33 +98,14 @@ impl Run {
     }
 
     /// A channel over the rows; `None` where the scene has none of this name.
-    pub fn get(&self, name: &str) -> Option<Vec<f64>> {
-        let index = self.channels.iter().position(|c| c.name == name)?;
-        Some(self.rows.iter().map(|row| row[index]).collect())
+    pub fn get(&self, name: &str) -> Option<&[f64]> {
+        self.recording.get(name)
     }
 
     /// The unit of a channel.
     pub fn unit(&self, name: &str) -> &'static str {
         let found = self.channels.iter().find(|c| c.name == name);
         found.map_or("", |c| c.unit)
-    }
-}
-
-/// Keeps the rows.
-struct Rows(Vec<Vec<f64>>);
-
-impl Observer for Rows {
-    fn row(&mut self, values: &[f64]) -> std::io::Result<()> {
-        self.0.push(values.to_vec());
-        Ok(())
-    }
-
-    fn onset(&mut self, _: &Onset) -> std::io::Result<()> {
-        Ok(())
-    }
-
-    fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
-        Ok(Control::Continue)
     }
 }
 
@@ -171,15 +151,15 @@ pub fn run(root: &Path, name: &str) -> Result<Run> {
         overrides.push(format!("simulation.duration={duration:?}"));
     }
     let mut simulation = Simulation::new(&Scene::load(&path, &overrides)?)?;
-    let mut rows = Rows(Vec::new());
-    simulation.run(&mut rows).into_diagnostic()?;
+    let mut recording = Recording::new(&simulation);
+    simulation.run(&mut recording).into_diagnostic()?;
     Ok(Run {
         name: name.to_owned(),
         show,
         inspection: simulation.inspect(),
         report: simulation.report(),
         channels: simulation.channels().to_vec(),
-        rows: rows.0,
+        recording,
         scene,
     })
 }

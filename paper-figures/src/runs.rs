@@ -1,11 +1,10 @@
 //! Runs scenes through the library, one a thread, and keeps their channels in memory.
 
 use looselink::scene::Scene;
-use looselink::simulate::{Control, Observer, Onset, Progress, Simulation};
+use looselink::simulate::{self, Simulation};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -93,22 +92,14 @@ impl Plan {
     pub fn run(&self) -> Result<Recording> {
         let scene = self.scene()?;
         let mut simulation = Simulation::new(&scene)?;
-        let names: Vec<String> = simulation
-            .channels()
-            .iter()
-            .map(|c| c.name.clone())
-            .collect();
-        let mut recorder = Recorder {
-            columns: vec![Vec::new(); names.len()],
-            onsets: Vec::new(),
-        };
+        let mut recorder = simulate::Recording::new(&simulation);
         simulation
             .run(&mut recorder)
             .into_diagnostic()
             .wrap_err_with(|| self.scene_name())?;
         let report = serde_json::to_value(simulation.report()).into_diagnostic()?;
-        let mut columns: HashMap<String, Vec<f64>> =
-            names.into_iter().zip(recorder.columns).collect();
+        let onsets = recorder.onsets.iter().map(|o| o.t).collect();
+        let mut columns: HashMap<String, Vec<f64>> = recorder.into_columns().collect();
         let t = columns
             .remove("t")
             .ok_or_else(|| miette!("the recording has no time channel"))?;
@@ -116,7 +107,7 @@ impl Plan {
             plan: self.clone(),
             scene,
             t,
-            onsets: recorder.onsets,
+            onsets,
             report,
             columns,
         })
@@ -149,29 +140,5 @@ impl Recording {
     pub fn between(&self, name: &str, from: f64, to: f64) -> (&[f64], &[f64]) {
         let rows = self.rows(from, to);
         (&self.t[rows.clone()], &self.column(name)[rows])
-    }
-}
-
-/// Collects rows by column.
-struct Recorder {
-    columns: Vec<Vec<f64>>,
-    onsets: Vec<f64>,
-}
-
-impl Observer for Recorder {
-    fn row(&mut self, row: &[f64]) -> io::Result<()> {
-        for (column, value) in self.columns.iter_mut().zip(row) {
-            column.push(*value);
-        }
-        Ok(())
-    }
-
-    fn onset(&mut self, onset: &Onset) -> io::Result<()> {
-        self.onsets.push(onset.t);
-        Ok(())
-    }
-
-    fn step(&mut self, _: &Progress) -> io::Result<Control> {
-        Ok(Control::Continue)
     }
 }

@@ -5,10 +5,9 @@ use crate::description::{Description, describe};
 use crate::reference::{Row, Statistics, System, Tolerances};
 use cpu_time::ThreadTime;
 use looselink::scene::Scene;
-use looselink::simulate::{Control, Observer, Onset, Progress, Report, Simulation};
+use looselink::simulate::{Recording, Report, Simulation};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use std::collections::BTreeMap;
-use std::io;
 use std::path::PathBuf;
 
 /// What to run: a scene of the project, rows every `interval` up to `duration`.
@@ -149,28 +148,29 @@ impl Plan {
     pub fn rust_until(&self, step: f64, impacts: usize) -> Result<Trajectory> {
         let scene = self.scene(step)?;
         let mut simulation = Simulation::new(&scene)?;
-        let channels = simulation.channels().iter();
-        let names: Vec<String> = channels.map(|c| c.name.clone()).collect();
-        let mut recorder = Recorder {
-            columns: vec![Vec::new(); names.len()],
-            impacts: Vec::new(),
-            enough: impacts,
-        };
+        let mut recording = Recording::new(&simulation);
+        recording.most_onsets = impacts;
         let clock = ThreadTime::now();
-        match simulation.run(&mut recorder) {
+        match simulation.run(&mut recording) {
             Err(looselink::simulate::RunError::Interrupted { .. })
-                if recorder.impacts.len() >= impacts => {}
+                if recording.onsets.len() >= impacts => {}
             result => result.into_diagnostic().wrap_err_with(|| self.name())?,
         }
         let seconds = clock.elapsed().as_secs_f64();
-        let mut columns: BTreeMap<_, _> = names.into_iter().zip(recorder.columns).collect();
+        let closed = recording.onsets.iter().map(|onset| Impact {
+            t: onset.t,
+            joint: onset.joint.clone(),
+            velocity: onset.impact_velocity,
+        });
+        let closed = closed.collect();
+        let mut columns: BTreeMap<_, _> = recording.into_columns().collect();
         let t = columns
             .remove("t")
             .ok_or_else(|| miette!("no time channel"))?;
         Ok(Trajectory {
             t,
             columns,
-            impacts: recorder.impacts,
+            impacts: closed,
             seconds,
             work: Work::Rust(Box::new(simulation.report())),
         })
@@ -240,37 +240,5 @@ pub fn tolerances(relative: f64, position: f64, velocity: f64) -> Tolerances {
         max_order: 5,
         reserved: 0,
         max_steps: 100_000_000,
-    }
-}
-
-struct Recorder {
-    columns: Vec<Vec<f64>>,
-    impacts: Vec<Impact>,
-    enough: usize,
-}
-
-impl Observer for Recorder {
-    fn row(&mut self, values: &[f64]) -> io::Result<()> {
-        for (column, value) in self.columns.iter_mut().zip(values) {
-            column.push(*value);
-        }
-        Ok(())
-    }
-
-    fn onset(&mut self, onset: &Onset) -> io::Result<()> {
-        self.impacts.push(Impact {
-            t: onset.t,
-            joint: onset.joint.to_owned(),
-            velocity: onset.impact_velocity,
-        });
-        Ok(())
-    }
-
-    fn step(&mut self, _: &Progress) -> io::Result<Control> {
-        Ok(if self.impacts.len() >= self.enough {
-            Control::Stop
-        } else {
-            Control::Continue
-        })
     }
 }
