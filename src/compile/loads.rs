@@ -2,6 +2,7 @@
 
 use super::Compiler;
 use super::joints::spin;
+use super::mass::planar_inertia;
 use super::numbering::Numbering;
 use super::terms::Terms;
 use crate::force::{ElementDamping, MassDamping, PointForce, SpringDamper, Torque, TorsionSpring};
@@ -122,11 +123,11 @@ fn damping(c: &Compiler, numbering: &Numbering, b: usize, terms: &mut Terms) {
     };
     for k in 0..nodes.len() - 1 {
         let firsts = [nodes[k], slopes[k], nodes[k + 1], slopes[k + 1]];
-        let coordinates: Vec<usize> = firsts.iter().flat_map(|&x| [x, x + 1]).collect();
         if damping.strain > 0.0 {
+            let coordinates = firsts.iter().flat_map(|&x| [x, x + 1]).collect();
             let viscosity = youngs_modulus * damping.strain;
             let term = ElementDamping::new(
-                coordinates.clone(),
+                coordinates,
                 *element_length,
                 viscosity * link.area,
                 viscosity * link.second_moment,
@@ -135,17 +136,10 @@ fn damping(c: &Compiler, numbering: &Numbering, b: usize, terms: &mut Terms) {
         }
         if damping.mass > 0.0 {
             let m = AncfCable::mass(*element_length, link.density * link.area);
-            let mut values = vec![0.0; 64];
-            for (a, row) in m.iter().enumerate() {
-                for (d, m) in row.iter().enumerate() {
-                    for i in 0..2 {
-                        values[(2 * a + i) * 8 + 2 * d + i] = damping.mass * m;
-                    }
-                }
-            }
+            let part = planar_inertia(m, firsts, [true, false, true, false], [0.0; 2]);
             let term = MassDamping {
-                coordinates,
-                values,
+                coordinates: part.coordinates,
+                values: part.values.iter().map(|m| damping.mass * m).collect(),
             };
             terms.forces.push((Box::new(term), [b, b]));
         }

@@ -36,10 +36,10 @@ fn turn(c: &Compiler, numbering: &Numbering, b: usize, m: usize) -> Option<Rule>
     };
     let joint = &c.scene.joints[*joint];
     // the angle is that of the journal's body relative to the bearing's
-    let (own, ground, angle) = if joint.journal.body == b {
-        (joint.journal, joint.bearing, angle.clone())
+    let (own, ground, sign) = if joint.journal.body == b {
+        (joint.journal, joint.bearing, 1.0)
     } else {
-        (joint.bearing, joint.journal, angle.negated())
+        (joint.bearing, joint.journal, -1.0)
     };
     let pivot = match &numbering.bodies[ground.body] {
         BodyCoordinates::Ground { points } => points[ground.point],
@@ -52,16 +52,22 @@ fn turn(c: &Compiler, numbering: &Numbering, b: usize, m: usize) -> Option<Rule>
                 pivot,
                 point: (*x, [-s[0], -s[1]]),
                 theta: Some(x + 2),
-                angle,
+                angle: angle.clone(),
+                sign,
             })
         }
         (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
-            let sign = if own.point == 0 { 1.0 } else { -1.0 };
+            let way = if own.point == 0 {
+                link.length
+            } else {
+                -link.length
+            };
             Some(Rule::Turn {
                 pivot,
-                point: (ends[1 - own.point], [sign * link.length, 0.0]),
+                point: (ends[1 - own.point], [way, 0.0]),
                 theta: None,
-                angle,
+                angle: angle.clone(),
+                sign,
             })
         }
         _ => None,

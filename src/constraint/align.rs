@@ -55,9 +55,7 @@ impl Constraint for Align {
     }
 
     fn coordinates(&self) -> Vec<usize> {
-        let mut coordinates = self.first.coordinates();
-        coordinates.extend(self.second.coordinates());
-        coordinates
+        [self.first.coordinates(), self.second.coordinates()].concat()
     }
 
     fn split(&self) -> usize {

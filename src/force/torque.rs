@@ -33,9 +33,7 @@ impl Force for Torque {
     }
 
     fn coordinates(&self) -> Vec<usize> {
-        let mut coordinates = self.first.coordinates();
-        coordinates.extend(self.second.coordinates());
-        coordinates
+        [self.first.coordinates(), self.second.coordinates()].concat()
     }
 
     fn split(&self) -> usize {

@@ -2,8 +2,8 @@
 
 pub(crate) mod redundancy;
 
-use crate::compile::assembly::{assemble, link_start};
-use crate::math::plane::{Vec2, add, norm, perp, scale, sub};
+use crate::compile::assembly::assemble;
+use crate::math::plane::{Vec2, add, cross, dot, norm, perp, scale, sub};
 use crate::model::{BodyCoordinates, Model};
 use crate::scene::{BodyKind, ForceKind, JointModel, Scene, SceneError};
 use crate::system::State;
@@ -207,8 +207,13 @@ fn ideal_start(mechanism: &Model, b: usize, state: &State, offset: usize) -> Opt
             })
         }
         BodyCoordinates::RigidLink { ends: [i, j] } => {
-            let (position, velocity) = link_start([at(i), at(j)]);
-            Some(Start { position, velocity })
+            let ((from, from_rate), (to, to_rate)) = (at(i), at(j));
+            let (d, d_dot) = (sub(to, from), sub(to_rate, from_rate));
+            let omega = cross(d, d_dot) / dot(d, d);
+            Some(Start {
+                position: [from[0], from[1], d[1].atan2(d[0])],
+                velocity: [from_rate[0], from_rate[1], omega],
+            })
         }
         _ => None,
     }

@@ -10,8 +10,8 @@ const EXCURSION: f64 = 1e-2;
 /// Steps of Newton's method that close it again.
 const CLOSING: usize = 12;
 
-/// The rows that depend on those before them, as (constraint, row of it).
-fn dependent(model: &Model, state: &State) -> Vec<(usize, usize)> {
+/// The rows that depend on those before them, as (constraint, row of it), and the equations of the others.
+fn dependent(model: &Model, state: &State) -> (Vec<(usize, usize)>, Equations) {
     let mut equations = Equations::default();
     let mut found = Vec::new();
     for (i, placed) in model.constraints.iter().enumerate() {
@@ -22,7 +22,7 @@ fn dependent(model: &Model, state: &State) -> Vec<(usize, usize)> {
             }
         }
     }
-    found
+    (found, equations)
 }
 
 /// What the constraints of a start are.
@@ -39,17 +39,11 @@ pub(crate) enum Redundancy {
 /// A redundant bar of a parallelogram repeats the others all along the motion; a constraint of a mechanism in a dead
 /// centre does so in that pose only.
 pub(crate) fn find(model: &Model, start: &State) -> Redundancy {
-    let here = dependent(model, start);
+    let (here, equations) = dependent(model, start);
     if here.is_empty() {
         return Redundancy::Rows(here);
     }
     let n = model.shape().unknowns;
-    let mut equations = Equations::default();
-    for (i, placed) in model.constraints.iter().enumerate() {
-        for d in 0..placed.rows {
-            equations.add(&row(model, start, i, d), 0.0);
-        }
-    }
     // any direction will do that no constraint forbids and that no symmetry of a mechanism shares
     let direction: Vec<f64> = (0..n).map(|i| (1.0 + 2.4 * i as f64).sin()).collect();
     let free = equations.free_part(&direction);
@@ -66,7 +60,7 @@ pub(crate) fn find(model: &Model, start: &State) -> Redundancy {
     for _ in 0..CLOSING {
         closing_step(model, &mut moved, &held);
     }
-    let there = dependent(model, &moved);
+    let (there, _) = dependent(model, &moved);
     match here.iter().find(|row| !there.contains(row)) {
         Some(&(i, d)) if there.len() < here.len() => {
             Redundancy::SingularStart(model.names[n + model.constraints[i].row + d].clone())

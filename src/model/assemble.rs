@@ -105,8 +105,9 @@ impl Model {
                     point: (x, s),
                     theta,
                     angle,
+                    sign,
                 } => {
-                    let [phi, rate, growth] = angle.at(to.t);
+                    let [phi, rate, growth] = angle.at(to.t).map(|x| sign * x);
                     let (sine, cosine) = phi.sin_cos();
                     let arm = rotate(cosine, sine, *s);
                     let turn = perp(arm);

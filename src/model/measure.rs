@@ -1,6 +1,7 @@
 //! What a model lets one measure: poses, strains, energies, joint forces, drive torques.
 
 use super::{Actuator, BodyCoordinates, JointKind, Model};
+use crate::force::ClearanceJoint;
 use crate::marker::Marker;
 use crate::math::plane::{Vec2, add, cross, dot, norm, scale, sub};
 use crate::system::{State, Work};
@@ -257,30 +258,30 @@ impl Model {
         )
     }
 
+    /// Geometry and memory index of a loose joint.
+    fn loose_joint(&self, index: usize) -> Option<(&ClearanceJoint, usize)> {
+        match self.joints[index].kind {
+            JointKind::Loose(i) => Some((&self.loose[i].term, self.loose[i].contact)),
+            JointKind::Frictional(i) => {
+                let c = &self.frictional[i];
+                Some((&c.term.joint, c.contact))
+            }
+            JointKind::Constraint(_) | JointKind::Eliminated(_) => None,
+        }
+    }
+
     /// Eccentricity vector, penetration and contact (closed and touching) of a loose joint.
     pub fn clearance(&self, index: usize, at: &State) -> Option<(Vec2, f64, bool)> {
-        let (joint, contact) = match self.joints[index].kind {
-            JointKind::Loose(i) => (&self.loose[i].term, self.loose[i].contact),
-            JointKind::Frictional(i) => {
-                (&self.frictional[i].term.joint, self.frictional[i].contact)
-            }
-            JointKind::Constraint(_) | JointKind::Eliminated(_) => return None,
-        };
+        let (joint, contact) = self.loose_joint(index)?;
         let g = joint.geometry(&at.q, &at.v);
         Some((g.e, g.delta, at.z[contact] > 0.0 && g.delta > 0.0))
     }
 
     /// Penetration of a loose joint, its rate, and whether the contact is closed.
     pub fn penetration(&self, index: usize, at: &State) -> Option<(f64, f64, bool)> {
-        let (joint, contact) = match self.joints[index].kind {
-            JointKind::Loose(i) => (&self.loose[i].term, self.loose[i].contact),
-            JointKind::Frictional(i) => {
-                (&self.frictional[i].term.joint, self.frictional[i].contact)
-            }
-            JointKind::Constraint(_) | JointKind::Eliminated(_) => return None,
-        };
+        let (joint, contact) = self.loose_joint(index)?;
         let g = joint.geometry(&at.q, &at.v);
-        let rate = crate::force::ClearanceJoint::rate(&g);
+        let rate = ClearanceJoint::rate(&g);
         Some((g.delta, rate, at.z[contact] > 0.0))
     }
 
@@ -339,7 +340,7 @@ impl Model {
 }
 
 /// Potential of a contact that is closed.
-fn closed_energy(joint: &crate::force::ClearanceJoint, at: &State, contact: usize) -> f64 {
+fn closed_energy(joint: &ClearanceJoint, at: &State, contact: usize) -> f64 {
     let delta = joint.geometry(&at.q, &at.v).delta;
     if at.z[contact] > 0.0 {
         joint.law.energy(delta)

@@ -127,6 +127,8 @@ pub(crate) enum Rule {
         /// The angle as a coordinate, of a body that has it.
         theta: Option<usize>,
         angle: Function,
+        /// -1 where the body is the one that the angle is measured from.
+        sign: f64,
     },
 }
 

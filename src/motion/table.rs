@@ -42,14 +42,6 @@ impl<const N: usize> Table<N> {
 }
 
 impl<const N: usize> Table<N> {
-    /// The spline with the opposite sign.
-    pub fn negated(mut self) -> Table<N> {
-        for row in self.values.iter_mut().chain(&mut self.curvatures) {
-            *row = row.map(|x| -x);
-        }
-        self
-    }
-
     /// Values, first and second derivatives at time t.
     pub fn derivatives(&self, t: f64) -> [[f64; N]; 3] {
         let k = self

@@ -26,22 +26,20 @@ impl Placed<'_> {
         if self.done[point.body] {
             return Some(self.position(point, state));
         }
-        let joints = self.c.scene.joints.iter().enumerate();
+        let mut joints = self.c.scene.joints.iter().enumerate();
         let prismatic =
             |j: usize| matches!(self.c.scene.joints[j].model, JointModel::Prismatic { .. });
-        joints
-            .filter_map(|(j, joint)| {
-                let partner = match () {
-                    () if joint.bearing == point => joint.journal,
-                    () if joint.journal == point => joint.bearing,
-                    () => return None,
-                };
-                let drawn = self.c.scene.initial.sketch.iter().find(|s| s.joint == j);
-                let partner = (self.done[partner.body] && !prismatic(j))
-                    .then(|| self.position(partner, state));
-                partner.or(drawn.map(|s| s.at))
-            })
-            .next()
+        joints.find_map(|(j, joint)| {
+            let partner = match () {
+                () if joint.bearing == point => joint.journal,
+                () if joint.journal == point => joint.bearing,
+                () => return None,
+            };
+            let drawn = self.c.scene.initial.sketch.iter().find(|s| s.joint == j);
+            let partner =
+                (self.done[partner.body] && !prismatic(j)).then(|| self.position(partner, state));
+            partner.or(drawn.map(|s| s.at))
+        })
     }
 
     /// Places body `b` where two of its points, or the only one it has, are known.
@@ -189,13 +187,6 @@ pub(super) fn guess(
     let mut held = vec![false; n];
     for given in &c.scene.initial.bodies {
         let body = &c.scene.bodies[given.body];
-        if c.roles[given.body] != Role::Free {
-            let message = format!(
-                "the motion of {} is prescribed; it cannot have a start of its own",
-                body.name
-            );
-            return Err(c.scene.error(given.span, message, "remove this"));
-        }
         let mut hold = |x: usize, count: usize| {
             for h in held.iter_mut().skip(x).take(count) {
                 *h = true;

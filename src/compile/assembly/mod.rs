@@ -9,7 +9,7 @@ mod velocities;
 
 use super::{Compiler, Mode, known_roles, numbering, terms};
 use crate::math::dense::Equations;
-use crate::math::plane::{cross, dot, norm, sub};
+use crate::math::plane::{norm, sub};
 use crate::model::Model;
 use crate::scene::{BodyKind, PointRef, Scene, SceneError};
 use crate::system::State;
@@ -228,15 +228,4 @@ fn check_sketch(c: &Compiler, mechanism: &Model, state: &State) -> Result<(), Sc
         }
     }
     Ok(())
-}
-
-/// Position and velocity of the reference point and the angle of a link, from its ends.
-pub(crate) fn link_start(ends: [([f64; 2], [f64; 2]); 2]) -> ([f64; 3], [f64; 3]) {
-    let [(from, from_rate), (to, to_rate)] = ends;
-    let (d, d_dot) = (sub(to, from), sub(to_rate, from_rate));
-    let omega = cross(d, d_dot) / dot(d, d);
-    (
-        [from[0], from[1], d[1].atan2(d[0])],
-        [from_rate[0], from_rate[1], omega],
-    )
 }
