@@ -527,3 +527,38 @@ bodies.bar = { x = 0.0, y = 0.0, theta = 0.1 }
         );
     }
 }
+
+/// The angle of a torsional spring is counted from the turn of its rest angle: at rest beyond half a turn it has no torque.
+#[test]
+fn a_torsion_spring_starts_in_the_turn_of_its_rest_angle() {
+    let text = head(0.01, 1e-4, 0.01, [0.0, 0.0], r#""twist.*""#)
+        + r#"
+[bodies.bar]
+type = "link"
+model = "rigid"
+length = 1.0
+section = "bar"
+material = "steel"
+[joints.O]
+type = "revolute"
+bearing = "ground.O"
+journal = "bar.start"
+model = "ideal"
+[forces.twist]
+type = "torsion_spring"
+joint = "O"
+stiffness = 3.0
+damping = 0.0
+rest_angle = 10.0
+[initial]
+bodies.bar = { x = 0.0, y = 0.0, theta = 10.0 }
+"#;
+    let (run, _) = run(&text);
+    for (torque, angle) in run.get("twist.torque").iter().zip(run.get("twist.angle")) {
+        // rounding of 10 rad
+        assert!(
+            torque.abs() < 1e-13 && (angle - 10.0).abs() < 1e-14,
+            "{torque} {angle}"
+        );
+    }
+}

@@ -46,6 +46,8 @@ pub trait Force: std::fmt::Debug + Send + Sync {
     }
     /// Adds what it does and dissipates to the integrands of the ledger \[W\].
     fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]);
+    /// Sets memory before the start.
+    fn begin(&self, _at: &mut State) {}
     /// Updates memory at an accepted state.
     fn remember(&self, _at: &mut State) {}
     /// Names and units of what [`Force::measure`] gives, three at most.

@@ -112,6 +112,10 @@ impl Force for TorsionSpring {
         powers[Integral::DampingDissipated as usize] += self.damping * rate * rate;
     }
 
+    fn begin(&self, at: &mut State) {
+        at.angles[self.memory] = self.rest_angle;
+    }
+
     fn remember(&self, at: &mut State) {
         at.angles[self.memory] = self.angle(at);
     }

@@ -487,6 +487,9 @@ impl Model {
         for &(i, value) in &self.fixed {
             state.q[i] = value;
         }
+        for acting in &self.forces {
+            acting.term.begin(&mut state);
+        }
         state
     }
 }
