@@ -42,15 +42,44 @@ fn attachment(model: &Model, point: PointRef) -> PointRef {
     }
 }
 
+/// The shares of a term in the coordinates x .. x + width, in runs of consecutive ones. A body may stand twice in a term,
+/// as the point and as the direction of one side, and the direction of a rigid body is its theta alone.
+fn runs(
+    source: Source,
+    coordinates: &[usize],
+    x: usize,
+    width: usize,
+    counts: impl Fn(usize) -> bool,
+) -> Vec<Share> {
+    let mut shares: Vec<Share> = Vec::new();
+    for (local, &i) in coordinates.iter().enumerate() {
+        if !(x..x + width).contains(&i) || !counts(local) {
+            continue;
+        }
+        let place = i - x;
+        match shares.last_mut() {
+            Some(run) if run.local + run.count == local && run.place + run.count == place => {
+                run.count += 1;
+            }
+            _ => shares.push(Share {
+                source,
+                local,
+                place,
+                count: 1,
+            }),
+        }
+    }
+    shares
+}
+
 /// The shares of all terms that belong to `point`: its body's own, and those of joints attached there.
 fn shares_of(c: &Compiler, model: &Model, own: &[Own], point: PointRef) -> Vec<Share> {
-    let Some((x, _)) = place(model, point) else {
+    let Some((x, width)) = place(model, point) else {
         return Vec::new();
     };
     let mut shares = Vec::new();
     let mut add = |source: Source, coordinates: &[usize]| {
-        let found = coordinates.iter().position(|&i| i == x);
-        shares.extend(found.map(|local| Share { source, local }));
+        shares.extend(runs(source, coordinates, x, width, |_| true));
     };
     // the masses of a body come in the order of the bodies; a flexible link has one an element
     let mut first = 0;
@@ -73,12 +102,8 @@ fn shares_of(c: &Compiler, model: &Model, own: &[Own], point: PointRef) -> Vec<S
         first += count;
     }
     let mut add_owned = |source: Source, coordinates: &[usize], owners: &[usize]| {
-        let mut places = coordinates.iter().zip(owners).enumerate();
-        // a body may stand twice in a term, as the point and as the direction of one side
-        let own = places
-            .by_ref()
-            .filter(|(_, (i, b))| **i == x && **b == point.body);
-        shares.extend(own.map(|(local, _)| Share { source, local }));
+        let own = |local: usize| owners[local] == point.body;
+        shares.extend(runs(source, coordinates, x, width, own));
     };
     for (i, placed) in model.constraints.iter().enumerate() {
         add_owned(
@@ -91,8 +116,7 @@ fn shares_of(c: &Compiler, model: &Model, own: &[Own], point: PointRef) -> Vec<S
         add_owned(Source::Force(i), &acting.block.coordinates, &acting.owners);
     }
     let mut add = |source: Source, coordinates: &[usize]| {
-        let found = coordinates.iter().position(|&i| i == x);
-        shares.extend(found.map(|local| Share { source, local }));
+        shares.extend(runs(source, coordinates, x, width, |_| true));
     };
     for (joint, own) in c.scene.joints.iter().zip(own) {
         let ends = [joint.bearing, joint.journal].map(|p| attachment(model, p));

@@ -204,7 +204,7 @@ impl Model {
                 c.term.journal_force(&at.q, &at.v, at.z[c.contact])
             }
             JointKind::Eliminated(reaction) => {
-                let force = self.reaction(reaction, 2, at, work);
+                let force = self.reaction(reaction, at, work);
                 [force[0], force[1]]
             }
         }
@@ -291,7 +291,7 @@ impl Model {
         let centre = actuator.centre.position(&at.q, actuator.centre.arm(&at.q));
         let mut torque = 0.0;
         for driven in &actuator.outboard {
-            let force = self.reaction(&driven.reaction, driven.width, at, work);
+            let force = self.reaction(&driven.reaction, at, work);
             torque += cross(sub(pair(&at.q, driven.x), centre), [force[0], force[1]]) + force[2];
         }
         torque *= actuator.sign;

@@ -8,12 +8,16 @@ use crate::force::WIDTH;
 use crate::link::ElasticRoute;
 use crate::system::{State, Work};
 
-/// What a term contributes to consecutive coordinates.
+/// What a term contributes to consecutive coordinates of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Share {
     pub(crate) source: Source,
-    /// Local index of the first coordinate.
+    /// Local index of the first of them.
     pub(crate) local: usize,
+    /// Its place among the coordinates of the point: 0 and 1 for x and y, 2 for theta of a rigid body.
+    pub(crate) place: usize,
+    /// How many they are.
+    pub(crate) count: usize,
 }
 
 /// A term of the model, by its index in the list of its kind.
@@ -43,17 +47,11 @@ pub(crate) struct DrivenForce {
 }
 
 impl Model {
-    /// Adds what `share` asks for in `width` coordinates.
-    fn add_share(
-        &self,
-        share: Share,
-        width: usize,
-        at: &State,
-        work: &mut Work,
-        out: &mut [f64; 3],
-    ) {
+    /// Adds what `share` asks for.
+    fn add_share(&self, share: Share, at: &State, work: &mut Work, out: &mut [f64; 3]) {
+        let out = &mut out[share.place..share.place + share.count];
         let mut add = |local: &[f64]| {
-            for (o, x) in out.iter_mut().zip(&local[share.local..share.local + width]) {
+            for (o, x) in out.iter_mut().zip(&local[share.local..]) {
                 *o += x;
             }
         };
@@ -61,7 +59,7 @@ impl Model {
             Source::Inertia(i) => {
                 let part = &self.mass.parts[i];
                 let n = part.coordinates.len();
-                for (o, row) in out.iter_mut().zip(share.local..share.local + width) {
+                for (o, row) in out.iter_mut().zip(share.local..) {
                     let values = &part.values[row * n..(row + 1) * n];
                     let columns = part.coordinates.iter().zip(&part.field);
                     *o += values
@@ -119,17 +117,11 @@ impl Model {
         }
     }
 
-    /// The sum of a reaction \[N\], and \[N m\] in the third place where `width` is 3.
-    pub(crate) fn reaction(
-        &self,
-        reaction: &Reaction,
-        width: usize,
-        at: &State,
-        work: &mut Work,
-    ) -> [f64; 3] {
+    /// The sum of a reaction \[N\], and \[N m\] in the third place where the coordinates are those of rigid bodies.
+    pub(crate) fn reaction(&self, reaction: &Reaction, at: &State, work: &mut Work) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for &share in &reaction.shares {
-            self.add_share(share, width, at, work, &mut sum);
+            self.add_share(share, at, work, &mut sum);
         }
         sum.map(|x| reaction.sign * x)
     }
@@ -137,7 +129,7 @@ impl Model {
     /// Power of the forces on known coordinates \[W\].
     pub(crate) fn drive_power(&self, at: &State, work: &mut Work) -> f64 {
         let power = |driven: &DrivenForce| {
-            let force = self.reaction(&driven.reaction, driven.width, at, work);
+            let force = self.reaction(&driven.reaction, at, work);
             (0..driven.width)
                 .map(|i| force[i] * at.v[driven.x + i])
                 .sum::<f64>()
