@@ -2,6 +2,7 @@
 //! acceleration, whatever the joints are made of.
 
 use crate::support::{Recording, load, run_scene};
+use ladder::{Rung, Worst};
 use looselink::scene::{BodyKind, Scene};
 
 /// A chain of a rigid link, a flexible link and a rigid body under gravity, with every kind of joint in it: the first
@@ -39,8 +40,9 @@ fn mass(kind: &BodyKind) -> f64 {
     }
 }
 
-/// Forces in every body, and the moment about the centre of mass of rigid bodies.
-fn check(name: &str, scene: &Scene, run: &Recording) {
+/// What is left of Newton's law for every body, and of Euler's about the centre of mass of rigid bodies, relative to the
+/// largest forces.
+fn check(worst: &Worst, scene: &Scene, run: &Recording) {
     let gravity = scene.simulation.gravity.unwrap_or([0.0; 2]);
     for (b, body) in scene.bodies.iter().enumerate() {
         let m = mass(&body.kind);
@@ -56,6 +58,7 @@ fn check(name: &str, scene: &Scene, run: &Recording) {
                 _ => None,
             })
             .collect();
+        worst.at(format!("on {} of {}", body.name, scene.title));
         for k in 0..run.len() {
             let mut scale = 0.0;
             let mut sum = [0.0; 2];
@@ -71,24 +74,13 @@ fn check(name: &str, scene: &Scene, run: &Recording) {
                 }
             }
             let a = ["ax", "ay"].map(|q| run.get(&format!("{}.{q}", body.name))[k]);
-            // reactions come from a linear solve of well conditioned poses: rounding of the largest force
-            let tolerance = 1e-10 * (scale + m * (a[0].abs() + a[1].abs()) + 1.0);
+            let size = scale + m * (a[0].abs() + a[1].abs()) + 1.0;
             for d in 0..2 {
-                let rest = sum[d] + m * (gravity[d] - a[d]);
-                assert!(
-                    rest.abs() < tolerance,
-                    "{name}: {} row {k}: {rest:e} of {scale:e}",
-                    body.name
-                );
+                worst.see((sum[d] + m * (gravity[d] - a[d])) / size);
             }
             if let BodyKind::Rigid(rigid) = &body.kind {
                 let alpha = run.get(&format!("{}.alpha", body.name))[k];
-                let rest = moment - rigid.inertia * alpha;
-                assert!(
-                    rest.abs() < tolerance,
-                    "{name}: moment on {} row {k}: {rest:e}",
-                    body.name
-                );
+                worst.see((moment - rigid.inertia * alpha) / size);
             }
         }
     }
@@ -97,6 +89,7 @@ fn check(name: &str, scene: &Scene, run: &Recording) {
 #[test]
 fn forces_on_every_body_are_mass_times_acceleration() {
     let channels = r#"output.channels=["*"]"#;
+    let worst = Worst::new();
     for case in [
         "case1",
         "case2",
@@ -111,19 +104,26 @@ fn forces_on_every_body_are_mass_times_acceleration() {
             channels,
         ];
         let scene = load(&format!("3rrr/{case}.toml"), &overrides);
-        check(case, &scene, &run_scene(&scene).0);
+        check(&worst, &scene, &run_scene(&scene).0);
     }
     let scene = Scene::parse("chain", CHAIN, &[]).unwrap_or_else(|e| panic!("{e}"));
     let (run, report) = run_scene(&scene);
-    check("chain", &scene, &run);
+    check(&worst, &scene, &run);
+    Rung::Balance
+        .asks("3-RRR (six scenes) and a chain of links: joint forces on every body against its inertia and weight, over the sum of forces + 1")
+        .within(&worst,
+            1e-12,
+            "reactions come from a linear solve of well conditioned poses: rounding of the largest force",
+        );
     assert_ne!(report.ledger.unwrap().gravity, 0.0);
-    // energy is exchanged between weight, motion and strain, and hardly lost
-    let exchanged = report.ledger.unwrap().kinetic;
-    assert!(
-        report.ledger.unwrap().numerical.abs() < 1e-4 * exchanged,
-        "{:?}",
-        report.ledger.unwrap()
-    );
+    let ledger = report.ledger.unwrap();
+    Rung::Balance
+        .asks("Chain of links falling for 0.02 s: numerical loss of energy over the kinetic energy")
+        .within(
+            ledger.numerical / ledger.kinetic,
+            1e-8,
+            "order 2, a hundred times the error at this step",
+        );
 }
 
 /// A uniform rod released from the horizontal: its pivot carries a quarter of its weight, its end falls with 3 g/2.
@@ -167,19 +167,19 @@ initial.bodies.rod = {{ x = X, y = 0.0, theta = 0.0 }}
     let body =
         r#"{ type = "rigid_body", mass = 0.78, inertia = 0.065, points.start = [-0.5, 0.0] }"#;
     let weight = 0.78 * 9.81;
+    let closed_form = Worst::new();
     for model in [link("rigid"), body.to_owned()] {
         let (force, ay, alpha) = rod(&model, "ground.O", "rod.start");
-        // closed form; the start is at rest and exact
-        assert!(
-            (force / (0.25 * weight) - 1.0).abs() < 1e-12,
-            "{model}: {force}"
-        );
-        assert!((ay / (-0.75 * 9.81) - 1.0).abs() < 1e-12, "{model}: {ay}");
-        assert!(
-            (alpha / (-1.5 * 9.81) - 1.0).abs() < 1e-12,
-            "{model}: {alpha}"
-        );
+        closed_form.see(force / (0.25 * weight) - 1.0);
+        closed_form.see(ay / (-0.75 * 9.81) - 1.0);
+        closed_form.see(alpha / (-1.5 * 9.81) - 1.0);
     }
+    Rung::Balance
+        .asks("Rod released from the horizontal: hinge force mg/4, accelerations 3g/4 and 3g/2l, relative error")
+        .within(&closed_form,
+            1e-12,
+            "closed form; the start is at rest and exact",
+        );
     // the force is that of the bearing on the journal, whichever carries which
     for model in [link("rigid"), body.to_owned(), link("flexible")] {
         let (force, ..) = rod(&model, "ground.O", "rod.start");

@@ -6,8 +6,8 @@ use looselink::system::{PrescribeError, Shape, State, System, Weights, Work};
 /// Masses and springs in series between walls: m_i a_i + (K q)_i = 0, undamped.
 #[derive(Debug)]
 pub struct Chain {
-    masses: Vec<f64>,
-    springs: Vec<f64>,
+    pub masses: Vec<f64>,
+    pub springs: Vec<f64>,
     symbolic: Symbolic,
 }
 
@@ -25,24 +25,10 @@ impl Chain {
         }
     }
 
-    fn stretch(&self, i: usize, q: &[f64]) -> f64 {
+    /// Of spring i, from mass i - 1 to mass i.
+    pub fn stretch(&self, i: usize, q: &[f64]) -> f64 {
         let at = |k: usize| if k == 0 || k > q.len() { 0.0 } else { q[k - 1] };
         at(i + 1) - at(i)
-    }
-
-    pub fn energy(&self, s: &State) -> f64 {
-        let kinetic: f64 = self
-            .masses
-            .iter()
-            .zip(&s.v)
-            .map(|(m, v)| 0.5 * m * v * v)
-            .sum();
-        let stored = self
-            .springs
-            .iter()
-            .enumerate()
-            .map(|(i, k)| 0.5 * k * self.stretch(i, &s.q).powi(2));
-        kinetic + stored.sum::<f64>()
     }
 }
 
@@ -102,8 +88,10 @@ impl System for Chain {
     fn commit(&self, _: &mut State, _: f64, _: &mut dyn FnMut(usize, f64, f64)) -> usize {
         0
     }
-    fn powers(&self, _: &mut State, _: &mut Work) -> usize {
-        0
+    /// Integrands of known integrals, the first three powers of t; one clamp a state.
+    fn powers(&self, at: &mut State, _: &mut Work) -> usize {
+        at.powers[..3].copy_from_slice(&[1.0, at.t, at.t * at.t]);
+        1
     }
     fn unknown_name(&self, index: usize) -> String {
         format!("mass {index}")

@@ -1,9 +1,11 @@
 //! The battery of contact laws: every law of the registry against the definitions.
 
 use approx::assert_relative_eq;
+use ladder::{Rung, Worst};
 use looselink::contact::{
-    Ambrosio, Flores, Hertz, HuntCrossley, LAWS, LankaraniNikravesh, NormalLaw,
+    Ambrosio, Flores, Hertz, HuntCrossley, LAWS, LankaraniNikravesh, NormalLaw, normal_law,
 };
+use looselink::scene::{Contact, NormalLawKind};
 use proptest::prelude::*;
 
 const K: f64 = 1.2e11;
@@ -18,26 +20,31 @@ fn laws(restitution: f64) -> Vec<Box<dyn NormalLaw>> {
     registered.chain(other_exponent).collect()
 }
 
-proptest! {
-    #[test]
-    fn slopes_are_the_derivatives(
+#[test]
+fn slopes_are_the_derivatives() {
+    let worst = Worst::new();
+    proptest!(|(
         delta in 1e-8..1e-5_f64, rate in -0.02..0.05_f64, impact in 0.01..0.1_f64, restitution in 0.5..0.99_f64,
-    ) {
+    )| {
         for law in laws(restitution) {
             let at = law.force(delta, rate, impact);
             prop_assume!(!at.clamped);
             let (hd, hr) = (1e-5 * delta, 1e-5 * impact);
             let by_delta = (law.force(delta + hd, rate, impact).value - law.force(delta - hd, rate, impact).value) / (2.0 * hd);
             let by_rate = (law.force(delta, rate + hr, impact).value - law.force(delta, rate - hr, impact).value) / (2.0 * hr);
-            // truncation (1e-5)^2 and rounding 1e-16/1e-5, both relative
-            prop_assert!((by_delta - at.by_delta).abs() <= 1e-9 * at.by_delta.abs(), "{}", law.name());
-            prop_assert!((by_rate - at.by_rate).abs() <= 1e-9 * at.value / impact, "{}", law.name());
+            worst.see(if by_delta == at.by_delta { 0.0 } else { by_delta / at.by_delta - 1.0 });
+            worst.see((by_rate - at.by_rate) * impact / at.value);
             // the elastic part is the derivative of the energy
             let elastic = (law.energy(delta + hd) - law.energy(delta - hd)) / (2.0 * hd);
-            prop_assert!((elastic - at.elastic).abs() <= 1e-9 * at.elastic, "{}", law.name());
+            worst.see(elastic / at.elastic - 1.0);
         }
-    }
+    });
+    Rung::Derivatives
+        .asks("Do the slopes of every contact law agree with differences, and the elastic force with its energy? Relative error")
+        .within(&worst, 1e-9, "a central difference over 1e-5 of each quantity: truncation 1e-10, rounding 1e-11");
+}
 
+proptest! {
     #[test]
     fn a_contact_never_pulls(delta in 1e-9..1e-4_f64, rate in -10.0..10.0_f64, impact in 1e-9..1.0_f64) {
         for law in laws(0.3) {
@@ -111,6 +118,7 @@ fn delivered_restitution_follows_the_exact_map() {
         (0.3, 0.684224605749448, 0.581288041808574, 0.256207906679824),
         (0.1, 0.66526540675515, 0.515832616400396, 0.0694442251515404),
     ];
+    let worst = Worst::new();
     for (typed, ln, hc, flores) in table {
         let laws: [Box<dyn NormalLaw>; 3] = [
             Box::new(LankaraniNikravesh::new(K, 1.5, typed, 1e-6)),
@@ -118,8 +126,68 @@ fn delivered_restitution_follows_the_exact_map() {
             Box::new(Flores::new(K, 1.5, typed, 1e-6)),
         ];
         for (law, expected) in laws.iter().zip([ln, hc, flores]) {
-            // the equation is flat near e = 1: a rounding of chi^2 becomes 1e-16/chi
-            assert_relative_eq!(law.delivered_restitution(), expected, max_relative = 2e-14);
+            worst.see(law.delivered_restitution() / expected - 1.0);
         }
     }
+    Rung::Published
+        .asks("Is the restitution that a free impact delivers that of the exact map, for three laws? Relative error")
+        .within(&worst, 2e-14, "the equation is flat near e = 1: a rounding of chi² becomes 1e-16/chi");
+}
+
+/// The law that a contact of a scene names, with its numbers.
+#[test]
+fn laws_are_built_from_contacts() {
+    let contact = |law: NormalLawKind| Contact {
+        bearing_radius: 0.01,
+        clearance: 2e-5,
+        law,
+        stiffness: 3e9,
+        exponent: 1.3,
+        restitution: 0.6,
+        impact_velocity_floor: 0.02,
+        friction: None,
+    };
+    let (delta, rate, impact) = (2e-6, 0.03, 0.05);
+    let elastic = 3e9 * 2e-6_f64.powf(1.3);
+    for (kind, name, chi) in [
+        (NormalLawKind::Hertz, "hertz", 0.0),
+        (
+            NormalLawKind::LankaraniNikravesh,
+            "lankarani_nikravesh",
+            0.75 * (1.0 - 0.36),
+        ),
+        (NormalLawKind::HuntCrossley, "hunt_crossley", 1.5 * 0.4),
+        (NormalLawKind::Flores, "flores", 8.0 * 0.4 / 3.0),
+    ] {
+        let law = normal_law(&contact(kind));
+        assert_eq!(law.name(), name);
+        let expected = elastic * (1.0 + chi * rate / impact);
+        assert_relative_eq!(
+            law.force(delta, rate, impact).value,
+            expected,
+            max_relative = 1e-14
+        );
+        // below the floor the impact velocity is the floor
+        assert_eq!(law.force(delta, rate, 0.0), law.force(delta, rate, 0.02));
+        assert_relative_eq!(
+            law.energy(delta),
+            elastic * delta / 2.3,
+            max_relative = 1e-14
+        );
+        assert_eq!(law.energy(0.0), 0.0);
+        assert_eq!(law.energy(-1e-6), 0.0);
+    }
+}
+
+/// Where the bracket of the damped law is zero the force vanishes with its slope by the rate, and is not yet clamped.
+#[test]
+fn the_clamp_begins_where_the_law_would_pull() {
+    let law = LankaraniNikravesh::new(K, 1.5, 0.5, 1e-9);
+    let chi = 0.75 * (1.0 - 0.25);
+    // powers of two: the bracket is zero to the last bit
+    let (impact, rate) = (0.5625, -1.0);
+    assert_eq!(1.0 + chi / impact * rate, 0.0);
+    let at = law.force(1e-6, rate, impact);
+    assert!(!at.clamped && at.value == 0.0 && at.by_rate > 0.0);
+    assert!(law.force(1e-6, rate * (1.0 + 1e-15), impact).clamped);
 }

@@ -1,5 +1,7 @@
 //! Compares hand-written derivatives with central differences, in a way that can fail.
 
+use ladder::Rung;
+
 /// Largest difference between `tangent` (rows of n) and the central difference of `force` at `x` with step `h`.
 fn error(force: &dyn Fn(&[f64]) -> Vec<f64>, tangent: &[Vec<f64>], x: &[f64], h: f64) -> f64 {
     let mut worst = 0.0_f64;
@@ -40,15 +42,25 @@ pub fn check(
         error(force, tangent, x, h / 4.0),
     );
     if exact {
-        // rounding of the force over the step
-        assert!(fine < 1e-7 * size, "{name}: {fine:e} of {size:e}");
+        Rung::Derivatives
+            .asks(format!(
+                "Is the tangent of {name} its derivative? Relative error"
+            ))
+            .within(
+                fine / size,
+                1e-7,
+                "quadratic at most: rounding of the force over the span of the difference",
+            );
         return;
     }
-    assert!(fine > 0.0, "{name}: equal to the last bit");
-    let order = (coarse / fine).log(4.0);
-    assert!(
-        (1.8..2.2).contains(&order),
-        "{name}: order {order}, errors {coarse:e} and {fine:e} of {size:e}"
-    );
+    let errors = [(h, coarse / size), (h / 4.0, fine / size)];
+    Rung::Derivatives
+        .asks(format!("Is the tangent of {name} its derivative?"))
+        .falls(
+            "Span of the difference",
+            &errors,
+            1.8..2.2,
+            "the error of a central difference",
+        );
     assert!(fine < 1e-3 * size, "{name}: {fine:e} of {size:e}");
 }

@@ -1,7 +1,8 @@
 //! Cases 1 and 2: ideal joints.
 
 use crate::rrr;
-use crate::support::{assert_order, load, rms_difference, run};
+use crate::support::{Recording, load, rms_difference, run};
+use ladder::{Rung, Worst};
 use looselink::simulate::Simulation;
 
 #[test]
@@ -40,11 +41,15 @@ fn case_1_is_the_ideal_mechanism() {
     let channels = r#"output.channels=["*"]"#;
     let (run, _) = run("3rrr/case1.toml", &[&step[..], &[channels]].concat());
     assert_eq!(run.len(), 2001);
+    let errors = Worst::new();
     for name in ["error.x", "error.y", "error.theta"] {
-        // rounding of coordinates near 0.4 m
-        assert!(run.get(name).iter().all(|e| e.abs() < 1e-12), "{name}");
+        run.get(name).iter().for_each(|e| errors.see(*e));
     }
+    Rung::Routes
+        .asks("Ideal 3-RRR (case 1): distance of the platform from its path over 2 s [m, rad]")
+        .within(&errors, 1e-14, "rounding of coordinates near 0.4 m");
     let t = run.get("t");
+    let dynamics = Worst::new();
     let close = |name: &str, expected: &dyn Fn(&rrr::Instant) -> f64| {
         let values = run.get(name);
         let exact: Vec<f64> = t
@@ -53,17 +58,13 @@ fn case_1_is_the_ideal_mechanism() {
             .collect();
         let size = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         assert!(size > 0.1, "{name} is not tested");
-        for (k, (value, exact)) in values.iter().zip(&exact).enumerate() {
+        for (value, exact) in values.iter().zip(&exact) {
             let mut difference = value - exact;
             if name.ends_with("angle") {
                 difference -= std::f64::consts::TAU * (difference / std::f64::consts::TAU).round();
             }
-            // both are direct solves: rounding times the condition of the pose
-            assert!(
-                difference.abs() <= 1e-8 * size,
-                "{name} at {}: {value} {exact}",
-                t[k]
-            );
+            dynamics.at(name);
+            dynamics.see(difference / size);
         }
     };
     let w = std::f64::consts::TAU;
@@ -79,18 +80,28 @@ fn case_1_is_the_ideal_mechanism() {
             close(&joint("C", quantity), &|x| x.c[i][d]);
         }
     }
+    Rung::Routes
+        .asks("Ideal 3-RRR (case 1): angles, speeds, torques and joint forces against inverse dynamics with Newton-Euler, over the largest")
+        .within(&dynamics,
+            1e-12,
+            "both are direct solves: rounding times the condition of the pose",
+        );
+    let platform = Worst::new();
     for (name, amplitude, phase) in [
         ("platform.vx", 0.1 * w, 0.25),
         ("platform.ax", 0.1 * w * w, 0.5),
     ] {
         for (t, value) in t.iter().zip(run.get(name)) {
             let exact = amplitude * (w * (t + phase)).cos();
-            assert!(
-                (value - exact).abs() <= 1e-8 * amplitude,
-                "{name} at {t}: {value} {exact}"
-            );
+            platform.see((value - exact) / amplitude);
         }
     }
+    Rung::Routes
+        .asks("Ideal 3-RRR (case 1): velocity and acceleration of the platform against those of its path, over their amplitudes")
+        .within(&platform,
+            1e-12,
+            "a direct solve: rounding times the condition of the pose",
+        );
 }
 
 /// The compiled inverse kinematics, whatever the elements and the joints, is the closed form.
@@ -104,13 +115,14 @@ fn the_drive_is_the_closed_form() {
             r#"output.channels=["A*"]"#,
         ],
     );
+    let worst = Worst::new();
     for (t, speed) in run.get("t").iter().zip(run.get("A2.speed")) {
         let exact = rrr::inverse_dynamics(*t).drives[1][1];
-        assert!(
-            (speed - exact).abs() < 1e-12 * exact.abs().max(1.0),
-            "{speed} {exact}"
-        );
+        worst.see((speed - exact) / exact.abs().max(1.0));
     }
+    Rung::Routes
+        .asks("3-RRR with loose joints (case 3): speed of a drive against closed-form kinematics, relative error (below 1 rad/s: absolute)")
+        .within(&worst, 1e-12, "rounding");
 }
 
 /// Order 2 in every output; the reference is the same method at 6.25e-8 s. Positions from 2e-5 s on; accelerations and
@@ -137,16 +149,29 @@ fn case_2_converges_at_order_two() {
     let runs: Vec<_> = steps.iter().map(|&h| at(h)).collect();
     let errors = |name: &str, from: usize| -> Vec<(f64, f64)> {
         let exact = reference.get(name);
-        let error = |(h, run): (&f64, &crate::support::Recording)| {
-            (*h, rms_difference(&run.get(name), &exact))
-        };
+        let error = |(h, run): (&f64, &Recording)| (*h, rms_difference(&run.get(name), &exact));
         steps.iter().zip(&runs).skip(from).map(error).collect()
     };
-    assert_order("platform.x", &errors("platform.x", 0), 1.8..2.2);
-    assert_order("platform.vx", &errors("platform.vx", 3), 1.8..2.2);
-    assert_order("platform.ax", &errors("platform.ax", 3), 1.8..2.2);
-    assert_order("B1.fx", &errors("B1.fx", 3), 1.8..2.2);
-    assert_order("A1.torque", &errors("A1.torque", 3), 1.8..2.2);
+    let smooth = "order 2 of Bathe's scheme; against a step of 6.25e-8 s";
+    let rings = "order 2 from 2e-6 s on: the unstrained start rings the axial modes, which coarser steps do not resolve";
+    for (name, quantity, from, reason) in [
+        ("platform.x", "place of the platform [m]", 0, smooth),
+        ("platform.vx", "velocity of the platform [m/s]", 3, rings),
+        (
+            "platform.ax",
+            "acceleration of the platform [m/s²]",
+            3,
+            rings,
+        ),
+        ("B1.fx", "force in a joint [N]", 3, rings),
+        ("A1.torque", "torque of a drive [N m]", 3, rings),
+    ] {
+        Rung::OrderInTime
+            .asks(format!(
+                "3-RRR with flexible links (case 2): {quantity}, root mean square over 0.02 s"
+            ))
+            .falls("Step h [s]", &errors(name, from), 1.8..2.2, reason);
+    }
 }
 
 /// Numerical dissipation over case 2 is of order 2 in h once the axial modes are resolved.
@@ -162,7 +187,14 @@ fn case_2_numerical_dissipation_has_order_two() {
         report.ledger.unwrap().numerical.abs()
     };
     let errors: Vec<_> = steps.iter().map(|&h| (h, numerical(h))).collect();
-    assert_order("numerical dissipation", &errors, 1.8..2.2);
+    Rung::OrderInTime
+        .asks("3-RRR with flexible links (case 2): numerical loss of energy over 0.02 s [J]")
+        .falls(
+            "Step h [s]",
+            &errors,
+            1.8..2.2,
+            "order 2 once the axial modes are resolved",
+        );
 }
 
 /// A crank described as a rigid body is the same crank: every recorded number agrees to rounding, the work among them.
@@ -177,6 +209,7 @@ fn a_crank_may_be_a_rigid_body() {
             )
         })
         .collect();
+    let worst = Worst::new();
     for case in [1, 2, 4] {
         let scene = format!("3rrr/case{case}.toml");
         let channels =
@@ -189,19 +222,24 @@ fn a_crank_may_be_a_rigid_body() {
         for name in links.names() {
             let (a, b) = (links.get(name), bodies.get(name));
             let size = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-            // the consistent mass of natural coordinates is that of the rod; positions are rounded differently, which
-            // EA = 1e6 N turns into 1e-10 N and a hundredth of a kilogram into 1e-8 m/s2 a step
-            let rounding = 1e-6 * size.max(1e-3);
             for (x, y) in a.iter().zip(&b) {
-                assert!((x - y).abs() <= rounding, "case {case} {name}: {x} {y}");
+                worst.at(format!("in {name} of case {case}"));
+                worst.see((x - y) / size.max(1e-3));
             }
         }
     }
+    Rung::Routes
+        .asks("3-RRR (cases 1, 2, 4) with cranks as links or as rigid bodies: every recorded number, over max(largest, 1e-3)")
+        .within(&worst,
+            1e-6,
+            "positions are rounded differently, which EA = 1e6 N turns into 1e-10 N and 0.01 kg into 1e-8 m/s² a step",
+        );
 }
 
 /// Torque times speed of the recorded drives integrates to the recorded work, by Simpson's rule over the rows.
 #[test]
 fn drive_power_integrates_to_the_work() {
+    let worst = Worst::new();
     for case in [1, 2] {
         let scene = format!("3rrr/case{case}.toml");
         let channels = r#"output.channels=["A*", "energy.*"]"#;
@@ -229,10 +267,12 @@ fn drive_power_integrates_to_the_work() {
         let work = run.get("energy.work")[last];
         let integral = simpson * 4e-6 / 3.0;
         assert!(work.abs() > 1e-3);
-        // order 2 in the step for the stage values of case 2; its ringing power is a hundred times the mean one
-        assert!(
-            (integral - work).abs() < 1e-6 * work.abs(),
-            "case {case}: {integral} {work}"
-        );
+        worst.see(integral / work - 1.0);
     }
+    Rung::Balance
+        .asks("3-RRR (cases 1 and 2): torque times speed of the drives by Simpson's rule against the recorded work, relative error")
+        .within(&worst,
+            1e-9,
+            "order 4 of Simpson's rule; in case 2 the ringing power is a hundred times the mean one",
+        );
 }

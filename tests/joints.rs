@@ -1,6 +1,7 @@
 //! Loose joints: forces, tangents with all their couplings, and the balance of force and moment.
 
 use crate::differencing;
+use ladder::{Rung, Worst};
 use looselink::contact::{Ambrosio, LankaraniNikravesh};
 use looselink::force::{ClearanceJoint, FrictionalJoint};
 use looselink::marker::{Marker, Spin};
@@ -71,7 +72,7 @@ fn check(name: &str, local: &[usize], evaluate: Evaluate) {
         };
         // by the velocities the normal force is linear and friction piecewise quadratic
         differencing::check(
-            &format!("{name} by {level}"),
+            &format!("the loose joint, {name}, by {level}"),
             &force,
             &rows,
             &x,
@@ -84,9 +85,9 @@ fn check(name: &str, local: &[usize], evaluate: Evaluate) {
 #[test]
 fn tangents_without_friction() {
     for (name, bearing, journal) in [
-        ("node-body", NODE, BODY),
-        ("body-node", BODY, NODE),
-        ("body-body", BODY, OTHER),
+        ("node in body", NODE, BODY),
+        ("body in node", BODY, NODE),
+        ("body in body", BODY, OTHER),
     ] {
         let joint = joint(bearing, journal);
         check(name, &joint.coordinates(), &|q, v, w, f, k| {
@@ -121,7 +122,10 @@ fn tangents_with_friction() {
                 friction.force_and_tangent(q, v, 0.5, w, f, k).is_some()
             };
             check(
-                &format!("{slip:?} {name}"),
+                &format!(
+                    "with friction, {} slip, {name}",
+                    format!("{slip:?}").to_lowercase()
+                ),
                 &friction.coordinates(),
                 &evaluate,
             );
@@ -153,10 +157,13 @@ fn friction_balances_and_dissipates() {
     let moment = f[2] + f[5] + q[4] * f[1] - q[5] * f[0] + q[7] * f[4] - q[8] * f[3];
     let g = joint.joint.geometry(&q, &v);
     let (_, tangential) = joint.forces(&q, &v, 0.5).expect("the surfaces touch");
-    assert!(
-        (moment - tangential.value * g.delta).abs() <= 1e-14 * scale,
-        "{moment:e}"
-    );
+    Rung::Balance
+        .asks("Do the forces of a loose joint with friction keep no moment but T δ? Relative to the force")
+        .within(
+            (moment - tangential.value * g.delta) / scale,
+            1e-14,
+            "a few roundings",
+        );
     assert!(joint.dissipation(&q, &v, 0.5) > 0.0);
     // the work of the local force is what elastic and dissipated power add up to
     let power: f64 = joint
@@ -170,10 +177,9 @@ fn friction_balances_and_dissipates() {
         .normal_force(&g, 0.5)
         .expect("the surfaces touch");
     let expected = normal.value * ClearanceJoint::rate(&g) + joint.dissipation(&q, &v, 0.5);
-    assert!(
-        (power - expected).abs() <= 1e-14 * power.abs().max(scale),
-        "{power} {expected}"
-    );
+    Rung::Balance
+        .asks("Is the power of a loose joint with friction what it stores and dissipates? Relative error")
+        .within((power - expected) / power.abs().max(scale), 1e-14, "a few roundings");
 }
 
 #[test]
@@ -186,4 +192,62 @@ fn no_normal_is_asked_for_at_the_centre() {
     assert!(joint.force(&q, &v, 0.5, &mut f).is_none());
     assert_eq!(f, [0.0; 8]);
     assert!(ClearanceJoint::rate(&joint.geometry(&q, &v)) > 0.0);
+}
+
+/// Both slip velocities by their definitions (eqs. 22-23 as printed; the material's with the radii), the law on them, and
+/// the force on the journal.
+#[test]
+fn friction_follows_the_definitions_of_slip() {
+    let (q, v) = coordinates();
+    let law = Ambrosio {
+        coefficient: 0.3,
+        v0: 0.01,
+        v1: 3.0,
+    };
+    let spins = [Spin::Angle { theta: 6 }, Spin::Angle { theta: 9 }];
+    let (bearing_radius, clearance) = (0.2, 0.03);
+    let arm = |theta: f64, s: [f64; 2]| {
+        let (sine, cosine) = theta.sin_cos();
+        [cosine * s[0] - sine * s[1], sine * s[0] + cosine * s[1]]
+    };
+    let (a, b) = (arm(q[6], [0.02, 0.05]), arm(q[9], [-0.03, 0.01]));
+    let e = [q[7] + b[0] - q[4] - a[0], q[8] + b[1] - q[5] - a[1]];
+    let e_dot = [
+        v[7] - v[9] * b[1] - v[4] + v[6] * a[1],
+        v[8] + v[9] * b[0] - v[5] - v[6] * a[0],
+    ];
+    let distance = e[0].hypot(e[1]);
+    let (n, delta) = ([e[0] / distance, e[1] / distance], distance - clearance);
+    let sliding = -e_dot[0] * n[1] + e_dot[1] * n[0];
+    let rate = e_dot[0] * n[0] + e_dot[1] * n[1];
+    let chi = 0.75 * (1.0 - 0.49);
+    let normal = 50.0 * delta.powf(1.5) * (1.0 + chi * rate / 0.5);
+    let worst = Worst::new();
+    for (slip, velocity) in [
+        (Slip::Paper, sliding * delta / distance),
+        (
+            Slip::Material,
+            sliding + v[9] * (bearing_radius - clearance) - v[6] * bearing_radius,
+        ),
+    ] {
+        assert!(velocity.abs() > law.v0, "the law must act");
+        let joint = FrictionalJoint::new(joint(BODY, OTHER), law, slip, bearing_radius, spins);
+        let (pressed, rubbed) = joint.forces(&q, &v, 0.5).expect("the surfaces touch");
+        let size = (velocity.abs() - law.v0) / (law.v1 - law.v0) * 0.3 * normal;
+        let tangential = size * velocity.signum();
+        worst.see(pressed.value / normal - 1.0);
+        worst.see(rubbed.value / tangential - 1.0);
+        let force = joint.journal_force(&q, &v, 0.5);
+        worst.see((force[0] + normal * n[0] - tangential * n[1]) / normal);
+        worst.see((force[1] + normal * n[1] + tangential * n[0]) / normal);
+        // friction takes the power of the velocities that it acts on
+        let taken = match slip {
+            Slip::Paper => tangential * sliding,
+            Slip::Material => tangential * velocity,
+        };
+        worst.see((joint.dissipation(&q, &v, 0.5) - taken) / taken);
+    }
+    Rung::Identities
+        .asks("Do normal force, friction, force on the journal and power follow their definitions, for both slips? Relative error")
+        .within(&worst, 1e-13, "rounding; delta is a difference of numbers twice its size");
 }

@@ -1,23 +1,22 @@
 //! The scenes with published or exact answers, run as they stand in the folder.
-//!
-//! Tolerances are about three times the errors measured at the step of each scene.
 
-use crate::support::{Recording, assert_fitted_order, run};
+use crate::support::{Recording, run};
+use ladder::{Rung, Worst};
 
-/// Asserts that channels have the given values in the row nearest to `t`.
-fn check(scene: &str, run: &Recording, t: f64, expected: &[(&str, f64)], tolerance: f64) {
+const MEASURED: &str = "a few times the error measured at the step of the scene";
+
+/// Largest difference of channels from the given values in the row nearest to `t`.
+fn error(run: &Recording, t: f64, expected: &[(&str, f64)]) -> f64 {
     let times = run.get("t");
     let row = (0..times.len())
         .min_by(|a, b| (times[*a] - t).abs().total_cmp(&(times[*b] - t).abs()))
         .unwrap();
-    assert!((times[row] - t).abs() < 1e-9, "{scene} has no row at {t}");
+    assert!((times[row] - t).abs() < 1e-9, "no row at {t}");
+    let worst = Worst::new();
     for (name, value) in expected {
-        let found = run.get(name)[row];
-        assert!(
-            (found - value).abs() < tolerance,
-            "{scene}, {name} at {t}: {found}, not {value}"
-        );
+        worst.see(run.get(name)[row] - value);
     }
+    worst.value()
 }
 
 /// Closed forms of A01 and A02 of the IFToMM library.
@@ -25,12 +24,16 @@ fn check(scene: &str, run: &Recording, t: f64, expected: &[(&str, f64)], toleran
 fn rigid_pendula() {
     let (x, y) = ("points.rod.bob.x", "points.rod.bob.y");
     let (pendulum, _) = run("pendulum.toml", &[]);
+    let worst = Worst::new();
     for (t, at) in [
         (2.0, [-0.7935661953433217, -0.6084839304437915]),
         (10.0, [-0.2750874625761169, -0.9614192050991251]),
     ] {
-        check("pendulum", &pendulum, t, &[(x, at[0]), (y, at[1])], 1e-6);
+        worst.see(error(&pendulum, t, &[(x, at[0]), (y, at[1])]));
     }
+    Rung::Published
+        .asks("Scene of the pendulum: place after 2 and 10 s against the closed form [m]")
+        .within(&worst, 1e-6, MEASURED);
     let (windows, _) = run("n-four-bar.toml", &[]);
     let expected = [
         ("points.crank0.end.x", 0.3284583115408154),
@@ -38,10 +41,17 @@ fn rigid_pendula() {
         ("points.crank0.end.vx", 1.423051470206944),
         ("points.crank0.end.vy", -0.494868845487043),
     ];
-    check("n-four-bar", &windows, 10.0, &expected, 1.2e-6);
-    // it stays a row of parallelograms when it goes through its singular poses
+    Rung::Published
+        .asks("Scene of four-bar windows: place and velocity after 10 s against the closed form [m, m/s]")
+        .within(error(&windows, 10.0, &expected), 1.2e-6, MEASURED);
     let [a, b] = ["points.crank0.end.y", "points.crank2.end.y"].map(|name| windows.get(name));
-    assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-12));
+    let apart = Worst::new();
+    for (a, b) in a.iter().zip(&b) {
+        apart.see(a - b);
+    }
+    Rung::HardCases
+        .asks("Scene of four-bar windows: do cranks stay parallel through singular poses? Difference of their heights [m]")
+        .within(&apart, 1e-12, "rounding; in another branch the cranks turn apart");
 }
 
 #[test]
@@ -54,9 +64,13 @@ fn springs() {
         ("points.bob.center.vx", -0.6315526595574175),
         ("points.bob.center.vy", 0.8772895105102342),
     ];
-    check("stiff-spring-pendulum", &pendulum, 10.0, &expected, 2.5e-8);
+    Rung::Published
+        .asks(
+            "Scene of the stiff spring pendulum: published place and velocity after 10 s [m, m/s]",
+        )
+        .within(error(&pendulum, 10.0, &expected), 2.5e-8, MEASURED);
 
-    // The recursion of the scheme in forty digits: no error of its own but rounding, of accelerations that of 1e7 N/m.
+    let worst = Worst::new();
     let (springs, report) = run("three-spring.toml", &[]);
     for (t, u3, v2, a2) in [
         (
@@ -78,10 +92,15 @@ fn springs() {
             0.2110377633458582,
         ),
     ] {
-        check("three-spring", &springs, t, &[("node3.x", u3)], 1e-13);
-        check("three-spring", &springs, t, &[("node2.vx", v2)], 1e-13);
-        check("three-spring", &springs, t, &[("node2.ax", a2)], 1e-8);
+        worst.see(error(&springs, t, &[("node3.x", u3), ("node2.vx", v2)]) / 1e-13);
+        worst.see(error(&springs, t, &[("node2.ax", a2)]) / 1e-8);
     }
+    Rung::Published
+        .asks("Scene of three springs: the recursion of the scheme in forty digits, in units of 1e-13 m, 1e-13 m/s and 1e-8 m/s²")
+        .within(&worst,
+            1.0,
+            "no error of its own but rounding, of accelerations that of 1e7 N/m",
+        );
     assert!(report.ledger.unwrap().work > 1.0);
 }
 
@@ -90,40 +109,42 @@ fn springs() {
 fn flexible_links() {
     let tip = |x, y| [("points.rod.end.x", x), ("points.rod.end.y", y)];
     let (soft, _) = run("soft-pendulum.toml", &[]);
-    check(
-        "soft-pendulum",
-        &soft,
-        0.5,
-        &tip(0.37440255359, -1.22867318529),
-        2e-7,
-    );
-    check(
-        "soft-pendulum",
-        &soft,
-        1.1,
-        &tip(-1.01422964674, 0.08671153848),
-        1e-6,
-    );
+    let early = tip(0.37440255359, -1.22867318529);
+    let late = tip(-1.01422964674, 0.08671153848);
     let (stiff, _) = run("stiff-pendulum.toml", &[]);
-    check(
-        "stiff-pendulum",
-        &stiff,
-        1.0,
-        &tip(-0.9999668924, -0.0081396260),
-        3e-7,
-    );
+    let rigid = tip(-0.9999668924, -0.0081396260);
+    let worst = Worst::new();
+    for (run, t, expected, allowed) in [
+        (&soft, 0.5, early, 2e-7),
+        (&soft, 1.1, late, 1e-6),
+        (&stiff, 1.0, rigid, 3e-7),
+    ] {
+        worst.see(error(run, t, &expected) / allowed);
+    }
+    Rung::Published
+        .asks("Scenes of the soft and the stiff pendulum: listed places of the tip, in units of 2e-7, 1e-6 and 3e-7 m")
+        .within(&worst, 1.0, MEASURED);
 
     let tip = |x, y| [("points.beam.end.x", x), ("points.beam.end.y", y)];
     let (cantilever, _) = run("cantilever-static.toml", &[]);
     let expected = tip(2.0 - 0.509285882511, -1.207364220014);
-    // the digits listed
-    check("cantilever-static", &cantilever, 1.0, &expected, 1e-11);
+    Rung::Published
+        .asks("Scene of the static cantilever: listed place of the tip [m]")
+        .within(
+            error(&cantilever, 1.0, &expected),
+            1e-11,
+            "the digits listed",
+        );
     let (falling, _) = run("cantilever-dynamic.toml", &[]);
     let expected = tip(2.0 - 0.50208361507, -1.23254150237);
-    check("cantilever-dynamic", &falling, 20.0, &expected, 1.5e-4);
+    Rung::Published
+        .asks("Scene of the falling cantilever: place of the tip after 20 s against the listed equilibrium [m]")
+        .within(error(&falling, 20.0, &expected), 1.5e-4, MEASURED);
     let (circle, _) = run("roll-up.toml", &[]);
     let [x, y] = ["x", "y"].map(|i| *circle.get(&format!("points.beam.end.{i}")).last().unwrap());
-    assert!((x.hypot(y) / 9.91e-5 - 1.0).abs() < 1e-3, "{x} {y}");
+    Rung::Published
+        .asks("Scene of the roll-up: listed distance of the tip from the clamp, relative error")
+        .within(x.hypot(y) / 9.91e-5 - 1.0, 1e-3, "three digits are listed");
 }
 
 /// The blade ends steadily longer by the closed form, and the work of its drive is what its energy grows by.
@@ -136,27 +157,42 @@ fn spin_up() {
     let mean = (late..x.len())
         .map(|k| (x[k].hypot(y[k]) - 10.0) / count)
         .sum::<f64>();
-    // the blade still vibrates a little
-    assert!((mean / 5.142698461778e-4 - 1.0).abs() < 1e-4, "{mean:e}");
+    Rung::Published
+        .asks("Scene of the spin-up: mean extension from 18 s on against the closed form, relative error")
+        .within(
+            mean / 5.142698461778e-4 - 1.0,
+            1e-4,
+            "the blade still vibrates a little",
+        );
     let ledger = report.ledger.unwrap();
-    assert!(ledger.numerical.abs() < 1e-5 * ledger.kinetic, "{ledger:?}");
+    Rung::Balance
+        .asks("Scene of the spin-up: numerical loss of energy over the kinetic energy")
+        .within(ledger.numerical / ledger.kinetic, 1e-5, MEASURED);
 }
 
 #[test]
 fn driven_mechanisms() {
     let (ideal, _) = run("slider-crank/ideal.toml", &[]);
     let [r, l, w] = [0.05_f64, 0.12, 523.598775598299];
+    let worst = Worst::new();
     for (t, x) in ideal.get("t").iter().zip(ideal.get("slider.x")) {
         let exact = r * (w * t).cos() + (l * l - (r * (w * t).sin()).powi(2)).sqrt();
-        // rounding
-        assert!((x - exact).abs() < 1e-14, "{t}: {x} {exact}");
+        worst.see(x - exact);
     }
-    // The lever swings by asin(0.1/0.25) to both sides; a row every 1/500 of a turn.
+    Rung::Routes
+        .asks("Scene of the ideal slider-crank: place of the slider against the closed form [m]")
+        .within(&worst, 1e-14, "rounding");
     let (shaper, _) = run("quick-return.toml", &[]);
     let x = shaper.get("points.lever.end.x");
-    let least = x.iter().copied().fold(f64::INFINITY, f64::min);
-    let greatest = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    assert!((greatest - least - 0.4).abs() < 1e-5, "{least} {greatest}");
+    let least = x.iter().copied().min_by(f64::total_cmp).unwrap();
+    let greatest = x.iter().copied().max_by(f64::total_cmp).unwrap();
+    Rung::Routes
+        .asks("Scene of the quick return: stroke of the lever's end against the closed form [m]")
+        .within(
+            greatest - least - 0.4,
+            1e-5,
+            "the lever swings by asin(0.1/0.25) to both sides; a row every 1/500 of a turn",
+        );
 }
 
 /// The loose slider-crank runs twenty turns, and its first three impacts converge at the order of the scheme.
@@ -167,10 +203,13 @@ fn a_loose_slider_crank() {
     assert!((report.t - 0.24).abs() < 1e-15);
     assert_eq!(report.rejected_steps + report.unlocated_changes, 0);
     let ledger = report.ledger.unwrap();
-    assert!(
-        ledger.numerical.abs() < 1e-3 * ledger.contact_dissipated,
-        "{ledger:?}"
-    );
+    Rung::HardCases
+        .asks("Scene of the loose slider-crank, 20 turns: numerical loss of energy over what the contact dissipates")
+        .within(
+            ledger.numerical / ledger.contact_dissipated,
+            1e-3,
+            MEASURED,
+        );
 
     let impacts = |step: f64| {
         let step = format!("integrator.step={step:e}");
@@ -184,6 +223,7 @@ fn a_loose_slider_crank() {
     let reference = impacts(6.25e-8);
     let steps = [1e-6, 5e-7, 2.5e-7];
     let runs = steps.map(impacts);
+    let worst = Worst::new();
     for k in 0..3 {
         for (q, name) in ["instant", "impact velocity", "angle", "depth"]
             .iter()
@@ -195,11 +235,24 @@ fn a_loose_slider_crank() {
                 .zip(&runs)
                 .map(|(h, run)| (*h, error(run)))
                 .collect();
-            assert!(errors[2].1 < 2e-5, "impact {k}, {name}: {errors:?}");
+            worst.see(errors[2].1);
             // the first impact ends a free flight: rounding of its instant and speed
             if errors[2].1 > 1e-8 {
-                assert_fitted_order(&format!("impact {k}, {name}"), &errors, 1.3..2.7);
+                Rung::OrderInTime
+                    .asks(format!(
+                        "Loose slider-crank, impact {}: {name}, relative error",
+                        k + 1
+                    ))
+                    .falls_on_average(
+                        "Step h [s]",
+                        &errors,
+                        1.3..2.7,
+                        "order 2 on average: contacts cut the steps at other places for each h",
+                    );
             }
         }
     }
+    Rung::HardCases
+        .asks("Loose slider-crank, h = 2.5e-7 s: instant, speed, angle and depth of three impacts against h = 6.25e-8 s, relative error")
+        .within(&worst, 2e-5, "the scheme's error at this step");
 }

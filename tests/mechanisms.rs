@@ -1,6 +1,7 @@
 //! Mechanisms with every kind of joint, force and drive, against closed forms and balances.
 
 use crate::support::{Recording, run_scene};
+use ladder::{Rung, Worst};
 use looselink::scene::Scene;
 use looselink::simulate::Report;
 use std::f64::consts::TAU;
@@ -107,6 +108,7 @@ pin = [0.167, 0.0]
     let (r, l) = (0.05, 0.12);
     let get = |name: &str| run.get(name);
     let t = get("t");
+    let (places, motion, forces) = (Worst::new(), Worst::new(), Worst::new());
     for k in 0..t.len() {
         let phi = 0.3 + omega * t[k];
         // rod angle psi from l sin psi = -r sin phi, and its rates
@@ -118,25 +120,33 @@ pin = [0.167, 0.0]
         let x = r * c + l * psi.cos();
         let ax =
             -r * omega * omega * c - l * (psi_ddot * psi.sin() + psi_dot * psi_dot * psi.cos());
-        // the mechanism has no freedom: only the scheme's position error, nil, and rounding
-        assert!((get("slider.x")[k] - x).abs() < 1e-12);
-        assert!((get("rod.omega")[k] - psi_dot).abs() < 1e-8 * omega);
-        assert!((get("slider.ax")[k] - ax).abs() < 1e-7 * r * omega * omega);
+        places.see(get("slider.x")[k] - x);
+        motion.see((get("rod.omega")[k] - psi_dot) / omega);
+        motion.see((get("slider.ax")[k] - ax) / (r * omega * omega));
         // the slider takes its force from the rod (pin: slider on rod) and from the guide
         let scale = 0.21 * r * omega * omega;
-        assert!((get("pin.fx")[k] + 0.14 * ax).abs() < 1e-7 * scale);
-        assert!((get("guide.fy")[k] - get("pin.fy")[k]).abs() < 1e-7 * scale);
-        assert!(
-            get("guide.fx")[k].abs() < 1e-7 * scale && get("guide.torque")[k].abs() < 1e-9 * scale
-        );
+        forces.see((get("pin.fx")[k] + 0.14 * ax) / scale);
+        forces.see((get("guide.fy")[k] - get("pin.fy")[k]) / scale);
+        forces.see(get("guide.fx")[k] / scale);
+        forces.see(get("guide.torque")[k] / (0.01 * scale));
         // the rod: forces of both pins are its inertia
         let rod = [get("rod.ax")[k], get("rod.ay")[k]];
-        assert!((get("B.fx")[k] + get("pin.fx")[k] - 0.21 * rod[0]).abs() < 1e-7 * scale);
-        assert!((get("B.fy")[k] + get("pin.fy")[k] - 0.21 * rod[1]).abs() < 1e-7 * scale);
+        forces.see((get("B.fx")[k] + get("pin.fx")[k] - 0.21 * rod[0]) / scale);
+        forces.see((get("B.fy")[k] + get("pin.fy")[k] - 0.21 * rod[1]) / scale);
         // the motor holds the moment of the rod's force about O; the crank turns evenly
         let torque = r * (c * get("B.fy")[k] - s * get("B.fx")[k]);
-        assert!((get("O.torque")[k] - torque).abs() < 1e-7 * scale * r);
+        forces.see((get("O.torque")[k] - torque) / (scale * r));
     }
+    let reason = "the mechanism has no freedom: a few roundings";
+    Rung::Routes
+        .asks("Ideal slider-crank: place of the slider against closed-form kinematics [m]")
+        .within(&places, 1e-15, reason);
+    Rung::Routes
+        .asks("Ideal slider-crank: rates against closed-form kinematics, over ω (rod) and r ω² (slider)")
+        .within(&motion, 1e-13, reason);
+    Rung::Routes
+        .asks("Ideal slider-crank: joint forces and motor torque against Newton and Euler, over the rod's m r ω² (torques: times r, guide 1 cm)")
+        .within(&forces, 1e-13, reason);
     assert!(
         get("O.torque").iter().any(|m| m.abs() > 10.0),
         "nothing was tested"
@@ -184,25 +194,29 @@ elbow = [0.0, 0.3]
     let (run, report) = run(&text);
     let inertia = 0.02 + 1.5 * 0.25 * 0.25;
     let t = run.get("t");
+    let (torques, motion) = (Worst::new(), Worst::new());
     for k in 0..t.len() {
         let phase = TAU * 1.3 * t[k] + 0.2;
         let angle = 0.4 + 0.8 * phase.sin();
         let growth = -0.8 * (TAU * 1.3).powi(2) * phase.sin();
         let torque = inertia * growth + 1.5 * 9.81 * 0.25 * angle.cos();
-        assert!(
-            (run.get("elbow.torque")[k] - torque).abs() < 1e-6,
-            "{k}: {}",
-            run.get("elbow.torque")[k]
-        );
-        assert!((run.get("elbow.angle")[k] - angle).abs() < 1e-10);
-        assert!((run.get("elbow.speed")[k] - 0.8 * TAU * 1.3 * phase.cos()).abs() < 1e-9);
+        torques.see(run.get("elbow.torque")[k] - torque);
+        motion.see((run.get("elbow.angle")[k] - angle) / 1e-14);
+        motion.see((run.get("elbow.speed")[k] - 0.8 * TAU * 1.3 * phase.cos()) / 1e-13);
     }
-    // work of the motor against kinetic and potential energy: quadrature of order 2 or better of some joules
-    assert!(
-        report.ledger.unwrap().numerical.abs() < 1e-5,
-        "{:?}",
-        report.ledger
-    );
+    Rung::Routes
+        .asks("Arm driven about a body welded to ground: torque against that of inertia and weight [N m]")
+        .within(&torques, 1e-12, "the arm's motion is prescribed: rounding of 50 N m");
+    Rung::Routes
+        .asks("Arm driven about a body welded to ground: angle and speed against the drive's law, in units of 1e-14 rad and 1e-13 rad/s")
+        .within(&motion, 1.0, "the arm's motion is prescribed: rounding");
+    Rung::Balance
+        .asks("Arm driven about a body welded to ground: work of the motor against kinetic and potential energy [J]")
+        .within(
+            report.ledger.unwrap().numerical,
+            1e-11,
+            "quadrature of a smooth power, its error of order 4 in h ω = 8e-4, of some joules",
+        );
 }
 
 /// A beam that starts in equilibrium under its weight stays there.
@@ -234,12 +248,21 @@ bodies.beam = { x = 0.0, y = 0.0, theta = 0.5 }
     let (run, _) = run(&text);
     let y = run.get("points.beam.end.y");
     assert!(y[0] < 2.0 * 0.5_f64.sin() - 0.01, "it hangs: {}", y[0]);
-    for value in &y {
-        // Newton's last update
-        assert!((value - y[0]).abs() < 1e-10);
+    let worst = Worst::new();
+    for value in &y[1..] {
+        worst.see(value - y[0]);
     }
+    Rung::Balance
+        .asks("Clamped beam started in equilibrium under its weight: does it stay at rest? Motion of the tip over 0.1 s [m]")
+        .within(&worst, 1e-13, "Newton's last update and rounding of 2 m");
     let weight = 7800.0 * 2e-4 * 2.0 * 9.81;
-    assert!((run.get("clamp.fy")[0] - weight).abs() < 1e-6 * weight);
+    Rung::Balance
+        .asks("Clamped beam in equilibrium under its weight: force of the clamp against the weight, relative error")
+        .within(
+            run.get("clamp.fy")[0] / weight - 1.0,
+            1e-9,
+            "EA = 4e7 N times the rounding of a strain, 1e-16, over a weight of 30 N",
+        );
     let lever: f64 = run.get("clamp.torque")[0] / weight;
     // the centre of mass of the bent beam lies near half its length along the clamp's direction
     assert!((lever - 0.5_f64.cos()).abs() < 0.02, "{lever}");
@@ -351,7 +374,9 @@ bodies.body = { x = 0.5, y = 0.3, theta = 0.0 }
         )
     };
     let ((coarse, _), (fine, lost)) = (numerical(4e-6), numerical(1e-6));
-    assert!(fine < 0.01 * lost, "{fine:e} of {lost:e}");
+    Rung::Balance
+        .asks("Frame with a body in a loose hook, spring and damper, h = 1e-6 s: numerical loss of energy over what is dissipated")
+        .within(fine / lost, 1e-6, "order 2, a hundred times the error at this step; a part missing from the ledger would be of the size of 1");
     assert!(fine < coarse, "{fine:e} {coarse:e}");
 }
 
@@ -375,13 +400,26 @@ bodies.beam = { x = 0.0, y = 0.0, theta = 0.3, vx = 1.0, vy = -0.4, omega = 0.0 
     };
     let (mass, report) = run(&text("rayleigh = { mass = 0.7, stiffness = 0.0 }"));
     let last = |run: &Recording, name: &str| run.get(name)[1];
-    // the scheme's error of (alpha h)^2
-    assert!((last(&mass, "beam.vx") - (-0.35_f64).exp()).abs() < 1e-8);
-    assert!((last(&mass, "beam.vy") + 0.4 * (-0.35_f64).exp()).abs() < 1e-8);
-    assert!(report.ledger.unwrap().numerical.abs() < 1e-7);
+    let worst = Worst::new();
+    worst.see(last(&mass, "beam.vx") - (-0.35_f64).exp());
+    worst.see(last(&mass, "beam.vy") + 0.4 * (-0.35_f64).exp());
+    Rung::Routes
+        .asks("Free beam with mass-proportional damping α: velocity after 0.5 s against exp(-αt) [m/s]")
+        .within(&worst, 1e-8, "the scheme's error of (αh)²");
+    Rung::Balance
+        .asks("Free beam with mass-proportional damping: numerical loss of energy over 0.5 s [J]")
+        .within(
+            report.ledger.unwrap().numerical,
+            1e-7,
+            "the scheme's error of (αh)²",
+        );
     let (strain, report) = run(&text("kelvin_voigt = 1e-3"));
-    assert!((last(&strain, "beam.vx") - 1.0).abs() < 1e-12);
-    assert!(report.ledger.unwrap().damping_dissipated.abs() < 1e-15);
+    let worst = Worst::new();
+    worst.see((last(&strain, "beam.vx") - 1.0) / 1e-12);
+    worst.see(report.ledger.unwrap().damping_dissipated / 1e-15);
+    Rung::Identities
+        .asks("Free beam with strain-rate damping: does its flight go on? Speed lost and energy dissipated in 0.5 s, in units of 1e-12 m/s and 1e-15 J")
+        .within(&worst, 1.0, "a flight strains nothing: rounding");
 }
 
 /// A pin in a slot of a turning lever: the quick-return mechanism's lever angle is that of the crank pin seen from its pivot.
@@ -428,21 +466,26 @@ slot = [0.1, 0.0]
 "#;
     let (run, _) = run(&text);
     let t = run.get("t");
+    let worst = Worst::new();
     for k in 0..t.len() {
         let pin = [0.1 * (12.0 * t[k]).cos(), 0.1 * (12.0 * t[k]).sin() + 0.3];
         let angle = pin[1].atan2(pin[0]);
-        assert!((run.get("lever.theta")[k] - angle).abs() < 1e-10, "{k}");
-        assert!((run.get("slot.travel")[k] - pin[0].hypot(pin[1])).abs() < 1e-12);
+        worst.see((run.get("lever.theta")[k] - angle) / 1e-13);
+        worst.see((run.get("slot.travel")[k] - pin[0].hypot(pin[1])) / 1e-12);
         let along = (pin[0] * -1.2 * (12.0 * t[k]).sin() + pin[1] * 1.2 * (12.0 * t[k]).cos())
             / pin[0].hypot(pin[1]);
-        assert!((run.get("slot.travel_rate")[k] - along).abs() < 1e-9);
+        worst.see((run.get("slot.travel_rate")[k] - along) / 1e-12);
     }
+    Rung::Routes
+        .asks("Quick return: angle of the lever, travel in its slot and rate against closed-form kinematics, in units of 1e-13 rad, 1e-12 m, 1e-12 m/s")
+        .within(&worst, 1.0, "the mechanism has no freedom: rounding");
 }
 
 /// The reaction of a hinge that has no multiplier, because its node is known, counts springs, dampers and loads at either
 /// end of the link: with them it is mass times acceleration, for a rigid link and for a flexible one.
 #[test]
 fn reactions_without_multipliers_count_all_forces() {
+    let (forces, losses) = (Worst::new(), Worst::new());
     for model in [
         "model = \"rigid\"",
         "model = \"flexible\"\nelements = 2\nkelvin_voigt = 1e-3",
@@ -512,20 +555,23 @@ bodies.bar = { x = 0.0, y = 0.0, theta = 0.1 }
             {
                 let applied = mass * gravity + pull * to_peg[i] + get(push)[k] + foot;
                 let reaction = mass * get(acceleration)[k] - applied;
-                // rounding of EA = 4e7 N times 1e-16 over the strain of a flexible link
-                assert!(
-                    (get(force)[k] - reaction).abs() < 1e-6,
-                    "{model} {k} {force}"
-                );
+                forces.see(get(force)[k] - reaction);
             }
         }
-        // some joules of work and storage; order 2 of the scheme
-        assert!(
-            report.ledger.unwrap().numerical.abs() < 1e-4,
-            "{:?}",
-            report.ledger
-        );
+        losses.see(report.ledger.unwrap().numerical);
     }
+    Rung::Balance
+        .asks("Hinged bar, rigid or flexible, with springs, dampers and loads: reaction against mass times acceleration less applied forces [N]")
+        .within(&forces,
+            1e-11,
+            "the same terms summed in another order: rounding of some 10 N",
+        );
+    Rung::Balance
+        .asks("Hinged bar, rigid or flexible, with springs, dampers and loads: numerical loss of energy over 0.3 s [J]")
+        .within(&losses,
+            1e-6,
+            "some joules of work and storage; order 2 of the scheme",
+        );
 }
 
 /// The angle of a torsional spring is counted from the turn of its rest angle: at rest beyond half a turn it has no torque.

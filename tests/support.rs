@@ -83,33 +83,3 @@ pub fn rms_difference(a: &[f64], b: &[f64]) -> f64 {
     let sum: f64 = a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum();
     (sum / a.len() as f64).sqrt()
 }
-
-/// Asserts that errors at steps h, each half of the one before, fall with an order within the bounds, pair by pair.
-pub fn assert_order(name: &str, errors: &[(f64, f64)], bounds: std::ops::Range<f64>) {
-    for pair in errors.windows(2) {
-        let [(h, e), (h_next, e_next)] = [pair[0], pair[1]];
-        let order = (e / e_next).ln() / (h / h_next).ln();
-        assert!(
-            bounds.contains(&order),
-            "{name}: order {order:.3} between {h:e} and {h_next:e}; errors {errors:?}"
-        );
-    }
-}
-
-/// Asserts the order of errors whose constant varies from step to step, because events cut the grid at other places:
-/// the slope of the least-squares line through (log h, log error).
-pub fn assert_fitted_order(name: &str, errors: &[(f64, f64)], bounds: std::ops::Range<f64>) {
-    let logs: Vec<(f64, f64)> = errors.iter().map(|(h, e)| (h.ln(), e.ln())).collect();
-    let n = logs.len() as f64;
-    let (x, y) = logs
-        .iter()
-        .fold((0.0, 0.0), |(x, y), l| (x + l.0 / n, y + l.1 / n));
-    let (up, down) = logs.iter().fold((0.0, 0.0), |(u, d), l| {
-        (u + (l.0 - x) * (l.1 - y), d + (l.0 - x).powi(2))
-    });
-    let order = up / down;
-    assert!(
-        bounds.contains(&order),
-        "{name}: order {order:.3}; errors {errors:?}"
-    );
-}

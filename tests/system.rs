@@ -1,6 +1,7 @@
 //! Compiled models as a whole: tangents by differencing, no allocation, repeatable bytes.
 
 use crate::support::{all_scenes, load};
+use ladder::{Rung, Worst};
 use looselink::newton::Newton;
 use looselink::scene::{Analysis, Body, BodyKind, LinkModel, Scene};
 use looselink::simulate::Simulation;
@@ -54,6 +55,7 @@ fn axial_stiffness(scene: &Scene) -> f64 {
 /// 3e-10 m: far less than the penetrations of about 1e-7 m, and enough to resolve.
 #[test]
 fn stage_matrices_are_the_derivatives() {
+    let worst = Worst::new();
     for name in all_scenes() {
         let scene = beginning(&name, 0.008);
         let (simulation, start) = state(&scene);
@@ -93,17 +95,19 @@ fn stage_matrices_are_the_derivatives() {
             let column: Vec<f64> = (0..n + m).map(|i| (high[i] - low[i]) / (2.0 * h)).collect();
             let size = column.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             assert!(size > 0.0, "{name}: column {j} is empty");
+            let allowed = (2e-6 * size.max(1e-2)).max(rounding);
             for i in 0..n + m {
-                // positions are rounded at 1e-16/1e-8 in units of a
-                assert!(
-                    (column[i] - dense[(i, j)]).abs() < (2e-6 * size.max(1e-2)).max(rounding),
-                    "{name} ({i}, {j}): {} {}",
-                    column[i],
-                    dense[(i, j)]
-                );
+                worst.at(format!("in entry ({i}, {j}) of {name}"));
+                worst.see((column[i] - dense[(i, j)]) / allowed);
             }
         }
     }
+    Rung::Derivatives
+        .asks("Is the stage matrix of every scene the derivative of its residual? In units of 2e-6 of the largest entry of a column")
+        .within(&worst,
+            1.0,
+            "positions are rounded at 1e-16/1e-8 in units of accelerations; for EA above 2e7 N, rounding of EA",
+        );
 }
 
 /// A Bathe step allocates nothing, in any scene.
@@ -154,18 +158,24 @@ fn runs_are_repeatable() {
 /// After every step velocities satisfy the constraints, and so do accelerations.
 #[test]
 fn accepted_states_are_consistent() {
+    let worst = Worst::new();
     for name in ["3rrr/case1.toml", "3rrr/case2.toml", "3rrr/case3.toml"] {
         let scene = load(name, &["simulation.duration=0.02", "output.interval=0.001"]);
         let (simulation, at) = state(&scene);
         let model = simulation.model();
         let mut rates = vec![1.0; model.shape().multipliers];
         model.constraint_velocity(&at, &mut rates);
-        // rounding of velocities near 1 m/s
-        assert!(rates.iter().all(|r| r.abs() < 1e-14), "{name}: {rates:?}");
+        worst.at(format!("in {name}"));
+        rates.iter().for_each(|r| worst.see(r / 1e-14));
         model.constraint_acceleration(&at, &mut rates);
-        // rounding of accelerations up to 1e3 m/s2
-        assert!(rates.iter().all(|r| r.abs() < 1e-11), "{name}: {rates:?}");
+        rates.iter().for_each(|r| worst.see(r / 1e-11));
         let (distance, ..) = model.worst_constraint(&at).unwrap();
-        assert!(distance < 1e-15, "{name}: {distance:e}");
+        worst.see(distance / 1e-15);
     }
+    Rung::Identities
+        .asks("3-RRR (cases 1, 2, 3): constraints of accepted states, in units of 1e-14 m/s, 1e-11 m/s² and 1e-15 m")
+        .within(&worst,
+            1.0,
+            "rounding of velocities near 1 m/s and of accelerations up to 1e3 m/s²",
+        );
 }

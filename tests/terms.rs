@@ -1,6 +1,7 @@
 //! Every constraint and every force by differencing: gradients, curvatures, rates, tangents, powers. The states are
 //! random, with a straight undeformed beam among them.
 
+use ladder::{Rung, Worst};
 use looselink::constraint::{
     Align, ClampSlope, Coincide, Constraint, Curvature, Length, Place, Slide,
 };
@@ -175,10 +176,13 @@ fn moved(s: &State, i: usize, by: f64) -> State {
 
 #[test]
 fn constraints_agree_with_their_differences() {
-    // central differences of quantities near one: h^2 and eps/h are 1e-10
-    let (h, tolerance) = (1e-5, 3e-9);
+    let h = 1e-5;
+    let [gradients, curvatures, rates] = [Worst::new(), Worst::new(), Worst::new()];
     let mut drifts = 0;
     for (name, c) in constraints() {
+        for worst in [&gradients, &curvatures, &rates] {
+            worst.at(name);
+        }
         for k in 0..8 {
             let s = state(k, 0.0);
             let coordinates = c.coordinates();
@@ -191,10 +195,7 @@ fn constraints_agree_with_their_differences() {
                 for d in 0..rows {
                     let exact = global(&coordinates, &gradient[d])[i];
                     touched |= exact != 0.0;
-                    assert!(
-                        (exact - (high[d] - low[d]) / (2.0 * h)).abs() < tolerance,
-                        "{name} {k} {i}"
-                    );
+                    gradients.see(exact - (high[d] - low[d]) / (2.0 * h));
                 }
             }
             // d(Phi_q^T lambda)/dq, through a dense local matrix
@@ -234,10 +235,7 @@ fn constraints_agree_with_their_differences() {
                         }
                     }
                     bent |= exact != 0.0;
-                    assert!(
-                        (exact - (high[i] - low[i]) / (2.0 * h)).abs() < tolerance,
-                        "{name} {k} {i} {j}"
-                    );
+                    curvatures.see(exact - (high[i] - low[i]) / (2.0 * h));
                 }
             }
             assert!(touched, "{name}");
@@ -251,7 +249,7 @@ fn constraints_agree_with_their_differences() {
             };
             let (low, high) = (at(-h), at(h));
             let rate = (high[0] - low[0]) / (2.0 * h);
-            assert!((c.drift(&s) - rate).abs() < tolerance, "{name} {k}: drift");
+            rates.see(c.drift(&s) - rate);
             assert_eq!(low[1], high[1], "{name} {k}: drift of the second row");
             drifts += usize::from(c.drift(&s) != 0.0);
             // rates along the motion
@@ -259,19 +257,189 @@ fn constraints_agree_with_their_differences() {
             let (velocity, acceleration) = (c.velocity(&s), c.acceleration(&s));
             for d in 0..rows {
                 let rate = (c.value(&high)[d] - c.value(&low)[d]) / (2.0 * h);
-                assert!(
-                    (velocity[d] - rate).abs() < tolerance,
-                    "{name} {k}: velocity"
-                );
+                rates.see(velocity[d] - rate);
                 let rate = (c.velocity(&high)[d] - c.velocity(&low)[d]) / (2.0 * h);
-                assert!(
-                    (acceleration[d] - rate).abs() < tolerance,
-                    "{name} {k}: acceleration"
-                );
+                rates.see(acceleration[d] - rate);
+            }
+            // both at once is the same as one after the other, whatever was there before
+            let mut again = gradient.map(|row| row.map(|g| g + 7.0));
+            assert_eq!(c.value_and_gradient(&s, &mut again), c.value(&s), "{name}");
+            for d in 0..rows {
+                assert_eq!(again[d][..n], gradient[d][..n], "{name}");
             }
         }
     }
     assert!(drifts > 0, "no constraint depends on time");
+    let reason = "central differences of quantities near one: h² and eps/h are 1e-10";
+    for (worst, what) in [
+        (gradients, "gradients"),
+        (curvatures, "curvatures d(Φ_qᵀλ)/dq"),
+        (rates, "rates and accelerations along a motion"),
+    ] {
+        Rung::Derivatives
+            .asks(format!(
+                "Do the {what} of every kind of constraint agree with differences?"
+            ))
+            .within(&worst, 3e-9, reason);
+    }
+}
+
+/// The force and the couple of the first side on the second do the work that -Phi_q^T lambda does when the second side is
+/// moved alone.
+#[test]
+fn reactions_are_conjugate_to_motions() {
+    let body = |x, s| Marker::OnBody { x, s };
+    let angle = Function::Polynomial(vec![0.3, 0.7, -0.2]);
+    let slide = |slider| Slide {
+        guide: body(0, [0.1, 0.2]),
+        spin: Spin::Angle { theta: 2 },
+        angle: 0.7,
+        scale: 1.0,
+        slider,
+    };
+    // each with the coordinates that move the second side along x and y
+    let points: [(Box<dyn Constraint>, [usize; 2]); 4] = [
+        (
+            Box::new(Coincide {
+                bearing: body(0, [0.3, -0.1]),
+                journal: Marker::Node { x: 6 },
+            }),
+            [6, 7],
+        ),
+        (Box::new(slide(body(3, [-0.2, 0.3]))), [3, 4]),
+        (Box::new(slide(Marker::Node { x: 6 })), [6, 7]),
+        (
+            Box::new(Place {
+                marker: body(3, [0.4, 0.1]),
+                direction: [0.6, 0.8],
+                value: Function::Constant(0.1),
+            }),
+            [3, 4],
+        ),
+    ];
+    let directions: [(Box<dyn Constraint>, Spin); 4] = [
+        (
+            Box::new(Align {
+                first: Spin::Angle { theta: 2 },
+                second: Spin::Angle { theta: 5 },
+                angle: angle.clone(),
+                scale: 1.0,
+            }),
+            Spin::Angle { theta: 5 },
+        ),
+        (
+            Box::new(Align {
+                first: Spin::Chord { from: 14, to: 16 },
+                second: Spin::Slope { x: 8 },
+                angle,
+                scale: 0.6,
+            }),
+            Spin::Slope { x: 8 },
+        ),
+        (
+            Box::new(ClampSlope {
+                first: Spin::Angle { theta: 2 },
+                slope: 8,
+                angle: 0.4,
+                scale: 1.0,
+            }),
+            Spin::Slope { x: 8 },
+        ),
+        (
+            Box::new(ClampSlope {
+                first: Spin::Chord { from: 14, to: 16 },
+                slope: 12,
+                angle: -0.3,
+                scale: 1.3,
+            }),
+            Spin::Slope { x: 12 },
+        ),
+    ];
+    let lambda = [0.7, -1.3];
+    let worst = Worst::new();
+    for k in 0..8 {
+        let s = state(k, 0.0);
+        let power = |c: &dyn Constraint, v: &[f64]| -> f64 {
+            let (coordinates, gradient) = (c.coordinates(), c.gradient(&s));
+            let row = |d: usize| -> f64 {
+                let sum = global(&coordinates, &gradient[d]);
+                sum.iter().zip(v).map(|(g, v)| g * v).sum()
+            };
+            -(0..c.rows()).map(|d| lambda[d] * row(d)).sum::<f64>()
+        };
+        for (c, moved) in &points {
+            for (force, i) in c.force(&s, lambda).into_iter().zip(moved) {
+                let mut v = [0.0; COUNT];
+                v[*i] = 1.0;
+                worst.see(power(&**c, &v) - force);
+            }
+            assert_eq!(c.couple(&s, lambda), 0.0);
+        }
+        for (c, spin) in &directions {
+            let mut v = [0.0; COUNT];
+            match *spin {
+                Spin::Angle { theta } => v[theta] = 1.0,
+                Spin::Slope { x } => (v[x], v[x + 1]) = (-s.q[x + 1], s.q[x]),
+                _ => unreachable!("second sides are angles and slopes"),
+            }
+            worst.see(power(&**c, &v) - c.couple(&s, lambda));
+            assert_eq!(c.force(&s, lambda), [0.0; 2]);
+        }
+    }
+    Rung::Identities
+        .asks("Do force and couple of a joint do the work of its multipliers? Error of the power for unit velocities")
+        .within(&worst, 1e-14, "rounding of sums of numbers near one");
+}
+
+/// A direction has two zeros, half a turn apart; only the second is told. Other constraints have none.
+#[test]
+fn the_second_zero_of_an_angle_is_told() {
+    let align = Align {
+        first: Spin::Angle { theta: 2 },
+        second: Spin::Angle { theta: 5 },
+        angle: Function::Constant(0.4),
+        scale: 1.0,
+    };
+    let mut s = state(1, 0.0);
+    for (turn, second) in [(0.0, false), (std::f64::consts::PI, true), (1.5, false)] {
+        s.q[5] = s.q[2] + 0.4 + turn;
+        assert_eq!(align.half_turn(&s), second, "{turn}");
+    }
+    for (name, c) in constraints() {
+        assert!(name.starts_with("align") || !c.half_turn(&s), "{name}");
+    }
+}
+
+/// Travel along the line and distance from it make up the distance of the slider from the guide's point.
+#[test]
+fn travel_is_measured_along_the_line() {
+    let slide = Slide {
+        guide: Marker::OnBody {
+            x: 0,
+            s: [0.1, 0.2],
+        },
+        spin: Spin::Angle { theta: 2 },
+        angle: 0.7,
+        scale: 1.0,
+        slider: Marker::Node { x: 6 },
+    };
+    let h = 1e-5;
+    for k in 0..8 {
+        let s = state(k, 0.0);
+        let (sine, cosine) = s.q[2].sin_cos();
+        let guide = [
+            s.q[0] + 0.1 * cosine - 0.2 * sine,
+            s.q[1] + 0.1 * sine + 0.2 * cosine,
+        ];
+        let e = [s.q[6] - guide[0], s.q[7] - guide[1]];
+        let [travel, rate] = slide.travel(&s);
+        let (line_sine, line_cosine) = (s.q[2] + 0.7).sin_cos();
+        // rounding of numbers near one
+        assert!((travel - (line_cosine * e[0] + line_sine * e[1])).abs() < 1e-14);
+        let [high, low] = [h, -h].map(|t| slide.travel(&state(k, t))[0]);
+        // central differences, as above
+        assert!((rate - (high - low) / (2.0 * h)).abs() < 3e-9, "{k}");
+    }
 }
 
 fn forces() -> Vec<(&'static str, Box<dyn Force>)> {
@@ -381,9 +549,12 @@ fn forces() -> Vec<(&'static str, Box<dyn Force>)> {
 
 #[test]
 fn forces_agree_with_their_differences() {
-    // central differences of quantities near ten: h^2 and eps/h are 1e-10
-    let (h, tolerance) = (1e-5, 3e-8);
+    let h = 1e-5;
+    let [tangents, balances] = [Worst::new(), Worst::new()];
     for (name, term) in forces() {
+        for worst in [&tangents, &balances] {
+            worst.at(name);
+        }
         for k in 0..8 {
             let mut s = state(k, 0.0);
             term.remember(&mut s);
@@ -416,10 +587,7 @@ fn forces_agree_with_their_differences() {
                         }
                         resists |= exact != 0.0;
                         let difference = (high[i] - low[i]) / (2.0 * h);
-                        assert!(
-                            (exact - difference).abs() < tolerance,
-                            "{name} {k} {i} {j}: {exact} {difference}"
-                        );
+                        tangents.see(exact - difference);
                     }
                 }
             }
@@ -432,13 +600,17 @@ fn forces_agree_with_their_differences() {
             let lost = powers[Integral::DampingDissipated as usize];
             let power: f64 = force(&s).iter().zip(&s.v).map(|(f, v)| f * v).sum();
             let balance = stored + lost - powers[Integral::Work as usize];
-            assert!(
-                (power - balance).abs() < tolerance,
-                "{name} {k}: {power} {balance}"
-            );
+            balances.see(power - balance);
             assert!(lost >= 0.0, "{name}");
         }
     }
+    let reason = "central differences of quantities near ten: h² and eps/h are 1e-10";
+    Rung::Derivatives
+        .asks("Do the tangents of springs, loads and damping by positions and velocities agree with differences?")
+        .within(&tangents, 3e-8, reason);
+    Rung::Balance
+        .asks("Is the power of springs, loads and damping what is stored, put in and dissipated?")
+        .within(&balances, 3e-8, reason);
 }
 
 /// The state at another instant with the memory of `s`.
@@ -465,8 +637,11 @@ fn element_damping_does_not_see_rigid_motions() {
     }
     let mut f = [0.0; WIDTH];
     damping.force(&s, &mut f);
-    // rounding of forces near one
-    assert!(f.iter().all(|f| f.abs() < 1e-14), "{f:?}");
+    let worst = Worst::new();
+    f.iter().for_each(|f| worst.see(*f));
+    Rung::Identities
+        .asks("Is a rigid motion of a bent element free of strain-rate damping?")
+        .within(&worst, 1e-14, "rounding of forces near one");
 }
 
 /// Full turns are counted: two turns of the second body wind a spring twice.
@@ -490,4 +665,75 @@ fn torsion_springs_count_turns() {
     // rounding of 12.6
     assert!((spring.measure(&s)[1] - last).abs() < 1e-14);
     assert!((spring.energy(&s) - last * last).abs() < 1e-12);
+}
+
+/// What belongs to the first side of a constraint or force: the joint forces of eliminated joints are summed by it.
+#[test]
+fn sides_are_split_behind_the_first() {
+    let splits = |name: &str| match name {
+        "length" | "spring without rest length" => 2,
+        "coincide, body and node" | "spring-damper between bodies" => 3,
+        "coincide, chord and body" | "align, chord and slope" | "clamped slope on a chord" => 4,
+        "align, bodies" | "clamped slope on a body" => 1,
+        "slide on a body" => 3 + 1,
+        "slide on a chord" => 2 + 4,
+        "torsion spring, slope and chord" | "torque between a slope and a chord" => 2,
+        _ => 0,
+    };
+    for (name, c) in constraints() {
+        assert_eq!(c.split(), splits(name), "{name}");
+    }
+    for (name, f) in forces() {
+        assert_eq!(f.split(), splits(name), "{name}");
+    }
+}
+
+/// What forces tell of themselves, with closed forms at one state.
+#[test]
+fn forces_tell_what_they_do() {
+    let s = state(2, 0.0);
+    let by_name = |wanted: &str| {
+        let found = forces().into_iter().find(|(name, _)| *name == wanted);
+        found.expect("the force is in the list").1
+    };
+    let told = |force: &dyn Force| -> Vec<(&'static str, f64)> {
+        let names = force.quantities().iter().map(|(name, _)| *name);
+        names.zip(force.measure(&s)).collect()
+    };
+    let spring = by_name("spring without rest length");
+    let e = [s.q[14] - s.q[6], s.q[15] - s.q[7]];
+    let e_dot = [s.v[14] - s.v[6], s.v[15] - s.v[7]];
+    let length = e[0].hypot(e[1]);
+    let rate = (e[0] * e_dot[0] + e[1] * e_dot[1]) / length;
+    let expected = [("force", 3.0 * length), ("length", length), ("rate", rate)];
+    let worst = Worst::new();
+    let compare = |told: &[(&str, f64)], expected: &[(&str, f64)]| {
+        assert_eq!(told.len(), expected.len());
+        for (told, expected) in told.iter().zip(expected) {
+            assert_eq!(told.0, expected.0);
+            worst.see(told.1 - expected.1);
+        }
+    };
+    compare(&told(&*spring), &expected);
+    let coil = by_name("torsion spring, ground and body");
+    let angle = s.q[5];
+    let speed = s.v[5];
+    let torque = 2.0 * (angle + 0.2) + 0.4 * speed;
+    compare(
+        &told(&*coil),
+        &[("torque", torque), ("angle", angle), ("speed", speed)],
+    );
+    compare(
+        &told(&*by_name("dead force on a body")),
+        &[("fx", 1.3), ("fy", 0.2)],
+    );
+    compare(&told(&*by_name("torque on a slope")), &[("torque", 0.8)]);
+    for silent in ["element damping", "mass damping"] {
+        let force = by_name(silent);
+        compare(&told(&*force), &[]);
+        assert_eq!((force.energy(&s), force.measure(&s)), (0.0, [0.0; 3]));
+    }
+    Rung::Identities
+        .asks("Are the forces, lengths, angles and rates that springs and loads report those of their definitions?")
+        .within(&worst, 1e-14, "rounding of numbers near one");
 }

@@ -30,6 +30,12 @@ pub mod palette {
     pub const VERMILION: Color = (213, 94, 0);
     /// Third series.
     pub const GREEN: Color = (0, 158, 115);
+    /// Fourth series.
+    pub const PURPLE: Color = (204, 121, 167);
+    /// Fifth series.
+    pub const ORANGE: Color = (230, 159, 0);
+    /// Sixth series.
+    pub const SKY: Color = (86, 180, 233);
     /// Reference curves such as the ideal mechanism.
     pub const GREY: Color = (130, 130, 130);
     /// Bounds and reference lines.

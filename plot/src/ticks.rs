@@ -93,9 +93,14 @@ fn logarithmic(axis: &Axis, data: (f64, f64), wanted: usize) -> Ticks {
     let decades = low.floor() as i32..=high.ceil() as i32;
     let inside = |v: f64| v >= low - 1e-9 && v <= high + 1e-9;
     let stride = ((high - low) / wanted as f64).ceil().max(1.0) as i32;
-    // one or two powers of ten in sight: label 1, 2 and 5 of every decade
+    // one or two powers of ten in sight: label 1, 2 and 5 of every decade, if there is room
     let powers = high.floor() - low.ceil() + 1.0;
-    let multiples: &[u32] = if powers <= 2.0 { &[1, 2, 5] } else { &[1] };
+    let room = 3.0 * (high - low) <= wanted as f64;
+    let multiples: &[u32] = if powers <= 2.0 && room {
+        &[1, 2, 5]
+    } else {
+        &[1]
+    };
     let (mut major, mut minor) = (Vec::new(), Vec::new());
     for decade in decades {
         for m in 1..10u32 {

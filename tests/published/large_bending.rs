@@ -1,6 +1,7 @@
 //! Roll-up by an end moment, in the closed form of this element's functional (E).
 
 use super::{CLAMP, beam, last, run, statics};
+use ladder::{Rung, Worst};
 use std::f64::consts::TAU;
 
 const AXIAL: f64 = 1e4;
@@ -33,7 +34,8 @@ fn the_circle_closes_at_order_four() {
         let [x, y] = tip(n, moment);
         x.hypot(y)
     };
-    let mut before = f64::NAN;
+    let worst = Worst::new();
+    let mut errors = Vec::new();
     for (n, listed) in [
         (4, 2.84e-2),
         (8, 1.58e-3),
@@ -42,40 +44,43 @@ fn the_circle_closes_at_order_four() {
         (64, 3.91e-7),
     ] {
         let d = distance(n);
-        // three digits are listed
-        assert!(
-            (d - listed).abs() < 6e-3 * listed,
-            "n = {n}: {d:e}, listed {listed:e}"
-        );
-        if n > 8 {
-            let order = (before / d).log2();
-            assert!((3.8..4.2).contains(&order), "n = {n}: order {order}");
-        }
-        before = d;
+        worst.see(d / listed - 1.0);
+        errors.push((1.0 / n as f64, d));
     }
+    Rung::Published
+        .asks("Roll-up to a full circle, n = 4 ... 64: distance of the tip from the clamp against the listed digits, relative error")
+        .within(&worst, 6e-3, "three digits are listed");
+    Rung::OrderInElements
+        .asks("Roll-up to a full circle, n = 8 ... 64: distance of the tip from the clamp [m]")
+        .falls("Element length l/L", &errors[1..], 3.8..4.2, "order 4");
 }
 
 /// At 2 pi EI/L, where the inextensible beam closes, this functional must not.
 #[test]
 fn the_moment_of_the_inextensible_beam_does_not_close_it() {
     let [x, y] = tip(64, TAU * BENDING);
-    // kappa L - 2 pi is 2 pi times 8 pi^2 EI/(EA L^2) = 0.0496 to first order, on a radius of L/(2 pi)
-    assert!((0.007..0.009).contains(&x.hypot(y)), "{x} {y}");
+    Rung::Published
+        .asks("Roll-up by the moment that closes the inextensible beam: distance left between tip and clamp over L")
+        .between(
+            x.hypot(y),
+            0.007..0.009,
+            "κL - 2π is 2π times 8π² EI/(EA L²) = 0.0496 to first order, on a radius of L/2π",
+        );
 }
 
 /// E: stretch, curvature and energy along the whole way, x = lambda/kappa sin(kappa L).
 #[test]
 fn the_load_path_follows_the_closed_form() {
+    let worst = Worst::new();
     for turn in [0.1, 0.25, 0.5, 0.8] {
         let kappa = TAU * turn;
         let square = 1.0 - 2.0 * BENDING / AXIAL * kappa * kappa;
         let [x, y] = tip(64, BENDING * kappa * square);
         let radius = square.sqrt() / kappa;
         let (ex, ey) = (radius * kappa.sin(), radius * (1.0 - kappa.cos()));
-        // the error of 64 elements, 3.9e-7 at a full turn
-        assert!(
-            (x - ex).hypot(y - ey) < 4e-7,
-            "{turn}: {x} {y}, exact {ex} {ey}"
-        );
+        worst.see((x - ex).hypot(y - ey));
     }
+    Rung::Published
+        .asks("Roll-up by 0.1 ... 0.8 of a turn, n = 64: distance of the tip from the closed form over L")
+        .within(&worst, 4e-7, "the error of 64 elements, 3.9e-7 at a full turn");
 }

@@ -1,0 +1,246 @@
+//! VERIFICATION.md.
+
+use crate::answer::short;
+use crate::mutants::Record;
+use crate::{Answer, Rung};
+use miette::{Result, miette};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// The page in Markdown. `pictures` are the rungs with a figure.
+///
+/// # Errors
+/// A surviving mutant without a reason.
+pub fn page(
+    answers: &[Answer],
+    pictures: &[Rung],
+    mutants: &Record,
+    reasons: &BTreeMap<String, String>,
+) -> Result<String> {
+    let mut page = String::new();
+    head(&mut page, answers);
+    for rung in Rung::ALL {
+        let (title, asks) = rung.title();
+        put(&mut page, format!("## {title}\n\n{asks}\n"));
+        if pictures.contains(&rung) {
+            put(
+                &mut page,
+                format!("![{title}](ladder/figures/{}.png)\n", slug(rung)),
+            );
+        }
+        put(
+            &mut page,
+            "| | question | number | allowed | reason | test |\n|---|---|---|---|---|---|".into(),
+        );
+        for answer in answers.iter().filter(|a| a.rung == rung) {
+            put(&mut page, row(answer));
+        }
+        put(&mut page, String::new());
+    }
+    mutation(&mut page, mutants, reasons)?;
+    Ok(page)
+}
+
+/// File name of the figure of a rung.
+pub fn slug(rung: Rung) -> String {
+    rung.title().0.to_lowercase().replace(' ', "-")
+}
+
+/// Rows of this run that the page does not have as rows that hold, and rows of the page that no test of this run asked.
+pub fn stale(page: &str, answers: &[Answer]) -> Vec<String> {
+    let mut found: Vec<String> = answers
+        .iter()
+        .filter(|a| !page.contains(&beginning(a, true)))
+        .map(|a| format!("not on the page as a row that holds: {}", a.question))
+        .collect();
+    let known: Vec<String> = answers.iter().map(|a| beginning(a, true)).collect();
+    let rows = page
+        .lines()
+        .filter(|line| line.starts_with("| ✓ |") || line.starts_with("| ✗ |"));
+    for line in rows {
+        if !known.iter().any(|k| line.starts_with(k.as_str())) {
+            let question = line.split(" | ").nth(1).unwrap_or(line);
+            found.push(format!("on the page, but asked by no test: {question}"));
+        }
+    }
+    found
+}
+
+fn beginning(answer: &Answer, holds: bool) -> String {
+    let verdict = if holds { "✓" } else { "✗" };
+    format!("| {verdict} | {} |", cell(&answer.question))
+}
+
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
+fn row(answer: &Answer) -> String {
+    let name = answer.file.rsplit('/').next().unwrap_or(&answer.file);
+    let cells = [
+        short(answer.number),
+        answer.allowed.to_string(),
+        cell(&answer.reason),
+        format!("[{name}]({})", answer.file),
+    ];
+    format!(
+        "{} {} |",
+        beginning(answer, answer.holds()),
+        cells.join(" | ")
+    )
+}
+
+fn head(page: &mut String, answers: &[Answer]) {
+    let held = answers.iter().filter(|a| a.holds()).count();
+    put(
+        page,
+        format!(
+            "# Verification\n\n\
+             A ladder of questions, each rung on those before it. Every row is a test: the number it obtained, what is \
+             allowed, and why that. **{held} of {} rows hold.** `cargo run --release -p ladder` runs the tests and writes this \
+             page; `./test.sh` fails when a row fails, or when the page lacks a row or has one that no test asks. The numbers \
+             are those of one machine: rounding differs between machines.\n\n\
+             | rung | rows | hold | nearest to its bound |\n|---|---|---|---|",
+            answers.len()
+        ),
+    );
+    for rung in Rung::ALL {
+        let rows: Vec<&Answer> = answers.iter().filter(|a| a.rung == rung).collect();
+        let held = rows.iter().filter(|a| a.holds()).count();
+        let nearest = rows.iter().max_by(|a, b| a.used().total_cmp(&b.used()));
+        let nearest = nearest.map_or(String::new(), |a| {
+            format!(
+                "{} of {}: {}",
+                short(a.number),
+                a.allowed,
+                cell(&a.question)
+            )
+        });
+        let (title, _) = rung.title();
+        put(
+            page,
+            format!(
+                "| [{title}](#{}) | {} | {held} | {nearest} |",
+                slug(rung),
+                rows.len()
+            ),
+        );
+    }
+    put(page, String::new());
+}
+
+fn mutation(page: &mut String, mutants: &Record, reasons: &BTreeMap<String, String>) -> Result<()> {
+    let total = mutants.total();
+    put(
+        page,
+        format!(
+            "## Mutation testing\n\n\
+             Do the tests notice a mistake? [{}](https://mutants.rs) changes one operator, sign or return value at a time in \
+             the kernels (`src/link`, `src/contact`, `src/constraint`, `src/force`, `src/stepper`), and the tests of \
+             [tests/kernels.rs](tests/kernels.rs) run. Of {} possible mutants {} were drawn with seed {}; \
+             {} of them compile, and **{} of those are caught**. `cargo run --release -p ladder --bin mutate` repeats this; it \
+             needs `cargo install cargo-mutants`.\n\n\
+             | file | drawn | do not compile | caught | run for ever | survive |\n|---|---|---|---|---|---|",
+            mutants.tool,
+            mutants.possible,
+            total.viable() + total.unviable,
+            mutants.seed,
+            total.viable(),
+            plot::percent((1e3 * mutants.caught()).floor() / 1e3),
+        ),
+    );
+    let mut line = |name: &str, c: &crate::mutants::Counts| {
+        let numbers = [
+            c.viable() + c.unviable,
+            c.unviable,
+            c.caught,
+            c.timeout,
+            c.survived,
+        ];
+        let numbers = numbers.map(|n| n.to_string()).join(" | ");
+        put(page, format!("| {name} | {numbers} |"));
+    };
+    for (file, counts) in &mutants.files {
+        line(&format!("`{file}`"), counts);
+    }
+    line("all", &total);
+    put(
+        page,
+        "\nThe survivors:\n\n| mutant | why no test can notice, or why none does |\n|---|---|"
+            .into(),
+    );
+    for survivor in &mutants.survivors {
+        let reason = reasons
+            .get(survivor)
+            .ok_or_else(|| miette!("ladder/survivors.toml has no reason for {survivor}"))?;
+        put(page, format!("| `{}` | {} |", cell(survivor), cell(reason)));
+    }
+    Ok(())
+}
+
+fn put(page: &mut String, line: String) {
+    writeln!(page, "{line}").expect("a string can be written to");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Allowed;
+    use crate::mutants::Counts;
+
+    fn answer(question: &str, number: f64) -> Answer {
+        Answer {
+            rung: Rung::Routes,
+            question: question.into(),
+            number,
+            allowed: Allowed::AtMost(1.0),
+            reason: "a | b".into(),
+            file: "tests/link.rs".into(),
+            line: 1,
+            curve: None,
+        }
+    }
+
+    fn record() -> Record {
+        Record {
+            seed: 4,
+            possible: 10,
+            tool: "cargo-mutants".into(),
+            files: [(
+                "a.rs".to_owned(),
+                Counts {
+                    caught: 3,
+                    survived: 1,
+                    ..Counts::default()
+                },
+            )]
+            .into(),
+            survivors: vec!["a.rs:1:2: replace + with -".into()],
+        }
+    }
+
+    #[test]
+    fn a_page_is_stale_when_a_row_is_missing_fails_or_is_no_longer_asked() {
+        let rows = [answer("one?", 0.1), answer("two?", 0.2)];
+        let reasons = [(record().survivors[0].clone(), "equal".to_owned())].into();
+        let page = page(&rows, &[], &record(), &reasons).unwrap();
+        assert!(page.contains("75"), "the share of caught mutants");
+        assert!(stale(&page, &rows).is_empty());
+        assert_eq!(stale(&page, &rows[..1]).len(), 1);
+        assert_eq!(
+            stale(
+                &page,
+                &[rows[0].clone(), rows[1].clone(), answer("new?", 0.0)]
+            )
+            .len(),
+            1
+        );
+        let failing = super::page(&[answer("one?", 2.0)], &[], &record(), &reasons).unwrap();
+        assert!(!stale(&failing, &rows[..1]).is_empty());
+    }
+
+    #[test]
+    fn a_survivor_needs_a_reason() {
+        assert!(page(&[answer("one?", 0.1)], &[], &record(), &BTreeMap::new()).is_err());
+    }
+}

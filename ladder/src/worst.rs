@@ -1,0 +1,102 @@
+//! The largest of many errors.
+
+use std::cell::{Cell, RefCell};
+
+/// Keeps the largest error it sees, and where. An error that is not a number stays the largest.
+#[derive(Debug, Default)]
+pub struct Worst {
+    largest: Cell<Option<f64>>,
+    here: RefCell<String>,
+    place: RefCell<String>,
+}
+
+/// An error, and where it was seen if that is known.
+pub trait Measured {
+    /// The error.
+    fn error(&self) -> f64;
+    /// Where; empty when it is not known.
+    fn place(&self) -> String {
+        String::new()
+    }
+}
+
+impl Measured for f64 {
+    fn error(&self) -> f64 {
+        *self
+    }
+}
+
+impl Measured for &Worst {
+    fn error(&self) -> f64 {
+        self.value()
+    }
+
+    fn place(&self) -> String {
+        self.place.borrow().clone()
+    }
+}
+
+impl Worst {
+    /// Nothing seen yet.
+    pub fn new() -> Worst {
+        Worst::default()
+    }
+
+    /// Names what is looked at from here on: a scene, a channel.
+    pub fn at(&self, place: impl Into<String>) {
+        *self.here.borrow_mut() = place.into();
+    }
+
+    /// Looks at an error, of either sign.
+    pub fn see(&self, error: f64) {
+        let error = error.abs();
+        let replaces = match self.largest.get() {
+            None => true,
+            Some(largest) => error.is_nan() || error > largest,
+        };
+        if replaces && !self.largest.get().is_some_and(f64::is_nan) {
+            self.largest.set(Some(error));
+            self.place.borrow_mut().clone_from(&self.here.borrow());
+        }
+    }
+
+    /// The largest error.
+    ///
+    /// # Panics
+    /// When nothing was seen: a check of nothing proves nothing.
+    pub fn value(&self) -> f64 {
+        self.largest.get().expect("an error was looked at")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Measured, Worst};
+
+    #[test]
+    fn what_is_not_a_number_is_worst() {
+        let worst = Worst::new();
+        worst.see(-2.0);
+        worst.see(1.0);
+        assert_eq!(worst.value(), 2.0);
+        worst.see(f64::NAN);
+        worst.see(3.0);
+        assert!(worst.value().is_nan());
+    }
+
+    #[test]
+    fn the_place_is_that_of_the_largest() {
+        let worst = Worst::new();
+        for (place, error) in [("a", 1.0), ("b", -3.0), ("c", 2.0)] {
+            worst.at(place);
+            worst.see(error);
+        }
+        assert_eq!((&worst).place(), "b");
+    }
+
+    #[test]
+    #[should_panic(expected = "an error was looked at")]
+    fn nothing_has_no_worst() {
+        Worst::new().value();
+    }
+}
