@@ -6,6 +6,10 @@
 
 namespace {
 
+void require_not_negative(double x, const std::string &name, const char *field) {
+    require(std::isfinite(x) && x >= 0.0, name + ": " + field + " must not be negative");
+}
+
 void require_positive(double x, const std::string &name, const char *field) {
     require(std::isfinite(x) && x > 0.0, name + ": " + field + " must be positive");
 }
@@ -26,6 +30,10 @@ void complete_flexible_link(Body &b, const ls_body &d, const std::string &name) 
     b.element.axial_stiffness = d.youngs_modulus * area;
     b.element.bending_stiffness = d.youngs_modulus * area * d.width * d.width / 12.0;
     b.element.length = d.length / d.elements;
+    require_not_negative(d.strain_damping, name, "strain_damping");
+    require_not_negative(d.mass_damping, name, "mass_damping");
+    b.strain_damping = d.strain_damping;
+    b.mass_damping = d.mass_damping;
 }
 
 // Equilateral triangular plate of circumradius R: area 3 sqrt(3)/4 R^2, side s = sqrt(3) R, inertia m s^2 / 12.
@@ -53,6 +61,9 @@ Body make_body(const ls_body &d, int offset, const std::string &name) {
     Body b{};
     b.kind = static_cast<ls_body_kind>(d.kind);
     b.offset = offset;
+    b.lever = 1.0;
+    require(d.kind == LS_FLEXIBLE_LINK || (d.strain_damping == 0.0 && d.mass_damping == 0.0),
+            name + ": only a flexible link has damping");
     switch (d.kind) {
     case LS_GROUND: break;
     case LS_RIGID_LINK:
@@ -67,6 +78,15 @@ Body make_body(const ls_body &d, int offset, const std::string &name) {
         break;
     case LS_RIGID_BODY:
         complete_rigid_body(b, d, name);
+        b.size = 3;
+        break;
+    case LS_POINT_MASS:
+        require_positive(d.mass, name, "mass");
+        b.mass = d.mass;
+        b.size = 2;
+        break;
+    case LS_MOVING_BODY:
+        b.function = d.function;
         b.size = 3;
         break;
     default: throw Failure(LS_BAD_INPUT, name + ": unknown kind");
@@ -91,22 +111,64 @@ void add_mass(const Body &b, Eigen::MatrixXd &mass) {
         mass(o, o) = mass(o + 1, o + 1) = b.mass;
         mass(o + 2, o + 2) = b.inertia;
         break;
+    case LS_POINT_MASS: mass(o, o) = mass(o + 1, o + 1) = b.mass; break;
     default: break;
     }
 }
 
+void add_translation(const Body &b, double x, double y, Eigen::VectorXd &field) {
+    const int points = b.kind == LS_GROUND         ? 0
+                       : b.kind == LS_RIGID_LINK    ? 2
+                       : b.kind == LS_FLEXIBLE_LINK ? b.elements + 1
+                                                    : 1;
+    const int stride = b.kind == LS_FLEXIBLE_LINK ? 4 : 2;
+    for (int i = 0; i < points; ++i) {
+        field[b.offset + stride * i] += x;
+        field[b.offset + stride * i + 1] += y;
+    }
+}
+
+Attachment ground_attachment() {
+    Attachment a{};
+    a.kind = LS_GROUND;
+    a.length = 1.0;
+    return a;
+}
+
 Attachment make_attachment(const Body &b, const ls_point &p, const std::string &name) {
     require(std::isfinite(p.x) && std::isfinite(p.y), name + ": the point is not finite");
+    constexpr double rounding = 1e-12;
     Attachment a{};
     a.kind = b.kind;
     a.offset = b.offset;
-    a.size = b.kind == LS_GROUND ? 0 : b.kind == LS_RIGID_BODY ? 3 : 4;
+    a.length = 1.0;
     a.point = {p.x, p.y};
-    if (b.kind == LS_RIGID_LINK || b.kind == LS_FLEXIBLE_LINK) {
-        const bool start = p.x == 0.0, end = std::abs(p.x - b.length) <= 1e-12 * b.length;
-        require((start || end) && p.y == 0.0, name + ": a point of a link must be its start (0, 0) or its end (length, 0)");
+    switch (b.kind) {
+    case LS_RIGID_LINK: {
+        const bool start = p.x == 0.0, end = std::abs(p.x - b.length) <= rounding * b.length;
+        require((start || end) && p.y == 0.0,
+                name + ": a point of a rigid link must be its start (0, 0) or its end (length, 0)");
+        a.size = 4;
         a.end = end ? 1 : 0;
-        if (b.kind == LS_FLEXIBLE_LINK && end) a.offset += 4 * b.elements;
+        a.length = b.length;
+        break;
+    }
+    case LS_FLEXIBLE_LINK: {
+        const double node = std::round(p.x / b.element.length);
+        require(node >= 0.0 && node <= b.elements && p.y == 0.0 &&
+                    std::abs(p.x - node * b.element.length) <= rounding * b.length,
+                name + ": a point of a flexible link must be one of its nodes");
+        a.size = 4;
+        a.offset += 4 * static_cast<int>(node);
+        break;
+    }
+    case LS_RIGID_BODY:
+    case LS_MOVING_BODY: a.size = 3; break;
+    case LS_POINT_MASS:
+        require(p.x == 0.0 && p.y == 0.0, name + ": a point mass has no other point than (0, 0)");
+        a.size = 2;
+        break;
+    default: break;
     }
     return a;
 }

@@ -1,7 +1,8 @@
 // Inverse kinematics of the ideal rigid mechanism, leg by leg, and the path of eq. 27.
 #pragma once
 
-#include "constraint.hpp"
+#include "dual.hpp"
+#include "plane.hpp"
 
 struct Leg {
     int crank, passive;               // bodies

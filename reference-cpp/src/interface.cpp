@@ -167,9 +167,9 @@ std::int32_t ls_system_constraints(const ls_system *s) { return s ? s->system.co
 std::int32_t ls_system_cranks(const ls_system *system, double t, double *angles, ls_error *error) {
     return guarded(error, [&] {
         double *out = angles;
-        for (const CrankAngle &c : need(system, "system").system.crank_angles(t)) {
+        for (const Prescribed &c : need(system, "system").system.crank_angles(t)) {
             need(angles, "angles");
-            *out++ = c.angle;
+            *out++ = c.value;
             *out++ = c.rate;
             *out++ = c.acceleration;
         }
@@ -193,18 +193,20 @@ std::int32_t ls_system_mass(const ls_system *system, const double *q, double *ma
     });
 }
 
-std::int32_t ls_system_force(const ls_system *system, const double *q, const double *v, const double *z, double *force,
-                             double *by_q, double *by_v, ls_error *error) {
+std::int32_t ls_system_force(const ls_system *system, double t, const double *q, const double *v, const double *z,
+                             double *force, double *by_q, double *by_v, ls_error *error) {
     return guarded(error, [&] {
         const System &s = need(system, "system").system;
         const VectorXd qs = input(q, s.coordinates(), "q"), vs = input(v, s.coordinates(), "v"),
                        zs = input(z, s.joints(), "z");
+        require(std::isfinite(t), "t is not finite");
+        const std::vector<Prescribed> functions = s.functions(t);
         VectorXd f;
-        s.force(qs, vs, zs, f);
+        s.force(functions, qs, vs, zs, f);
         output(f, force, "force");
         if (!by_q && !by_v) return;
         MatrixXd k, c;
-        s.force_derivatives(qs, vs, zs, k, c);
+        s.force_derivatives(functions, qs, vs, zs, k, c);
         if (by_q) output(k, by_q, "by_q");
         if (by_v) output(c, by_v, "by_v");
     });
@@ -214,9 +216,10 @@ std::int32_t ls_system_constraint_rows(const ls_system *system, double t, const 
                                        double *phi_t, ls_error *error) {
     return guarded(error, [&] {
         const System &s = need(system, "system").system;
+        require(std::isfinite(t), "t is not finite");
         VectorXd values, by_t;
         MatrixXd by_q;
-        s.constraint_rows(s.crank_angles(t), input(q, s.coordinates(), "q"), values, by_q, by_t);
+        s.constraint_rows(s.inputs(t), input(q, s.coordinates(), "q"), values, by_q, by_t);
         output(values, phi, "phi");
         output(by_q, phi_q, "phi_q");
         output(by_t, phi_t, "phi_t");

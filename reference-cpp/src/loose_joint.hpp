@@ -1,17 +1,16 @@
 // A revolute joint with clearance, eqs. 19-26.
 #pragma once
 
-#include "bodies.hpp"
 #include "contact.hpp"
+#include "pair.hpp"
 
 // What the joint does at one instant; T is double or a Dual.
 template <class T>
-struct LooseForces {
-    T bearing[attachment_size]{}, journal[attachment_size]{}; // generalised forces
-    Vec<T> on_journal;                                    // resultant on the journal side
-    T elastic_normal{}, normal{};                         // K delta^n, F_n
-    T delta{}, rate{};                                    // penetration and its rate
-    T friction_power{};                                   // power of the tangential forces, <= 0 for a loss
+struct LooseForces : PairForces<T> {
+    Vec<T> on_journal;            // resultant on the journal side
+    T elastic_normal{}, normal{}; // K delta^n, F_n
+    T delta{}, rate{};            // penetration and its rate
+    T friction_power{};           // power of the tangential forces, <= 0 for a loss
     bool clamped = false;
 };
 

@@ -11,17 +11,21 @@
 // step over the time scale of the motion, is left out, and so is d(Phi_q^T mu)/dq, since mu vanishes with the
 // tolerance; Newton's method corrects what little they do. Then one matrix of n + m and one of m rows are factorised
 // instead of one of 2 (n + m). The first block is divided by c^2 so that it tends to the acceleration-level matrix.
+//
+// The coordinates p of moving bodies have no mass; M^-1 means zero there. Their dq is in b3 by the second row above, and
+// what the first row leaves open, s = dv - c dq, is b4 - c b3 of the rows that prescribe them: it is added to dv wherever
+// that occurs. Their rows of r1 hold no more than mu, and give it at the end.
 
 NewtonMatrix::NewtonMatrix(const System &system) : system_(system) {}
 
-void NewtonMatrix::assemble(double c, const std::vector<CrankAngle> &cranks, const VectorXd &q, const VectorXd &v,
+void NewtonMatrix::assemble(double c, const Inputs &inputs, const VectorXd &q, const VectorXd &v,
                             const VectorXd &z, const VectorXd &lambda) {
     const int n = system_.coordinates(), m = system_.constraints();
     c_ = c;
-    damped_ = (z.array() > 0.0).any();
-    system_.force_derivatives(q, v, z, by_q_, by_v_);
-    system_.constraint_rows(cranks, q, phi_, phi_q_, phi_t_);
-    system_.constraint_derivatives(cranks, q, v, lambda, by_q_, rate_by_q_);
+    system_.force_derivatives(inputs.functions, q, v, z, by_q_, by_v_);
+    damped_ = (by_v_.array() != 0.0).any();
+    system_.constraint_rows(inputs, q, phi_, phi_q_, phi_t_);
+    system_.constraint_derivatives(inputs, q, v, lambda, by_q_, rate_by_q_);
 
     kkt_.setZero(n + m, n + m);
     kkt_.topLeftCorner(n, n) = system_.mass() + by_q_ / (c * c);
@@ -40,24 +44,30 @@ void NewtonMatrix::solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorX
     const auto b1 = b.segment(0, n), b2 = b.segment(n, n), b3 = b.segment(2 * n, m), b4 = b.segment(2 * n + m, m);
     const VectorXd m_b1 = system_.inverse_mass() * b1;
 
+    VectorXd known = -m_b1; // dv - c dq as far as it does not depend on dmu
+    for (const auto &p : system_.prescribed()) known[p.coordinate] = b4[p.row] - c_ * b3[p.row];
     VectorXd drift, w_mu = VectorXd::Zero(n);
     if (m > 0) {
-        drift = b4 - c_ * b3 + phi_q_ * m_b1;
+        drift = b4 - c_ * b3 - phi_q_ * known;
         w_mu = w_ * projection_.solve(drift);
     }
     VectorXd rhs(n + m);
     rhs.head(n) = b2 + c_ * b1;
-    if (damped_) rhs.head(n) += by_v_ * (m_b1 - w_mu);
+    if (damped_) rhs.head(n) -= by_v_ * (known + w_mu);
     rhs.head(n) /= c_ * c_;
     rhs.tail(m) = b3;
     const VectorXd y = lu_.solve(rhs);
     const auto dq = y.head(n);
 
     x.segment(0, n) = dq;
-    x.segment(n, n) = c_ * dq - m_b1;
+    x.segment(n, n) = c_ * dq + known;
     if (m == 0) return;
-    const VectorXd dmu = projection_.solve(drift - rate_by_q_ * dq);
+    VectorXd dmu = projection_.solve(drift - rate_by_q_ * dq);
     x.segment(n, n) += w_ * dmu;
+    for (const auto &p : system_.prescribed()) {
+        dmu[p.row] = 0.0;
+        dmu[p.row] = b1[p.coordinate] - phi_q_.col(p.coordinate).dot(dmu);
+    }
     x.segment(2 * n, m) = c_ * c_ * y.tail(m) - c_ * dmu;
     x.segment(2 * n + m, m) = dmu;
 }

@@ -6,13 +6,14 @@
 // for the implicit step q' ~ c q, v' ~ c v.
 #pragma once
 
+#include "constraint_factor.hpp"
 #include "system.hpp"
 
 class NewtonMatrix {
 public:
     explicit NewtonMatrix(const System &system);
 
-    void assemble(double c, const std::vector<CrankAngle> &cranks, const VectorXd &q, const VectorXd &v,
+    void assemble(double c, const Inputs &inputs, const VectorXd &q, const VectorXd &v,
                   const VectorXd &z, const VectorXd &lambda);
     // x = J^-1 b, both ordered (q, v, lambda, mu)
     void solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd> x) const;
@@ -24,5 +25,5 @@ private:
     VectorXd phi_, phi_t_;
     MatrixXd by_q_, by_v_, phi_q_, rate_by_q_, kkt_, w_, s_;
     Eigen::PartialPivLU<MatrixXd> lu_;
-    Eigen::LDLT<MatrixXd> projection_;
+    ConstraintFactor projection_;
 };

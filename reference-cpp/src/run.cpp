@@ -24,10 +24,11 @@ Eigen::Map<const VectorXd> part(const double *y, int offset, int size) { return 
 Eigen::Map<VectorXd> part(double *y, int offset, int size) { return {y + offset, size}; }
 
 void add(Ledger &sum, double weight, const Powers &p) {
-    sum.drive += weight * p.drive;
+    sum.work += weight * p.work;
     sum.contact_dissipated += weight * p.contact_dissipated;
     sum.clamp += weight * p.clamp;
     sum.friction_dissipated += weight * p.friction_dissipated;
+    sum.damping_dissipated += weight * p.damping_dissipated;
 }
 
 SUNLinearSolver_Type solver_type(SUNLinearSolver) { return SUNLINEARSOLVER_DIRECT; }
@@ -48,8 +49,9 @@ Handle allocated(Handle handle) {
 Run::Run(const System &system, double t, const VectorXd &q, const VectorXd &v, const ls_tolerances &tolerances)
     : system_(system), tolerances_(tolerances), n_(system.coordinates()), m_(system.constraints()), before_(t), t_(t),
       target_(t), q_(q), v_(v), z_(VectorXd::Zero(system.joints())), watch_before_(system.loose_joints().size()),
-      clamped_(system.loose_joints().size(), 0), acceleration_(system_), newton_(system_),
-      cranks_time_(std::numeric_limits<double>::quiet_NaN()), context_(&errors_),
+      clamped_(system.loose_joints().size(), 0), deepest_(system.loose_joints().size(), 0.0),
+      acceleration_(system_), newton_(system_),
+      inputs_time_(std::numeric_limits<double>::quiet_NaN()), context_(&errors_),
       y_(allocated(N_VNew_Serial(2 * (n_ + m_), context_))), yp_(allocated(N_VClone(y_.get()))),
       scratch_(allocated(N_VClone(y_.get()))), matrix_(allocated(SUNMatNewEmpty(context_))),
       solver_(allocated(SUNLinSolNewEmpty(context_))), ida_(context_) {
@@ -57,6 +59,7 @@ Run::Run(const System &system, double t, const VectorXd &q, const VectorXd &v, c
     if (!q.allFinite() || !v.allFinite()) throw Failure(LS_NOT_FINITE, "the initial state is not finite", t);
     VectorXd q0 = q, v0 = v;
     acceleration_.project(t, q0, v0, consistent);
+    system_.check_angles(acceleration_.inputs, q0, t);
     set_up(tolerances);
 }
 
@@ -122,12 +125,12 @@ int Run::guarded(Work work) {
     }
 }
 
-const std::vector<CrankAngle> &Run::cranks(double t) {
-    if (t != cranks_time_) {
-        cranks_ = system_.crank_angles(t);
-        cranks_time_ = t;
+const Inputs &Run::inputs(double t) {
+    if (t != inputs_time_) {
+        inputs_ = system_.inputs(t);
+        inputs_time_ = t;
     }
-    return cranks_;
+    return inputs_;
 }
 
 int Run::residual(double t, N_Vector yy, N_Vector yyp, N_Vector rr, void *user) {
@@ -140,8 +143,9 @@ int Run::residual(double t, N_Vector yy, N_Vector yyp, N_Vector rr, void *user) 
         run.vs_ = part(y, n, n);
         const auto lambda = part(y, 2 * n, m), mu = part(y, 2 * n + m, m);
         const System &s = run.system_;
-        s.constraint_rows(run.cranks(t), run.qs_, run.phi_, run.phi_q_, run.phi_t_);
-        s.force(run.qs_, run.vs_, run.z_, run.f_);
+        const Inputs &inputs = run.inputs(t);
+        s.constraint_rows(inputs, run.qs_, run.phi_, run.phi_q_, run.phi_t_);
+        s.force(inputs.functions, run.qs_, run.vs_, run.z_, run.f_);
         auto r1 = part(r, 0, n), r2 = part(r, n, n);
         r1.noalias() = s.sparse_mass() * (part(yp, 0, n) - run.vs_);
         r1.noalias() += run.phi_q_.transpose() * mu;
@@ -160,7 +164,7 @@ int Run::jacobian(double t, double c, N_Vector yy, N_Vector, N_Vector, SUNMatrix
     Run &run = *static_cast<Run *>(user);
     return run.guarded([&] {
         const double *y = N_VGetArrayPointer(yy);
-        run.newton_.assemble(c, run.cranks(t), part(y, 0, run.n_), part(y, run.n_, run.n_), run.z_,
+        run.newton_.assemble(c, run.inputs(t), part(y, 0, run.n_), part(y, run.n_, run.n_), run.z_,
                              part(y, 2 * run.n_, run.m_));
     });
 }
@@ -225,10 +229,12 @@ void Run::step() {
         if (flag == IDA_ROOT_RETURN) check(IDAGetRootInfo(ida_, flagged.data()));
         find_events(flagged.data());
     }
+    if (flag == IDA_TSTOP_RETURN) restart_pending_ = true;
     q_ = part(y, 0, n_);
     v_ = part(y, n_, n_);
     add(ledger_, 1.0, integral(t_));
     watch_clamps();
+    watch_depth();
 }
 
 // Continues from (t_, q_, v_) with consistent derivatives; multipliers from the acceleration level.
@@ -251,7 +257,16 @@ void Run::restart() {
     std::vector<int> direction;
     for (int k : system_.loose_joints()) direction.push_back(closed(k) ? -1 : 1);
     if (!direction.empty()) check(IDASetRootDirection(ida_, direction.data()));
+    stop_at_next_break();
     restart_pending_ = false;
+}
+
+// The history that a high order rests on must not reach across a kink of a function.
+void Run::stop_at_next_break() {
+    const std::vector<double> &breaks = system_.breaks();
+    const double rounding = 1e-14 * std::max(1.0, std::abs(t_)); // IDA cannot stop nearer than that
+    const auto next = std::upper_bound(breaks.begin(), breaks.end(), t_ + rounding);
+    if (next != breaks.end()) check(IDASetStopTime(ida_, *next));
 }
 
 // IDA starts at order 1: its error is h^2/2 y''. For q that is the acceleration; the change of the acceleration over
@@ -279,12 +294,14 @@ double Run::first_step() {
 void Run::apply_pending_events() {
     const std::vector<int> &loose = system_.loose_joints();
     for (int k : pending_) {
+        const auto i = std::find(loose.begin(), loose.end(), k) - loose.begin();
         const Gap g = system_.gap(k, q_.data(), v_.data());
         const double speed = g.rate();
         const bool onset = !closed(k);
-        events_.push_back({t_, speed, g.e.x, g.e.y, k, onset ? 1 : 0});
+        events_.push_back({t_, speed, g.e.x, g.e.y, onset ? 0.0 : deepest_[i], k, onset ? 1 : 0});
         z_[k] = onset ? std::max(speed, system_.law(k).impact_velocity_floor) : 0.0;
-        clamped_[std::find(loose.begin(), loose.end(), k) - loose.begin()] = 0;
+        clamped_[i] = 0;
+        deepest_[i] = 0.0;
     }
     pending_.clear();
 }
@@ -360,6 +377,20 @@ void Run::watch_clamps() {
     }
 }
 
+// The penetration of a closed contact is largest at an end of an interval or where its rate falls through zero inside.
+void Run::watch_depth() {
+    const std::vector<int> &loose = system_.loose_joints();
+    for (std::size_t i = 0; i < loose.size(); ++i) {
+        const int k = loose[i];
+        if (!closed(k)) continue;
+        deepest_[i] = std::max(deepest_[i], system_.gap(k, q_.data(), v_.data()).delta());
+        if (!(watch_before_[i].rate > 0.0 && system_.gap(k, q_.data(), v_.data()).rate() < 0.0)) continue;
+        const double top = bisect(before_, t_, [](const Watch &w) { return -w.rate; }, k);
+        interpolated(k, top);
+        deepest_[i] = std::max(deepest_[i], system_.gap(k, data(scratch_), data(scratch_) + n_).delta());
+    }
+}
+
 // ---- output -----------------------------------------------------------------------------------------------------
 
 // Inside the last interval from IDA's interpolant, at its end as returned.
@@ -375,11 +406,12 @@ void Run::state_at(double t, VectorXd &q, VectorXd &v) {
 }
 
 // Gauss quadrature of the powers over the last interval up to `to`, piecewise between the kinks of the contact law. The
-// rule matches the order of the interpolant.
+// rule matches the order of the interpolant. Where functions of time are prescribed IDA may take long steps, exact for
+// polynomials of its order, and powers have twice their degree.
 Ledger Run::integral(double to) {
     double from = before_;
     Ledger sum;
-    if (!(to > from) || (system_.legs() == 0 && (z_.array() <= 0.0).all())) return sum;
+    if (!(to > from) || (!system_.has_power() && (z_.array() <= 0.0).all())) return sum;
     int order = 0;
     check(IDAGetLastOrder(ida_, &order));
     std::vector<double> ends = kinks(to);
@@ -390,10 +422,15 @@ Ledger Run::integral(double to) {
             check(IDAGetDky(ida_, t, 0, scratch_.get()));
             qs_ = part(static_cast<const double *>(data(scratch_)), 0, n_);
             vs_ = part(static_cast<const double *>(data(scratch_)), n_, n_);
+            const double weight = g.weight * (end - from);
+            add(sum, weight, system_.powers(inputs(t).functions, qs_, vs_, z_));
+            if (!system_.prescribes_motion()) return;
             acceleration_.solve(t, qs_, vs_, z_, false);
-            add(sum, g.weight * (end - from), system_.powers(acceleration_.cranks, qs_, vs_, z_, acceleration_.lambda));
+            sum.work += weight * acceleration_.prescribed_power();
         };
-        if (order <= 3)
+        if (system_.follows_functions())
+            std::for_each(gauss5.begin(), gauss5.end(), add_point);
+        else if (order <= 3)
             std::for_each(gauss2.begin(), gauss2.end(), add_point);
         else
             std::for_each(gauss3.begin(), gauss3.end(), add_point);
@@ -440,14 +477,19 @@ void Run::describe(double t, ls_row &row) {
         throw Failure(LS_NOT_FINITE, "the acceleration is not finite", t);
 
     joint_force_.setZero(2 * system_.joints());
+    joint_couple_.setZero(system_.joints());
+    motion_force_.setZero(system_.motions());
     penetration_.setZero(system_.joints());
     torque_.setZero(system_.legs());
     for (int k = 0; k < system_.joints(); ++k) {
         const Vec<double> f = system_.joint_force(k, row_q_, row_v_, z_, lambda);
         joint_force_.segment<2>(2 * k) << f.x, f.y;
+        joint_couple_[k] = system_.joint_couple(k, row_q_, lambda);
     }
     for (int k : system_.loose_joints()) penetration_[k] = system_.gap(k, row_q_.data(), row_v_.data()).delta();
     for (int i = 0; i < system_.legs(); ++i) torque_[i] = system_.torque(i, lambda);
+    for (int i = 0; i < system_.motions(); ++i)
+        motion_force_[i] = system_.motion_force(i, acceleration_.inputs, row_q_, lambda);
 
     const Energies u = system_.energies(row_q_, row_v_, z_);
     Ledger ledger = t == t_ ? ledger_ : ledger_before_;
@@ -463,17 +505,22 @@ void Run::describe(double t, ls_row &row) {
     row.a = acceleration_.a.data();
     row.lambda = acceleration_.lambda.data();
     row.joint_force = joint_force_.data();
+    row.joint_couple = joint_couple_.data();
     row.penetration = penetration_.data();
     row.impact_velocity = z_.data();
     row.torque = torque_.data();
+    row.motion_force = motion_force_.data();
     row.kinetic = u.kinetic;
     row.axial = u.axial;
     row.bending = u.bending;
     row.contact = u.contact;
-    row.work = ledger.drive;
+    row.gravity = u.gravity;
+    row.springs = u.springs;
+    row.work = ledger.work;
     row.contact_dissipated = ledger.contact_dissipated;
     row.clamp = ledger.clamp;
     row.friction_dissipated = ledger.friction_dissipated;
+    row.damping_dissipated = ledger.damping_dissipated;
 }
 
 // IDA's counters start anew with every restart.

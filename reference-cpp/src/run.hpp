@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "acceleration.hpp"
 #include "failure.hpp"
 #include "newton.hpp"
 #include "sundials.hpp"
@@ -38,12 +39,13 @@ private:
 
     void check(int flag);
     void set_up(const ls_tolerances &tolerances);
-    const std::vector<CrankAngle> &cranks(double t);
+    const Inputs &inputs(double t);
 
     void step();
     void restart();
     double first_step();
     void apply_pending_events();
+    void stop_at_next_break();
 
     void find_events(const int *flagged);
     double crossing(int joint, const Watch &then, bool flagged);
@@ -53,6 +55,7 @@ private:
     Watch interpolated(int joint, double t);
     bool closed(int joint) const { return z_[joint] > 0.0; }
     void watch_clamps();
+    void watch_depth();
 
     void state_at(double t, VectorXd &q, VectorXd &v);
     Ledger integral(double to);
@@ -71,6 +74,7 @@ private:
     Ledger ledger_before_, ledger_;
     std::vector<Watch> watch_before_; // by loose joint, at before_
     std::vector<char> clamped_;       // by loose joint
+    std::vector<double> deepest_;     // by loose joint: largest penetration since the onset
     std::vector<int> pending_;        // joints whose contact closes or opens at t_
     bool restart_pending_ = true;
     std::vector<ls_event> events_;
@@ -79,13 +83,13 @@ private:
     Acceleration acceleration_;
     NewtonMatrix newton_;
     std::optional<Failure> failure_;  // in a callback
-    double cranks_time_;
-    std::vector<CrankAngle> cranks_;
+    double inputs_time_;
+    Inputs inputs_;
     VectorXd qs_, vs_, f_, phi_, phi_t_; // work arrays
     MatrixXd phi_q_;
 
     // arrays a row points to
-    VectorXd row_q_, row_v_, joint_force_, penetration_, torque_;
+    VectorXd row_q_, row_v_, joint_force_, joint_couple_, penetration_, torque_, motion_force_;
 
     // released from the last to the first: IDA before what it uses
     ida::ErrorText errors_;

@@ -1,344 +1,218 @@
+// From the description to the mechanism; what makes no sense is refused here.
 #include "system.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "failure.hpp"
+#include "names.hpp"
 
 namespace {
 
-std::string named(const char *what, int index) { return std::string(what) + " " + std::to_string(index); }
-
-const Body &body_at(const std::vector<Body> &bodies, int index, const std::string &name) {
-    require(index >= 0 && index < static_cast<int>(bodies.size()), name + ": there is no body " + std::to_string(index));
-    return bodies[index];
+void require_list(std::int32_t count, const void *items, const char *what) {
+    require(count >= 0 && (count == 0 || items), std::string(what) + " are missing");
 }
 
-bool is_link(const Body &b) { return b.kind == LS_RIGID_LINK || b.kind == LS_FLEXIBLE_LINK; }
+void require_not_negative(double x, const std::string &name, const char *field) {
+    require(std::isfinite(x) && x >= 0.0, name + ": " + field + " must not be negative");
+}
+
+void require_finite(double x, const std::string &name, const char *field) {
+    require(std::isfinite(x), name + ": " + field + " is not finite");
+}
+
+bool is_flag(std::int32_t x) { return x == 0 || x == 1; }
 
 } // namespace
 
 System::System(const ls_mechanism &m) {
     require(m.n_bodies > 0 && m.bodies, "there are no bodies");
-    require(m.n_joints >= 0 && (m.n_joints == 0 || m.joints), "joints are missing");
-    require(m.n_contacts >= 0 && (m.n_contacts == 0 || m.contacts), "contacts are missing");
-    require(m.n_legs >= 0 && (m.n_legs == 0 || m.legs), "legs are missing");
+    require_list(m.n_joints, m.joints, "joints");
+    require_list(m.n_contacts, m.contacts, "contacts");
+    require_list(m.n_legs, m.legs, "legs");
+    require_list(m.n_functions, m.functions, "functions");
+    require_list(m.n_springs, m.springs, "springs");
+    require_list(m.n_torsion_springs, m.torsion_springs, "torsion springs");
+    require_list(m.n_loads, m.loads, "loads");
+    require_list(m.n_motions, m.motions, "motions");
+    require_finite(m.gravity_x, "gravity", "x");
+    require_finite(m.gravity_y, "gravity", "y");
 
-    for (int i = 0; i < m.n_bodies; ++i) {
-        bodies_.push_back(make_body(m.bodies[i], n_, named("body", i)));
-        n_ += bodies_.back().size;
-    }
-    require(n_ > 0, "no body can move");
+    for (int i = 0; i < m.n_functions; ++i) functions_.push_back(make_function(m.functions[i], named("function", i)));
+    add_bodies(m);
     for (int i = 0; i < m.n_contacts; ++i) laws_.push_back(make_contact_law(m.contacts[i], named("contact", i)));
-    for (int i = 0; i < m.n_joints; ++i) add_joint(m.joints[i], i, m);
+    for (int i = 0; i < m.n_joints; ++i) add_joint(m.joints[i], i);
     if (m.n_legs > 0) {
         const ls_path &p = m.path;
-        require(body_at(bodies_, p.body, "path").kind == LS_RIGID_BODY, "path: the driven body must be a rigid body");
+        require(body(p.body, "path").kind == LS_RIGID_BODY, "path: the driven body must be a rigid body");
         for (double x : {p.centre_x, p.centre_y, p.radius, p.frequency, p.phase, p.theta})
             require(std::isfinite(x), "path: a value is not finite");
         path_ = {p.body, {p.centre_x, p.centre_y}, p.radius, p.frequency, p.phase, p.theta};
         for (int i = 0; i < m.n_legs; ++i) add_leg(m.legs[i], i, m);
     }
-    add_constraints();
-    complete_mass();
+    add_springs(m);
+    for (int i = 0; i < m.n_loads; ++i) add_load(m.loads[i], i);
+    add_constraints(m);
+    complete_mass(m.gravity_x, m.gravity_y);
+    find_undriven();
 
-    std::vector<bool> placed(bodies_.size(), false);
-    for (const Leg &leg : legs_) placed[leg.crank] = placed[leg.passive] = true;
-    if (!legs_.empty()) placed[path_.body] = true;
-    if (legs_.empty()) undriven_ = "there are no legs";
-    for (std::size_t i = 0; i < bodies_.size(); ++i)
-        if (undriven_.empty() && bodies_[i].size > 0 && !placed[i])
-            undriven_ = named("body", static_cast<int>(i)) + " belongs to no leg";
+    std::sort(breaks_.begin(), breaks_.end());
+    breaks_.erase(std::unique(breaks_.begin(), breaks_.end()), breaks_.end());
 }
 
-void System::add_joint(const ls_joint &j, int number, const ls_mechanism &m) {
+void System::add_bodies(const ls_mechanism &m) {
+    for (int i = 0; i < m.n_bodies; ++i) {
+        const std::string name = named("body", i);
+        bodies_.push_back(make_body(m.bodies[i], n_, name));
+        Body &b = bodies_.back();
+        n_ += b.size;
+        if (b.kind != LS_MOVING_BODY) continue;
+        for (int k = 0; k < 3; ++k) use_smooth_function(b.function + k, name);
+    }
+    require(n_ > 0, "no body can move");
+}
+
+const Body &System::body(int index, const std::string &name) const {
+    require(index >= 0 && index < static_cast<int>(bodies_.size()), name + ": there is no body " + std::to_string(index));
+    return bodies_[index];
+}
+
+Attachment System::attachment(const ls_point &p, const std::string &name) const {
+    return make_attachment(body(p.body, name), p, name);
+}
+
+Attachment System::directed_attachment(const ls_point &p, const std::string &name) const {
+    const Attachment a = attachment(p, name);
+    require(a.has_direction(), name + ": a point mass has no direction");
+    return a;
+}
+
+int System::use_function(int index, const std::string &name) {
+    require(index >= 0 && index < static_cast<int>(functions_.size()),
+            name + ": there is no function " + std::to_string(index));
+    add_breaks(functions_[index], breaks_);
+    return index;
+}
+
+// The acceleration of what is prescribed must exist.
+int System::use_smooth_function(int index, const std::string &name) {
+    use_function(index, name);
+    require(functions_[index].kind != LS_RAMP,
+            name + ": function " + std::to_string(index) + " is a ramp, which no motion can follow");
+    return index;
+}
+
+void System::add_joint(const ls_joint &j, int number) {
     const std::string name = named("joint", number);
-    const Body &bearing = body_at(bodies_, j.bearing.body, name + ", bearing");
-    const Body &journal = body_at(bodies_, j.journal.body, name + ", journal");
+    require(j.kind == LS_REVOLUTE || j.kind == LS_PRISMATIC || j.kind == LS_WELD, name + ": unknown kind");
+    const Body &bearing = body(j.bearing.body, name + ", bearing");
+    const Body &journal = body(j.journal.body, name + ", journal");
     require(j.bearing.body != j.journal.body, name + ": bearing and journal are on the same body");
     require(bearing.size + journal.size > 0, name + ": neither side can move");
-    require(j.contact < m.n_contacts, name + ": there is no contact " + std::to_string(j.contact));
+    require(is_flag(j.hold_rotation) && is_flag(j.hold_slope), name + ": hold_rotation and hold_slope must be 0 or 1");
+    require(j.kind != LS_REVOLUTE || j.hold_rotation == 0, name + ": a revolute joint cannot hold the rotation");
+    require(j.kind == LS_WELD || j.hold_slope == 0, name + ": only a weld can hold the slope");
+
     Joint joint;
-    joint.bearing = make_attachment(bearing, j.bearing, name + ", bearing");
-    joint.journal = make_attachment(journal, j.journal, name + ", journal");
-    joint.contact = j.contact < 0 ? -1 : j.contact;
-    if (joint.contact >= 0) loose_.push_back(number);
+    joint.kind = static_cast<ls_joint_kind>(j.kind);
+    joint.bearing = attachment(j.bearing, name + ", bearing");
+    joint.journal = attachment(j.journal, name + ", journal");
+    if (joint.kind != LS_REVOLUTE) {
+        require_finite(j.direction, name, "direction");
+        require_finite(j.angle, name, "angle");
+        directed_attachment(j.bearing, name + ", bearing");
+        if (joint.kind == LS_WELD || j.hold_rotation) directed_attachment(j.journal, name + ", journal");
+        require(j.hold_slope == 0 || bearing.kind == LS_FLEXIBLE_LINK || journal.kind == LS_FLEXIBLE_LINK,
+                name + ": only a flexible link has a slope to hold");
+    }
+    if (j.contact >= 0) {
+        require(joint.kind == LS_REVOLUTE, name + ": only a revolute joint can have play");
+        require(j.contact < static_cast<int>(laws_.size()), name + ": there is no contact " + std::to_string(j.contact));
+        joint.contact = j.contact;
+        const ContactLaw &law = laws_[j.contact];
+        require(!law.friction || !law.material_slip || (joint.bearing.has_direction() && joint.journal.has_direction()),
+                name + ": slip of the material needs rotations, and a point mass has no direction");
+        loose_.push_back(number);
+    } else {
+        require(bearing.can_move() || journal.can_move(), name + ": the motion of both sides is prescribed");
+    }
     joints_.push_back(joint);
 }
 
-void System::add_leg(const ls_leg &l, int number, const ls_mechanism &m) {
-    const std::string name = named("leg", number);
-    for (int joint : {l.joint_a, l.joint_b, l.joint_c})
-        require(joint >= 0 && joint < joints(), name + ": there is no joint " + std::to_string(joint));
-    require(l.elbow == 1 || l.elbow == -1, name + ": elbow must be 1 or -1");
-    const ls_joint &a = m.joints[l.joint_a], &b = m.joints[l.joint_b], &c = m.joints[l.joint_c];
-    const int crank = a.journal.body, passive = b.journal.body;
-    require(bodies_[a.bearing.body].kind == LS_GROUND, name + ": the bearing of joint A must be on ground");
-    require(bodies_[crank].kind == LS_RIGID_LINK, name + ": the crank, journal of joint A, must be a rigid link");
-    require(b.bearing.body == crank, name + ": the bearing of joint B must be on the crank");
-    require(is_link(bodies_[passive]), name + ": the journal of joint B must be on a link");
-    require(c.journal.body == passive, name + ": the journal of joint C must be on the passive link");
-    require(c.bearing.body == m.path.body, name + ": the bearing of joint C must be on the driven body");
-    const Joint &ja = joints_[l.joint_a], &jc = joints_[l.joint_c];
-    require(b.bearing.x != a.journal.x, name + ": joints A and B are at the same end of the crank");
-    require(c.journal.x != b.journal.x, name + ": joints B and C are at the same end of the passive link");
-    for (const Leg &other : legs_)
-        require(other.crank != crank && other.passive != passive, name + ": shares a link with another leg");
-    legs_.push_back({crank, passive, ja.journal.end == 0, b.journal.x == 0.0, ja.bearing.point, jc.bearing.point,
-                     bodies_[crank].length, bodies_[passive].length, l.elbow});
+// The joint of a torsion spring or of a prescribed angle.
+const Joint &System::turning_joint(int index, const std::string &name) const {
+    require(index >= 0 && index < joints(), name + ": there is no joint " + std::to_string(index));
+    const Joint &j = joints_[index];
+    require(j.kind == LS_REVOLUTE, name + ": joint " + std::to_string(index) + " is not a revolute joint");
+    require(j.bearing.has_direction() && j.journal.has_direction(),
+            name + ": joint " + std::to_string(index) + " is on a point mass, which has no direction");
+    return j;
 }
 
-void System::add_constraints() {
-    for (const Body &b : bodies_)
-        if (b.kind == LS_RIGID_LINK) constraints_.push_back(length_constraint(b));
-    for (Joint &j : joints_) {
-        if (j.contact >= 0) continue;
-        j.constraint = constraints();
-        for (int axis : {0, 1}) constraints_.push_back(coincide_constraint(j.bearing, j.journal, axis));
+void System::add_springs(const ls_mechanism &m) {
+    for (int i = 0; i < m.n_springs; ++i) {
+        const ls_spring &s = m.springs[i];
+        const std::string name = named("spring", i);
+        require_not_negative(s.stiffness, name, "stiffness");
+        require_not_negative(s.damping, name, "damping");
+        require_not_negative(s.rest_length, name, "rest_length");
+        const Attachment from = attachment(s.from, name + ", from"), to = attachment(s.to, name + ", to");
+        require(from.size + to.size > 0, name + ": neither end can move");
+        require(s.from.body != s.to.body || s.from.x != s.to.x || s.from.y != s.to.y, name + ": its ends are the same point");
+        springs_.push_back({from, to, s.stiffness, s.damping, s.rest_length, i});
     }
-    first_drive_ = constraints();
-    for (int i = 0; i < legs(); ++i)
-        constraints_.push_back(drive_constraint(bodies_[legs_[i].crank], legs_[i].crank_from_start, i));
+    for (int i = 0; i < m.n_torsion_springs; ++i) {
+        const ls_torsion_spring &s = m.torsion_springs[i];
+        const std::string name = named("torsion spring", i);
+        const Joint &j = turning_joint(s.joint, name);
+        require_not_negative(s.stiffness, name, "stiffness");
+        require_not_negative(s.damping, name, "damping");
+        require_finite(s.rest_angle, name, "rest_angle");
+        torsion_springs_.push_back({j.bearing, j.journal, s.stiffness, s.damping, s.rest_angle});
+    }
 }
 
-void System::complete_mass() {
+void System::add_load(const ls_load &l, int number) {
+    const std::string name = named("load", number);
+    require(l.kind == LS_DEAD_FORCE || l.kind == LS_FOLLOWER_FORCE || l.kind == LS_TORQUE, name + ": unknown kind");
+    Load load{};
+    load.kind = static_cast<ls_load_kind>(l.kind);
+    load.x = use_function(l.x, name);
+    load.y = l.kind == LS_TORQUE ? load.x : use_function(l.y, name);
+    load.point = l.kind == LS_DEAD_FORCE ? attachment(l.point, name) : directed_attachment(l.point, name);
+    load.reaction = l.kind == LS_TORQUE && l.reaction.body >= 0 ? directed_attachment(l.reaction, name + ", reaction")
+                                                                 : ground_attachment();
+    require(load.point.size + load.reaction.size > 0, name + ": it acts on the ground alone");
+    loads_.push_back(load);
+}
+
+void System::complete_mass(double gravity_x, double gravity_y) {
     mass_ = MatrixXd::Zero(n_, n_);
     levers_ = VectorXd::Ones(n_);
+    VectorXd gravity = VectorXd::Zero(n_);
     for (const Body &b : bodies_) {
         add_mass(b, mass_);
+        add_translation(b, gravity_x, gravity_y, gravity);
         if (b.kind == LS_RIGID_BODY) levers_[b.offset + 2] = b.lever;
         if (b.kind == LS_FLEXIBLE_LINK)
             for (int i = 0; i <= b.elements; ++i) levers_.segment<2>(b.offset + 4 * i + 2).setConstant(b.lever);
     }
+    // the frame of a moving body has no length of its own, only points at a distance
+    for (const Joint &j : joints_)
+        for (const Attachment *a : {&j.bearing, &j.journal})
+            if (a->kind == LS_MOVING_BODY) {
+                double &lever = levers_[a->offset + 2];
+                lever = std::max(lever, std::hypot(a->point.x, a->point.y));
+            }
     sparse_mass_ = mass_.sparseView();
-    MatrixXd inverse = MatrixXd::Zero(n_, n_);
+    weight_ = sparse_mass_ * gravity;
+    MatrixXd inverse = MatrixXd::Zero(n_, n_), damping = MatrixXd::Zero(n_, n_);
     for (const Body &b : bodies_)
-        if (b.size > 0) {
+        if (b.can_move()) {
             const auto block = mass_.block(b.offset, b.offset, b.size, b.size);
             inverse.block(b.offset, b.offset, b.size, b.size) = block.llt().solve(MatrixXd::Identity(b.size, b.size));
+            damping.block(b.offset, b.offset, b.size, b.size) = b.mass_damping * block;
         }
     inverse_mass_ = inverse.sparseView();
-}
-
-std::vector<CrankAngle> System::crank_angles(double t) const {
-    std::vector<CrankAngle> angles;
-    const Jet time = time_jet(t);
-    for (int i = 0; i < legs(); ++i) {
-        const Jet phi = crank_angle(legs_[i], path_, time, i);
-        angles.push_back({value_of(phi), rate_of(phi), acceleration_of(phi)});
-    }
-    return angles;
-}
-
-namespace {
-
-void put(VectorXd &q, VectorXd &v, int i, const Vec<Jet> &x) {
-    q[i] = value_of(x.x);
-    q[i + 1] = value_of(x.y);
-    v[i] = rate_of(x.x);
-    v[i + 1] = rate_of(x.y);
-}
-
-// A link along the straight line from `start` to `end`.
-void put_link(VectorXd &q, VectorXd &v, const Body &b, const Vec<Jet> &start, const Vec<Jet> &end) {
-    if (b.kind == LS_RIGID_LINK) {
-        put(q, v, b.offset, start);
-        put(q, v, b.offset + 2, end);
-        return;
-    }
-    const Vec<Jet> chord = end - start;
-    const Jet inverse = 1.0 / sqrt(dot(chord, chord)); // of the length, exactly: unit slopes carry no strain
-    for (int i = 0; i <= b.elements; ++i) {
-        put(q, v, b.offset + 4 * i, start + Jet(static_cast<double>(i) / b.elements) * chord);
-        put(q, v, b.offset + 4 * i + 2, inverse * chord);
-    }
-}
-
-} // namespace
-
-void System::start(double t, VectorXd &q, VectorXd &v) const {
-    require(undriven_.empty(), "the start is undetermined: " + undriven_);
-    q.setZero(n_);
-    v.setZero(n_);
-    const Jet time = time_jet(t);
-    for (int i = 0; i < legs(); ++i) {
-        const Leg &leg = legs_[i];
-        const Jet phi = crank_angle(leg, path_, time, i);
-        const Vec<Jet> a{Jet(leg.a.x), Jet(leg.a.y)};
-        const Vec<Jet> b = a + Jet(leg.crank_length) * Vec<Jet>{cos(phi), sin(phi)};
-        const Vec<Jet> c = path_point(path_, leg.c_on_body, time);
-        put_link(q, v, bodies_[leg.crank], leg.crank_from_start ? a : b, leg.crank_from_start ? b : a);
-        put_link(q, v, bodies_[leg.passive], leg.passive_from_start ? b : c, leg.passive_from_start ? c : b);
-    }
-    const int o = bodies_[path_.body].offset;
-    put(q, v, o, path_centre(path_, time));
-    q[o + 2] = path_.theta;
-}
-
-void System::force(const VectorXd &q, const VectorXd &v, const VectorXd &z, VectorXd &f) const {
-    f.setZero(n_);
-    for (const Body &b : bodies_)
-        for (int e = 0; e < b.elements; ++e)
-            f.segment<8>(b.offset + 4 * e) += element_force(b.element, q.data() + b.offset + 4 * e);
-    for (int k : loose_) {
-        if (z[k] <= 0.0) continue;
-        const Joint &j = joints_[k];
-        const LooseForces<double> l = loose(k, q, v, z[k]);
-        for (int i = 0; i < j.bearing.size; ++i) f[j.bearing.offset + i] -= l.bearing[i];
-        for (int i = 0; i < j.journal.size; ++i) f[j.journal.offset + i] -= l.journal[i];
-    }
-}
-
-void System::force_derivatives(const VectorXd &q, const VectorXd &v, const VectorXd &z, MatrixXd &by_q,
-                               MatrixXd &by_v) const {
-    by_q.setZero(n_, n_);
-    by_v.setZero(n_, n_);
-    for (const Body &b : bodies_)
-        for (int e = 0; e < b.elements; ++e) {
-            const int o = b.offset + 4 * e;
-            by_q.block<8, 8>(o, o) += element_tangent(b.element, q.data() + o);
-        }
-
-    // independent variables of a joint: q of the bearing, q of the journal, then v likewise
-    using D = Dual<double, 4 * attachment_size>;
-    for (int k : loose_) {
-        if (z[k] <= 0.0) continue;
-        const Joint &j = joints_[k];
-        D qs[2][attachment_size], vs[2][attachment_size];
-        const Attachment *side[2] = {&j.bearing, &j.journal};
-        for (int s = 0; s < 2; ++s)
-            for (int i = 0; i < side[s]->size; ++i) {
-                const int variable = attachment_size * s + i;
-                qs[s][i].value = q[side[s]->offset + i];
-                qs[s][i].slope[variable] = 1.0;
-                vs[s][i].value = v[side[s]->offset + i];
-                vs[s][i].slope[2 * attachment_size + variable] = 1.0;
-            }
-        const LooseForces<D> l = loose_forces(law(k), z[k], j.bearing, j.journal, qs[0], vs[0], qs[1], vs[1]);
-        const D *forces[2] = {l.bearing, l.journal};
-        for (int r = 0; r < 2; ++r)
-            for (int i = 0; i < side[r]->size; ++i)
-                for (int c = 0; c < 2; ++c)
-                    for (int m = 0; m < side[c]->size; ++m) {
-                        const int variable = attachment_size * c + m;
-                        by_q(side[r]->offset + i, side[c]->offset + m) -= forces[r][i].slope[variable];
-                        by_v(side[r]->offset + i, side[c]->offset + m) -=
-                            forces[r][i].slope[2 * attachment_size + variable];
-                    }
-    }
-}
-
-void System::constraint_rows(const std::vector<CrankAngle> &cranks, const VectorXd &q, VectorXd &phi, MatrixXd &phi_q,
-                             VectorXd &phi_t) const {
-    const int m = constraints();
-    phi.resize(m);
-    phi_t.resize(m);
-    phi_q.setZero(m, n_);
-    for (int k = 0; k < m; ++k) {
-        const Constraint &c = constraints_[k];
-        const bool drive = c.kind == Constraint::drive;
-        const ConstraintRow r = evaluate(c, q, drive ? cranks[c.leg].angle : 0.0);
-        phi[k] = r.value;
-        phi_t[k] = drive ? r.by_angle * cranks[c.leg].rate : 0.0;
-        for (int i = 0; i < c.size; ++i) phi_q(k, c.index[i]) = r.by_q[i];
-    }
-}
-
-void System::reduce_mass(const MatrixXd &phi_q, MatrixXd &w, MatrixXd &s) const {
-    const int m = constraints();
-    w.setZero(n_, m);
-    s.resize(m, m);
-    for (int k = 0; k < m; ++k) {
-        const Constraint &c = constraints_[k];
-        for (int i = 0; i < c.size; ++i)
-            for (Eigen::SparseMatrix<double>::InnerIterator entry(inverse_mass_, c.index[i]); entry; ++entry)
-                w(entry.row(), k) += entry.value() * phi_q(k, c.index[i]);
-    }
-    for (int k = 0; k < m; ++k)
-        for (int l = k; l < m; ++l) {
-            const Constraint &c = constraints_[l];
-            double sum = 0.0;
-            for (int i = 0; i < c.size; ++i) sum += phi_q(l, c.index[i]) * w(c.index[i], k);
-            s(k, l) = s(l, k) = sum;
-        }
-}
-
-void System::convective(const std::vector<CrankAngle> &cranks, const VectorXd &q, const VectorXd &v,
-                        VectorXd &gamma) const {
-    gamma.resize(constraints());
-    for (int k = 0; k < constraints(); ++k) {
-        const Constraint &c = constraints_[k];
-        gamma[k] = convective_acceleration(c, q, v, c.kind == Constraint::drive ? cranks[c.leg] : CrankAngle{});
-    }
-}
-
-void System::constraint_derivatives(const std::vector<CrankAngle> &cranks, const VectorXd &q, const VectorXd &v,
-                                    const VectorXd &lambda, MatrixXd &stiffness, MatrixXd &rate_by_q) const {
-    rate_by_q.setZero(constraints(), n_);
-    ConstraintHessian h;
-    for (int k = 0; k < constraints(); ++k) {
-        const Constraint &c = constraints_[k];
-        if (c.linear) continue;
-        const CrankAngle crank = c.kind == Constraint::drive ? cranks[c.leg] : CrankAngle{};
-        hessian(c, q, crank.angle, h);
-        for (int i = 0; i < c.size; ++i) {
-            double rate = c.kind == Constraint::drive ? h(i, c.size) * crank.rate : 0.0;
-            for (int j = 0; j < c.size; ++j) {
-                stiffness(c.index[i], c.index[j]) += lambda[k] * h(i, j);
-                rate += h(i, j) * v[c.index[j]];
-            }
-            rate_by_q(k, c.index[i]) = rate;
-        }
-    }
-}
-
-Gap System::gap(int k, const double *q, const double *v) const {
-    const Joint &j = joints_[k];
-    const double *qi = q + j.bearing.offset, *qj = q + j.journal.offset;
-    const double *vi = v + j.bearing.offset, *vj = v + j.journal.offset;
-    return {position(j.journal, qj) - position(j.bearing, qi),
-            velocity(j.journal, qj, vj) - velocity(j.bearing, qi, vi), law(k).clearance};
-}
-
-LooseForces<double> System::loose(int k, const VectorXd &q, const VectorXd &v, double z) const {
-    const Joint &j = joints_[k];
-    return loose_forces<double>(law(k), z, j.bearing, j.journal, q.data() + j.bearing.offset,
-                                v.data() + j.bearing.offset, q.data() + j.journal.offset, v.data() + j.journal.offset);
-}
-
-Energies System::energies(const VectorXd &q, const VectorXd &v, const VectorXd &z) const {
-    Energies sum;
-    sum.kinetic = 0.5 * v.dot(sparse_mass_ * v);
-    for (const Body &b : bodies_)
-        for (int e = 0; e < b.elements; ++e) {
-            const ElasticEnergy u = element_energy(b.element, q.data() + b.offset + 4 * e);
-            sum.axial += u.axial;
-            sum.bending += u.bending;
-        }
-    for (int k : loose_) {
-        const LooseForces<double> l = loose(k, q, v, z[k]);
-        sum.contact += l.elastic_normal * l.delta / (law(k).exponent + 1.0);
-    }
-    return sum;
-}
-
-Powers System::powers(const std::vector<CrankAngle> &cranks, const VectorXd &q, const VectorXd &v, const VectorXd &z,
-                      const VectorXd &lambda) const {
-    Powers p;
-    for (int i = 0; i < legs(); ++i) p.drive += torque(i, lambda) * cranks[i].rate;
-    for (int k : loose_) {
-        if (z[k] <= 0.0) continue;
-        const LooseForces<double> l = loose(k, q, v, z[k]);
-        const double lost = (l.normal - l.elastic_normal) * l.rate;
-        p.contact_dissipated += lost;
-        if (l.clamped) p.clamp += lost;
-        p.friction_dissipated -= l.friction_power;
-    }
-    return p;
-}
-
-Vec<double> System::joint_force(int k, const VectorXd &q, const VectorXd &v, const VectorXd &z,
-                                const VectorXd &lambda) const {
-    const Joint &j = joints_[k];
-    if (j.contact < 0) return {lambda[j.constraint], lambda[j.constraint + 1]};
-    return loose(k, q, v, z[k]).on_journal;
+    mass_damping_ = damping.sparseView();
 }

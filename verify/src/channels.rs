@@ -1,21 +1,25 @@
 //! Looselink's channels from the states of the reference.
 
 use crate::description::Description;
-use crate::reference::{Body, Row, System, body_kind};
+use crate::ffi::ENERGIES;
+use crate::reference::{Body, Row, System, body_kind, joint_kind, motion_kind};
 use miette::{IntoDiagnostic, Result};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// Names of the energies of a row, in its order.
-const ENERGIES: [&str; 8] = [
+const NAMES: [&str; ENERGIES] = [
     "kinetic",
     "axial",
     "bending",
     "contact",
+    "gravity",
+    "springs",
     "work",
     "contact_dissipated",
     "clamp",
     "friction_dissipated",
+    "damping_dissipated",
 ];
 /// What the levels of a pose are called.
 const LEVELS: [[&str; 3]; 3] = [
@@ -62,6 +66,7 @@ impl<'a> Channels<'a> {
         if !self.description.mechanism.legs.is_empty() {
             self.drive(system, row)?;
         }
+        self.motions(row);
         self.energies(row);
         Ok(())
     }
@@ -72,7 +77,7 @@ impl<'a> Channels<'a> {
         let range = self.places[b]..self.places[b] + coordinates(&body);
         let levels = [&row.q, &row.v, &row.a].map(|level| &level[range.clone()]);
         match body.kind {
-            body_kind::RIGID_BODY => {
+            body_kind::RIGID_BODY | body_kind::MOVING_BODY => {
                 for (names, level) in LEVELS.iter().zip(levels) {
                     for (quantity, value) in names.iter().zip(level) {
                         self.put(format!("{name}.{quantity}"), *value);
@@ -80,22 +85,44 @@ impl<'a> Channels<'a> {
                 }
                 self.points_of_rigid(b, levels);
             }
+            body_kind::POINT_MASS => {
+                for owner in [name.clone(), format!("points.{name}.center")] {
+                    self.place(&owner, levels, 0);
+                }
+            }
             body_kind::RIGID_LINK => {
                 self.link(name, levels, |u| [0.5 * (u[0] + u[2]), 0.5 * (u[1] + u[3])]);
+                for (point, first) in [("start", 0), ("end", 2)] {
+                    self.place(&format!("points.{name}.{point}"), levels, first);
+                }
             }
             body_kind::FLEXIBLE_LINK => {
                 let n = body.elements as usize;
                 let length = body.length / n as f64;
                 self.link(name, levels, |u| centre(u, n, length));
                 self.put(format!("{name}.strain"), strain(levels[0], n, length));
-                for (point, first) in [("start", 0), ("end", 4 * n)] {
+                for (body, point, [x, _]) in self.description.points.clone() {
+                    if body != b {
+                        continue;
+                    }
+                    let first = 4 * (x / length).round() as usize;
+                    let owner = format!("points.{name}.{point}");
+                    self.place(&owner, levels, first);
                     for (i, quantity) in ["slope_x", "slope_y"].into_iter().enumerate() {
-                        let value = levels[0][first + 2 + i];
-                        self.put(format!("points.{name}.{point}.{quantity}"), value);
+                        self.put(format!("{owner}.{quantity}"), levels[0][first + 2 + i]);
                     }
                 }
             }
             _ => {}
+        }
+    }
+
+    /// A position among the coordinates, and its rates.
+    fn place(&mut self, owner: &str, levels: [&[f64]; 3], first: usize) {
+        for (names, level) in LEVELS.iter().zip(levels) {
+            for (i, quantity) in names[..2].iter().enumerate() {
+                self.put(format!("{owner}.{quantity}"), level[first + i]);
+            }
         }
     }
 
@@ -137,16 +164,6 @@ impl<'a> Channels<'a> {
         } else {
             levels[0].len() - 4
         };
-        for (point, first) in [("start", 0), ("end", last)] {
-            for (names, level) in LEVELS.iter().zip(levels) {
-                for (i, quantity) in names[..2].iter().enumerate() {
-                    self.put(
-                        format!("points.{name}.{point}.{quantity}"),
-                        level[first + i],
-                    );
-                }
-            }
-        }
         let [d, d_dot, d_ddot] = levels.map(|u| [u[last] - u[0], u[last + 1] - u[1]]);
         let square = dot(d, d);
         let omega = cross(d, d_dot) / square;
@@ -161,7 +178,10 @@ impl<'a> Channels<'a> {
             self.put(format!("{name}.fx"), fx);
             self.put(format!("{name}.fy"), fy);
             self.put(format!("{name}.force"), fx.hypot(fy));
-            let joint = &self.description.mechanism.joints[j];
+            let joint = self.description.mechanism.joints[j];
+            if joint.kind == joint_kind::WELD || joint.hold_rotation != 0 {
+                self.put(format!("{name}.torque"), row.joint_couple[j]);
+            }
             if let Ok(contact) = usize::try_from(joint.contact) {
                 let clearance = self.description.mechanism.contacts[contact].clearance;
                 let closed = row.impact_velocity[j] > 0.0 && row.penetration[j] > 0.0;
@@ -199,16 +219,44 @@ impl<'a> Channels<'a> {
         Ok(())
     }
 
+    /// Torques of driven joints; what drives a point has no channel.
+    fn motions(&mut self, row: &Row) {
+        let motions = &self.description.mechanism.motions;
+        for ((motion, [name, ..]), force) in motions
+            .iter()
+            .zip(&self.description.motions)
+            .zip(&row.motion_force)
+        {
+            if motion.kind == motion_kind::ANGLE {
+                self.put(format!("{name}.torque"), *force);
+            }
+        }
+    }
+
     fn energies(&mut self, row: &Row) {
-        for (name, value) in ENERGIES.iter().zip(row.energies) {
+        let mechanism = &self.description.mechanism;
+        let sprung = mechanism.springs.len() + mechanism.torsion_springs.len() > 0;
+        for (name, value) in NAMES.iter().zip(row.energies) {
+            if *name == "springs" && !sprung {
+                continue;
+            }
             self.put(format!("energy.{name}"), value);
         }
-        let [kinetic, axial, bending, contact, work, lost, _, friction] = row.energies;
-        let stored = kinetic + axial + bending + contact;
+        let [
+            kinetic,
+            axial,
+            bending,
+            contact,
+            gravity,
+            springs,
+            rest @ ..,
+        ] = row.energies;
+        let [work, lost, _, friction, damping] = rest;
+        let stored = kinetic + axial + bending + contact + gravity + springs;
         let initial = *self.initial_energy.get_or_insert(stored);
         self.put(
             "energy.numerical".into(),
-            initial + work - lost - friction - stored,
+            initial + work - lost - friction - damping - stored,
         );
     }
 }
@@ -218,7 +266,8 @@ pub fn coordinates(body: &Body) -> usize {
     match body.kind {
         body_kind::RIGID_LINK => 4,
         body_kind::FLEXIBLE_LINK => 4 * (body.elements as usize + 1),
-        body_kind::RIGID_BODY => 3,
+        body_kind::RIGID_BODY | body_kind::MOVING_BODY => 3,
+        body_kind::POINT_MASS => 2,
         _ => 0,
     }
 }

@@ -3,7 +3,10 @@
 //! Nothing passes through Looselink's reader: sections, densities, moduli and radii reach the C++ side as they are typed,
 //! and it derives masses, stiffnesses and inertias itself.
 
-use crate::reference::{Body, Contact, Joint, Leg, Mechanism, Path, Point, body_kind};
+use crate::reference::{
+    Body, Contact, Function, Joint, Leg, Load, Mechanism, Motion, Path, Point, Spring,
+    TorsionSpring, body_kind, function_kind, joint_kind, load_kind, motion_kind,
+};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Deserialize;
 use std::collections::HashMap;
@@ -19,8 +22,10 @@ pub struct Description {
     pub bodies: Vec<String>,
     /// Names of the joints, in the order of the mechanism.
     pub joints: Vec<String>,
-    /// Named points of rigid bodies: body, name, place in its frame \[m\].
+    /// Named points of bodies but the ground: body, name, place in the terms of the mechanism \[m\].
     pub points: Vec<(usize, String, [f64; 2])>,
+    /// Names of the driven joint or point, of the drive, and of what is driven, for each motion.
+    pub motions: Vec<[String; 3]>,
 }
 
 #[derive(Deserialize)]
@@ -63,11 +68,29 @@ struct FrictionText {
 }
 
 #[derive(Deserialize)]
-struct JointText {
-    bearing: String,
-    journal: String,
-    model: String,
-    contact: Option<String>,
+#[serde(tag = "type", rename_all = "snake_case")]
+enum JointText {
+    Revolute {
+        bearing: String,
+        journal: String,
+        model: String,
+        contact: Option<String>,
+    },
+    Prismatic {
+        guide: String,
+        direction: [f64; 2],
+        slider: String,
+        rotation: String,
+        #[serde(default)]
+        angle: f64,
+    },
+    Weld {
+        first: String,
+        second: String,
+        #[serde(default)]
+        angle: f64,
+        slope: Option<String>,
+    },
 }
 
 #[derive(Deserialize)]
@@ -90,6 +113,12 @@ enum BodyText {
         section: String,
         material: String,
         elements: Option<i32>,
+        #[serde(default)]
+        points: HashMap<String, f64>,
+        #[serde(default)]
+        kelvin_voigt: f64,
+        #[serde(default)]
+        rayleigh: Rayleigh,
     },
     RigidBody {
         #[serde(default)]
@@ -98,31 +127,140 @@ enum BodyText {
         inertia: f64,
         plate: Option<Plate>,
         #[serde(default)]
+        center_of_mass: [f64; 2],
+        #[serde(default)]
+        points: HashMap<String, Place>,
+    },
+    PointMass {
+        mass: f64,
+    },
+    Moving {
+        path: PathText,
+        #[serde(default)]
         points: HashMap<String, Place>,
     },
 }
 
+#[derive(Deserialize, Default)]
+struct Rayleigh {
+    mass: f64,
+    stiffness: f64,
+}
+
 #[derive(Deserialize)]
 struct Plate {
+    shape: String,
     circumradius: f64,
     thickness: f64,
     material: String,
 }
 
 #[derive(Deserialize)]
-struct DriveText {
-    joints: Vec<String>,
-    body: String,
-    path: PathText,
+#[serde(tag = "type", rename_all = "snake_case")]
+enum DriveText {
+    InverseKinematics {
+        joints: Vec<String>,
+        body: String,
+        path: PathText,
+    },
+    Angle {
+        joint: String,
+        angle: FunctionText,
+    },
+    Point {
+        point: String,
+        x: Option<FunctionText>,
+        y: Option<FunctionText>,
+    },
 }
 
 #[derive(Deserialize)]
-struct PathText {
-    center: [f64; 2],
-    radius: f64,
-    frequency: f64,
-    phase: f64,
-    theta: f64,
+#[serde(tag = "type", rename_all = "snake_case")]
+enum PathText {
+    Circle {
+        center: [f64; 2],
+        radius: f64,
+        frequency: f64,
+        phase: f64,
+        theta: f64,
+    },
+    Line {
+        from: [f64; 3],
+        to: [f64; 3],
+        duration: f64,
+    },
+    Coordinates {
+        x: FunctionText,
+        y: FunctionText,
+        theta: FunctionText,
+    },
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum FunctionText {
+    Number(f64),
+    Named(NamedFunction),
+}
+
+#[derive(Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+enum NamedFunction {
+    Polynomial {
+        coefficients: Vec<f64>,
+    },
+    Harmonic {
+        mean: f64,
+        amplitude: f64,
+        frequency: f64,
+        phase: f64,
+    },
+    Ramp {
+        from: f64,
+        to: f64,
+        start: f64,
+        duration: f64,
+    },
+    SmoothStep {
+        from: f64,
+        to: f64,
+        start: f64,
+        duration: f64,
+    },
+    SpinUp {
+        start: f64,
+        speed: f64,
+        duration: f64,
+    },
+}
+
+#[derive(Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+enum ForceText {
+    SpringDamper {
+        from: String,
+        to: String,
+        stiffness: f64,
+        damping: f64,
+        rest_length: f64,
+    },
+    TorsionSpring {
+        joint: String,
+        stiffness: f64,
+        damping: f64,
+        rest_angle: f64,
+    },
+    Force {
+        point: String,
+        x: FunctionText,
+        y: FunctionText,
+        frame: String,
+    },
+    Torque {
+        point: String,
+        reaction: Option<String>,
+        value: FunctionText,
+    },
 }
 
 #[derive(Deserialize, Default)]
@@ -138,7 +276,9 @@ struct Text {
     contacts: HashMap<String, ContactText>,
     bodies: Vec<(String, BodyText)>,
     joints: Vec<(String, JointText)>,
-    drives: HashMap<String, DriveText>,
+    drives: Vec<(String, DriveText)>,
+    forces: Vec<(String, ForceText)>,
+    gravity: [f64; 2],
     initial: InitialText,
 }
 
@@ -211,14 +351,8 @@ fn entries<T: for<'a> Deserialize<'a>>(table: &mut Table, key: &str) -> Result<V
 impl Text {
     fn read(mut table: Table) -> Result<Text> {
         let simulation = table.get("simulation").and_then(Value::as_table);
-        if simulation.is_some_and(|s| s.contains_key("gravity")) {
-            return Err(miette!("the reference has no gravity"));
-        }
-        if let Some(forces) = table.get("forces").and_then(Value::as_table)
-            && !forces.is_empty()
-        {
-            return Err(miette!("the reference has no forces but those of joints"));
-        }
+        let gravity = simulation.and_then(|s| s.get("gravity")).cloned();
+        let gravity = gravity.map(Value::try_into).transpose();
         let initial = table.remove("initial").map(Value::try_into::<InitialText>);
         Ok(Text {
             materials: entries(&mut table, "materials")?.into_iter().collect(),
@@ -226,44 +360,71 @@ impl Text {
             contacts: entries(&mut table, "contacts")?.into_iter().collect(),
             bodies: entries(&mut table, "bodies")?,
             joints: entries(&mut table, "joints")?,
-            drives: entries(&mut table, "drives")?.into_iter().collect(),
+            drives: entries(&mut table, "drives")?,
+            forces: entries(&mut table, "forces")?,
+            gravity: gravity.into_diagnostic()?.unwrap_or_default(),
             initial: initial.transpose().into_diagnostic()?.unwrap_or_default(),
         })
     }
 
     fn translate(&self) -> Result<Description> {
-        let mut contacts = Vec::new();
-        let mechanism = Mechanism {
-            bodies: self
-                .bodies
-                .iter()
-                .map(|(name, body)| self.body(name, body))
-                .collect::<Result<_>>()?,
-            joints: self
-                .joints
-                .iter()
-                .map(|(_, joint)| self.joint(joint, &mut contacts))
-                .collect::<Result<_>>()?,
-            contacts,
+        let mut mechanism = Mechanism {
+            gravity: self.gravity,
             ..Mechanism::default()
         };
+        for (name, body) in &self.bodies {
+            let body = self.body(name, body, &mut mechanism.functions)?;
+            mechanism.bodies.push(body);
+        }
+        for (_, joint) in &self.joints {
+            let joint = self.joint(joint, &mut mechanism.contacts)?;
+            mechanism.joints.push(joint);
+        }
+        for (_, force) in &self.forces {
+            self.force(force, &mut mechanism)?;
+        }
         let mut description = Description {
             mechanism,
             bodies: self.bodies.iter().map(|(name, _)| name.clone()).collect(),
             joints: self.joints.iter().map(|(name, _)| name.clone()).collect(),
-            points: self.rigid_points(),
+            points: self.named_points(),
+            motions: Vec::new(),
         };
-        self.drive(&mut description)?;
+        for (name, drive) in &self.drives {
+            self.drive(name, drive, &mut description)?;
+        }
         Ok(description)
     }
 
-    /// Named points of rigid bodies, by name.
-    fn rigid_points(&self) -> Vec<(usize, String, [f64; 2])> {
+    /// Named points of bodies but the ground, by name.
+    fn named_points(&self) -> Vec<(usize, String, [f64; 2])> {
         let mut found = Vec::new();
         for (b, (_, body)) in self.bodies.iter().enumerate() {
-            if let BodyText::RigidBody { points, .. } = body {
-                let points = points.iter().map(|(name, at)| (b, name.clone(), at.xy()));
-                found.extend(points);
+            match body {
+                BodyText::Ground { .. } => {}
+                BodyText::RigidBody {
+                    points,
+                    center_of_mass: [x, y],
+                    ..
+                } => {
+                    let from_centre = |at: &Place| {
+                        let [px, py] = at.xy();
+                        [px - x, py - y]
+                    };
+                    let points = points.iter();
+                    found.extend(points.map(|(name, at)| (b, name.clone(), from_centre(at))));
+                }
+                BodyText::Moving { points, .. } => {
+                    let points = points.iter();
+                    found.extend(points.map(|(name, at)| (b, name.clone(), at.xy())));
+                }
+                BodyText::PointMass { .. } => found.push((b, "center".into(), [0.0; 2])),
+                BodyText::Link { length, points, .. } => {
+                    found.push((b, "start".into(), [0.0; 2]));
+                    found.push((b, "end".into(), [*length, 0.0]));
+                    let points = points.iter();
+                    found.extend(points.map(|(name, at)| (b, name.clone(), [*at, 0.0])));
+                }
             }
         }
         found.sort_by(|a, b| (a.0, &a.1).cmp(&(b.0, &b.1)));
@@ -275,7 +436,7 @@ impl Text {
         found.ok_or_else(|| miette!("no material `{name}`"))
     }
 
-    fn body(&self, name: &str, body: &BodyText) -> Result<Body> {
+    fn body(&self, name: &str, body: &BodyText, functions: &mut Vec<Function>) -> Result<Body> {
         Ok(match body {
             BodyText::Ground { .. } => Body {
                 kind: body_kind::GROUND,
@@ -287,28 +448,31 @@ impl Text {
                 section,
                 material,
                 elements,
+                kelvin_voigt,
+                rayleigh,
+                ..
             } => {
-                let flexible = model == "flexible";
                 let found = self.sections.get(section);
                 let section = found.ok_or_else(|| miette!("no section `{section}`"))?;
                 let material = self.material(material)?;
-                Body {
-                    kind: if flexible {
-                        body_kind::FLEXIBLE_LINK
-                    } else {
-                        body_kind::RIGID_LINK
-                    },
-                    elements: if flexible { elements.unwrap_or(1) } else { 0 },
+                let rigid = Body {
+                    kind: body_kind::RIGID_LINK,
                     length: *length,
                     width: section.width,
                     height: section.height,
                     density: material.density,
-                    youngs_modulus: if flexible {
-                        material.youngs_modulus
-                    } else {
-                        0.0
-                    },
                     ..Body::default()
+                };
+                if model != "flexible" {
+                    return Ok(rigid);
+                }
+                Body {
+                    kind: body_kind::FLEXIBLE_LINK,
+                    elements: elements.unwrap_or(1),
+                    youngs_modulus: material.youngs_modulus,
+                    strain_damping: kelvin_voigt + rayleigh.stiffness,
+                    mass_damping: rayleigh.mass,
+                    ..rigid
                 }
             }
             BodyText::RigidBody {
@@ -324,6 +488,12 @@ impl Text {
                     ..Body::default()
                 };
                 if let Some(plate) = plate {
+                    if plate.shape != "equilateral_triangle" || *mass > 0.0 {
+                        let shape = &plate.shape;
+                        return Err(miette!(
+                            "the reference has no plate `{shape}` of a given mass"
+                        ));
+                    }
                     body.plate_circumradius = plate.circumradius;
                     body.plate_thickness = plate.thickness;
                     body.density = self.material(&plate.material)?.density;
@@ -331,6 +501,20 @@ impl Text {
                     return Err(miette!("`{name}` has neither a plate nor a mass"));
                 }
                 body
+            }
+            BodyText::PointMass { mass } => Body {
+                kind: body_kind::POINT_MASS,
+                mass: *mass,
+                ..Body::default()
+            },
+            BodyText::Moving { path, .. } => {
+                let function = small(functions.len());
+                functions.extend(path.functions()?);
+                Body {
+                    kind: body_kind::MOVING_BODY,
+                    function,
+                    ..Body::default()
+                }
             }
         })
     }
@@ -351,19 +535,23 @@ impl Text {
             .split_once('.')
             .ok_or_else(|| miette!("`{text}` is not a point"))?;
         let index = self.body_index(body)?;
-        let [x, y] = match &self.bodies[index].1 {
-            BodyText::Link { length, .. } => match point {
-                "start" => [0.0, 0.0],
-                "end" => [*length, 0.0],
-                _ => return Err(miette!("a link has no point `{point}`")),
-            },
-            BodyText::Ground { points } | BodyText::RigidBody { points, .. } => {
-                let found = points.get(point);
-                found
-                    .ok_or_else(|| miette!("`{body}` has no point `{point}`"))?
-                    .xy()
-            }
-        };
+        if let BodyText::Ground { points } = &self.bodies[index].1 {
+            let found = points.get(point);
+            let found = found.ok_or_else(|| miette!("the ground has no point `{point}`"))?;
+            let [x, y] = found.xy();
+            let body = small(index);
+            return Ok(Point {
+                body,
+                reserved: 0,
+                x,
+                y,
+            });
+        }
+        let points = self.named_points();
+        let found = points.iter().find(|(b, p, _)| *b == index && p == point);
+        let [x, y] = found
+            .ok_or_else(|| miette!("`{body}` has no point `{point}`"))?
+            .2;
         Ok(Point {
             body: small(index),
             reserved: 0,
@@ -373,20 +561,142 @@ impl Text {
     }
 
     fn joint(&self, joint: &JointText, contacts: &mut Vec<Contact>) -> Result<Joint> {
-        let mut contact = -1;
-        if joint.model == "clearance" {
-            let name = joint.contact.as_deref().unwrap_or_default();
-            let text = self.contacts.get(name);
-            let text = text.ok_or_else(|| miette!("no contact `{name}`"))?;
-            contact = small(contacts.len());
-            contacts.push(self.contact(text)?);
-        }
-        Ok(Joint {
-            bearing: self.point(&joint.bearing)?,
-            journal: self.point(&joint.journal)?,
-            contact,
-            reserved: 0,
+        let ideal = Joint {
+            contact: -1,
+            ..Joint::default()
+        };
+        Ok(match joint {
+            JointText::Revolute {
+                bearing,
+                journal,
+                model,
+                contact,
+            } => {
+                let mut joint = Joint {
+                    kind: joint_kind::REVOLUTE,
+                    bearing: self.point(bearing)?,
+                    journal: self.point(journal)?,
+                    ..ideal
+                };
+                if model == "clearance" {
+                    let name = contact.as_deref().unwrap_or_default();
+                    let text = self.contacts.get(name);
+                    let text = text.ok_or_else(|| miette!("no contact `{name}`"))?;
+                    joint.contact = small(contacts.len());
+                    contacts.push(self.contact(text)?);
+                }
+                joint
+            }
+            JointText::Prismatic {
+                guide,
+                direction: [x, y],
+                slider,
+                rotation,
+                angle,
+            } => Joint {
+                kind: joint_kind::PRISMATIC,
+                bearing: self.point(guide)?,
+                journal: self.point(slider)?,
+                direction: y.atan2(*x),
+                hold_rotation: i32::from(rotation == "locked"),
+                angle: *angle,
+                ..ideal
+            },
+            JointText::Weld {
+                first,
+                second,
+                angle,
+                slope,
+            } => Joint {
+                kind: joint_kind::WELD,
+                bearing: self.point(first)?,
+                journal: self.point(second)?,
+                hold_slope: i32::from(
+                    slope.as_deref() == Some("vector")
+                        && [first, second].iter().any(|point| self.bends(point)),
+                ),
+                angle: *angle,
+                ..ideal
+            },
         })
+    }
+
+    /// Whether a point belongs to a flexible link.
+    fn bends(&self, point: &str) -> bool {
+        let body = point.split('.').next().unwrap_or_default();
+        let found = self.bodies.iter().find(|(name, _)| name == body);
+        matches!(found, Some((_, BodyText::Link { model, .. })) if model == "flexible")
+    }
+
+    /// Adds a spring or a load.
+    fn force(&self, force: &ForceText, mechanism: &mut Mechanism) -> Result<()> {
+        let mut function = |text: &FunctionText| -> Result<i32> {
+            mechanism.functions.push(text.function()?);
+            Ok(small(mechanism.functions.len() - 1))
+        };
+        let nowhere = Point {
+            body: -1,
+            ..Point::default()
+        };
+        match force {
+            ForceText::SpringDamper {
+                from,
+                to,
+                stiffness,
+                damping,
+                rest_length,
+            } => mechanism.springs.push(Spring {
+                from: self.point(from)?,
+                to: self.point(to)?,
+                stiffness: *stiffness,
+                damping: *damping,
+                rest_length: *rest_length,
+            }),
+            ForceText::TorsionSpring {
+                joint,
+                stiffness,
+                damping,
+                rest_angle,
+            } => mechanism.torsion_springs.push(TorsionSpring {
+                joint: small(self.joint_index(joint)?),
+                reserved: 0,
+                stiffness: *stiffness,
+                damping: *damping,
+                rest_angle: *rest_angle,
+            }),
+            ForceText::Force { point, x, y, frame } => {
+                let load = Load {
+                    kind: if frame == "body" {
+                        load_kind::FOLLOWER_FORCE
+                    } else {
+                        load_kind::DEAD_FORCE
+                    },
+                    x: function(x)?,
+                    y: function(y)?,
+                    reserved: 0,
+                    point: self.point(point)?,
+                    reaction: nowhere,
+                };
+                mechanism.loads.push(load);
+            }
+            ForceText::Torque {
+                point,
+                reaction,
+                value,
+            } => {
+                let value = function(value)?;
+                let reaction = reaction.as_ref().map(|point| self.point(point));
+                mechanism.loads.push(Load {
+                    kind: load_kind::TORQUE,
+                    x: value,
+                    y: value,
+                    reserved: 0,
+                    point: self.point(point)?,
+                    reaction: reaction.transpose()?.unwrap_or(nowhere),
+                });
+            }
+        }
+        Ok(())
     }
 
     fn contact(&self, text: &ContactText) -> Result<Contact> {
@@ -426,29 +736,66 @@ impl Text {
         Ok(contact)
     }
 
-    /// Path and legs A-B-C of the driven body.
-    fn drive(&self, description: &mut Description) -> Result<()> {
-        let mut drives = self.drives.values();
-        let Some(drive) = drives.next() else {
-            return Ok(());
-        };
-        if drives.next().is_some() {
-            return Err(miette!("the reference follows one drive"));
-        }
-        let body = self.body_index(&drive.body)?;
-        description.mechanism.path = Path {
-            body: small(body),
-            reserved: 0,
-            centre_x: drive.path.center[0],
-            centre_y: drive.path.center[1],
-            radius: drive.path.radius,
-            frequency: drive.path.frequency,
-            phase: drive.path.phase,
-            theta: drive.path.theta,
-        };
-        for name in &drive.joints {
-            let leg = self.leg(name, &description.mechanism)?;
-            description.mechanism.legs.push(leg);
+    /// Path and legs A-B-C of a driven body, or the motion of an angle or of a point.
+    fn drive(&self, name: &str, drive: &DriveText, description: &mut Description) -> Result<()> {
+        let mechanism = &mut description.mechanism;
+        match drive {
+            DriveText::InverseKinematics { joints, body, path } => {
+                let PathText::Circle {
+                    center: [centre_x, centre_y],
+                    radius,
+                    frequency,
+                    phase,
+                    theta,
+                } = *path
+                else {
+                    return Err(miette!("the reference's legs follow circles alone"));
+                };
+                mechanism.path = Path {
+                    body: small(self.body_index(body)?),
+                    reserved: 0,
+                    centre_x,
+                    centre_y,
+                    radius,
+                    frequency,
+                    phase,
+                    theta,
+                };
+                for name in joints {
+                    let leg = self.leg(name, mechanism)?;
+                    mechanism.legs.push(leg);
+                }
+            }
+            DriveText::Angle { joint, angle } => {
+                mechanism.functions.push(angle.function()?);
+                mechanism.motions.push(Motion {
+                    kind: motion_kind::ANGLE,
+                    function: small(mechanism.functions.len() - 1),
+                    joint: small(self.joint_index(joint)?),
+                    ..Motion::default()
+                });
+                let names = [joint, name, "angle"].map(str::to_owned);
+                description.motions.push(names);
+            }
+            DriveText::Point { point, x, y } => {
+                for (value, part, [nx, ny]) in [(x, "x", [1.0, 0.0]), (y, "y", [0.0, 1.0])] {
+                    let Some(value) = value else {
+                        continue;
+                    };
+                    mechanism.functions.push(value.function()?);
+                    mechanism.motions.push(Motion {
+                        kind: motion_kind::COORDINATE,
+                        function: small(mechanism.functions.len() - 1),
+                        joint: -1,
+                        reserved: 0,
+                        point: self.point(point)?,
+                        nx,
+                        ny,
+                    });
+                    let names = [point, name, part].map(str::to_owned);
+                    description.motions.push(names);
+                }
+            }
         }
         Ok(())
     }
@@ -482,6 +829,87 @@ impl Text {
             joint_b: small(b),
             joint_c: small(c),
             elbow: if turn > 0.0 { 1 } else { -1 },
+        })
+    }
+}
+
+impl PathText {
+    /// x, y and theta.
+    fn functions(&self) -> Result<[Function; 3]> {
+        Ok(match self {
+            PathText::Circle {
+                center: [x, y],
+                radius,
+                frequency,
+                phase,
+                theta,
+            } => {
+                let wave = |mean: f64, phase: f64| Function {
+                    kind: function_kind::HARMONIC,
+                    reserved: 0,
+                    c: [mean, *radius, *frequency, phase, 0.0, 0.0],
+                };
+                // cos is sin a quarter turn ahead
+                [
+                    wave(*x, phase + 0.25 * TAU),
+                    wave(*y, *phase),
+                    FunctionText::Number(*theta).function()?,
+                ]
+            }
+            PathText::Line { from, to, duration } => [0, 1, 2].map(|i| Function {
+                kind: function_kind::SMOOTH_STEP,
+                reserved: 0,
+                c: [from[i], to[i], 0.0, *duration, 0.0, 0.0],
+            }),
+            PathText::Coordinates { x, y, theta } => {
+                [x.function()?, y.function()?, theta.function()?]
+            }
+        })
+    }
+}
+
+impl FunctionText {
+    fn function(&self) -> Result<Function> {
+        let (kind, values): (i32, &[f64]) = match self {
+            FunctionText::Number(value) => (function_kind::POLYNOMIAL, &[*value]),
+            FunctionText::Named(NamedFunction::Polynomial { coefficients }) => {
+                (function_kind::POLYNOMIAL, coefficients)
+            }
+            FunctionText::Named(NamedFunction::Harmonic {
+                mean,
+                amplitude,
+                frequency,
+                phase,
+            }) => (
+                function_kind::HARMONIC,
+                &[*mean, *amplitude, *frequency, *phase],
+            ),
+            FunctionText::Named(NamedFunction::Ramp {
+                from,
+                to,
+                start,
+                duration,
+            }) => (function_kind::RAMP, &[*from, *to, *start, *duration]),
+            FunctionText::Named(NamedFunction::SmoothStep {
+                from,
+                to,
+                start,
+                duration,
+            }) => (function_kind::SMOOTH_STEP, &[*from, *to, *start, *duration]),
+            FunctionText::Named(NamedFunction::SpinUp {
+                start,
+                speed,
+                duration,
+            }) => (function_kind::SPIN_UP, &[*start, *speed, *duration]),
+        };
+        let mut c = [0.0; 6];
+        let places = c.get_mut(..values.len());
+        let places = places.ok_or_else(|| miette!("the reference's polynomials end at t^5"))?;
+        places.copy_from_slice(values);
+        Ok(Function {
+            kind,
+            reserved: 0,
+            c,
         })
     }
 }

@@ -59,6 +59,18 @@ impl Embedding {
         sum
     }
 
+    /// The same with zeros where no coordinate has a copy.
+    pub fn keep(&self, mut x: Vec<f64>) -> Vec<f64> {
+        let mut copied = vec![false; self.count];
+        self.source.iter().for_each(|&i| copied[i] = true);
+        for (x, copied) in x.iter_mut().zip(copied) {
+            if !copied {
+                *x = 0.0;
+            }
+        }
+        x
+    }
+
     /// B^T K B, row by row.
     pub fn congruence(&self, k: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; self.count * self.count];

@@ -49,6 +49,19 @@ pub struct Body {
     pub plate_thickness: f64,
     pub mass: f64,
     pub inertia: f64,
+    pub strain_damping: f64,
+    pub mass_damping: f64,
+    pub function: i32,
+    pub reserved: i32,
+}
+
+/// `ls_function`
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Function {
+    pub kind: i32,
+    pub reserved: i32,
+    pub c: [f64; 6],
 }
 
 /// `ls_point`
@@ -91,7 +104,58 @@ pub struct Joint {
     pub bearing: Point,
     pub journal: Point,
     pub contact: i32,
+    pub kind: i32,
+    pub hold_rotation: i32,
+    pub hold_slope: i32,
+    pub direction: f64,
+    pub angle: f64,
+}
+
+/// `ls_spring`
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Spring {
+    pub from: Point,
+    pub to: Point,
+    pub stiffness: f64,
+    pub damping: f64,
+    pub rest_length: f64,
+}
+
+/// `ls_torsion_spring`
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct TorsionSpring {
+    pub joint: i32,
     pub reserved: i32,
+    pub stiffness: f64,
+    pub damping: f64,
+    pub rest_angle: f64,
+}
+
+/// `ls_load`
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Load {
+    pub kind: i32,
+    pub x: i32,
+    pub y: i32,
+    pub reserved: i32,
+    pub point: Point,
+    pub reaction: Point,
+}
+
+/// `ls_motion`
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Motion {
+    pub kind: i32,
+    pub function: i32,
+    pub joint: i32,
+    pub reserved: i32,
+    pub point: Point,
+    pub nx: f64,
+    pub ny: f64,
 }
 
 /// `ls_leg`
@@ -139,6 +203,7 @@ pub struct Event {
     pub velocity: f64,
     pub eccentricity_x: f64,
     pub eccentricity_y: f64,
+    pub deepest: f64,
     pub joint: i32,
     pub onset: i32,
 }
@@ -162,11 +227,23 @@ struct RawMechanism {
     joints: *const Joint,
     contacts: *const Contact,
     legs: *const Leg,
+    functions: *const Function,
+    springs: *const Spring,
+    torsion_springs: *const TorsionSpring,
+    loads: *const Load,
+    motions: *const Motion,
     n_bodies: i32,
     n_joints: i32,
     n_contacts: i32,
     n_legs: i32,
+    n_functions: i32,
+    n_springs: i32,
+    n_torsion_springs: i32,
+    n_loads: i32,
+    n_motions: i32,
+    reserved: i32,
     path: Path,
+    gravity: [f64; 2],
 }
 
 #[repr(C)]
@@ -177,11 +254,16 @@ struct RawRow {
     a: *const f64,
     lambda: *const f64,
     joint_force: *const f64,
+    joint_couple: *const f64,
     penetration: *const f64,
     impact_velocity: *const f64,
     torque: *const f64,
-    energies: [f64; 8],
+    motion_force: *const f64,
+    energies: [f64; ENERGIES],
 }
+
+/// Energies of a row.
+pub const ENERGIES: usize = 11;
 
 #[repr(C)]
 struct RawSystem {
@@ -256,6 +338,7 @@ unsafe extern "C" {
     ) -> i32;
     fn ls_system_force(
         system: *const RawSystem,
+        t: f64,
         q: *const f64,
         v: *const f64,
         z: *const f64,
@@ -406,6 +489,23 @@ pub fn contact_friction(
     Ok([f, by_slip, by_normal])
 }
 
+/// `ls_mechanism`, with lists that own their items.
+#[derive(Debug, Clone, Default)]
+pub struct Mechanism {
+    pub bodies: Vec<Body>,
+    pub joints: Vec<Joint>,
+    pub contacts: Vec<Contact>,
+    pub legs: Vec<Leg>,
+    pub functions: Vec<Function>,
+    pub springs: Vec<Spring>,
+    pub torsion_springs: Vec<TorsionSpring>,
+    pub loads: Vec<Load>,
+    pub motions: Vec<Motion>,
+    pub path: Path,
+    /// \[m/s2\]
+    pub gravity: [f64; 2],
+}
+
 /// An assembled mechanism of the library.
 #[derive(Debug)]
 pub struct System {
@@ -416,28 +516,36 @@ pub struct System {
     pub m: usize,
     joints: usize,
     legs: usize,
+    motions: usize,
 }
 
 impl System {
     /// Assembles; the library copies what it is given.
-    pub fn new(
-        bodies: &[Body],
-        joints: &[Joint],
-        contacts: &[Contact],
-        legs: &[Leg],
-        path: Path,
-    ) -> Result<System, Box<ErrorRecord>> {
+    pub fn new(mechanism: &Mechanism) -> Result<System, Box<ErrorRecord>> {
         let count = |n: usize| i32::try_from(n).expect("a mechanism is small");
+        let m = mechanism;
         let raw = RawMechanism {
-            bodies: bodies.as_ptr(),
-            joints: joints.as_ptr(),
-            contacts: contacts.as_ptr(),
-            legs: legs.as_ptr(),
-            n_bodies: count(bodies.len()),
-            n_joints: count(joints.len()),
-            n_contacts: count(contacts.len()),
-            n_legs: count(legs.len()),
-            path,
+            bodies: m.bodies.as_ptr(),
+            joints: m.joints.as_ptr(),
+            contacts: m.contacts.as_ptr(),
+            legs: m.legs.as_ptr(),
+            functions: m.functions.as_ptr(),
+            springs: m.springs.as_ptr(),
+            torsion_springs: m.torsion_springs.as_ptr(),
+            loads: m.loads.as_ptr(),
+            motions: m.motions.as_ptr(),
+            n_bodies: count(m.bodies.len()),
+            n_joints: count(m.joints.len()),
+            n_contacts: count(m.contacts.len()),
+            n_legs: count(m.legs.len()),
+            n_functions: count(m.functions.len()),
+            n_springs: count(m.springs.len()),
+            n_torsion_springs: count(m.torsion_springs.len()),
+            n_loads: count(m.loads.len()),
+            n_motions: count(m.motions.len()),
+            reserved: 0,
+            path: m.path,
+            gravity: m.gravity,
         };
         let mut error = ErrorRecord::blank();
         // SAFETY: pointers and counts belong together and live through the call.
@@ -455,8 +563,9 @@ impl System {
             raw,
             n,
             m,
-            joints: joints.len(),
-            legs: legs.len(),
+            joints: mechanism.joints.len(),
+            legs: mechanism.legs.len(),
+            motions: mechanism.motions.len(),
         })
     }
 
@@ -494,6 +603,7 @@ impl System {
     /// f, df/dq and df/dv.
     pub fn force(
         &self,
+        t: f64,
         q: &[f64],
         v: &[f64],
         z: &[f64],
@@ -505,6 +615,7 @@ impl System {
         checked(|e| unsafe {
             ls_system_force(
                 self.raw.as_ptr(),
+                t,
                 q.as_ptr(),
                 v.as_ptr(),
                 z.as_ptr(),
@@ -558,11 +669,16 @@ pub struct Row {
     pub lambda: Vec<f64>,
     /// Two numbers a joint.
     pub joint_force: Vec<f64>,
+    /// One number a joint.
+    pub joint_couple: Vec<f64>,
     pub penetration: Vec<f64>,
     pub impact_velocity: Vec<f64>,
     pub torque: Vec<f64>,
-    /// Kinetic, axial, bending, contact, work, contact dissipated, clamp, friction dissipated.
-    pub energies: [f64; 8],
+    /// One number a motion.
+    pub motion_force: Vec<f64>,
+    /// Kinetic, axial, bending, contact, gravity, springs, work, contact dissipated, clamp, friction dissipated, damping
+    /// dissipated.
+    pub energies: [f64; ENERGIES],
 }
 
 /// A run of the library under way.
@@ -573,6 +689,7 @@ pub struct Run {
     m: usize,
     joints: usize,
     legs: usize,
+    motions: usize,
 }
 
 impl Run {
@@ -603,6 +720,7 @@ impl Run {
             m: system.m,
             joints: system.joints,
             legs: system.legs,
+            motions: system.motions,
         })
     }
 
@@ -615,10 +733,12 @@ impl Run {
             a: null_mut(),
             lambda: null_mut(),
             joint_force: null_mut(),
+            joint_couple: null_mut(),
             penetration: null_mut(),
             impact_velocity: null_mut(),
             torque: null_mut(),
-            energies: [0.0; 8],
+            motion_force: null_mut(),
+            energies: [0.0; ENERGIES],
         };
         // SAFETY: the handle is live; the library fills the struct.
         checked(|e| unsafe { ls_run_advance(self.raw.as_ptr(), t, &raw mut raw, e) })?;
@@ -628,9 +748,11 @@ impl Run {
             (&mut row.a, raw.a, self.n),
             (&mut row.lambda, raw.lambda, self.m),
             (&mut row.joint_force, raw.joint_force, 2 * self.joints),
+            (&mut row.joint_couple, raw.joint_couple, self.joints),
             (&mut row.penetration, raw.penetration, self.joints),
             (&mut row.impact_velocity, raw.impact_velocity, self.joints),
             (&mut row.torque, raw.torque, self.legs),
+            (&mut row.motion_force, raw.motion_force, self.motions),
         ];
         for (to, from, length) in copies {
             to.clear();

@@ -1,7 +1,10 @@
 //! The reference implementation as a Rust library: owned values, typed errors.
 
 use crate::ffi::{self, ErrorRecord};
-pub use ffi::{Body, Contact, Elastic, Joint, Leg, Path, Point, Row, Statistics, Tolerances};
+pub use ffi::{
+    Body, Contact, Elastic, Function, Joint, Leg, Load, Mechanism, Motion, Path, Point, Row,
+    Spring, Statistics, Tolerances, TorsionSpring,
+};
 
 /// Kinds of `ls_body`.
 pub mod body_kind {
@@ -9,6 +12,37 @@ pub mod body_kind {
     pub const RIGID_LINK: i32 = 1;
     pub const FLEXIBLE_LINK: i32 = 2;
     pub const RIGID_BODY: i32 = 3;
+    pub const POINT_MASS: i32 = 4;
+    pub const MOVING_BODY: i32 = 5;
+}
+
+/// Kinds of `ls_joint`.
+pub mod joint_kind {
+    pub const REVOLUTE: i32 = 0;
+    pub const PRISMATIC: i32 = 1;
+    pub const WELD: i32 = 2;
+}
+
+/// Kinds of `ls_function`.
+pub mod function_kind {
+    pub const POLYNOMIAL: i32 = 0;
+    pub const HARMONIC: i32 = 1;
+    pub const RAMP: i32 = 2;
+    pub const SMOOTH_STEP: i32 = 3;
+    pub const SPIN_UP: i32 = 4;
+}
+
+/// Kinds of `ls_load`.
+pub mod load_kind {
+    pub const DEAD_FORCE: i32 = 0;
+    pub const FOLLOWER_FORCE: i32 = 1;
+    pub const TORQUE: i32 = 2;
+}
+
+/// Kinds of `ls_motion`.
+pub mod motion_kind {
+    pub const ANGLE: i32 = 0;
+    pub const COORDINATE: i32 = 1;
 }
 
 /// What the reference implementation reports when it cannot go on.
@@ -119,16 +153,6 @@ pub fn contact_friction(contact: &Contact, slip: f64, normal: f64) -> Result<[f6
     Ok(ffi::contact_friction(contact, slip, normal)?)
 }
 
-/// A mechanism as the reference takes it.
-#[derive(Debug, Clone, Default)]
-pub struct Mechanism {
-    pub bodies: Vec<Body>,
-    pub joints: Vec<Joint>,
-    pub contacts: Vec<Contact>,
-    pub legs: Vec<Leg>,
-    pub path: Path,
-}
-
 /// An assembled mechanism; matrices are row by row.
 #[derive(Debug)]
 pub struct System(ffi::System);
@@ -155,16 +179,7 @@ impl System {
     /// # Errors
     /// See [`Error`].
     pub fn new(mechanism: &Mechanism) -> Result<System, Error> {
-        let Mechanism {
-            bodies,
-            joints,
-            contacts,
-            legs,
-            path,
-        } = mechanism;
-        Ok(System(ffi::System::new(
-            bodies, joints, contacts, legs, *path,
-        )?))
+        Ok(System(ffi::System::new(mechanism)?))
     }
 
     /// Coordinates: every body has its own.
@@ -205,8 +220,8 @@ impl System {
     ///
     /// # Errors
     /// See [`Error`].
-    pub fn force(&self, q: &[f64], v: &[f64], z: &[f64]) -> Result<Force, Error> {
-        let [value, by_q, by_v] = self.0.force(q, v, z)?;
+    pub fn force(&self, t: f64, q: &[f64], v: &[f64], z: &[f64]) -> Result<Force, Error> {
+        let [value, by_q, by_v] = self.0.force(t, q, v, z)?;
         Ok(Force { value, by_q, by_v })
     }
 
@@ -239,6 +254,10 @@ pub struct Event {
     pub onset: bool,
     /// Rate of the penetration \[m/s\].
     pub velocity: f64,
+    /// Journal less bearing \[m\].
+    pub eccentricity: [f64; 2],
+    /// Of a loss the largest penetration since the onset \[m\].
+    pub deepest: f64,
 }
 
 /// A run of IDA under way.
@@ -263,6 +282,8 @@ impl Run {
                 joint: usize::try_from(e.joint).expect("indices are not negative"),
                 onset: e.onset != 0,
                 velocity: e.velocity,
+                eccentricity: [e.eccentricity_x, e.eccentricity_y],
+                deepest: e.deepest,
             })
             .collect()
     }

@@ -2,6 +2,7 @@
 
 use crate::channels::Channels;
 use crate::description::{Description, describe};
+use crate::embedding::Embedding;
 use crate::reference::{Row, Statistics, System, Tolerances};
 use cpu_time::ThreadTime;
 use looselink::scene::Scene;
@@ -34,6 +35,9 @@ pub struct Impact {
     pub joint: String,
     /// Impact velocity \[m/s\].
     pub velocity: f64,
+    /// Direction of the eccentricity \[rad\] and the largest penetration of a contact that has been lost again \[m\], where
+    /// they were kept.
+    pub course: Option<[f64; 2]>,
 }
 
 /// What one side computed.
@@ -98,7 +102,8 @@ impl Plan {
 
     /// How reports name it.
     pub fn name(&self) -> String {
-        self.scene.trim_start_matches("3rrr/").to_owned() + self.variant
+        let name = self.scene.trim_start_matches("3rrr/");
+        name.trim_start_matches("../verify/scenes/").to_owned() + self.variant
     }
 
     /// File of the scene.
@@ -157,11 +162,20 @@ impl Plan {
             result => result.into_diagnostic().wrap_err_with(|| self.name())?,
         }
         let seconds = clock.elapsed().as_secs_f64();
-        let closed = recording.onsets.iter().map(|onset| Impact {
-            t: onset.t,
-            joint: onset.joint.clone(),
-            velocity: onset.impact_velocity,
-        });
+        let listed = simulation.report().impacts;
+        let closed = recording
+            .onsets
+            .iter()
+            .enumerate()
+            .map(|(i, onset)| Impact {
+                t: onset.t,
+                joint: onset.joint.clone(),
+                velocity: onset.impact_velocity,
+                course: listed.get(i).and_then(|impact| {
+                    impact.end?;
+                    Some([impact.angle, impact.deepest_penetration])
+                }),
+            });
         let closed = closed.collect();
         let mut columns: BTreeMap<_, _> = recording.into_columns().collect();
         let t = columns
@@ -174,6 +188,17 @@ impl Plan {
             seconds,
             work: Work::Rust(Box::new(simulation.report())),
         })
+    }
+
+    /// Where the reference starts: at the ideal mechanism of a path, otherwise where Looselink has assembled the scene.
+    fn start(&self, description: &Description, system: &System) -> Result<(Vec<f64>, Vec<f64>)> {
+        if !description.mechanism.legs.is_empty() {
+            return system.start(0.0).into_diagnostic();
+        }
+        let simulation = Simulation::new(&self.scene(self.interval)?)?;
+        let (model, at) = (simulation.model(), simulation.state());
+        let embedding = Embedding::new(description, model, model.shape().coordinates);
+        Ok((embedding.spread(&at.q), embedding.spread(&at.v)))
     }
 
     /// The reference's trajectory with these tolerances.
@@ -191,10 +216,12 @@ impl Plan {
     pub fn cpp_until(&self, tolerances: &Tolerances, impacts: usize) -> Result<Trajectory> {
         let description = self.description()?;
         let system = System::new(&description.mechanism).into_diagnostic()?;
-        let (q, v) = system.start(0.0).into_diagnostic()?;
+        let (q, v) = self.start(&description, &system)?;
         let mut channels = Channels::new(&description);
-        let (mut t, mut closed, mut row, mut seconds) =
-            (Vec::new(), Vec::new(), Row::default(), 0.0);
+        let (mut t, mut row, mut seconds) = (Vec::new(), Row::default(), 0.0);
+        // impacts so far; for every joint in contact the index of its impact and the direction of its eccentricity
+        let mut closed: Vec<Impact> = Vec::new();
+        let mut angles = BTreeMap::new();
         let clock = ThreadTime::now();
         let mut run = system.run(0.0, &q, &v, tolerances).into_diagnostic()?;
         seconds += clock.elapsed().as_secs_f64();
@@ -210,11 +237,21 @@ impl Plan {
             channels.add(&system, &row)?;
             let events = run.events(seen);
             seen += events.len();
-            closed.extend(events.iter().filter(|e| e.onset).map(|e| Impact {
-                t: e.t,
-                joint: description.joints[e.joint].clone(),
-                velocity: e.velocity,
-            }));
+            for e in events {
+                let joint = &description.joints[e.joint];
+                if e.onset {
+                    let [x, y] = e.eccentricity;
+                    angles.insert(e.joint, (closed.len(), y.atan2(x)));
+                    closed.push(Impact {
+                        t: e.t,
+                        joint: joint.clone(),
+                        velocity: e.velocity,
+                        course: None,
+                    });
+                } else if let Some((impact, angle)) = angles.remove(&e.joint) {
+                    closed[impact].course = Some([angle, e.deepest]);
+                }
+            }
             if closed.len() >= impacts {
                 closed.truncate(impacts);
                 break;

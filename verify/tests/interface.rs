@@ -58,7 +58,7 @@ fn bad_mechanisms_are_refused_by_name() {
 #[test]
 fn scenes_beyond_the_reference_are_refused() {
     for (text, missing) in [
-        ("simulation.gravity=[0, -9.81]", "gravity"),
+        ("bodies.platform.plate.shape=\"disc\"", "disc"),
         ("contacts.pin.law=\"hertz\"", "hertz"),
         ("drives.input.path={type=\"line\"}", "drives.input"),
     ] {

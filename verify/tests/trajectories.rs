@@ -2,7 +2,7 @@
 
 use verify::check::{Agreement, assert_all};
 use verify::compare::{classes, impacts::Series};
-use verify::compare::{flexible, impacts, rigid, statistics};
+use verify::compare::{flexible, impacts, machines, rigid, statistics};
 
 #[test]
 fn rigid_mechanisms_agree() {
@@ -13,45 +13,67 @@ fn rigid_mechanisms_agree() {
         classes::CLASSES.len() - 2,
         "every other kind of channel"
     );
-    assert_all(&rows);
+    assert_all("Case 1 in motion", &rows);
 }
 
 #[test]
 fn flexible_links_of_one_element_agree() {
-    assert_all(&flexible::convergence(1).unwrap().agreements());
+    let rows = flexible::convergence(1).unwrap().agreements();
+    assert_all("Case 2 in motion", &rows);
 }
 
 #[test]
 fn flexible_links_of_four_elements_agree() {
-    assert_all(&flexible::convergence(4).unwrap().agreements());
+    let rows = flexible::convergence(4).unwrap().agreements();
+    assert_all("Case 2 with four elements a link in motion", &rows);
 }
 
-fn impacts_agree(choose: impl Fn(&Series) -> bool) {
+fn impacts_agree(what: &str, choose: impl Fn(&Series) -> bool) {
     let series = impacts::all();
     let rows: Vec<Agreement> = series
         .iter()
         .filter(|s| choose(s))
         .flat_map(|s| s.agreements().unwrap())
         .collect();
-    assert_all(&rows);
+    assert_all(what, &rows);
 }
 
 #[test]
 fn impacts_of_rigid_links_agree() {
-    impacts_agree(|s| s.plan.scene == "3rrr/case3");
+    impacts_agree("First impacts of case 3", |s| s.plan.scene == "3rrr/case3");
 }
 
 #[test]
 fn impacts_of_flexible_links_agree() {
-    impacts_agree(|s| s.plan.scene != "3rrr/case3");
+    impacts_agree("First impacts of case 4", |s| s.plan.scene != "3rrr/case3");
 }
 
 #[test]
 fn statistics_of_rigid_loose_joints_agree() {
-    assert_all(&statistics::agreements(3).unwrap());
+    let rows = statistics::agreements(3).unwrap();
+    assert_all("Two cycles of case 3, statistics", &rows);
 }
 
 #[test]
 fn statistics_of_flexible_loose_joints_agree() {
-    assert_all(&statistics::agreements(4).unwrap());
+    let rows = statistics::agreements(4).unwrap();
+    assert_all("Two cycles of case 4, statistics", &rows);
+}
+
+#[test]
+fn other_elements_move_alike() {
+    let rows = machines::smooth().unwrap();
+    assert_all(
+        "Every element but clearance and inverse kinematics in motion",
+        &rows,
+    );
+}
+
+#[test]
+fn first_impacts_of_other_mechanisms_agree() {
+    let rows = machines::impacts().unwrap();
+    assert_all(
+        "First impacts of a slider-crank and of a body that hangs in a frame",
+        &rows,
+    );
 }

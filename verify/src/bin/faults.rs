@@ -7,8 +7,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use verify::faults::{Fault, Outcome, list, outcomes as known, root};
 
-/// Tests that take a second, and those that take a minute and are asked only when the first catch nothing.
-const STAGES: [&[&str]; 2] = [&["parts", "rigid_mechanisms"], &["impacts", "one_element"]];
+/// Tests that take seconds, and those that take a minute and are asked only when the first catch nothing.
+const STAGES: [&[&str]; 2] = [
+    &["parts", "rigid_mechanisms", "other_elements"],
+    &["impacts", "one_element"],
+];
 
 /// Runs all seeded faults and writes verify/faults.json.
 #[derive(Parser)]

@@ -7,5 +7,6 @@ pub mod equations;
 pub mod flexible;
 pub mod impacts;
 pub mod laws;
+pub mod machines;
 pub mod rigid;
 pub mod statistics;

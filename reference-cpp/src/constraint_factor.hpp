@@ -1,0 +1,21 @@
+// Factors of Phi_q M^-1 Phi_q^T. Rows of Phi are metres, radians or pure numbers, so it is scaled to a unit diagonal.
+#pragma once
+
+#include <Eigen/Dense>
+
+class ConstraintFactor {
+public:
+    void compute(const Eigen::MatrixXd &s);
+    bool independent() const { return independent_; }
+    // Of rows that are not independent, the first that follows from those before it.
+    static int dependent_row(const Eigen::MatrixXd &s);
+
+    Eigen::VectorXd solve(const Eigen::VectorXd &b) const {
+        return scale_.cwiseProduct(factor_.solve(scale_.cwiseProduct(b)));
+    }
+
+private:
+    Eigen::VectorXd scale_;
+    Eigen::LDLT<Eigen::MatrixXd> factor_;
+    bool independent_ = false;
+};
