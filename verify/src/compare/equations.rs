@@ -3,8 +3,7 @@
 use crate::check::{Agreement, Worst, largest};
 use crate::description::Description;
 use crate::embedding::Embedding;
-use crate::reference::Mechanism;
-use crate::reference::{System as Reference, body_kind, joint_kind};
+use crate::reference::{Mechanism, System as Reference, body_kind, joint_kind};
 use crate::trajectory::Plan;
 use looselink::model::Model;
 use looselink::simulate::Simulation;
@@ -137,28 +136,18 @@ pub fn agreements(plan: &Plan) -> Result<Vec<Agreement>> {
             },
         ]);
     }
-    let elastic = mechanism
-        .bodies
-        .iter()
-        .any(|b| b.kind == body_kind::FLEXIBLE_LINK)
-        || mechanism.springs.len() + mechanism.torsion_springs.len() > 0;
-    if elastic {
-        rows.push(row(parts.force, "assembled force, contacts open", rounding));
-    }
+    // with or without anything in them: a part that only one side has must not go unseen
+    rows.push(row(parts.force, "assembled force, contacts open", rounding));
+    rows.push(row(parts.damping, "assembled df/dv", rounding));
+    rows.push(row(
+        parts.stiffness,
+        "assembled df/dq",
+        "of the largest entry; rounding of delta over delta",
+    ));
     if shape.contacts > 0 {
         rows.push(row(
             parts.contact,
             "assembled force, contacts closed",
-            "of the largest entry; rounding of delta over delta",
-        ));
-    }
-    if parts.damping.rust != 0.0 {
-        rows.push(row(parts.damping, "assembled df/dv", rounding));
-    }
-    if elastic || shape.contacts > 0 {
-        rows.push(row(
-            parts.stiffness,
-            "assembled df/dq",
             "of the largest entry; rounding of delta over delta",
         ));
     }
