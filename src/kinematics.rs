@@ -11,6 +11,8 @@ use crate::system::{Inner, PrescribeError, State, System, Weights};
 
 /// An update below this leaves, by the quadratic convergence of Newton's method, an error far below rounding.
 const LAST_UPDATE: f64 = 1e-9;
+/// An update below this leaves the factors as good as they would be anew.
+const SAME_POSE: f64 = 1e-15;
 
 /// The ideal mechanism and where its coordinates stand among those of the real one.
 #[derive(Debug)]
@@ -104,7 +106,9 @@ impl Kinematics {
         if last.is_nan() || last > LAST_UPDATE {
             return Err(self.cannot_close(&inner.state));
         }
-        self.factor(inner)?;
+        if last > SAME_POSE {
+            self.factor(inner)?;
+        }
         mechanism.constraint_velocity(&inner.state, &mut inner.phi);
         self.least_norm(inner);
         inner.state.v[..n].copy_from_slice(&inner.b[..n]);

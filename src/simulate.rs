@@ -1,13 +1,17 @@
 //! The loop: step, locate contact onset and loss, commit memory, record.
 
 mod change;
+mod control;
 mod equilibrium;
 mod impacts;
 mod observer;
+mod pace;
 mod recording;
 mod report;
+mod top;
 
 pub use crate::record::Channel;
+pub use control::AccuracyReport;
 pub use impacts::Impact;
 use impacts::Impacts;
 pub use observer::{Control, Observer, Onset, Progress};
@@ -19,10 +23,12 @@ use crate::initial::{self, redundancy};
 use crate::model::Model;
 use crate::newton::{Failure, Newton};
 use crate::record::Recorder;
-use crate::scene::{Analysis, Scene, SceneError};
+use crate::scene::{Analysis, Method, Pace, Scene, SceneError};
 use crate::statics::Statics;
 use crate::stepper::{StepError, Stepper, stepper};
 use crate::system::{PrescribeError, State, System, Work};
+use control::{Controller, Verdict};
+use pace::Pacer;
 
 /// A step is halved this many times at most before the run gives up.
 const HALVINGS: i32 = 24;
@@ -43,6 +49,23 @@ pub enum RunError {
         t: f64,
         /// The last step tried \[s\].
         step: f64,
+    },
+    /// No step is short enough for the accuracy that the scene asks for.
+    #[error(
+        "the accuracy of {position:e} m over {horizon} s cannot be reached at t = {t} s: the estimated error of {name} is too large \
+         even at a step of {step:.1e} s"
+    )]
+    Accuracy {
+        /// Coordinate with the largest error.
+        name: String,
+        /// When \[s\].
+        t: f64,
+        /// The last step tried \[s\].
+        step: f64,
+        /// What was asked for \[m\] ...
+        position: f64,
+        /// ... over this time \[s\].
+        horizon: f64,
     },
     /// No equilibrium was found.
     #[error("no equilibrium at t = {t}: {name}: {cause}")]
@@ -85,6 +108,7 @@ pub struct Simulation {
     scene: Scene,
     model: Model,
     stepper: Box<dyn Stepper>,
+    pacer: Pacer,
     newton: Newton,
     statics: Option<Statics>,
     work: Work,
@@ -100,6 +124,8 @@ pub struct Simulation {
     counters: LoopCounters,
     delta: Vec<f64>,
     rate: Vec<f64>,
+    /// Distance to the change of every contact, and its rate, at the state looked at last.
+    last_gaps: Vec<[f64; 2]>,
     started: Vec<(usize, f64, f64)>,
     status: Status,
     error: Option<String>,
@@ -114,6 +140,7 @@ impl Simulation {
         let mut model = compile(scene)?;
         let mut state = initial::start(scene, &model)?;
         keep_independent(scene, &mut model, &state)?;
+        refuse_constraints(scene, &model)?;
         let mut newton = Newton::new(&model, scene.integrator.newton_tolerance);
         let mut work = model.work();
         let shape = model.shape();
@@ -145,8 +172,19 @@ impl Simulation {
         }
         let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
         let extremes = vec![Extreme::default(); recorder.channels().len()];
+        let stepper = stepper(scene.integrator.method, &model);
+        let pacer = match (scene.integrator.pace, stepper.estimate()) {
+            (Pace::Step(step), _) => Pacer::grid(step),
+            (Pace::Accuracy(accuracy), Some(estimate)) => {
+                Pacer::Controller(Box::new(Controller::new(scene, &model, accuracy, estimate)))
+            }
+            (Pace::Accuracy(_), None) => {
+                unreachable!("the reader refuses an accuracy for a method without an estimate")
+            }
+        };
         Ok(Simulation {
-            stepper: stepper(scene.integrator.method, &model),
+            stepper,
+            pacer,
             newton,
             statics,
             work,
@@ -163,6 +201,7 @@ impl Simulation {
             },
             delta: vec![0.0; shape.contacts],
             rate: vec![0.0; shape.contacts],
+            last_gaps: vec![[0.0; 2]; shape.contacts],
             started,
             status: Status::Incomplete,
             error: None,
@@ -217,37 +256,30 @@ impl Simulation {
     }
 
     /// Steps to `target`, stopping at every contact onset and loss on the way.
-    ///
-    /// The grid of steps starts afresh there. The first step after an onset is half as long as the others: the force
-    /// grows as t^1.5, so that step alone has an error of h^2.5, which a whole one would make as large as the h^2 of all
-    /// others together. Measured on the instant of the fourth impact of case 3, h from 4e-6 to 5e-7 s: orders 2.4, 2.1,
-    /// 2.2 with the half step, 1.7, 1.2, 1.8 without.
     fn advance(&mut self, target: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
-        let step = self.scene.integrator.step;
-        let (mut anchor, mut count) = (self.state.t, 0.0);
+        self.pacer.begin(self.state.t);
         while self.state.t < target {
-            count += 1.0;
-            let next = anchor + count * step;
-            let goal = if target - next < GRID_ROUNDING * step {
-                target
-            } else {
-                next
-            };
+            let goal = self.pacer.goal(self.state.t, target);
             let (mut clamps, reached) = self.try_step(goal)?;
+            if let Pacer::Controller(controller) = &mut self.pacer {
+                match controller.judge(&*self.stepper, &self.state, &self.trial, goal) {
+                    Verdict::Keep => {}
+                    Verdict::Repeat => continue,
+                    Verdict::Stuck(worst) => return Err(self.stuck(worst)),
+                }
+            }
             if self.model.shape().contacts > 0 {
                 clamps = self.locate_change(clamps, reached)?;
             }
+            self.stepper.accept();
             std::mem::swap(&mut self.state, &mut self.trial);
             self.counters.steps += 1;
             self.counters.clamps += clamps as u64;
             let taken = self.state.t - self.trial.t;
             self.commit(observer)?;
             self.impacts.step(&self.model, taken, &self.state);
-            if !self.started.is_empty() {
-                (anchor, count) = (self.state.t, -0.5);
-            } else if self.state.t != goal {
-                (anchor, count) = (self.state.t, 0.0);
-            }
+            let onsets = self.started.iter().map(|(contact, ..)| *contact);
+            self.pacer.kept(&self.state, goal, onsets);
             let contacts = self.state.z.iter().filter(|z| **z > 0.0).count();
             let progress = Progress {
                 t: self.state.t,
@@ -270,7 +302,7 @@ impl Simulation {
                 Err(error) => {
                     self.counters.rejected += 1;
                     let half = 0.5 * (t - self.state.t);
-                    if half < self.scene.integrator.step * 2.0_f64.powi(-HALVINGS) {
+                    if half < self.pacer.scale() * 2.0_f64.powi(-HALVINGS) {
                         return Err(self.failed(error, 2.0 * half));
                     }
                     t = self.state.t + half;
@@ -362,6 +394,19 @@ impl Simulation {
         Ok(())
     }
 
+    fn stuck(&self, worst: usize) -> RunError {
+        let Pace::Accuracy(accuracy) = self.scene.integrator.pace else {
+            unreachable!("only a run with an accuracy judges its steps")
+        };
+        RunError::Accuracy {
+            name: self.model.unknown_name(worst),
+            t: self.state.t,
+            step: self.trial.t - self.state.t,
+            position: accuracy.position,
+            horizon: accuracy.horizon,
+        }
+    }
+
     fn failed(&self, error: StepError, step: f64) -> RunError {
         match error {
             StepError::Prescribe(error) => RunError::Drive(error),
@@ -376,6 +421,27 @@ impl Simulation {
             }
         }
     }
+}
+
+/// Refuses velocity Verlet for a mechanism with constraint rows, which it does not keep.
+fn refuse_constraints(scene: &Scene, model: &Model) -> Result<(), SceneError> {
+    let shape = model.shape();
+    if scene.integrator.method != Method::VelocityVerlet || shape.multipliers == 0 {
+        return Ok(());
+    }
+    let first = &model.unknown_names()[shape.unknowns];
+    let message = format!(
+        "method \"velocity_verlet\" keeps no constraints, and this mechanism has {}, the first: {first}",
+        shape.multipliers
+    );
+    let error = scene.error(
+        scene.integrator.method_span,
+        message,
+        "cannot take this scene",
+    );
+    Err(error.with_help(
+        "\"dormand_prince\" is explicit and takes constraints; so do all implicit methods",
+    ))
 }
 
 /// Takes constraints out of the equations that repeat others.

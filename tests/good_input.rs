@@ -55,7 +55,7 @@ fn case_4_is_what_the_paper_says() {
         ["A1", "A2", "A3", "B1", "B2", "B3", "C1", "C2", "C3"]
     );
     assert_eq!(scene.drives[0].joints, [0, 1, 2]);
-    assert_eq!(scene.integrator.method, Method::Bathe { gamma: 0.5 });
+    assert_eq!(scene.integrator.method, Method::bathe(0.5));
     let BodyKind::Link(link) = &scene.bodies[4].kind else {
         panic!("link1 is a link")
     };

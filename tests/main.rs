@@ -1,5 +1,6 @@
 //! All integration tests, in one binary.
 
+mod accuracy;
 mod bad_input;
 mod bad_mechanism;
 mod balance;
@@ -14,6 +15,7 @@ mod library;
 mod loose;
 mod malformed;
 mod mechanisms;
+mod methods;
 mod overrides;
 mod published;
 mod rrr;

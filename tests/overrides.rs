@@ -40,7 +40,7 @@ fn overrides() {
             "bodies.link2.model=rigid",
         ],
     );
-    assert_eq!(scene.integrator.step, 1e-6);
+    assert_eq!(scene.integrator.step(), Some(1e-6));
     assert!(contact(&scene, "B1").is_none() && contact(&scene, "B2").is_some());
     let model = |body: &str| match &scene.bodies[scene.body(body).unwrap()].kind {
         BodyKind::Link(link) => link.model,
@@ -74,7 +74,7 @@ fn overrides() {
             "simulation.gravity=[0, -9.81]",
         ],
     );
-    assert_eq!(scene.integrator.method, Method::Bathe { gamma: 0.4 });
+    assert_eq!(scene.integrator.method, Method::bathe(0.4));
     assert_eq!(scene.simulation.gravity, Some([0.0, -9.81]));
     // The value shown with an assumption is the one in force.
     let scene = load(CASE4, &["contacts.pin.restitution=0.5"]);

@@ -20,7 +20,7 @@ fn beginning(name: &str, duration: f64) -> Scene {
     if whole.simulation.analysis == Analysis::Static {
         return whole;
     }
-    let step = whole.integrator.step;
+    let step = whole.integrator.step().unwrap();
     // a whole multiple of the step, as the scene language asks for
     let interval = step * (INTERVAL / step).round().max(1.0);
     let duration = duration.max(LEAST_STEPS * step).max(interval);
@@ -126,7 +126,7 @@ fn steps_do_not_allocate() {
         let mut stepper = stepper(scene.integrator.method, model);
         let info = allocation_counter::measure(|| {
             for k in 1..=3000 {
-                let t = from.t + scene.integrator.step * (1.0 + 1e-4 * f64::from(k));
+                let t = from.t + scene.integrator.step().unwrap() * (1.0 + 1e-4 * f64::from(k));
                 stepper
                     .step(model, &from, t, &mut to, &mut newton, &mut work)
                     .unwrap();

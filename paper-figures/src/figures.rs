@@ -46,8 +46,8 @@ pub fn step_label(recording: &Recording) -> String {
 pub fn caption(text: &str, made_with: &[&Recording]) -> String {
     let scenes: Vec<String> = made_with.iter().map(|r| r.plan.scene_name()).collect();
     let method = match made_with[0].scene.integrator.method {
-        Method::Bathe { gamma } => format!("Bathe method (γ = {gamma})"),
-        Method::Trapezoidal => "Trapezoidal rule".to_owned(),
+        Method::Bathe { gamma, .. } => format!("Bathe method (γ = {gamma})"),
+        other => other.name().to_owned(),
     };
     format!(
         "{text} Scenes: {}. {method}, step h as in the legends, rows every {}.",

@@ -82,8 +82,8 @@ fn coordinates(c: &Campaign, numbers: &mut Numbers) -> Statement {
 
 fn bathe(c: &Campaign) -> Statement {
     let gamma = match c.both.scene.integrator.method {
-        Method::Bathe { gamma } => gamma,
-        Method::Trapezoidal => f64::NAN,
+        Method::Bathe { gamma, .. } => gamma,
+        _ => f64::NAN,
     };
     Statement {
         place: "Abstract, Sect. 5",

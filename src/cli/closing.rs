@@ -1,7 +1,7 @@
 //! The last lines of a run: what was counted, and what the integrator did to the energy.
 
 use looselink::record::Ledger;
-use looselink::simulate::Report;
+use looselink::simulate::{AccuracyReport, Report};
 
 /// Numerical dissipation beyond this part of the physical one is worth a word.
 const NOTABLE: f64 = 0.05;
@@ -15,6 +15,7 @@ pub fn lines(report: &Report) -> Vec<String> {
     if let Some(ledger) = &report.ledger {
         lines.extend(energy(ledger));
     }
+    lines.extend(report.accuracy.iter().map(accuracy));
     let first = report.impacts.iter().take(SHOWN).enumerate();
     lines.extend(first.map(|(k, impact)| {
         format!(
@@ -55,6 +56,23 @@ pub fn lines(report: &Report) -> Vec<String> {
     let counted = counts.iter().filter(|(count, _)| *count > 0);
     lines.extend(counted.map(|(count, what)| format!("counted: {count} {what}")));
     lines
+}
+
+/// What the steps were that an accuracy asked for.
+fn accuracy(control: &AccuracyReport) -> String {
+    let [shortest, longest] = control.steps;
+    let mut line = format!(
+        "accuracy: {:e} m over {} s asked for, steps from {shortest:.1e} to {longest:.1e} s",
+        control.position, control.horizon
+    );
+    let most = control.rejected_by.iter().max_by_key(|(_, count)| **count);
+    if let Some((name, count)) = most {
+        line += &format!(
+            "; {} taken again because their estimated error was too large, {count} of them in {name}",
+            control.rejected_steps
+        );
+    }
+    line
 }
 
 /// What the integrator did to the energy.

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::{SceneArguments, print};
 use clap::Args;
-use looselink::scene::{Analysis, Scene};
+use looselink::scene::{Analysis, Pace, Scene};
 use looselink::simulate::{Inspection, Simulation};
 use std::fmt::Write;
 
@@ -32,7 +32,6 @@ pub fn inspect(arguments: &Arguments) -> Result<(), Failure> {
 fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> String {
     let mut out = format!("{}\n\n", scene.title);
     let duration = scene.simulation.duration;
-    let step = scene.integrator.step;
     for (name, value) in [
         ("bodies", scene.bodies.len().to_string()),
         ("joints", scene.joints.len().to_string()),
@@ -42,14 +41,18 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
         ("effects", inspection.effects.join(", ")),
         (
             "duration",
-            match scene.simulation.analysis {
-                Analysis::Dynamic => format!(
+            match (scene.integrator.pace, scene.simulation.analysis) {
+                (Pace::Step(step), Analysis::Dynamic) => format!(
                     "{duration:?} s, about {:.0} steps of {step:?} s",
                     duration / step
                 ),
-                Analysis::Static => format!(
+                (Pace::Step(step), Analysis::Static) => format!(
                     "load path to t = {duration:?} in about {:.0} steps",
                     duration / step
+                ),
+                (Pace::Accuracy(accuracy), _) => format!(
+                    "{duration:?} s, with an error of {:?} m in {:?} s",
+                    accuracy.position, accuracy.horizon
                 ),
             },
         ),
@@ -61,6 +64,7 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
                 scene.output.interval
             ),
         ),
+        ("method", scene.integrator.method.name().to_owned()),
         ("scene hash", scene.hash()),
     ] {
         line(&mut out, &format!("  {name:<22}{value}"));

@@ -51,11 +51,21 @@ struct SceneArguments {
     /// Replace a field of the scene, for example `integrator.step=1e-6`; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
+    /// Follow an estimate of the error instead of a step: the error allowed in positions \[m\] and the time \[s\] over which it
+    /// may gather, for example `position=1e-9,horizon=0.01`.
+    #[arg(long, value_name = "position=M[,horizon=S]")]
+    accuracy: Option<String>,
 }
 
 impl SceneArguments {
     fn load(&self) -> Result<(Scene, Simulation), SceneError> {
-        let scene = Scene::load(&self.scene, &self.overrides)?;
+        let mut overrides = self.overrides.clone();
+        overrides.extend(
+            self.accuracy
+                .as_ref()
+                .map(|accuracy| format!("integrator.accuracy={{ {accuracy} }}")),
+        );
+        let scene = Scene::load(&self.scene, &overrides)?;
         let simulation = Simulation::new(&scene)?;
         Ok((scene, simulation))
     }

@@ -74,13 +74,88 @@ impl Model {
         }
     }
 
-    /// Adds the forces without memory to r.
+    /// Adds elastic forces, forces without memory and contact forces to r.
     #[inline]
-    fn forces(&self, at: &State, r: &mut [f64]) {
+    fn forces(&self, at: &State, r: &mut [f64], work: &mut Work) {
+        for e in &self.elements {
+            let mut f = [0.0; 8];
+            e.kernel
+                .force(&gather8(&e.block.coordinates, &at.q), &mut f);
+            e.block.add_vector(&f, r);
+        }
         for acting in &self.forces {
             let mut f = [0.0; WIDTH];
             acting.term.force(at, &mut f);
             acting.block.add_vector(&f, r);
+        }
+        for c in &self.loose {
+            let mut f = [0.0; WIDTH];
+            if c.term
+                .force(&at.q, &at.v, at.z[c.contact], &mut f)
+                .is_some()
+            {
+                work.tally[Effect::Contact as usize] += 1;
+                c.block.add_vector(&f, r);
+            }
+        }
+        for c in &self.frictional {
+            let mut f = [0.0; WIDTH];
+            if c.term
+                .force(&at.q, &at.v, at.z[c.contact], &mut f)
+                .is_some()
+            {
+                work.tally[Effect::Contact as usize] += 1;
+                work.tally[Effect::Friction as usize] += 1;
+                c.block.add_vector(&f, r);
+            }
+        }
+    }
+
+    /// Adds the same to r, and what they put into the tangent to k.
+    #[inline]
+    fn linearised_forces(
+        &self,
+        at: &State,
+        w: Weights,
+        r: &mut [f64],
+        k: &mut [f64],
+        work: &mut Work,
+    ) {
+        for e in &self.elements {
+            let (mut f, mut tangent) = ([0.0; 8], [[0.0; 8]; 8]);
+            e.kernel
+                .force_and_tangent(&gather8(&e.block.coordinates, &at.q), &mut f, &mut tangent);
+            e.block.add_vector(&f, r);
+            e.block.add_matrix(&tangent, w.q, k);
+        }
+        for acting in &self.forces {
+            let (mut f, mut tangent) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
+            acting.term.force_and_tangent(at, w, &mut f, &mut tangent);
+            acting.block.add_vector(&f, r);
+            acting.block.add_matrix(&tangent, 1.0, k);
+        }
+        for c in &self.loose {
+            let (mut f, mut tangent) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
+            if c.term
+                .force_and_tangent(&at.q, &at.v, at.z[c.contact], w, &mut f, &mut tangent)
+                .is_some()
+            {
+                work.tally[Effect::Contact as usize] += 1;
+                c.block.add_vector(&f, r);
+                c.block.add_matrix(&tangent, 1.0, k);
+            }
+        }
+        for c in &self.frictional {
+            let (mut f, mut tangent) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
+            if c.term
+                .force_and_tangent(&at.q, &at.v, at.z[c.contact], w, &mut f, &mut tangent)
+                .is_some()
+            {
+                work.tally[Effect::Contact as usize] += 1;
+                work.tally[Effect::Friction as usize] += 1;
+                c.block.add_vector(&f, r);
+                c.block.add_matrix(&tangent, 1.0, k);
+            }
         }
     }
 
@@ -196,35 +271,8 @@ impl System for Model {
     fn residual(&self, at: &State, r: &mut [f64], phi: &mut [f64], work: &mut Work) {
         self.count(work);
         self.inertia(&at.a, r);
-        for e in &self.elements {
-            let mut f = [0.0; 8];
-            e.kernel
-                .force(&gather8(&e.block.coordinates, &at.q), &mut f);
-            e.block.add_vector(&f, r);
-        }
         self.constraints(at, r, phi);
-        self.forces(at, r);
-        for c in &self.loose {
-            let mut f = [0.0; WIDTH];
-            if c.term
-                .force(&at.q, &at.v, at.z[c.contact], &mut f)
-                .is_some()
-            {
-                work.tally[Effect::Contact as usize] += 1;
-                c.block.add_vector(&f, r);
-            }
-        }
-        for c in &self.frictional {
-            let mut f = [0.0; WIDTH];
-            if c.term
-                .force(&at.q, &at.v, at.z[c.contact], &mut f)
-                .is_some()
-            {
-                work.tally[Effect::Contact as usize] += 1;
-                work.tally[Effect::Friction as usize] += 1;
-                c.block.add_vector(&f, r);
-            }
-        }
+        self.forces(at, r, work);
     }
 
     fn linearise(
@@ -239,42 +287,12 @@ impl System for Model {
         self.count(work);
         k.copy_from_slice(&self.mass.tangent);
         self.inertia(&at.a, r);
-        for e in &self.elements {
-            let (mut f, mut tangent) = ([0.0; 8], [[0.0; 8]; 8]);
-            e.kernel
-                .force_and_tangent(&gather8(&e.block.coordinates, &at.q), &mut f, &mut tangent);
-            e.block.add_vector(&f, r);
-            e.block.add_matrix(&tangent, w.q, k);
-        }
         self.linearised_constraints(at, w, r, phi, k);
-        for acting in &self.forces {
-            let (mut f, mut tangent) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
-            acting.term.force_and_tangent(at, w, &mut f, &mut tangent);
-            acting.block.add_vector(&f, r);
-            acting.block.add_matrix(&tangent, 1.0, k);
-        }
-        for c in &self.loose {
-            let (mut f, mut tangent) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
-            if c.term
-                .force_and_tangent(&at.q, &at.v, at.z[c.contact], w, &mut f, &mut tangent)
-                .is_some()
-            {
-                work.tally[Effect::Contact as usize] += 1;
-                c.block.add_vector(&f, r);
-                c.block.add_matrix(&tangent, 1.0, k);
-            }
-        }
-        for c in &self.frictional {
-            let (mut f, mut tangent) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
-            if c.term
-                .force_and_tangent(&at.q, &at.v, at.z[c.contact], w, &mut f, &mut tangent)
-                .is_some()
-            {
-                work.tally[Effect::Contact as usize] += 1;
-                work.tally[Effect::Friction as usize] += 1;
-                c.block.add_vector(&f, r);
-                c.block.add_matrix(&tangent, 1.0, k);
-            }
+        if w == Weights::ACCELERATION {
+            // no force depends on accelerations
+            self.forces(at, r, work);
+        } else {
+            self.linearised_forces(at, w, r, k, work);
         }
     }
 

@@ -12,6 +12,9 @@ const MAX_ITERATIONS: usize = 15;
 const SLOW: f64 = 0.1;
 /// Updates that no longer shrink are rounding if they are below this many tolerances.
 const ROUNDING_BAND: f64 = 1e4;
+/// A projection of positions ends when it moves them by less than this part of the largest: Newton's method has squared
+/// the error once more by then.
+const PROJECTED: f64 = 1e-10;
 
 /// Counts of the work done.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -76,6 +79,8 @@ pub struct Newton {
     b: Vec<f64>,
     solve: Vec<f64>,
     dense: Option<DenseLu>,
+    /// True while `k` holds the factors of the mass matrix of a system without multipliers, which never change.
+    holds_mass: bool,
     /// Work done so far.
     pub counters: Counters,
 }
@@ -93,6 +98,7 @@ impl Newton {
             b: vec![0.0; size],
             solve: vec![0.0; size],
             dense: None,
+            holds_mass: false,
             counters: Counters::default(),
         }
     }
@@ -107,6 +113,7 @@ impl Newton {
     ) -> Result<(), Failure> {
         self.counters.factorisations += 1;
         self.dense = None;
+        self.holds_mass = w == Weights::ACCELERATION && system.shape().multipliers == 0;
         let symbolic = system.symbolic();
         if let Err(weak) = symbolic.factor(&mut self.k) {
             self.counters.fallbacks += 1;
@@ -228,23 +235,63 @@ impl Newton {
         s: &mut State,
         work: &mut Work,
     ) -> Result<(), Failure> {
-        let n = system.shape().unknowns;
-        let w = Weights::ACCELERATION;
-        s.a[..n].fill(0.0);
-        s.lambda.fill(0.0);
-        system.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
-        self.factor(system, s, w, work)?;
-        if system.shape().multipliers > 0
-            && (self.dense.is_some() || system.symbolic().pivot_range(&self.k, n) < SINGULAR)
-        {
-            return self.make_consistent_in_singular_pose(system, s, work);
+        if self.begin_acceleration_level(system, s, work)? {
+            return self.end_in_singular_pose(system, s, true, work);
         }
         if system.shape().multipliers > 0 {
             system.constraint_velocity(s, &mut self.phi);
-            self.b[..n].fill(0.0);
+            self.b[..system.shape().unknowns].fill(0.0);
             self.move_by(system, |s| &mut s.v, s);
             system.residual(s, &mut self.r, &mut self.phi, work);
         }
+        self.end_acceleration_level(system, s)
+    }
+
+    /// The accelerations and multipliers at (q, v) as they are: M a + Phi_q^T lambda = -f, Phi_q a = gamma.
+    ///
+    /// # Errors
+    /// As [`Newton::make_consistent`].
+    pub fn accelerate(
+        &mut self,
+        system: &dyn System,
+        s: &mut State,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
+        if self.begin_acceleration_level(system, s, work)? {
+            return self.end_in_singular_pose(system, s, false, work);
+        }
+        self.end_acceleration_level(system, s)
+    }
+
+    /// Sets a and lambda to zero, then evaluates the residual and factorises the acceleration level. Returns true in a pose
+    /// where the constraints lose rank.
+    fn begin_acceleration_level(
+        &mut self,
+        system: &dyn System,
+        s: &mut State,
+        work: &mut Work,
+    ) -> Result<bool, Failure> {
+        let n = system.shape().unknowns;
+        s.a[..n].fill(0.0);
+        s.lambda.fill(0.0);
+        if self.holds_mass {
+            system.residual(s, &mut self.r, &mut self.phi, work);
+            return Ok(false);
+        }
+        let w = Weights::ACCELERATION;
+        system.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
+        self.factor(system, s, w, work)?;
+        Ok(system.shape().multipliers > 0
+            && (self.dense.is_some() || system.symbolic().pivot_range(&self.k, n) < SINGULAR))
+    }
+
+    /// From the residual at a = 0, lambda = 0 and the factors of the acceleration level to (a, lambda).
+    fn end_acceleration_level(
+        &mut self,
+        system: &dyn System,
+        s: &mut State,
+    ) -> Result<(), Failure> {
+        let n = system.shape().unknowns;
         system.constraint_acceleration(s, &mut self.phi);
         for i in 0..n {
             self.b[i] = -self.r[i];
@@ -257,11 +304,60 @@ impl Newton {
         }
     }
 
-    /// As [`Newton::make_consistent`], without the directions in which the constraints have lost rank. It allocates.
-    fn make_consistent_in_singular_pose(
+    /// Moves q, by the least kinetic energy, to Phi = 0: the projection that ends a step of an explicit scheme on a
+    /// constrained system (Eich 1993, SIAM J. Numer. Anal. 30:1467).
+    ///
+    /// # Errors
+    /// See [`Failure`].
+    pub fn project_positions(
         &mut self,
         system: &dyn System,
         s: &mut State,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
+        let n = system.shape().unknowns;
+        let w = Weights::ACCELERATION;
+        let size = s.q[..n].iter().fold(0.0_f64, |m, q| m.max(q.abs()));
+        let mut worst = (0, f64::INFINITY);
+        for _ in 0..MAX_ITERATIONS {
+            system.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
+            self.factor(system, s, w, work)?;
+            self.b[..n].fill(0.0);
+            for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
+                *b = -phi;
+            }
+            self.back_substitute(system);
+            worst = (0, 0.0);
+            for i in 0..n {
+                let way = self.b[i] + s.q_low[i];
+                let before = s.q[i];
+                s.q[i] = before + way;
+                s.q_low[i] = way - (s.q[i] - before);
+                let moved = self.b[i].abs();
+                if moved.is_nan() || moved > worst.1 {
+                    worst = (i, moved);
+                }
+            }
+            if !worst.1.is_finite() {
+                return Err(Failure::NotFinite { index: worst.0 });
+            }
+            if worst.1 <= PROJECTED * size {
+                return Ok(());
+            }
+        }
+        Err(Failure::NoConvergence {
+            index: worst.0,
+            update: worst.1,
+        })
+    }
+
+    /// The end of [`Newton::make_consistent`] or, without `project`, of [`Newton::accelerate`], without the directions in
+    /// which the constraints have lost rank. It allocates.
+    fn end_in_singular_pose(
+        &mut self,
+        system: &dyn System,
+        s: &mut State,
+        project: bool,
         work: &mut Work,
     ) -> Result<(), Failure> {
         let n = system.shape().unknowns;
@@ -271,9 +367,11 @@ impl Newton {
         let Some(truncated) = Truncated::new(system.symbolic(), &self.k, n) else {
             return Err(Failure::Singular { index: n });
         };
-        system.constraint_velocity(s, &mut self.phi);
-        let change = truncated.projection(&self.phi);
-        s.v.iter_mut().zip(&change).for_each(|(v, d)| *v += d);
+        if project {
+            system.constraint_velocity(s, &mut self.phi);
+            let change = truncated.projection(&self.phi);
+            s.v.iter_mut().zip(&change).for_each(|(v, d)| *v += d);
+        }
         system.residual(s, &mut self.r, &mut self.phi, work);
         system.constraint_acceleration(s, &mut self.phi);
         let (a, lambda) = truncated.accelerations(&self.r[..n], &self.phi);

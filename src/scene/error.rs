@@ -24,6 +24,11 @@ impl Span {
             len: small(range.end.saturating_sub(range.start)),
         }
     }
+
+    /// Number of the source: 0 is the file, overrides follow in their order.
+    pub(super) fn source(self) -> u32 {
+        self.source
+    }
 }
 
 /// The texts a scene was read from: the file is number 0, override k is number k + 1.

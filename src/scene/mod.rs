@@ -10,6 +10,7 @@ mod field;
 mod fields;
 mod forces;
 mod functions;
+mod integrator;
 mod joints;
 mod materials;
 mod motion;
@@ -76,26 +77,119 @@ pub struct Simulation {
 pub struct Integrator {
     /// Scheme and its parameters.
     pub method: Method,
-    /// Step \[s\].
-    pub step: f64,
+    /// What the length of a step follows.
+    pub pace: Pace,
     /// Largest error that Newton's method may leave in a velocity \[m/s\] (slope rates 1/s, angular velocities rad/s).
     pub newton_tolerance: f64,
     /// Largest |delta| of a located contact onset \[m\].
     pub onset_tolerance: f64,
-    /// Where `integrator.step` stands.
-    pub step_span: Span,
+    /// Where `integrator.method` stands.
+    pub method_span: Span,
+    /// Where `integrator.step` or `integrator.accuracy` stands.
+    pub pace_span: Span,
+}
+
+/// What the length of a step follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pace {
+    /// Every step this long \[s\].
+    Step(f64),
+    /// An estimate of the error.
+    Accuracy(Accuracy),
+}
+
+/// `integrator.accuracy`
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    /// Error that may gather in the position of any point \[m\] ...
+    pub position: f64,
+    /// ... over this time \[s\].
+    pub horizon: f64,
 }
 
 /// Time integration scheme.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {
-    /// Bathe's two sub-steps; `gamma` in (0, 1) is the splitting of the step, 1/2 unless given.
+    /// Bathe's two sub-steps.
     Bathe {
-        /// First sub-step over step.
+        /// First sub-step over step, in (0, 1); 1/2 unless given.
         gamma: f64,
+        /// Spectral radius at infinite frequency, in \[0, 1\]; 0 unless given.
+        spectral_radius: f64,
     },
     /// The trapezoidal rule.
     Trapezoidal,
+    /// The backward Euler rule.
+    BackwardEuler,
+    /// The generalised-alpha method.
+    GeneralizedAlpha {
+        /// Spectral radius at infinite frequency, in \[0, 1\].
+        spectral_radius: f64,
+    },
+    /// The method of Hilber, Hughes and Taylor.
+    Hht {
+        /// Spectral radius at infinite frequency, in \[1/2, 1\].
+        spectral_radius: f64,
+    },
+    /// Velocity Verlet, explicit.
+    VelocityVerlet,
+    /// Dormand and Prince's pair of orders 5 and 4, explicit.
+    DormandPrince,
+}
+
+impl Method {
+    /// Every method, as scenes name it.
+    pub const NAMES: [&'static str; 7] = [
+        "bathe",
+        "trapezoidal",
+        "backward_euler",
+        "generalized_alpha",
+        "hht",
+        "velocity_verlet",
+        "dormand_prince",
+    ];
+
+    /// Its name in a scene.
+    pub fn name(&self) -> &'static str {
+        let index = match self {
+            Method::Bathe { .. } => 0,
+            Method::Trapezoidal => 1,
+            Method::BackwardEuler => 2,
+            Method::GeneralizedAlpha { .. } => 3,
+            Method::Hht { .. } => 4,
+            Method::VelocityVerlet => 5,
+            Method::DormandPrince => 6,
+        };
+        Method::NAMES[index]
+    }
+
+    /// Bathe's scheme with spectral radius 0.
+    pub fn bathe(gamma: f64) -> Method {
+        Method::Bathe {
+            gamma,
+            spectral_radius: 0.0,
+        }
+    }
+
+    /// True of a scheme that solves no equations.
+    pub fn is_explicit(&self) -> bool {
+        matches!(self, Method::VelocityVerlet | Method::DormandPrince)
+    }
+
+    /// True of a scheme that estimates its error.
+    pub fn estimates_error(&self) -> bool {
+        matches!(self, Method::Bathe { .. } | Method::DormandPrince)
+    }
+}
+
+impl Integrator {
+    /// The step \[s\], where every step has the same length.
+    pub fn step(&self) -> Option<f64> {
+        match self.pace {
+            Pace::Step(step) => Some(step),
+            Pace::Accuracy(_) => None,
+        }
+    }
 }
 
 /// `[output]`

@@ -4,15 +4,13 @@ use super::document::{Node, document};
 use super::error::{SceneError, Sources, Span, nearest};
 use super::field::Field;
 use super::fields::Fields;
-use super::{Analysis, JointModel, bodies, forces, joints, motion, overrides};
-use super::{Assumption, ChannelPattern, Integrator, Method, Output, Scene, Simulation};
+use super::{Analysis, JointModel, bodies, forces, integrator, joints, motion, overrides};
+use super::{Assumption, ChannelPattern, Integrator, Output, Scene, Simulation};
 use std::io::Read;
 use std::path::Path;
 
 /// Larger files are refused: a table of 100 000 rows takes about 5 MB.
 const LARGEST_FILE: u64 = 64 << 20;
-/// More steps than this are a slip of the pen: a week of computing at 20 microseconds a step.
-const MOST_STEPS: f64 = 1e10;
 /// Relative error allowed in `interval / step`: decimal fractions are not exact in binary.
 const WHOLE: f64 = 1e-9;
 
@@ -88,7 +86,7 @@ pub(super) fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Scen
         JointModel::Clearance(contact) => Some(contact.clearance),
         _ => None,
     });
-    let integrator = integrator(&root, &simulation, clearance.reduce(f64::min))?;
+    let integrator = integrator::read(&root, &simulation, clearance.reduce(f64::min))?;
     let output = output(&root, &simulation, &integrator)?;
     let drives = motion::drives(&root, &bodies, &joints, simulation.duration)?;
     let forces = forces::read(&root, &bodies, &joints, simulation.duration)?;
@@ -132,79 +130,6 @@ fn simulation(root: &Fields) -> Result<Simulation, SceneError> {
     })
 }
 
-/// `clearance` is the smallest one of the scene.
-fn integrator(
-    root: &Fields,
-    simulation: &Simulation,
-    clearance: Option<f64>,
-) -> Result<Integrator, SceneError> {
-    let mut table = root
-        .required("integrator", "the table of method, step and tolerances")?
-        .fields()?;
-    table.only(&[
-        "method",
-        "gamma",
-        "step",
-        "newton_tolerance",
-        "onset_tolerance",
-    ])?;
-    let purpose = "the integration scheme: \"bathe\" or \"trapezoidal\"";
-    let bathe = table
-        .required("method", purpose)?
-        .choice(&[("bathe", true), ("trapezoidal", false)])?;
-    let mut gamma = 0.5;
-    if let Some(field) = table.optional("gamma") {
-        if !bathe {
-            let message = "`integrator.gamma` belongs to method \"bathe\"";
-            return Err(field.key_fault(message, "remove this"));
-        }
-        gamma = field.number()?;
-        if !(gamma > 0.0 && gamma < 1.0) {
-            return Err(field.must("lie between 0 and 1, both excluded"));
-        }
-    }
-    let field = table.required("step", "the time step [s]")?;
-    let step_span = field.node.span;
-    let step = field.positive()?;
-    if step > simulation.duration {
-        return Err(field.must(&format!(
-            "not be longer than the duration of {} s",
-            simulation.duration
-        )));
-    }
-    if simulation.duration / step > MOST_STEPS {
-        let steps = simulation.duration / step;
-        let message = format!("`{}` is too small: {steps:.1e} steps in all", field.path);
-        return Err(field.fault(message, "at most 1e10 steps"));
-    }
-    let purpose = "the largest error Newton's method may leave in a velocity [m/s]";
-    let newton_tolerance = table.required("newton_tolerance", purpose)?.positive()?;
-    let purpose =
-        "the largest |delta| of a located contact onset [m], needed since a joint has clearance";
-    let onset = match clearance {
-        Some(_) => Some(table.required("onset_tolerance", purpose)?),
-        None => table.optional("onset_tolerance"),
-    };
-    let mut onset_tolerance = 0.0;
-    if let Some(field) = onset {
-        onset_tolerance = field.positive()?;
-        if clearance.is_some_and(|c| onset_tolerance >= c) {
-            return Err(field.must("be less than every clearance"));
-        }
-    }
-    Ok(Integrator {
-        method: if bathe {
-            Method::Bathe { gamma }
-        } else {
-            Method::Trapezoidal
-        },
-        step,
-        newton_tolerance,
-        onset_tolerance,
-        step_span,
-    })
-}
-
 fn output(
     root: &Fields,
     simulation: &Simulation,
@@ -216,7 +141,9 @@ fn output(
     table.only(&["interval", "channels"])?;
     let field = table.required("interval", "the time between recorded rows [s]")?;
     let interval = field.positive()?;
-    check_interval(&field, interval, integrator.step)?;
+    if let Some(step) = integrator.step() {
+        check_interval(&field, interval, step)?;
+    }
     if interval > simulation.duration {
         return Err(field.must(&format!(
             "not be longer than the duration of {} s",

@@ -1,29 +1,61 @@
 //! Location of contact onset and loss: the step is cut where a contact changes.
 
+use super::top::top;
 use super::{RunError, Simulation};
-use crate::system::{State, System};
+use crate::system::System;
 
 /// Trials of one onset or loss; bisection alone needs 60.
 const LOCATION_TRIALS: usize = 100;
 
+/// The sign of the penetration that leads to a change: closed contacts open when it is negative.
+fn side(z: f64) -> f64 {
+    if z == 0.0 { 1.0 } else { -1.0 }
+}
+
 impl Simulation {
-    /// The contact of `trial` or, with `inside`, of its interior stages, that is furthest past its change: the distance
-    /// (an open one's penetration, a closed one's gap), its rate, and the time of the state.
-    fn furthest_past(&mut self, inside: bool) -> (f64, f64, f64) {
-        let states: &[State] = if inside {
-            self.stepper.interior()
-        } else {
-            std::slice::from_ref(&self.trial)
-        };
-        let mut furthest = (f64::NEG_INFINITY, 0.0, 0.0);
+    /// The contact of `trial` that is furthest past its change: the distance (an open one's penetration, a closed one's gap)
+    /// and its rate.
+    fn furthest_past(&mut self) -> (f64, f64) {
+        self.model
+            .gaps(&self.trial, &mut self.delta, &mut self.rate);
+        let mut furthest = (f64::NEG_INFINITY, 0.0);
+        for (c, z) in self.trial.z.iter().enumerate() {
+            let sign = side(*z);
+            if sign * self.delta[c] > furthest.0 {
+                furthest = (sign * self.delta[c], sign * self.rate[c]);
+            }
+        }
+        furthest
+    }
+
+    /// The contact that is furthest past its change inside the trial step: the distance and the time, at a state that the
+    /// stepper has there or at the top of the cubic between neighbouring states.
+    fn furthest_past_inside(&mut self) -> (f64, f64) {
+        let states = [&self.state]
+            .into_iter()
+            .chain(self.stepper.interior())
+            .chain([&self.trial]);
+        let mut furthest = (f64::NEG_INFINITY, 0.0);
+        let mut before = f64::NAN;
         for s in states {
             self.model.gaps(s, &mut self.delta, &mut self.rate);
-            for (c, z) in s.z.iter().enumerate() {
-                let sign = if *z == 0.0 { 1.0 } else { -1.0 };
-                if sign * self.delta[c] > furthest.0 {
-                    furthest = (sign * self.delta[c], sign * self.rate[c], s.t);
+            for (c, z) in self.state.z.iter().enumerate() {
+                let sign = side(*z);
+                let (gap, rate) = (sign * self.delta[c], sign * self.rate[c]);
+                let last = std::mem::replace(&mut self.last_gaps[c], [gap, rate]);
+                if before.is_nan() {
+                    continue;
+                }
+                if gap > furthest.0 && s.t < self.trial.t {
+                    furthest = (gap, s.t);
+                }
+                if let Some((t, gap)) = top(s.t - before, [last[0], gap], [last[1], rate])
+                    && gap > furthest.0
+                {
+                    furthest = (gap, before + t);
                 }
             }
+            before = s.t;
         }
         furthest
     }
@@ -40,15 +72,19 @@ impl Simulation {
     ) -> Result<usize, RunError> {
         let tolerance = self.scene.integrator.onset_tolerance;
         let (mut low, mut high) = (self.state.t, t);
-        let (inside, _, middle) = self.furthest_past(true);
-        let (mut past, mut rate, _) = self.furthest_past(false);
+        let (mut past, mut rate) = self.furthest_past();
         if past <= tolerance {
+            let (inside, middle) = self.furthest_past_inside();
             if inside <= tolerance {
                 return Ok(clamps);
             }
             // there and back again within the step
             (clamps, t) = self.try_step(middle)?;
-            (past, rate, _) = self.furthest_past(false);
+            (past, rate) = self.furthest_past();
+            if past <= tolerance {
+                // nearly there
+                return Ok(clamps);
+            }
             high = t;
         }
         for _ in 0..LOCATION_TRIALS {
@@ -71,7 +107,7 @@ impl Simulation {
             }
             self.counters.location_trials += 1;
             (clamps, t) = self.try_step(next)?;
-            (past, rate, _) = self.furthest_past(false);
+            (past, rate) = self.furthest_past();
         }
         // the gap jumps over zero between neighbouring instants; the later one is kept
         self.counters.unlocated += 1;

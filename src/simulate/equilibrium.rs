@@ -101,7 +101,8 @@ impl Simulation {
 
     /// Equilibria up to the loads at `target`, in steps that are halved where they fail.
     fn load_to(&mut self, target: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
-        let mut step = self.scene.integrator.step;
+        let whole = self.pacer.scale();
+        let mut step = whole;
         let smallest = step * 2.0_f64.powi(-HALVINGS);
         loop {
             let left = target - self.state.t;
@@ -127,7 +128,7 @@ impl Simulation {
                     if self.state.t == target {
                         return Ok(());
                     }
-                    step = (2.0 * step).min(self.scene.integrator.step);
+                    step = (2.0 * step).min(whole);
                 }
                 Err(error) => {
                     self.counters.rejected += 1;

@@ -1,5 +1,6 @@
 //! The first impacts of a run, for its summary.
 
+use super::top::top;
 use crate::model::Model;
 use crate::system::State;
 use serde::Serialize;
@@ -69,41 +70,12 @@ impl Impacts {
             let Some((delta, rate, closed)) = model.penetration(joint, at) else {
                 continue;
             };
-            let top = top(h, [before, delta], [rate_before, rate]);
+            let top = top(h, [before, delta], [rate_before, rate]).map_or(delta, |(_, top)| top);
             impact.deepest_penetration = impact.deepest_penetration.max(delta).max(top);
             *open = closed.then_some((joint, delta, rate));
             if !closed {
                 impact.end = Some(at.t);
             }
         }
-    }
-}
-
-/// Largest value of the cubic on \[0, h\] with these ends and slopes, where it has a top inside.
-fn top(h: f64, [y0, y1]: [f64; 2], [v0, v1]: [f64; 2]) -> f64 {
-    if !(v0 > 0.0 && v1 < 0.0) {
-        return f64::NEG_INFINITY;
-    }
-    // y = y0 + v0 t + c t^2 + d t^3; the slope falls through zero once
-    let c = (3.0 * (y1 - y0) / h - 2.0 * v0 - v1) / h;
-    let d = (v0 + v1 - 2.0 * (y1 - y0) / h) / (h * h);
-    let root = (c * c - 3.0 * d * v0).max(0.0).sqrt();
-    // the root that stays finite as d vanishes, where c < 0
-    let t = v0 / (root - c);
-    y0 + t * (v0 + t * (c + t * d))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::top;
-
-    #[test]
-    fn the_top_of_a_cubic_is_found() {
-        // y = t (1 - t) (2 - t)/2 on [0.2, 0.9]: top at 1 - 1/sqrt 3, height 1/(3 sqrt 3)
-        let y = |t: f64| 0.5 * t * (1.0 - t) * (2.0 - t);
-        let v = |t: f64| 0.5 * (2.0 - 6.0 * t + 3.0 * t * t);
-        let found = top(0.7, [y(0.2), y(0.9)], [v(0.2), v(0.9)]);
-        assert!((found - 1.0 / 27f64.sqrt()).abs() < 1e-15);
-        assert_eq!(top(0.1, [0.0, 0.1], [1.0, 1.0]), f64::NEG_INFINITY);
     }
 }

@@ -1,6 +1,7 @@
 //! What a run reports of itself, and what a scene will be, before it runs.
 
-use super::{Impact, Simulation};
+use super::pace::Pacer;
+use super::{AccuracyReport, Impact, Simulation};
 use crate::contact::normal_law;
 use crate::model::BodyCoordinates;
 use crate::record::Ledger;
@@ -81,6 +82,9 @@ pub struct Report {
     pub stagnations: u64,
     /// Stages that ended in a nearly singular pose, where the singular direction was left out.
     pub singular_poses: u64,
+    /// What the accuracy asked for cost; absent with a fixed step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<AccuracyReport>,
     /// Steps that were halved because a stage had no solution.
     pub rejected_steps: u64,
     /// Steps tried to locate contact onsets and losses.
@@ -217,6 +221,10 @@ impl Simulation {
             fallbacks: newton.fallbacks,
             stagnations: newton.stagnations,
             singular_poses: newton.singular_poses,
+            accuracy: match &self.pacer {
+                Pacer::Grid(_) => None,
+                Pacer::Controller(controller) => Some(controller.report(&self.model)),
+            },
             rejected_steps: self.counters.rejected,
             location_trials: self.counters.location_trials,
             onsets: self.counters.onsets,

@@ -1,10 +1,18 @@
 //! Time integration: a step as a short list of stages, each solved for the acceleration.
 
+mod backward_euler;
 mod bathe;
+mod dormand_prince;
+mod generalized_alpha;
 mod trapezoidal;
+mod velocity_verlet;
 
+pub use backward_euler::BackwardEuler;
 pub use bathe::Bathe;
+pub use dormand_prince::DormandPrince;
+pub use generalized_alpha::GeneralizedAlpha;
 pub use trapezoidal::Trapezoidal;
+pub use velocity_verlet::VelocityVerlet;
 
 use crate::newton::{Failure, Newton};
 use crate::scene::Method;
@@ -48,15 +56,58 @@ pub trait Stepper: std::fmt::Debug + Send {
         work: &mut Work,
     ) -> Result<usize, StepError>;
 
-    /// States at the stages inside the last step.
-    fn interior(&self) -> &[State];
+    /// States inside the last step that are as accurate as its end.
+    fn interior(&self) -> &[State] {
+        &[]
+    }
+
+    /// The last step is kept, and the next one begins where it ended.
+    fn accept(&mut self) {}
+
+    /// How the scheme estimates its error, if it does.
+    fn estimate(&self) -> Option<Estimate> {
+        None
+    }
+
+    /// The estimated error of the last step, which led from `from` to `to`; not called where there is no estimate.
+    fn local_error(&self, _from: &State, _to: &State, _error: &mut LocalError) {}
+}
+
+/// What is known of an estimate of the local error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// The estimate falls with this power of the step.
+    pub order: f64,
+    /// True where it is the error of the solution that the scheme goes on with; false where that solution is of a higher
+    /// order.
+    pub is_error: bool,
+}
+
+/// Local error of the unknown coordinates and of their velocities.
+#[derive(Debug, Clone)]
+pub struct LocalError {
+    /// Of coordinates.
+    pub q: Vec<f64>,
+    /// Of velocities.
+    pub v: Vec<f64>,
 }
 
 /// The scheme that a scene names.
 pub fn stepper(method: Method, system: &dyn System) -> Box<dyn Stepper> {
+    let shape = system.shape();
     match method {
-        Method::Bathe { gamma } => Box::new(Bathe::new(gamma, system.shape())),
-        Method::Trapezoidal => Box::new(Trapezoidal::new(system.shape())),
+        Method::Bathe {
+            gamma,
+            spectral_radius,
+        } => Box::new(Bathe::new(gamma, spectral_radius, shape)),
+        Method::Trapezoidal => Box::new(Trapezoidal::new(shape)),
+        Method::BackwardEuler => Box::new(BackwardEuler::new(shape)),
+        Method::GeneralizedAlpha { spectral_radius } => {
+            Box::new(GeneralizedAlpha::new(spectral_radius, shape))
+        }
+        Method::Hht { spectral_radius } => Box::new(GeneralizedAlpha::hht(spectral_radius, shape)),
+        Method::VelocityVerlet => Box::new(VelocityVerlet::new(shape)),
+        Method::DormandPrince => Box::new(DormandPrince::new(shape)),
     }
 }
 

@@ -63,8 +63,4 @@ impl Stepper for Trapezoidal {
         );
         Ok(clamps)
     }
-
-    fn interior(&self) -> &[State] {
-        &[]
-    }
 }

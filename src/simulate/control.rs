@@ -1,0 +1,277 @@
+//! Steps that follow an estimate of the local error.
+//!
+//! A step of length h has the local errors e_q and e_v (see the stepper's estimate). With l_i the way that a unit of
+//! coordinate i moves a point of its body by, and H the horizon,
+//!
+//! ```text
+//! E = max_i l_i (|e_q,i| + H kappa_i |e_v,i|),   kappa_i = max_t |sum e_v,i| / sum |e_v,i|
+//! ```
+//!
+//! is the error of position that this step leaves behind within the horizon if nothing amplifies it. An error of velocity
+//! goes on as H e_v in free flight; in a vibration those of one half of the period take back those of the other, and the
+//! coherence kappa, measured over the run so far, says how much of them stays.
+//!
+//! The steps of a horizon may add up to the accuracy p. Where the estimate is the error of the step, H/h of them add up as
+//! they are: r = E H/(h p). A scheme that goes on with a solution of higher order than its estimate has smaller errors of
+//! varying sign, but where a contact has just changed: r = E sqrt(H/h)/p. Either way the error of the run falls in proportion
+//! to p (Stetter 1979, Lect. Notes Math. 679:245; Shampine 1985, BIT 25:530).
+//!
+//! With k the order of r in h, the next step is h times 0.9 r^(-0.7/k) r_last^(0.4/k), kept between 0.2 and 5 (PI control:
+//! Gustafsson 1991, ACM Trans. Math. Softw. 17:533; the exponents of Hairer & Wanner, Solving Ordinary Differential
+//! Equations II, IV.2). A step with r > 1 is taken again.
+//!
+//! A contact that closes brings its own time scale, far below that of free flight. Each contact remembers how long the first
+//! step after its last onset could be, and begins with that; the controller grows the step again from there.
+
+use crate::model::{BodyCoordinates, Model};
+use crate::scene::{Accuracy, BodyKind, Scene};
+use crate::stepper::{Estimate, LocalError, Stepper};
+use crate::system::State;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+const SAFETY: f64 = 0.9;
+/// Least and greatest ratio of a step to the one before.
+const SMALLEST_CHANGE: f64 = 0.2;
+const GREATEST_CHANGE: f64 = 5.0;
+/// Ratios below this are taken for it: a step far too short says that the next one may grow, not by how much.
+const LEAST_RATIO: f64 = 1e-4;
+/// A unit of slope of a cubic beam moves points by this part of its length at most, x (1 - x)^2 at x = 1/3.
+const SLOPE_WAY: f64 = 4.0 / 27.0;
+/// A step below this part of the duration is too near to the rounding of t.
+const LEAST_PART: f64 = 1e4 * f64::EPSILON;
+
+/// Chooses steps.
+#[derive(Debug)]
+pub(super) struct Controller {
+    accuracy: Accuracy,
+    estimate: Estimate,
+    /// Metres per unit of each unknown.
+    lengths: Vec<f64>,
+    error: LocalError,
+    longest: f64,
+    shortest: f64,
+    /// The step proposed.
+    next: f64,
+    /// r of the last step kept.
+    last: f64,
+    /// True after a rejection, when the step must not grow.
+    rejected: bool,
+    /// Length of the first step after the last onset of each contact.
+    first_steps: Vec<f64>,
+    /// Contacts that closed at the end of the last step.
+    closing: Vec<usize>,
+    /// Rejected steps by the unknown with the largest error.
+    rejections: Vec<u64>,
+    /// Shortest and longest step.
+    taken: [f64; 2],
+    /// Errors of velocity so far, by unknown.
+    sums: Vec<Sums>,
+}
+
+/// Sums of the errors of a velocity.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    signed: f64,
+    /// Largest magnitude of the signed sum so far.
+    peak: f64,
+    absolute: f64,
+}
+
+impl Sums {
+    fn add(&mut self, error: f64) {
+        self.signed += error;
+        self.peak = self.peak.max(self.signed.abs());
+        self.absolute += error.abs();
+    }
+
+    fn coherence(&self) -> f64 {
+        if self.absolute > 0.0 {
+            self.peak / self.absolute
+        } else {
+            1.0
+        }
+    }
+}
+
+/// What the accuracy asked for cost.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AccuracyReport {
+    /// Error allowed in positions \[m\] ...
+    pub position: f64,
+    /// ... over this time \[s\].
+    pub horizon: f64,
+    /// The shortest and the longest step taken \[s\], those apart that a contact or a row of output ended.
+    pub steps: [f64; 2],
+    /// Steps taken again because their estimated error was too large.
+    pub rejected_steps: u64,
+    /// The same by the coordinate with the largest error.
+    pub rejected_by: BTreeMap<String, u64>,
+}
+
+/// What becomes of a step.
+pub(super) enum Verdict {
+    /// It is kept.
+    Keep,
+    /// It is taken again, shorter.
+    Repeat,
+    /// It cannot be made shorter: the unknown with the largest error.
+    Stuck(usize),
+}
+
+/// The way \[m\] that a unit of each unknown moves a point of its body by.
+fn lengths(scene: &Scene, model: &Model) -> Vec<f64> {
+    let mut lengths = vec![1.0; model.shape().coordinates];
+    for (body, place) in scene.bodies.iter().zip(model.bodies()) {
+        match (&body.kind, &place.coordinates) {
+            (BodyKind::Rigid(rigid), BodyCoordinates::Rigid { x }) => {
+                let gyration = (rigid.inertia / rigid.mass).sqrt();
+                let arms = rigid.points.iter().map(|p| p.at[0].hypot(p.at[1]));
+                lengths[x + 2] = arms.fold(gyration, f64::max);
+            }
+            (
+                _,
+                BodyCoordinates::FlexibleLink {
+                    slopes,
+                    element_length,
+                    ..
+                },
+            ) => {
+                for x in slopes {
+                    lengths[*x..x + 2].fill(SLOPE_WAY * element_length);
+                }
+            }
+            _ => {}
+        }
+    }
+    lengths.truncate(model.shape().unknowns);
+    lengths
+}
+
+impl Controller {
+    /// For a stepper that has an estimate.
+    pub fn new(scene: &Scene, model: &Model, accuracy: Accuracy, estimate: Estimate) -> Controller {
+        let shape = model.shape();
+        let longest = scene.output.interval.min(accuracy.horizon);
+        Controller {
+            accuracy,
+            estimate,
+            lengths: lengths(scene, model),
+            error: LocalError {
+                q: vec![0.0; shape.unknowns],
+                v: vec![0.0; shape.unknowns],
+            },
+            longest,
+            shortest: LEAST_PART * scene.simulation.duration,
+            next: longest,
+            last: 1.0,
+            rejected: false,
+            first_steps: vec![f64::INFINITY; shape.contacts],
+            closing: Vec::with_capacity(shape.contacts),
+            rejections: vec![0; shape.unknowns],
+            taken: [f64::INFINITY, 0.0],
+            sums: vec![Sums::default(); shape.unknowns],
+        }
+    }
+
+    /// No step is longer \[s\].
+    pub fn longest(&self) -> f64 {
+        self.longest
+    }
+
+    /// Where the step from t shall end: not just before the target.
+    pub fn goal(&mut self, t: f64, target: f64) -> f64 {
+        let left = target - t;
+        self.next = self.next.min(self.longest);
+        if left <= 1.001 * self.next {
+            target
+        } else if left < 2.0 * self.next {
+            t + 0.5 * left
+        } else {
+            t + self.next
+        }
+    }
+
+    /// r, and the unknown with the largest error.
+    fn ratio(&mut self, stepper: &dyn Stepper, from: &State, to: &State) -> (f64, usize) {
+        stepper.local_error(from, to, &mut self.error);
+        let Accuracy { position, horizon } = self.accuracy;
+        let mut largest = (0.0, 0);
+        for (i, length) in self.lengths.iter().enumerate() {
+            let [q, v] = [self.error.q[i].abs(), self.error.v[i].abs()];
+            let error = length * (q + horizon * self.sums[i].coherence() * v);
+            if error.is_nan() || error > largest.0 {
+                largest = (error, i);
+            }
+        }
+        let steps = horizon / (to.t - from.t);
+        let sum = match self.estimate.is_error {
+            true => steps,
+            false => steps.sqrt(),
+        };
+        (largest.0 * sum / position, largest.1)
+    }
+
+    /// Looks at a step that was to end at `goal`, before it is cut where a contact changes.
+    pub fn judge(&mut self, stepper: &dyn Stepper, from: &State, to: &State, goal: f64) -> Verdict {
+        let h = to.t - from.t;
+        let (r, worst) = self.ratio(stepper, from, to);
+        let order = self.estimate.order - if self.estimate.is_error { 1.0 } else { 0.5 };
+        if !(r <= 1.0) {
+            self.rejections[worst] += 1;
+            self.rejected = true;
+            // what is not a number counts as far too large
+            let change = (SAFETY * r.powf(-1.0 / order)).max(SMALLEST_CHANGE);
+            self.next = h * change.min(SAFETY);
+            return match self.next < self.shortest {
+                true => Verdict::Stuck(worst),
+                false => Verdict::Repeat,
+            };
+        }
+        let r = r.max(LEAST_RATIO);
+        let change = SAFETY * r.powf(-0.7 / order) * self.last.powf(0.4 / order);
+        let greatest = if self.rejected { 1.0 } else { GREATEST_CHANGE };
+        let proposed = h * change.clamp(SMALLEST_CHANGE, greatest);
+        for contact in self.closing.drain(..) {
+            self.first_steps[contact] = proposed;
+        }
+        // a step that only a row of output has shortened says little
+        let shortened = to.t == goal && h < (1.0 - 1e-9) * self.next;
+        if shortened {
+            self.next = self.next.max(proposed);
+        } else {
+            self.next = proposed;
+            self.last = r;
+            self.taken = [self.taken[0].min(h), self.taken[1].max(h)];
+        }
+        self.rejected = false;
+        for (sums, error) in self.sums.iter_mut().zip(&self.error.v) {
+            sums.add(*error);
+        }
+        Verdict::Keep
+    }
+
+    /// The step is kept; `onsets` are the contacts that closed at its end.
+    pub fn kept(&mut self, onsets: impl Iterator<Item = usize>) {
+        self.closing.clear();
+        for contact in onsets {
+            self.next = self.next.min(self.first_steps[contact]);
+            self.closing.push(contact);
+        }
+    }
+
+    /// What happened so far.
+    pub fn report(&self, model: &Model) -> AccuracyReport {
+        let rejections = self.rejections.iter().enumerate();
+        let named = rejections.filter(|(_, count)| **count > 0);
+        AccuracyReport {
+            position: self.accuracy.position,
+            horizon: self.accuracy.horizon,
+            steps: self.taken,
+            rejected_steps: self.rejections.iter().sum(),
+            rejected_by: named
+                .map(|(i, count)| (model.unknown_names()[i].clone(), *count))
+                .collect(),
+        }
+    }
+}

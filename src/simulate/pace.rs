@@ -1,0 +1,83 @@
+//! How long the next step is: a grid of equal steps, or a controller that follows an estimate of the error.
+
+use super::GRID_ROUNDING;
+use super::control::Controller;
+use crate::system::State;
+
+/// Equal steps from an anchor.
+///
+/// The grid starts afresh where a step is cut by a contact. The first step after an onset is half as long as the others: the
+/// force grows as t^1.5, so that step alone has an error of h^2.5, which a whole one would make as large as the h^2 of all
+/// others together. Measured on the instant of the fourth impact of case 3, h from 4e-6 to 5e-7 s: orders 2.4, 2.1, 2.2
+/// with the half step, 1.7, 1.2, 1.8 without.
+#[derive(Debug)]
+pub(super) struct Grid {
+    step: f64,
+    anchor: f64,
+    count: f64,
+}
+
+/// What the length of the next step follows.
+#[derive(Debug)]
+pub(super) enum Pacer {
+    /// A grid.
+    Grid(Grid),
+    /// The estimated error.
+    Controller(Box<Controller>),
+}
+
+impl Pacer {
+    /// Equal steps.
+    pub fn grid(step: f64) -> Pacer {
+        Pacer::Grid(Grid {
+            step,
+            anchor: 0.0,
+            count: 0.0,
+        })
+    }
+
+    /// The time of a step \[s\] by which to tell a short one.
+    pub fn scale(&self) -> f64 {
+        match self {
+            Pacer::Grid(grid) => grid.step,
+            Pacer::Controller(controller) => controller.longest(),
+        }
+    }
+
+    /// Begins a way of several steps at t.
+    pub fn begin(&mut self, t: f64) {
+        if let Pacer::Grid(grid) = self {
+            (grid.anchor, grid.count) = (t, 0.0);
+        }
+    }
+
+    /// Where the step from t shall end, on the way to `target`.
+    pub fn goal(&mut self, t: f64, target: f64) -> f64 {
+        match self {
+            Pacer::Grid(grid) => {
+                grid.count += 1.0;
+                let next = grid.anchor + grid.count * grid.step;
+                if target - next < GRID_ROUNDING * grid.step {
+                    target
+                } else {
+                    next
+                }
+            }
+            Pacer::Controller(controller) => controller.goal(t, target),
+        }
+    }
+
+    /// A step has been kept that was to end at `goal`; `onsets` are the contacts that closed at its end.
+    pub fn kept(&mut self, at: &State, goal: f64, onsets: impl Iterator<Item = usize>) {
+        match self {
+            Pacer::Grid(grid) => {
+                if onsets.count() > 0 {
+                    (grid.anchor, grid.count) = (at.t, -0.5);
+                } else if at.t != goal {
+                    (grid.anchor, grid.count) = (at.t, 0.0);
+                }
+            }
+            Pacer::Controller(controller) => controller.kept(onsets),
+        }
+    }
+}

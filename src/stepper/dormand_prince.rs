@@ -1,0 +1,156 @@
+//! The explicit Runge-Kutta pair of orders 5 and 4 of Dormand & Prince (1980, J. Comput. Appl. Math. 6:19).
+//!
+//! On y = (q, v) with stages Y_i = y + h sum_j a_ij F_j, F = (V, A), seven of them; the last is the end of the step and the
+//! first of the next. A_i solves the acceleration level at (Q_i, V_i). With constraint rows that is index reduction, and
+//! every step ends with a projection of q on Phi = 0 and of v on Phi_q v = 0 (Eich 1993, SIAM J. Numer. Anal. 30:1467),
+//! which keeps the order.
+//!
+//! The local error is the difference of the two solutions, of h^5; the step goes on with the one of order 5.
+
+use super::{Estimate, LocalError, StepError, Stepper, accumulate, integrate};
+use crate::newton::Newton;
+use crate::system::{Shape, State, System, Work};
+
+/// c_i and a_ij of stages 2 to 6.
+const STAGES: [(f64, [f64; 5]); 5] = [
+    (1.0 / 5.0, [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0]),
+    (3.0 / 10.0, [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0]),
+    (4.0 / 5.0, [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0]),
+    (
+        8.0 / 9.0,
+        [
+            19372.0 / 6561.0,
+            -25360.0 / 2187.0,
+            64448.0 / 6561.0,
+            -212.0 / 729.0,
+            0.0,
+        ],
+    ),
+    (
+        1.0,
+        [
+            9017.0 / 3168.0,
+            -355.0 / 33.0,
+            46732.0 / 5247.0,
+            49.0 / 176.0,
+            -5103.0 / 18656.0,
+        ],
+    ),
+];
+
+/// Weights of stages 1 to 6 at the end of the step.
+const WEIGHTS: [f64; 6] = [
+    35.0 / 384.0,
+    0.0,
+    500.0 / 1113.0,
+    125.0 / 192.0,
+    -2187.0 / 6784.0,
+    11.0 / 84.0,
+];
+
+/// Weights of order 5 less those of order 4, stages 1 to 7.
+const DIFFERENCE: [f64; 7] = [
+    71.0 / 57600.0,
+    0.0,
+    -71.0 / 16695.0,
+    71.0 / 1920.0,
+    -17253.0 / 339200.0,
+    22.0 / 525.0,
+    -1.0 / 40.0,
+];
+
+/// The scheme with its memory.
+#[derive(Debug)]
+pub struct DormandPrince {
+    /// Stages 2 to 6.
+    stages: [State; 5],
+    /// q at the end less q at the start.
+    way: Vec<f64>,
+}
+
+impl DormandPrince {
+    /// Memory for a system.
+    pub fn new(shape: Shape) -> DormandPrince {
+        DormandPrince {
+            stages: std::array::from_fn(|_| State::zeros(shape)),
+            way: vec![0.0; shape.unknowns],
+        }
+    }
+}
+
+/// h sum_j w_j x_j over the first stage and those after it.
+#[inline]
+fn sum(h: f64, weights: &[f64], first: f64, rest: impl Iterator<Item = f64>) -> f64 {
+    let rest = weights[1..].iter().zip(rest).map(|(w, x)| w * x);
+    h * (weights[0] * first + rest.sum::<f64>())
+}
+
+impl Stepper for DormandPrince {
+    fn step(
+        &mut self,
+        system: &dyn System,
+        from: &State,
+        t: f64,
+        to: &mut State,
+        newton: &mut Newton,
+        work: &mut Work,
+    ) -> Result<usize, StepError> {
+        let shape = system.shape();
+        let h = t - from.t;
+        let mut clamps = 0;
+        for (i, (c, row)) in STAGES.iter().enumerate() {
+            let (done, rest) = self.stages.split_at_mut(i);
+            let stage = &mut rest[0];
+            stage.copy_from(done.last().unwrap_or(from));
+            stage.t = if *c == 1.0 { t } else { from.t + c * h };
+            system.prescribe(from, stage, work)?;
+            for k in 0..shape.unknowns {
+                let v = done.iter().map(|s| s.v[k]);
+                let a = done.iter().map(|s| s.a[k]);
+                stage.q[k] = from.q[k] + (from.q_low[k] + sum(h, row, from.v[k], v));
+                stage.v[k] = from.v[k] + sum(h, row, from.a[k], a);
+            }
+            newton.accelerate(system, stage, work)?;
+            if WEIGHTS[i + 1] != 0.0 {
+                clamps += system.powers(stage, work);
+            }
+        }
+        let stages = &self.stages;
+        // the known coordinates of the last stage are those of the end
+        to.copy_from(&stages[4]);
+        for k in 0..shape.unknowns {
+            self.way[k] = sum(h, &WEIGHTS, from.v[k], stages.iter().map(|s| s.v[k]));
+            to.v[k] = from.v[k] + sum(h, &WEIGHTS, from.a[k], stages.iter().map(|s| s.a[k]));
+        }
+        accumulate(from, &self.way, 0.0, to);
+        if shape.multipliers > 0 {
+            newton.project_positions(system, to, work)?;
+            newton.make_consistent(system, to, work)?;
+        } else {
+            newton.accelerate(system, to, work)?;
+        }
+        clamps += system.powers(to, work);
+        to.integrals = from.integrals;
+        integrate(h, &[(WEIGHTS[0], &from.powers)], &mut to.integrals);
+        for (weight, stage) in WEIGHTS[1..].iter().zip(stages) {
+            integrate(h, &[(*weight, &stage.powers)], &mut to.integrals);
+        }
+        Ok(clamps)
+    }
+
+    fn estimate(&self) -> Option<Estimate> {
+        Some(Estimate {
+            order: 5.0,
+            is_error: false,
+        })
+    }
+
+    fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {
+        let h = to.t - from.t;
+        for (k, (q, v)) in error.q.iter_mut().zip(&mut error.v).enumerate() {
+            let after = || self.stages.iter().chain([to]);
+            *q = sum(h, &DIFFERENCE, from.v[k], after().map(|s| s.v[k]));
+            *v = sum(h, &DIFFERENCE, from.a[k], after().map(|s| s.a[k]));
+        }
+    }
+}

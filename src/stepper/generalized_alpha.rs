@@ -1,0 +1,123 @@
+//! The generalised-alpha method on position-level constraints (Arnold & Brüls 2007, Multibody Syst. Dyn. 18:185), and the
+//! method of Hilber, Hughes & Taylor (1977, Earthq. Eng. Struct. Dyn. 5:283) as its member with alpha_m = 0.
+//!
+//! Newmark's formulas run on a mean acceleration b; the equations of motion hold for the acceleration a:
+//!
+//! ```text
+//! (1 - alpha_m) b_1 + alpha_m b = (1 - alpha_f) a_1 + alpha_f a
+//! v_1 = v + h ((1 - gamma) b + gamma b_1)
+//! q_1 = q + h v + h^2 ((1/2 - beta) b + beta b_1)
+//! gamma = 1/2 + alpha_f - alpha_m,   beta = (1/2 + gamma)^2 / 4
+//! generalised-alpha:  alpha_m = (2 rho - 1)/(rho + 1),  alpha_f = rho/(rho + 1)
+//! HHT:                alpha_m = 0,                      alpha_f = (1 - rho)/(1 + rho)
+//! ```
+//!
+//! rho is the spectral radius at infinite frequency. b stands for the acceleration at t + (alpha_m - alpha_f) h. What is
+//! carried from step to step is therefore (b - a)/h, so that order two survives a change of the step; it starts at zero.
+
+use super::{StepError, Stepper, accumulate, integrate};
+use crate::newton::Newton;
+use crate::system::{Shape, State, System, Weights, Work};
+
+/// The scheme with its memory.
+#[derive(Debug)]
+pub struct GeneralizedAlpha {
+    alpha_m: f64,
+    alpha_f: f64,
+    beta: f64,
+    gamma: f64,
+    /// (b - a)/h at the start of the step.
+    lag: Vec<f64>,
+    /// The same at its end.
+    next_lag: Vec<f64>,
+    q_hat: Vec<f64>,
+    v_hat: Vec<f64>,
+    /// q_hat - q.
+    way: Vec<f64>,
+}
+
+impl GeneralizedAlpha {
+    /// Generalised-alpha with spectral radius `rho` in \[0, 1\].
+    pub fn new(rho: f64, shape: Shape) -> GeneralizedAlpha {
+        let sum = rho + 1.0;
+        GeneralizedAlpha::with((2.0 * rho - 1.0) / sum, rho / sum, shape)
+    }
+
+    /// HHT with spectral radius `rho` in \[1/2, 1\].
+    pub fn hht(rho: f64, shape: Shape) -> GeneralizedAlpha {
+        GeneralizedAlpha::with(0.0, (1.0 - rho) / (1.0 + rho), shape)
+    }
+
+    fn with(alpha_m: f64, alpha_f: f64, shape: Shape) -> GeneralizedAlpha {
+        let gamma = 0.5 + alpha_f - alpha_m;
+        let zeros = vec![0.0; shape.unknowns];
+        GeneralizedAlpha {
+            alpha_m,
+            alpha_f,
+            beta: 0.25 * (0.5 + gamma).powi(2),
+            gamma,
+            lag: zeros.clone(),
+            next_lag: zeros.clone(),
+            q_hat: zeros.clone(),
+            v_hat: zeros.clone(),
+            way: zeros,
+        }
+    }
+}
+
+impl Stepper for GeneralizedAlpha {
+    fn step(
+        &mut self,
+        system: &dyn System,
+        from: &State,
+        t: f64,
+        to: &mut State,
+        newton: &mut Newton,
+        work: &mut Work,
+    ) -> Result<usize, StepError> {
+        let n = system.shape().unknowns;
+        let h = t - from.t;
+        let (gamma, beta) = (self.gamma, self.beta);
+        let scale = 1.0 / (1.0 - self.alpha_m);
+        // b_1 = scale ((1 - alpha_f) a_1 + alpha_f a - alpha_m b)
+        let by_a = scale * (1.0 - self.alpha_f);
+        let known = |from: &State, lag: &[f64], i: usize| {
+            let mean = from.a[i] + h * lag[i];
+            (
+                mean,
+                scale * (self.alpha_f * from.a[i] - self.alpha_m * mean),
+            )
+        };
+        to.copy_from(from);
+        to.t = t;
+        system.prescribe(from, to, work)?;
+        for i in 0..n {
+            let (mean, next) = known(from, &self.lag, i);
+            self.v_hat[i] = from.v[i] + h * ((1.0 - gamma) * mean + gamma * next);
+            self.way[i] = h * (from.v[i] + h * ((0.5 - beta) * mean + beta * next));
+            self.q_hat[i] = from.q[i] + self.way[i];
+        }
+        let w = Weights {
+            q: h * h * beta * by_a,
+            v: h * gamma * by_a,
+        };
+        newton.solve_stage(system, w, &self.q_hat, &self.v_hat, to, work)?;
+        accumulate(from, &self.way, w.q, to);
+        let clamps = newton.finish_stage(system, to, work)?;
+        for i in 0..n {
+            let (_, next) = known(from, &self.lag, i);
+            self.next_lag[i] = (by_a * to.a[i] + next - to.a[i]) / h;
+        }
+        to.integrals = from.integrals;
+        integrate(
+            h,
+            &[(0.5, &from.powers), (0.5, &to.powers)],
+            &mut to.integrals,
+        );
+        Ok(clamps)
+    }
+
+    fn accept(&mut self) {
+        std::mem::swap(&mut self.lag, &mut self.next_lag);
+    }
+}

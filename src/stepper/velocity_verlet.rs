@@ -1,0 +1,64 @@
+//! Velocity Verlet (Swope, Andersen, Berens & Wilson 1982, J. Chem. Phys. 76:637): explicit, one evaluation a step, for
+//! mechanisms without constraint rows.
+//!
+//! ```text
+//! q_1 = q + h v + h^2/2 a                a_1 = a(q_1, v + h a)                v_1 = v + h/2 (a + a_1)
+//! ```
+//!
+//! Forces that depend on velocities take the predicted one, whose error of h^2 leaves order two. Symplectic where there are
+//! none; stable while h omega < 2 in every mode.
+
+use super::{StepError, Stepper, accumulate, integrate};
+use crate::newton::Newton;
+use crate::system::{Shape, State, System, Work};
+
+/// The scheme.
+#[derive(Debug)]
+pub struct VelocityVerlet {
+    /// q_1 - q.
+    way: Vec<f64>,
+}
+
+impl VelocityVerlet {
+    /// Memory for a system.
+    pub fn new(shape: Shape) -> VelocityVerlet {
+        VelocityVerlet {
+            way: vec![0.0; shape.unknowns],
+        }
+    }
+}
+
+impl Stepper for VelocityVerlet {
+    fn step(
+        &mut self,
+        system: &dyn System,
+        from: &State,
+        t: f64,
+        to: &mut State,
+        newton: &mut Newton,
+        work: &mut Work,
+    ) -> Result<usize, StepError> {
+        let n = system.shape().unknowns;
+        let h = t - from.t;
+        to.copy_from(from);
+        to.t = t;
+        system.prescribe(from, to, work)?;
+        for i in 0..n {
+            self.way[i] = h * (from.v[i] + 0.5 * h * from.a[i]);
+            to.v[i] = from.v[i] + h * from.a[i];
+        }
+        accumulate(from, &self.way, 0.0, to);
+        newton.accelerate(system, to, work)?;
+        for i in 0..n {
+            to.v[i] = from.v[i] + 0.5 * h * (from.a[i] + to.a[i]);
+        }
+        let clamps = system.powers(to, work);
+        to.integrals = from.integrals;
+        integrate(
+            h,
+            &[(0.5, &from.powers), (0.5, &to.powers)],
+            &mut to.integrals,
+        );
+        Ok(clamps)
+    }
+}

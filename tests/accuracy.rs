@@ -1,0 +1,216 @@
+//! Steps that follow an accuracy: what is achieved, what is counted, what is refused.
+
+use crate::support::{Recording, load, run, run_scene};
+use ladder::{Rung, Worst};
+use looselink::scene::Scene;
+use looselink::simulate::{RunError, Simulation};
+
+/// A scene, its duration, the time between rows, the step of the reference, channels of position.
+const SCENES: [(&str, f64, f64, f64, &[&str]); 5] = [
+    ("3rrr/case2", 4e-3, 1e-4, 1e-6, &["error.x", "error.y"]),
+    ("3rrr/case3", 6e-3, 1e-4, 5e-7, &["error.x", "error.y"]),
+    ("3rrr/case4", 3e-3, 1e-4, 5e-7, &["error.x", "error.y"]),
+    ("bouncing-journal", 8e-3, 1e-4, 1e-7, &["journal.x"]),
+    (
+        "pendulum",
+        2.0,
+        0.01,
+        1e-3,
+        &["points.rod.bob.x", "points.rod.bob.y"],
+    ),
+];
+
+fn settings(duration: f64, interval: f64, method: &str, pace: &str) -> Vec<String> {
+    vec![
+        format!("simulation.duration={duration}"),
+        format!("output.interval={interval:e}"),
+        format!("integrator.method={method}"),
+        format!("integrator.{pace}"),
+        "output.channels=[\"*\"]".to_owned(),
+    ]
+}
+
+fn runs(scene: &str, settings: &[String]) -> Recording {
+    let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+    run(&format!("{scene}.toml"), &settings).0
+}
+
+#[test]
+fn the_accuracy_asked_for_is_achieved() {
+    let worst = Worst::new();
+    for (scene, duration, interval, fine, channels) in SCENES {
+        let reference = settings(
+            duration,
+            interval,
+            "dormand_prince",
+            &format!("step={fine:e}"),
+        );
+        let exact = runs(scene, &reference);
+        for (method, accuracies) in [
+            ("bathe", &[1e-6, 1e-7] as &[f64]),
+            ("dormand_prince", &[1e-6, 1e-8, 1e-10]),
+        ] {
+            for accuracy in accuracies {
+                let pace = format!("accuracy={{ position = {accuracy:e}, horizon = {duration} }}");
+                let found = runs(scene, &settings(duration, interval, method, &pace));
+                worst.at(format!("in {scene} with {method} and {accuracy:e} m"));
+                for channel in channels {
+                    for (a, b) in found.get(channel).iter().zip(&exact.get(channel)) {
+                        worst.see((a - b) / accuracy);
+                    }
+                }
+            }
+        }
+    }
+    Rung::HardCases
+        .asks("Error-controlled Bathe and Dormand-Prince, 1e-6 to 1e-10 m, with and without impacts: error achieved over error asked for")
+        .within(&worst, 10.0, "errors of single steps are estimated, their growth from impact to impact is not");
+}
+
+/// Error achieved falls in proportion to the error asked for.
+#[test]
+fn accuracy_is_proportional() {
+    for ((scene, duration, interval, fine, channels), asked) in [
+        (SCENES[0], [1e-7, 1e-8, 1e-9]),
+        (SCENES[4], [1e-5, 1e-6, 1e-7]),
+    ] {
+        let reference = settings(
+            duration,
+            interval,
+            "dormand_prince",
+            &format!("step={fine:e}"),
+        );
+        let exact = runs(scene, &reference);
+        let error = |accuracy: f64| {
+            let pace = format!("accuracy={{ position = {accuracy:e}, horizon = {duration} }}");
+            let found = runs(scene, &settings(duration, interval, "bathe", &pace));
+            let worst = Worst::new();
+            for channel in channels {
+                for (a, b) in found.get(channel).iter().zip(&exact.get(channel)) {
+                    worst.see(a - b);
+                }
+            }
+            (accuracy, worst.value())
+        };
+        Rung::OrderInTime
+            .asks(format!("{scene}: error of error-controlled Bathe against the error asked for [m]"))
+            .falls(
+                "Accuracy asked for [m]",
+                &asked.map(error),
+                0.8..1.2,
+                "in proportion: the estimate is the error of a step, and the steps of a horizon add up to what is asked for",
+            );
+    }
+}
+
+/// The report counts what the control did; a run repeated does the same.
+#[test]
+fn rejections_are_counted_and_repeatable() {
+    let pace = "accuracy={ position = 1e-8, horizon = 0.008 }";
+    let settings = settings(0.008, 1e-4, "dormand_prince", pace);
+    let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+    let scene = load("bouncing-journal.toml", &settings);
+    let (first, report) = run_scene(&scene);
+    let (second, again) = run_scene(&scene);
+    assert_eq!(report, again);
+    for name in first.names() {
+        let bits = |r: &Recording| r.get(name).iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&first), bits(&second), "{name}");
+    }
+    let control = report.accuracy.unwrap();
+    assert_eq!((control.position, control.horizon), (1e-8, 0.008));
+    assert!(control.rejected_steps > 0);
+    assert_eq!(
+        control.rejected_by.values().sum::<u64>(),
+        control.rejected_steps
+    );
+    // only x moves
+    assert_eq!(
+        control.rejected_by.keys().collect::<Vec<_>>(),
+        ["journal.x"]
+    );
+    let [shortest, longest] = control.steps;
+    // a contact lasts 8e-5 s, a flight 2 ms; no step is longer than a row
+    assert!(
+        shortest < 5e-6 && (longest - 1e-4).abs() < 1e-12,
+        "{shortest} {longest}"
+    );
+    assert_eq!(report.onsets, 3);
+    // with a fixed step there is nothing to tell
+    assert!(
+        run("bouncing-journal.toml", &["simulation.duration=0.001"])
+            .1
+            .accuracy
+            .is_none()
+    );
+}
+
+/// An accuracy below rounding is not ground through: the run ends with the coordinate and the time.
+#[test]
+fn an_accuracy_out_of_reach_is_an_error() {
+    let pace = "accuracy={ position = 1e-18, horizon = 0.01 }";
+    let settings = settings(0.01, 1e-4, "bathe", pace);
+    let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+    let mut simulation = Simulation::new(&load("3rrr/case4.toml", &settings)).unwrap();
+    let error = simulation.run(&mut ()).unwrap_err();
+    let RunError::Accuracy { name, t, step, .. } = &error else {
+        panic!("{error}");
+    };
+    assert!(
+        name.starts_with("link") || name.starts_with("platform"),
+        "{name}"
+    );
+    assert!((0.0..0.01).contains(t) && *step < 1e-10);
+    assert!(
+        error
+            .to_string()
+            .starts_with("the accuracy of 1e-18 m over 0.01 s cannot be reached at t =")
+    );
+}
+
+/// A journal that is thrown up and falls again touches the bearing between the ends of one long step; the contact is found
+/// and located where the parabola meets the wall.
+#[test]
+fn a_touch_within_one_step_is_found() {
+    const TOSS: &str = r#"
+format = 1
+title = "a toss"
+simulation = { duration = 0.1, gravity = [0.0, -10.0] }
+integrator = { method = "dormand_prince", step = 0.02, newton_tolerance = 1e-11, onset_tolerance = 1e-13 }
+output = { interval = 0.02, channels = ["journal.*"] }
+contacts.steel = { law = "hunt_crossley", bearing_radius = 0.1, clearance = 0.02, stiffness = 1e9, exponent = 1.5, restitution = 0.8, impact_velocity_floor = 1e-6 }
+bodies.ground = { type = "ground", points.bearing = [0, 0] }
+bodies.journal = { type = "rigid_body", mass = 0.05, inertia = 2.5e-6, points.centre = [0, 0] }
+joints.pin = { type = "revolute", bearing = "ground.bearing", journal = "journal.centre", model = "clearance", contact = "steel" }
+initial.bodies.journal = { x = 0, y = 0, theta = 0, vx = 0, vy = 0.633, omega = 0 }
+"#;
+    // the top of the parabola, at 0.0633 s, is 3.4e-5 m behind the wall; the steps end at 0.06 and 0.08 s, inside
+    let onset = (0.633 - (0.633_f64 * 0.633 - 20.0 * 0.02).sqrt()) / 10.0;
+    let worst = Worst::new();
+    for method in ["dormand_prince", "velocity_verlet", "trapezoidal"] {
+        let scene = Scene::parse("toss.toml", TOSS, &[format!("integrator.method={method}")]);
+        let (recording, report) = run_scene(&scene.unwrap());
+        assert_eq!(report.unlocated_changes, 0, "{method}");
+        worst.see(recording.onsets[0].t - onset);
+    }
+    Rung::Published
+        .asks("A journal tossed against its bearing, in and out within one step, three methods: instant of the contact against the closed form [s]")
+        .within(&worst, 1e-11, "the onset tolerance of 1e-13 m over 0.026 m/s");
+}
+
+/// The step loop allocates nothing with an accuracy either: a run twice as long allocates as often.
+#[test]
+fn controlled_steps_do_not_allocate() {
+    let count = |duration: f64, method: &str| {
+        let pace = "accuracy={ position = 1e-7, horizon = 0.01 }";
+        let settings = settings(duration, 1e-3, method, pace);
+        let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+        let mut simulation = Simulation::new(&load("3rrr/case2.toml", &settings)).unwrap();
+        let info = allocation_counter::measure(|| simulation.run(&mut ()).unwrap());
+        assert!(simulation.report().steps > 20);
+        info.count_total
+    };
+    for method in ["bathe", "dormand_prince"] {
+        assert_eq!(count(0.01, method), count(0.02, method), "{method}");
+    }
+}

@@ -1,0 +1,276 @@
+//! Every method on mechanisms: its order in positions, accelerations and forces, and the scenes it refuses.
+
+use crate::bad_input::check;
+use crate::support::{Recording, load, run};
+use ladder::{Rung, Worst};
+use looselink::scene::Scene;
+use looselink::simulate::Simulation;
+
+/// Overrides that choose a method, its name for reports and its order.
+const METHODS: [(&[&str], &str, f64); 7] = [
+    (&[], "Bathe's scheme", 2.0),
+    (
+        &["integrator.spectral_radius=0.8"],
+        "Bathe's scheme, spectral radius 0.8",
+        2.0,
+    ),
+    (
+        &["integrator.method=trapezoidal"],
+        "the trapezoidal rule",
+        2.0,
+    ),
+    (
+        &["integrator.method=backward_euler"],
+        "the backward Euler rule",
+        1.0,
+    ),
+    (
+        &[
+            "integrator.method=generalized_alpha",
+            "integrator.spectral_radius=0.8",
+        ],
+        "generalised-α, spectral radius 0.8",
+        2.0,
+    ),
+    (
+        &["integrator.method=hht", "integrator.spectral_radius=0.8"],
+        "HHT, spectral radius 0.8",
+        2.0,
+    ),
+    (
+        &["integrator.method=dormand_prince"],
+        "Dormand and Prince's pair",
+        5.0,
+    ),
+];
+
+/// A scene, its duration, the time between rows, the coarsest step of methods of order 1, 2 and 5, and channels that are
+/// compared.
+struct Smooth {
+    scene: &'static str,
+    duration: f64,
+    interval: f64,
+    coarse: [f64; 3],
+    channels: &'static [&'static str],
+}
+
+const SMOOTH: [Smooth; 3] = [
+    Smooth {
+        scene: "pendulum",
+        duration: 0.96,
+        interval: 0.04,
+        coarse: [1e-3, 4e-3, 0.02],
+        channels: &["points.rod.bob.y", "points.rod.bob.ay", "pivot.force"],
+    },
+    Smooth {
+        scene: "soft-pendulum",
+        duration: 0.2,
+        interval: 4e-3,
+        coarse: [1e-4, 4e-4, 2e-3],
+        channels: &["points.rod.end.y", "points.rod.end.vy"],
+    },
+    Smooth {
+        scene: "3rrr/case2",
+        duration: 8e-4,
+        interval: 1.6e-5,
+        coarse: [1e-7, 1e-6, 1.6e-5],
+        channels: &["platform.ax", "B1.force"],
+    },
+];
+
+impl Smooth {
+    fn run(&self, method: &[&str], step: f64) -> Recording {
+        let settings = [
+            format!("simulation.duration={}", self.duration),
+            format!("output.interval={:e}", self.interval),
+            format!("integrator.step={step:e}"),
+            "integrator.newton_tolerance=1e-13".to_owned(),
+            "output.channels=[\"*\"]".to_owned(),
+        ];
+        let settings = settings.iter().map(String::as_str);
+        let all: Vec<&str> = settings.chain(method.iter().copied()).collect();
+        run(&format!("{}.toml", self.scene), &all).0
+    }
+
+    fn error(&self, run: &Recording, exact: &Recording, channel: &str) -> f64 {
+        let worst = Worst::new();
+        for (a, b) in run.get(channel).iter().zip(&exact.get(channel)) {
+            worst.see(a - b);
+        }
+        worst.value()
+    }
+}
+
+#[test]
+fn every_method_has_its_order_on_mechanisms() {
+    for smooth in &SMOOTH {
+        let exact = smooth.run(METHODS[6].0, smooth.coarse[2] / 16.0);
+        for (method, name, order) in METHODS {
+            let coarse = smooth.coarse[[1.0, 2.0, 5.0].iter().position(|o| *o == order).unwrap()];
+            let steps = [coarse, coarse / 2.0, coarse / 4.0];
+            let runs = steps.map(|h| smooth.run(method, h));
+            for channel in smooth.channels {
+                let errors: Vec<(f64, f64)> = steps
+                    .iter()
+                    .zip(&runs)
+                    .map(|(h, run)| (*h, smooth.error(run, &exact, channel)))
+                    .collect();
+                let question =
+                    Rung::OrderInTime.asks(format!("{}: {name}, {channel}", smooth.scene));
+                let reason = "the order of the method; against Dormand and Prince's at a sixteenth of its coarsest step";
+                if order == 5.0 {
+                    // at steps whose error stands above rounding the next terms are not small beside the leading one
+                    question.falls_on_average("Step h [s]", &errors, 4.5..5.6, reason);
+                } else {
+                    let bounds = order - 0.2..order + 0.2;
+                    question.falls("Step h [s]", &errors, bounds, reason);
+                }
+            }
+        }
+    }
+}
+
+/// Velocity Verlet, on a mechanism without constraint rows; with them it is refused by name.
+#[test]
+fn velocity_verlet_takes_what_it_can() {
+    let smooth = &SMOOTH[1];
+    let exact = smooth.run(METHODS[6].0, smooth.coarse[2] / 16.0);
+    let steps = [4e-4, 2e-4, 1e-4];
+    let runs = steps.map(|h| smooth.run(&["integrator.method=velocity_verlet"], h));
+    for channel in smooth.channels {
+        let errors = [0, 1, 2].map(|i| (steps[i], smooth.error(&runs[i], &exact, channel)));
+        Rung::OrderInTime
+            .asks(format!("{}: velocity Verlet, {channel}", smooth.scene))
+            .falls(
+                "Step h [s]",
+                &errors,
+                1.9..2.1,
+                "the order of the method; against Dormand and Prince's at a sixteenth of its coarsest step",
+            );
+    }
+    let constrained = load("pendulum.toml", &["integrator.method=velocity_verlet"]);
+    let error = Simulation::new(&constrained).unwrap_err();
+    let message = "method \"velocity_verlet\" keeps no constraints, and this mechanism has 2, the first: joint pivot (x)";
+    check(&error, "a pendulum", message, "velocity_verlet");
+}
+
+/// A method with an explicit step on constraint rows keeps them.
+#[test]
+fn dormand_prince_keeps_constraints() {
+    let worst = Worst::new();
+    for name in ["pendulum.toml", "n-four-bar.toml", "3rrr/case3.toml"] {
+        let settings = [
+            "integrator.method=dormand_prince",
+            "integrator.step=1e-3",
+            "output.interval=1e-3",
+            "simulation.duration=1.0",
+        ];
+        let short = ["integrator.step=1e-5", "simulation.duration=0.01"];
+        let settings = match name {
+            "3rrr/case3.toml" => [&settings[..], &short].concat(),
+            _ => settings.to_vec(),
+        };
+        let mut simulation = Simulation::new(&load(name, &settings)).unwrap();
+        simulation.run(&mut ()).unwrap();
+        let (distance, rate, _) = simulation
+            .model()
+            .worst_constraint(simulation.state())
+            .unwrap();
+        worst.at(format!("in {name}"));
+        worst.see(distance);
+        worst.see(rate);
+    }
+    Rung::Identities
+        .asks("Pendulum and four-bar windows after 1 s, case 3 after 10 ms, with Dormand and Prince's pair: largest violation of a constraint [m, m/s]")
+        .within(&worst, 1e-14, "rounding of positions and velocities near 1");
+}
+
+/// Every fault that a choice of the method can have.
+#[test]
+fn faults_of_the_method_are_named() {
+    let loose = include_str!("../scenes/3rrr/case4.toml");
+    let roll_up = include_str!("../scenes/roll-up.toml");
+    for (text, overrides, message, underlined) in [
+        (
+            loose,
+            &["integrator.method=leapfrog"] as &[&str],
+            "`integrator.method` cannot be \"leapfrog\"",
+            "leapfrog",
+        ),
+        (
+            loose,
+            &["integrator.method=hht"],
+            "missing key `spectral_radius` in integrator",
+            "[integrator]",
+        ),
+        (
+            loose,
+            &["integrator.method=hht", "integrator.spectral_radius=0.4"],
+            "`integrator.spectral_radius` must lie between 0.5 and 1, not 0.4",
+            "0.4",
+        ),
+        (
+            loose,
+            &["integrator.spectral_radius=1.1"],
+            "`integrator.spectral_radius` must lie between 0 and 1, not 1.1",
+            "1.1",
+        ),
+        (
+            loose,
+            &[
+                "integrator.method=trapezoidal",
+                "integrator.spectral_radius=1",
+            ],
+            "`integrator.spectral_radius` belongs to method \"bathe\", \"generalized_alpha\", \"hht\"",
+            "spectral_radius",
+        ),
+        (
+            loose,
+            &["integrator.accuracy={ position = 1e-9 }"],
+            "missing key `horizon` in integrator.accuracy",
+            "{ position = 1e-9 }",
+        ),
+        (
+            loose,
+            &[
+                "integrator.method=trapezoidal",
+                "integrator.accuracy={ position = 1e-9, horizon = 0.01 }",
+            ],
+            "method \"trapezoidal\" has no estimate of its error to follow",
+            "accuracy",
+        ),
+        (
+            loose,
+            &["integrator.accuracy={ position = 0.0, horizon = 0.01 }"],
+            "`integrator.accuracy.position` must be greater than zero, not 0.0",
+            "0.0",
+        ),
+        (
+            loose,
+            &["integrator.accuracy={ position = 1e-9, horizon = 0.01, force = 1.0 }"],
+            "unknown key `force` in integrator.accuracy",
+            "force",
+        ),
+        (
+            roll_up,
+            &["integrator.accuracy={ position = 1e-9 }"],
+            "a static analysis has a `step` of its loads, no `accuracy` over time",
+            "accuracy",
+        ),
+    ] {
+        let owned: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
+        let error = Scene::parse("scene.toml", text, &owned).unwrap_err();
+        check(&error, &overrides.join(" "), message, underlined);
+    }
+    // two rules for the step in one file; an override replaces the one of the file
+    let both = loose.replace(
+        "method = \"bathe\"",
+        "method = \"bathe\"\naccuracy = { position = 1e-9, horizon = 0.01 }",
+    );
+    let error = Scene::parse("scene.toml", &both, &[]).unwrap_err();
+    let message = "`integrator` has a step and an accuracy";
+    check(&error, "both", message, "accuracy");
+    let only = both.replace("step = 1.25e-6", "");
+    let again = Scene::parse("scene.toml", &only, &["integrator.step=1e-5".to_owned()]);
+    assert_eq!(again.unwrap().integrator.step(), Some(1e-5));
+}
