@@ -47,6 +47,7 @@ pub mod model;
 pub mod motion;
 pub mod newton;
 pub mod output;
+pub mod precision;
 pub mod record;
 pub mod scene;
 pub mod simulate;

@@ -22,6 +22,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use timing::Stopwatch;
+pub use timing::machine as processor;
 
 const CHANNELS: &str = "channels.csv";
 const ONSETS: &str = "onsets.csv";

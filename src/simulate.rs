@@ -109,6 +109,8 @@ pub struct Simulation {
     model: Model,
     stepper: Box<dyn Stepper>,
     pacer: Pacer,
+    /// True where there are contacts whose changes are located.
+    locates: bool,
     newton: Newton,
     statics: Option<Statics>,
     work: Work,
@@ -185,6 +187,7 @@ impl Simulation {
         Ok(Simulation {
             stepper,
             pacer,
+            locates: scene.integrator.locate_onsets && shape.contacts > 0,
             newton,
             statics,
             work,
@@ -268,7 +271,7 @@ impl Simulation {
                     Verdict::Stuck(worst) => return Err(self.stuck(worst)),
                 }
             }
-            if self.model.shape().contacts > 0 {
+            if self.locates {
                 clamps = self.locate_change(clamps, reached)?;
             }
             self.stepper.accept();

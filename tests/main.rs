@@ -17,6 +17,7 @@ mod malformed;
 mod mechanisms;
 mod methods;
 mod overrides;
+mod precision;
 mod published;
 mod rrr;
 mod support;

@@ -154,6 +154,53 @@ fn velocity_verlet_takes_what_it_can() {
     check(&error, "a pendulum", message, "velocity_verlet");
 }
 
+/// Fifteen impacts: with located onsets Bathe's scheme keeps its order; without, errors are several times as large and
+/// scatter with the place of the impacts in their steps.
+#[test]
+fn located_impacts_keep_the_order() {
+    let impacts = |step: f64, more: &[&str]| {
+        let settings = [
+            "simulation.duration=0.006".to_owned(),
+            "output.interval=1e-4".to_owned(),
+            format!("integrator.step={step:e}"),
+        ];
+        let settings = settings.iter().map(String::as_str);
+        let all: Vec<&str> = settings.chain(more.iter().copied()).collect();
+        let (recording, report) = run("3rrr/case3.toml", &all);
+        assert_eq!(report.onsets, 15);
+        recording
+    };
+    let exact = impacts(5e-7, &["integrator.method=dormand_prince"]);
+    let error = |step: f64, more: &[&str]| {
+        let found = impacts(step, more);
+        let worst = Worst::new();
+        for channel in ["error.x", "error.y"] {
+            for (a, b) in found.get(channel).iter().zip(&exact.get(channel)) {
+                worst.see(a - b);
+            }
+        }
+        (step, worst.value())
+    };
+    let steps = [4e-6, 2e-6, 1e-6, 5e-7];
+    let located = steps.map(|h| error(h, &[]));
+    Rung::OrderInTime
+        .asks("3rrr/case3, 15 impacts, located onsets: place of the platform [m]")
+        .falls(
+            "Step h [s]",
+            &located,
+            1.8..2.2,
+            "order 2 of Bathe's scheme; against Dormand and Prince's at 5e-7 s",
+        );
+    let without = steps.map(|h| error(h, &["integrator.locate_onsets=false"]));
+    let share = Worst::new();
+    for (located, without) in located.iter().zip(&without) {
+        share.see(located.1 / without.1);
+    }
+    Rung::Routes
+        .asks("3rrr/case3, 15 impacts: largest part that the error with located onsets is of the error without")
+        .within(&share, 0.5, "an onset at the end of its step is late by up to h, at random");
+}
+
 /// A method with an explicit step on constraint rows keeps them.
 #[test]
 fn dormand_prince_keeps_constraints() {

@@ -1,6 +1,7 @@
 //! How a command fails: what is shown, and the exit code.
 
 use looselink::output::OutputError;
+use looselink::precision::StudyError;
 use looselink::scene::SceneError;
 use looselink::simulate::RunError;
 use miette::MietteHandlerOpts;
@@ -31,6 +32,14 @@ impl Failure {
     pub fn system(message: String) -> Failure {
         Failure {
             code: SYSTEM,
+            message: Message::Plain(message),
+        }
+    }
+
+    /// Bad input.
+    pub fn input(message: String) -> Failure {
+        Failure {
+            code: BAD_INPUT,
             message: Message::Plain(message),
         }
     }
@@ -80,6 +89,15 @@ impl From<SceneError> for Failure {
         Failure {
             code: BAD_INPUT,
             message: Message::Scene(error),
+        }
+    }
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Failure {
+        match error {
+            StudyError::Plain(message) => Failure::input(message),
+            StudyError::Scene(error) => error.into(),
         }
     }
 }

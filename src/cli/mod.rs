@@ -3,6 +3,7 @@
 mod closing;
 mod failure;
 mod inspect;
+mod precision;
 mod progress;
 mod run;
 
@@ -41,6 +42,9 @@ enum Command {
         after_help = "Example:\n  looselink check scenes/3rrr/case4.toml --set bodies.link1.elements=4"
     )]
     Check(SceneArguments),
+    /// Show what accuracy costs: a scene with several methods and steps, errors against time.
+    #[command(after_help = "Example:\n  looselink precision studies/case3.toml --out out/case3")]
+    Precision(precision::Arguments),
 }
 
 /// A scene and changes to it.
@@ -77,6 +81,7 @@ pub fn main(arguments: &Arguments) -> ExitCode {
         Command::Run(arguments) => run::run(arguments),
         Command::Inspect(arguments) => inspect::inspect(arguments),
         Command::Check(arguments) => check(arguments),
+        Command::Precision(arguments) => precision::precision(arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -25,6 +25,7 @@ pub(super) fn read(
         "accuracy",
         "newton_tolerance",
         "onset_tolerance",
+        "locate_onsets",
     ])?;
     let names = Method::NAMES.map(|name| format!("{name:?}")).join(", ");
     let named = table.required("method", &format!("the integration scheme: {names}"))?;
@@ -42,6 +43,10 @@ pub(super) fn read(
         pace,
         newton_tolerance: newton_tolerance(&table, method)?,
         onset_tolerance: onset_tolerance(&table, clearance)?,
+        locate_onsets: match table.optional("locate_onsets") {
+            Some(field) => field.boolean()?,
+            None => true,
+        },
         method_span: named.node.span,
         pace_span: paced.node.span,
     })

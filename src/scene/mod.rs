@@ -83,6 +83,8 @@ pub struct Integrator {
     pub newton_tolerance: f64,
     /// Largest |delta| of a located contact onset \[m\].
     pub onset_tolerance: f64,
+    /// True where a step is cut at a contact onset or loss; false to see what it costs not to.
+    pub locate_onsets: bool,
     /// Where `integrator.method` stands.
     pub method_span: Span,
     /// Where `integrator.step` or `integrator.accuracy` stands.

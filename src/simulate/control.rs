@@ -217,7 +217,7 @@ impl Controller {
         let h = to.t - from.t;
         let (r, worst) = self.ratio(stepper, from, to);
         let order = self.estimate.order - if self.estimate.is_error { 1.0 } else { 0.5 };
-        if !(r <= 1.0) {
+        if r.is_nan() || r > 1.0 {
             self.rejections[worst] += 1;
             self.rejected = true;
             // what is not a number counts as far too large

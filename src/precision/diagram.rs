@@ -1,0 +1,170 @@
+//! Work-precision diagrams.
+
+use super::errors::NORMS;
+use super::{Outcome, Pace, Study};
+use plot::{Axis, Color, Figure, Mark, Panel, palette};
+
+const COLORS: [Color; 8] = [
+    palette::BLUE,
+    palette::VERMILION,
+    palette::GREEN,
+    palette::PURPLE,
+    palette::ORANGE,
+    palette::SKY,
+    palette::BLACK,
+    palette::GREY,
+];
+
+/// Errors against processor time, one panel a norm, and the error of position against the step or the accuracy.
+pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
+    let mut panels = Vec::new();
+    for (name, unit, of) in NORMS {
+        let asked = match name {
+            "acceleration" => !study.acceleration.is_empty(),
+            "impulse" => !study.force.is_empty(),
+            _ => true,
+        };
+        if asked {
+            panels.push(against_time(study, outcome, name, unit, of));
+        }
+    }
+    panels.push(against_pace(study, outcome, false));
+    panels.push(against_pace(study, outcome, true));
+    panels.retain(|panel| !panel.marks.is_empty());
+    let mut rows = Vec::new();
+    while !panels.is_empty() {
+        let rest = panels.split_off(panels.len().min(2));
+        rows.push(std::mem::replace(&mut panels, rest));
+    }
+    let failed: Vec<String> = outcome
+        .runs
+        .iter()
+        .filter(|run| run.result.is_err())
+        .map(|run| format!("{} at {}", run.curve, run.pace))
+        .collect();
+    let failures = match failed.as_slice() {
+        [] => "No run failed.".to_owned(),
+        list => format!("Failed: {} (crosses).", list.join("; ")),
+    };
+    let [coarse, fine] = study.reference.paces();
+    let scene = study
+        .scene
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy();
+    Figure {
+        rows,
+        caption: format!(
+            "{}. Scene {scene}, the first {}; errors are the largest over rows every {}. Reference: {}, {coarse} and {fine}; dashed: \
+             the difference between the two, below which errors are not told apart. {failures}",
+            outcome.title,
+            plot::si(study.duration, "s"),
+            plot::si(study.interval, "s"),
+            study.reference.set.join(", "),
+        ),
+    }
+}
+
+/// Points of a curve that reached the end, as (abscissa, error).
+fn points(
+    outcome: &Outcome,
+    curve: &str,
+    abscissa: impl Fn(usize) -> Option<f64>,
+    of: fn(&super::Errors) -> f64,
+) -> (Vec<f64>, Vec<f64>) {
+    let runs = outcome.runs.iter().enumerate();
+    runs.filter(|(_, run)| run.curve == curve)
+        .filter_map(|(i, run)| Some((abscissa(i)?, of(&run.result.as_ref().ok()?.errors))))
+        .filter(|(x, error)| *x > 0.0 && *error > 0.0)
+        .unzip()
+}
+
+fn lines(label: &str, color: Color, (x, y): (Vec<f64>, Vec<f64>)) -> Vec<Mark> {
+    if x.is_empty() {
+        return Vec::new();
+    }
+    vec![
+        Mark::curve("", color, &x, &y),
+        Mark::points(label, color, &x, &y, 8),
+    ]
+}
+
+fn against_time(
+    study: &Study,
+    outcome: &Outcome,
+    name: &str,
+    unit: &'static str,
+    of: fn(&super::Errors) -> f64,
+) -> Panel {
+    let seconds = |i: usize| outcome.timings[i].map(|t| t.median);
+    let mut marks = Vec::new();
+    for (curve, color) in study.curves.iter().zip(COLORS.into_iter().cycle()) {
+        marks.extend(lines(
+            &curve.name,
+            color,
+            points(outcome, &curve.name, seconds, of),
+        ));
+    }
+    let floor = of(&outcome.floor);
+    if floor > 0.0 && name != "energy" {
+        marks.push(Mark::level("", palette::BLACK, floor));
+    }
+    Panel {
+        title: format!("Error of {name}"),
+        note: String::new(),
+        x: Axis::new("Processor time", "s", 1.0).log(),
+        y: Axis::new("Error", unit, 1.0).log(),
+        marks,
+    }
+}
+
+/// Against the accuracies asked for with `asked`, else against steps.
+fn against_pace(study: &Study, outcome: &Outcome, asked: bool) -> Panel {
+    let abscissa = |i: usize| match (outcome.runs[i].pace, asked) {
+        (Pace::Step(step), false) => Some(step),
+        (Pace::Accuracy { position, .. }, true) => Some(position),
+        _ => None,
+    };
+    let mut marks = Vec::new();
+    for (curve, color) in study.curves.iter().zip(COLORS.into_iter().cycle()) {
+        let found = points(outcome, &curve.name, abscissa, |e| e.position);
+        marks.extend(lines(&curve.name, color, found));
+    }
+    let top = marks
+        .iter()
+        .fold(f64::MIN_POSITIVE, |top, mark| match &mark.shape {
+            plot::Shape::Points { y, .. } => y.iter().copied().fold(top, f64::max),
+            _ => top,
+        });
+    for (i, run) in outcome.runs.iter().enumerate() {
+        if let (Err(_), Some(x)) = (&run.result, abscissa(i)) {
+            let curve = study.curves.iter().position(|c| c.name == run.curve);
+            let color = COLORS[curve.unwrap_or(0) % COLORS.len()];
+            marks.push(Mark::cross("", color, (x, top)));
+        }
+    }
+    if asked && !marks.is_empty() {
+        let all: Vec<f64> = (0..outcome.runs.len()).filter_map(abscissa).collect();
+        let low = all.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = all.iter().copied().fold(0.0, f64::max);
+        let ends = [low, high];
+        marks.push(Mark::curve("as asked", palette::GREY, &ends, &ends));
+        marks.push(Mark::curve(
+            "ten times",
+            palette::BLACK,
+            &ends,
+            &ends.map(|x| 10.0 * x),
+        ));
+    }
+    let (title, label, unit) = match asked {
+        true => ("Error of position as asked for", "Accuracy asked for", "m"),
+        false => ("Error of position against the step", "Step h", "s"),
+    };
+    Panel {
+        title: title.into(),
+        note: String::new(),
+        x: Axis::new(label, unit, 1.0).log(),
+        y: Axis::new("Error", "m", 1.0).log(),
+        marks,
+    }
+}

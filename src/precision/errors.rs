@@ -1,0 +1,90 @@
+//! How far two runs are apart, in several norms.
+
+use super::{Study, StudyError};
+use crate::simulate::Recording;
+use serde::Serialize;
+
+/// The distance of a run from the reference.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Errors {
+    /// Largest difference of a position over the whole time \[m\].
+    pub position: f64,
+    /// Largest difference of an acceleration \[m/s2\].
+    pub acceleration: f64,
+    /// Largest difference of an impulse, the integral of a force from the start \[N s\].
+    pub impulse: f64,
+    /// Largest energy lost or gained by the integrator \[J\]; of the run alone.
+    pub energy: f64,
+}
+
+/// A norm: name, unit, how to take it.
+pub type Norm = (&'static str, &'static str, fn(&Errors) -> f64);
+
+/// All norms.
+pub const NORMS: [Norm; 4] = [
+    ("position", "m", |e| e.position),
+    ("acceleration", "m/s²", |e| e.acceleration),
+    ("impulse", "N s", |e| e.impulse),
+    ("energy", "J", |e| e.energy),
+];
+
+/// What a run recorded of what is compared.
+pub(super) struct Series {
+    interval: f64,
+    position: Vec<Vec<f64>>,
+    acceleration: Vec<Vec<f64>>,
+    force: Vec<Vec<f64>>,
+    energy: Vec<f64>,
+}
+
+impl Series {
+    pub fn of(study: &Study, recording: &Recording) -> Result<Series, StudyError> {
+        let column = |name: &String| match recording.get(name) {
+            Some(column) => Ok(column.to_vec()),
+            None => Err(StudyError::plain(format!(
+                "the scene has no channel {name:?}"
+            ))),
+        };
+        let columns = |names: &[String]| names.iter().map(column).collect::<Result<_, _>>();
+        Ok(Series {
+            interval: study.interval,
+            position: columns(&study.position)?,
+            acceleration: columns(&study.acceleration)?,
+            force: columns(&study.force)?,
+            energy: column(&"energy.numerical".to_owned())?,
+        })
+    }
+
+    pub fn errors(&self, exact: &Series) -> Errors {
+        Errors {
+            position: largest(&self.position, &exact.position),
+            acceleration: largest(&self.acceleration, &exact.acceleration),
+            impulse: self.largest_impulse(exact),
+            energy: self.energy.iter().fold(0.0, |m, e| larger(m, *e)),
+        }
+    }
+
+    /// By the trapezoidal rule between rows, the same for both.
+    fn largest_impulse(&self, exact: &Series) -> f64 {
+        let mut largest = 0.0;
+        for (a, b) in self.force.iter().zip(&exact.force) {
+            let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+            let mut impulse = 0.0;
+            for pair in difference.windows(2) {
+                impulse += 0.5 * self.interval * (pair[0] + pair[1]);
+                largest = larger(largest, impulse);
+            }
+        }
+        largest
+    }
+}
+
+fn largest(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    let pairs = a.iter().zip(b).flat_map(|(a, b)| a.iter().zip(b));
+    pairs.fold(0.0, |m, (a, b)| larger(m, a - b))
+}
+
+/// The larger magnitude; what is not a number is larger than all.
+fn larger(a: f64, b: f64) -> f64 {
+    if b.abs() <= a { a } else { b.abs() }
+}

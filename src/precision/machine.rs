@@ -1,0 +1,56 @@
+//! Where times were measured, and with what.
+
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+use std::path::Path;
+use std::process::Command;
+
+/// What a time depends on beside the program's own text.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Machine {
+    /// Processor, threads, system.
+    pub processor: String,
+    /// Compiler that this program was built with.
+    pub compiler: &'static str,
+    /// Commit of the source, `+` behind it where files differ from it; absent outside a repository.
+    pub commit: Option<String>,
+    /// SHA-256 of Cargo.lock, the first sixteen digits; absent where the file is.
+    pub lock: Option<String>,
+}
+
+/// This machine and this program.
+pub fn machine() -> Machine {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git")
+            .arg("-C")
+            .arg(root)
+            .args(arguments)
+            .output()
+            .ok()?;
+        let text = String::from_utf8(output.stdout).ok()?;
+        output.status.success().then(|| text.trim().to_owned())
+    };
+    let commit = git(&["rev-parse", "--short=12", "HEAD"]).map(|commit| {
+        let changed = git(&["status", "--porcelain", "--untracked-files=no"]);
+        let mark = if changed.is_some_and(|c| !c.is_empty()) {
+            "+"
+        } else {
+            ""
+        };
+        commit + mark
+    });
+    let lock = std::fs::read(root.join("Cargo.lock")).ok().map(|bytes| {
+        let digest = Sha256::digest(&bytes);
+        digest[..8]
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
+    });
+    Machine {
+        processor: crate::output::processor(),
+        compiler: env!("LOOSELINK_COMPILER"),
+        commit,
+        lock,
+    }
+}

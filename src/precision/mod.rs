@@ -1,0 +1,202 @@
+//! What accuracy costs in time: a scene with several methods and steps, against a reference of its own.
+//!
+//! A [`Study`] names a scene, channels, a reference and curves; [`run`] makes all runs one after the other, each recorded
+//! once and then timed several times without recording, and gives an [`Outcome`]. What it found is in [`Outcome::runs`] and
+//! does not differ when the study is repeated; what it took is in [`Outcome::timings`].
+
+mod diagram;
+mod errors;
+mod machine;
+mod study;
+mod table;
+
+pub use diagram::figure;
+pub use errors::Errors;
+pub use machine::{Machine, machine};
+pub use study::{Curve, Pace, Reference, Study, StudyError};
+pub use table::{table, timing_table};
+
+use crate::scene::{Scene, SceneError};
+use crate::simulate::{Recording, Report, RunError, Simulation};
+use cpu_time::ThreadTime;
+use errors::Series;
+use serde::Serialize;
+
+/// How thoroughly a study is made.
+#[derive(Debug, Clone, Copy)]
+pub struct Effort {
+    /// Timed runs, after the recorded one, of every point.
+    pub repeats: usize,
+    /// Only the first point of every curve, to see that the study works.
+    pub smoke: bool,
+}
+
+/// All runs of a study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Outcome {
+    /// The study's title.
+    pub title: String,
+    /// Difference between the two runs of the reference: nothing below it is told apart.
+    pub floor: Errors,
+    /// All points, curve by curve.
+    pub runs: Vec<Run>,
+    /// Their times, in the same order.
+    #[serde(skip)]
+    pub timings: Vec<Option<Timing>>,
+}
+
+/// One point of a curve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Run {
+    /// Name of the curve.
+    pub curve: String,
+    /// Step or accuracy.
+    pub pace: Pace,
+    /// What came of it.
+    pub result: Result<Measured, String>,
+}
+
+/// What a run that reached its end gave.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measured {
+    /// Against the reference.
+    pub errors: Errors,
+    /// Work done.
+    pub work: Work,
+}
+
+/// Counts of work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[expect(missing_docs, reason = "the names are those of the report of a run")]
+pub struct Work {
+    pub steps: u64,
+    pub rejected_steps: u64,
+    pub location_trials: u64,
+    pub newton_iterations: u64,
+    pub factorisations: u64,
+    pub onsets: u64,
+}
+
+/// Processor time of a run \[s\].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Timing {
+    /// Median of the repeats.
+    pub median: f64,
+    /// Shortest.
+    pub least: f64,
+    /// Number of repeats.
+    pub repeats: usize,
+}
+
+impl Work {
+    fn of(report: &Report) -> Work {
+        let accuracy = report.accuracy.as_ref().map_or(0, |a| a.rejected_steps);
+        Work {
+            steps: report.steps,
+            rejected_steps: report.rejected_steps + accuracy,
+            location_trials: report.location_trials,
+            newton_iterations: report.newton_iterations,
+            factorisations: report.factorisations,
+            onsets: report.onsets,
+        }
+    }
+}
+
+/// A scene run to its end, with what it recorded.
+fn record(scene: &Scene) -> Result<(Recording, Report), Failed> {
+    let mut simulation = Simulation::new(scene)?;
+    let mut recording = Recording::new(&simulation);
+    simulation.run(&mut recording)?;
+    Ok((recording, simulation.report()))
+}
+
+/// Processor times of repeated runs, without recording.
+fn time(scene: &Scene, repeats: usize) -> Result<Timing, Failed> {
+    let mut seconds = Vec::with_capacity(repeats);
+    for _ in 0..repeats {
+        let mut simulation = Simulation::new(scene)?;
+        let clock = ThreadTime::now();
+        simulation.run(&mut ())?;
+        seconds.push(clock.elapsed().as_secs_f64());
+    }
+    seconds.sort_by(f64::total_cmp);
+    let middle = repeats / 2;
+    Ok(Timing {
+        median: match repeats % 2 {
+            1 => seconds[middle],
+            _ => 0.5 * (seconds[middle - 1] + seconds[middle]),
+        },
+        least: seconds[0],
+        repeats,
+    })
+}
+
+/// Why a point of a curve is missing.
+#[derive(Debug, thiserror::Error)]
+enum Failed {
+    /// The method does not take the scene.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The run ended early.
+    #[error(transparent)]
+    Run(#[from] RunError),
+}
+
+/// Makes all runs of a study; `tell` is called before each with its name.
+///
+/// # Errors
+/// A study that cannot be made: a faulty scene, a channel that the scene does not have, a reference that fails. A point of a
+/// curve that fails is part of the outcome.
+pub fn run(
+    study: &Study,
+    effort: Effort,
+    tell: &mut dyn FnMut(&str),
+) -> Result<Outcome, StudyError> {
+    let [coarse, fine] = study.reference.paces();
+    let reference = |pace: Pace, tell: &mut dyn FnMut(&str)| {
+        tell(&format!("reference, {pace}"));
+        let scene = study.scene(&study.reference.set, pace)?;
+        let failed = |e: Failed| match e {
+            Failed::Scene(e) => StudyError::Scene(e),
+            Failed::Run(e) => StudyError::plain(format!("the reference with {pace} fails: {e}")),
+        };
+        let (recording, _) = record(&scene).map_err(failed)?;
+        Series::of(study, &recording)
+    };
+    let rough = reference(coarse, tell)?;
+    let exact = reference(fine, tell)?;
+    let floor = rough.errors(&exact);
+    let (mut runs, mut timings) = (Vec::new(), Vec::new());
+    for curve in &study.curves {
+        let count = if effort.smoke { 1 } else { usize::MAX };
+        for pace in curve.paces().into_iter().take(count) {
+            tell(&format!("{}, {pace}", curve.name));
+            let scene = study.scene(&curve.set, pace)?;
+            let made = record(&scene).and_then(|(recording, report)| {
+                Ok((recording, report, time(&scene, effort.repeats)?))
+            });
+            let (result, timing) = match made {
+                Ok((recording, report, timing)) => {
+                    let measured = Measured {
+                        errors: Series::of(study, &recording)?.errors(&exact),
+                        work: Work::of(&report),
+                    };
+                    (Ok(measured), Some(timing))
+                }
+                Err(error) => (Err(error.to_string()), None),
+            };
+            runs.push(Run {
+                curve: curve.name.clone(),
+                pace,
+                result,
+            });
+            timings.push(timing);
+        }
+    }
+    Ok(Outcome {
+        title: study.title.clone(),
+        floor,
+        runs,
+        timings,
+    })
+}

@@ -1,0 +1,192 @@
+//! What a study file says.
+
+use crate::scene::{Scene, SceneError};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Why a study cannot be made.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum StudyError {
+    /// A fault of the study file or of what it asks for.
+    #[error("{0}")]
+    Plain(String),
+    /// A fault of its scene.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+}
+
+impl StudyError {
+    pub(super) fn plain(message: String) -> StudyError {
+        StudyError::Plain(message)
+    }
+}
+
+/// A scene, a reference and the curves that are compared with it.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Study {
+    /// What is studied, in a line.
+    pub title: String,
+    /// The scene, a path beside the study file.
+    pub scene: PathBuf,
+    /// Overrides `path=value` of every run.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// Simulated time \[s\].
+    pub duration: f64,
+    /// Time between the rows that are compared \[s\].
+    pub interval: f64,
+    /// Channels whose largest difference is the error of position \[m\].
+    pub position: Vec<String>,
+    /// Channels whose largest difference is the error of acceleration \[m/s2\].
+    #[serde(default)]
+    pub acceleration: Vec<String>,
+    /// Channels of force whose difference, integrated over time, is the error of impulse \[N s\].
+    #[serde(default)]
+    pub force: Vec<String>,
+    /// What the curves are compared with.
+    pub reference: Reference,
+    /// Methods with their steps or accuracies.
+    pub curves: Vec<Curve>,
+}
+
+/// Two runs of a method that none of the curves depends on: the difference between them is the floor.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reference {
+    /// Overrides that choose the method.
+    pub set: Vec<String>,
+    /// Coarse and fine step \[s\].
+    pub steps: [f64; 2],
+}
+
+/// One curve.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Curve {
+    /// Its name in diagrams and tables.
+    pub name: String,
+    /// Overrides that choose the method, or change the mechanism.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// Steps \[s\]; or
+    #[serde(default)]
+    pub steps: Vec<f64>,
+    /// accuracies \[m\] ...
+    #[serde(default)]
+    pub accuracies: Vec<f64>,
+    /// ... over this time \[s\]; the duration of the study unless given.
+    pub horizon: Option<f64>,
+}
+
+/// What the steps of a run follow.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Pace {
+    /// A step \[s\].
+    Step(f64),
+    /// An accuracy \[m\] over a horizon \[s\].
+    Accuracy {
+        /// Error allowed in positions.
+        position: f64,
+        /// Time over which it may gather.
+        horizon: f64,
+    },
+}
+
+impl fmt::Display for Pace {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Pace::Step(step) => write!(f, "step {}", plot::si(*step, "s")),
+            Pace::Accuracy { position, .. } => write!(f, "accuracy {}", plot::si(*position, "m")),
+        }
+    }
+}
+
+impl Reference {
+    /// Coarse and fine.
+    pub fn paces(&self) -> [Pace; 2] {
+        self.steps.map(Pace::Step)
+    }
+}
+
+impl Curve {
+    /// Its points.
+    pub fn paces(&self) -> Vec<Pace> {
+        let steps = self.steps.iter().map(|h| Pace::Step(*h));
+        let horizon = self.horizon.unwrap_or(f64::NAN);
+        let accuracies = self.accuracies.iter().map(|position| Pace::Accuracy {
+            position: *position,
+            horizon,
+        });
+        steps.chain(accuracies).collect()
+    }
+}
+
+impl Study {
+    /// Reads a study and checks what can be seen without its scene.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or a fault with its line.
+    pub fn load(path: &Path) -> Result<Study, StudyError> {
+        let name = path.display();
+        let text = std::fs::read_to_string(path)
+            .map_err(|e| StudyError::plain(format!("cannot read `{name}`: {e}")))?;
+        let mut study: Study = toml::from_str(&text)
+            .map_err(|e| StudyError::plain(format!("`{name}`: {}", e.to_string().trim_end())))?;
+        let fault = |message: String| Err(StudyError::plain(format!("`{name}`: {message}")));
+        for (key, value) in [("duration", study.duration), ("interval", study.interval)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return fault(format!("`{key}` must be greater than zero, not {value}"));
+            }
+        }
+        if study.position.is_empty() || study.curves.is_empty() {
+            return fault("a study needs at least one channel in `position` and one curve".into());
+        }
+        let [coarse, fine] = study.reference.steps;
+        if fine.partial_cmp(&coarse) != Some(std::cmp::Ordering::Less) {
+            return fault(format!(
+                "`reference.steps` must be a coarse and a fine step, not {coarse:e} and {fine:e}"
+            ));
+        }
+        for (i, curve) in study.curves.iter_mut().enumerate() {
+            if curve.steps.is_empty() == curve.accuracies.is_empty() {
+                return fault(format!(
+                    "`curves.{i}` ({}) needs either `steps` or `accuracies`",
+                    curve.name
+                ));
+            }
+            curve.horizon = curve.horizon.or(Some(study.duration));
+        }
+        study.scene = path.with_file_name(&study.scene);
+        Ok(study)
+    }
+
+    /// The scene of a run.
+    ///
+    /// # Errors
+    /// A fault of the scene.
+    pub fn scene(&self, set: &[String], pace: Pace) -> Result<Scene, SceneError> {
+        let channels: Vec<String> = [&self.position[..], &self.acceleration, &self.force]
+            .concat()
+            .into_iter()
+            .chain(["energy.numerical".to_owned()])
+            .map(|c| format!("{c:?}"))
+            .collect();
+        let mut overrides = self.set.clone();
+        overrides.extend_from_slice(set);
+        overrides.extend([
+            format!("simulation.duration={:?}", self.duration),
+            format!("output.interval={:?}", self.interval),
+            format!("output.channels=[{}]", channels.join(", ")),
+            match pace {
+                Pace::Step(step) => format!("integrator.step={step:?}"),
+                Pace::Accuracy { position, horizon } => format!(
+                    "integrator.accuracy={{ position = {position:?}, horizon = {horizon:?} }}"
+                ),
+            },
+        ]);
+        Scene::load(&self.scene, &overrides)
+    }
+}

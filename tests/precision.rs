@@ -1,0 +1,173 @@
+//! Studies of precision against time: those of the project work, faults are told, failures are part of the outcome.
+
+use assert_cmd::Command;
+use looselink::precision::{Effort, Outcome, Pace, Study, figure, run, table};
+use std::path::{Path, PathBuf};
+
+const SMOKE: Effort = Effort {
+    repeats: 1,
+    smoke: true,
+};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("studies")
+}
+
+fn outcome(study: &Study) -> Outcome {
+    run(study, SMOKE, &mut |_| {}).unwrap_or_else(|e| panic!("{}: {e}", study.title))
+}
+
+/// Every study of the project, the coarsest point of every curve: none fails, the reference is far finer than what is
+/// compared with it, and what an accuracy asks for is achieved within a factor of ten.
+#[test]
+fn studies_of_the_project_work() {
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder()).unwrap() {
+        let path = entry.unwrap().path();
+        let study = Study::load(&path).unwrap_or_else(|e| panic!("{e}"));
+        let outcome = outcome(&study);
+        assert_eq!(outcome.runs.len(), study.curves.len());
+        for run in &outcome.runs {
+            let name = format!("{}: {} with {}", study.title, run.curve, run.pace);
+            let measured = run
+                .result
+                .as_ref()
+                .unwrap_or_else(|e| panic!("{name}: {e}"));
+            let errors = measured.errors;
+            assert!(errors.position > 100.0 * outcome.floor.position, "{name}");
+            assert!(
+                errors.energy.is_finite() && measured.work.steps > 100,
+                "{name}"
+            );
+            if let Pace::Accuracy { position, .. } = run.pace {
+                assert!(errors.position < 10.0 * position, "{name}: {errors:?}");
+            }
+        }
+        assert!(outcome.timings.iter().flatten().all(|t| t.least > 0.0));
+        assert_eq!(figure(&study, &outcome).rows.len(), 3, "{}", study.title);
+        count += 1;
+    }
+    assert_eq!(count, 8);
+}
+
+fn study(curves: &str) -> Result<Study, String> {
+    let text = format!(
+        r#"
+title = "a pendulum, briefly"
+scene = "pendulum.toml"
+duration = 0.5
+interval = 0.02
+position = ["points.rod.bob.x"]
+[reference]
+set = ["integrator.method=dormand_prince"]
+steps = [2e-3, 1e-3]
+{curves}
+"#
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("study.toml");
+    std::fs::write(&path, text).unwrap();
+    std::fs::copy(
+        folder_of_scenes().join("pendulum.toml"),
+        folder.path().join("pendulum.toml"),
+    )
+    .unwrap();
+    let mut study = Study::load(&path).map_err(|e| e.to_string())?;
+    study.scene = folder_of_scenes().join("pendulum.toml");
+    Ok(study)
+}
+
+fn folder_of_scenes() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
+}
+
+/// A method that does not take the scene, and an accuracy out of reach, are points of the outcome with their reasons.
+#[test]
+fn failures_are_part_of_the_outcome() {
+    let study = study(
+        r#"
+[[curves]]
+name = "Verlet"
+set = ["integrator.method=velocity_verlet"]
+steps = [1e-3]
+[[curves]]
+name = "too much"
+accuracies = [1e-20]
+[[curves]]
+name = "Bathe"
+steps = [1e-3]
+"#,
+    )
+    .unwrap();
+    let first = outcome(&study);
+    let failed = |i: usize| first.runs[i].result.as_ref().unwrap_err().as_str();
+    assert!(failed(0).starts_with("method \"velocity_verlet\" keeps no constraints"));
+    assert!(failed(1).starts_with("the accuracy of 1e-20 m over 0.5 s cannot be reached at t = "));
+    assert!(first.runs[2].result.is_ok());
+    assert_eq!(first.timings.iter().flatten().count(), 1);
+    assert!(table(&first).contains("| Verlet | step 1\u{a0}ms | failed: method"));
+    let caption = figure(&study, &first).caption;
+    assert!(
+        caption.contains("Failed: Verlet at step 1\u{a0}ms; too much at accuracy"),
+        "{caption}"
+    );
+    // all but times is the same when it is made again
+    assert_eq!(outcome(&study).runs, first.runs);
+}
+
+#[test]
+fn faults_of_a_study_are_told() {
+    for (curves, message) in [
+        ("", "missing field `curves`"),
+        (
+            "[[curves]]\nname = \"x\"\n",
+            "`curves.0` (x) needs either `steps` or `accuracies`",
+        ),
+        (
+            "[[curves]]\nname = \"x\"\nsteps = [1e-3]\naccuracies = [1e-3]\n",
+            "`curves.0` (x) needs either `steps` or `accuracies`",
+        ),
+        (
+            "[[curves]]\nname = \"x\"\nstep = [1e-3]\n",
+            "unknown field `step`",
+        ),
+    ] {
+        let error = study(curves).unwrap_err();
+        assert!(error.contains(message), "{error}");
+        assert!(error.contains("study.toml"), "{error}");
+    }
+    let mut wrong = study("[[curves]]\nname = \"x\"\nsteps = [1e-3]\n").unwrap();
+    wrong.position = vec!["bob.x".into()];
+    let error = run(&wrong, SMOKE, &mut |_| {}).unwrap_err().to_string();
+    assert!(
+        error.starts_with("no channel of this scene is named \"bob.x\""),
+        "{error}"
+    );
+}
+
+/// The command writes what it found and what it took apart, refuses to overwrite, and says exit code 2 for bad input.
+#[test]
+fn the_command_writes_a_study() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let command = |study: &Path, more: &[&str]| {
+        let mut command = Command::cargo_bin("looselink").unwrap();
+        command.arg("precision").arg(study).arg("--out").arg(&out);
+        command.args(["--smoke", "--quiet"]).args(more).assert()
+    };
+    let study = self::folder().join("pendulum.toml");
+    let shown = command(&study, &[]).success();
+    let shown = String::from_utf8(shown.get_output().stdout.clone()).unwrap();
+    assert!(
+        shown.contains("| Bathe | step 4\u{a0}ms |") && shown.contains("Cargo.lock"),
+        "{shown}"
+    );
+    let read = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
+    let found = read("precision.json");
+    assert!(!found.contains("seconds") && read("timing.json").contains("\"median\""));
+    assert!(std::fs::metadata(out.join("precision.png")).unwrap().len() > 10_000);
+    command(&study, &[]).code(2);
+    command(&study, &["--force"]).success();
+    assert_eq!(read("precision.json"), found);
+    command(Path::new("no-such-study.toml"), &["--force"]).code(2);
+}
