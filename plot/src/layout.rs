@@ -22,6 +22,8 @@ const MARGIN: i32 = 26;
 const TITLE_LINE: i32 = 52;
 const GAP: i32 = 14;
 const BELOW: i32 = 110;
+/// Height of a line of a chart of categories.
+const CATEGORY_LINE: i32 = 52;
 
 /// A panel with its axes and the place of its parts.
 pub struct Placed<'a> {
@@ -64,33 +66,12 @@ pub fn page(figure: &Figure) -> Page<'_> {
     let mut panels = Vec::new();
     let mut top = MARGIN;
     for row in &figure.rows {
-        let columns = row.len() as i32;
-        let cell = (WIDTH - 2 * MARGIN) / columns;
-        let height = match columns {
-            1 => 620,
-            2 => 560,
-            3 => 500,
-            _ => 400,
-        };
-        let left = figure
-            .rows
-            .iter()
-            .filter(|r| r.len() == row.len())
-            .flatten()
-            .map(left_margin)
-            .max()
-            .unwrap_or(0);
-        let width = cell - left - right_margin(row);
+        let height = height(row);
+        let (columns, width) = columns(figure, row);
         let heads: Vec<Head> = row.iter().map(|panel| Head::new(panel, width)).collect();
         let head = heads.iter().map(Head::height).max().unwrap_or(0);
-        for (column, (panel, parts)) in row.iter().zip(heads).enumerate() {
-            let cell_left = MARGIN + column as i32 * cell;
-            let frame = [
-                cell_left + left,
-                top + head,
-                cell_left + left + width,
-                top + head + height,
-            ];
+        for ((panel, parts), (cell_left, left)) in row.iter().zip(heads).zip(columns) {
+            let frame = [left, top + head, left + width, top + head + height];
             panels.push(place(panel, parts, frame, cell_left, top));
         }
         top += head + height + BELOW + 2 * GAP;
@@ -104,6 +85,42 @@ pub fn page(figure: &Figure) -> Page<'_> {
         caption_x: 2 * MARGIN,
         height,
     }
+}
+
+/// Height of the frames of a row.
+fn height(row: &[Panel]) -> i32 {
+    let categories = row.iter().map(|panel| panel.y.names.len()).max();
+    match (categories.unwrap_or(0) as i32, row.len()) {
+        (0, 1) => 620,
+        (0, 2) => 560,
+        (0, 3) => 500,
+        (0, _) => 400,
+        (categories, _) => CATEGORY_LINE * categories,
+    }
+}
+
+/// Left edges of the cell and of the frame of every panel of a row, and the width of its frames.
+///
+/// Frames stand below those of other rows of as many panels. In a row with categories each has the margin that its names
+/// need, because they may stand on the left of the row alone.
+fn columns(figure: &Figure, row: &[Panel]) -> (Vec<(i32, i32)>, i32) {
+    let count = row.len() as i32;
+    let (page, right) = (WIDTH - 2 * MARGIN, right_margin(row));
+    if row.iter().any(|panel| !panel.y.names.is_empty()) {
+        let margins: Vec<i32> = row.iter().map(left_margin).collect();
+        let width = (page - margins.iter().sum::<i32>()) / count - right;
+        let edges = margins.iter().scan(MARGIN, |cell, margin| {
+            let edge = (*cell, *cell + margin);
+            *cell = edge.1 + width + right;
+            Some(edge)
+        });
+        return (edges.collect(), width);
+    }
+    let cell = page / count;
+    let rows = figure.rows.iter().filter(|r| r.len() == row.len());
+    let left = rows.flatten().map(left_margin).max().unwrap_or(0);
+    let edge = |column| (MARGIN + column * cell, MARGIN + column * cell + left);
+    ((0..count).map(edge).collect(), cell - left - right)
 }
 
 fn place(panel: &Panel, head: Head, frame: [i32; 4], cell_left: i32, top: i32) -> Placed<'_> {
@@ -225,8 +242,13 @@ fn left_margin(panel: &Panel) -> i32 {
         .map(|(_, t)| text::width(t, SMALL))
         .max()
         .unwrap_or(0);
-    // the widened range of equal axes may ask for longer labels
-    widest + if panel.x.equal { 85 } else { 70 }
+    match (panel.y.names.is_empty(), panel.x.equal) {
+        // no axis label stands on the left of names
+        (false, _) => widest + 24,
+        // the widened range of equal axes may ask for longer labels
+        (true, true) => widest + 85,
+        (true, false) => widest + 70,
+    }
 }
 
 fn right_margin(row: &[Panel]) -> i32 {

@@ -1,4 +1,4 @@
-//! Line figures for print: a grid of panels with a caption, as SVG and as the PNG rasterised from the same SVG.
+//! Line figures and dot charts for print: a grid of panels with a caption, as SVG and as the PNG rasterised from the same SVG.
 //!
 //! The caller describes a [`Figure`] in data units; [`save`] lays it out, thins long series to what a pixel can
 //! show and writes both files. One drawing unit is one pixel of the PNG at 300 dpi.
@@ -79,6 +79,8 @@ pub struct Axis {
     pub range: Option<(f64, f64)>,
     /// On the horizontal axis of a panel: both axes are drawn to one scale, the shorter range is widened.
     pub equal: bool,
+    /// On the vertical axis of a panel: what stands at 0, 1, ... from the top down; empty for an axis of numbers.
+    pub names: Vec<String>,
 }
 
 /// Spacing of an axis.
@@ -151,6 +153,15 @@ impl Axis {
             scale: Scale::Linear,
             range: None,
             equal: false,
+            names: Vec::new(),
+        }
+    }
+
+    /// A vertical axis of names, the first at the top: marks stand at the ordinates 0, 1, ...
+    pub fn categories(names: Vec<String>) -> Axis {
+        Axis {
+            names,
+            ..Axis::new("", "", 1.0)
         }
     }
 

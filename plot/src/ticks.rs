@@ -20,6 +20,7 @@ impl Ticks {
     /// Ticks for an axis whose data span `data` (SI); about `wanted` labels.
     pub fn new(axis: &Axis, data: (f64, f64), wanted: usize) -> Ticks {
         match axis.scale {
+            _ if !axis.names.is_empty() => categories(axis),
             Scale::Linear => linear(axis, data, wanted),
             Scale::Log => logarithmic(axis, data, wanted),
         }
@@ -32,6 +33,19 @@ impl Ticks {
             Scale::Log if si > 0.0 => (si * self.factor).log10(),
             Scale::Log => f64::NAN,
         }
+    }
+}
+
+/// One tick a name; the range falls, so that the first stands at the top.
+fn categories(axis: &Axis) -> Ticks {
+    let places = axis.names.iter().enumerate();
+    Ticks {
+        label: axis.label.clone(),
+        range: (axis.names.len() as f64 - 0.5, -0.5),
+        major: places.map(|(k, name)| (k as f64, name.clone())).collect(),
+        minor: Vec::new(),
+        factor: 1.0,
+        scale: Scale::Linear,
     }
 }
 
@@ -242,6 +256,15 @@ mod tests {
             ),
             ["1", "2", "5", "10"]
         );
+    }
+
+    #[test]
+    fn categories_stand_from_the_top_down() {
+        let axis = Axis::categories(vec!["one".into(), "two".into()]);
+        let ticks = Ticks::new(&axis, (0.0, 9.0), 6);
+        assert_eq!(ticks.range, (1.5, -0.5));
+        assert_eq!(ticks.major, [(0.0, "one".into()), (1.0, "two".into())]);
+        assert_eq!(ticks.place(1.0), 1.0);
     }
 
     #[test]
