@@ -34,6 +34,7 @@
 //! to functions, ARCHITECTURE.md the mechanics to folders.
 #![forbid(unsafe_code)]
 
+pub mod ablation;
 pub mod compile;
 pub mod constraint;
 pub mod contact;

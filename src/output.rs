@@ -22,13 +22,13 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use timing::Stopwatch;
-pub use timing::machine as processor;
+pub(crate) use timing::machine;
 
 const CHANNELS: &str = "channels.csv";
 const ONSETS: &str = "onsets.csv";
 const SCENE: &str = "scene.toml";
 const SUMMARY: &str = "summary.json";
-const TIMING: &str = "timing.json";
+pub(crate) const TIMING: &str = "timing.json";
 
 /// Why results could not be stored.
 #[derive(Debug, thiserror::Error)]
@@ -94,21 +94,11 @@ impl Folder {
     /// # Errors
     /// A result that may not be replaced, or a path that is not a folder.
     pub fn new(path: &Path, replace: bool) -> Result<Folder, OutputError> {
-        if path.exists() && !path.is_dir() {
-            return Err(OutputError::NotADirectory(path.to_owned()));
-        }
-        let ours = [SUMMARY, CHANNELS, ONSETS, SCENE, TIMING];
-        let present = |file: &&str| fs::symlink_metadata(path.join(file)).is_ok();
-        match ours.into_iter().find(present) {
-            Some(file) if !replace => Err(OutputError::Occupied {
-                folder: path.to_owned(),
-                file,
-            }),
-            _ => Ok(Folder {
-                path: path.to_owned(),
-                replace,
-            }),
-        }
+        refuse_occupied(path, &[SUMMARY, CHANNELS, ONSETS, SCENE, TIMING], replace)?;
+        Ok(Folder {
+            path: path.to_owned(),
+            replace,
+        })
     }
 
     /// Starts a result; files that are not part of one are left alone.
@@ -187,6 +177,25 @@ impl Results {
     }
 }
 
+/// Refuses a path that is no folder, and a folder with one of `files` unless they may be replaced.
+pub(crate) fn refuse_occupied(
+    path: &Path,
+    files: &[&'static str],
+    replace: bool,
+) -> Result<(), OutputError> {
+    if path.exists() && !path.is_dir() {
+        return Err(OutputError::NotADirectory(path.to_owned()));
+    }
+    let present = |file: &&&str| fs::symlink_metadata(path.join(file)).is_ok();
+    match files.iter().find(present) {
+        Some(file) if !replace => Err(OutputError::Occupied {
+            folder: path.to_owned(),
+            file,
+        }),
+        _ => Ok(()),
+    }
+}
+
 /// Takes an empty folder for this run: of two runs that start together one fails.
 fn claim(folder: &Path) -> Result<(), OutputError> {
     let path = folder.join(SUMMARY);
@@ -208,14 +217,15 @@ fn write_summary(
     replace(folder, SUMMARY, &json(&Summary { header, report })?)
 }
 
-fn json(value: &impl Serialize) -> Result<Vec<u8>, OutputError> {
+/// A value as the text of a file.
+pub(crate) fn json(value: &impl Serialize) -> Result<Vec<u8>, OutputError> {
     let mut bytes = serde_json::to_vec_pretty(value).map_err(io::Error::from)?;
     bytes.push(b'\n');
     Ok(bytes)
 }
 
 /// Puts a whole file in its place at once: a reader sees the old one or the new one, never a part.
-fn replace(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
+pub(crate) fn replace(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
     let temporary = folder.join(format!(".{name}.tmp"));
     let write = || -> io::Result<()> {
         let mut file = File::create(&temporary)?;
@@ -240,7 +250,7 @@ fn remove(path: &Path) -> Result<(), OutputError> {
 }
 
 /// An error of the system that says which file it is about.
-fn naming(path: &Path, error: io::Error) -> io::Error {
+pub(crate) fn naming(path: &Path, error: io::Error) -> io::Error {
     io::Error::new(
         error.kind(),
         format!("cannot write `{}`: {error}", path.display()),

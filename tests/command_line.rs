@@ -246,6 +246,88 @@ fn check_and_inspect() {
     );
 }
 
+const ABLATION: [&str; 5] = [
+    "ablation.json",
+    "ablation.md",
+    "ablation.png",
+    "ablation.svg",
+    "timing.json",
+];
+
+fn ablate(more: &[&str]) -> Output {
+    let scene = "scenes/ablation/everything.toml";
+    let short = ["--set", "simulation.duration=2e-3", "--runs", "1"];
+    looselink(&[&["ablate", scene], &short[..], more].concat())
+}
+
+#[test]
+fn an_ablation_leaves_tables_numbers_and_a_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let [first, second] = ["first", "second"].map(|name| folder.path().join(name));
+    let outputs = [&first, &second].map(|out| ablate(&["--out", out.to_str().unwrap()]));
+    for (output, out) in outputs.iter().zip([&first, &second]) {
+        expect(output, 0, "full scene");
+        assert_eq!(files(out), ABLATION);
+    }
+    let text = String::from_utf8_lossy(&outputs[0].stdout).into_owned();
+    for part in [
+        "− clearance (and contact damping, friction)",
+        "Processor time",
+        "rocker",
+    ] {
+        assert!(text.contains(part), "`{part}` is not in\n{text}");
+    }
+    // processor times differ; nothing else does
+    for file in ["ablation.json", "ablation.md"] {
+        assert_eq!(read(&first, file), read(&second, file), "{file}");
+    }
+    let ablation: serde_json::Value = serde_json::from_str(&read(&first, "ablation.json")).unwrap();
+    let variants = ablation["variants"].as_array().unwrap();
+    assert_eq!(variants.len(), 16);
+    assert_eq!(variants[9]["removed"][2], "structural damping");
+    assert!(variants[8]["physics"]["peak_joint_force"].as_f64().unwrap() > 0.0);
+    assert_eq!(variants[8]["less_full_scene"]["rms_error"], 0.0);
+    assert_eq!(ablation["overrides"][0], "simulation.duration=2e-3");
+    let timing: serde_json::Value = serde_json::from_str(&read(&first, "timing.json")).unwrap();
+    assert_eq!(timing["variants"][15]["variant"], "− gravity");
+    assert!(
+        timing["variants"][15]["microseconds_a_step"]
+            .as_f64()
+            .unwrap()
+            > 0.0
+    );
+
+    let out = first.to_str().unwrap();
+    expect(
+        &ablate(&["--out", out]),
+        2,
+        "holds a result already (`ablation.json`)",
+    );
+    expect(&ablate(&["--out", out, "--force"]), 0, "");
+}
+
+#[test]
+fn an_ablation_on_standard_output() {
+    let output = ablate(&["--json", "--quiet", "--body", "coupler"]);
+    expect(&output, 0, "");
+    assert!(output.stderr.is_empty());
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["ablation"]["body"]["name"], "coupler");
+    assert_eq!(json["timing"]["variants"][0]["runs"], 1);
+    expect(
+        &ablate(&["--body", "cuopler"]),
+        2,
+        "there are crank, coupler, rocker",
+    );
+    expect(
+        &ablate(&["--set", "integrator.step=-1"]),
+        2,
+        "greater than zero",
+    );
+    expect(&ablate(&["--runs", "0"]), 2, "--runs");
+    expect(&ablate(&["--force"]), 2, "--out");
+}
+
 #[test]
 fn every_command_has_help_with_an_example() {
     for command in [
@@ -253,6 +335,7 @@ fn every_command_has_help_with_an_example() {
         &["run", "--help"],
         &["inspect", "--help"],
         &["check", "--help"],
+        &["ablate", "--help"],
     ] {
         let output = looselink(command);
         expect(&output, 0, "");

@@ -1,5 +1,6 @@
 //! All integration tests, in one binary.
 
+mod ablation;
 mod accuracy;
 mod bad_input;
 mod bad_mechanism;

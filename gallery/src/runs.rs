@@ -47,9 +47,10 @@ impl Show {
 }
 
 /// The first entry whose name begins that of the scene counts.
-const SHOWN: [Show; 19] = [
+const SHOWN: [Show; 20] = [
     show("3rrr/case1", "A1.torque", "Torque of motor A1").cut(0.5),
     show("3rrr/", "error.x", "Error of the platform, x").cut(0.5),
+    show("ablation/", "rocker.alpha", "Acceleration of the rocker"),
     show("bouncing-journal", "journal.vx", "Velocity of the journal"),
     show("cantilever-dynamic", "points.beam.end.y", "Tip, y").drawn(1.2),
     show("cantilever-static", "points.beam.end.y", "Tip, y"),

@@ -36,8 +36,8 @@ impl Failure {
         }
     }
 
-    /// Bad input.
-    pub fn input(message: String) -> Failure {
+    /// What the command line asks for cannot be done.
+    pub fn bad_input(message: String) -> Failure {
         Failure {
             code: BAD_INPUT,
             message: Message::Plain(message),
@@ -96,7 +96,7 @@ impl From<SceneError> for Failure {
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Failure {
         match error {
-            StudyError::Plain(message) => Failure::input(message),
+            StudyError::Plain(message) => Failure::bad_input(message),
             StudyError::Scene(error) => error.into(),
         }
     }

@@ -1,5 +1,6 @@
 //! Arguments, commands and exit codes.
 
+mod ablate;
 mod closing;
 mod failure;
 mod inspect;
@@ -45,6 +46,11 @@ enum Command {
     /// Show what accuracy costs: a scene with several methods and steps, errors against time.
     #[command(after_help = "Example:\n  looselink precision studies/case3.toml --out out/case3")]
     Precision(precision::Arguments),
+    /// Measure what every effect of a scene does and costs: each added to the rigid ideal mechanism, each removed.
+    #[command(
+        after_help = "Example:\n  looselink ablate scenes/3rrr/case4.toml --set simulation.duration=0.05 --out out/ablation"
+    )]
+    Ablate(ablate::Arguments),
 }
 
 /// A scene and changes to it.
@@ -82,6 +88,7 @@ pub fn main(arguments: &Arguments) -> ExitCode {
         Command::Inspect(arguments) => inspect::inspect(arguments),
         Command::Check(arguments) => check(arguments),
         Command::Precision(arguments) => precision::precision(arguments),
+        Command::Ablate(arguments) => ablate::ablate(arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

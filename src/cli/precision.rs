@@ -53,7 +53,7 @@ pub fn precision(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(there) = names.iter().find(|name| out.join(name).exists())
         && !arguments.force
     {
-        return Err(Failure::input(format!(
+        return Err(Failure::bad_input(format!(
             "`{}` holds a result already (`{there}`); choose another folder, or replace it with --force",
             out.display()
         )));

@@ -79,7 +79,8 @@ fn message(progress: &Progress, started: &Instant) -> String {
     format!("t = {t:.4} of {duration} s, {factor:.3} x real time, {contacts} contacts closed")
 }
 
-fn say(line: &str) {
+/// A line on standard error.
+pub fn say(line: &str) {
     // A run does not fail because nobody listens.
     let _ = writeln!(std::io::stderr(), "{line}");
 }

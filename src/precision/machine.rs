@@ -48,7 +48,7 @@ pub fn machine() -> Machine {
             .collect()
     });
     Machine {
-        processor: crate::output::processor(),
+        processor: crate::output::machine(),
         compiler: env!("LOOSELINK_COMPILER"),
         commit,
         lock,

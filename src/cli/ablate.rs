@@ -1,0 +1,70 @@
+//! `looselink ablate`
+
+use super::failure::Failure;
+use super::progress::say;
+use super::{SceneArguments, print};
+use clap::Args;
+use looselink::ablation::{Folder, Observed, Repeatable, Timing, ablate as measure};
+use serde::Serialize;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// The body whose displacement and acceleration are compared; the driven one, or else the last that moves.
+    #[arg(long, value_name = "NAME")]
+    body: Option<String>,
+    /// Timed runs of every variant, after one that is not timed; up to five within a second when absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    runs: Option<u32>,
+    /// The folder that receives tables, numbers and a picture; it is created.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace a result that stands in the folder.
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// Machine-readable output.
+    #[arg(long)]
+    json: bool,
+    /// Show no progress.
+    #[arg(long)]
+    quiet: bool,
+}
+
+#[derive(Serialize)]
+struct Both<'a> {
+    ablation: Repeatable<'a>,
+    timing: Timing,
+}
+
+/// Runs all variants of the scene; one that cannot be built is a row that says why.
+pub fn ablate(arguments: &Arguments) -> Result<(), Failure> {
+    let folder = arguments.out.as_ref();
+    let folder = folder
+        .map(|out| Folder::new(out, arguments.force))
+        .transpose()?;
+    let (scene, _) = arguments.scene.load()?;
+    let body = Observed::choose(&scene, arguments.body.as_deref())
+        .map_err(|e| Failure::bad_input(e.to_string()))?;
+    let runs = arguments.runs.map(|runs| runs as usize);
+    let ablation = measure(&scene, body, runs, &mut |begun| {
+        if !arguments.quiet {
+            say(begun);
+        }
+    });
+    if let Some(folder) = folder {
+        folder.write(&ablation)?;
+    }
+    if !arguments.json {
+        return print(&ablation.text());
+    }
+    let both = Both {
+        ablation: ablation.repeatable(),
+        timing: ablation.timing(),
+    };
+    match serde_json::to_string_pretty(&both) {
+        Ok(json) => print(&format!("{json}\n")),
+        Err(e) => Err(Failure::system(e.to_string())),
+    }
+}
