@@ -42,6 +42,7 @@ pub mod force;
 pub mod initial;
 pub mod kinematics;
 pub mod link;
+pub mod machine;
 pub mod marker;
 pub mod math;
 pub mod model;

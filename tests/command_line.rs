@@ -106,6 +106,31 @@ fn a_repeated_run_differs_in_its_timing_only() {
     }
 }
 
+/// An accuracy on the command line replaces the step of the scene; a number alone is the position.
+#[test]
+fn an_accuracy_replaces_the_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("controlled");
+    let accuracy = ["--accuracy", "position=1e-8,horizon=0.02"];
+    let output = run(&out, &accuracy);
+    expect(
+        &output,
+        0,
+        "accuracy: 1e-8 m over 0.02 s asked for, steps from",
+    );
+    let control = &summary(&out)["accuracy"];
+    assert_eq!(control["position"], 1e-8);
+    assert!(control["rejected_steps"].as_u64() > Some(0));
+    let inspect = |arguments: &[&str]| looselink(&[&["inspect"], arguments].concat());
+    let output = inspect(&["scenes/pendulum.toml", "--accuracy", "1e-9"]);
+    expect(&output, 0, "");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("with an error of 1e-9 m in 10.0 s"));
+    let output = inspect(&[SCENE, "--accuracy", "1e-9"]);
+    expect(&output, 2, "missing key `horizon` in integrator.accuracy");
+    let output = inspect(&[SCENE, "--accuracy", "1e-9 m"]);
+    expect(&output, 2, "--set:1:");
+}
+
 #[test]
 fn quiet_is_silent() {
     let folder = tempfile::tempdir().unwrap();

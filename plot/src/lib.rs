@@ -36,6 +36,10 @@ pub mod palette {
     pub const ORANGE: Color = (230, 159, 0);
     /// Sixth series.
     pub const SKY: Color = (86, 180, 233);
+    /// Seventh series (of Tol's palette, as is the eighth).
+    pub const INDIGO: Color = (51, 34, 136);
+    /// Eighth series.
+    pub const BROWN: Color = (136, 84, 40);
     /// Reference curves such as the ideal mechanism.
     pub const GREY: Color = (130, 130, 130);
     /// Bounds and reference lines.

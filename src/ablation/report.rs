@@ -5,7 +5,7 @@ use super::measure::{Cost, Counts, Physics};
 use super::table::Table;
 use super::variants::Role;
 use super::{Ablation, Header, Outcome, Row};
-use crate::output::machine;
+use crate::machine::{Machine, machine};
 use plot::{digits, si};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -66,7 +66,7 @@ impl<'a> RepeatableRow<'a> {
 /// What of an ablation differs when it is repeated: `timing.json`.
 #[derive(Debug, Serialize)]
 pub struct Timing {
-    machine: String,
+    machine: Machine,
     variants: Vec<TimingRow>,
 }
 

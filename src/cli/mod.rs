@@ -62,7 +62,7 @@ struct SceneArguments {
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
     /// Follow an estimate of the error instead of a step: the error allowed in positions \[m\] and the time \[s\] over which it
-    /// may gather, for example `position=1e-9,horizon=0.01`.
+    /// may gather, for example `position=1e-9,horizon=0.01`; a number alone is the position.
     #[arg(long, value_name = "position=M[,horizon=S]")]
     accuracy: Option<String>,
 }
@@ -70,11 +70,14 @@ struct SceneArguments {
 impl SceneArguments {
     fn load(&self) -> Result<(Scene, Simulation), SceneError> {
         let mut overrides = self.overrides.clone();
-        overrides.extend(
-            self.accuracy
-                .as_ref()
-                .map(|accuracy| format!("integrator.accuracy={{ {accuracy} }}")),
-        );
+        overrides.extend(self.accuracy.as_ref().map(|accuracy| {
+            let key = if accuracy.contains('=') {
+                ""
+            } else {
+                "position="
+            };
+            format!("integrator.accuracy={{ {key}{accuracy} }}")
+        }));
         let scene = Scene::load(&self.scene, &overrides)?;
         let simulation = Simulation::new(&scene)?;
         Ok((scene, simulation))

@@ -2,13 +2,10 @@
 
 use super::failure::Failure;
 use super::print;
+use super::progress::say;
 use clap::Args;
-use looselink::precision::{
-    Effort, Machine, Outcome, Study, Timing, figure, machine, run, table, timing_table,
-};
-use serde::Serialize;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use looselink::precision::{Effort, Folder, Study, run};
+use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -31,33 +28,10 @@ pub struct Arguments {
     quiet: bool,
 }
 
-/// What `timing.json` holds.
-#[derive(Serialize)]
-struct Times<'a> {
-    machine: &'a Machine,
-    runs: Vec<Time<'a>>,
-}
-
-#[derive(Serialize)]
-struct Time<'a> {
-    curve: &'a str,
-    pace: looselink::precision::Pace,
-    seconds: Option<Timing>,
-}
-
 /// Makes all runs of a study and writes what they found and what they took.
 pub fn precision(arguments: &Arguments) -> Result<(), Failure> {
+    let folder = Folder::new(&arguments.out, arguments.force)?;
     let study = Study::load(&arguments.study)?;
-    let out = &arguments.out;
-    let names = ["precision.json", "timing.json", "precision.md"];
-    if let Some(there) = names.iter().find(|name| out.join(name).exists())
-        && !arguments.force
-    {
-        return Err(Failure::bad_input(format!(
-            "`{}` holds a result already (`{there}`); choose another folder, or replace it with --force",
-            out.display()
-        )));
-    }
     let effort = Effort {
         repeats: if arguments.smoke {
             1
@@ -68,50 +42,8 @@ pub fn precision(arguments: &Arguments) -> Result<(), Failure> {
     };
     let outcome = run(&study, effort, &mut |name| {
         if !arguments.quiet {
-            // a study does not fail because nobody listens
-            let _ = writeln!(std::io::stderr(), "{name}");
+            say(name);
         }
     })?;
-    write(out, &study, &outcome)
-}
-
-fn write(out: &Path, study: &Study, outcome: &Outcome) -> Result<(), Failure> {
-    let refused =
-        |e: std::io::Error| Failure::system(format!("cannot write `{}`: {e}", out.display()));
-    std::fs::create_dir_all(out).map_err(refused)?;
-    let machine = machine();
-    let runs = outcome.runs.iter().zip(&outcome.timings);
-    let times = Times {
-        machine: &machine,
-        runs: runs
-            .map(|(run, seconds)| Time {
-                curve: &run.curve,
-                pace: run.pace,
-                seconds: *seconds,
-            })
-            .collect(),
-    };
-    let tables = format!(
-        "# {}\n\n![Work and precision](precision.png)\n\n{}\n{}",
-        outcome.title,
-        table(outcome),
-        timing_table(outcome, &machine)
-    );
-    for (name, text) in [
-        ("precision.json", json(outcome)?),
-        ("timing.json", json(&times)?),
-        ("precision.md", tables.clone()),
-    ] {
-        std::fs::write(out.join(name), text).map_err(refused)?;
-    }
-    plot::save(&figure(study, outcome), out, "precision")
-        .map_err(|e| Failure::system(format!("{e:?}")))?;
-    print(&tables)
-}
-
-fn json(value: &impl Serialize) -> Result<String, Failure> {
-    match serde_json::to_string_pretty(value) {
-        Ok(text) => Ok(text + "\n"),
-        Err(e) => Err(Failure::system(e.to_string())),
-    }
+    print(&folder.write(&study, &outcome)?)
 }

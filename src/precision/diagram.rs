@@ -4,13 +4,15 @@ use super::errors::NORMS;
 use super::{Outcome, Pace, Study};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
-const COLORS: [Color; 8] = [
+const COLORS: [Color; 10] = [
     palette::BLUE,
     palette::VERMILION,
     palette::GREEN,
     palette::PURPLE,
     palette::ORANGE,
     palette::SKY,
+    palette::INDIGO,
+    palette::BROWN,
     palette::BLACK,
     palette::GREY,
 ];
@@ -25,11 +27,11 @@ pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
             _ => true,
         };
         if asked {
-            panels.push(against_time(study, outcome, name, unit, of));
+            panels.push(against_time(outcome, name, unit, of));
         }
     }
-    panels.push(against_pace(study, outcome, false));
-    panels.push(against_pace(study, outcome, true));
+    panels.push(against_pace(outcome, false));
+    panels.push(against_pace(outcome, true));
     panels.retain(|panel| !panel.marks.is_empty());
     let mut rows = Vec::new();
     while !panels.is_empty() {
@@ -90,7 +92,6 @@ fn lines(label: &str, color: Color, (x, y): (Vec<f64>, Vec<f64>)) -> Vec<Mark> {
 }
 
 fn against_time(
-    study: &Study,
     outcome: &Outcome,
     name: &str,
     unit: &'static str,
@@ -98,12 +99,8 @@ fn against_time(
 ) -> Panel {
     let seconds = |i: usize| outcome.timings[i].map(|t| t.median);
     let mut marks = Vec::new();
-    for (curve, color) in study.curves.iter().zip(COLORS.into_iter().cycle()) {
-        marks.extend(lines(
-            &curve.name,
-            color,
-            points(outcome, &curve.name, seconds, of),
-        ));
+    for (curve, color) in outcome.curves().into_iter().zip(COLORS.into_iter().cycle()) {
+        marks.extend(lines(curve, color, points(outcome, curve, seconds, of)));
     }
     let floor = of(&outcome.floor);
     if floor > 0.0 && name != "energy" {
@@ -119,16 +116,16 @@ fn against_time(
 }
 
 /// Against the accuracies asked for with `asked`, else against steps.
-fn against_pace(study: &Study, outcome: &Outcome, asked: bool) -> Panel {
+fn against_pace(outcome: &Outcome, asked: bool) -> Panel {
     let abscissa = |i: usize| match (outcome.runs[i].pace, asked) {
         (Pace::Step(step), false) => Some(step),
         (Pace::Accuracy { position, .. }, true) => Some(position),
         _ => None,
     };
     let mut marks = Vec::new();
-    for (curve, color) in study.curves.iter().zip(COLORS.into_iter().cycle()) {
-        let found = points(outcome, &curve.name, abscissa, |e| e.position);
-        marks.extend(lines(&curve.name, color, found));
+    for (curve, color) in outcome.curves().into_iter().zip(COLORS.into_iter().cycle()) {
+        let found = points(outcome, curve, abscissa, |e| e.position);
+        marks.extend(lines(curve, color, found));
     }
     let top = marks
         .iter()
@@ -138,7 +135,7 @@ fn against_pace(study: &Study, outcome: &Outcome, asked: bool) -> Panel {
         });
     for (i, run) in outcome.runs.iter().enumerate() {
         if let (Err(_), Some(x)) = (&run.result, abscissa(i)) {
-            let curve = study.curves.iter().position(|c| c.name == run.curve);
+            let curve = outcome.curves().iter().position(|c| *c == run.curve);
             let color = COLORS[curve.unwrap_or(0) % COLORS.len()];
             marks.push(Mark::cross("", color, (x, top)));
         }

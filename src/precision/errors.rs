@@ -1,7 +1,6 @@
 //! How far two runs are apart, in several norms.
 
 use super::{Study, StudyError};
-use crate::simulate::Recording;
 use serde::Serialize;
 
 /// The distance of a run from the reference.
@@ -29,6 +28,7 @@ pub const NORMS: [Norm; 4] = [
 ];
 
 /// What a run recorded of what is compared.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Series {
     interval: f64,
     position: Vec<Vec<f64>>,
@@ -38,8 +38,12 @@ pub(super) struct Series {
 }
 
 impl Series {
-    pub fn of(study: &Study, recording: &Recording) -> Result<Series, StudyError> {
-        let column = |name: &String| match recording.get(name) {
+    /// From the columns of a run by the names of their channels.
+    pub fn of<'a>(
+        study: &Study,
+        get: &dyn Fn(&str) -> Option<&'a [f64]>,
+    ) -> Result<Series, StudyError> {
+        let column = |name: &String| match get(name) {
             Some(column) => Ok(column.to_vec()),
             None => Err(StudyError::plain(format!(
                 "the scene has no channel {name:?}"

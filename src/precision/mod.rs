@@ -6,15 +6,15 @@
 
 mod diagram;
 mod errors;
-mod machine;
+mod files;
 mod study;
 mod table;
 
 pub use diagram::figure;
 pub use errors::Errors;
-pub use machine::{Machine, machine};
+pub use files::Folder;
 pub use study::{Curve, Pace, Reference, Study, StudyError};
-pub use table::{table, timing_table};
+pub use table::{page, table};
 
 use crate::scene::{Scene, SceneError};
 use crate::simulate::{Recording, Report, RunError, Simulation};
@@ -43,6 +43,61 @@ pub struct Outcome {
     /// Their times, in the same order.
     #[serde(skip)]
     pub timings: Vec<Option<Timing>>,
+    /// What the reference recorded.
+    #[serde(skip)]
+    exact: Series,
+}
+
+impl Outcome {
+    /// Adds a point of another program, which has recorded the channels of the study at the same instants.
+    ///
+    /// # Errors
+    /// A channel that it did not record.
+    pub fn add(
+        &mut self,
+        study: &Study,
+        curve: &str,
+        pace: Pace,
+        made: Result<Made, String>,
+    ) -> Result<(), StudyError> {
+        let (result, timing) = match made {
+            Ok(made) => {
+                let errors = Series::of(study, made.columns)?.errors(&self.exact);
+                let work = made.work;
+                (Ok(Measured { errors, work }), Some(made.timing))
+            }
+            Err(error) => (Err(error), None),
+        };
+        self.runs.push(Run {
+            curve: curve.to_owned(),
+            pace,
+            result,
+        });
+        self.timings.push(timing);
+        Ok(())
+    }
+
+    /// Names of the curves in the order of their first points.
+    pub fn curves(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for run in &self.runs {
+            if !names.contains(&run.curve.as_str()) {
+                names.push(&run.curve);
+            }
+        }
+        names
+    }
+}
+
+/// A run that reached its end.
+#[derive(Clone, Copy)]
+pub struct Made<'a> {
+    /// What it recorded, by the names of channels.
+    pub columns: &'a dyn Fn(&str) -> Option<&'a [f64]>,
+    /// Work done.
+    pub work: Work,
+    /// Its time.
+    pub timing: Timing,
 }
 
 /// One point of a curve.
@@ -110,6 +165,22 @@ fn record(scene: &Scene) -> Result<(Recording, Report), Failed> {
     Ok((recording, simulation.report()))
 }
 
+impl Timing {
+    /// Of at least one measured time \[s\].
+    pub fn of(mut seconds: Vec<f64>) -> Timing {
+        seconds.sort_by(f64::total_cmp);
+        let (repeats, middle) = (seconds.len(), seconds.len() / 2);
+        Timing {
+            median: match repeats % 2 {
+                1 => seconds[middle],
+                _ => 0.5 * (seconds[middle - 1] + seconds[middle]),
+            },
+            least: seconds[0],
+            repeats,
+        }
+    }
+}
+
 /// Processor times of repeated runs, without recording.
 fn time(scene: &Scene, repeats: usize) -> Result<Timing, Failed> {
     let mut seconds = Vec::with_capacity(repeats);
@@ -119,16 +190,7 @@ fn time(scene: &Scene, repeats: usize) -> Result<Timing, Failed> {
         simulation.run(&mut ())?;
         seconds.push(clock.elapsed().as_secs_f64());
     }
-    seconds.sort_by(f64::total_cmp);
-    let middle = repeats / 2;
-    Ok(Timing {
-        median: match repeats % 2 {
-            1 => seconds[middle],
-            _ => 0.5 * (seconds[middle - 1] + seconds[middle]),
-        },
-        least: seconds[0],
-        repeats,
-    })
+    Ok(Timing::of(seconds))
 }
 
 /// Why a point of a curve is missing.
@@ -161,12 +223,18 @@ pub fn run(
             Failed::Run(e) => StudyError::plain(format!("the reference with {pace} fails: {e}")),
         };
         let (recording, _) = record(&scene).map_err(failed)?;
-        Series::of(study, &recording)
+        Series::of(study, &|name| recording.get(name))
     };
     let rough = reference(coarse, tell)?;
     let exact = reference(fine, tell)?;
     let floor = rough.errors(&exact);
-    let (mut runs, mut timings) = (Vec::new(), Vec::new());
+    let mut outcome = Outcome {
+        title: study.title.clone(),
+        floor,
+        runs: Vec::new(),
+        timings: Vec::new(),
+        exact,
+    };
     for curve in &study.curves {
         let count = if effort.smoke { 1 } else { usize::MAX };
         for pace in curve.paces().into_iter().take(count) {
@@ -175,28 +243,18 @@ pub fn run(
             let made = record(&scene).and_then(|(recording, report)| {
                 Ok((recording, report, time(&scene, effort.repeats)?))
             });
-            let (result, timing) = match made {
+            match made {
                 Ok((recording, report, timing)) => {
-                    let measured = Measured {
-                        errors: Series::of(study, &recording)?.errors(&exact),
+                    let made = Made {
+                        columns: &|name| recording.get(name),
                         work: Work::of(&report),
+                        timing,
                     };
-                    (Ok(measured), Some(timing))
+                    outcome.add(study, &curve.name, pace, Ok(made))?;
                 }
-                Err(error) => (Err(error.to_string()), None),
-            };
-            runs.push(Run {
-                curve: curve.name.clone(),
-                pace,
-                result,
-            });
-            timings.push(timing);
+                Err(error) => outcome.add(study, &curve.name, pace, Err(error.to_string()))?,
+            }
         }
     }
-    Ok(Outcome {
-        title: study.title.clone(),
-        floor,
-        runs,
-        timings,
-    })
+    Ok(outcome)
 }

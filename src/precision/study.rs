@@ -93,6 +93,8 @@ pub enum Pace {
         /// Time over which it may gather.
         horizon: f64,
     },
+    /// The relative tolerance of a program that is not ours.
+    Tolerance(f64),
 }
 
 impl fmt::Display for Pace {
@@ -100,6 +102,7 @@ impl fmt::Display for Pace {
         match self {
             Pace::Step(step) => write!(f, "step {}", plot::si(*step, "s")),
             Pace::Accuracy { position, .. } => write!(f, "accuracy {}", plot::si(*position, "m")),
+            Pace::Tolerance(relative) => write!(f, "tolerance {relative:e}"),
         }
     }
 }
@@ -185,6 +188,7 @@ impl Study {
                 Pace::Accuracy { position, horizon } => format!(
                     "integrator.accuracy={{ position = {position:?}, horizon = {horizon:?} }}"
                 ),
+                Pace::Tolerance(_) => unreachable!("curves of a study have steps or accuracies"),
             },
         ]);
         Scene::load(&self.scene, &overrides)

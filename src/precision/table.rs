@@ -1,7 +1,8 @@
 //! A study as tables in Markdown: what was found, and what it took.
 
 use super::errors::NORMS;
-use super::{Machine, Outcome, Pace};
+use super::{Outcome, Pace};
+use crate::machine::Machine;
 use std::fmt::Write;
 
 const WRITES: &str = "a string takes any text";
@@ -19,7 +20,7 @@ pub fn table(outcome: &Outcome) -> String {
             Ok(measured) => {
                 let [position, acceleration, impulse, energy] = cells(&measured.errors);
                 let asked = match run.pace {
-                    Pace::Step(_) => String::new(),
+                    Pace::Step(_) | Pace::Tolerance(_) => String::new(),
                     Pace::Accuracy { position, .. } => {
                         plot::digits(measured.errors.position / position)
                     }
@@ -44,8 +45,18 @@ pub fn table(outcome: &Outcome) -> String {
     out
 }
 
+/// A page with the diagrams and both tables.
+pub fn page(outcome: &Outcome, machine: &Machine) -> String {
+    format!(
+        "# {}\n\n![Work and precision](precision.png)\n\n{}\n{}",
+        outcome.title,
+        table(outcome),
+        timing_table(outcome, machine)
+    )
+}
+
 /// Processor times of all runs, and where they were measured.
-pub fn timing_table(outcome: &Outcome, machine: &Machine) -> String {
+fn timing_table(outcome: &Outcome, machine: &Machine) -> String {
     let mut out = String::from(
         "| method | step or accuracy | position error | median | least | runs |\n|---|---|---|---|---|---|\n",
     );
@@ -65,15 +76,9 @@ pub fn timing_table(outcome: &Outcome, machine: &Machine) -> String {
         )
         .expect(WRITES);
     }
-    let unknown = || "unknown".to_owned();
     writeln!(
         out,
-        "\nProcessor time of the integration on one core, reading and compiling of the scene left out. {}; {}; commit {}, \
-         Cargo.lock {}.",
-        machine.processor,
-        machine.compiler,
-        machine.commit.clone().unwrap_or_else(unknown),
-        machine.lock.clone().unwrap_or_else(unknown)
+        "\nProcessor time of the integration on one core, reading and compiling of the scene left out. {machine}."
     )
     .expect(WRITES);
     out

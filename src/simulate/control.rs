@@ -101,7 +101,7 @@ pub struct AccuracyReport {
     pub position: f64,
     /// ... over this time \[s\].
     pub horizon: f64,
-    /// The shortest and the longest step taken \[s\], those apart that a contact or a row of output ended.
+    /// The shortest and the longest step taken \[s\], before it was cut where a contact changed; 0 before the first step.
     pub steps: [f64; 2],
     /// Steps taken again because their estimated error was too large.
     pub rejected_steps: u64,
@@ -242,8 +242,8 @@ impl Controller {
         } else {
             self.next = proposed;
             self.last = r;
-            self.taken = [self.taken[0].min(h), self.taken[1].max(h)];
         }
+        self.taken = [self.taken[0].min(h), self.taken[1].max(h)];
         self.rejected = false;
         for (sums, error) in self.sums.iter_mut().zip(&self.error.v) {
             sums.add(*error);
@@ -267,7 +267,7 @@ impl Controller {
         AccuracyReport {
             position: self.accuracy.position,
             horizon: self.accuracy.horizon,
-            steps: self.taken,
+            steps: self.taken.map(|h| if h.is_finite() { h } else { 0.0 }),
             rejected_steps: self.rejections.iter().sum(),
             rejected_by: named
                 .map(|(i, count)| (model.unknown_names()[i].clone(), *count))

@@ -8,14 +8,15 @@ use cpu_time::ThreadTime;
 use looselink::scene::Scene;
 use looselink::simulate::{Recording, Report, Simulation};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What to run: a scene of the project, rows every `interval` up to `duration`.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// Path below `scenes/` without the extension.
-    pub scene: &'static str,
+    /// Path below `scenes/` without the extension, or of a file.
+    pub scene: Cow<'static, str>,
     /// Overrides `path=value` that change the mechanism.
     pub overrides: Vec<String>,
     /// What the overrides make of it, for reports.
@@ -79,8 +80,23 @@ impl Plan {
     /// A plan without overrides.
     pub fn new(scene: &'static str, duration: f64, interval: f64) -> Plan {
         Plan {
-            scene,
+            scene: scene.into(),
             overrides: Vec::new(),
+            variant: "",
+            duration,
+            interval,
+        }
+    }
+
+    /// A scene anywhere, with overrides that change the mechanism.
+    pub fn of_file(scene: &Path, overrides: &[String], duration: f64, interval: f64) -> Plan {
+        Plan {
+            scene: scene
+                .with_extension("")
+                .to_string_lossy()
+                .into_owned()
+                .into(),
+            overrides: overrides.to_vec(),
             variant: "",
             duration,
             interval,
@@ -109,7 +125,7 @@ impl Plan {
     /// File of the scene.
     pub fn path(&self) -> PathBuf {
         let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../scenes");
-        root.join(self.scene).with_extension("toml")
+        root.join(&*self.scene).with_extension("toml")
     }
 
     /// The scene as Looselink reads it; `step` in seconds.

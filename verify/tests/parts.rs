@@ -30,7 +30,9 @@ fn equations_of_ideal_joints_agree() {
 
 #[test]
 fn equations_of_loose_joints_agree() {
-    equations_agree(|p| p.overrides.is_empty() && ["3rrr/case3", "3rrr/case4"].contains(&p.scene));
+    equations_agree(|p| {
+        p.overrides.is_empty() && ["3rrr/case3", "3rrr/case4"].contains(&&*p.scene)
+    });
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use sha2::{Digest, Sha256};
+use std::fmt;
 use std::path::Path;
 use std::process::Command;
 
@@ -16,6 +17,21 @@ pub struct Machine {
     pub commit: Option<String>,
     /// SHA-256 of Cargo.lock, the first sixteen digits; absent where the file is.
     pub lock: Option<String>,
+}
+
+impl fmt::Display for Machine {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [commit, lock] = [&self.commit, &self.lock].map(|x| x.as_deref().unwrap_or("unknown"));
+        let Machine {
+            processor,
+            compiler,
+            ..
+        } = self;
+        write!(
+            f,
+            "{processor}; {compiler}; commit {commit}, Cargo.lock {lock}"
+        )
+    }
 }
 
 /// This machine and this program.

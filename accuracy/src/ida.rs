@@ -1,0 +1,66 @@
+//! The second implementation as a rival: full coordinates, stabilised index 2, IDA with located onsets.
+
+use looselink::precision::{Made, Outcome, Pace, Study, Timing, Work};
+use miette::{Result, miette};
+use verify::trajectory::{Plan, Trajectory, tolerances};
+
+/// Name of its curve.
+pub const NAME: &str = "IDA (second implementation)";
+
+/// Relative tolerances; positions are held to a thousandth of a metre of that, velocities to 0.1 m/s.
+const RELATIVE: [f64; 6] = [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
+
+/// Adds its curve to a study.
+///
+/// # Errors
+/// A channel of the study that it does not have.
+pub fn add(
+    study: &Study,
+    outcome: &mut Outcome,
+    repeats: usize,
+    tell: &mut dyn FnMut(&str),
+) -> Result<()> {
+    let plan = Plan::of_file(&study.scene, &study.set, study.duration, study.interval);
+    for relative in RELATIVE {
+        tell(&format!("{NAME}, tolerance {relative:e}"));
+        let made = repeated(&plan, relative, repeats);
+        let pace = Pace::Tolerance(relative);
+        let added = match &made {
+            Ok((run, timing)) => {
+                let made = Made {
+                    columns: &|name| run.columns.get(name).map(Vec::as_slice),
+                    work: work(run),
+                    timing: *timing,
+                };
+                outcome.add(study, NAME, pace, Ok(made))
+            }
+            Err(error) => outcome.add(study, NAME, pace, Err(error.to_string())),
+        };
+        added.map_err(|e| miette!("{e}"))?;
+    }
+    Ok(())
+}
+
+/// A first run, which is recorded, and the times of those after it.
+fn repeated(plan: &Plan, relative: f64, repeats: usize) -> Result<(Trajectory, Timing)> {
+    let run = || plan.cpp(&tolerances(relative, 1e-3 * relative, 0.1 * relative));
+    let first = run()?;
+    let seconds = (0..repeats).map(|_| Ok(run()?.seconds));
+    let seconds: Vec<f64> = seconds.collect::<Result<_>>()?;
+    Ok((first, Timing::of(seconds)))
+}
+
+fn work(run: &Trajectory) -> Work {
+    let verify::trajectory::Work::Cpp(counts) = &run.work else {
+        unreachable!("the second implementation ran");
+    };
+    let count = |n: i64| u64::try_from(n).unwrap_or(0);
+    Work {
+        steps: count(counts.steps),
+        rejected_steps: count(counts.error_failures + counts.convergence_failures),
+        location_trials: count(counts.restarts),
+        newton_iterations: count(counts.residuals),
+        factorisations: count(counts.jacobians),
+        onsets: run.impacts.len() as u64,
+    }
+}

@@ -1,0 +1,79 @@
+//! Runs every study in `studies/`, adds the second implementation with IDA as a rival, and writes ACCURACY.md.
+
+mod ida;
+mod page;
+
+use clap::Parser;
+use looselink::machine::machine;
+use looselink::precision::{Effort, Outcome, Study, figure, run};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Runs all studies of precision against time and writes ACCURACY.md.
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// Timed runs of every point, after one that is not timed.
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
+    repeats: u16,
+}
+
+/// A study and what came of it.
+pub struct Made {
+    /// Name of its file without the extension.
+    pub name: String,
+    /// What was asked.
+    pub study: Study,
+    /// What was found.
+    pub outcome: Outcome,
+}
+
+fn main() -> Result<()> {
+    let arguments = Arguments::parse();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .ok_or_else(|| miette!("the crate has no folder above it"))?;
+    let started = Instant::now();
+    let mut made = Vec::new();
+    for path in studies(&root.join("studies"))? {
+        let name = path.file_stem().unwrap_or_default();
+        let name = name.to_string_lossy().into_owned();
+        let study = Study::load(&path).map_err(|e| miette!("{e}"))?;
+        let repeats = arguments.repeats.into();
+        let effort = Effort {
+            repeats,
+            smoke: false,
+        };
+        let mut tell = |point: &str| eprintln!("{name}: {point}");
+        let mut outcome = run(&study, effort, &mut tell).map_err(|e| miette!("{e}"))?;
+        ida::add(&study, &mut outcome, repeats, &mut tell)?;
+        let pictures = root.join("accuracy/figures");
+        plot::save(&figure(&study, &outcome), &pictures, &name)?;
+        made.push(Made {
+            name,
+            study,
+            outcome,
+        });
+    }
+    let page = page::page(&made, &machine(), started.elapsed().as_secs_f64());
+    let path = root.join("ACCURACY.md");
+    std::fs::write(&path, page)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot write {}", path.display()))
+}
+
+/// Files of the folder, in the order of their names.
+fn studies(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(folder)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot read {}", folder.display()))?;
+    let mut paths = Vec::new();
+    for entry in entries {
+        let path = entry.into_diagnostic()?.path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    Ok(paths)
+}
