@@ -1,4 +1,4 @@
-//! Where times were measured, and with what.
+//! Processor times of repeated runs: where they were measured, with what, and their middle.
 
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -68,5 +68,42 @@ pub fn machine() -> Machine {
         compiler: env!("LOOSELINK_COMPILER"),
         commit,
         lock,
+    }
+}
+
+/// Processor time of a run \[s\].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Timing {
+    /// Median of the repeats; of an even number of them the mean of the two in the middle.
+    pub median: f64,
+    /// Shortest.
+    pub least: f64,
+    /// Number of repeats.
+    pub repeats: usize,
+}
+
+impl Timing {
+    /// Of at least one measured time \[s\].
+    pub fn of(mut seconds: Vec<f64>) -> Timing {
+        seconds.sort_by(f64::total_cmp);
+        let n = seconds.len();
+        Timing {
+            median: 0.5 * (seconds[(n - 1) / 2] + seconds[n / 2]),
+            least: seconds[0],
+            repeats: n,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Timing;
+
+    #[test]
+    fn medians() {
+        let median = |seconds: &[f64]| Timing::of(seconds.to_vec()).median;
+        assert_eq!(median(&[3.0]), 3.0);
+        assert_eq!(median(&[9.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(&[4.0, 1.0, 9.0, 2.0]), 3.0);
     }
 }

@@ -3,6 +3,7 @@
 //! Physics is measured at the rows of the output interval and repeats to the last bit. Processor time does not: it is
 //! taken of runs that record nothing, as the median of several.
 
+use crate::machine::Timing;
 use crate::scene::{BodyKind, ChannelPattern, Scene};
 use crate::simulate::{Recording, Report, Simulation};
 use cpu_time::ThreadTime;
@@ -294,10 +295,11 @@ pub(super) fn time(scenes: &[&Scene], runs: Option<usize>) -> Vec<Vec<f64>> {
 
 impl Cost {
     /// The cost of a run over `simulated` \[s\] in so many steps, from the processor times of several \[s\].
-    pub(super) fn new(mut seconds: Vec<f64>, steps: u64, simulated: f64) -> Cost {
-        let cpu_seconds = median(&mut seconds);
+    pub(super) fn new(seconds: Vec<f64>, steps: u64, simulated: f64) -> Cost {
+        let timing = Timing::of(seconds);
+        let cpu_seconds = timing.median;
         Cost {
-            runs: seconds.len(),
+            runs: timing.repeats,
             cpu_seconds,
             microseconds_a_step: 1e6 * cpu_seconds / steps as f64,
             cpu_seconds_a_simulated_second: cpu_seconds / simulated,
@@ -348,23 +350,4 @@ fn rms(values: &[f64]) -> f64 {
 
 fn largest(values: &[f64]) -> f64 {
     values.iter().copied().fold(0.0, f64::max)
-}
-
-/// The middle value; of an even number of values the mean of the two in the middle.
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    0.5 * (values[(n - 1) / 2] + values[n / 2])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::median;
-
-    #[test]
-    fn medians() {
-        assert_eq!(median(&mut [3.0]), 3.0);
-        assert_eq!(median(&mut [9.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(&mut [4.0, 1.0, 9.0, 2.0]), 3.0);
-    }
 }

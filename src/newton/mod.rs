@@ -323,10 +323,7 @@ impl Newton {
             system.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
             self.factor(system, s, w, work)?;
             self.b[..n].fill(0.0);
-            for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
-                *b = -phi;
-            }
-            self.back_substitute(system);
+            self.solve_for_phi(system);
             worst = (0, 0.0);
             for i in 0..n {
                 let way = self.b[i] + s.q_low[i];
@@ -400,6 +397,15 @@ impl Newton {
         Ok(system.powers(s, work))
     }
 
+    /// Solves for the right side `b`, whose unknown part is set, and -phi.
+    fn solve_for_phi(&mut self, system: &dyn System) {
+        let n = system.shape().unknowns;
+        for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
+            *b = -phi;
+        }
+        self.back_substitute(system);
+    }
+
     /// Solves for the right side `b` (unknowns set) and -phi, and adds the unknown part to a level of the state.
     fn move_by(
         &mut self,
@@ -408,10 +414,7 @@ impl Newton {
         s: &mut State,
     ) {
         let n = system.shape().unknowns;
-        for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
-            *b = -phi;
-        }
-        self.back_substitute(system);
+        self.solve_for_phi(system);
         for (x, d) in level(s).iter_mut().zip(&self.b[..n]) {
             *x += d;
         }

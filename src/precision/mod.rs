@@ -10,6 +10,7 @@ mod files;
 mod study;
 mod table;
 
+pub use crate::machine::Timing;
 pub use diagram::figure;
 pub use errors::Errors;
 pub use files::Folder;
@@ -132,17 +133,6 @@ pub struct Work {
     pub onsets: u64,
 }
 
-/// Processor time of a run \[s\].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Timing {
-    /// Median of the repeats.
-    pub median: f64,
-    /// Shortest.
-    pub least: f64,
-    /// Number of repeats.
-    pub repeats: usize,
-}
-
 impl Work {
     fn of(report: &Report) -> Work {
         let accuracy = report.accuracy.as_ref().map_or(0, |a| a.rejected_steps);
@@ -163,22 +153,6 @@ fn record(scene: &Scene) -> Result<(Recording, Report), Failed> {
     let mut recording = Recording::new(&simulation);
     simulation.run(&mut recording)?;
     Ok((recording, simulation.report()))
-}
-
-impl Timing {
-    /// Of at least one measured time \[s\].
-    pub fn of(mut seconds: Vec<f64>) -> Timing {
-        seconds.sort_by(f64::total_cmp);
-        let (repeats, middle) = (seconds.len(), seconds.len() / 2);
-        Timing {
-            median: match repeats % 2 {
-                1 => seconds[middle],
-                _ => 0.5 * (seconds[middle - 1] + seconds[middle]),
-            },
-            least: seconds[0],
-            repeats,
-        }
-    }
 }
 
 /// Processor times of repeated runs, without recording.

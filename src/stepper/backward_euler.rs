@@ -4,27 +4,18 @@
 //! v_1 = v + h a_1                q_1 = q + h v_1
 //! ```
 
-use super::{StepError, Stepper, accumulate, integrate};
+use super::{Stage, StepError, Stepper, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
 
 /// The scheme with its memory.
 #[derive(Debug)]
-pub struct BackwardEuler {
-    q_hat: Vec<f64>,
-    v_hat: Vec<f64>,
-    /// q_hat - q.
-    way: Vec<f64>,
-}
+pub struct BackwardEuler(Stage);
 
 impl BackwardEuler {
     /// Memory for a system.
     pub fn new(shape: Shape) -> BackwardEuler {
-        BackwardEuler {
-            q_hat: vec![0.0; shape.unknowns],
-            v_hat: vec![0.0; shape.unknowns],
-            way: vec![0.0; shape.unknowns],
-        }
+        BackwardEuler(Stage::new(shape))
     }
 }
 
@@ -43,20 +34,11 @@ impl Stepper for BackwardEuler {
         to.t = t;
         system.prescribe(from, to, work)?;
         for i in 0..system.shape().unknowns {
-            self.v_hat[i] = from.v[i];
-            self.way[i] = h * from.v[i];
-            self.q_hat[i] = from.q[i] + self.way[i];
+            self.0.set(from, i, from.v[i], h * from.v[i]);
         }
         let w = Weights { q: h * h, v: h };
-        newton.solve_stage(system, w, &self.q_hat, &self.v_hat, to, work)?;
-        accumulate(from, &self.way, h * h, to);
-        let clamps = newton.finish_stage(system, to, work)?;
-        to.integrals = from.integrals;
-        integrate(
-            h,
-            &[(0.5, &from.powers), (0.5, &to.powers)],
-            &mut to.integrals,
-        );
+        let clamps = self.0.solve(system, w, from, to, newton, work)?;
+        integrate_ends(from, to);
         Ok(clamps)
     }
 }

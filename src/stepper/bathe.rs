@@ -21,7 +21,7 @@
 //! integrands, as Hosea & Shampine (1996, Appl. Numer. Math. 20:21) do for gamma = 2 - sqrt 2, where the scheme is TR-BDF2:
 //! e_v = h sum (w - c) a, e_q = h sum (w - c) v, both of h^3.
 
-use super::{Estimate, LocalError, StepError, Stepper, accumulate, integrate};
+use super::{Estimate, LocalError, Stage, StepError, Stepper, integrate};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
 
@@ -33,10 +33,7 @@ pub struct Bathe {
     /// Weights of the ledger at 0, gamma, 1: exact for quadratic integrands.
     quadrature: [f64; 3],
     middle: [State; 1],
-    q_hat: Vec<f64>,
-    v_hat: Vec<f64>,
-    /// q_hat - q.
-    way: Vec<f64>,
+    stage: Stage,
 }
 
 impl Bathe {
@@ -50,9 +47,7 @@ impl Bathe {
             weights: [(gamma - 1.0) * c1 + 0.5, c1, 0.5 - gamma * c1],
             quadrature: [1.0 - inner - last, inner, last],
             middle: [State::zeros(shape)],
-            q_hat: vec![0.0; shape.unknowns],
-            v_hat: vec![0.0; shape.unknowns],
-            way: vec![0.0; shape.unknowns],
+            stage: Stage::new(shape),
         }
     }
 }
@@ -76,20 +71,11 @@ impl Stepper for Bathe {
         middle.t = from.t + self.gamma * h;
         system.prescribe(from, middle, work)?;
         for i in 0..n {
-            self.v_hat[i] = from.v[i] + g * from.a[i];
-            self.way[i] = g * (from.v[i] + self.v_hat[i]);
-            self.q_hat[i] = from.q[i] + self.way[i];
+            let v_hat = from.v[i] + g * from.a[i];
+            self.stage.set(from, i, v_hat, g * (from.v[i] + v_hat));
         }
-        newton.solve_stage(
-            system,
-            Weights { q: g * g, v: g },
-            &self.q_hat,
-            &self.v_hat,
-            middle,
-            work,
-        )?;
-        accumulate(from, &self.way, g * g, middle);
-        let mut clamps = newton.finish_stage(system, middle, work)?;
+        let w = Weights { q: g * g, v: g };
+        let mut clamps = self.stage.solve(system, w, from, middle, newton, work)?;
 
         let [c0, c1, c2] = self.weights;
         let g = c2 * h;
@@ -97,20 +83,12 @@ impl Stepper for Bathe {
         to.t = t;
         system.prescribe(middle, to, work)?;
         for i in 0..n {
-            self.v_hat[i] = from.v[i] + h * (c0 * from.a[i] + c1 * middle.a[i]);
-            self.way[i] = h * (c0 * from.v[i] + c1 * middle.v[i] + c2 * self.v_hat[i]);
-            self.q_hat[i] = from.q[i] + self.way[i];
+            let v_hat = from.v[i] + h * (c0 * from.a[i] + c1 * middle.a[i]);
+            let way = h * (c0 * from.v[i] + c1 * middle.v[i] + c2 * v_hat);
+            self.stage.set(from, i, v_hat, way);
         }
-        newton.solve_stage(
-            system,
-            Weights { q: g * g, v: g },
-            &self.q_hat,
-            &self.v_hat,
-            to,
-            work,
-        )?;
-        accumulate(from, &self.way, g * g, to);
-        clamps += newton.finish_stage(system, to, work)?;
+        let w = Weights { q: g * g, v: g };
+        clamps += self.stage.solve(system, w, from, to, newton, work)?;
 
         let [w0, w1, w2] = self.quadrature;
         to.integrals = from.integrals;

@@ -15,7 +15,7 @@
 //! rho is the spectral radius at infinite frequency. b stands for the acceleration at t + (alpha_m - alpha_f) h. What is
 //! carried from step to step is therefore (b - a)/h, so that order two survives a change of the step; it starts at zero.
 
-use super::{StepError, Stepper, accumulate, integrate};
+use super::{Stage, StepError, Stepper, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
 
@@ -30,10 +30,7 @@ pub struct GeneralizedAlpha {
     lag: Vec<f64>,
     /// The same at its end.
     next_lag: Vec<f64>,
-    q_hat: Vec<f64>,
-    v_hat: Vec<f64>,
-    /// q_hat - q.
-    way: Vec<f64>,
+    stage: Stage,
 }
 
 impl GeneralizedAlpha {
@@ -57,10 +54,8 @@ impl GeneralizedAlpha {
             beta: 0.25 * (0.5 + gamma).powi(2),
             gamma,
             lag: zeros.clone(),
-            next_lag: zeros.clone(),
-            q_hat: zeros.clone(),
-            v_hat: zeros.clone(),
-            way: zeros,
+            next_lag: zeros,
+            stage: Stage::new(shape),
         }
     }
 }
@@ -93,27 +88,20 @@ impl Stepper for GeneralizedAlpha {
         system.prescribe(from, to, work)?;
         for i in 0..n {
             let (mean, next) = known(from, &self.lag, i);
-            self.v_hat[i] = from.v[i] + h * ((1.0 - gamma) * mean + gamma * next);
-            self.way[i] = h * (from.v[i] + h * ((0.5 - beta) * mean + beta * next));
-            self.q_hat[i] = from.q[i] + self.way[i];
+            let v_hat = from.v[i] + h * ((1.0 - gamma) * mean + gamma * next);
+            let way = h * (from.v[i] + h * ((0.5 - beta) * mean + beta * next));
+            self.stage.set(from, i, v_hat, way);
         }
         let w = Weights {
             q: h * h * beta * by_a,
             v: h * gamma * by_a,
         };
-        newton.solve_stage(system, w, &self.q_hat, &self.v_hat, to, work)?;
-        accumulate(from, &self.way, w.q, to);
-        let clamps = newton.finish_stage(system, to, work)?;
+        let clamps = self.stage.solve(system, w, from, to, newton, work)?;
         for i in 0..n {
             let (_, next) = known(from, &self.lag, i);
             self.next_lag[i] = (by_a * to.a[i] + next - to.a[i]) / h;
         }
-        to.integrals = from.integrals;
-        integrate(
-            h,
-            &[(0.5, &from.powers), (0.5, &to.powers)],
-            &mut to.integrals,
-        );
+        integrate_ends(from, to);
         Ok(clamps)
     }
 

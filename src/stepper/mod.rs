@@ -16,7 +16,7 @@ pub use velocity_verlet::VelocityVerlet;
 
 use crate::newton::{Failure, Newton};
 use crate::scene::Method;
-use crate::system::{INTEGRALS, PrescribeError, State, System, Work};
+use crate::system::{INTEGRALS, PrescribeError, Shape, State, System, Weights, Work};
 
 /// Why a step was not taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,6 +109,57 @@ pub fn stepper(method: Method, system: &dyn System) -> Box<dyn Stepper> {
         Method::VelocityVerlet => Box::new(VelocityVerlet::new(shape)),
         Method::DormandPrince => Box::new(DormandPrince::new(shape)),
     }
+}
+
+/// What an implicit stage starts from: q = q_hat + w.q a and v = v_hat + w.v a.
+#[derive(Debug)]
+struct Stage {
+    q_hat: Vec<f64>,
+    v_hat: Vec<f64>,
+    /// q_hat - q.
+    way: Vec<f64>,
+}
+
+impl Stage {
+    fn new(shape: Shape) -> Stage {
+        Stage {
+            q_hat: vec![0.0; shape.unknowns],
+            v_hat: vec![0.0; shape.unknowns],
+            way: vec![0.0; shape.unknowns],
+        }
+    }
+
+    /// Sets what belongs to unknown `i`.
+    fn set(&mut self, from: &State, i: usize, v_hat: f64, way: f64) {
+        self.v_hat[i] = v_hat;
+        self.way[i] = way;
+        self.q_hat[i] = from.q[i] + way;
+    }
+
+    /// Solves the stage into `to` and ends it; returns the number of clamped contacts.
+    fn solve(
+        &self,
+        system: &dyn System,
+        w: Weights,
+        from: &State,
+        to: &mut State,
+        newton: &mut Newton,
+        work: &mut Work,
+    ) -> Result<usize, StepError> {
+        newton.solve_stage(system, w, &self.q_hat, &self.v_hat, to, work)?;
+        accumulate(from, &self.way, w.q, to);
+        Ok(newton.finish_stage(system, to, work)?)
+    }
+}
+
+/// The ledger of a step without inner stages: the trapezoidal rule over its ends.
+fn integrate_ends(from: &State, to: &mut State) {
+    to.integrals = from.integrals;
+    integrate(
+        to.t - from.t,
+        &[(0.5, &from.powers), (0.5, &to.powers)],
+        &mut to.integrals,
+    );
 }
 
 /// Adds the weighted integrands of some states to the integrals of the ledger.

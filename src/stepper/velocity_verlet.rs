@@ -8,7 +8,7 @@
 //! Forces that depend on velocities take the predicted one, whose error of h^2 leaves order two. Symplectic where there are
 //! none; stable while h omega < 2 in every mode.
 
-use super::{StepError, Stepper, accumulate, integrate};
+use super::{StepError, Stepper, accumulate, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Work};
 
@@ -53,12 +53,7 @@ impl Stepper for VelocityVerlet {
             to.v[i] = from.v[i] + 0.5 * h * (from.a[i] + to.a[i]);
         }
         let clamps = system.powers(to, work);
-        to.integrals = from.integrals;
-        integrate(
-            h,
-            &[(0.5, &from.powers), (0.5, &to.powers)],
-            &mut to.integrals,
-        );
+        integrate_ends(from, to);
         Ok(clamps)
     }
 }
