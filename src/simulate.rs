@@ -23,7 +23,7 @@ use crate::initial::{self, redundancy};
 use crate::model::Model;
 use crate::newton::{Failure, Newton};
 use crate::record::Recorder;
-use crate::scene::{Analysis, Method, Pace, Scene, SceneError};
+use crate::scene::{Accuracy, Analysis, Method, Pace, Scene, SceneError};
 use crate::statics::Statics;
 use crate::stepper::{StepError, Stepper, stepper};
 use crate::system::{PrescribeError, State, System, Work};
@@ -52,20 +52,18 @@ pub enum RunError {
     },
     /// No step is short enough for the accuracy that the scene asks for.
     #[error(
-        "the accuracy of {position:e} m over {horizon} s cannot be reached at t = {t} s: the estimated error of {name} is too large \
-         even at a step of {step:.1e} s"
+        "the accuracy of {accuracy} cannot be reached at t = {t} s: the estimated error of {name} is too large even at a step of \
+         {step:.1e} s"
     )]
     Accuracy {
-        /// Coordinate with the largest error.
+        /// Coordinate with the largest error, or the balance of energies.
         name: String,
         /// When \[s\].
         t: f64,
         /// The last step tried \[s\].
         step: f64,
-        /// What was asked for \[m\] ...
-        position: f64,
-        /// ... over this time \[s\].
-        horizon: f64,
+        /// What was asked for.
+        accuracy: Accuracy,
     },
     /// No equilibrium was found.
     #[error("no equilibrium at t = {t}: {name}: {cause}")]
@@ -265,10 +263,14 @@ impl Simulation {
             let goal = self.pacer.goal(self.state.t, target);
             let (mut clamps, reached) = self.try_step(goal)?;
             if let Pacer::Controller(controller) = &mut self.pacer {
-                match controller.judge(&*self.stepper, &self.state, &self.trial, goal) {
+                match controller.judge(&*self.stepper, &self.model, &self.state, &self.trial, goal)
+                {
                     Verdict::Keep => {}
                     Verdict::Repeat => continue,
-                    Verdict::Stuck(worst) => return Err(self.stuck(worst)),
+                    Verdict::Stuck(worst) => {
+                        let name = controller.name(&self.model, worst);
+                        return Err(self.stuck(name));
+                    }
                 }
             }
             if self.locates {
@@ -397,16 +399,15 @@ impl Simulation {
         Ok(())
     }
 
-    fn stuck(&self, worst: usize) -> RunError {
+    fn stuck(&self, name: String) -> RunError {
         let Pace::Accuracy(accuracy) = self.scene.integrator.pace else {
             unreachable!("only a run with an accuracy judges its steps")
         };
         RunError::Accuracy {
-            name: self.model.unknown_name(worst),
+            name,
             t: self.state.t,
             step: self.trial.t - self.state.t,
-            position: accuracy.position,
-            horizon: accuracy.horizon,
+            accuracy,
         }
     }
 

@@ -26,7 +26,6 @@ pub struct Statics {
     phi: Vec<f64>,
     k: Vec<f64>,
     b: Vec<f64>,
-    solve: Vec<f64>,
     /// Residual that is taken off: zero but on the way to an equilibrium start.
     offset: Vec<f64>,
     /// Work done so far.
@@ -43,7 +42,6 @@ impl Statics {
             phi: vec![0.0; shape.multipliers],
             k: vec![0.0; model.symbolic().len()],
             b: vec![0.0; size],
-            solve: vec![0.0; size],
             offset: vec![0.0; shape.unknowns],
             counters: Counters::default(),
         }
@@ -120,7 +118,7 @@ impl Statics {
         let symbolic = model.symbolic();
         let full = self.k.clone();
         match symbolic.factor(&mut self.k) {
-            Ok(()) => symbolic.solve(&self.k, &mut self.b, &mut self.solve),
+            Ok(()) => symbolic.solve(&self.k, &mut self.b),
             Err(weak) => {
                 self.counters.fallbacks += 1;
                 let dense = DenseLu::factor(symbolic, &full);

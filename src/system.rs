@@ -9,6 +9,7 @@
 //! q the coordinates (unknown ones first, known ones after them), v and a their rates, lambda the multipliers, z the
 //! contact memory, which changes only between accepted steps.
 
+use crate::kinematics::Series;
 use crate::math::lu::Symbolic;
 
 /// Sizes of a system.
@@ -105,15 +106,10 @@ impl State {
 /// Derivatives of (q, v) by the unknown of a stage, the acceleration; that of a is 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
-    /// dq/da \[s2\]; 0 for the acceleration-level matrix.
+    /// dq/da \[s2\].
     pub q: f64,
-    /// dv/da \[s\]; 0 for the acceleration-level matrix.
+    /// dv/da \[s\].
     pub v: f64,
-}
-
-impl Weights {
-    /// The acceleration level: M and Phi_q alone.
-    pub const ACCELERATION: Weights = Weights { q: 0.0, v: 0.0 };
 }
 
 /// Memory that a system needs while it evaluates, and the counts of what it evaluated.
@@ -130,18 +126,14 @@ pub struct Work {
 pub struct Inner {
     /// Its state.
     pub state: State,
-    /// Its own work memory.
-    pub work: Work,
-    /// Residual, one number a coordinate.
-    pub r: Vec<f64>,
     /// Constraint values.
     pub phi: Vec<f64>,
-    /// Tangent.
+    /// Matrix of the acceleration level.
     pub k: Vec<f64>,
     /// Right side, unknowns and multipliers.
     pub b: Vec<f64>,
-    /// Work memory of the triangular solves.
-    pub solve: Vec<f64>,
+    /// Its motion over a span of time.
+    pub(crate) series: Series,
 }
 
 /// A motion of the known coordinates that does not exist.
@@ -158,12 +150,15 @@ pub struct PrescribeError {
 ///
 /// `r` and `phi` are overwritten. `r` has a row for every coordinate; the rows of known coordinates hold the force
 /// that must act on them. The tangent is the matrix of the stage equations in (a, lambda),
-/// \[\[M + w.v C + w.q K, Phi_q^T\], \[Phi_q, 0\]\] with C = df/dv and K = d(f + Phi_q^T lambda)/dq.
+/// \[\[M + w.v C + w.q K, Phi_q^T\], \[Phi_q, 0\]\] with C = df/dv and K = d(f + Phi_q^T lambda)/dq. The matrix of the
+/// acceleration level is \[\[M, Phi_q^T\], \[Phi_q, 0\]\]; it couples fewer unknowns, so it has a pattern of its own.
 pub trait System {
     /// Sizes.
     fn shape(&self) -> Shape;
     /// Pattern of the tangent: unknown coordinates, then multipliers.
     fn symbolic(&self) -> &Symbolic;
+    /// Pattern of the matrix of the acceleration level, in the same order of unknowns.
+    fn level_symbolic(&self) -> &Symbolic;
     /// Fresh work memory.
     fn work(&self) -> Work;
     /// Sets the known coordinates and their rates in `to` at time `to.t`; `from` is a nearby state.
@@ -188,6 +183,10 @@ pub trait System {
         k: &mut [f64],
         work: &mut Work,
     );
+    /// phi = Phi and the matrix of the acceleration level.
+    fn level(&self, at: &State, phi: &mut [f64], k: &mut [f64]);
+    /// The residual of the unknown coordinates without their accelerations and without multipliers, in the first rows of r.
+    fn free_residual(&self, at: &State, r: &mut [f64], work: &mut Work);
     /// Phi_q v.
     fn constraint_velocity(&self, at: &State, out: &mut [f64]);
     /// Phi_q a + d(Phi_q)/dt v.

@@ -118,7 +118,10 @@ fn rejections_are_counted_and_repeatable() {
         assert_eq!(bits(&first), bits(&second), "{name}");
     }
     let control = report.accuracy.unwrap();
-    assert_eq!((control.position, control.horizon), (1e-8, 0.008));
+    assert_eq!(
+        (control.asked.position, control.asked.horizon),
+        (1e-8, 0.008)
+    );
     assert!(control.rejected_steps > 0);
     assert_eq!(
         control.rejected_by.values().sum::<u64>(),
@@ -143,6 +146,33 @@ fn rejections_are_counted_and_repeatable() {
             .accuracy
             .is_none()
     );
+}
+
+/// Within the horizon no more energy is lost or gained than was asked for; without that, far more.
+#[test]
+fn an_accuracy_of_energy_holds_the_balance() {
+    let worst = Worst::new();
+    for (method, energy) in [("dormand_prince", 3e-9), ("bathe", 3e-7)] {
+        let gathered = |pace: String| {
+            let settings = settings(0.06, 5e-4, method, &pace);
+            let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+            let (recording, report) = run("3rrr/case3.toml", &settings);
+            let balance = recording.get("energy.numerical");
+            // windows of the horizon, 20 rows
+            let windows = balance.windows(21).map(|w| (w[20] - w[0]).abs());
+            (windows.fold(0.0, f64::max), report.accuracy.unwrap())
+        };
+        let (free, _) = gathered("accuracy={ position = 1e-5, horizon = 0.01 }".into());
+        let (held, control) = gathered(format!(
+            "accuracy={{ position = 1e-5, energy = {energy:e}, horizon = 0.01 }}"
+        ));
+        assert!(free > 3.0 * energy, "{method}: {free:e} J without");
+        assert!(control.rejected_by["the balance of energies"] > 0);
+        worst.see(held / energy);
+    }
+    Rung::HardCases
+        .asks("3-RRR with loose joints, an accuracy of energy asked for: energy lost within a horizon over what was asked for")
+        .within(&worst, 1.0, "what every step changes of the balance is measured, and their sum kept below");
 }
 
 /// An accuracy below rounding is not ground through: the run ends with the coordinate and the time.

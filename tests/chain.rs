@@ -9,6 +9,7 @@ pub struct Chain {
     pub masses: Vec<f64>,
     pub springs: Vec<f64>,
     symbolic: Symbolic,
+    level_symbolic: Symbolic,
 }
 
 impl Chain {
@@ -22,6 +23,7 @@ impl Chain {
             masses,
             springs,
             symbolic: Symbolic::analyse(n, &cliques, &vec![vec![]; n]),
+            level_symbolic: Symbolic::analyse(n, &[], &vec![vec![]; n]),
         }
     }
 
@@ -45,6 +47,9 @@ impl System for Chain {
     }
     fn symbolic(&self) -> &Symbolic {
         &self.symbolic
+    }
+    fn level_symbolic(&self) -> &Symbolic {
+        &self.level_symbolic
     }
     fn work(&self) -> Work {
         Work {
@@ -81,6 +86,18 @@ impl System for Chain {
                 k[self.symbolic.slot(i + 1, i) as usize] = -w.q * self.springs[i + 1];
             }
         }
+    }
+    fn level(&self, _: &State, _: &mut [f64], k: &mut [f64]) {
+        for (i, m) in self.masses.iter().enumerate() {
+            k[self.level_symbolic.slot(i, i) as usize] = *m;
+        }
+    }
+    fn free_residual(&self, at: &State, r: &mut [f64], work: &mut Work) {
+        let still = State {
+            a: vec![0.0; self.masses.len()],
+            ..at.clone()
+        };
+        self.residual(&still, r, &mut [], work);
     }
     fn constraint_velocity(&self, _: &State, _: &mut [f64]) {}
     fn constraint_acceleration(&self, _: &State, _: &mut [f64]) {}

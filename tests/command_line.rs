@@ -124,7 +124,9 @@ fn an_accuracy_replaces_the_step() {
     let inspect = |arguments: &[&str]| looselink(&[&["inspect"], arguments].concat());
     let output = inspect(&["scenes/pendulum.toml", "--accuracy", "1e-9"]);
     expect(&output, 0, "");
-    assert!(String::from_utf8_lossy(&output.stdout).contains("with an error of 1e-9 m in 10.0 s"));
+    assert!(
+        String::from_utf8_lossy(&output.stdout).contains("with an accuracy of 1e-9 m over 10 s")
+    );
     let output = inspect(&[SCENE, "--accuracy", "1e-9"]);
     expect(&output, 2, "missing key `horizon` in integrator.accuracy");
     let output = inspect(&[SCENE, "--accuracy", "1e-9 m"]);

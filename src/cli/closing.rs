@@ -62,8 +62,8 @@ pub fn lines(report: &Report) -> Vec<String> {
 fn accuracy(control: &AccuracyReport) -> String {
     let [shortest, longest] = control.steps;
     let mut line = format!(
-        "accuracy: {:e} m over {} s asked for, steps from {shortest:.1e} to {longest:.1e} s",
-        control.position, control.horizon
+        "accuracy: {} asked for, steps from {shortest:.1e} to {longest:.1e} s",
+        control.asked
     );
     let most = control.rejected_by.iter().max_by_key(|(_, count)| **count);
     if let Some((name, count)) = most {

@@ -50,10 +50,9 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
                     "load path to t = {duration:?} in about {:.0} steps",
                     duration / step
                 ),
-                (Pace::Accuracy(accuracy), _) => format!(
-                    "{duration:?} s, with an error of {:?} m in {:?} s",
-                    accuracy.position, accuracy.horizon
-                ),
+                (Pace::Accuracy(accuracy), _) => {
+                    format!("{duration:?} s, with an accuracy of {accuracy}")
+                }
             },
         ),
         (

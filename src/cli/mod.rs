@@ -61,9 +61,10 @@ struct SceneArguments {
     /// Replace a field of the scene, for example `integrator.step=1e-6`; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
-    /// Follow an estimate of the error instead of a step: the error allowed in positions \[m\] and the time \[s\] over which it
-    /// may gather, for example `position=1e-9,horizon=0.01`; a number alone is the position.
-    #[arg(long, value_name = "position=M[,horizon=S]")]
+    /// Follow an estimate of the error instead of a step: the error allowed in positions \[m\], that in the balance of energies
+    /// \[J\], and the time \[s\] over which they may gather, for example `position=1e-9,horizon=0.01`; a number alone is the
+    /// position.
+    #[arg(long, value_name = "position=M[,energy=J][,horizon=S]")]
     accuracy: Option<String>,
 }
 

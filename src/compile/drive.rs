@@ -43,11 +43,16 @@ pub(super) fn ideal_mechanism(
         return Err(scene.error(drive.span, message, label));
     }
     let dyads = find_dyads(&compiler, &mechanism);
+    let moving = (0..shape.coordinates).filter(|i| mechanism.fixed.iter().all(|(j, _)| i != j));
+    let moving = moving.collect();
     let mut kinematics = Kinematics {
         mechanism: Box::new(mechanism),
         offset: 0,
         dyads,
         start: Vec::new(),
+        moving,
+        period: motion::path(&drive.path).sweep(scene.simulation.duration).0,
+        duration: scene.simulation.duration,
     };
     let start = close(&compiler, drive, &kinematics)?;
     sweep(&compiler, drive, &kinematics, &start)?;
@@ -69,7 +74,7 @@ fn sweep(
     for k in 0..=poses {
         to.t = horizon * k as f64 / poses as f64;
         kinematics
-            .prescribe(&from, &mut to, &mut inner)
+            .solve_at(&from, &mut to, &mut inner)
             .map_err(|e| {
                 let message = format!("drive {}: {e}", drive.name);
                 c.scene

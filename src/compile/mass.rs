@@ -51,18 +51,7 @@ pub(super) fn weight(parts: &[Inertia], coordinates: usize) -> Vec<(usize, f64)>
 }
 
 /// Sums the parts; in the ideal mechanism they are kept, but every unknown has unit mass.
-pub(super) fn mass(
-    parts: Vec<Inertia>,
-    numbering: &Numbering,
-    symbolic: &Symbolic,
-    mode: Mode,
-) -> Mass {
-    let mut tangent = vec![0.0; symbolic.len()];
-    if mode == Mode::Ideal {
-        for i in 0..numbering.unknowns {
-            tangent[symbolic.slot(i, i) as usize] = 1.0;
-        }
-    }
+pub(super) fn mass(parts: Vec<Inertia>, numbering: &Numbering, mode: Mode) -> Mass {
     let mut rows: Vec<std::collections::BTreeMap<usize, f64>> =
         vec![Default::default(); numbering.coordinates];
     let summed = if mode == Mode::Real { &parts[..] } else { &[] };
@@ -82,17 +71,43 @@ pub(super) fn mass(
         row_start: vec![0],
         columns: Vec::new(),
         values: Vec::new(),
-        tangent,
+        tangent: Vec::new(),
+        level: Vec::new(),
+        known: Vec::new(),
     };
+    let n = numbering.unknowns;
     for (i, row) in rows.iter().enumerate() {
         for (&j, &m) in row {
             mass.columns.push(j);
             mass.values.push(m);
-            if i < numbering.unknowns && j < numbering.unknowns {
-                mass.tangent[symbolic.slot(i, j) as usize] = m;
+            if i < n && j >= n {
+                mass.known.push((i, j, m));
             }
         }
         mass.row_start.push(mass.columns.len());
     }
     mass
+}
+
+impl Mass {
+    /// Its columns in row i.
+    pub(super) fn row(&self, i: usize) -> &[usize] {
+        &self.columns[self.row_start[i]..self.row_start[i + 1]]
+    }
+
+    /// The sum over unknowns in the layout of a matrix; the unit matrix in the ideal mechanism.
+    pub(super) fn matrix(&self, unknowns: usize, symbolic: &Symbolic, mode: Mode) -> Vec<f64> {
+        let mut matrix = vec![0.0; symbolic.len()];
+        for i in 0..unknowns {
+            if mode == Mode::Ideal {
+                matrix[symbolic.slot(i, i) as usize] = 1.0;
+            }
+            let values = &self.values[self.row_start[i]..];
+            let row = self.row(i).iter().zip(values);
+            for (&j, m) in row.filter(|(j, _)| **j < unknowns) {
+                matrix[symbolic.slot(i, j) as usize] = *m;
+            }
+        }
+        matrix
+    }
 }

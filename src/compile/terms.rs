@@ -13,7 +13,7 @@ use crate::marker::Spin;
 use crate::math::lu::Symbolic;
 use crate::model::{
     Acting, Block, BodyCoordinates, BodyPlace, Border, ConstraintTerm, Contacting, Effect, Element,
-    Inertia, JointPlace, Model, Placed, PointPlace,
+    Inertia, JointPlace, Mass, Model, Placed, PointPlace,
 };
 use crate::scene::{BodyKind, Link, LinkModel, PointRef, SceneError, Span};
 use crate::system::Shape;
@@ -127,7 +127,7 @@ pub(super) fn build(
         return Err(c.scene.error(row.span, message, "nothing here can move"));
     }
     let multipliers = terms.rows.iter().map(|row| row.names.len()).sum();
-    let symbolic = analyse(&terms, n, multipliers);
+    let symbolic = analyse(&terms, n);
     let mut names = numbering.names.clone();
     names.extend(terms.rows.iter().flat_map(|row| row.names.iter().cloned()));
 
@@ -136,7 +136,10 @@ pub(super) fn build(
     } else {
         Vec::new()
     };
-    let mass = mass(terms.inertia, &numbering, &symbolic, c.mode);
+    let mut mass = mass(std::mem::take(&mut terms.inertia), &numbering, c.mode);
+    let level_symbolic = analyse_level(&terms, &mass, n);
+    mass.tangent = mass.matrix(n, &symbolic, c.mode);
+    mass.level = mass.matrix(n, &level_symbolic, c.mode);
     let place = |coordinates: Vec<usize>| Block::new(coordinates, &symbolic, n);
     let elements = terms
         .elements
@@ -150,9 +153,13 @@ pub(super) fn build(
     let constraints = terms.rows.into_iter().map(|r| {
         let coordinates = r.term.coordinates();
         let rows = r.term.rows();
-        let border = |d| Border::new(&coordinates, row + d, &symbolic, n);
+        let borders = |symbolic| {
+            let border = |d| Border::new(&coordinates, row + d, symbolic, n);
+            (0..rows).map(border).collect()
+        };
         let placed = Placed {
-            border: (0..rows).map(border).collect(),
+            border: borders(&symbolic),
+            level_border: borders(&level_symbolic),
             owners: owners(&coordinates, r.term.split(), r.sides),
             block: place(coordinates),
             effect: r.effect,
@@ -205,6 +212,7 @@ pub(super) fn build(
     let mut model = Model {
         shape,
         symbolic,
+        level_symbolic,
         names,
         mass,
         elements,
@@ -416,39 +424,82 @@ impl Compiler<'_> {
     }
 }
 
-/// Pattern and pivot order of the tangent.
-fn analyse(terms: &Terms, n: usize, multipliers: usize) -> Symbolic {
-    let mut cliques: Vec<Vec<usize>> = Vec::new();
-    let mut after = vec![Vec::new(); n + multipliers];
-    let mut clique = |coordinates: &[usize], row: Option<usize>| {
-        let mut unknown: Vec<usize> = coordinates.iter().copied().filter(|&i| i < n).collect();
-        if let Some(row) = row {
-            after[n + row].clone_from(&unknown);
-            unknown.push(n + row);
+/// Cliques of a pattern, and what each unknown is eliminated after.
+struct Pattern {
+    unknowns: usize,
+    cliques: Vec<Vec<usize>>,
+    after: Vec<Vec<usize>>,
+}
+
+impl Pattern {
+    /// A pattern without cliques, multipliers after the coordinates of their constraints.
+    fn new(terms: &Terms, unknowns: usize) -> Pattern {
+        let mut after = vec![Vec::new(); unknowns];
+        for row in &terms.rows {
+            let coordinates = row.term.coordinates().into_iter();
+            let coordinates: Vec<usize> = coordinates.filter(|i| *i < unknowns).collect();
+            after.extend(std::iter::repeat_n(coordinates, row.names.len()));
         }
-        cliques.push(unknown);
-    };
+        Pattern {
+            unknowns,
+            cliques: Vec::new(),
+            after,
+        }
+    }
+
+    /// The multipliers, each with the unknown coordinates of its constraint.
+    fn rows(&self) -> Vec<(usize, Vec<usize>)> {
+        let rows = self.after.iter().cloned().enumerate();
+        rows.skip(self.unknowns).collect()
+    }
+
+    fn add(&mut self, coordinates: &[usize]) {
+        let unknown = coordinates.iter().copied().filter(|i| *i < self.unknowns);
+        self.cliques.push(unknown.collect());
+    }
+
+    fn analyse(&self) -> Symbolic {
+        Symbolic::analyse(self.after.len(), &self.cliques, &self.after)
+    }
+}
+
+/// Pattern and pivot order of the tangent.
+fn analyse(terms: &Terms, n: usize) -> Symbolic {
+    let mut pattern = Pattern::new(terms, n);
+    for (row, mut coordinates) in pattern.rows() {
+        coordinates.push(row);
+        pattern.cliques.push(coordinates);
+    }
     for part in &terms.inertia {
-        clique(&part.coordinates, None);
+        pattern.add(&part.coordinates);
     }
     for (_, coordinates) in &terms.elements {
-        clique(coordinates, None);
-    }
-    let mut row = 0;
-    for constraint in &terms.rows {
-        for _ in 0..constraint.names.len() {
-            clique(&constraint.term.coordinates(), Some(row));
-            row += 1;
-        }
+        pattern.add(coordinates);
     }
     for (force, _) in &terms.forces {
-        clique(&force.coordinates(), None);
+        pattern.add(&force.coordinates());
     }
     for joint in &terms.loose {
-        clique(&joint.coordinates(), None);
+        pattern.add(&joint.coordinates());
     }
     for joint in &terms.frictional {
-        clique(&joint.coordinates(), None);
+        pattern.add(&joint.coordinates());
     }
-    Symbolic::analyse(n + multipliers, &cliques, &after)
+    pattern.analyse()
+}
+
+/// Pattern and pivot order of the matrix of the acceleration level: x and y of a node share no mass, and the coordinates of a
+/// constraint meet only in its row.
+fn analyse_level(terms: &Terms, mass: &Mass, n: usize) -> Symbolic {
+    let mut pattern = Pattern::new(terms, n);
+    for (row, coordinates) in pattern.rows() {
+        let pairs = coordinates.into_iter().map(|i| vec![i, row]);
+        pattern.cliques.extend(pairs);
+    }
+    for i in 0..n {
+        for &j in mass.row(i) {
+            pattern.add(&[i, j]);
+        }
+    }
+    pattern.analyse()
 }

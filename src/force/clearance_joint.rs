@@ -7,7 +7,7 @@
 use super::{LocalMatrix, WIDTH};
 use crate::contact::{NormalForce, NormalLaw};
 use crate::marker::Marker;
-use crate::math::plane::{Vec2, dot, norm, perp, scale, sub};
+use crate::math::plane::{Vec2, cross, dot, norm, perp, scale, sub};
 use crate::system::Weights;
 
 /// A loose joint without friction.
@@ -216,7 +216,20 @@ impl ClearanceJoint {
     ) -> Option<NormalForce> {
         let g = self.geometry(q, v);
         let force = self.normal_force(&g, impact_velocity)?;
-        self.add_force(&self.touch(v, &g), &force, f);
+        let push = scale(force.value / g.eccentricity, g.e);
+        let mut column = 0;
+        for (marker, sign, arm) in [
+            (&self.bearing, -1.0, g.arms[0]),
+            (&self.journal, 1.0, g.arms[1]),
+        ] {
+            for i in 0..2 {
+                f[column + i] += sign * push[i];
+            }
+            if let Marker::OnBody { .. } = marker {
+                f[column + 2] += sign * cross(arm, push);
+            }
+            column += marker.width();
+        }
         Some(force)
     }
 

@@ -14,22 +14,34 @@ const LARGEST_MULTIPLIER: f64 = 1e9;
 
 /// Structure of the matrix: pattern with fill, pivot order, positions of the entries in the value array.
 ///
-/// The values of pivot k stand together: the diagonal, the row of U right of it, the column of L below it. One more
-/// entry at the end of the array takes what is scattered to known coordinates and is never read.
+/// The values of pivot k stand together: the diagonal, which its inverse replaces, the row of U right of it, the column of L
+/// below it. One more entry at the end of the array takes what is scattered to known coordinates and is never read.
 #[derive(Debug)]
 pub struct Symbolic {
-    order: Vec<usize>,
+    pivots: Vec<Pivot>,
+    /// Place of each unknown among the pivots.
     position: Vec<usize>,
-    /// Start of pivot k in the value array.
-    start: Vec<usize>,
-    /// Start of pivot k in `structure`.
-    structure_start: Vec<usize>,
-    /// Positions (in pivot order) coupled to pivot k and eliminated after it, ascending.
+    /// Places of the unknowns coupled to a pivot and eliminated after it, ascending; pivot after pivot.
     structure: Vec<usize>,
-    /// Start of pivot k in `targets`.
-    target_start: Vec<usize>,
-    /// For pivot k the value index of every (row, column) pair of its structure, row by row.
+    /// The same unknowns by their indices.
+    coupled: Vec<usize>,
+    /// For every (row, column) pair of a pivot's structure, row by row, where its value stands behind those of the pivot.
     targets: Vec<u32>,
+}
+
+/// What elimination needs to know of one pivot.
+#[derive(Debug)]
+struct Pivot {
+    /// Its unknown.
+    index: usize,
+    /// Start of its values.
+    start: usize,
+    /// How many unknowns are coupled to it.
+    count: usize,
+    /// Start of them in the structure.
+    structure: usize,
+    /// Start of its targets.
+    targets: usize,
 }
 
 /// A pivot too small to divide by, in the row and column of unknown `index`.
@@ -76,45 +88,52 @@ impl Symbolic {
     }
 
     fn layout(order: Vec<usize>, fronts: &[Vec<usize>]) -> Symbolic {
-        let n = order.len();
-        let mut position = vec![0; n];
-        for (k, &i) in order.iter().enumerate() {
-            position[i] = k;
-        }
         let mut symbolic = Symbolic {
-            order,
-            position,
-            start: vec![0],
-            structure_start: vec![0],
+            pivots: Vec::with_capacity(order.len()),
+            position: vec![0; order.len()],
             structure: Vec::new(),
-            target_start: vec![0],
+            coupled: Vec::new(),
             targets: Vec::new(),
         };
-        for (k, front) in fronts.iter().enumerate() {
-            let mut rows: Vec<usize> = front.iter().map(|&i| symbolic.position[i]).collect();
-            rows.sort_unstable();
-            symbolic.start.push(symbolic.start[k] + 1 + 2 * rows.len());
-            symbolic.structure.extend(rows);
-            symbolic.structure_start.push(symbolic.structure.len());
+        for (k, &i) in order.iter().enumerate() {
+            symbolic.position[i] = k;
         }
-        for k in 0..n {
-            let rows = symbolic.structure(k).to_vec();
-            for &i in &rows {
-                for &j in &rows {
-                    symbolic.targets.push(
-                        symbolic
-                            .entry(i, j)
-                            .expect("the pattern is closed under elimination"),
-                    );
+        let mut start = 0;
+        for (&index, front) in order.iter().zip(fronts) {
+            let mut places: Vec<usize> = front.iter().map(|&i| symbolic.position[i]).collect();
+            places.sort_unstable();
+            symbolic.pivots.push(Pivot {
+                index,
+                start,
+                count: front.len(),
+                structure: symbolic.structure.len(),
+                targets: 0,
+            });
+            start += 1 + 2 * front.len();
+            symbolic.coupled.extend(places.iter().map(|&p| order[p]));
+            symbolic.structure.extend(places);
+        }
+        for k in 0..order.len() {
+            let places = symbolic.structure(k).to_vec();
+            symbolic.pivots[k].targets = symbolic.targets.len();
+            let Pivot { start, count, .. } = symbolic.pivots[k];
+            for &i in &places {
+                for &j in &places {
+                    let entry = symbolic.entry(i, j);
+                    let entry = entry.expect("the pattern is closed under elimination");
+                    let behind = entry as usize - (start + 1 + 2 * count);
+                    symbolic.targets.push(behind as u32);
                 }
             }
-            symbolic.target_start.push(symbolic.targets.len());
         }
         symbolic
     }
 
     fn structure(&self, k: usize) -> &[usize] {
-        &self.structure[self.structure_start[k]..self.structure_start[k + 1]]
+        let Pivot {
+            structure, count, ..
+        } = self.pivots[k];
+        &self.structure[structure..structure + count]
     }
 
     /// Value index of the entry in rows and columns counted in pivot order.
@@ -126,17 +145,17 @@ impl Symbolic {
             std::cmp::Ordering::Less => 1 + rows.binary_search(&j).ok()?,
             std::cmp::Ordering::Greater => 1 + rows.len() + rows.binary_search(&i).ok()?,
         };
-        u32::try_from(self.start[k] + offset).ok()
+        u32::try_from(self.pivots[k].start + offset).ok()
     }
 
     /// Number of unknowns.
     pub fn n(&self) -> usize {
-        self.order.len()
+        self.pivots.len()
     }
 
     /// Length of the value array, the unread last entry included.
     pub fn len(&self) -> usize {
-        self.start[self.n()] + 1
+        self.unread() as usize + 1
     }
 
     /// True for a matrix without unknowns.
@@ -146,7 +165,8 @@ impl Symbolic {
 
     /// Index of the value that takes what is scattered to known coordinates.
     pub fn unread(&self) -> u32 {
-        self.start[self.n()] as u32
+        let last = self.pivots.last();
+        last.map_or(0, |p| p.start + 1 + 2 * p.count) as u32
     }
 
     /// Value index of entry (row, column), or of the unread entry where one of them is not an unknown (index >= n).
@@ -167,30 +187,28 @@ impl Symbolic {
     /// The first pivot that is zero, not finite, or much smaller than its column.
     pub fn factor(&self, values: &mut [f64]) -> Result<(), WeakPivot> {
         assert_eq!(values.len(), self.len());
-        for k in 0..self.n() {
-            let count = self.structure_start[k + 1] - self.structure_start[k];
-            let start = self.start[k];
-            let inverse = 1.0 / values[start];
-            let (upper, lower) = (start + 1, start + 1 + count);
-            let mut targets = self.targets[self.target_start[k]..self.target_start[k + 1]]
-                .chunks_exact(count.max(1));
-            for a in 0..count {
-                let multiplier = values[lower + a] * inverse;
-                if multiplier.is_nan() || multiplier.abs() > LARGEST_MULTIPLIER {
-                    return Err(WeakPivot {
-                        index: self.order[k],
-                    });
-                }
-                values[lower + a] = multiplier;
-                let row = targets.next().unwrap_or(&[]);
-                for (b, &target) in row.iter().enumerate() {
-                    values[target as usize] -= multiplier * values[upper + b];
-                }
+        for p in &self.pivots {
+            let (here, behind) = values.split_at_mut(p.start + 1 + 2 * p.count);
+            let (diagonal, here) = here[p.start..].split_at_mut(1);
+            let (upper, lower) = here.split_at_mut(p.count);
+            let inverse = 1.0 / diagonal[0];
+            diagonal[0] = inverse;
+            let mut largest = 0.0_f64;
+            for l in lower.iter_mut() {
+                *l *= inverse;
+                // f64::max drops NaN
+                largest = if l.abs() <= largest { largest } else { l.abs() };
             }
-            if !inverse.is_finite() {
-                return Err(WeakPivot {
-                    index: self.order[k],
-                });
+            if !inverse.is_finite() || largest.is_nan() || largest > LARGEST_MULTIPLIER {
+                return Err(WeakPivot { index: p.index });
+            }
+            if p.count > 0 {
+                let targets = &self.targets[p.targets..p.targets + p.count * p.count];
+                for (l, targets) in lower.iter().zip(targets.chunks_exact(p.count)) {
+                    for (u, &target) in upper.iter().zip(targets) {
+                        behind[target as usize] -= l * u;
+                    }
+                }
             }
         }
         Ok(())
@@ -198,47 +216,39 @@ impl Symbolic {
 
     /// Smallest over largest pivot of the unknowns from `first` on, in the factors of [`Symbolic::factor`].
     pub fn pivot_range(&self, values: &[f64], first: usize) -> f64 {
-        let pivots = (first..self.n()).map(|i| values[self.start[self.position[i]]].abs());
-        let (low, high) = pivots.fold((f64::INFINITY, 0.0_f64), |(l, h), p| (l.min(p), h.max(p)));
+        let inverses = (first..self.n()).map(|i| values[self.pivots[self.position[i]].start].abs());
+        let (low, high) = inverses.fold((f64::INFINITY, 0.0_f64), |(l, h), p| (l.min(p), h.max(p)));
         low / high
     }
 
-    /// Solves L U x = b with the factors of [`Symbolic::factor`]; `b` in, x out; `work` has length n.
-    pub fn solve(&self, values: &[f64], b: &mut [f64], work: &mut [f64]) {
-        let n = self.n();
-        for k in 0..n {
-            work[k] = b[self.order[k]];
-        }
-        for k in 0..n {
-            let rows = self.structure(k);
-            let lower = &values[self.start[k] + 1 + rows.len()..][..rows.len()];
-            let pivot = work[k];
-            for (&i, l) in rows.iter().zip(lower) {
-                work[i] -= l * pivot;
+    /// Solves L U x = b with the factors of [`Symbolic::factor`]; `b` in, x out.
+    pub fn solve(&self, values: &[f64], b: &mut [f64]) {
+        for p in &self.pivots {
+            let coupled = &self.coupled[p.structure..p.structure + p.count];
+            let lower = &values[p.start + 1 + p.count..];
+            let pivot = b[p.index];
+            for (&row, l) in coupled.iter().zip(lower) {
+                b[row] -= l * pivot;
             }
         }
-        for k in (0..n).rev() {
-            let rows = self.structure(k);
-            let upper = &values[self.start[k] + 1..][..rows.len()];
-            let sum: f64 = rows.iter().zip(upper).map(|(&j, u)| u * work[j]).sum();
-            work[k] = (work[k] - sum) / values[self.start[k]];
-        }
-        for k in 0..n {
-            b[self.order[k]] = work[k];
+        for p in self.pivots.iter().rev() {
+            let coupled = &self.coupled[p.structure..p.structure + p.count];
+            let (inverse, upper) = (values[p.start], &values[p.start + 1..]);
+            let sum: f64 = coupled.iter().zip(upper).map(|(&j, u)| u * b[j]).sum();
+            b[p.index] = (b[p.index] - sum) * inverse;
         }
     }
 
     /// The matrix in full, before it is factorised.
     pub fn to_dense(&self, values: &[f64]) -> faer::Mat<f64> {
         let mut dense = faer::Mat::zeros(self.n(), self.n());
-        for k in 0..self.n() {
-            let rows = self.structure(k);
-            let (i, start) = (self.order[k], self.start[k]);
-            dense[(i, i)] = values[start];
-            for (b, &position) in rows.iter().enumerate() {
-                let j = self.order[position];
-                dense[(i, j)] = values[start + 1 + b];
-                dense[(j, i)] = values[start + 1 + rows.len() + b];
+        for p in &self.pivots {
+            let i = p.index;
+            dense[(i, i)] = values[p.start];
+            let coupled = &self.coupled[p.structure..p.structure + p.count];
+            for (b, &j) in coupled.iter().enumerate() {
+                dense[(i, j)] = values[p.start + 1 + b];
+                dense[(j, i)] = values[p.start + 1 + p.count + b];
             }
         }
         dense
@@ -329,9 +339,9 @@ mod tests {
         let (symbolic, mut values) = bordered();
         let dense = DenseLu::factor(&symbolic, &values).unwrap();
         let b = [1.0, -2.0, 0.5, 3.0, 0.25, -1.0];
-        let (mut x, mut y, mut work) = (b, b, vec![0.0; 6]);
+        let (mut x, mut y) = (b, b);
         symbolic.factor(&mut values).unwrap();
-        symbolic.solve(&values, &mut x, &mut work);
+        symbolic.solve(&values, &mut x);
         dense.solve(&mut y);
         for i in 0..6 {
             // both are backward stable here: a few roundings of numbers near one

@@ -61,16 +61,13 @@ impl Model {
                 c.block.add_scaled(at.lambda[c.row + d], &gradient[d], r);
                 c.border[d].add(&gradient[d], k);
             }
-            // the acceleration level has none
-            if w.q > 0.0 {
-                let mut out = Curvature {
-                    slots: &c.block.slots,
-                    columns: c.block.coordinates.len(),
-                    weight: w.q,
-                    tangent: k,
-                };
-                c.term.curvature(at, c.multipliers(at), &mut out);
-            }
+            let mut out = Curvature {
+                slots: &c.block.slots,
+                columns: c.block.coordinates.len(),
+                weight: w.q,
+                tangent: k,
+            };
+            c.term.curvature(at, c.multipliers(at), &mut out);
         }
     }
 
@@ -237,6 +234,10 @@ impl System for Model {
         &self.symbolic
     }
 
+    fn level_symbolic(&self) -> &Symbolic {
+        &self.level_symbolic
+    }
+
     fn work(&self) -> Work {
         let inner = self.kinematics.as_ref().map(|k| Box::new(k.work()));
         Work {
@@ -288,12 +289,31 @@ impl System for Model {
         k.copy_from_slice(&self.mass.tangent);
         self.inertia(&at.a, r);
         self.linearised_constraints(at, w, r, phi, k);
-        if w == Weights::ACCELERATION {
-            // no force depends on accelerations
-            self.forces(at, r, work);
-        } else {
-            self.linearised_forces(at, w, r, k, work);
+        self.linearised_forces(at, w, r, k, work);
+    }
+
+    fn level(&self, at: &State, phi: &mut [f64], k: &mut [f64]) {
+        k.copy_from_slice(&self.mass.level);
+        let mut gradient = [[0.0; constraint::WIDTH]; ROWS];
+        for c in &self.constraints {
+            let value = c.term.value_and_gradient(at, &mut gradient);
+            for d in 0..c.rows {
+                phi[c.row + d] = c.kept[d] * value[d];
+                c.level_border[d].add(&gradient[d], k);
+            }
         }
+    }
+
+    fn free_residual(&self, at: &State, r: &mut [f64], work: &mut Work) {
+        self.count(work);
+        r.fill(0.0);
+        for &(i, j, m) in &self.mass.known {
+            r[i] += m * at.a[j];
+        }
+        for &(i, weight) in &self.weight {
+            r[i] += weight;
+        }
+        self.forces(at, r, work);
     }
 
     fn constraint_velocity(&self, at: &State, out: &mut [f64]) {

@@ -4,7 +4,7 @@ use super::{Actuator, BodyCoordinates, JointKind, Model};
 use crate::force::ClearanceJoint;
 use crate::marker::Marker;
 use crate::math::plane::{Vec2, add, cross, dot, norm, scale, sub};
-use crate::system::{State, Work};
+use crate::system::{Integral, State, Work};
 
 /// Position, velocity and acceleration of a body: centre of mass, and angle (of a link: of its chord).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -183,6 +183,17 @@ impl Model {
             energies.gravity += weight * at.q[i];
         }
         energies
+    }
+
+    /// Stored energies and what has been dissipated less the work done \[J\]: constant, but for the error of the integration;
+    /// and the sum of their magnitudes, to which its rounding is relative.
+    pub fn balance(&self, at: &State) -> (f64, f64) {
+        let of = |integral: Integral| at.integrals[integral as usize];
+        let gone = of(Integral::ContactDissipated)
+            + of(Integral::FrictionDissipated)
+            + of(Integral::DampingDissipated);
+        let (stored, work) = (self.energies(at).total(), of(Integral::Work));
+        (stored + gone - work, stored.abs() + gone.abs() + work.abs())
     }
 
     /// Force of the bearing side on the journal side of joint `index` \[N\].

@@ -25,6 +25,7 @@ use crate::system::{Shape, State};
 pub struct Model {
     pub(crate) shape: Shape,
     pub(crate) symbolic: Symbolic,
+    pub(crate) level_symbolic: Symbolic,
     /// Names of the unknowns, then of the multipliers.
     pub(crate) names: Vec<String>,
     pub(crate) mass: Mass,
@@ -188,7 +189,10 @@ pub(crate) struct Placed {
     pub row: usize,
     pub rows: usize,
     pub block: Block,
+    /// Slots of the gradient of each row in the tangent ...
     pub border: Vec<Border>,
+    /// ... and in the matrix of the acceleration level.
+    pub level_border: Vec<Border>,
     /// The body that each local coordinate stands for.
     pub owners: Vec<usize>,
     /// 0 for a row that repeats others and is left out of the equations, else 1.
@@ -197,11 +201,16 @@ pub(crate) struct Placed {
 
 impl Placed {
     /// Takes row `d` out of the equations: in its place stands lambda = 0.
-    fn drop_row(&mut self, d: usize, symbolic: &Symbolic, unknowns: usize, tangent: &mut [f64]) {
+    fn drop_row(&mut self, d: usize, symbolic: [&Symbolic; 2], unknowns: usize, mass: &mut Mass) {
         let m = unknowns + self.row + d;
         self.kept[d] = 0.0;
-        self.border[d] = Border::nowhere(self.block.coordinates.len(), symbolic);
-        tangent[symbolic.slot(m, m) as usize] = 1.0;
+        let nowhere = |symbolic| Border::nowhere(self.block.coordinates.len(), symbolic);
+        let [border, level_border] = symbolic.map(nowhere);
+        (self.border[d], self.level_border[d]) = (border, level_border);
+        let matrices = [&mut mass.tangent, &mut mass.level];
+        for (symbolic, matrix) in symbolic.into_iter().zip(matrices) {
+            matrix[symbolic.slot(m, m) as usize] = 1.0;
+        }
     }
 
     /// Its multipliers.
@@ -248,6 +257,10 @@ pub(crate) struct Mass {
     pub values: Vec<f64>,
     /// The sum over unknowns in the layout of the tangent.
     pub tangent: Vec<f64>,
+    /// The same in the layout of the acceleration level.
+    pub level: Vec<f64>,
+    /// (unknown row, known column, mass): what the acceleration of known coordinates asks of unknown ones.
+    pub known: Vec<(usize, usize, f64)>,
 }
 
 /// A mass matrix on some coordinates, row by row.
@@ -407,8 +420,8 @@ impl Model {
     /// Takes rows, as (constraint, row of it), out of the equations.
     pub(crate) fn drop_rows(&mut self, rows: &[(usize, usize)]) {
         for &(i, d) in rows {
-            let tangent = &mut self.mass.tangent;
-            self.constraints[i].drop_row(d, &self.symbolic, self.shape.unknowns, tangent);
+            let symbolic = [&self.symbolic, &self.level_symbolic];
+            self.constraints[i].drop_row(d, symbolic, self.shape.unknowns, &mut self.mass);
         }
     }
 

@@ -1,9 +1,10 @@
 //! Newton's method on the equations of one stage, and the linear solves of the acceleration level.
 
+mod factors;
 mod singular;
 
-use crate::math::lu::DenseLu;
 use crate::system::{State, System, Weights, Work};
+use factors::Factors;
 use singular::{SINGULAR, Truncated};
 
 /// A stage takes this many iterations at most; a stage that converges at all is far below.
@@ -75,11 +76,12 @@ pub struct Newton {
     tolerance: f64,
     r: Vec<f64>,
     phi: Vec<f64>,
-    k: Vec<f64>,
     b: Vec<f64>,
-    solve: Vec<f64>,
-    dense: Option<DenseLu>,
-    /// True while `k` holds the factors of the mass matrix of a system without multipliers, which never change.
+    /// The tangent of a stage.
+    stage: Factors,
+    /// The matrix of the acceleration level.
+    level: Factors,
+    /// True once `level` holds the mass matrix of a system without multipliers, which never changes.
     holds_mass: bool,
     /// Work done so far.
     pub counters: Counters,
@@ -94,45 +96,38 @@ impl Newton {
             tolerance,
             r: vec![0.0; shape.coordinates],
             phi: vec![0.0; shape.multipliers],
-            k: vec![0.0; system.symbolic().len()],
             b: vec![0.0; size],
-            solve: vec![0.0; size],
-            dense: None,
+            stage: Factors::new(system.symbolic()),
+            level: Factors::new(system.level_symbolic()),
             holds_mass: false,
             counters: Counters::default(),
         }
     }
 
-    /// Factorises `self.k`, which `linearise` has just filled; `again` fills it once more for the fallback.
-    fn factor(
+    /// The residual and the factors of the tangent of a stage.
+    fn renew_stage(
         &mut self,
         system: &dyn System,
         at: &State,
         w: Weights,
         work: &mut Work,
     ) -> Result<(), Failure> {
-        self.counters.factorisations += 1;
-        self.dense = None;
-        self.holds_mass = w == Weights::ACCELERATION && system.shape().multipliers == 0;
-        let symbolic = system.symbolic();
-        if let Err(weak) = symbolic.factor(&mut self.k) {
-            self.counters.fallbacks += 1;
-            system.linearise(at, w, &mut self.r, &mut self.phi, &mut self.k, work);
-            self.dense = DenseLu::factor(symbolic, &self.k);
-            if self.dense.is_none() {
-                return Err(Failure::Singular { index: weak.index });
-            }
-        }
-        Ok(())
+        let (r, phi) = (&mut self.r, &mut self.phi);
+        self.stage
+            .renew(system.symbolic(), &mut self.counters, |k| {
+                system.linearise(at, w, r, phi, k, work);
+            })
     }
 
-    fn back_substitute(&mut self, system: &dyn System) {
-        match &self.dense {
-            None => system
-                .symbolic()
-                .solve(&self.k, &mut self.b, &mut self.solve),
-            Some(dense) => dense.solve(&mut self.b),
-        }
+    /// Phi and the factors of the acceleration level.
+    fn renew_level(&mut self, system: &dyn System, at: &State) -> Result<(), Failure> {
+        let phi = &mut self.phi;
+        self.level
+            .renew(system.level_symbolic(), &mut self.counters, |k| {
+                system.level(at, phi, k);
+            })?;
+        self.holds_mass = system.shape().multipliers == 0;
+        Ok(())
     }
 
     /// Solves M a + f + Phi_q^T lambda = 0, Phi = 0 for (a, lambda) with q = q_hat + w.q a, v = v_hat + w.v a.
@@ -169,12 +164,9 @@ impl Newton {
             }
             self.counters.newton_iterations += 1;
             if renew {
-                system.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
+                self.renew_stage(system, s, w, work)?;
             } else {
                 system.residual(s, &mut self.r, &mut self.phi, work);
-            }
-            if renew {
-                self.factor(system, s, w, work)?;
             }
             for i in 0..n {
                 self.b[i] = -self.r[i];
@@ -182,7 +174,7 @@ impl Newton {
             for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
                 *b = -phi / w.q;
             }
-            self.back_substitute(system);
+            self.stage.solve(system.symbolic(), &mut self.b);
             let mut update = 0.0;
             for i in 0..n {
                 s.a[i] += self.b[i];
@@ -235,16 +227,15 @@ impl Newton {
         s: &mut State,
         work: &mut Work,
     ) -> Result<(), Failure> {
-        if self.begin_acceleration_level(system, s, work)? {
+        if self.begin_acceleration_level(system, s)? {
             return self.end_in_singular_pose(system, s, true, work);
         }
         if system.shape().multipliers > 0 {
             system.constraint_velocity(s, &mut self.phi);
             self.b[..system.shape().unknowns].fill(0.0);
             self.move_by(system, |s| &mut s.v, s);
-            system.residual(s, &mut self.r, &mut self.phi, work);
         }
-        self.end_acceleration_level(system, s)
+        self.end_acceleration_level(system, s, work)
     }
 
     /// The accelerations and multipliers at (q, v) as they are: M a + Phi_q^T lambda = -f, Phi_q a = gamma.
@@ -257,41 +248,37 @@ impl Newton {
         s: &mut State,
         work: &mut Work,
     ) -> Result<(), Failure> {
-        if self.begin_acceleration_level(system, s, work)? {
+        if self.begin_acceleration_level(system, s)? {
             return self.end_in_singular_pose(system, s, false, work);
         }
-        self.end_acceleration_level(system, s)
+        self.end_acceleration_level(system, s, work)
     }
 
-    /// Sets a and lambda to zero, then evaluates the residual and factorises the acceleration level. Returns true in a pose
-    /// where the constraints lose rank.
+    /// Factorises the acceleration level. Returns true in a pose where the constraints lose rank.
     fn begin_acceleration_level(
         &mut self,
         system: &dyn System,
-        s: &mut State,
-        work: &mut Work,
+        s: &State,
     ) -> Result<bool, Failure> {
-        let n = system.shape().unknowns;
-        s.a[..n].fill(0.0);
-        s.lambda.fill(0.0);
         if self.holds_mass {
-            system.residual(s, &mut self.r, &mut self.phi, work);
             return Ok(false);
         }
-        let w = Weights::ACCELERATION;
-        system.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
-        self.factor(system, s, w, work)?;
-        Ok(system.shape().multipliers > 0
-            && (self.dense.is_some() || system.symbolic().pivot_range(&self.k, n) < SINGULAR))
+        self.renew_level(system, s)?;
+        let n = system.shape().unknowns;
+        let pivots = || system.level_symbolic().pivot_range(&self.level.values, n);
+        Ok(system.shape().multipliers > 0 && (self.level.dense.is_some() || pivots() < SINGULAR))
     }
 
-    /// From the residual at a = 0, lambda = 0 and the factors of the acceleration level to (a, lambda).
+    /// From the factors of the acceleration level to (a, lambda).
     fn end_acceleration_level(
         &mut self,
         system: &dyn System,
         s: &mut State,
+        work: &mut Work,
     ) -> Result<(), Failure> {
         let n = system.shape().unknowns;
+        s.a[..n].fill(0.0);
+        system.free_residual(s, &mut self.r, work);
         system.constraint_acceleration(s, &mut self.phi);
         for i in 0..n {
             self.b[i] = -self.r[i];
@@ -309,19 +296,12 @@ impl Newton {
     ///
     /// # Errors
     /// See [`Failure`].
-    pub fn project_positions(
-        &mut self,
-        system: &dyn System,
-        s: &mut State,
-        work: &mut Work,
-    ) -> Result<(), Failure> {
+    pub fn project_positions(&mut self, system: &dyn System, s: &mut State) -> Result<(), Failure> {
         let n = system.shape().unknowns;
-        let w = Weights::ACCELERATION;
         let size = s.q[..n].iter().fold(0.0_f64, |m, q| m.max(q.abs()));
         let mut worst = (0, f64::INFINITY);
         for _ in 0..MAX_ITERATIONS {
-            system.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
-            self.factor(system, s, w, work)?;
+            self.renew_level(system, s)?;
             self.b[..n].fill(0.0);
             self.solve_for_phi(system);
             worst = (0, 0.0);
@@ -358,10 +338,10 @@ impl Newton {
         work: &mut Work,
     ) -> Result<(), Failure> {
         let n = system.shape().unknowns;
-        let w = Weights::ACCELERATION;
         self.counters.singular_poses += 1;
-        system.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
-        let Some(truncated) = Truncated::new(system.symbolic(), &self.k, n) else {
+        let k = &mut self.level.values;
+        system.level(s, &mut self.phi, k);
+        let Some(truncated) = Truncated::new(system.level_symbolic(), k, n) else {
             return Err(Failure::Singular { index: n });
         };
         if project {
@@ -369,7 +349,8 @@ impl Newton {
             let change = truncated.projection(&self.phi);
             s.v.iter_mut().zip(&change).for_each(|(v, d)| *v += d);
         }
-        system.residual(s, &mut self.r, &mut self.phi, work);
+        s.a[..n].fill(0.0);
+        system.free_residual(s, &mut self.r, work);
         system.constraint_acceleration(s, &mut self.phi);
         let (a, lambda) = truncated.accelerations(&self.r[..n], &self.phi);
         s.a[..n].copy_from_slice(&a);
@@ -397,13 +378,13 @@ impl Newton {
         Ok(system.powers(s, work))
     }
 
-    /// Solves for the right side `b`, whose unknown part is set, and -phi.
+    /// Solves the acceleration level for the right side `b`, whose unknown part is set, and -phi.
     fn solve_for_phi(&mut self, system: &dyn System) {
         let n = system.shape().unknowns;
         for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
             *b = -phi;
         }
-        self.back_substitute(system);
+        self.level.solve(system.level_symbolic(), &mut self.b);
     }
 
     /// Solves for the right side `b` (unknowns set) and -phi, and adds the unknown part to a level of the state.

@@ -179,13 +179,17 @@ fn accuracy(
             .with_help("\"bathe\" and \"dormand_prince\" have one; the others take a `step`"));
     }
     let mut table = field.fields()?;
-    table.only(&["position", "horizon"])?;
+    table.only(&["position", "energy", "horizon"])?;
     let position = table
         .required(
             "position",
             "the error allowed in the position of a point [m]",
         )?
         .positive()?;
+    let energy = match table.optional("energy") {
+        Some(energy) => Some(energy.positive()?),
+        None => None,
+    };
     let purpose = "the time [s] over which errors may add up to `position`; required since a joint has clearance: such \
                    motion is chaotic, and beyond some tens of milliseconds no step keeps two runs together";
     let horizon = match table.optional("horizon") {
@@ -193,7 +197,11 @@ fn accuracy(
         other => other,
     };
     let horizon = horizon.map_or(Ok(simulation.duration), |h| h.positive())?;
-    Ok(Accuracy { position, horizon })
+    Ok(Accuracy {
+        position,
+        energy,
+        horizon,
+    })
 }
 
 fn newton_tolerance(table: &Fields, method: Method) -> Result<f64, SceneError> {

@@ -22,6 +22,7 @@ pub use crate::motion::Function;
 pub use error::{SceneError, Span};
 
 use error::Sources;
+use serde::Serialize;
 use std::path::Path;
 
 /// A complete description of one simulation.
@@ -101,12 +102,25 @@ pub enum Pace {
 }
 
 /// `integrator.accuracy`
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Accuracy {
-    /// Error that may gather in the position of any point \[m\] ...
+    /// Error that may gather in the position of any point \[m\]
     pub position: f64,
+    /// and, where asked for, error that may gather in the balance of energies \[J\] ...
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy: Option<f64>,
     /// ... over this time \[s\].
     pub horizon: f64,
+}
+
+impl std::fmt::Display for Accuracy {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "{:e} m", self.position)?;
+        if let Some(energy) = self.energy {
+            write!(f, " and {energy:e} J")?;
+        }
+        write!(f, " over {} s", self.horizon)
+    }
 }
 
 /// Time integration scheme.

@@ -16,6 +16,10 @@
 //! varying sign, but where a contact has just changed: r = E sqrt(H/h)/p. Either way the error of the run falls in proportion
 //! to p (Stetter 1979, Lect. Notes Math. 679:245; Shampine 1985, BIT 25:530).
 //!
+//! The balance of energies needs no estimate: what a step changes of it is the error of that step. Those of a horizon may add
+//! up to the energy e, where one is asked for: r = |change| H/(h e), and the larger r counts. However short a step, 1e-5 e are
+//! its share: below, the rounding of positions against stiff contacts would be taken for errors.
+//!
 //! With k the order of r in h, the next step is h times 0.9 r^(-0.7/k) r_last^(0.4/k), kept between 0.2 and 5 (PI control:
 //! Gustafsson 1991, ACM Trans. Math. Softw. 17:533; the exponents of Hairer & Wanner, Solving Ordinary Differential
 //! Equations II, IV.2). A step with r > 1 is taken again.
@@ -38,6 +42,10 @@ const GREATEST_CHANGE: f64 = 5.0;
 const LEAST_RATIO: f64 = 1e-4;
 /// A unit of slope of a cubic beam moves points by this part of its length at most, x (1 - x)^2 at x = 1/3.
 const SLOPE_WAY: f64 = 4.0 / 27.0;
+/// Changes of the balance of energies below this part of them are rounding: a sum of a few dozen terms.
+const BALANCE_ROUNDING: f64 = 32.0 * f64::EPSILON;
+/// Least part of the allowed energy that a step may use.
+const LEAST_SHARE: f64 = 1e-5;
 /// A step below this part of the duration is too near to the rounding of t.
 const LEAST_PART: f64 = 1e4 * f64::EPSILON;
 
@@ -61,7 +69,7 @@ pub(super) struct Controller {
     first_steps: Vec<f64>,
     /// Contacts that closed at the end of the last step.
     closing: Vec<usize>,
-    /// Rejected steps by the unknown with the largest error.
+    /// Rejected steps by the unknown with the largest error, and at the end those by the balance of energies.
     rejections: Vec<u64>,
     /// Shortest and longest step.
     taken: [f64; 2],
@@ -97,10 +105,9 @@ impl Sums {
 /// What the accuracy asked for cost.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AccuracyReport {
-    /// Error allowed in positions \[m\] ...
-    pub position: f64,
-    /// ... over this time \[s\].
-    pub horizon: f64,
+    /// What was asked for.
+    #[serde(flatten)]
+    pub asked: Accuracy,
     /// The shortest and the longest step taken \[s\], before it was cut where a contact changed; 0 before the first step.
     pub steps: [f64; 2],
     /// Steps taken again because their estimated error was too large.
@@ -115,7 +122,7 @@ pub(super) enum Verdict {
     Keep,
     /// It is taken again, shorter.
     Repeat,
-    /// It cannot be made shorter: the unknown with the largest error.
+    /// It cannot be made shorter: the unknown with the largest error or, after the last of them, the balance of energies.
     Stuck(usize),
 }
 
@@ -168,7 +175,7 @@ impl Controller {
             rejected: false,
             first_steps: vec![f64::INFINITY; shape.contacts],
             closing: Vec::with_capacity(shape.contacts),
-            rejections: vec![0; shape.unknowns],
+            rejections: vec![0; shape.unknowns + 1],
             taken: [f64::INFINITY, 0.0],
             sums: vec![Sums::default(); shape.unknowns],
         }
@@ -192,10 +199,20 @@ impl Controller {
         }
     }
 
-    /// r, and the unknown with the largest error.
-    fn ratio(&mut self, stepper: &dyn Stepper, from: &State, to: &State) -> (f64, usize) {
+    /// r, and the unknown with the largest error or, after the last of them, the balance of energies.
+    fn ratio(
+        &mut self,
+        stepper: &dyn Stepper,
+        model: &Model,
+        from: &State,
+        to: &State,
+    ) -> (f64, usize) {
         stepper.local_error(from, to, &mut self.error);
-        let Accuracy { position, horizon } = self.accuracy;
+        let Accuracy {
+            position,
+            energy,
+            horizon,
+        } = self.accuracy;
         let mut largest = (0.0, 0);
         for (i, length) in self.lengths.iter().enumerate() {
             let [q, v] = [self.error.q[i].abs(), self.error.v[i].abs()];
@@ -209,13 +226,30 @@ impl Controller {
             true => steps,
             false => steps.sqrt(),
         };
-        (largest.0 * sum / position, largest.1)
+        let of_position = largest.0 * sum / position;
+        if let Some(energy) = energy {
+            let [(before, _), (after, size)] = [from, to].map(|s| model.balance(s));
+            let change = ((after - before).abs() - BALANCE_ROUNDING * size).max(0.0);
+            let share = ((to.t - from.t) / horizon).max(LEAST_SHARE);
+            let of_energy = change / (share * energy);
+            if of_energy > of_position {
+                return (of_energy, self.lengths.len());
+            }
+        }
+        (of_position, largest.1)
     }
 
     /// Looks at a step that was to end at `goal`, before it is cut where a contact changes.
-    pub fn judge(&mut self, stepper: &dyn Stepper, from: &State, to: &State, goal: f64) -> Verdict {
+    pub fn judge(
+        &mut self,
+        stepper: &dyn Stepper,
+        model: &Model,
+        from: &State,
+        to: &State,
+        goal: f64,
+    ) -> Verdict {
         let h = to.t - from.t;
-        let (r, worst) = self.ratio(stepper, from, to);
+        let (r, worst) = self.ratio(stepper, model, from, to);
         let order = self.estimate.order - if self.estimate.is_error { 1.0 } else { 0.5 };
         if r.is_nan() || r > 1.0 {
             self.rejections[worst] += 1;
@@ -260,17 +294,23 @@ impl Controller {
         }
     }
 
+    /// What has the largest error, by the index in [`Verdict::Stuck`].
+    pub fn name(&self, model: &Model, index: usize) -> String {
+        let names = &model.unknown_names()[..self.lengths.len()];
+        let name = names.get(index).map(String::as_str);
+        name.unwrap_or("the balance of energies").to_owned()
+    }
+
     /// What happened so far.
     pub fn report(&self, model: &Model) -> AccuracyReport {
         let rejections = self.rejections.iter().enumerate();
         let named = rejections.filter(|(_, count)| **count > 0);
         AccuracyReport {
-            position: self.accuracy.position,
-            horizon: self.accuracy.horizon,
+            asked: self.accuracy,
             steps: self.taken.map(|h| if h.is_finite() { h } else { 0.0 }),
             rejected_steps: self.rejections.iter().sum(),
             rejected_by: named
-                .map(|(i, count)| (model.unknown_names()[i].clone(), *count))
+                .map(|(i, count)| (self.name(model, i), *count))
                 .collect(),
         }
     }

@@ -64,7 +64,7 @@ const DIFFERENCE: [f64; 7] = [
 pub struct DormandPrince {
     /// Stages 2 to 6.
     stages: [State; 5],
-    /// q at the end less q at the start.
+    /// Changes of q or v.
     way: Vec<f64>,
 }
 
@@ -78,11 +78,22 @@ impl DormandPrince {
     }
 }
 
-/// h sum_j w_j x_j over the first stage and those after it.
+/// out = h sum_j w_j x_j, x the velocities or the accelerations of stages 1, 2, ...; one stage after the other.
 #[inline]
-fn sum(h: f64, weights: &[f64], first: f64, rest: impl Iterator<Item = f64>) -> f64 {
-    let rest = weights[1..].iter().zip(rest).map(|(w, x)| w * x);
-    h * (weights[0] * first + rest.sum::<f64>())
+fn sum<'a>(
+    h: f64,
+    weights: &[f64],
+    stages: impl Iterator<Item = &'a State>,
+    level: fn(&State) -> &Vec<f64>,
+    out: &mut [f64],
+) {
+    out.fill(0.0);
+    for (weight, stage) in weights.iter().zip(stages).filter(|(w, _)| **w != 0.0) {
+        let factor = h * weight;
+        for (o, x) in out.iter_mut().zip(level(stage)) {
+            *o += factor * x;
+        }
+    }
 }
 
 impl Stepper for DormandPrince {
@@ -104,11 +115,14 @@ impl Stepper for DormandPrince {
             stage.copy_from(done.last().unwrap_or(from));
             stage.t = if *c == 1.0 { t } else { from.t + c * h };
             system.prescribe(from, stage, work)?;
+            let before = || [from].into_iter().chain(&*done);
+            sum(h, row, before(), |s| &s.v, &mut self.way);
             for k in 0..shape.unknowns {
-                let v = done.iter().map(|s| s.v[k]);
-                let a = done.iter().map(|s| s.a[k]);
-                stage.q[k] = from.q[k] + (from.q_low[k] + sum(h, row, from.v[k], v));
-                stage.v[k] = from.v[k] + sum(h, row, from.a[k], a);
+                stage.q[k] = from.q[k] + (from.q_low[k] + self.way[k]);
+            }
+            sum(h, row, before(), |s| &s.a, &mut self.way);
+            for k in 0..shape.unknowns {
+                stage.v[k] = from.v[k] + self.way[k];
             }
             newton.accelerate(system, stage, work)?;
             if WEIGHTS[i + 1] != 0.0 {
@@ -118,13 +132,15 @@ impl Stepper for DormandPrince {
         let stages = &self.stages;
         // the known coordinates of the last stage are those of the end
         to.copy_from(&stages[4]);
+        let all = || [from].into_iter().chain(stages);
+        sum(h, &WEIGHTS, all(), |s| &s.a, &mut self.way);
         for k in 0..shape.unknowns {
-            self.way[k] = sum(h, &WEIGHTS, from.v[k], stages.iter().map(|s| s.v[k]));
-            to.v[k] = from.v[k] + sum(h, &WEIGHTS, from.a[k], stages.iter().map(|s| s.a[k]));
+            to.v[k] = from.v[k] + self.way[k];
         }
+        sum(h, &WEIGHTS, all(), |s| &s.v, &mut self.way);
         accumulate(from, &self.way, 0.0, to);
         if shape.multipliers > 0 {
-            newton.project_positions(system, to, work)?;
+            newton.project_positions(system, to)?;
             newton.make_consistent(system, to, work)?;
         } else {
             newton.accelerate(system, to, work)?;
@@ -147,10 +163,8 @@ impl Stepper for DormandPrince {
 
     fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {
         let h = to.t - from.t;
-        for (k, (q, v)) in error.q.iter_mut().zip(&mut error.v).enumerate() {
-            let after = || self.stages.iter().chain([to]);
-            *q = sum(h, &DIFFERENCE, from.v[k], after().map(|s| s.v[k]));
-            *v = sum(h, &DIFFERENCE, from.a[k], after().map(|s| s.a[k]));
-        }
+        let all = || [from].into_iter().chain(&self.stages).chain([to]);
+        sum(h, &DIFFERENCE, all(), |s| &s.v, &mut error.q);
+        sum(h, &DIFFERENCE, all(), |s| &s.a, &mut error.v);
     }
 }

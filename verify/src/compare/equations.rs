@@ -463,7 +463,7 @@ fn rust_tangents(model: &Model, at: &State) -> [Vec<f64>; 2] {
         model.linearise(at, w, &mut r, &mut phi, &mut k, &mut model.work());
         model.symbolic().to_dense(&k)
     };
-    let mass = matrix(Weights::ACCELERATION);
+    let mass = matrix(Weights { q: 0.0, v: 0.0 });
     let n = model.shape().unknowns;
     [Weights { q: 1.0, v: 0.0 }, Weights { q: 0.0, v: 1.0 }].map(|w| {
         let k = matrix(w);
@@ -476,11 +476,10 @@ fn rust_tangents(model: &Model, at: &State) -> [Vec<f64>; 2] {
 fn rust_constraints(model: &Model, at: &State) -> (Vec<f64>, Vec<f64>) {
     let shape = model.shape();
     let (n, m) = (shape.unknowns, shape.multipliers);
-    let (mut r, mut phi) = (vec![0.0; shape.coordinates], vec![0.0; m]);
-    let mut k = vec![0.0; model.symbolic().len()];
-    let w = Weights::ACCELERATION;
-    model.linearise(at, w, &mut r, &mut phi, &mut k, &mut model.work());
-    let dense = model.symbolic().to_dense(&k);
+    let mut phi = vec![0.0; m];
+    let mut k = vec![0.0; model.level_symbolic().len()];
+    model.level(at, &mut phi, &mut k);
+    let dense = model.level_symbolic().to_dense(&k);
     let entries = (0..m * n).map(|e| dense[(n + e / n, e % n)]);
     (phi, entries.collect())
 }

@@ -5,9 +5,13 @@
 //! The linear systems are those of the acceleration level with unit masses, \[\[I, Phi_q^T\], \[Phi_q, 0\]\], whose
 //! solution is the one of least norm.
 
+mod series;
+
+pub(crate) use series::Series;
+
 use crate::math::plane::{norm, sub};
 use crate::model::Model;
-use crate::system::{Inner, PrescribeError, State, System, Weights};
+use crate::system::{Inner, PrescribeError, State, System};
 
 /// An update below this leaves, by the quadratic convergence of Newton's method, an error far below rounding.
 const LAST_UPDATE: f64 = 1e-9;
@@ -23,6 +27,12 @@ pub struct Kinematics {
     pub(crate) offset: usize,
     /// Its coordinates at t = 0.
     pub(crate) start: Vec<f64>,
+    /// Its coordinates that are not fixed.
+    pub(crate) moving: Vec<usize>,
+    /// The time in which the path shows all its poses \[s\].
+    pub(crate) period: f64,
+    /// End of the motion \[s\].
+    pub(crate) duration: f64,
     /// Two links in series between known points: the loops whose closing can be told in words.
     pub(crate) dyads: Vec<Dyad>,
 }
@@ -43,16 +53,20 @@ impl Kinematics {
         let size = shape.unknowns + shape.multipliers;
         Inner {
             state: self.mechanism.blank_state(),
-            work: self.mechanism.work(),
-            r: vec![0.0; shape.coordinates],
             phi: vec![0.0; shape.multipliers],
-            k: vec![0.0; self.mechanism.symbolic().len()],
+            k: vec![0.0; self.mechanism.level_symbolic().len()],
             b: vec![0.0; size],
-            solve: vec![0.0; size],
+            series: Series::new(self.moving.len(), self.period),
         }
     }
 
-    /// Sets the coordinates of the ideal mechanism in `to` at `to.t`, starting from those in `from`.
+    /// Where its coordinates stand among those of the real mechanism.
+    fn place(&self) -> std::ops::Range<usize> {
+        self.offset..self.offset + self.mechanism.shape().coordinates
+    }
+
+    /// Sets the coordinates of the ideal mechanism in `to` at `to.t`, near those in `from`: from a series over a span of
+    /// time where the motion is smooth, else by solving for them.
     ///
     /// # Errors
     /// When the mechanism cannot close, or its pose is singular.
@@ -62,20 +76,49 @@ impl Kinematics {
         to: &mut State,
         inner: &mut Inner,
     ) -> Result<(), PrescribeError> {
-        let count = self.mechanism.shape().coordinates;
-        let here = self.offset..self.offset + count;
-        let dt = to.t - from.t;
-        let s = &mut inner.state;
-        s.t = to.t;
-        let rates = from.v[here.clone()].iter().zip(&from.a[here.clone()]);
-        for ((q, start), (v, a)) in s.q.iter_mut().zip(&from.q[here.clone()]).zip(rates) {
-            *q = start + dt * (v + 0.5 * dt * a);
+        if self.follow_series(from, to, inner) {
+            return Ok(());
         }
-        self.solve(inner, 20)?;
+        self.solve_at(from, to, inner)
+    }
+
+    /// Sets the coordinates of the ideal mechanism in `to` at `to.t` by solving for them, starting from those in `from`.
+    ///
+    /// # Errors
+    /// As [`Kinematics::prescribe`].
+    pub fn solve_at(
+        &self,
+        from: &State,
+        to: &mut State,
+        inner: &mut Inner,
+    ) -> Result<(), PrescribeError> {
+        self.begin(from, inner);
+        self.move_to(to.t, inner)?;
+        let here = self.place();
         to.q[here.clone()].copy_from_slice(&inner.state.q);
         to.v[here.clone()].copy_from_slice(&inner.state.v);
         to.a[here].copy_from_slice(&inner.state.a);
         Ok(())
+    }
+
+    /// Takes over the coordinates in `from`.
+    fn begin(&self, from: &State, inner: &mut Inner) {
+        let here = self.place();
+        inner.state.t = from.t;
+        inner.state.q.copy_from_slice(&from.q[here.clone()]);
+        inner.state.v.copy_from_slice(&from.v[here.clone()]);
+        inner.state.a.copy_from_slice(&from.a[here]);
+    }
+
+    /// Goes on to time t.
+    fn move_to(&self, t: f64, inner: &mut Inner) -> Result<(), PrescribeError> {
+        let s = &mut inner.state;
+        let dt = t - s.t;
+        s.t = t;
+        for (q, (v, a)) in s.q.iter_mut().zip(s.v.iter().zip(&s.a)) {
+            *q += dt * (v + 0.5 * dt * a);
+        }
+        self.solve(inner, 20)
     }
 
     /// Closes the mechanism at the time of `inner.state` from the coordinates in it, then finds the rates.
@@ -120,17 +163,9 @@ impl Kinematics {
 
     /// Phi and the factors of \[\[I, Phi_q^T\], \[Phi_q, 0\]\] at the current coordinates.
     fn factor(&self, inner: &mut Inner) -> Result<(), PrescribeError> {
-        let Inner {
-            state,
-            work,
-            r,
-            phi,
-            k,
-            ..
-        } = inner;
-        self.mechanism
-            .linearise(state, Weights::ACCELERATION, r, phi, k, work);
-        self.mechanism.symbolic().factor(k).map_err(|weak| {
+        let Inner { state, phi, k, .. } = inner;
+        self.mechanism.level(state, phi, k);
+        self.mechanism.level_symbolic().factor(k).map_err(|weak| {
             let name = self.mechanism.unknown_name(weak.index);
             let closed = phi.iter().all(|x| x.abs() < LAST_UPDATE);
             if closed {
@@ -153,8 +188,8 @@ impl Kinematics {
             *b = -phi;
         }
         self.mechanism
-            .symbolic()
-            .solve(&inner.k, &mut inner.b, &mut inner.solve);
+            .level_symbolic()
+            .solve(&inner.k, &mut inner.b);
     }
 
     /// Says which two links are too short or too long for the distance between their ends, if that is the reason.

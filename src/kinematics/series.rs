@@ -1,0 +1,248 @@
+//! The motion of the ideal mechanism over a span of time as Chebyshev series.
+//!
+//! Inverse kinematics is asked for at every stage of every step, far more often than a smooth path has digits to tell: on a
+//! span that is short against its bends, q, v and a at the nodes of a Chebyshev polynomial give them everywhere, each by a
+//! series of its own, as exactly as solving for them (Trefethen 2013, Approximation Theory and Approximation Practice,
+//! chapters 3 and 8). A span is taken only if its last coefficients are rounding; else it is halved, and where steps are
+//! too long for any span, at kinks of the path or near singular poses, every time is solved for by itself.
+
+use super::Kinematics;
+use crate::system::{Inner, State};
+use std::f64::consts::PI;
+
+/// Degree of the polynomials.
+const DEGREE: usize = 12;
+const NODES: usize = DEGREE + 1;
+/// Last coefficients that must be rounding.
+const TAIL: usize = 3;
+/// What counts as rounding, relative to the largest: of a position and of rates, which solving leaves less exact.
+const ROUNDING: [f64; 3] = [2.0 * f64::EPSILON, 16.0 * f64::EPSILON, 16.0 * f64::EPSILON];
+/// A span pays if it is this many steps long.
+const STEPS: f64 = 32.0;
+/// Part of the whole path that is tried first.
+const FIRST_SPAN: f64 = 1.0 / 16.0;
+
+/// Series over the present span, and how long the next one may be.
+#[derive(Debug, Clone)]
+pub(crate) struct Series {
+    start: f64,
+    end: f64,
+    /// The length to try next \[s\].
+    span: f64,
+    /// Until then the path is too rough \[s\].
+    rough_until: f64,
+    /// Row by row, one row for each degree: q of the moving coordinates, then v, then a.
+    coefficients: Vec<f64>,
+    /// Values at the nodes in the same layout.
+    values: Vec<f64>,
+    /// One row.
+    sum: Vec<f64>,
+}
+
+/// cos(i pi/n), n the degree, with the symmetries that make the sums over all nodes vanish.
+fn cosine(i: usize) -> f64 {
+    let angle = |i: usize| i as f64 * PI / DEGREE as f64;
+    match i % (2 * DEGREE) {
+        i if 2 * i <= DEGREE => angle(i).cos(),
+        i if 2 * i <= 3 * DEGREE => -angle(i.abs_diff(DEGREE)).cos(),
+        i => angle(2 * DEGREE - i).cos(),
+    }
+}
+
+impl Series {
+    /// Memory for a number of moving coordinates; `period` is the time in which the path shows all its poses.
+    pub fn new(moving: usize, period: f64) -> Series {
+        Series {
+            start: 0.0,
+            end: f64::NEG_INFINITY,
+            span: FIRST_SPAN * period,
+            rough_until: f64::NEG_INFINITY,
+            coefficients: vec![0.0; 3 * moving * NODES],
+            values: vec![0.0; 3 * moving * NODES],
+            sum: vec![0.0; 3 * moving],
+        }
+    }
+
+    /// From values at the nodes cos(j pi/n), both ends among them, to coefficients, c_k = (2/n) sum_j f_j cos(k j pi/n), half of
+    /// the first and the last of either; true if the last ones are rounding.
+    fn fit(&mut self) -> bool {
+        let width = self.sum.len();
+        self.coefficients.fill(0.0);
+        for (k, row) in self.coefficients.chunks_exact_mut(width).enumerate() {
+            let half = |i: usize| if i % DEGREE == 0 { 0.5 } else { 1.0 };
+            let weight = 2.0 * half(k) / DEGREE as f64;
+            for (j, values) in self.values.chunks_exact(width).enumerate() {
+                let factor = weight * half(j) * cosine(k * j);
+                for (c, x) in row.iter_mut().zip(values) {
+                    *c += factor * x;
+                }
+            }
+        }
+        let third = width / 3;
+        let largest = |rows: &[f64], level: usize| {
+            let rows = rows.chunks_exact(width);
+            let entries = rows.flat_map(|row| &row[level * third..(level + 1) * third]);
+            // f64::max drops NaN
+            entries.fold(0.0, |m: f64, x| if x.abs() <= m { m } else { x.abs() })
+        };
+        let tail = &self.coefficients[(NODES - TAIL) * width..];
+        (0..3).all(|level| {
+            let size = largest(&self.values, level);
+            size.is_finite() && largest(tail, level) <= ROUNDING[level] * size
+        })
+    }
+
+    /// Sums the series at time t: sum_k c_k T_k(x).
+    fn evaluate(&mut self, t: f64) {
+        let width = self.sum.len();
+        let x = ((t - self.start) - (self.end - t)) / (self.end - self.start);
+        self.sum.fill(0.0);
+        let (mut last, mut now) = (x, 1.0);
+        for row in self.coefficients.chunks_exact(width) {
+            for (s, c) in self.sum.iter_mut().zip(row) {
+                *s += c * now;
+            }
+            (last, now) = (now, 2.0 * x * now - last);
+        }
+    }
+}
+
+impl Kinematics {
+    /// Sets the moving coordinates of the ideal mechanism in `to` from the series that holds its time, or from a new one
+    /// that begins at `from`. False where none is to be had.
+    pub(super) fn follow_series(&self, from: &State, to: &mut State, inner: &mut Inner) -> bool {
+        let held = inner.series.start <= to.t && to.t <= inner.series.end;
+        if !held && !self.renew_series(from, to.t, inner) {
+            return false;
+        }
+        inner.series.evaluate(to.t);
+        let count = self.moving.len();
+        let (q, rates) = inner.series.sum.split_at(count);
+        let (v, a) = rates.split_at(count);
+        for (k, i) in self.moving.iter().enumerate() {
+            let i = self.offset + i;
+            (to.q[i], to.v[i], to.a[i]) = (q[k], v[k], a[k]);
+        }
+        true
+    }
+
+    /// Finds the series of a span from `from` on that holds time t.
+    fn renew_series(&self, from: &State, t: f64, inner: &mut Inner) -> bool {
+        let shortest = STEPS * (t - from.t);
+        let rest = self.duration - from.t;
+        if t < inner.series.rough_until || shortest > rest {
+            return false;
+        }
+        let mut span = inner.series.span.min(rest);
+        while span >= shortest {
+            inner.series.start = from.t;
+            inner.series.end = if span < rest {
+                from.t + span
+            } else {
+                self.duration
+            };
+            if self.solve_nodes(from, inner) && inner.series.fit() {
+                inner.series.span = 2.0 * span;
+                return true;
+            }
+            span *= 0.5;
+        }
+        inner.series.end = f64::NEG_INFINITY;
+        inner.series.rough_until = from.t + shortest;
+        inner.series.span = shortest;
+        false
+    }
+
+    /// Solves for the values at all nodes, from the earliest to the latest.
+    fn solve_nodes(&self, from: &State, inner: &mut Inner) -> bool {
+        let count = self.moving.len();
+        let (start, end) = (inner.series.start, inner.series.end);
+        let (middle, half) = (0.5 * (start + end), 0.5 * (end - start));
+        self.begin(from, inner);
+        for j in (0..NODES).rev() {
+            let t = middle + half * cosine(j);
+            if self.move_to(t, inner).is_err() {
+                return false;
+            }
+            let values = &mut inner.series.values[3 * count * j..3 * count * (j + 1)];
+            for (k, &i) in self.moving.iter().enumerate() {
+                values[k] = inner.state.q[i];
+                values[count + k] = inner.state.v[i];
+                values[2 * count + k] = inner.state.a[i];
+            }
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::compile;
+    use crate::initial;
+    use crate::scene::Scene;
+    use std::path::Path;
+
+    /// Follows the path of a scene in steps, by series and by solving; returns the part of times that a series gave and the
+    /// largest differences in q, v and a, relative to the largest value of each.
+    fn compared(overrides: &[&str], step: f64, count: usize) -> (f64, [f64; 3]) {
+        let overrides = overrides.iter().map(|s| (*s).to_owned());
+        let scene = Scene::load(
+            Path::new("scenes/3rrr/case3.toml"),
+            &overrides.collect::<Vec<_>>(),
+        )
+        .unwrap();
+        let model = compile(&scene).unwrap();
+        let kinematics = model.kinematics.as_ref().unwrap();
+        let [mut inner, mut other] = [kinematics.work(), kinematics.work()];
+        let mut from = initial::start(&scene, &model).unwrap();
+        let (mut to, mut solved) = (from.clone(), from.clone());
+        let n = model.shape().unknowns;
+        let (mut differences, mut sizes, mut series) = ([0.0_f64; 3], [0.0_f64; 3], 0);
+        for k in 1..=count {
+            to.t = k as f64 * step;
+            solved.t = to.t;
+            kinematics.prescribe(&from, &mut to, &mut inner).unwrap();
+            series += usize::from(to.t <= inner.series.end);
+            kinematics.solve_at(&from, &mut solved, &mut other).unwrap();
+            let levels = [(&to.q, &solved.q), (&to.v, &solved.v), (&to.a, &solved.a)];
+            for (l, (x, y)) in levels.into_iter().enumerate() {
+                for (x, y) in x[n..].iter().zip(&y[n..]) {
+                    differences[l] = differences[l].max((x - y).abs());
+                    sizes[l] = sizes[l].max(y.abs());
+                }
+            }
+            from.copy_from(&to);
+        }
+        let relative = std::array::from_fn(|l| differences[l] / sizes[l]);
+        (series as f64 / count as f64, relative)
+    }
+
+    // rounding: each is a sum of 13 terms whose data carry the rounding of solving for them, of rates some 16 times as large
+    const BOUNDS: [f64; 3] = [8.0 * f64::EPSILON, 64.0 * f64::EPSILON, 64.0 * f64::EPSILON];
+
+    #[test]
+    fn series_are_what_solving_gives() {
+        let (share, differences) = compared(&[], 1e-4, 10_000);
+        assert!(share > 0.99, "{share}");
+        for (difference, bound) in differences.iter().zip(BOUNDS) {
+            assert!(*difference < bound, "{differences:?}");
+        }
+    }
+
+    #[test]
+    fn a_path_with_kinks_is_solved_for_where_it_bends() {
+        let path = "drives.input.path={ type = \"table\", rows = [[0, 0.1, 0, 0], [0.1, 0.09, 0, 0], [0.2, 0.09, 0.02, 0.1], [0.3, 0.1, 0.02, 0], [0.4, 0.1, 0, 0]] }";
+        let (share, differences) = compared(&[path, "simulation.duration=0.4"], 1e-5, 40_000);
+        assert!(share > 0.8 && share < 1.0, "{share}");
+        for (difference, bound) in differences.iter().zip(BOUNDS) {
+            assert!(*difference < bound, "{differences:?}");
+        }
+    }
+
+    #[test]
+    fn steps_too_long_for_a_series_are_solved_for() {
+        let (share, differences) = compared(&[], 0.01, 100);
+        assert_eq!((share, differences), (0.0, [0.0; 3]));
+    }
+}

@@ -1,0 +1,51 @@
+//! A matrix of fixed pattern and its factors.
+
+use super::{Counters, Failure};
+use crate::math::lu::{DenseLu, Symbolic};
+
+/// Memory for a matrix that is filled, factorised and solved with many times.
+#[derive(Debug)]
+pub(super) struct Factors {
+    pub values: Vec<f64>,
+    /// Factors with row exchanges, where the fixed pivot order met a weak pivot.
+    pub dense: Option<DenseLu>,
+}
+
+impl Factors {
+    /// Memory for the pattern.
+    pub fn new(symbolic: &Symbolic) -> Factors {
+        Factors {
+            values: vec![0.0; symbolic.len()],
+            dense: None,
+        }
+    }
+
+    /// Fills the matrix and factorises it; a weak pivot fills it once more and exchanges rows.
+    pub fn renew(
+        &mut self,
+        symbolic: &Symbolic,
+        counters: &mut Counters,
+        mut fill: impl FnMut(&mut [f64]),
+    ) -> Result<(), Failure> {
+        counters.factorisations += 1;
+        self.dense = None;
+        fill(&mut self.values);
+        if let Err(weak) = symbolic.factor(&mut self.values) {
+            counters.fallbacks += 1;
+            fill(&mut self.values);
+            self.dense = DenseLu::factor(symbolic, &self.values);
+            if self.dense.is_none() {
+                return Err(Failure::Singular { index: weak.index });
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves in place.
+    pub fn solve(&self, symbolic: &Symbolic, b: &mut [f64]) {
+        match &self.dense {
+            None => symbolic.solve(&self.values, b),
+            Some(dense) => dense.solve(b),
+        }
+    }
+}
