@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::print;
 use super::progress::say;
 use clap::Args;
-use looselink::precision::{Effort, Folder, Study, run};
+use looselink::precision::{Effort, Folder, Study, Survey, run};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -40,10 +40,14 @@ pub fn precision(arguments: &Arguments) -> Result<(), Failure> {
         },
         smoke: arguments.smoke,
     };
-    let outcome = run(&study, effort, &mut |name| {
+    let mut tell = |name: &str| {
         if !arguments.quiet {
             say(name);
         }
-    })?;
-    print(&folder.write(&study, &outcome)?)
+    };
+    let page = match study.statistics {
+        Some(_) => folder.write_survey(&study, &Survey::run(&study, effort, &mut tell)?)?,
+        None => folder.write(&study, &run(&study, effort, &mut tell)?)?,
+    };
+    print(&page)
 }

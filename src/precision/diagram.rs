@@ -4,7 +4,7 @@ use super::errors::NORMS;
 use super::{Outcome, Pace, Study};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
-const COLORS: [Color; 10] = [
+pub(super) const COLORS: [Color; 10] = [
     palette::BLUE,
     palette::VERMILION,
     palette::GREEN,

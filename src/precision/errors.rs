@@ -1,6 +1,6 @@
 //! How far two runs are apart, in several norms.
 
-use super::{Study, StudyError};
+use super::{Columns, Study, StudyError};
 use serde::Serialize;
 
 /// The distance of a run from the reference.
@@ -39,10 +39,7 @@ pub(super) struct Series {
 
 impl Series {
     /// From the columns of a run by the names of their channels.
-    pub fn of<'a>(
-        study: &Study,
-        get: &dyn Fn(&str) -> Option<&'a [f64]>,
-    ) -> Result<Series, StudyError> {
+    pub fn of(study: &Study, get: Columns) -> Result<Series, StudyError> {
         let column = |name: &String| match get(name) {
             Some(column) => Ok(column.to_vec()),
             None => Err(StudyError::plain(format!(
@@ -89,6 +86,6 @@ fn largest(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 }
 
 /// The larger magnitude; what is not a number is larger than all.
-fn larger(a: f64, b: f64) -> f64 {
+pub(super) fn larger(a: f64, b: f64) -> f64 {
     if b.abs() <= a { a } else { b.abs() }
 }

@@ -9,7 +9,7 @@
 //!
 //! The first is the same bytes when the study is repeated.
 
-use super::{Outcome, Pace, Study, Timing, figure, page};
+use super::{Outcome, Pace, Study, Survey, Timing, figure, page};
 use crate::machine::{Machine, machine};
 use crate::output::{OutputError, TIMING, json, naming, refuse_occupied, replace};
 use serde::Serialize;
@@ -39,6 +39,24 @@ struct Time<'a> {
     seconds: Option<Timing>,
 }
 
+impl<'a> Times<'a> {
+    fn new(
+        machine: &'a Machine,
+        runs: impl Iterator<Item = (&'a str, Pace)>,
+        seconds: &[Option<Timing>],
+    ) -> Times<'a> {
+        let runs = runs.zip(seconds).map(|((curve, pace), seconds)| Time {
+            curve,
+            pace,
+            seconds: *seconds,
+        });
+        Times {
+            machine,
+            runs: runs.collect(),
+        }
+    }
+}
+
 impl Folder {
     /// Looks at `path` without changing anything; with `replace` what stands there may be replaced.
     ///
@@ -55,25 +73,38 @@ impl Folder {
     /// # Errors
     /// When a file cannot be written.
     pub fn write(&self, study: &Study, outcome: &Outcome) -> Result<String, OutputError> {
+        let machine = machine();
+        let runs = outcome.runs.iter().map(|run| (&*run.curve, run.pace));
+        let times = Times::new(&machine, runs, &outcome.timings);
+        let page = page(outcome, &machine);
+        self.write_all(&times, page, &figure(study, outcome), outcome)
+    }
+
+    /// As [`Folder::write`], of a study of statistics.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn write_survey(&self, study: &Study, survey: &Survey) -> Result<String, OutputError> {
+        let machine = machine();
+        let runs = survey.runs.iter().map(|run| (&*run.curve, run.pace));
+        let times = Times::new(&machine, runs, &survey.timings);
+        let page = survey.page(study, &machine);
+        self.write_all(&times, page, &survey.figure(study), survey)
+    }
+
+    fn write_all(
+        &self,
+        times: &Times,
+        page: String,
+        figure: &plot::Figure,
+        found: &impl Serialize,
+    ) -> Result<String, OutputError> {
         let folder = &self.0;
         fs::create_dir_all(folder).map_err(|e| naming(folder, e))?;
-        let machine = machine();
-        let runs = outcome.runs.iter().zip(&outcome.timings);
-        let runs = runs.map(|(run, seconds)| Time {
-            curve: &run.curve,
-            pace: run.pace,
-            seconds: *seconds,
-        });
-        let times = Times {
-            machine: &machine,
-            runs: runs.collect(),
-        };
-        let page = page(outcome, &machine);
-        replace(folder, TIMING, &json(&times)?)?;
+        replace(folder, TIMING, &json(times)?)?;
         replace(folder, PAGE, page.as_bytes())?;
-        plot::save(&figure(study, outcome), folder, PICTURE)
-            .map_err(|e| io::Error::other(e.to_string()))?;
-        replace(folder, PRECISION, &json(outcome)?)?;
+        plot::save(figure, folder, PICTURE).map_err(|e| io::Error::other(e.to_string()))?;
+        replace(folder, PRECISION, &json(found)?)?;
         Ok(page)
     }
 }

@@ -7,6 +7,7 @@
 mod diagram;
 mod errors;
 mod files;
+mod statistics;
 mod study;
 mod table;
 
@@ -14,7 +15,8 @@ pub use crate::machine::Timing;
 pub use diagram::figure;
 pub use errors::Errors;
 pub use files::Folder;
-pub use study::{Curve, Pace, Reference, Study, StudyError};
+pub use statistics::{Measures, Sampled, Survey};
+pub use study::{Curve, Pace, Reference, Statistics, Study, StudyError};
 pub use table::{page, table};
 
 use crate::scene::{Scene, SceneError};
@@ -94,7 +96,7 @@ impl Outcome {
 #[derive(Clone, Copy)]
 pub struct Made<'a> {
     /// What it recorded, by the names of channels.
-    pub columns: &'a dyn Fn(&str) -> Option<&'a [f64]>,
+    pub columns: Columns<'a>,
     /// Work done.
     pub work: Work,
     /// Its time.
@@ -188,8 +190,30 @@ pub fn run(
     effort: Effort,
     tell: &mut dyn FnMut(&str),
 ) -> Result<Outcome, StudyError> {
-    let [coarse, fine] = study.reference.paces();
-    let reference = |pace: Pace, tell: &mut dyn FnMut(&str)| {
+    let [rough, exact] = references(study, tell, Series::of)?;
+    let mut outcome = Outcome {
+        title: study.title.clone(),
+        floor: rough.errors(&exact),
+        runs: Vec::new(),
+        timings: Vec::new(),
+        exact,
+    };
+    points(study, effort, tell, &mut |curve, pace, made| {
+        outcome.add(study, curve, pace, made)
+    })?;
+    Ok(outcome)
+}
+
+/// What was recorded, by the names of channels.
+type Columns<'a> = &'a dyn Fn(&str) -> Option<&'a [f64]>;
+
+/// Coarse and fine run of the reference.
+fn references<T>(
+    study: &Study,
+    tell: &mut dyn FnMut(&str),
+    of: fn(&Study, Columns) -> Result<T, StudyError>,
+) -> Result<[T; 2], StudyError> {
+    let mut run = |pace: Pace| {
         tell(&format!("reference, {pace}"));
         let scene = study.scene(&study.reference.set, pace)?;
         let failed = |e: Failed| match e {
@@ -197,20 +221,21 @@ pub fn run(
             Failed::Run(e) => StudyError::plain(format!("the reference with {pace} fails: {e}")),
         };
         let (recording, _) = record(&scene).map_err(failed)?;
-        Series::of(study, &|name| recording.get(name))
+        of(study, &|name| recording.get(name))
     };
-    let rough = reference(coarse, tell)?;
-    let exact = reference(fine, tell)?;
-    let floor = rough.errors(&exact);
-    let mut outcome = Outcome {
-        title: study.title.clone(),
-        floor,
-        runs: Vec::new(),
-        timings: Vec::new(),
-        exact,
-    };
+    let [coarse, fine] = study.reference.paces();
+    Ok([run(coarse)?, run(fine)?])
+}
+
+/// Makes all points of all curves and gives each to `add`.
+fn points(
+    study: &Study,
+    effort: Effort,
+    tell: &mut dyn FnMut(&str),
+    add: &mut dyn FnMut(&str, Pace, Result<Made, String>) -> Result<(), StudyError>,
+) -> Result<(), StudyError> {
+    let count = if effort.smoke { 1 } else { usize::MAX };
     for curve in &study.curves {
-        let count = if effort.smoke { 1 } else { usize::MAX };
         for pace in curve.paces().into_iter().take(count) {
             tell(&format!("{}, {pace}", curve.name));
             let scene = study.scene(&curve.set, pace)?;
@@ -224,11 +249,11 @@ pub fn run(
                         work: Work::of(&report),
                         timing,
                     };
-                    outcome.add(study, &curve.name, pace, Ok(made))?;
+                    add(&curve.name, pace, Ok(made))?;
                 }
-                Err(error) => outcome.add(study, &curve.name, pace, Err(error.to_string()))?,
+                Err(error) => add(&curve.name, pace, Err(error.to_string()))?,
             }
         }
     }
-    Ok(outcome)
+    Ok(())
 }

@@ -47,8 +47,20 @@ pub struct Study {
     pub force: Vec<String>,
     /// What the curves are compared with.
     pub reference: Reference,
+    /// Present where not the motion is compared, which chaos has taken apart, but its statistics.
+    pub statistics: Option<Statistics>,
     /// Methods with their steps or accuracies.
     pub curves: Vec<Curve>,
+}
+
+/// Statistics of the second part of a run.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Statistics {
+    /// Start of that part \[s\].
+    pub from: f64,
+    /// Channels that are 1 in contact and 0 out of it.
+    pub contact: Vec<String>,
 }
 
 /// Two runs of a method that none of the curves depends on: the difference between them is the floor.
@@ -73,9 +85,11 @@ pub struct Curve {
     /// Steps \[s\]; or
     #[serde(default)]
     pub steps: Vec<f64>,
-    /// accuracies \[m\] ...
+    /// accuracies \[m\]
     #[serde(default)]
     pub accuracies: Vec<f64>,
+    /// with, where given, this accuracy of the balance of energies \[J\] ...
+    pub energy: Option<f64>,
     /// ... over this time \[s\]; the duration of the study unless given.
     pub horizon: Option<f64>,
 }
@@ -90,6 +104,9 @@ pub enum Pace {
     Accuracy {
         /// Error allowed in positions.
         position: f64,
+        /// Error allowed in the balance of energies \[J\].
+        #[serde(skip_serializing_if = "Option::is_none")]
+        energy: Option<f64>,
         /// Time over which it may gather.
         horizon: f64,
     },
@@ -101,7 +118,12 @@ impl fmt::Display for Pace {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Pace::Step(step) => write!(f, "step {}", plot::si(*step, "s")),
-            Pace::Accuracy { position, .. } => write!(f, "accuracy {}", plot::si(*position, "m")),
+            Pace::Accuracy {
+                position, energy, ..
+            } => {
+                write!(f, "accuracy {}", plot::si(*position, "m"))?;
+                energy.map_or(Ok(()), |e| write!(f, " and {}", plot::si(e, "J")))
+            }
             Pace::Tolerance(relative) => write!(f, "tolerance {relative:e}"),
         }
     }
@@ -121,6 +143,7 @@ impl Curve {
         let horizon = self.horizon.unwrap_or(f64::NAN);
         let accuracies = self.accuracies.iter().map(|position| Pace::Accuracy {
             position: *position,
+            energy: self.energy,
             horizon,
         });
         steps.chain(accuracies).collect()
@@ -162,6 +185,13 @@ impl Study {
             }
             curve.horizon = curve.horizon.or(Some(study.duration));
         }
+        if let Some(Statistics { from, contact }) = &study.statistics
+            && !(*from >= 0.0 && *from < study.duration && !contact.is_empty())
+        {
+            return fault(
+                "`statistics` needs a `from` within the duration and channels of `contact`".into(),
+            );
+        }
         study.scene = path.with_file_name(&study.scene);
         Ok(study)
     }
@@ -171,10 +201,16 @@ impl Study {
     /// # Errors
     /// A fault of the scene.
     pub fn scene(&self, set: &[String], pace: Pace) -> Result<Scene, SceneError> {
+        let contact = self.statistics.iter().flat_map(|s| s.contact.clone());
+        let energies = match self.statistics {
+            Some(_) => &["energy.numerical", "energy.contact_dissipated"][..],
+            None => &["energy.numerical"],
+        };
         let channels: Vec<String> = [&self.position[..], &self.acceleration, &self.force]
             .concat()
             .into_iter()
-            .chain(["energy.numerical".to_owned()])
+            .chain(contact)
+            .chain(energies.iter().map(|e| (*e).to_owned()))
             .map(|c| format!("{c:?}"))
             .collect();
         let mut overrides = self.set.clone();
@@ -185,9 +221,14 @@ impl Study {
             format!("output.channels=[{}]", channels.join(", ")),
             match pace {
                 Pace::Step(step) => format!("integrator.step={step:?}"),
-                Pace::Accuracy { position, horizon } => format!(
-                    "integrator.accuracy={{ position = {position:?}, horizon = {horizon:?} }}"
-                ),
+                Pace::Accuracy {
+                    position,
+                    energy,
+                    horizon,
+                } => {
+                    let energy = energy.map_or(String::new(), |e| format!("energy = {e:?}, "));
+                    format!("integrator.accuracy={{ position = {position:?}, {energy}horizon = {horizon:?} }}")
+                }
                 Pace::Tolerance(_) => unreachable!("curves of a study have steps or accuracies"),
             },
         ]);

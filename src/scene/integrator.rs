@@ -174,9 +174,9 @@ fn accuracy(
             "method {:?} has no estimate of its error to follow",
             method.name()
         );
-        return Err(field
-            .key_fault(message, "needs an estimate")
-            .with_help("\"bathe\" and \"dormand_prince\" have one; the others take a `step`"));
+        return Err(field.key_fault(message, "needs an estimate").with_help(
+            "\"bathe\", \"trapezoidal\" and \"dormand_prince\" have one; the others take a `step`",
+        ));
     }
     let mut table = field.fields()?;
     table.only(&["position", "energy", "horizon"])?;

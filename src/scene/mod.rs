@@ -194,7 +194,10 @@ impl Method {
 
     /// True of a scheme that estimates its error.
     pub fn estimates_error(&self) -> bool {
-        matches!(self, Method::Bathe { .. } | Method::DormandPrince)
+        matches!(
+            self,
+            Method::Bathe { .. } | Method::Trapezoidal | Method::DormandPrince
+        )
     }
 }
 
