@@ -22,7 +22,7 @@ pub fn page(made: &[Made], machine: &Machine, seconds: f64) -> String {
     for one in made {
         out += &format!(
             "## {}\n\n![{}](accuracy/figures/{}.png)\n\n{}\n",
-            capitalised(&one.study.title),
+            one.study.title,
             one.study.title,
             one.name,
             looselink::precision::table(&one.outcome)
@@ -178,12 +178,4 @@ fn omissions(made: &[Made]) -> String {
          * Beyond the first impacts runs with loose joints go different ways; here each study ends before that.",
     );
     out
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    match letters.next() {
-        Some(first) => first.to_uppercase().collect::<String>() + letters.as_str(),
-        None => String::new(),
-    }
 }

@@ -36,10 +36,16 @@ pub mod palette {
     pub const ORANGE: Color = (230, 159, 0);
     /// Sixth series.
     pub const SKY: Color = (86, 180, 233);
-    /// Seventh series (of Tol's palette, as is the eighth).
+    /// Seventh series (of Tol's palettes, as are those after it).
     pub const INDIGO: Color = (51, 34, 136);
     /// Eighth series.
     pub const BROWN: Color = (136, 84, 40);
+    /// Ninth series.
+    pub const OLIVE: Color = (153, 153, 51);
+    /// Tenth series.
+    pub const WINE: Color = (136, 34, 85);
+    /// Eleventh series.
+    pub const TEAL: Color = (68, 170, 153);
     /// Reference curves such as the ideal mechanism.
     pub const GREY: Color = (130, 130, 130);
     /// Bounds and reference lines.

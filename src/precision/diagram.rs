@@ -4,18 +4,35 @@ use super::errors::NORMS;
 use super::{Outcome, Pace, Study};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
-pub(super) const COLORS: [Color; 10] = [
-    palette::BLUE,
-    palette::VERMILION,
-    palette::GREEN,
-    palette::PURPLE,
-    palette::ORANGE,
-    palette::SKY,
-    palette::INDIGO,
-    palette::BROWN,
-    palette::BLACK,
-    palette::GREY,
+/// Curves that several studies have, each with the same colour in all of them.
+const NAMED: [(&str, Color); 12] = [
+    ("Bathe", palette::BLUE),
+    ("trapezoidal", palette::GREEN),
+    ("generalised-alpha 0.8", palette::PURPLE),
+    ("HHT 0.8", palette::WINE),
+    ("backward Euler", palette::BROWN),
+    ("velocity Verlet", palette::ORANGE),
+    ("Dormand-Prince", palette::VERMILION),
+    ("Bathe, onsets not located", palette::SKY),
+    ("Bathe, error controlled", palette::INDIGO),
+    ("trapezoidal, error controlled", palette::TEAL),
+    ("Dormand-Prince, error controlled", palette::OLIVE),
+    ("IDA (second implementation)", palette::BLACK),
 ];
+
+/// The colour of a curve; those not named above take the colours that are left, in turn.
+pub(super) fn color(curves: &[&str], curve: &str) -> Color {
+    let named = |name: &str| NAMED.iter().find(|(n, _)| *n == name);
+    if let Some((_, color)) = named(curve) {
+        return *color;
+    }
+    let mut others = curves.iter().filter(|name| named(name).is_none());
+    let place = others.position(|name| *name == curve).unwrap_or(0);
+    let mut left = NAMED.iter().filter(|(name, _)| !curves.contains(name));
+    let count = left.clone().count();
+    let color = left.nth(place % count.max(1));
+    color.map_or(palette::GREY, |(_, color)| *color)
+}
 
 /// Errors against processor time, one panel a norm, and the error of position against the step or the accuracy.
 pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
@@ -99,7 +116,8 @@ fn against_time(
 ) -> Panel {
     let seconds = |i: usize| outcome.timings[i].map(|t| t.median);
     let mut marks = Vec::new();
-    for (curve, color) in outcome.curves().into_iter().zip(COLORS.into_iter().cycle()) {
+    for curve in outcome.curves() {
+        let color = color(&outcome.curves(), curve);
         marks.extend(lines(curve, color, points(outcome, curve, seconds, of)));
     }
     let floor = of(&outcome.floor);
@@ -123,7 +141,8 @@ fn against_pace(outcome: &Outcome, asked: bool) -> Panel {
         _ => None,
     };
     let mut marks = Vec::new();
-    for (curve, color) in outcome.curves().into_iter().zip(COLORS.into_iter().cycle()) {
+    for curve in outcome.curves() {
+        let color = color(&outcome.curves(), curve);
         let found = points(outcome, curve, abscissa, |e| e.position);
         marks.extend(lines(curve, color, found));
     }
@@ -135,8 +154,7 @@ fn against_pace(outcome: &Outcome, asked: bool) -> Panel {
         });
     for (i, run) in outcome.runs.iter().enumerate() {
         if let (Err(_), Some(x)) = (&run.result, abscissa(i)) {
-            let curve = outcome.curves().iter().position(|c| *c == run.curve);
-            let color = COLORS[curve.unwrap_or(0) % COLORS.len()];
+            let color = color(&outcome.curves(), &run.curve);
             marks.push(Mark::cross("", color, (x, top)));
         }
     }
