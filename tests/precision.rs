@@ -47,7 +47,7 @@ fn studies_of_the_project_work() {
         assert_eq!(figure(&study, &outcome).rows.len(), 3, "{}", study.title);
         count += 1;
     }
-    assert_eq!(count, 8);
+    assert_eq!(count, 9);
 }
 
 fn study(curves: &str) -> Result<Study, String> {

@@ -46,7 +46,10 @@ fn main() -> Result<()> {
         };
         let mut tell = |point: &str| eprintln!("{name}: {point}");
         let mut outcome = run(&study, effort, &mut tell).map_err(|e| miette!("{e}"))?;
-        ida::add(&study, &mut outcome, repeats, &mut tell)?;
+        // IDA is a rival to methods; a mesh has none
+        if !study.compares_elements() {
+            ida::add(&study, &mut outcome, repeats, &mut tell)?;
+        }
         let pictures = root.join("accuracy/figures");
         plot::save(&figure(&study, &outcome), &pictures, &name)?;
         made.push(Made {

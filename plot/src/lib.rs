@@ -87,6 +87,8 @@ pub struct Axis {
     pub scale: Scale,
     /// Range in SI; from the data when absent.
     pub range: Option<(f64, f64)>,
+    /// Where labels stand on a logarithmic axis, in SI; at powers of ten when empty.
+    pub labels: Vec<f64>,
     /// On the horizontal axis of a panel: both axes are drawn to one scale, the shorter range is widened.
     pub equal: bool,
     /// On the vertical axis of a panel: what stands at 0, 1, ... from the top down; empty for an axis of numbers.
@@ -162,6 +164,7 @@ impl Axis {
             factor,
             scale: Scale::Linear,
             range: None,
+            labels: Vec::new(),
             equal: false,
             names: Vec::new(),
         }
@@ -188,6 +191,14 @@ impl Axis {
         Axis {
             scale: Scale::Log,
             ..self
+        }
+    }
+
+    /// The same axis with logarithmic spacing and these labels alone, in SI units.
+    pub fn log_at(self, labels: Vec<f64>) -> Axis {
+        Axis {
+            labels,
+            ..self.log()
         }
     }
 

@@ -1,6 +1,6 @@
 //! Where the ticks of an axis stand and what is written at them.
 
-use crate::{Axis, Scale};
+use crate::{Axis, Scale, digits};
 
 /// A laid-out axis: the range in drawing values (after factor, power of ten and logarithm) and its ticks.
 pub struct Ticks {
@@ -129,6 +129,11 @@ fn logarithmic(axis: &Axis, data: (f64, f64), wanted: usize) -> Ticks {
             }
         }
     }
+    if !axis.labels.is_empty() {
+        let labels = axis.labels.iter().map(|v| v * axis.factor);
+        major = labels.map(|v| (v.log10(), digits(v))).collect();
+        minor.clear();
+    }
     if stride > 2 {
         minor.retain(|v| (v - v.round()).abs() < 1e-9);
     }
@@ -256,6 +261,8 @@ mod tests {
             ),
             ["1", "2", "5", "10"]
         );
+        let elements = Axis::new("n", "", 1.0).log_at(vec![1.0, 2.0, 4.0, 16.0]);
+        assert_eq!(texts(&elements, (1.0, 16.0)), ["1", "2", "4", "16"]);
     }
 
     #[test]

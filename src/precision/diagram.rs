@@ -1,5 +1,6 @@
 //! Work-precision diagrams.
 
+use super::elements::Meshes;
 use super::errors::NORMS;
 use super::{Outcome, Pace, Study};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
@@ -47,6 +48,12 @@ pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
             panels.push(against_time(outcome, name, unit, of));
         }
     }
+    if study.compares_elements() {
+        let meshes = Meshes::new(study, outcome);
+        meshes.mark_cheapest(&mut panels[0]);
+        panels.insert(1, meshes.errors());
+        panels.insert(2, meshes.times());
+    }
     panels.push(against_pace(outcome, false));
     panels.push(against_pace(outcome, true));
     panels.retain(|panel| !panel.marks.is_empty());
@@ -65,6 +72,13 @@ pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
         [] => "No run failed.".to_owned(),
         list => format!("Failed: {} (crosses).", list.join("; ")),
     };
+    let kept = match study.compares_elements() {
+        true => {
+            " An error is reached where finer steps keep it: few elements and a long step may cancel by luck, and the reference \
+             has elements too."
+        }
+        false => "",
+    };
     let [coarse, fine] = study.reference.paces();
     let scene = study
         .scene
@@ -74,14 +88,23 @@ pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
     Figure {
         rows,
         caption: format!(
-            "{}. Scene {scene}, the first {}; errors are the largest over rows every {}. Reference: {}, {coarse} and {fine}; dashed: \
-             the difference between the two, below which errors are not told apart. {failures}",
+            "{}. Scene {}, the first {}; errors are the largest over rows every {}. Reference: {}, {coarse} and {fine}; dashed: \
+             the difference between the two, below which errors are not told apart.{kept} {failures}",
             outcome.title,
+            with(&scene, &study.set, None),
             plot::si(study.duration, "s"),
             plot::si(study.interval, "s"),
-            study.reference.set.join(", "),
+            with("", &study.reference.set, study.reference.elements),
         ),
     }
+}
+
+/// A name, what is changed in it and how many elements its flexible links have.
+fn with(name: &str, set: &[String], elements: Option<usize>) -> String {
+    let name = Some(name.to_owned()).filter(|name| !name.is_empty());
+    let elements = elements.map(|n| format!("{n} elements a flexible link"));
+    let parts = name.into_iter().chain(set.iter().cloned()).chain(elements);
+    parts.collect::<Vec<String>>().join(", ")
 }
 
 /// Points of a curve that reached the end, as (abscissa, error).

@@ -5,6 +5,7 @@
 //! does not differ when the study is repeated; what it took is in [`Outcome::timings`].
 
 mod diagram;
+mod elements;
 mod errors;
 mod files;
 mod statistics;
@@ -215,7 +216,7 @@ fn references<T>(
 ) -> Result<[T; 2], StudyError> {
     let mut run = |pace: Pace| {
         tell(&format!("reference, {pace}"));
-        let scene = study.scene(&study.reference.set, pace)?;
+        let scene = study.scene(&study.reference.set, study.reference.elements, pace)?;
         let failed = |e: Failed| match e {
             Failed::Scene(e) => StudyError::Scene(e),
             Failed::Run(e) => StudyError::plain(format!("the reference with {pace} fails: {e}")),
@@ -238,7 +239,7 @@ fn points(
     for curve in &study.curves {
         for pace in curve.paces().into_iter().take(count) {
             tell(&format!("{}, {pace}", curve.name));
-            let scene = study.scene(&curve.set, pace)?;
+            let scene = study.scene(&curve.set, curve.elements, pace)?;
             let made = record(&scene).and_then(|(recording, report)| {
                 Ok((recording, report, time(&scene, effort.repeats)?))
             });

@@ -4,7 +4,7 @@
 //! the share of time in contact, over all joints; the energy that contacts dissipate, and the energy that the integrator
 //! loses. The first two are compared with a reference, relative; the third too, as it is; the last with the one before it.
 
-use super::diagram::COLORS;
+use super::diagram::color;
 use super::errors::larger;
 use super::{Columns, Effort, Made, Pace, Study, StudyError, Timing, Work, points, references};
 use crate::machine::Machine;
@@ -246,9 +246,11 @@ impl Survey {
         let duration = study.duration;
         let panel = |title: &str, label: &str, of: &dyn Fn(&Measures) -> f64, bound: f64| {
             let mut marks = Vec::new();
-            for (curve, color) in self.curves().into_iter().zip(COLORS) {
+            let curves = self.curves();
+            for curve in &curves {
+                let color = color(&curves, curve);
                 let runs = self.runs.iter().zip(&self.timings);
-                let points = runs.filter(|(run, _)| run.curve == curve);
+                let points = runs.filter(|(run, _)| run.curve == *curve);
                 let (x, y): (Vec<f64>, Vec<f64>) = points
                     .filter_map(|(run, timing)| {
                         let (measures, _) = run.result.as_ref().ok()?;

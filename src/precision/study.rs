@@ -1,6 +1,6 @@
 //! What a study file says.
 
-use crate::scene::{Scene, SceneError};
+use crate::scene::{BodyKind, LinkModel, Scene, SceneError};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -69,6 +69,8 @@ pub struct Statistics {
 pub struct Reference {
     /// Overrides that choose the method.
     pub set: Vec<String>,
+    /// Elements of every flexible link; as in the scene unless given.
+    pub elements: Option<usize>,
     /// Coarse and fine step \[s\].
     pub steps: [f64; 2],
 }
@@ -82,6 +84,8 @@ pub struct Curve {
     /// Overrides that choose the method, or change the mechanism.
     #[serde(default)]
     pub set: Vec<String>,
+    /// Elements of every flexible link; as in the scene unless given.
+    pub elements: Option<usize>,
     /// Steps \[s\]; or
     #[serde(default)]
     pub steps: Vec<f64>,
@@ -196,11 +200,21 @@ impl Study {
         Ok(study)
     }
 
+    /// True of a study whose curves are numbers of elements: it compares meshes, not methods.
+    pub fn compares_elements(&self) -> bool {
+        self.curves.iter().any(|curve| curve.elements.is_some())
+    }
+
     /// The scene of a run.
     ///
     /// # Errors
     /// A fault of the scene.
-    pub fn scene(&self, set: &[String], pace: Pace) -> Result<Scene, SceneError> {
+    pub fn scene(
+        &self,
+        set: &[String],
+        elements: Option<usize>,
+        pace: Pace,
+    ) -> Result<Scene, SceneError> {
         let contact = self.statistics.iter().flat_map(|s| s.contact.clone());
         let energies = match self.statistics {
             Some(_) => &["energy.numerical", "energy.contact_dissipated"][..],
@@ -215,6 +229,14 @@ impl Study {
             .collect();
         let mut overrides = self.set.clone();
         overrides.extend_from_slice(set);
+        if let Some(elements) = elements {
+            let scene = Scene::load(&self.scene, &overrides)?;
+            let links = scene.bodies.iter().filter(|body| match &body.kind {
+                BodyKind::Link(link) => matches!(link.model, LinkModel::Flexible { .. }),
+                _ => false,
+            });
+            overrides.extend(links.map(|link| format!("bodies.{}.elements={elements}", link.name)));
+        }
         overrides.extend([
             format!("simulation.duration={:?}", self.duration),
             format!("output.interval={:?}", self.interval),
