@@ -1,9 +1,12 @@
-//! Runs every study in `studies/`, adds the second implementation with IDA as a rival, and writes ACCURACY.md.
+//! Runs every study in `studies/`, adds the second implementation with IDA as a rival, takes the paper's case 4 apart effect
+//! by effect, and writes ACCURACY.md.
 
+mod effects;
 mod ida;
 mod page;
 
 use clap::Parser;
+use looselink::ablation::figure as figure_of_effects;
 use looselink::machine::machine;
 use looselink::precision::{Effort, Outcome, Study, figure, run};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
@@ -58,7 +61,18 @@ fn main() -> Result<()> {
             outcome,
         });
     }
-    let page = page::page(&made, &machine(), started.elapsed().as_secs_f64());
+    let ablation = effects::ablation(&root.join("scenes/3rrr/case4.toml"))?;
+    plot::save(
+        &figure_of_effects(&ablation),
+        &root.join("accuracy/figures"),
+        "ablation",
+    )?;
+    let page = page::page(
+        &made,
+        &ablation,
+        &machine(),
+        started.elapsed().as_secs_f64(),
+    );
     let path = root.join("ACCURACY.md");
     std::fs::write(&path, page)
         .into_diagnostic()

@@ -1,6 +1,7 @@
 //! The page.
 
-use crate::Made;
+use crate::{Made, effects};
+use looselink::ablation::Ablation;
 use looselink::machine::Machine;
 use looselink::precision::{Outcome, Pace};
 use std::fmt::Write;
@@ -9,7 +10,7 @@ use std::fmt::Write;
 const LEVELS: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
 
 /// What ACCURACY.md says.
-pub fn page(made: &[Made], machine: &Machine, seconds: f64) -> String {
+pub fn page(made: &[Made], ablation: &Ablation, machine: &Machine, seconds: f64) -> String {
     let mut out = format!(
         "# What accuracy costs\n\n\
          Every method on every study of [studies](studies), error against processor time. Written by `cargo run --release -p \
@@ -28,6 +29,7 @@ pub fn page(made: &[Made], machine: &Machine, seconds: f64) -> String {
             looselink::precision::table(&one.outcome)
         );
     }
+    out += &effects::section(ablation);
     out += &omissions(made);
     out
 }

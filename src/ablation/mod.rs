@@ -14,6 +14,7 @@ mod variants;
 pub use effects::{Effect, effects};
 pub use files::Folder;
 pub use measure::{CannotObserve, Cost, Counts, Observed, Origin, Physics};
+pub use picture::figure;
 pub use report::{Repeatable, Timing};
 pub use variants::{Role, Variant, variants};
 

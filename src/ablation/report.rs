@@ -137,6 +137,12 @@ impl Ablation {
         page + "Processor times are in the picture and in `timing.json`.\n"
     }
 
+    /// What every variant does and what it costs as Markdown without headings, for a page of more than this.
+    pub fn summary(&self) -> String {
+        let (about, physics) = (self.about().join(" "), self.physics().markdown());
+        format!("{about}\n\n{physics}\n{}", self.costs().markdown())
+    }
+
     /// What is compared, sentence by sentence.
     pub(super) fn about(&self) -> [String; 3] {
         let header = &self.header;
