@@ -1,7 +1,7 @@
 //! Studies of precision against time: those of the project work, faults are told, failures are part of the outcome.
 
 use assert_cmd::Command;
-use looselink::precision::{Effort, Outcome, Pace, Study, figure, run, table};
+use looselink::precision::{Effort, Outcome, Pace, Study, Survey, figure, run, table};
 use std::path::{Path, PathBuf};
 
 const SMOKE: Effort = Effort {
@@ -25,6 +25,9 @@ fn studies_of_the_project_work() {
     for entry in std::fs::read_dir(folder()).unwrap() {
         let path = entry.unwrap().path();
         let study = Study::load(&path).unwrap_or_else(|e| panic!("{e}"));
+        if study.statistics.is_some() {
+            continue;
+        }
         let outcome = outcome(&study);
         assert_eq!(outcome.runs.len(), study.curves.len());
         for run in &outcome.runs {
@@ -48,6 +51,31 @@ fn studies_of_the_project_work() {
         count += 1;
     }
     assert_eq!(count, 9);
+}
+
+/// Studies of statistics, a fiftieth of their time: every first point gives finite statistics, near those of the reference.
+#[test]
+fn studies_of_statistics_work() {
+    for name in ["case3-statistics.toml", "case4-statistics.toml"] {
+        let study = Study::load(&folder().join(name)).unwrap_or_else(|e| panic!("{e}"));
+        let survey = Survey::run(&study, SMOKE, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(survey.runs.len(), study.curves.len());
+        let [_, exact] = &survey.reference;
+        for run in &survey.runs {
+            let (measures, work) = run.result.as_ref().unwrap_or_else(|e| panic!("{e}"));
+            // 20 ms of impacts, each run a sample of its own
+            assert!(measures.deviation(exact) < 0.5, "{name}: {measures:?}");
+            assert!(measures.loss().is_finite() && work.steps > 100);
+        }
+        assert!(survey.table(study.duration).lines().count() > study.curves.len() + 3);
+        assert_eq!(survey.figure(&study).rows.len(), 2);
+    }
+    let wrong = "[statistics]\nfrom = 1.0\ncontact = [\"B1.contact\"]\n[[curves]]\nname = \"x\"\nsteps = [1e-3]\n";
+    let error = study(wrong).unwrap_err();
+    assert!(
+        error.contains("`statistics` needs a `from` within the duration"),
+        "{error}"
+    );
 }
 
 fn study(curves: &str) -> Result<Study, String> {

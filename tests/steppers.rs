@@ -269,7 +269,54 @@ fn local_errors_are_estimated() {
             4.8..5.3,
             "the solution of order 4 is off by h⁵",
         );
-    assert!(stepper(Method::Trapezoidal, &chain).estimate().is_none());
+    // the second of two steps: the first has no memory to tell v''' by, and guesses more
+    let missed = |h: f64, share: f64| {
+        let mut newton = Newton::new(&chain, 1e-16);
+        let mut scheme = stepper(Method::Trapezoidal, &chain);
+        let mut error = LocalError {
+            q: vec![0.0; 2],
+            v: vec![0.0; 2],
+        };
+        let mut to = start(&mut newton);
+        let mut worst = [0.0_f64; 2];
+        let ends = [h * share, h * (1.0 + share)];
+        for (from, t) in [to.clone(), exact(ends[0])].iter().zip(ends) {
+            scheme
+                .step(&chain, from, t, &mut to, &mut newton, &mut chain.work())
+                .unwrap();
+            scheme.local_error(from, &to, &mut error);
+            scheme.accept();
+            let truth = exact(t);
+            worst = [0.0; 2];
+            for i in 0..2 {
+                let (q, v) = (truth.q[i] - to.q[i], truth.v[i] - to.v[i]);
+                worst[0] = worst[0]
+                    .max((q - error.q[i]).abs())
+                    .max((v - error.v[i]).abs());
+                worst[1] = worst[1].max(error.v[i].abs() / v.abs());
+            }
+            if t == ends[0] {
+                assert!(
+                    worst[1] > 2.0,
+                    "the first estimate of velocity is no guess: {worst:?}"
+                );
+            }
+        }
+        (h, worst[0])
+    };
+    for share in [1.0, 0.3] {
+        Rung::OrderInTime
+            .asks(format!(
+                "The trapezoidal rule after a step {share} times as long: what the estimate of the local error misses of it"
+            ))
+            .falls(
+                "Step h [s]",
+                &[missed(0.04, share), missed(0.02, share), missed(0.01, share)],
+                3.7..4.3,
+                "the error is of h³ and its estimate right to leading order",
+            );
+    }
+    assert!(stepper(Method::BackwardEuler, &chain).estimate().is_none());
 }
 
 /// On a linear undamped system no step gains energy beyond rounding, at any step and any splitting.

@@ -1,6 +1,6 @@
 //! The second implementation as a rival: full coordinates, stabilised index 2, IDA with located onsets.
 
-use looselink::precision::{Made, Outcome, Pace, Study, Timing, Work};
+use looselink::precision::{Made, Pace, Study, StudyError, Timing, Work};
 use miette::{Result, miette};
 use verify::trajectory::{Plan, Trajectory, tolerances};
 
@@ -8,20 +8,24 @@ use verify::trajectory::{Plan, Trajectory, tolerances};
 pub const NAME: &str = "IDA (second implementation)";
 
 /// Relative tolerances; positions are held to a thousandth of a metre of that, velocities to 0.1 m/s.
-const RELATIVE: [f64; 6] = [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
+pub const RELATIVE: [f64; 6] = [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
 
-/// Adds its curve to a study.
+/// Takes a point.
+type Add<'a> = &'a mut dyn FnMut(Pace, Result<Made, String>) -> Result<(), StudyError>;
+
+/// Makes the points of its curve and gives each to `add`.
 ///
 /// # Errors
 /// A channel of the study that it does not have.
-pub fn add(
+pub fn points(
     study: &Study,
-    outcome: &mut Outcome,
+    tolerances: &[f64],
     repeats: usize,
     tell: &mut dyn FnMut(&str),
+    add: Add,
 ) -> Result<()> {
     let plan = Plan::of_file(&study.scene, &study.set, study.duration, study.interval);
-    for relative in RELATIVE {
+    for &relative in tolerances {
         tell(&format!("{NAME}, tolerance {relative:e}"));
         let made = repeated(&plan, relative, repeats);
         let pace = Pace::Tolerance(relative);
@@ -32,9 +36,9 @@ pub fn add(
                     work: work(run),
                     timing: *timing,
                 };
-                outcome.add(study, NAME, pace, Ok(made))
+                add(pace, Ok(made))
             }
-            Err(error) => outcome.add(study, NAME, pace, Err(error.to_string())),
+            Err(error) => add(pace, Err(error.to_string())),
         };
         added.map_err(|e| miette!("{e}"))?;
     }

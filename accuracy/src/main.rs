@@ -8,7 +8,7 @@ mod page;
 use clap::Parser;
 use looselink::ablation::figure as figure_of_effects;
 use looselink::machine::machine;
-use looselink::precision::{Effort, Outcome, Study, figure, run};
+use looselink::precision::{Effort, Outcome, Study, Survey, figure, run};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -31,13 +31,27 @@ pub struct Made {
     pub outcome: Outcome,
 }
 
+/// A study of statistics and what came of it.
+pub struct Surveyed {
+    /// Name of its file without the extension.
+    pub name: String,
+    /// What was asked.
+    pub study: Study,
+    /// What was found.
+    pub survey: Survey,
+}
+
+/// IDA takes minutes for the seconds of a study of statistics: one tolerance, timed once.
+const LONG: (&[f64], usize) = (&[1e-6], 1);
+
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
         .ok_or_else(|| miette!("the crate has no folder above it"))?;
     let started = Instant::now();
-    let mut made = Vec::new();
+    let (mut made, mut surveyed) = (Vec::new(), Vec::new());
+    let pictures = root.join("accuracy/figures");
     for path in studies(&root.join("studies"))? {
         let name = path.file_stem().unwrap_or_default();
         let name = name.to_string_lossy().into_owned();
@@ -48,12 +62,32 @@ fn main() -> Result<()> {
             smoke: false,
         };
         let mut tell = |point: &str| eprintln!("{name}: {point}");
+        if study.statistics.is_some() {
+            let survey = Survey::run(&study, effort, &mut tell);
+            let mut survey = survey.map_err(|e| miette!("{e}"))?;
+            let (tolerances, repeats) = LONG;
+            ida::points(&study, tolerances, repeats, &mut tell, &mut |pace, made| {
+                survey.add(&study, ida::NAME, pace, made)
+            })?;
+            plot::save(&survey.figure(&study), &pictures, &name)?;
+            surveyed.push(Surveyed {
+                name,
+                study,
+                survey,
+            });
+            continue;
+        }
         let mut outcome = run(&study, effort, &mut tell).map_err(|e| miette!("{e}"))?;
         // IDA is a rival to methods; a mesh has none
         if !study.compares_elements() {
-            ida::add(&study, &mut outcome, repeats, &mut tell)?;
+            ida::points(
+                &study,
+                &ida::RELATIVE,
+                repeats,
+                &mut tell,
+                &mut |pace, made| outcome.add(&study, ida::NAME, pace, made),
+            )?;
         }
-        let pictures = root.join("accuracy/figures");
         plot::save(&figure(&study, &outcome), &pictures, &name)?;
         made.push(Made {
             name,
@@ -62,13 +96,10 @@ fn main() -> Result<()> {
         });
     }
     let ablation = effects::ablation(&root.join("scenes/3rrr/case4.toml"))?;
-    plot::save(
-        &figure_of_effects(&ablation),
-        &root.join("accuracy/figures"),
-        "ablation",
-    )?;
+    plot::save(&figure_of_effects(&ablation), &pictures, "ablation")?;
     let page = page::page(
         &made,
+        &surveyed,
         &ablation,
         &machine(),
         started.elapsed().as_secs_f64(),

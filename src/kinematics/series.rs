@@ -69,7 +69,7 @@ impl Series {
         let width = self.sum.len();
         self.coefficients.fill(0.0);
         for (k, row) in self.coefficients.chunks_exact_mut(width).enumerate() {
-            let half = |i: usize| if i % DEGREE == 0 { 0.5 } else { 1.0 };
+            let half = |i: usize| if i.is_multiple_of(DEGREE) { 0.5 } else { 1.0 };
             let weight = 2.0 * half(k) / DEGREE as f64;
             for (j, values) in self.values.chunks_exact(width).enumerate() {
                 let factor = weight * half(j) * cosine(k * j);
@@ -177,7 +177,6 @@ impl Kinematics {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::compile::compile;
     use crate::initial;
     use crate::scene::Scene;

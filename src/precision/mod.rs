@@ -208,6 +208,9 @@ pub fn run(
 /// What was recorded, by the names of channels.
 type Columns<'a> = &'a dyn Fn(&str) -> Option<&'a [f64]>;
 
+/// Takes a point of a curve.
+type Add<'a> = &'a mut dyn FnMut(&str, Pace, Result<Made, String>) -> Result<(), StudyError>;
+
 /// Coarse and fine run of the reference.
 fn references<T>(
     study: &Study,
@@ -233,7 +236,7 @@ fn points(
     study: &Study,
     effort: Effort,
     tell: &mut dyn FnMut(&str),
-    add: &mut dyn FnMut(&str, Pace, Result<Made, String>) -> Result<(), StudyError>,
+    add: Add,
 ) -> Result<(), StudyError> {
     let count = if effort.smoke { 1 } else { usize::MAX };
     for curve in &study.curves {
