@@ -40,6 +40,7 @@ pub mod constraint;
 pub mod contact;
 pub mod force;
 pub mod initial;
+pub mod instructions;
 pub mod kinematics;
 pub mod link;
 pub mod machine;

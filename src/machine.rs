@@ -80,6 +80,9 @@ pub struct Timing {
     pub least: f64,
     /// Number of repeats.
     pub repeats: usize,
+    /// Least number of instructions, where the machine counts them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instructions: Option<u64>,
 }
 
 impl Timing {
@@ -91,6 +94,15 @@ impl Timing {
             median: 0.5 * (seconds[(n - 1) / 2] + seconds[n / 2]),
             least: seconds[0],
             repeats: n,
+            instructions: None,
+        }
+    }
+
+    /// With the numbers of instructions of the same runs.
+    pub fn with_instructions(self, counts: &[Option<u64>]) -> Timing {
+        Timing {
+            instructions: counts.iter().flatten().min().copied(),
+            ..self
         }
     }
 }

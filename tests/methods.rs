@@ -280,10 +280,10 @@ fn faults_of_the_method_are_named() {
         (
             loose,
             &[
-                "integrator.method=trapezoidal",
+                "integrator.method=backward_euler",
                 "integrator.accuracy={ position = 1e-9, horizon = 0.01 }",
             ],
-            "method \"trapezoidal\" has no estimate of its error to follow",
+            "method \"backward_euler\" has no estimate of its error to follow",
             "accuracy",
         ),
         (

@@ -20,6 +20,7 @@ pub use statistics::{Measures, Sampled, Survey};
 pub use study::{Curve, Pace, Reference, Statistics, Study, StudyError};
 pub use table::{page, table};
 
+use crate::instructions::Instructions;
 use crate::scene::{Scene, SceneError};
 use crate::simulate::{Recording, Report, RunError, Simulation};
 use cpu_time::ThreadTime;
@@ -83,14 +84,19 @@ impl Outcome {
 
     /// Names of the curves in the order of their first points.
     pub fn curves(&self) -> Vec<&str> {
-        let mut names: Vec<&str> = Vec::new();
-        for run in &self.runs {
-            if !names.contains(&run.curve.as_str()) {
-                names.push(&run.curve);
-            }
-        }
-        names
+        distinct(self.runs.iter().map(|run| &*run.curve))
     }
+}
+
+/// Names without those that came before.
+fn distinct<'a>(all: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut names = Vec::new();
+    for name in all {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
 }
 
 /// A run that reached its end.
@@ -160,14 +166,15 @@ fn record(scene: &Scene) -> Result<(Recording, Report), Failed> {
 
 /// Processor times of repeated runs, without recording.
 fn time(scene: &Scene, repeats: usize) -> Result<Timing, Failed> {
-    let mut seconds = Vec::with_capacity(repeats);
+    let (mut seconds, mut counts) = (Vec::new(), Vec::new());
     for _ in 0..repeats {
         let mut simulation = Simulation::new(scene)?;
-        let clock = ThreadTime::now();
+        let (clock, mut instructions) = (ThreadTime::now(), Instructions::start());
         simulation.run(&mut ())?;
         seconds.push(clock.elapsed().as_secs_f64());
+        counts.push(instructions.count());
     }
-    Ok(Timing::of(seconds))
+    Ok(Timing::of(seconds).with_instructions(&counts))
 }
 
 /// Why a point of a curve is missing.

@@ -6,7 +6,9 @@
 
 use super::diagram::color;
 use super::errors::larger;
-use super::{Columns, Effort, Made, Pace, Study, StudyError, Timing, Work, points, references};
+use super::{
+    Columns, Effort, Made, Pace, Study, StudyError, Timing, Work, distinct, points, references,
+};
 use crate::machine::Machine;
 use plot::{Axis, Figure, Mark, Panel, palette};
 use serde::Serialize;
@@ -172,13 +174,7 @@ impl Survey {
 
     /// Names of the curves in the order of their first points.
     fn curves(&self) -> Vec<&str> {
-        let mut names: Vec<&str> = Vec::new();
-        for run in &self.runs {
-            if !names.contains(&run.curve.as_str()) {
-                names.push(&run.curve);
-            }
-        }
-        names
+        distinct(self.runs.iter().map(|run| &*run.curve))
     }
 
     /// What the statistics are and what they took, a line a run. `duration` is the simulated time \[s\].

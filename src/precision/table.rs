@@ -58,7 +58,7 @@ pub fn page(outcome: &Outcome, machine: &Machine) -> String {
 /// Processor times of all runs, and where they were measured.
 fn timing_table(outcome: &Outcome, machine: &Machine) -> String {
     let mut out = String::from(
-        "| method | step or accuracy | position error | median | least | runs |\n|---|---|---|---|---|---|\n",
+        "| method | step or accuracy | position error | median | least | runs | instructions |\n|---|---|---|---|---|---|---|\n",
     );
     for (run, timing) in outcome.runs.iter().zip(&outcome.timings) {
         let (Some(timing), Ok(measured)) = (timing, &run.result) else {
@@ -66,13 +66,16 @@ fn timing_table(outcome: &Outcome, machine: &Machine) -> String {
         };
         writeln!(
             out,
-            "| {} | {} | {} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {} | {} | {} |",
             run.curve,
             run.pace,
             plot::si(measured.errors.position, "m"),
             plot::si(timing.median, "s"),
             plot::si(timing.least, "s"),
-            timing.repeats
+            timing.repeats,
+            timing
+                .instructions
+                .map_or("–".to_owned(), |n| plot::digits(n as f64))
         )
         .expect(WRITES);
     }
