@@ -1,19 +1,27 @@
 //! The loop: step, locate contact onset and loss, commit memory, record.
 
 mod change;
+mod closures;
 mod control;
 mod equilibrium;
 mod impacts;
+mod meter;
 mod observer;
 mod pace;
 mod recording;
 mod report;
+mod stall;
 mod top;
+mod warnings;
 
 pub use crate::record::Channel;
+pub use closures::Chatter;
+use closures::Closures;
 pub use control::AccuracyReport;
 pub use impacts::Impact;
 use impacts::Impacts;
+pub use meter::Integration;
+use meter::{Gain, Meter};
 pub use observer::{Control, Observer, Onset, Progress};
 pub use recording::{RecordedOnset, Recording};
 pub use report::{Extreme, Inspection, Report, Status};
@@ -29,9 +37,15 @@ use crate::stepper::{StepError, Stepper, stepper};
 use crate::system::{PrescribeError, State, System, Work};
 use control::{Controller, Verdict};
 use pace::Pacer;
+use stall::{Stall, Stalled};
 
 /// A step is halved this many times at most before the run gives up.
 const HALVINGS: i32 = 24;
+/// A constraint that repeats others may be open by this part of the largest coordinate: rounding divided by the distance from
+/// a singular pose, and far below any motion.
+const LEFT_OPEN: f64 = 1e-6;
+/// What is wrong with a step into the second zero of an angle.
+const HALF_TURN: &str = "the direction it holds turns over by half a turn";
 /// Part of a step below which a difference of times is rounding.
 const GRID_ROUNDING: f64 = 1e-6;
 
@@ -64,6 +78,31 @@ pub enum RunError {
         step: f64,
         /// What was asked for.
         accuracy: Accuracy,
+    },
+    /// The integrator has put far more energy into the motion than the scene has.
+    #[error(
+        "{name}: the method is unstable with these steps: at t = {t} s it has put {gained:.1e} J into the motion, where the scene \
+         supplies {supplied:.1e} J"
+    )]
+    Unstable {
+        /// Coordinate with the largest velocity.
+        name: String,
+        /// When \[s\].
+        t: f64,
+        /// Energy gained \[J\].
+        gained: f64,
+        /// Energy at the start, and work and weight since \[J\].
+        supplied: f64,
+    },
+    /// The steps are too short to get to the end.
+    #[error("the run has come to a halt at t = {t} s, after {steps} steps: {cause}")]
+    Stalled {
+        /// When \[s\].
+        t: f64,
+        /// Which joint chatters, or which coordinate makes the steps short.
+        cause: String,
+        /// Steps so far.
+        steps: u64,
     },
     /// No equilibrium was found.
     #[error("no equilibrium at t = {t}: {name}: {cause}")]
@@ -109,6 +148,8 @@ pub struct Simulation {
     pacer: Pacer,
     /// True where there are contacts whose changes are located.
     locates: bool,
+    /// True where constraints that repeat others are left out.
+    leaves_out: bool,
     newton: Newton,
     statics: Option<Statics>,
     work: Work,
@@ -121,7 +162,12 @@ pub struct Simulation {
     /// Axial strain of largest magnitude over the recorded rows, by body; 0 for bodies that do not deform.
     strains: Vec<f64>,
     impacts: Impacts,
+    closures: Closures,
+    meter: Meter,
+    stall: Stall,
     counters: LoopCounters,
+    /// Failed steps by the unknown or multiplier that had no solution.
+    halved: Vec<u64>,
     delta: Vec<f64>,
     rate: Vec<f64>,
     /// Distance to the change of every contact, and its rate, at the state looked at last.
@@ -173,18 +219,17 @@ impl Simulation {
         let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
         let extremes = vec![Extreme::default(); recorder.channels().len()];
         let stepper = stepper(scene.integrator.method, &model);
-        let pacer = match (scene.integrator.pace, stepper.estimate()) {
-            (Pace::Step(step), _) => Pacer::grid(step),
-            (Pace::Accuracy(accuracy), Some(estimate)) => {
+        let pacer = match scene.integrator.pace {
+            Pace::Step(step) => Pacer::grid(step),
+            Pace::Accuracy(accuracy) => {
+                let estimate = stepper.estimate();
                 Pacer::Controller(Box::new(Controller::new(scene, &model, accuracy, estimate)))
-            }
-            (Pace::Accuracy(_), None) => {
-                unreachable!("the reader refuses an accuracy for a method without an estimate")
             }
         };
         Ok(Simulation {
             stepper,
             pacer,
+            leaves_out: !model.redundant().is_empty(),
             locates: scene.integrator.locate_onsets && shape.contacts > 0,
             newton,
             statics,
@@ -196,10 +241,18 @@ impl Simulation {
             extremes,
             strains: vec![0.0; scene.bodies.len()],
             impacts,
+            closures: Closures::new(shape.contacts),
+            meter: Meter::new(scene, &model),
+            stall: Stall::new(
+                shape.contacts,
+                scene.simulation.duration,
+                scene.integrator.step(),
+            ),
             counters: LoopCounters {
                 onsets: started.len() as u64,
                 ..LoopCounters::default()
             },
+            halved: vec![0; shape.unknowns + shape.multipliers],
             delta: vec![0.0; shape.contacts],
             rate: vec![0.0; shape.contacts],
             last_gaps: vec![[0.0; 2]; shape.contacts],
@@ -276,13 +329,22 @@ impl Simulation {
             if self.locates {
                 clamps = self.locate_change(clamps, reached)?;
             }
+            self.meter.step(&*self.stepper, &self.state, &self.trial);
             self.stepper.accept();
             std::mem::swap(&mut self.state, &mut self.trial);
             self.counters.steps += 1;
             self.counters.clamps += clamps as u64;
             let taken = self.state.t - self.trial.t;
+            if self.leaves_out {
+                self.check_left_out()?;
+            }
             self.commit(observer)?;
             self.impacts.step(&self.model, taken, &self.state);
+            let (before, after) = (&self.trial.z, &self.state.z);
+            self.closures.step(&self.model, self.state.t, before, after);
+            self.stall
+                .step(self.state.t, before, after)
+                .map_err(|stalled| self.stalled(stalled))?;
             let onsets = self.started.iter().map(|(contact, ..)| *contact);
             self.pacer.kept(&self.state, goal, onsets);
             let contacts = self.state.z.iter().filter(|z| **z > 0.0).count();
@@ -306,6 +368,10 @@ impl Simulation {
                 Ok(clamps) => return Ok((clamps, t)),
                 Err(error) => {
                     self.counters.rejected += 1;
+                    self.stall.failure();
+                    if let StepError::Stage(failure) = &error {
+                        self.halved[failure.index()] += 1;
+                    }
                     let half = 0.5 * (t - self.state.t);
                     if half < self.pacer.scale() * 2.0_f64.powi(-HALVINGS) {
                         return Err(self.failed(error, 2.0 * half));
@@ -326,7 +392,11 @@ impl Simulation {
             work,
             ..
         } = self;
-        stepper.step(model, state, t, trial, newton, work)
+        let clamps = stepper.step(model, state, t, trial, newton, work)?;
+        match model.half_turned(trial) {
+            Some(index) => Err(StepError::HalfTurn(index)),
+            None => Ok(clamps),
+        }
     }
 
     /// Opens and closes contacts.
@@ -377,6 +447,7 @@ impl Simulation {
             recorder,
             extremes,
             strains,
+            meter,
             ..
         } = self;
         output.copy_from(state);
@@ -385,7 +456,17 @@ impl Simulation {
         {
             return Err(self.failed(failure.into(), 0.0));
         }
+        if self.scene.simulation.analysis == Analysis::Dynamic
+            && let Err(gain) = meter.row(model, output)
+        {
+            return Err(self.unstable(gain));
+        }
         let row = recorder.row(model, output, work);
+        // coordinates are numbers still when their squares are none
+        if let Some(channel) = row.iter().position(|x| !x.is_finite()) {
+            let channel = recorder.channels()[channel].name.clone();
+            return Err(self.overflown(&channel));
+        }
         for (b, largest) in strains.iter_mut().enumerate() {
             let strain = model.strain(b, output).unwrap_or_default();
             if strain.abs() > largest.abs() {
@@ -397,6 +478,34 @@ impl Simulation {
         }
         observer.row(row)?;
         Ok(())
+    }
+
+    /// Sees that a constraint that was left out still repeats the others: a motion that they do not allow does not.
+    fn check_left_out(&self) -> Result<(), RunError> {
+        let size = self.state.q.iter().fold(0.0_f64, |m, q| m.max(q.abs()));
+        match self.model.widest_left_out(&self.state) {
+            Some((index, open)) if open > LEFT_OPEN * size => Err(RunError::Physics {
+                name: self.model.unknown_name(index),
+                cause: format!("the other constraints do not allow it, it is off by {open:.1e}"),
+                t: self.state.t,
+                step: self.state.t - self.trial.t,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// A row that cannot be shown, by the coordinate that is fastest.
+    fn overflown(&self, channel: &str) -> RunError {
+        let speeds = self.state.v[..self.model.shape().unknowns].iter();
+        let fastest = speeds
+            .enumerate()
+            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        RunError::Physics {
+            name: fastest.map_or_else(|| channel.to_owned(), |(i, _)| self.model.unknown_name(i)),
+            cause: format!("{channel} is not finite, the motion grows beyond all bounds"),
+            t: self.state.t,
+            step: self.state.t - self.trial.t,
+        }
     }
 
     fn stuck(&self, name: String) -> RunError {
@@ -411,9 +520,50 @@ impl Simulation {
         }
     }
 
+    fn unstable(&self, gain: Gain) -> RunError {
+        RunError::Unstable {
+            name: self.meter.fastest(&self.model, &self.state).to_owned(),
+            t: self.state.t,
+            gained: gain.gained,
+            supplied: gain.supplied,
+        }
+    }
+
+    fn stalled(&self, stalled: Stalled) -> RunError {
+        let halved = self.halved.iter().enumerate().max_by_key(|(_, n)| **n);
+        let halved = halved.filter(|(_, n)| **n > 0);
+        let step = self.state.t - self.trial.t;
+        let cause = match (stalled.contact, halved) {
+            (Some((contact, changes)), _) => {
+                let joint = self.model.contact_joint(contact);
+                let joint = joint.map_or("", |j| &self.model.joints()[j].name);
+                format!("{joint} closed or opened {changes} times")
+            }
+            (None, Some((index, times))) => format!(
+                "{times} times {} had no solution and the step was halved, now to {step:.1e} s",
+                self.model.unknown_name(index)
+            ),
+            (None, None) => format!(
+                "the error of {} keeps the steps at {step:.1e} s",
+                self.meter.worst(&self.model)
+            ),
+        };
+        RunError::Stalled {
+            t: self.state.t,
+            cause,
+            steps: stalled.steps,
+        }
+    }
+
     fn failed(&self, error: StepError, step: f64) -> RunError {
         match error {
             StepError::Prescribe(error) => RunError::Drive(error),
+            StepError::HalfTurn(index) => RunError::Physics {
+                name: self.model.unknown_name(index),
+                cause: HALF_TURN.to_owned(),
+                t: self.state.t,
+                step,
+            },
             StepError::Stage(failure) => {
                 let (name, cause) = describe(&self.model, &failure);
                 RunError::Physics {

@@ -304,3 +304,39 @@ fn controlled_steps_do_not_allocate() {
         assert_eq!(count(0.01, method), count(0.02, method), "{method}");
     }
 }
+
+/// Every method follows an accuracy; that of order one needs many steps for a coarse one.
+#[test]
+fn every_method_follows_an_accuracy() {
+    let channels = ["points.bob.center.x", "points.bob.center.y"];
+    let scene = "stiff-spring-pendulum";
+    // a soft spring, so that its vibration is part of the motion
+    let soft = "forces.spring.stiffness=100.0".to_owned();
+    let with = |method: &str, pace: &str| {
+        let mut settings = settings(2.0, 0.02, method, pace);
+        settings.push(soft.clone());
+        if matches!(method, "generalized_alpha" | "hht") {
+            settings.push("integrator.spectral_radius=0.8".to_owned());
+        }
+        runs(scene, &settings)
+    };
+    let exact = with("dormand_prince", "step=5e-4");
+    let worst = Worst::new();
+    for (method, accuracy) in [
+        ("generalized_alpha", 1e-5),
+        ("hht", 1e-5),
+        ("velocity_verlet", 1e-5),
+        ("backward_euler", 1e-3),
+    ] {
+        let found = with(method, &format!("accuracy={{ position = {accuracy:e} }}"));
+        worst.at(format!("with {method}"));
+        for channel in channels {
+            for (a, b) in found.get(channel).iter().zip(&exact.get(channel)) {
+                worst.see((a - b) / accuracy);
+            }
+        }
+    }
+    Rung::OrderInTime
+        .asks("Accuracies asked of generalised-alpha, HHT, velocity Verlet and backward Euler: error over what was asked for")
+        .within(&worst, 1.0, "what is asked for is achieved");
+}

@@ -279,15 +279,6 @@ fn faults_of_the_method_are_named() {
         ),
         (
             loose,
-            &[
-                "integrator.method=backward_euler",
-                "integrator.accuracy={ position = 1e-9, horizon = 0.01 }",
-            ],
-            "method \"backward_euler\" has no estimate of its error to follow",
-            "accuracy",
-        ),
-        (
-            loose,
             &["integrator.accuracy={ position = 0.0, horizon = 0.01 }"],
             "`integrator.accuracy.position` must be greater than zero, not 0.0",
             "0.0",

@@ -63,7 +63,12 @@ fn stage_matrices_are_the_derivatives() {
         let shape = model.shape();
         let (n, m) = (shape.unknowns, shape.multipliers);
         let w = Weights { q: 1e-8, v: 1e-4 };
-        let h = 0.03;
+        // an impact at 1e-6 m/s: its law bends where the velocity changes by that
+        let h = if name == "hard/grazing.toml" {
+            3e-4
+        } else {
+            0.03
+        };
         // an axial force is a difference of terms of the size of EA; above 2e7 N their rounding exceeds the bound below
         let rounding = f64::EPSILON * axial_stiffness(&scene) / (8.0 * h);
         let mut work = model.work();
@@ -79,7 +84,10 @@ fn stage_matrices_are_the_derivatives() {
                 .chain(phi.iter().map(|p| p / w.q))
                 .collect::<Vec<f64>>()
         };
-        for j in 0..n + m {
+        // the multiplier of a row that is left out is zero and stays so
+        let redundant = model.redundant();
+        let kept = |j: &usize| !redundant.contains(&model.unknown_names()[*j]);
+        for j in (0..n + m).filter(kept) {
             let mut moved = |by: f64| {
                 let mut s = start.clone();
                 if j < n {

@@ -111,6 +111,7 @@ fn constraints() -> Vec<(&'static str, Box<dyn Constraint>)> {
                 slope: 8,
                 angle: 0.4,
                 scale: 1.0,
+                sign: 1.0,
             }),
         ),
         (
@@ -120,6 +121,7 @@ fn constraints() -> Vec<(&'static str, Box<dyn Constraint>)> {
                 slope: 12,
                 angle: -0.3,
                 scale: 1.3,
+                sign: 1.0,
             }),
         ),
         (
@@ -342,6 +344,7 @@ fn reactions_are_conjugate_to_motions() {
                 slope: 8,
                 angle: 0.4,
                 scale: 1.0,
+                sign: 1.0,
             }),
             Spin::Slope { x: 8 },
         ),
@@ -351,6 +354,7 @@ fn reactions_are_conjugate_to_motions() {
                 slope: 12,
                 angle: -0.3,
                 scale: 1.3,
+                sign: 1.0,
             }),
             Spin::Slope { x: 12 },
         ),

@@ -3,18 +3,13 @@
 use looselink::record::Ledger;
 use looselink::simulate::{AccuracyReport, Report};
 
-/// Numerical dissipation beyond this part of the physical one is worth a word.
-const NOTABLE: f64 = 0.05;
-
 /// Impacts that are shown; summary.json lists more.
 const SHOWN: usize = 3;
 
 /// Lines about a finished run, most of them absent when there is nothing to say.
 pub fn lines(report: &Report) -> Vec<String> {
     let mut lines = Vec::new();
-    if let Some(ledger) = &report.ledger {
-        lines.extend(energy(ledger));
-    }
+    lines.extend(report.ledger.iter().map(energy));
     lines.extend(report.accuracy.iter().map(accuracy));
     let first = report.impacts.iter().take(SHOWN).enumerate();
     lines.extend(first.map(|(k, impact)| {
@@ -28,33 +23,8 @@ pub fn lines(report: &Report) -> Vec<String> {
             impact.deepest_penetration
         )
     }));
-    lines.extend(report.redundant.iter().map(|name| {
-        format!(
-            "{name} repeats other constraints: the forces in its loop are one choice among many"
-        )
-    }));
-    let counts = [
-        (report.clamps, "stages with a contact force clamped at zero"),
-        (
-            report.rejected_steps,
-            "steps halved because a stage had no solution",
-        ),
-        (
-            report.stagnations,
-            "stages accepted at rounding, above the Newton tolerance",
-        ),
-        (
-            report.singular_poses,
-            "stages in a nearly singular pose, one direction left out",
-        ),
-        (report.fallbacks, "factorisations with row exchanges"),
-        (
-            report.unlocated_changes,
-            "contact changes kept outside the onset tolerance",
-        ),
-    ];
-    let counted = counts.iter().filter(|(count, _)| *count > 0);
-    lines.extend(counted.map(|(count, what)| format!("counted: {count} {what}")));
+    let warnings = report.warnings().into_iter();
+    lines.extend(warnings.map(|warning| format!("warning: {warning}")));
     lines
 }
 
@@ -76,7 +46,7 @@ fn accuracy(control: &AccuracyReport) -> String {
 }
 
 /// What the integrator did to the energy.
-fn energy(ledger: &Ledger) -> Vec<String> {
+fn energy(ledger: &Ledger) -> String {
     let dissipated =
         ledger.contact_dissipated + ledger.friction_dissipated + ledger.damping_dissipated;
     let verb = if ledger.numerical < 0.0 {
@@ -86,18 +56,10 @@ fn energy(ledger: &Ledger) -> Vec<String> {
     };
     let numerical = ledger.numerical.abs();
     if dissipated <= 0.0 {
-        return vec![format!(
-            "energy: {numerical:.1e} J {verb} by the integrator"
-        )];
+        return format!("energy: {numerical:.1e} J {verb} by the integrator");
     }
-    let mut lines = vec![format!(
+    format!(
         "energy: {dissipated:.3e} J dissipated, {numerical:.1e} J {verb} by the integrator ({:.1} %)",
         100.0 * numerical / dissipated
-    )];
-    if numerical > NOTABLE * dissipated {
-        lines.push(
-            "energy: a smaller integrator.step would make the integrator's part small".to_owned(),
-        );
-    }
-    lines
+    )
 }

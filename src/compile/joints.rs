@@ -127,6 +127,7 @@ fn couple(c: &Compiler, numbering: &Numbering, joint: &Joint, terms: &mut Terms)
                 slope,
                 angle,
                 scale: c.inverse_size(sides[other], numbering),
+                sign: if other == 0 { 1.0 } else { -1.0 },
             };
             let sides = [sides[other], sides[1 - other]];
             terms.constrain(

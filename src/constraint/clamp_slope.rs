@@ -20,6 +20,8 @@ pub struct ClampSlope {
     pub angle: f64,
     /// 1/|d_1|.
     pub scale: f64,
+    /// -1 where the slope is on the first side of the joint: its couple is that of the first side on the second.
+    pub sign: f64,
 }
 
 impl ClampSlope {
@@ -84,6 +86,6 @@ impl Constraint for ClampSlope {
 
     /// -lambda . dr'/d(angle) with r' turned as a whole; the part of lambda along r' holds the stretch and has none.
     fn couple(&self, at: &State, lambda: [f64; ROWS]) -> f64 {
-        -cross(self.slope(&at.q), lambda)
+        -self.sign * cross(self.slope(&at.q), lambda)
     }
 }

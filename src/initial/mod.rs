@@ -118,6 +118,11 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
         let message = format!("the start violates {name}: by {distance:.3e} m and {rate:.3e} m/s");
         return Err(scene.error(scene.initial.span, message, "this start"));
     }
+    if let Some(index) = model.half_turned(&state) {
+        let name = &model.unknown_names()[index];
+        let message = format!("the start has {name} half a turn away from its angle");
+        return Err(scene.error(scene.initial.span, message, "this start"));
+    }
     model.remember_angles(&mut state);
     Ok(state)
 }

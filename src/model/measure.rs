@@ -344,6 +344,25 @@ impl Model {
         worst
     }
 
+    /// The unknown that is the multiplier of an angle in its second zero, half a turn off, if there is one. A slope that is
+    /// pressed through zero length gets there without a jump.
+    pub fn half_turned(&self, at: &State) -> Option<usize> {
+        let turned = self.constraints.iter().find(|c| c.term.half_turn(at));
+        turned.map(|c| self.shape.unknowns + c.row)
+    }
+
+    /// The constraint left out as a repetition of others that is open by the most, as the unknown that would be its multiplier
+    /// and the distance \[m or rad\].
+    pub fn widest_left_out(&self, at: &State) -> Option<(usize, f64)> {
+        let left_out = self.constraints.iter().filter(|c| c.kept.contains(&0.0));
+        let open = left_out.flat_map(|c| {
+            let value = c.term.value(at);
+            let rows = (0..c.rows).filter(|&d| c.kept[d] == 0.0);
+            rows.map(move |d| (self.shape.unknowns + c.row + d, value[d].abs()))
+        });
+        open.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// Position of a marker.
     pub fn position(&self, marker: &Marker, at: &State) -> Vec2 {
         marker.position(&at.q, marker.arm(&at.q))

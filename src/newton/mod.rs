@@ -70,6 +70,17 @@ pub enum Failure {
     },
 }
 
+impl Failure {
+    /// The unknown or multiplier it is about.
+    pub fn index(&self) -> usize {
+        match *self {
+            Failure::NoConvergence { index, .. }
+            | Failure::NotFinite { index }
+            | Failure::Singular { index } => index,
+        }
+    }
+}
+
 /// Solver memory: allocated once, used for every stage.
 #[derive(Debug)]
 pub struct Newton {

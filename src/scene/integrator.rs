@@ -36,7 +36,7 @@ pub(super) fn read(
     let paced = pace_field(&table)?;
     let pace = match paced.name.as_str() {
         "step" => Pace::Step(step(&paced, simulation)?),
-        _ => Pace::Accuracy(accuracy(&paced, simulation, method, clearance.is_some())?),
+        _ => Pace::Accuracy(accuracy(&paced, simulation, clearance.is_some())?),
     };
     Ok(Integrator {
         method,
@@ -159,24 +159,10 @@ fn step(field: &Field, simulation: &Simulation) -> Result<f64, SceneError> {
 }
 
 /// `loose` where a joint has clearance.
-fn accuracy(
-    field: &Field,
-    simulation: &Simulation,
-    method: Method,
-    loose: bool,
-) -> Result<Accuracy, SceneError> {
+fn accuracy(field: &Field, simulation: &Simulation, loose: bool) -> Result<Accuracy, SceneError> {
     if simulation.analysis == Analysis::Static {
         let message = "a static analysis has a `step` of its loads, no `accuracy` over time";
         return Err(field.key_fault(message, "write `step`"));
-    }
-    if !method.estimates_error() {
-        let message = format!(
-            "method {:?} has no estimate of its error to follow",
-            method.name()
-        );
-        return Err(field.key_fault(message, "needs an estimate").with_help(
-            "\"bathe\", \"trapezoidal\" and \"dormand_prince\" have one; the others take a `step`",
-        ));
     }
     let mut table = field.fields()?;
     table.only(&["position", "energy", "horizon"])?;

@@ -27,8 +27,9 @@
 //! A contact that closes brings its own time scale, far below that of free flight. Each contact remembers how long the first
 //! step after its last onset could be, and begins with that; the controller grows the step again from there.
 
-use crate::model::{BodyCoordinates, Model};
-use crate::scene::{Accuracy, BodyKind, Scene};
+use super::meter::lengths;
+use crate::model::Model;
+use crate::scene::{Accuracy, Scene};
 use crate::stepper::{Estimate, LocalError, Stepper};
 use crate::system::State;
 use serde::Serialize;
@@ -40,8 +41,6 @@ const SMALLEST_CHANGE: f64 = 0.2;
 const GREATEST_CHANGE: f64 = 5.0;
 /// Ratios below this are taken for it: a step far too short says that the next one may grow, not by how much.
 const LEAST_RATIO: f64 = 1e-4;
-/// A unit of slope of a cubic beam moves points by this part of its length at most, x (1 - x)^2 at x = 1/3.
-const SLOPE_WAY: f64 = 4.0 / 27.0;
 /// Changes of the balance of energies below this part of them are rounding: a sum of a few dozen terms.
 const BALANCE_ROUNDING: f64 = 32.0 * f64::EPSILON;
 /// Least part of the allowed energy that a step may use.
@@ -124,35 +123,6 @@ pub(super) enum Verdict {
     Repeat,
     /// It cannot be made shorter: the unknown with the largest error or, after the last of them, the balance of energies.
     Stuck(usize),
-}
-
-/// The way \[m\] that a unit of each unknown moves a point of its body by.
-fn lengths(scene: &Scene, model: &Model) -> Vec<f64> {
-    let mut lengths = vec![1.0; model.shape().coordinates];
-    for (body, place) in scene.bodies.iter().zip(model.bodies()) {
-        match (&body.kind, &place.coordinates) {
-            (BodyKind::Rigid(rigid), BodyCoordinates::Rigid { x }) => {
-                let gyration = (rigid.inertia / rigid.mass).sqrt();
-                let arms = rigid.points.iter().map(|p| p.at[0].hypot(p.at[1]));
-                lengths[x + 2] = arms.fold(gyration, f64::max);
-            }
-            (
-                _,
-                BodyCoordinates::FlexibleLink {
-                    slopes,
-                    element_length,
-                    ..
-                },
-            ) => {
-                for x in slopes {
-                    lengths[*x..x + 2].fill(SLOPE_WAY * element_length);
-                }
-            }
-            _ => {}
-        }
-    }
-    lengths.truncate(model.shape().unknowns);
-    lengths
 }
 
 impl Controller {

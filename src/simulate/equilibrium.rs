@@ -1,6 +1,8 @@
 //! Static runs: a load path, and the equilibrium that a motion starts from.
 
-use super::{Control, GRID_ROUNDING, HALVINGS, Observer, Progress, RunError, Simulation, describe};
+use super::{
+    Control, GRID_ROUNDING, HALF_TURN, HALVINGS, Observer, Progress, RunError, Simulation, describe,
+};
 use crate::model::Model;
 use crate::newton::Failure;
 use crate::scene::{Analysis, JointModel, Scene, SceneError};
@@ -144,6 +146,11 @@ impl Simulation {
     fn no_equilibrium(&self, error: StepError, t: f64) -> RunError {
         match error {
             StepError::Prescribe(error) => RunError::Drive(error),
+            StepError::HalfTurn(index) => RunError::Equilibrium {
+                name: self.model.unknown_name(index),
+                cause: HALF_TURN.to_owned(),
+                t,
+            },
             StepError::Stage(failure) => {
                 let (name, cause) = explain(&self.model, &failure);
                 RunError::Equilibrium { name, cause, t }
@@ -168,6 +175,10 @@ impl Simulation {
         let statics = statics
             .as_mut()
             .expect("a static scene has a static solver");
-        Ok(statics.solve(model, trial, t / scene.simulation.duration, work)?)
+        statics.solve(model, trial, t / scene.simulation.duration, work)?;
+        match model.half_turned(trial) {
+            Some(index) => Err(StepError::HalfTurn(index)),
+            None => Ok(()),
+        }
     }
 }

@@ -1,11 +1,12 @@
 //! What a run reports of itself, and what a scene will be, before it runs.
 
 use super::pace::Pacer;
-use super::{AccuracyReport, Impact, Simulation};
+use super::{AccuracyReport, Chatter, Impact, Integration, Simulation};
 use crate::contact::normal_law;
 use crate::model::BodyCoordinates;
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, JointModel, Scene};
+use crate::system::System;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -87,6 +88,9 @@ pub struct Report {
     pub accuracy: Option<AccuracyReport>,
     /// Steps that were halved because a stage had no solution.
     pub rejected_steps: u64,
+    /// The same by the coordinate or constraint that had none.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub rejected_by: BTreeMap<String, u64>,
     /// Steps tried to locate contact onsets and losses.
     pub location_trials: u64,
     /// Contacts closed.
@@ -98,6 +102,16 @@ pub struct Report {
     pub unlocated_changes: u64,
     /// Stages of accepted steps at which a contact force was clamped at zero.
     pub clamps: u64,
+    /// Contacts that were lost again.
+    pub ended_contacts: u64,
+    /// Those of them that were closed for fewer than four steps.
+    pub brief_contacts: u64,
+    /// The first stretches of time in which a contact closed and opened within a few steps, over and over.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub chatter: Vec<Chatter>,
+    /// What the integrator did to the motion and to the energy; a static analysis has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub integration: Option<Integration>,
     /// Energy ledger at the end; a static analysis keeps none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ledger: Option<Ledger>,
@@ -202,6 +216,7 @@ impl Simulation {
             None => self.newton.counters,
         };
         let tally = |effect: crate::model::Effect| self.work.tally[effect as usize];
+        let dynamic = self.scene.simulation.analysis == Analysis::Dynamic;
         let bodies = self.model.bodies().iter().enumerate();
         let names = self.recorder.channels().iter().map(|c| c.name.clone());
         Report {
@@ -226,13 +241,23 @@ impl Simulation {
                 Pacer::Controller(controller) => Some(controller.report(&self.model)),
             },
             rejected_steps: self.counters.rejected,
+            rejected_by: self
+                .halved
+                .iter()
+                .enumerate()
+                .filter(|(_, times)| **times > 0)
+                .map(|(index, times)| (self.model.unknown_name(index), *times))
+                .collect(),
             location_trials: self.counters.location_trials,
             onsets: self.counters.onsets,
             impacts: self.impacts.listed.clone(),
             unlocated_changes: self.counters.unlocated,
             clamps: self.counters.clamps,
-            ledger: (self.scene.simulation.analysis == Analysis::Dynamic)
-                .then(|| self.recorder.ledger(&self.model, &self.state)),
+            ended_contacts: self.closures.ended,
+            brief_contacts: self.closures.brief,
+            chatter: self.closures.chatter.clone(),
+            integration: dynamic.then(|| self.meter.report(&self.model)),
+            ledger: dynamic.then(|| self.recorder.ledger(&self.model, &self.state)),
             redundant: self.model.redundant(),
             strain: bodies
                 .filter(|(_, p)| matches!(p.coordinates, BodyCoordinates::FlexibleLink { .. }))

@@ -4,18 +4,25 @@
 //! v_1 = v + h a_1                q_1 = q + h v_1
 //! ```
 
-use super::{Stage, StepError, Stepper, integrate_ends};
+use super::defect::Defect;
+use super::{Estimate, LocalError, Stage, StepError, Stepper, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
 
 /// The scheme with its memory.
 #[derive(Debug)]
-pub struct BackwardEuler(Stage);
+pub struct BackwardEuler {
+    stage: Stage,
+    defect: Defect,
+}
 
 impl BackwardEuler {
     /// Memory for a system.
     pub fn new(shape: Shape) -> BackwardEuler {
-        BackwardEuler(Stage::new(shape))
+        BackwardEuler {
+            stage: Stage::new(shape),
+            defect: Defect::new(shape),
+        }
     }
 }
 
@@ -30,15 +37,31 @@ impl Stepper for BackwardEuler {
         work: &mut Work,
     ) -> Result<usize, StepError> {
         let h = t - from.t;
+        self.defect.begin(from);
         to.copy_from(from);
         to.t = t;
         system.prescribe(from, to, work)?;
         for i in 0..system.shape().unknowns {
-            self.0.set(from, i, from.v[i], h * from.v[i]);
+            self.stage.set(from, i, from.v[i], h * from.v[i]);
         }
         let w = Weights { q: h * h, v: h };
-        let clamps = self.0.solve(system, w, from, to, newton, work)?;
+        let clamps = self.stage.solve(system, w, from, to, newton, work)?;
         integrate_ends(from, to);
         Ok(clamps)
+    }
+
+    fn accept(&mut self) {
+        self.defect.accept();
+    }
+
+    fn estimate(&self) -> Estimate {
+        Estimate {
+            order: 2.0,
+            is_error: true,
+        }
+    }
+
+    fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {
+        self.defect.local_error(from, to, error);
     }
 }

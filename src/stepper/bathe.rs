@@ -104,11 +104,8 @@ impl Stepper for Bathe {
         &self.middle
     }
 
-    fn estimate(&self) -> Option<Estimate> {
-        Some(Estimate {
-            order: 3.0,
-            is_error: true,
-        })
+    fn estimate(&self) -> Estimate {
+        Estimate::ERROR_OF_ORDER_2
     }
 
     fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {

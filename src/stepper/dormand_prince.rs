@@ -154,11 +154,11 @@ impl Stepper for DormandPrince {
         Ok(clamps)
     }
 
-    fn estimate(&self) -> Option<Estimate> {
-        Some(Estimate {
+    fn estimate(&self) -> Estimate {
+        Estimate {
             order: 5.0,
             is_error: false,
-        })
+        }
     }
 
     fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {

@@ -15,7 +15,8 @@
 //! rho is the spectral radius at infinite frequency. b stands for the acceleration at t + (alpha_m - alpha_f) h. What is
 //! carried from step to step is therefore (b - a)/h, so that order two survives a change of the step; it starts at zero.
 
-use super::{Stage, StepError, Stepper, integrate_ends};
+use super::defect::Defect;
+use super::{Estimate, LocalError, Stage, StepError, Stepper, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
 
@@ -31,6 +32,7 @@ pub struct GeneralizedAlpha {
     /// The same at its end.
     next_lag: Vec<f64>,
     stage: Stage,
+    defect: Defect,
 }
 
 impl GeneralizedAlpha {
@@ -56,6 +58,7 @@ impl GeneralizedAlpha {
             lag: zeros.clone(),
             next_lag: zeros,
             stage: Stage::new(shape),
+            defect: Defect::new(shape),
         }
     }
 }
@@ -83,6 +86,7 @@ impl Stepper for GeneralizedAlpha {
                 scale * (self.alpha_f * from.a[i] - self.alpha_m * mean),
             )
         };
+        self.defect.begin(from);
         to.copy_from(from);
         to.t = t;
         system.prescribe(from, to, work)?;
@@ -107,5 +111,14 @@ impl Stepper for GeneralizedAlpha {
 
     fn accept(&mut self) {
         std::mem::swap(&mut self.lag, &mut self.next_lag);
+        self.defect.accept();
+    }
+
+    fn estimate(&self) -> Estimate {
+        Estimate::ERROR_OF_ORDER_2
+    }
+
+    fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {
+        self.defect.local_error(from, to, error);
     }
 }

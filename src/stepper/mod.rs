@@ -2,6 +2,7 @@
 
 mod backward_euler;
 mod bathe;
+mod defect;
 mod dormand_prince;
 mod generalized_alpha;
 mod trapezoidal;
@@ -25,6 +26,8 @@ pub enum StepError {
     Stage(Failure),
     /// The prescribed motion has none.
     Prescribe(PrescribeError),
+    /// The step ends in the second zero of an angle, half a turn off; the unknown that is its multiplier.
+    HalfTurn(usize),
 }
 
 impl From<Failure> for StepError {
@@ -64,13 +67,12 @@ pub trait Stepper: std::fmt::Debug + Send {
     /// The last step is kept, and the next one begins where it ended.
     fn accept(&mut self) {}
 
-    /// How the scheme estimates its error, if it does.
-    fn estimate(&self) -> Option<Estimate> {
-        None
-    }
+    /// How the scheme estimates its error.
+    fn estimate(&self) -> Estimate;
 
-    /// The estimated error of the last step, which led from `from` to `to`; not called where there is no estimate.
-    fn local_error(&self, _from: &State, _to: &State, _error: &mut LocalError) {}
+    /// The estimated error of the last step, which led from `from` to `to`, before it is accepted: the better solution less
+    /// that of the scheme.
+    fn local_error(&self, from: &State, to: &State, error: &mut LocalError);
 }
 
 /// What is known of an estimate of the local error.
@@ -81,6 +83,14 @@ pub struct Estimate {
     /// True where it is the error of the solution that the scheme goes on with; false where that solution is of a higher
     /// order.
     pub is_error: bool,
+}
+
+impl Estimate {
+    /// That of a scheme of order 2 which goes on with the solution it estimates.
+    const ERROR_OF_ORDER_2: Estimate = Estimate {
+        order: 3.0,
+        is_error: true,
+    };
 }
 
 /// Local error of the unknown coordinates and of their velocities.

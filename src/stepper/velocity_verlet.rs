@@ -8,7 +8,8 @@
 //! Forces that depend on velocities take the predicted one, whose error of h^2 leaves order two. Symplectic where there are
 //! none; stable while h omega < 2 in every mode.
 
-use super::{StepError, Stepper, accumulate, integrate_ends};
+use super::defect::Defect;
+use super::{Estimate, LocalError, StepError, Stepper, accumulate, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Work};
 
@@ -17,6 +18,7 @@ use crate::system::{Shape, State, System, Work};
 pub struct VelocityVerlet {
     /// q_1 - q.
     way: Vec<f64>,
+    defect: Defect,
 }
 
 impl VelocityVerlet {
@@ -24,6 +26,7 @@ impl VelocityVerlet {
     pub fn new(shape: Shape) -> VelocityVerlet {
         VelocityVerlet {
             way: vec![0.0; shape.unknowns],
+            defect: Defect::new(shape),
         }
     }
 }
@@ -40,6 +43,7 @@ impl Stepper for VelocityVerlet {
     ) -> Result<usize, StepError> {
         let n = system.shape().unknowns;
         let h = t - from.t;
+        self.defect.begin(from);
         to.copy_from(from);
         to.t = t;
         system.prescribe(from, to, work)?;
@@ -55,5 +59,17 @@ impl Stepper for VelocityVerlet {
         let clamps = system.powers(to, work);
         integrate_ends(from, to);
         Ok(clamps)
+    }
+
+    fn accept(&mut self) {
+        self.defect.accept();
+    }
+
+    fn estimate(&self) -> Estimate {
+        Estimate::ERROR_OF_ORDER_2
+    }
+
+    fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {
+        self.defect.local_error(from, to, error);
     }
 }

@@ -1,0 +1,106 @@
+//! Contacts that the steps do not resolve: closed for a few steps only, or closing and opening over and over.
+
+use crate::model::Model;
+use serde::Serialize;
+
+/// A contact closed, or open, for fewer steps than these is brief: its course is a guess of the integrator's.
+const FEW_STEPS: u64 = 4;
+/// So many brief contacts with brief flights between them are chatter.
+const CHATTER: u64 = 10;
+/// Stretches of chatter that the summary lists.
+const LISTED: usize = 10;
+
+/// A stretch of time in which a joint closed and opened within a few steps, over and over.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Chatter {
+    /// The joint.
+    pub joint: String,
+    /// First onset \[s\].
+    pub from: f64,
+    /// Last loss of contact \[s\].
+    pub to: f64,
+    /// Onsets in between.
+    pub onsets: u64,
+}
+
+/// Follows every contact.
+#[derive(Debug)]
+pub(super) struct Closures {
+    contacts: Vec<Closure>,
+    /// Contacts that were lost.
+    pub ended: u64,
+    /// Those of them that were closed for a few steps only.
+    pub brief: u64,
+    /// The first stretches of chatter.
+    pub chatter: Vec<Chatter>,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Closure {
+    /// Steps since the contact last closed or opened.
+    steps: u64,
+    /// Brief contacts since the last that was not, with brief flights between.
+    streak: u64,
+    /// Onset of the first of them \[s\].
+    from: f64,
+    /// Where the streak stands in the list.
+    listed: Option<usize>,
+}
+
+impl Closures {
+    pub fn new(contacts: usize) -> Closures {
+        let start = Closure {
+            steps: FEW_STEPS,
+            ..Closure::default()
+        };
+        Closures {
+            contacts: vec![start; contacts],
+            ended: 0,
+            brief: 0,
+            chatter: Vec::with_capacity(LISTED),
+        }
+    }
+
+    /// A step has been accepted that led from memory `before` to `after` at time t.
+    pub fn step(&mut self, model: &Model, t: f64, before: &[f64], after: &[f64]) {
+        for (c, contact) in self.contacts.iter_mut().enumerate() {
+            contact.steps += 1;
+            let (was, is) = (before[c] > 0.0, after[c] > 0.0);
+            if was == is {
+                continue;
+            }
+            let brief = contact.steps < FEW_STEPS;
+            contact.steps = 0;
+            if !brief {
+                (contact.streak, contact.listed) = (0, None);
+            }
+            if is {
+                if contact.streak == 0 {
+                    contact.from = t;
+                }
+                continue;
+            }
+            self.ended += 1;
+            if !brief {
+                continue;
+            }
+            self.brief += 1;
+            contact.streak += 1;
+            if let Some(listed) = contact.listed {
+                let chatter = &mut self.chatter[listed];
+                (chatter.to, chatter.onsets) = (t, contact.streak);
+            } else if contact.streak == CHATTER && self.chatter.len() < LISTED {
+                contact.listed = Some(self.chatter.len());
+                let joint = model
+                    .contact_joint(c)
+                    .map(|j| model.joints()[j].name.clone());
+                self.chatter.push(Chatter {
+                    joint: joint.unwrap_or_default(),
+                    from: contact.from,
+                    to: t,
+                    onsets: contact.streak,
+                });
+            }
+        }
+    }
+}

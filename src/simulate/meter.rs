@@ -1,0 +1,304 @@
+//! What the integrator does to a run: the errors it is estimated to make, and the energy it loses or gains.
+//!
+//! Every step has the local errors e_q and e_v (see the stepper's estimate). With l_i the way that a unit of coordinate i
+//! moves a point of its body by,
+//!
+//! ```text
+//! E = max_i l_i (sum |e_q,i| + tau_i max_t |sum e_v,i|),   tau_i = (max q_i - min q_i)/max |v_i|
+//! ```
+//!
+//! is the error of position of the whole run if nothing amplifies it; impacts do, and a mechanism with loose joints is
+//! chaotic. tau turns an error of velocity into the error of position that it grows to while the coordinate crosses its range.
+//!
+//! Positions may be right where accelerations, and forces with them, are not: a scheme that damps nothing leaves a vibration
+//! that the steps do not resolve in the accelerations for ever. Over the run, with da the change of a over a step,
+//!
+//! ```text
+//! rho_i = sqrt(int da_i^2 dt / int a_i^2 dt)
+//! ```
+//!
+//! is 2 pi/n for a vibration of n steps a period; the largest one counts among the coordinates that carry a tenth of the
+//! largest acceleration, and that it moves by more than rounding.
+
+use crate::model::{BodyCoordinates, Model};
+use crate::scene::{BodyKind, Scene};
+use crate::stepper::{LocalError, Stepper};
+use crate::system::{Integral, State};
+use serde::Serialize;
+
+/// A unit of slope of a cubic beam moves points by this part of its length at most, x (1 - x)^2 at x = 1/3.
+const SLOPE_WAY: f64 = 4.0 / 27.0;
+
+/// Coordinates with less than this part of the largest acceleration are left out where changes of accelerations are looked at,
+const LEAST_SHARE: f64 = 0.1;
+/// and those that the changes move by less than this part of the longest way: rounding.
+const SHAKEN: f64 = 1e-9;
+/// A motion with this many times the energy that the scene supplies is not that of the mechanism.
+const UNSTABLE: f64 = 10.0;
+
+/// What the integrator did to a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Integration {
+    /// Estimated error of position \[m\], if nothing amplifies it.
+    pub estimated_error: f64,
+    /// The coordinate that has it.
+    pub estimated_error_of: String,
+    /// Root mean square change of an acceleration from step to step over that of the acceleration, of the coordinate where it is
+    /// the largest; 2 pi over the steps of a period.
+    pub acceleration_change: f64,
+    /// The coordinate that has it.
+    pub acceleration_change_of: String,
+    /// The longest way of a point of the mechanism over the recorded rows \[m\].
+    pub travel: f64,
+    /// Least and greatest energy lost by the integrator over the recorded rows \[J\]; a negative loss is a gain.
+    pub lost: [f64; 2],
+    /// Energy in play \[J\]: the largest sum of kinetic and elastic energy over the recorded rows, and what was dissipated.
+    pub turnover: f64,
+}
+
+/// Measures while a run goes on.
+#[derive(Debug)]
+pub(super) struct Meter {
+    lengths: Vec<f64>,
+    /// Local error of the step looked at last.
+    error: LocalError,
+    sums: Vec<Sums>,
+    ranges: Vec<Range>,
+    lost: [f64; 2],
+    turnover: f64,
+    dissipated: f64,
+    initial: Option<Initial>,
+    /// Largest energy that the scene has supplied: that at the start, and work and weight since.
+    supplied: f64,
+    elapsed: f64,
+}
+
+/// The first row.
+#[derive(Debug, Clone, Copy)]
+struct Initial {
+    balance: f64,
+    gravity: f64,
+    /// Kinetic and elastic energy \[J\].
+    turnover: f64,
+}
+
+/// Energy that the integrator has put into a motion, far beyond what the scene has.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gain {
+    /// What it has put in \[J\].
+    pub gained: f64,
+    /// Energy at the start, and work and weight since \[J\].
+    pub supplied: f64,
+}
+
+/// Errors of one unknown so far.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    /// Sum of |e_q|.
+    position: f64,
+    /// Sum of e_v ...
+    velocity: f64,
+    /// ... and its largest magnitude.
+    peak: f64,
+    /// Integral of the square of the acceleration ...
+    acceleration: f64,
+    /// ... of that of its change over a step ...
+    change: f64,
+    /// ... and the largest square of a way h^2 da.
+    shaking: f64,
+}
+
+/// What an unknown went through over the recorded rows.
+#[derive(Debug, Clone, Copy)]
+struct Range {
+    least: f64,
+    greatest: f64,
+    /// Largest magnitude of its rate.
+    fastest: f64,
+}
+
+impl Range {
+    const EMPTY: Range = Range {
+        least: f64::INFINITY,
+        greatest: f64::NEG_INFINITY,
+        fastest: 0.0,
+    };
+
+    fn see(&mut self, q: f64, v: f64) {
+        self.least = self.least.min(q);
+        self.greatest = self.greatest.max(q);
+        self.fastest = self.fastest.max(v.abs());
+    }
+
+    fn width(&self) -> f64 {
+        (self.greatest - self.least).max(0.0)
+    }
+
+    /// Time in which the range is crossed, within a run that has lasted for `elapsed` \[s\].
+    fn crossing(&self, elapsed: f64) -> f64 {
+        match self.fastest * elapsed > self.width() {
+            true => self.width() / self.fastest,
+            false => elapsed,
+        }
+    }
+}
+
+/// The way \[m\] that a unit of each unknown moves a point of its body by.
+pub fn lengths(scene: &Scene, model: &Model) -> Vec<f64> {
+    let mut lengths = vec![1.0; model.shape().coordinates];
+    for (body, place) in scene.bodies.iter().zip(model.bodies()) {
+        match (&body.kind, &place.coordinates) {
+            (BodyKind::Rigid(rigid), BodyCoordinates::Rigid { x }) => {
+                let gyration = (rigid.inertia / rigid.mass).sqrt();
+                let arms = rigid.points.iter().map(|p| p.at[0].hypot(p.at[1]));
+                lengths[x + 2] = arms.fold(gyration, f64::max);
+            }
+            (
+                _,
+                BodyCoordinates::FlexibleLink {
+                    slopes,
+                    element_length,
+                    ..
+                },
+            ) => {
+                for x in slopes {
+                    lengths[*x..x + 2].fill(SLOPE_WAY * element_length);
+                }
+            }
+            _ => {}
+        }
+    }
+    lengths.truncate(model.shape().unknowns);
+    lengths
+}
+
+impl Meter {
+    pub fn new(scene: &Scene, model: &Model) -> Meter {
+        let unknowns = model.shape().unknowns;
+        Meter {
+            lengths: lengths(scene, model),
+            error: LocalError {
+                q: vec![0.0; unknowns],
+                v: vec![0.0; unknowns],
+            },
+            sums: vec![Sums::default(); unknowns],
+            ranges: vec![Range::EMPTY; unknowns],
+            lost: [0.0; 2],
+            turnover: 0.0,
+            dissipated: 0.0,
+            initial: None,
+            supplied: 0.0,
+            elapsed: 0.0,
+        }
+    }
+
+    /// A step is about to be accepted.
+    pub fn step(&mut self, stepper: &dyn Stepper, from: &State, to: &State) {
+        stepper.local_error(from, to, &mut self.error);
+        let h = to.t - from.t;
+        self.elapsed = to.t;
+        let accelerations = from.a.iter().zip(&to.a);
+        let errors = self.error.q.iter().zip(&self.error.v);
+        for ((sums, (q, v)), (a, a_1)) in self.sums.iter_mut().zip(errors).zip(accelerations) {
+            let change = (a_1 - a) * (a_1 - a);
+            sums.acceleration += h * a_1 * a_1;
+            sums.change += h * change;
+            sums.shaking = sums.shaking.max(change * (h * h) * (h * h));
+            sums.position += q.abs();
+            sums.velocity += v;
+            sums.peak = sums.peak.max(sums.velocity.abs());
+        }
+    }
+
+    /// A row is recorded.
+    ///
+    /// # Errors
+    /// A motion that lives on the energy that the integrator has put into it.
+    pub fn row(&mut self, model: &Model, at: &State) -> Result<(), Gain> {
+        for (range, (q, v)) in self.ranges.iter_mut().zip(at.q.iter().zip(&at.v)) {
+            range.see(*q, *v);
+        }
+        let ((balance, size), energies) = (model.balance(at), model.energies(at));
+        let turnover = energies.total() - energies.gravity;
+        let initial = *self.initial.get_or_insert(Initial {
+            balance,
+            gravity: energies.gravity,
+            turnover,
+        });
+        let lost = initial.balance - balance;
+        self.lost = [self.lost[0].min(lost), self.lost[1].max(lost)];
+        self.turnover = self.turnover.max(turnover);
+        let of = |integral: Integral| at.integrals[integral as usize];
+        self.dissipated = of(Integral::ContactDissipated)
+            + of(Integral::FrictionDissipated)
+            + of(Integral::DampingDissipated);
+        let work = of(Integral::Work).abs();
+        let weight = (energies.gravity - initial.gravity).abs();
+        self.supplied = self.supplied.max(initial.turnover + work + weight);
+        let supplied = self.supplied;
+        match -lost > UNSTABLE * supplied + f64::EPSILON.sqrt() * size || !lost.is_finite() {
+            true => Err(Gain {
+                gained: -lost,
+                supplied,
+            }),
+            false => Ok(()),
+        }
+    }
+
+    /// The unknown with the largest velocity.
+    pub fn fastest<'a>(&self, model: &'a Model, at: &State) -> &'a str {
+        let speeds = at.v.iter().zip(&self.lengths).map(|(v, l)| l * v.abs());
+        let fastest = speeds.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        fastest.map_or("", |(i, _)| &model.unknown_names()[i])
+    }
+
+    /// The unknown with the largest error of the last step.
+    pub fn worst<'a>(&self, model: &'a Model) -> &'a str {
+        let errors = self
+            .error
+            .q
+            .iter()
+            .zip(&self.lengths)
+            .map(|(e, l)| l * e.abs());
+        let worst = errors.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        worst.map_or("", |(i, _)| &model.unknown_names()[i])
+    }
+
+    /// What has been measured so far.
+    pub fn report(&self, model: &Model) -> Integration {
+        let parts = self.sums.iter().zip(&self.ranges).zip(&self.lengths);
+        let errors = parts.clone().map(|((sums, range), length)| {
+            length * (sums.position + range.crossing(self.elapsed) * sums.peak)
+        });
+        let worst = errors.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        let travels = parts
+            .clone()
+            .map(|((_, range), length)| length * range.width());
+        let travel = travels.fold(0.0, f64::max);
+        let sizes = parts
+            .clone()
+            .map(|((sums, _), length)| length * sums.acceleration.sqrt());
+        let largest = sizes.fold(0.0, f64::max);
+        let changes = parts.map(|((sums, _), length)| {
+            let carries = length * sums.acceleration.sqrt() >= LEAST_SHARE * largest;
+            let moves = length * sums.shaking.sqrt() > SHAKEN * travel;
+            match carries && moves {
+                true => (sums.change / sums.acceleration).sqrt(),
+                false => 0.0,
+            }
+        });
+        let roughest = changes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        let name = |of: Option<(usize, f64)>| {
+            of.map_or(String::new(), |(i, _)| model.unknown_names()[i].clone())
+        };
+        Integration {
+            estimated_error: worst.map_or(0.0, |w| w.1),
+            estimated_error_of: name(worst),
+            acceleration_change: roughest.map_or(0.0, |r| r.1),
+            acceleration_change_of: name(roughest),
+            travel,
+            lost: self.lost,
+            turnover: self.turnover + self.dissipated.max(0.0),
+        }
+    }
+}

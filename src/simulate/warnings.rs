@@ -1,0 +1,124 @@
+//! What a user should know of a run before the numbers are used.
+
+use super::Report;
+
+/// Energy lost or gained by the integrator beyond this part of what was dissipated is told ...
+const OF_DISSIPATED: f64 = 0.05;
+/// ... and beyond this part of the energy in play.
+const OF_TURNOVER: f64 = 0.01;
+/// Accelerations that change more than this from step to step, relative, belong to vibrations of six steps a period or less.
+const UNRESOLVED: f64 = 1.0;
+/// An estimated error beyond this part of the longest way is told.
+const OF_TRAVEL: f64 = 0.01;
+
+/// A part of something in words.
+fn share(part: f64, of: &str) -> String {
+    match part {
+        part if part < 10.0 => format!("{:.1} % of {of}", 100.0 * part),
+        part => format!("{part:.0} times {of}"),
+    }
+}
+
+impl Report {
+    /// A line for everything that makes the results worth less than they look: none for a run that can be trusted.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        warnings.extend(self.energy_warning());
+        warnings.extend(self.error_warning());
+        warnings.extend(self.acceleration_warning());
+        warnings.extend(self.chatter.iter().map(|chatter| {
+            format!(
+                "{} chatters from {:.6e} to {:.6e} s: {} onsets within a few steps each",
+                chatter.joint, chatter.from, chatter.to, chatter.onsets
+            )
+        }));
+        if self.accuracy.is_none() && self.brief_contacts > 0 {
+            warnings.push(format!(
+                "{} of {} contacts lasted fewer than four steps: a smaller integrator.step would resolve them",
+                self.brief_contacts, self.ended_contacts
+            ));
+        }
+        warnings.extend(self.redundant.iter().map(|name| {
+            format!(
+                "{name} repeats other constraints: the forces in its loop are one choice among many"
+            )
+        }));
+        if self.rejected_steps > 0 {
+            let most = self.rejected_by.iter().max_by_key(|(_, times)| **times);
+            let most = most.map_or(String::new(), |(name, times)| {
+                format!(", {times} times that of {name}")
+            });
+            warnings.push(format!(
+                "{} steps halved because a stage had no solution{most}",
+                self.rejected_steps
+            ));
+        }
+        let counts = [
+            (self.clamps, "stages with a contact force clamped at zero"),
+            (
+                self.stagnations,
+                "stages accepted at rounding, above the Newton tolerance",
+            ),
+            (
+                self.singular_poses,
+                "stages in a nearly singular pose, one direction left out",
+            ),
+            (self.fallbacks, "factorisations with row exchanges"),
+            (
+                self.unlocated_changes,
+                "contact changes kept outside the onset tolerance",
+            ),
+        ];
+        let counted = counts.iter().filter(|(count, _)| *count > 0);
+        warnings.extend(counted.map(|(count, what)| format!("{count} {what}")));
+        warnings
+    }
+
+    fn energy_warning(&self) -> Option<String> {
+        let ledger = self.ledger.as_ref()?;
+        let integration = self.integration.as_ref()?;
+        let dissipated =
+            ledger.contact_dissipated + ledger.friction_dissipated + ledger.damping_dissipated;
+        let [least, greatest] = integration.lost;
+        let (verb, changed) = match -least > greatest {
+            true => ("gained", -least),
+            false => ("lost", greatest),
+        };
+        if changed > OF_TURNOVER * integration.turnover {
+            return Some(format!(
+                "the integrator {verb} {changed:.1e} J, {}",
+                share(changed / integration.turnover, "the energy in play")
+            ));
+        }
+        (dissipated > 0.0 && ledger.numerical.abs() > OF_DISSIPATED * dissipated).then(|| {
+            format!(
+                "the integrator {verb} {:.1e} J, {}: a smaller integrator.step would make its part small",
+                ledger.numerical.abs(),
+                share(ledger.numerical.abs() / dissipated, "what was dissipated")
+            )
+        })
+    }
+
+    fn acceleration_warning(&self) -> Option<String> {
+        let integration = self.integration.as_ref()?;
+        let change = integration.acceleration_change;
+        (change > UNRESOLVED).then(|| {
+            format!(
+                "the acceleration of {} changes by {change:.1} times its size from step to step: a vibration faster than the steps, \
+                 in which accelerations and forces are not to be trusted",
+                integration.acceleration_change_of
+            )
+        })
+    }
+
+    fn error_warning(&self) -> Option<String> {
+        let integration = self.integration.as_ref()?;
+        let (error, travel) = (integration.estimated_error, integration.travel);
+        (error > OF_TRAVEL * travel).then(|| {
+            format!(
+                "the estimated error of {} is {error:.1e} m where the longest way of a point is {travel:.1e} m",
+                integration.estimated_error_of
+            )
+        })
+    }
+}
