@@ -8,17 +8,22 @@
 //! | `summary.json` | status, counters, energy ledger, extremes |
 //! | `timing.json` | wall and processor time, machine, date |
 //!
-//! Only `timing.json` differs when a run is repeated. `summary.json` says `incomplete` from the first moment to the last,
-//! so that a run that was killed is not taken for a finished one.
+//! Only `timing.json` differs when a run is repeated. `summary.json` says `incomplete` from the first rows to the last, so
+//! that a run that was killed is not taken for a finished one; without a summary there is no result. A kill or a full disk
+//! may cut the last row: a row is whole when it ends with a line feed.
+//!
+//! A result that is replaced stands in `previous-result` inside the folder until the new one is complete.
 
 mod csv;
+mod earlier;
 mod timing;
 
 use crate::scene::Scene;
 use crate::simulate::{Channel, Onset, Report, Status};
 use csv::CsvFile;
+pub use earlier::earlier_result;
 use serde::Serialize;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use timing::Stopwatch;
@@ -29,6 +34,8 @@ const ONSETS: &str = "onsets.csv";
 const SCENE: &str = "scene.toml";
 const SUMMARY: &str = "summary.json";
 pub(crate) const TIMING: &str = "timing.json";
+/// The summary first, which closes a result.
+const FILES: [&str; 5] = [SUMMARY, CHANNELS, ONSETS, SCENE, TIMING];
 
 /// Why results could not be stored.
 #[derive(Debug, thiserror::Error)]
@@ -44,6 +51,12 @@ pub enum OutputError {
     /// The path of the folder is that of a file.
     #[error("`{}` is not a directory", .0.display())]
     NotADirectory(PathBuf),
+    /// What stands in the place of a file of the result is none.
+    #[error("`{}` is not a file", .0.display())]
+    NotAFile(PathBuf),
+    /// Another run writes to the folder.
+    #[error("another run is writing to `{}`", .0.display())]
+    Busy(PathBuf),
     /// The system refused; the message names the file.
     #[error("{0}")]
     Io(#[from] io::Error),
@@ -60,6 +73,7 @@ pub struct Folder {
 #[derive(Debug)]
 pub struct Results {
     folder: PathBuf,
+    replaces: bool,
     header: Header,
     channels: CsvFile,
     onsets: CsvFile,
@@ -94,7 +108,7 @@ impl Folder {
     /// # Errors
     /// A result that may not be replaced, or a path that is not a folder.
     pub fn new(path: &Path, replace: bool) -> Result<Folder, OutputError> {
-        refuse_occupied(path, &[SUMMARY, CHANNELS, ONSETS, SCENE, TIMING], replace)?;
+        refuse_occupied(path, &FILES, replace)?;
         Ok(Folder {
             path: path.to_owned(),
             replace,
@@ -104,29 +118,38 @@ impl Folder {
     /// Starts a result; files that are not part of one are left alone.
     ///
     /// # Errors
-    /// When the folder or a file cannot be written.
+    /// When the folder or a file cannot be written, or another run writes to it.
     pub fn begin(self, scene: &Scene, channels: &[Channel]) -> Result<Results, OutputError> {
         let folder = self.path;
         fs::create_dir_all(&folder).map_err(|e| naming(&folder, e))?;
+        if self.replace {
+            refuse_busy(&folder)?;
+            earlier::set_aside(&folder, &FILES, is_complete(&folder))?;
+        }
         let header = Header {
             title: scene.title.clone(),
             scene_hash: scene.hash(),
             overrides: scene.overrides().map(str::to_owned).collect(),
             version: env!("CARGO_PKG_VERSION"),
         };
-        if !self.replace {
-            claim(&folder)?;
-        }
-        let status = Status::Incomplete;
-        // First of all: from here on nobody takes what an older run left for a finished result.
-        write_summary(&folder, &header, Pending { status })?;
-        remove(&folder.join(TIMING))?;
-        replace(&folder, SCENE, scene.text().as_bytes())?;
         let names = channels.iter().map(|c| format!("{} [{}]", c.name, c.unit));
+        // First of all and never over another: of two runs that start together one fails.
+        let channels =
+            CsvFile::create(folder.join(CHANNELS), names).map_err(|e| match e.kind() {
+                io::ErrorKind::AlreadyExists => OutputError::Occupied {
+                    folder: folder.clone(),
+                    file: CHANNELS,
+                },
+                _ => e.into(),
+            })?;
+        let status = Status::Incomplete;
+        write_summary(&folder, &header, Pending { status })?;
+        replace(&folder, SCENE, scene.text().as_bytes())?;
         let columns = ["t [s]", "joint", "impact_velocity [m/s]", "delta [m]"];
         Ok(Results {
             header,
-            channels: CsvFile::create(folder.join(CHANNELS), names)?,
+            replaces: self.replace,
+            channels,
             onsets: CsvFile::create(folder.join(ONSETS), columns.map(str::to_owned))?,
             folder,
             stopwatch: Stopwatch::start(),
@@ -165,48 +188,91 @@ impl Results {
         self.onsets.flush()
     }
 
-    /// Ends the result: the rest of the rows, the timing, and last the summary.
+    /// Ends the result: the rest of the rows, the timing, and last the summary. A result that a complete one has replaced is
+    /// deleted then.
     ///
     /// # Errors
     /// When something cannot be stored; the summary then goes on saying `incomplete`.
     pub fn finish(mut self, report: &Report) -> Result<(), OutputError> {
-        self.flush()?;
+        self.channels.close()?;
+        self.onsets.close()?;
         let timing = self.stopwatch.stop(report.t);
         replace(&self.folder, TIMING, &json(&timing)?)?;
-        write_summary(&self.folder, &self.header, report)
+        write_summary(&self.folder, &self.header, report)?;
+        if self.replaces && report.status == Status::Complete {
+            earlier::forget(&self.folder, &FILES)?;
+        }
+        Ok(())
     }
 }
 
-/// Refuses a path that is no folder, and a folder with one of `files` unless they may be replaced.
+/// True where a run has reached its end.
+fn is_complete(folder: &Path) -> bool {
+    let summary = fs::read(folder.join(SUMMARY)).unwrap_or_default();
+    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
+    summary["status"] == "complete"
+}
+
+/// Refuses a folder to which a run writes: it holds its channels locked.
+fn refuse_busy(folder: &Path) -> Result<(), OutputError> {
+    let locked = File::open(folder.join(CHANNELS)).map(|file| file.try_lock());
+    match locked {
+        Ok(Err(TryLockError::WouldBlock)) => Err(OutputError::Busy(folder.to_owned())),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a path that is no folder, a folder with one of `files` unless they may be replaced, and what is no file.
 pub(crate) fn refuse_occupied(
     path: &Path,
     files: &[&'static str],
     replace: bool,
 ) -> Result<(), OutputError> {
-    if path.exists() && !path.is_dir() {
+    let is_there = |path: &Path| fs::symlink_metadata(path).is_ok();
+    if is_there(path) && !path.is_dir() {
         return Err(OutputError::NotADirectory(path.to_owned()));
     }
-    let present = |file: &&&str| fs::symlink_metadata(path.join(file)).is_ok();
-    match files.iter().find(present) {
-        Some(file) if !replace => Err(OutputError::Occupied {
-            folder: path.to_owned(),
-            file,
-        }),
-        _ => Ok(()),
+    for file in files.iter().filter(|file| is_there(&path.join(file))) {
+        if !replace {
+            return Err(OutputError::Occupied {
+                folder: path.to_owned(),
+                file,
+            });
+        }
+        if !path.join(file).is_file() {
+            return Err(OutputError::NotAFile(path.join(file)));
+        }
     }
+    Ok(())
 }
 
-/// Takes an empty folder for this run: of two runs that start together one fails.
-fn claim(folder: &Path) -> Result<(), OutputError> {
-    let path = folder.join(SUMMARY);
-    match OpenOptions::new().write(true).create_new(true).open(&path) {
-        Ok(_) => Ok(()),
-        Err(e) if e.kind() == io::ErrorKind::AlreadyExists => Err(OutputError::Occupied {
-            folder: folder.to_owned(),
-            file: SUMMARY,
-        }),
-        Err(e) => Err(naming(&path, e).into()),
+/// Creates a folder and sees that files can be written there, before there is much to lose.
+pub(crate) fn prepare(folder: &Path) -> Result<(), OutputError> {
+    let probe = folder.join(".probe.tmp");
+    fs::create_dir_all(folder).map_err(|e| naming(folder, e))?;
+    fs::write(&probe, "probe").map_err(|e| naming(&probe, e))?;
+    Ok(fs::remove_file(&probe).map_err(|e| naming(&probe, e))?)
+}
+
+/// Writes a result that is made in one piece. The first of the files closes it and comes last: without that there is none.
+pub(crate) fn write_result(
+    folder: &Path,
+    files: &[(&'static str, Vec<u8>)],
+    replaces: bool,
+) -> Result<(), OutputError> {
+    let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
+    // what was not there when the work began may have come meanwhile
+    refuse_occupied(folder, &names, replaces)?;
+    if replaces {
+        earlier::set_aside(folder, &names, folder.join(names[0]).exists())?;
     }
+    for (name, bytes) in files.iter().rev() {
+        replace(folder, name, bytes)?;
+    }
+    if replaces {
+        earlier::forget(folder, &names)?;
+    }
+    Ok(())
 }
 
 fn write_summary(
@@ -240,13 +306,6 @@ pub(crate) fn replace(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), Out
     })?;
     let path = folder.join(name);
     Ok(fs::rename(&temporary, &path).map_err(|e| naming(&path, e))?)
-}
-
-fn remove(path: &Path) -> Result<(), OutputError> {
-    match fs::remove_file(path) {
-        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(naming(path, e).into()),
-        _ => Ok(()),
-    }
 }
 
 /// An error of the system that says which file it is about.

@@ -14,7 +14,7 @@ mod text;
 mod ticks;
 
 pub use number::{digits, percent, si};
-pub use output::save;
+pub use output::{render, save};
 pub use ticks::superscript;
 
 /// An RGB colour.

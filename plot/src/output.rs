@@ -26,15 +26,25 @@ static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
 /// # Errors
 /// When a file cannot be written.
 pub fn save(figure: &Figure, folder: &Path, name: &str) -> Result<()> {
-    let svg = svg(figure)?;
+    let [svg, png] = render(figure)?;
     fs::create_dir_all(folder).into_diagnostic()?;
-    for (extension, bytes) in [("svg", svg.as_bytes()), ("png", &png(&svg)?)] {
+    for (extension, bytes) in [("svg", svg), ("png", png)] {
         let path = folder.join(name).with_extension(extension);
         fs::write(&path, bytes)
             .into_diagnostic()
             .wrap_err_with(|| format!("cannot write {}", path.display()))?;
     }
     Ok(())
+}
+
+/// The bytes of the SVG and of the PNG file.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn render(figure: &Figure) -> Result<[Vec<u8>; 2]> {
+    let svg = svg(figure)?;
+    let png = png(&svg)?;
+    Ok([svg.into_bytes(), png])
 }
 
 /// The SVG text of a figure.

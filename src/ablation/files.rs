@@ -7,23 +7,25 @@
 //! | `timing.json` | processor time of every variant, and the machine |
 //! | `ablation.svg`, `ablation.png` | the picture, with processor time |
 //!
-//! The first two are the same bytes when the command is repeated.
+//! The first two are the same bytes when the command is repeated. `ablation.json` comes last: without it there is no result.
+//! A result that is replaced stands in `previous-result` inside the folder until then.
 
 use super::Ablation;
 use super::picture::figure;
-use crate::output::{OutputError, TIMING, json, naming, refuse_occupied, replace};
-use std::fs;
+use crate::output::{OutputError, TIMING, json, prepare, refuse_occupied, write_result};
 use std::io;
 use std::path::{Path, PathBuf};
 
 const ABLATION: &str = "ablation.json";
 const PAGE: &str = "ablation.md";
-const PICTURE: &str = "ablation";
 const PICTURES: [&str; 2] = ["ablation.svg", "ablation.png"];
 
 /// A folder that may receive an ablation.
 #[derive(Debug)]
-pub struct Folder(PathBuf);
+pub struct Folder {
+    path: PathBuf,
+    replace: bool,
+}
 
 impl Folder {
     /// Looks at `path` without changing anything; with `replace` what stands there may be replaced.
@@ -33,7 +35,18 @@ impl Folder {
     pub fn new(path: &Path, replace: bool) -> Result<Folder, OutputError> {
         let [svg, png] = PICTURES;
         refuse_occupied(path, &[ABLATION, PAGE, svg, png, TIMING], replace)?;
-        Ok(Folder(path.to_owned()))
+        Ok(Folder {
+            path: path.to_owned(),
+            replace,
+        })
+    }
+
+    /// Creates the folder, so that one that cannot be written is known before the runs.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn prepare(&self) -> Result<(), OutputError> {
+        prepare(&self.path)
     }
 
     /// Writes all files; `ablation.json` comes last.
@@ -41,12 +54,14 @@ impl Folder {
     /// # Errors
     /// When a file cannot be written.
     pub fn write(&self, ablation: &Ablation) -> Result<(), OutputError> {
-        let folder = &self.0;
-        fs::create_dir_all(folder).map_err(|e| naming(folder, e))?;
-        replace(folder, TIMING, &json(&ablation.timing())?)?;
-        replace(folder, PAGE, ablation.markdown().as_bytes())?;
-        plot::save(&figure(ablation), folder, PICTURE)
-            .map_err(|e| io::Error::other(e.to_string()))?;
-        replace(folder, ABLATION, &json(&ablation.repeatable())?)
+        let pictures =
+            plot::render(&figure(ablation)).map_err(|e| io::Error::other(e.to_string()))?;
+        let mut files = vec![
+            (ABLATION, json(&ablation.repeatable())?),
+            (PAGE, ablation.markdown().into_bytes()),
+            (TIMING, json(&ablation.timing())?),
+        ];
+        files.extend(PICTURES.into_iter().zip(pictures));
+        write_result(&self.path, &files, self.replace)
     }
 }

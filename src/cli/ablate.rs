@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::progress::say;
 use super::{SceneArguments, print};
 use clap::Args;
-use looselink::ablation::{Folder, Observed, Repeatable, Timing, ablate as measure};
+use looselink::ablation::{Ablation, Folder, Observed, Repeatable, Timing, ablate as measure};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -21,7 +21,7 @@ pub struct Arguments {
     /// The folder that receives tables, numbers and a picture; it is created.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace a result that stands in the folder.
+    /// Replace a result that stands in the folder; until the new one is whole it is kept in `previous-result` there.
     #[arg(long, requires = "out")]
     force: bool,
     /// Machine-readable output.
@@ -47,15 +47,20 @@ pub fn ablate(arguments: &Arguments) -> Result<(), Failure> {
     let (scene, _) = arguments.scene.load()?;
     let body = Observed::choose(&scene, arguments.body.as_deref())
         .map_err(|e| Failure::bad_input(e.to_string()))?;
+    folder.iter().try_for_each(Folder::prepare)?;
     let runs = arguments.runs.map(|runs| runs as usize);
     let ablation = measure(&scene, body, runs, &mut |begun| {
         if !arguments.quiet {
             say(begun);
         }
     });
-    if let Some(folder) = folder {
-        folder.write(&ablation)?;
-    }
+    // What was measured is shown also where it cannot be stored.
+    let stored = folder.map_or(Ok(()), |folder| folder.write(&ablation));
+    show(arguments, &ablation)?;
+    Ok(stored?)
+}
+
+fn show(arguments: &Arguments, ablation: &Ablation) -> Result<(), Failure> {
     if !arguments.json {
         return print(&ablation.text());
     }

@@ -106,7 +106,9 @@ impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Failure {
         let (code, hint) = match error {
             OutputError::Io(_) => (SYSTEM, ""),
-            OutputError::NotADirectory(_) => (BAD_INPUT, ""),
+            OutputError::NotADirectory(_) | OutputError::NotAFile(_) | OutputError::Busy(_) => {
+                (BAD_INPUT, "")
+            }
             OutputError::Occupied { .. } => (
                 BAD_INPUT,
                 "; choose another folder, or replace it with --force",

@@ -4,7 +4,8 @@ use super::failure::Failure;
 use super::print;
 use super::progress::say;
 use clap::Args;
-use looselink::precision::{Effort, Folder, Study, Survey, run};
+use looselink::machine::machine;
+use looselink::precision::{Effort, Folder, Study, Survey, page, run};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -20,7 +21,7 @@ pub struct Arguments {
     /// Only the first point of every curve, timed once: to see that a study works.
     #[arg(long)]
     smoke: bool,
-    /// Replace results that stand in the folder.
+    /// Replace a result that stands in the folder; until the new one is whole it is kept in `previous-result` there.
     #[arg(long)]
     force: bool,
     /// Show no progress.
@@ -32,6 +33,7 @@ pub struct Arguments {
 pub fn precision(arguments: &Arguments) -> Result<(), Failure> {
     let folder = Folder::new(&arguments.out, arguments.force)?;
     let study = Study::load(&arguments.study)?;
+    folder.prepare()?;
     let effort = Effort {
         repeats: if arguments.smoke {
             1
@@ -45,9 +47,21 @@ pub fn precision(arguments: &Arguments) -> Result<(), Failure> {
             say(name);
         }
     };
-    let page = match study.statistics {
-        Some(_) => folder.write_survey(&study, &Survey::run(&study, effort, &mut tell)?)?,
-        None => folder.write(&study, &run(&study, effort, &mut tell)?)?,
+    let machine = machine();
+    let (page, stored) = match study.statistics {
+        Some(_) => {
+            let survey = Survey::run(&study, effort, &mut tell)?;
+            (
+                survey.page(&study, &machine),
+                folder.write_survey(&study, &survey),
+            )
+        }
+        None => {
+            let outcome = run(&study, effort, &mut tell)?;
+            (page(&outcome, &machine), folder.write(&study, &outcome))
+        }
     };
-    print(&page)
+    // What was measured is shown also where it cannot be stored.
+    print(&page)?;
+    Ok(stored?)
 }

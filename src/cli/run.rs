@@ -5,7 +5,7 @@ use super::closing;
 use super::failure::{Failure, INTERRUPTED};
 use super::progress::{Display, Pace};
 use clap::Args;
-use looselink::output::{Folder, Results};
+use looselink::output::{Folder, OutputError, Results, earlier_result};
 use looselink::simulate::{Control, Observer, Onset, Progress};
 use std::io;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ pub struct Arguments {
     /// The folder that receives the results; it is created.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Replace a result that stands in the folder.
+    /// Replace a result that stands in the folder; until the new one is complete it is kept in `previous-result` there.
     #[arg(long)]
     force: bool,
     /// Show no progress.
@@ -70,8 +70,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = Folder::new(&arguments.out, arguments.force)?;
     let (scene, mut simulation) = arguments.scene.load()?;
     let started = Instant::now();
+    let not_stored = |error: OutputError| Failure::from(error).and(&earlier(arguments));
+    let results = folder.begin(&scene, simulation.channels());
     let mut watch = Watch {
-        results: folder.begin(&scene, simulation.channels())?,
+        results: results.map_err(not_stored)?,
         display: Display::new(arguments.quiet),
         pace: Pace::new(),
         flushed: started,
@@ -84,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match ended {
         Ok(()) => {
             watch.display.finish("");
-            stored?;
+            stored.map_err(not_stored)?;
             let wall = started.elapsed().as_secs_f64();
             watch.display.finish(&format!(
                 "{} steps in {wall:.2} s, results in `{out}`",
@@ -101,9 +103,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 Ok(()) => format!("; the results up to there are in `{out}`"),
                 Err(second) => format!("; and the result in `{out}` is not closed: {second}"),
             };
-            Err(Failure::run(&error).and(&kept))
+            Err(Failure::run(&error).and(&kept).and(&earlier(arguments)))
         }
     }
+}
+
+/// Where a result is that the run was to replace.
+fn earlier(arguments: &Arguments) -> String {
+    let aside = earlier_result(&arguments.out).filter(|_| arguments.force);
+    aside.map_or(String::new(), |aside| {
+        format!("; the earlier result is in `{}`", aside.display())
+    })
 }
 
 /// The flag is raised by the first Ctrl-C; the second ends the program at once.

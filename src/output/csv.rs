@@ -14,12 +14,16 @@ pub(super) struct CsvFile {
 }
 
 impl CsvFile {
-    /// Creates or empties the file and writes the header.
+    /// Creates a file that is not there yet, locks it against other runs and writes the header.
     pub(super) fn create(
         path: PathBuf,
         header: impl IntoIterator<Item = String>,
     ) -> io::Result<CsvFile> {
-        let file = File::create(&path).map_err(|e| naming(&path, e))?;
+        let file = File::create_new(&path).map_err(|e| naming(&path, e))?;
+        // Not on Windows, where a lock would keep readers out; where a file system has no locks, nobody is warned.
+        if cfg!(unix) {
+            let _ = file.try_lock();
+        }
         let mut table = CsvFile {
             path,
             writer: BufWriter::new(file),
@@ -27,6 +31,7 @@ impl CsvFile {
         };
         header.into_iter().for_each(|name| table.text(&name));
         table.end_row()?;
+        table.flush()?;
         Ok(table)
     }
 
@@ -52,5 +57,12 @@ impl CsvFile {
 
     pub(super) fn flush(&mut self) -> io::Result<()> {
         self.writer.flush().map_err(|e| naming(&self.path, e))
+    }
+
+    /// Ends the table, on disk before a summary tells of it.
+    pub(super) fn close(&mut self) -> io::Result<()> {
+        self.flush()?;
+        let file = self.writer.get_ref();
+        file.sync_all().map_err(|e| naming(&self.path, e))
     }
 }

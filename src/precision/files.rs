@@ -7,24 +7,26 @@
 //! | `precision.md` | both as tables |
 //! | `precision.svg`, `precision.png` | the diagrams |
 //!
-//! The first is the same bytes when the study is repeated.
+//! The first is the same bytes when the study is repeated. It comes last: without it there is no result. A result that is
+//! replaced stands in `previous-result` inside the folder until then.
 
 use super::{Outcome, Pace, Study, Survey, Timing, figure, page};
 use crate::machine::{Machine, machine};
-use crate::output::{OutputError, TIMING, json, naming, refuse_occupied, replace};
+use crate::output::{OutputError, TIMING, json, prepare, refuse_occupied, write_result};
 use serde::Serialize;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 const PRECISION: &str = "precision.json";
 const PAGE: &str = "precision.md";
-const PICTURE: &str = "precision";
 const PICTURES: [&str; 2] = ["precision.svg", "precision.png"];
 
 /// A folder that may receive a study.
 #[derive(Debug)]
-pub struct Folder(PathBuf);
+pub struct Folder {
+    path: PathBuf,
+    replace: bool,
+}
 
 #[derive(Serialize)]
 struct Times<'a> {
@@ -65,14 +67,25 @@ impl Folder {
     pub fn new(path: &Path, replace: bool) -> Result<Folder, OutputError> {
         let [svg, png] = PICTURES;
         refuse_occupied(path, &[PRECISION, PAGE, svg, png, TIMING], replace)?;
-        Ok(Folder(path.to_owned()))
+        Ok(Folder {
+            path: path.to_owned(),
+            replace,
+        })
     }
 
-    /// Writes all files, `precision.json` last, and returns the page.
+    /// Creates the folder, so that one that cannot be written is known before the runs.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn prepare(&self) -> Result<(), OutputError> {
+        prepare(&self.path)
+    }
+
+    /// Writes all files, `precision.json` last.
     ///
     /// # Errors
     /// When a file cannot be written.
-    pub fn write(&self, study: &Study, outcome: &Outcome) -> Result<String, OutputError> {
+    pub fn write(&self, study: &Study, outcome: &Outcome) -> Result<(), OutputError> {
         let machine = machine();
         let runs = outcome.runs.iter().map(|run| (&*run.curve, run.pace));
         let times = Times::new(&machine, runs, &outcome.timings);
@@ -84,7 +97,7 @@ impl Folder {
     ///
     /// # Errors
     /// When a file cannot be written.
-    pub fn write_survey(&self, study: &Study, survey: &Survey) -> Result<String, OutputError> {
+    pub fn write_survey(&self, study: &Study, survey: &Survey) -> Result<(), OutputError> {
         let machine = machine();
         let runs = survey.runs.iter().map(|run| (&*run.curve, run.pace));
         let times = Times::new(&machine, runs, &survey.timings);
@@ -98,13 +111,14 @@ impl Folder {
         page: String,
         figure: &plot::Figure,
         found: &impl Serialize,
-    ) -> Result<String, OutputError> {
-        let folder = &self.0;
-        fs::create_dir_all(folder).map_err(|e| naming(folder, e))?;
-        replace(folder, TIMING, &json(times)?)?;
-        replace(folder, PAGE, page.as_bytes())?;
-        plot::save(figure, folder, PICTURE).map_err(|e| io::Error::other(e.to_string()))?;
-        replace(folder, PRECISION, &json(found)?)?;
-        Ok(page)
+    ) -> Result<(), OutputError> {
+        let pictures = plot::render(figure).map_err(|e| io::Error::other(e.to_string()))?;
+        let mut files = vec![
+            (PRECISION, json(found)?),
+            (PAGE, page.into_bytes()),
+            (TIMING, json(times)?),
+        ];
+        files.extend(PICTURES.into_iter().zip(pictures));
+        write_result(&self.path, &files, self.replace)
     }
 }

@@ -1,6 +1,6 @@
 //! What a study file says.
 
-use crate::scene::{BodyKind, LinkModel, Scene, SceneError};
+use crate::scene::{BodyKind, LinkModel, Scene, SceneError, read_file};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -160,10 +160,21 @@ impl Study {
     /// # Errors
     /// A file that cannot be read, or a fault with its line.
     pub fn load(path: &Path) -> Result<Study, StudyError> {
+        let unreadable = |cause: &dyn fmt::Display| {
+            StudyError::plain(format!("cannot read `{}`: {cause}", path.display()))
+        };
+        let bytes = read_file(path).map_err(|e| unreadable(&e))?;
+        let text = String::from_utf8(bytes).map_err(|e| unreadable(&e))?;
+        Study::parse(path, &text)
+    }
+
+    /// Reads a study from text; `path` stands for the file in errors, and the scene is looked for beside it.
+    ///
+    /// # Errors
+    /// The first fault found, with its line.
+    pub fn parse(path: &Path, text: &str) -> Result<Study, StudyError> {
         let name = path.display();
-        let text = std::fs::read_to_string(path)
-            .map_err(|e| StudyError::plain(format!("cannot read `{name}`: {e}")))?;
-        let mut study: Study = toml::from_str(&text)
+        let mut study: Study = toml::from_str(text)
             .map_err(|e| StudyError::plain(format!("`{name}`: {}", e.to_string().trim_end())))?;
         let fault = |message: String| Err(StudyError::plain(format!("`{name}`: {message}")));
         for (key, value) in [("duration", study.duration), ("interval", study.interval)] {

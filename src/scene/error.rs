@@ -1,9 +1,13 @@
 //! Faults of a scene, each with the place it stands at.
 
-use miette::{Diagnostic, NamedSource, SourceSpan};
+use super::text::{Text, shortened};
+use miette::{Diagnostic, SourceSpan};
 use sha2::{Digest, Sha256};
 use std::ops::Range;
 use std::sync::Arc;
+
+/// Letters of a name that may be taken for another.
+const LONGEST: usize = 64;
 
 /// A piece of the scene text or of an override.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,16 +37,12 @@ impl Span {
 
 /// The texts a scene was read from: the file is number 0, override k is number k + 1.
 #[derive(Debug, Clone)]
-pub(super) struct Sources(Vec<Arc<NamedSource<String>>>);
+pub(super) struct Sources(Vec<Arc<Text>>);
 
 impl Sources {
     pub(super) fn new(name: &str, text: &str, overrides: &[String]) -> Sources {
-        let mut sources = vec![Arc::new(NamedSource::new(name, text.to_owned()))];
-        sources.extend(
-            overrides
-                .iter()
-                .map(|o| Arc::new(NamedSource::new("--set", o.clone()))),
-        );
+        let mut sources = vec![Arc::new(Text::new(name, text))];
+        sources.extend(overrides.iter().map(|o| Arc::new(Text::new("--set", o))));
         Sources(sources)
     }
 
@@ -53,7 +53,7 @@ impl Sources {
 
     /// The overrides in order.
     pub(super) fn overrides(&self) -> impl Iterator<Item = &str> {
-        self.0[1..].iter().map(|s| s.inner().as_str())
+        self.0[1..].iter().map(|s| s.inner())
     }
 
     /// The text that `span` covers.
@@ -90,7 +90,7 @@ pub struct SceneError {
     #[help]
     help: Option<String>,
     #[source_code]
-    text: Option<Arc<NamedSource<String>>>,
+    text: Option<Arc<Text>>,
     #[label("{label}")]
     span: Option<SourceSpan>,
 }
@@ -98,12 +98,18 @@ pub struct SceneError {
 impl SceneError {
     /// A fault at `span`.
     pub(super) fn new(sources: &Sources, span: Span, message: String, label: String) -> SceneError {
+        let written = sources.written(span);
+        let underlined = match shortened(written) {
+            // the first line of what is too long to be shown
+            short if short.len() < written.len() => short.lines().next().map_or(0, str::len),
+            whole => whole.len(),
+        };
         SceneError {
-            message,
-            label,
+            message: shown(message),
+            label: shown(label),
             help: None,
             text: sources.0.get(span.source as usize).cloned(),
-            span: Some((span.start as usize, span.len as usize).into()),
+            span: Some((span.start as usize, underlined).into()),
         }
     }
 
@@ -120,17 +126,15 @@ impl SceneError {
 
     /// The same fault with advice.
     pub fn with_help(mut self, help: impl Into<String>) -> SceneError {
-        self.help = Some(help.into());
+        self.help = Some(shown(help.into()));
         self
     }
 
     /// File, line and column (both from 1, columns in characters), if the fault stands in a text.
     pub fn place(&self) -> Option<(&str, usize, usize)> {
         let (text, span) = (self.text.as_ref()?, self.span?);
-        let before = text.inner().get(..span.offset())?;
-        let line_start = before.rfind('\n').map_or(0, |n| n + 1);
-        let line = before.matches('\n').count() + 1;
-        Some((text.name(), line, before[line_start..].chars().count() + 1))
+        let (line, column, _) = text.place(span.offset())?;
+        Some((text.name(), line + 1, column + 1))
     }
 
     /// The text that is underlined.
@@ -144,12 +148,26 @@ impl SceneError {
     }
 }
 
+/// A message that quotes something long without the rest of it.
+fn shown(message: String) -> String {
+    match shortened(&message) {
+        short if short.len() < message.len() => format!("{short} ..."),
+        _ => message,
+    }
+}
+
 /// The known name nearest to `name`, when it is near enough to be meant.
 pub(super) fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+    let letters = name.chars().count();
+    // Nobody mistypes a name as long as this, and the comparison of two takes the product of their lengths.
+    if letters > LONGEST {
+        return None;
+    }
     // A third of the letters may differ: `lenght` finds `length`, `mass` does not find `model`.
-    let limit = ((name.chars().count() + 1) / 3).max(1);
+    let limit = ((letters + 1) / 3).max(1);
     known
         .into_iter()
+        .filter(|k| k.chars().count() <= LONGEST)
         .map(|k| {
             (
                 strsim::damerau_levenshtein(&name.to_lowercase(), &k.to_lowercase()),

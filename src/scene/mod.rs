@@ -17,9 +17,11 @@ mod motion;
 mod names;
 mod overrides;
 mod reader;
+mod text;
 
 pub use crate::motion::Function;
 pub use error::{SceneError, Span};
+pub(crate) use reader::read_file;
 
 use error::Sources;
 use serde::Serialize;
@@ -190,14 +192,6 @@ impl Method {
     /// True of a scheme that solves no equations.
     pub fn is_explicit(&self) -> bool {
         matches!(self, Method::VelocityVerlet | Method::DormandPrince)
-    }
-
-    /// True of a scheme that estimates its error.
-    pub fn estimates_error(&self) -> bool {
-        matches!(
-            self,
-            Method::Bathe { .. } | Method::Trapezoidal | Method::DormandPrince
-        )
     }
 }
 

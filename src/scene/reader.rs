@@ -6,13 +6,26 @@ use super::field::Field;
 use super::fields::Fields;
 use super::{Analysis, JointModel, bodies, forces, integrator, joints, motion, overrides};
 use super::{Assumption, ChannelPattern, Integrator, Output, Scene, Simulation};
-use std::io::Read;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
-/// Larger files are refused: a table of 100 000 rows takes about 5 MB.
-const LARGEST_FILE: u64 = 64 << 20;
+/// Larger files are refused: a table of 100 000 rows takes about 5 MB, and the worst text of this size 2.3 GB of memory.
+const LARGEST_FILE: u64 = 8 << 20;
 /// Relative error allowed in `interval / step`: decimal fractions are not exact in binary.
 const WHOLE: f64 = 1e-9;
+
+/// The bytes of a scene or a study; whatever the file is, their number is bounded.
+pub(crate) fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?
+        .take(LARGEST_FILE + 1)
+        .read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        return Err(io::Error::other("it is larger than 8 MiB"));
+    }
+    Ok(bytes)
+}
 
 pub(super) fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
     let name = path.display().to_string();
@@ -22,13 +35,7 @@ pub(super) fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneErro
         let help = "give the path of a scene file such as scenes/3rrr/case4.toml";
         return Err(unreadable("it is a directory".into()).with_help(help));
     }
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)
-        .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
-        .map_err(|e| unreadable(e.to_string()))?;
-    if bytes.len() as u64 > LARGEST_FILE {
-        return Err(unreadable("it is larger than 64 MiB, not a scene".into()));
-    }
+    let bytes = read_file(path).map_err(|e| unreadable(e.to_string()))?;
     match String::from_utf8(bytes) {
         Ok(text) => parse(&name, &text, overrides),
         Err(error) => {
