@@ -21,5 +21,6 @@ mod overrides;
 mod precision;
 mod published;
 mod rrr;
+mod stability;
 mod support;
 mod system;

@@ -1,0 +1,200 @@
+//! Contacts and friction at their limits.
+
+use super::{Check, apart, column, largest, order, run, try_run};
+
+const JOURNAL: &str = "bouncing-journal.toml";
+const GRAZING: &str = "hard/grazing.toml";
+const SLIDING: &str = "hard/stick-slip.toml";
+
+pub(super) fn restitution() -> Vec<Check> {
+    let mut worst = [0.0_f64; 2];
+    for restitution in [1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0] {
+        let restitution = format!("contacts.aluminium.restitution={restitution}");
+        let flores = "contacts.aluminium.law=flores";
+        let settings = [
+            flores,
+            restitution.as_str(),
+            "output.interval=2e-4",
+            "integrator.step=4e-7",
+        ];
+        let (_, report) = run(JOURNAL, &settings);
+        let integration = report.integration.as_ref().expect("a dynamic run");
+        worst[0] = worst[0].max(largest(integration.lost) / integration.turnover);
+    }
+    for stiffness in [1e8, 1e10, 1e12, 1e14, 1e16, 1e17] {
+        let contact = format!(
+            "contacts.aluminium={{ law = \"lankarani_nikravesh\", bearing_radius = 0.010, clearance = 2e-5, stiffness = \
+             {stiffness:e}, exponent = 1.5, restitution = 0.9, impact_velocity_floor = 1e-6 }}"
+        );
+        // a step of 1/60 of the first contact, which lasts as K^-0.4
+        let step = 2e-4 / (2e-4 / (8e-7 * (1.1e11_f64 / stiffness).powf(0.4))).ceil();
+        let step = format!("integrator.step={step:e}");
+        let (_, report) = run(JOURNAL, &[&contact, &step, "output.interval=2e-4"]);
+        let integration = report.integration.as_ref().expect("a dynamic run");
+        worst[1] = worst[1].max(largest(integration.lost) / integration.turnover);
+    }
+    vec![
+        Check::below(
+            "Restitution 1e-3 to 1, step 0.4 us: energy lost or gained by the integrator, relative",
+            worst[0],
+            0.02,
+        ),
+        Check::below(
+            "Contact stiffness 1e8 to 1e17 N/m^1.5, step 1/60 of a contact: energy lost or gained, relative",
+            worst[1],
+            0.02,
+        ),
+    ]
+}
+
+pub(super) fn onsets() -> Vec<Check> {
+    let floor = "contacts.steel.impact_velocity_floor=1e-12";
+    let mut deepest = 0.0_f64;
+    for velocity in ["1e-12", "1e-9", "1e-6"] {
+        let start = format!(
+            "initial.bodies.journal={{ x = 0.0, y = -2e-5, theta = 0.0, vx = 0.0, vy = -{velocity}, omega = 0.0 }}"
+        );
+        let (recording, _) = run(
+            GRAZING,
+            &[
+                floor,
+                &start,
+                "simulation.duration=0.05",
+                "output.interval=1e-3",
+            ],
+        );
+        deepest = deepest.max(largest(column(&recording, "pin.penetration").to_vec()));
+    }
+    let weight = (0.05_f64 * 9.81 / 1.7e11).powf(2.0 / 3.0);
+    let (_, hammering) = run("hard/chatter.toml", &["integrator.step=1e-4"]);
+    // all legs alike: the three joints at the cranks close together, and so do those at the platform
+    let turning = [
+        "drives.input.path={ type = \"coordinates\", x = 0.0, y = 0.0, theta = { type = \"harmonic\", mean = 0.0, amplitude = 0.3, frequency = 1.0, phase = 0.0 } }",
+        "initial.sketch={ B1 = [-0.3177, 0.0433], B2 = [0.1213, -0.2968], B3 = [0.1963, 0.2535] }",
+        "simulation.duration=0.05",
+        "output.interval=1e-3",
+    ];
+    let (together, report) = run("3rrr/case3.toml", &turning);
+    let onsets = &together.onsets;
+    let groups = onsets.chunks(3).take(4).map(|group| {
+        let times = group.iter().map(|o| o.t);
+        let (first, last) = times.fold((f64::MAX, 0.0_f64), |(a, b), t| (a.min(t), b.max(t)));
+        last - first
+    });
+    let spread = largest(groups.collect::<Vec<f64>>());
+    let off = ["platform.x", "platform.y"].map(|name| largest(column(&together, name).to_vec()));
+    vec![
+        Check::new(
+            "Onset at 1e-12 to 1e-6 m/s, then rest: deepest penetration after 50 ms over that under the weight",
+            deepest / weight,
+            0.5..=1.5,
+        ),
+        Check::new(
+            "A hammering bearing under steps longer than its contacts: stretches of chatter found, with joint and time",
+            hammering.chatter.len() as f64,
+            1.0..=f64::MAX,
+        ),
+        Check::below(
+            "Steps of that run over those asked for: not ground through",
+            hammering.steps as f64 / 500.0,
+            4.0,
+        ),
+        Check::below(
+            "3-RRR turned about its centre, three joints closing at once: spread of the first onsets of a group [s]",
+            spread,
+            1e-9,
+        ),
+        Check::below(
+            "The same: the platform stays in the centre for 50 ms [m]",
+            largest(off),
+            1e-9,
+        ),
+        Check::new("Onsets of that run", report.onsets as f64, 6.0..=f64::MAX),
+    ]
+}
+
+pub(super) fn stick_slip() -> Vec<Check> {
+    let law = |v1: &str, coefficient: f64| {
+        format!(
+            "contacts.dry.friction={{ law = \"ambrosio\", coefficient = {coefficient}, v0 = 0.0, v1 = {v1}, slip = \"material\" }}"
+        )
+    };
+    let channels = "output.channels=[\"arm.*\", \"energy.*\"]";
+    let settings = ["simulation.duration=0.2", "output.interval=1e-2", channels];
+    let run = |v1: &str| run(SLIDING, &[&settings[..], &[&law(v1, 0.5)]].concat()).0;
+    let sharp = run("1e-5");
+    let error = |v1: &str| {
+        (
+            v1.parse().expect("a number"),
+            apart(&run(v1), &sharp, "arm.y"),
+        )
+    };
+    let order = order(error("1e-2"), error("1e-3"));
+    let mut dissipated = f64::MAX;
+    for coefficient in [0.1, 0.5, 1.0, 2.0] {
+        let (recording, _) = super::run(
+            SLIDING,
+            &[&settings[..], &[&law("1e-4", coefficient)]].concat(),
+        );
+        let losses = column(&recording, "energy.friction_dissipated");
+        let least = losses
+            .windows(2)
+            .map(|w| w[1] - w[0])
+            .fold(f64::MAX, f64::min);
+        dissipated = dissipated.min(least);
+    }
+    let sharpest = try_run(SLIDING, &[&settings[..], &[&law("1e-9", 0.5)]].concat());
+    let named = match &sharpest {
+        Ok((_, report)) => !report.warnings().is_empty(),
+        Err(stopped) => stopped.to_string().contains("journal"),
+    };
+    vec![
+        Check::new(
+            "Order of the arm's way in the width of the friction ramp, 1e-2 to 1e-3 m/s",
+            order,
+            0.5..=2.0,
+        ),
+        Check::new(
+            "Coefficients 0.1 to 2: least energy lost to friction in 10 ms, never negative [J]",
+            dissipated,
+            -1e-12..=f64::MAX,
+        ),
+        Check::yes(
+            "A ramp of 1e-9 m/s is passed with a warning or refused with the joint's body named",
+            named,
+        ),
+    ]
+}
+
+pub(super) fn speed() -> Vec<Check> {
+    let mut worst = [0.0_f64; 2];
+    for rpm in [5e3, 1e4, 2e4, 5e4] {
+        let speed = rpm * std::f64::consts::PI / 30.0;
+        let drive = format!(
+            "drives.motor.angle={{ type = \"polynomial\", coefficients = [0.0, {speed}] }}"
+        );
+        let settings = [
+            drive.as_str(),
+            "simulation.duration=1.2e-3",
+            "output.interval=1e-4",
+        ];
+        let run = |step: &str| run("slider-crank/both.toml", &[&settings[..], &[step]].concat());
+        let (recording, report) = run("integrator.step=2e-7");
+        let (fine, _) = run("integrator.step=5e-8");
+        let integration = report.integration.as_ref().expect("a dynamic run");
+        worst[0] = worst[0].max(apart(&recording, &fine, "slider.x"));
+        worst[1] = worst[1].max(largest(integration.lost) / integration.turnover);
+    }
+    vec![
+        Check::below(
+            "5,000 to 50,000 rpm, step 0.2 us: distance from a quarter of the step after 1.2 ms [m]",
+            worst[0],
+            5e-6, // a hundredth of the clearance
+        ),
+        Check::below(
+            "Energy lost or gained by the integrator, relative",
+            worst[1],
+            0.01,
+        ),
+    ]
+}

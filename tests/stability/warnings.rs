@@ -1,0 +1,180 @@
+//! What a report warns of, and what stops a run.
+
+use crate::support::{load, run};
+use ladder::{Rung, Worst};
+use looselink::simulate::{Integration, Recording, Report, RunError, Simulation};
+
+/// The report of a run, however it ends.
+fn end(scene: &str, overrides: &[&str]) -> (Result<(), RunError>, Report) {
+    let mut simulation = Simulation::new(&load(scene, overrides)).unwrap_or_else(|e| panic!("{e}"));
+    let ended = simulation.run(&mut ());
+    (ended, simulation.report())
+}
+
+fn warned(report: &Report, words: &str) -> bool {
+    report
+        .warnings()
+        .iter()
+        .any(|warning| warning.contains(words))
+}
+
+#[test]
+fn a_run_that_can_be_trusted_has_no_warnings() {
+    for scene in ["pendulum.toml", "soft-pendulum.toml", "quick-return.toml"] {
+        let (_, report) = run(scene, &["simulation.duration=0.5", "output.interval=0.01"]);
+        assert_eq!(report.warnings(), Vec::<String>::new(), "{scene}");
+    }
+}
+
+/// The truss rings at 1.8e4 rad/s; the trapezoidal rule with 1/50 of a turn a step makes that grow.
+#[test]
+fn an_unstable_method_is_stopped_by_name() {
+    let (ended, report) = end("hard/stiff-truss.toml", &["integrator.method=trapezoidal"]);
+    let Err(RunError::Unstable {
+        name,
+        t,
+        gained,
+        supplied,
+    }) = &ended
+    else {
+        panic!("{ended:?}");
+    };
+    assert!(name.starts_with("bob.center"), "{name}");
+    assert!(*t > 0.0 && *t < 100.0 && *gained > 10.0 * supplied);
+    assert!(report.error.is_some_and(|e| e.contains("unstable")));
+}
+
+/// Steps that are halved on and on end in an error, not in a wait.
+#[test]
+fn a_run_that_comes_to_a_halt_says_where() {
+    let (ended, report) = end(
+        "hard/stick-slip.toml",
+        &[
+            "contacts.dry.friction={ law = \"ambrosio\", coefficient = 0.5, v0 = 0.0, v1 = 1e-7, slip = \"material\" }",
+            "integrator.step=2e-4",
+        ],
+    );
+    let Err(RunError::Stalled { t, cause, steps }) = &ended else {
+        panic!("{ended:?}");
+    };
+    assert!(*t < 0.1 && *steps < 20_000, "{t} {steps}");
+    assert!(
+        cause.contains("journal.theta") && cause.contains("had no solution"),
+        "{cause}"
+    );
+    assert!(report.rejected_steps > 1000 && !report.rejected_by.is_empty());
+}
+
+/// The second mass follows the first; the trapezoidal rule leaves vibrations in its acceleration.
+#[test]
+fn unresolved_accelerations_are_told() {
+    let start = "initial.bodies.node2={ x = 0.0, y = 0.0, vx = 1.2, vy = 0.0 }";
+    let words = "vibration faster than the steps";
+    let (_, rings) = run(
+        "three-spring.toml",
+        &[start, "integrator.method=trapezoidal"],
+    );
+    assert!(warned(&rings, words), "{:?}", rings.warnings());
+    let (_, damped) = run("three-spring.toml", &[start]);
+    assert!(!warned(&damped, words), "{:?}", damped.warnings());
+}
+
+#[test]
+fn lost_energy_is_told() {
+    let (_, report) = run(
+        "hard/stiff-truss.toml",
+        &["integrator.method=backward_euler"],
+    );
+    assert!(
+        warned(&report, "the integrator lost"),
+        "{:?}",
+        report.warnings()
+    );
+}
+
+#[test]
+fn chatter_is_named_and_brief_contacts_are_counted() {
+    let (recording, report) = run("hard/chatter.toml", &["integrator.step=1e-4"]);
+    assert!(
+        warned(&report, "pin chatters from"),
+        "{:?}",
+        report.warnings()
+    );
+    assert!(warned(&report, "contacts lasted fewer than four steps"));
+    let chatter = &report.chatter[0];
+    let within = |t: f64| t >= chatter.from && t <= chatter.to;
+    let onsets = recording.onsets.iter().filter(|o| within(o.t)).count() as u64;
+    assert_eq!(chatter.onsets, onsets);
+    let (_, resolved) = run("hard/chatter.toml", &[]);
+    assert!(resolved.chatter.is_empty() && resolved.brief_contacts == 0);
+}
+
+/// The estimated error of a run against the true one: of the size of it, rather too large than too small.
+#[test]
+fn errors_are_estimated() {
+    let cases = [
+        (
+            "pendulum.toml",
+            ["points.rod.bob.x", "points.rod.bob.y"],
+            "2.0",
+            2e-2,
+            1e-3,
+        ),
+        (
+            "soft-pendulum.toml",
+            ["points.rod.end.x", "points.rod.end.y"],
+            "0.5",
+            2.5e-3,
+            1e-4,
+        ),
+        (
+            "n-four-bar.toml",
+            ["points.crank0.end.x", "points.crank0.end.y"],
+            "1.0",
+            2e-2,
+            2e-3,
+        ),
+    ];
+    let methods = [
+        "integrator.method=bathe",
+        "integrator.method=trapezoidal",
+        "integrator={ method = \"generalized_alpha\", spectral_radius = 0.8, newton_tolerance = 1e-10 }",
+        "integrator={ method = \"hht\", spectral_radius = 0.8, newton_tolerance = 1e-10 }",
+        "integrator.method=backward_euler",
+    ];
+    let worst = Worst::new();
+    for (scene, channels, duration, coarse, fine) in cases {
+        let made = |method: &str, step: f64| -> (Recording, Integration) {
+            let duration = format!("simulation.duration={duration}");
+            let step = format!("integrator.step={step}");
+            let settings = [method, &duration, &step, "output.interval=0.1"];
+            let mut simulation = Simulation::new(&load(scene, &settings)).unwrap();
+            let mut recording = Recording::new(&simulation);
+            simulation
+                .run(&mut recording)
+                .unwrap_or_else(|e| panic!("{scene} {method}: {e}"));
+            (recording, simulation.report().integration.unwrap())
+        };
+        let (exact, _) = made(methods[1], 0.1 * fine);
+        for method in methods {
+            for step in [coarse, fine] {
+                let (recording, integration) = made(method, step);
+                let mut error = 0.0_f64;
+                for name in channels {
+                    let pairs = exact
+                        .get(name)
+                        .unwrap()
+                        .iter()
+                        .zip(recording.get(name).unwrap());
+                    error = pairs.fold(error, |m, (a, b)| (a - b).abs().max(m));
+                }
+                let ratio = integration.estimated_error / error;
+                worst.at(format!("{scene} with {method} and {step} s"));
+                worst.see(ratio.max(1.0 / ratio));
+            }
+        }
+    }
+    Rung::HardCases
+        .asks("Estimated error of a run with equal steps, five methods, three scenes: over the true error, or the other way round")
+        .within(&worst, 5.0, "it is a sum of local errors, which the motion may amplify or take back");
+}
