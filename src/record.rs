@@ -41,6 +41,13 @@ pub struct Ledger {
     pub numerical: f64,
 }
 
+impl Ledger {
+    /// Energy dissipated in contacts, by friction and by damping \[J\].
+    pub fn dissipated(&self) -> f64 {
+        self.contact_dissipated + self.friction_dissipated + self.damping_dissipated
+    }
+}
+
 impl Recorder {
     /// The channels that the scene asks for, time first, each once, in the order of the scene.
     ///
@@ -100,7 +107,6 @@ impl Recorder {
             damping_dissipated,
             clamp,
         ] = at.integrals;
-        let gone = contact_dissipated + friction_dissipated + damping_dissipated;
         Ledger {
             initial: self.initial_energy,
             kinetic: e.kinetic,
@@ -114,7 +120,7 @@ impl Recorder {
             friction_dissipated,
             damping_dissipated,
             clamp,
-            numerical: self.initial_energy + work - gone - e.total(),
+            numerical: self.initial_energy + work - at.dissipated() - e.total(),
         }
     }
 

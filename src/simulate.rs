@@ -496,12 +496,8 @@ impl Simulation {
 
     /// A row that cannot be shown, by the coordinate that is fastest.
     fn overflown(&self, channel: &str) -> RunError {
-        let speeds = self.state.v[..self.model.shape().unknowns].iter();
-        let fastest = speeds
-            .enumerate()
-            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         RunError::Physics {
-            name: fastest.map_or_else(|| channel.to_owned(), |(i, _)| self.model.unknown_name(i)),
+            name: self.meter.fastest(&self.model, &self.state).to_owned(),
             cause: format!("{channel} is not finite, the motion grows beyond all bounds"),
             t: self.state.t,
             step: self.state.t - self.trial.t,

@@ -88,6 +88,14 @@ impl State {
         }
     }
 
+    /// Energy dissipated since the start: in contacts, by friction, by damping \[J\].
+    pub fn dissipated(&self) -> f64 {
+        let of = |integral: Integral| self.integrals[integral as usize];
+        of(Integral::ContactDissipated)
+            + of(Integral::FrictionDissipated)
+            + of(Integral::DampingDissipated)
+    }
+
     /// Copies everything from `other` without allocating.
     pub fn copy_from(&mut self, other: &State) {
         self.t = other.t;

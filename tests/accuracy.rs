@@ -35,6 +35,21 @@ fn runs(scene: &str, settings: &[String]) -> Recording {
     run(&format!("{scene}.toml"), &settings).0
 }
 
+/// Errors of all rows of some channels, over the accuracy asked for.
+fn see_errors(
+    worst: &Worst,
+    found: &Recording,
+    exact: &Recording,
+    channels: &[&str],
+    accuracy: f64,
+) {
+    for channel in channels {
+        for (a, b) in found.get(channel).iter().zip(&exact.get(channel)) {
+            worst.see((a - b) / accuracy);
+        }
+    }
+}
+
 #[test]
 fn the_accuracy_asked_for_is_achieved() {
     let worst = Worst::new();
@@ -55,11 +70,7 @@ fn the_accuracy_asked_for_is_achieved() {
                 let pace = format!("accuracy={{ position = {accuracy:e}, horizon = {duration} }}");
                 let found = runs(scene, &settings(duration, interval, method, &pace));
                 worst.at(format!("in {scene} with {method} and {accuracy:e} m"));
-                for channel in channels {
-                    for (a, b) in found.get(channel).iter().zip(&exact.get(channel)) {
-                        worst.see((a - b) / accuracy);
-                    }
-                }
+                see_errors(&worst, &found, &exact, channels, *accuracy);
             }
         }
     }
@@ -330,11 +341,7 @@ fn every_method_follows_an_accuracy() {
     ] {
         let found = with(method, &format!("accuracy={{ position = {accuracy:e} }}"));
         worst.at(format!("with {method}"));
-        for channel in channels {
-            for (a, b) in found.get(channel).iter().zip(&exact.get(channel)) {
-                worst.see((a - b) / accuracy);
-            }
-        }
+        see_errors(&worst, &found, &exact, &channels, accuracy);
     }
     Rung::OrderInTime
         .asks("Accuracies asked of generalised-alpha, HHT, velocity Verlet and backward Euler: error over what was asked for")

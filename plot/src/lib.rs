@@ -60,6 +60,18 @@ pub struct Figure {
     pub caption: String,
 }
 
+impl Figure {
+    /// Panels one after the other, so many beside each other.
+    pub fn grid(panels: Vec<Panel>, columns: usize, caption: String) -> Figure {
+        let (mut rows, mut left) = (Vec::new(), panels);
+        while !left.is_empty() {
+            let rest = left.split_off(left.len().min(columns));
+            rows.push(std::mem::replace(&mut left, rest));
+        }
+        Figure { rows, caption }
+    }
+}
+
 /// One pair of axes.
 pub struct Panel {
     /// Title above the frame, such as `a) Case 2`.

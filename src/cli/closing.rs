@@ -47,14 +47,11 @@ fn accuracy(control: &AccuracyReport) -> String {
 
 /// What the integrator did to the energy.
 fn energy(ledger: &Ledger) -> String {
-    let dissipated =
-        ledger.contact_dissipated + ledger.friction_dissipated + ledger.damping_dissipated;
-    let verb = if ledger.numerical < 0.0 {
-        "gained"
-    } else {
-        "lost"
+    let (dissipated, numerical) = (ledger.dissipated(), ledger.numerical.abs());
+    let verb = match ledger.numerical < 0.0 {
+        true => "gained",
+        false => "lost",
     };
-    let numerical = ledger.numerical.abs();
     if dissipated <= 0.0 {
         return format!("energy: {numerical:.1e} J {verb} by the integrator");
     }

@@ -39,6 +39,14 @@ impl Energies {
     pub fn total(&self) -> f64 {
         self.kinetic + self.axial + self.bending + self.contact + self.gravity + self.springs
     }
+
+    /// Stored energies and what has been dissipated less the work done \[J\]: constant, but for the error of the integration;
+    /// and the sum of their magnitudes, to which its rounding is relative. `at` is the state of these energies.
+    pub fn balance(&self, at: &State) -> (f64, f64) {
+        let (stored, gone) = (self.total(), at.dissipated());
+        let work = at.integrals[Integral::Work as usize];
+        (stored + gone - work, stored.abs() + gone.abs() + work.abs())
+    }
 }
 
 /// Two entries of an array.
@@ -183,17 +191,6 @@ impl Model {
             energies.gravity += weight * at.q[i];
         }
         energies
-    }
-
-    /// Stored energies and what has been dissipated less the work done \[J\]: constant, but for the error of the integration;
-    /// and the sum of their magnitudes, to which its rounding is relative.
-    pub fn balance(&self, at: &State) -> (f64, f64) {
-        let of = |integral: Integral| at.integrals[integral as usize];
-        let gone = of(Integral::ContactDissipated)
-            + of(Integral::FrictionDissipated)
-            + of(Integral::DampingDissipated);
-        let (stored, work) = (self.energies(at).total(), of(Integral::Work));
-        (stored + gone - work, stored.abs() + gone.abs() + work.abs())
     }
 
     /// Force of the bearing side on the journal side of joint `index` \[N\].

@@ -57,11 +57,6 @@ pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
     panels.push(against_pace(outcome, false));
     panels.push(against_pace(outcome, true));
     panels.retain(|panel| !panel.marks.is_empty());
-    let mut rows = Vec::new();
-    while !panels.is_empty() {
-        let rest = panels.split_off(panels.len().min(2));
-        rows.push(std::mem::replace(&mut panels, rest));
-    }
     let failed: Vec<String> = outcome
         .runs
         .iter()
@@ -85,18 +80,16 @@ pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
         .file_stem()
         .unwrap_or_default()
         .to_string_lossy();
-    Figure {
-        rows,
-        caption: format!(
-            "{}. Scene {}, the first {}; errors are the largest over rows every {}. Reference: {}, {coarse} and {fine}; dashed: \
+    let caption = format!(
+        "{}. Scene {}, the first {}; errors are the largest over rows every {}. Reference: {}, {coarse} and {fine}; dashed: \
              the difference between the two, below which errors are not told apart.{kept} {failures}",
-            outcome.title,
-            with(&scene, &study.set, None),
-            plot::si(study.duration, "s"),
-            plot::si(study.interval, "s"),
-            with("", &study.reference.set, study.reference.elements),
-        ),
-    }
+        outcome.title,
+        with(&scene, &study.set, None),
+        plot::si(study.duration, "s"),
+        plot::si(study.interval, "s"),
+        with("", &study.reference.set, study.reference.elements),
+    );
+    Figure::grid(panels, 2, caption)
 }
 
 /// A name, what is changed in it and how many elements its flexible links have.

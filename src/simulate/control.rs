@@ -198,7 +198,7 @@ impl Controller {
         };
         let of_position = largest.0 * sum / position;
         if let Some(energy) = energy {
-            let [(before, _), (after, size)] = [from, to].map(|s| model.balance(s));
+            let [(before, _), (after, size)] = [from, to].map(|s| model.energies(s).balance(s));
             let change = ((after - before).abs() - BALANCE_ROUNDING * size).max(0.0);
             let share = ((to.t - from.t) / horizon).max(LEAST_SHARE);
             let of_energy = change / (share * energy);

@@ -172,6 +172,16 @@ pub fn lengths(scene: &Scene, model: &Model) -> Vec<f64> {
     lengths
 }
 
+/// The largest of some values, with its index.
+fn largest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
+    values.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The name of the unknown that has the largest value; empty without unknowns.
+fn name(model: &Model, largest: Option<(usize, f64)>) -> &str {
+    largest.map_or("", |(i, _)| &model.unknown_names()[i])
+}
+
 impl Meter {
     pub fn new(scene: &Scene, model: &Model) -> Meter {
         let unknowns = model.shape().unknowns;
@@ -218,7 +228,8 @@ impl Meter {
         for (range, (q, v)) in self.ranges.iter_mut().zip(at.q.iter().zip(&at.v)) {
             range.see(*q, *v);
         }
-        let ((balance, size), energies) = (model.balance(at), model.energies(at));
+        let energies = model.energies(at);
+        let (balance, size) = energies.balance(at);
         let turnover = energies.total() - energies.gravity;
         let initial = *self.initial.get_or_insert(Initial {
             balance,
@@ -228,11 +239,8 @@ impl Meter {
         let lost = initial.balance - balance;
         self.lost = [self.lost[0].min(lost), self.lost[1].max(lost)];
         self.turnover = self.turnover.max(turnover);
-        let of = |integral: Integral| at.integrals[integral as usize];
-        self.dissipated = of(Integral::ContactDissipated)
-            + of(Integral::FrictionDissipated)
-            + of(Integral::DampingDissipated);
-        let work = of(Integral::Work).abs();
+        self.dissipated = at.dissipated();
+        let work = at.integrals[Integral::Work as usize].abs();
         let weight = (energies.gravity - initial.gravity).abs();
         self.supplied = self.supplied.max(initial.turnover + work + weight);
         let supplied = self.supplied;
@@ -248,8 +256,7 @@ impl Meter {
     /// The unknown with the largest velocity.
     pub fn fastest<'a>(&self, model: &'a Model, at: &State) -> &'a str {
         let speeds = at.v.iter().zip(&self.lengths).map(|(v, l)| l * v.abs());
-        let fastest = speeds.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        fastest.map_or("", |(i, _)| &model.unknown_names()[i])
+        name(model, largest(speeds))
     }
 
     /// The unknown with the largest error of the last step.
@@ -260,8 +267,7 @@ impl Meter {
             .iter()
             .zip(&self.lengths)
             .map(|(e, l)| l * e.abs());
-        let worst = errors.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        worst.map_or("", |(i, _)| &model.unknown_names()[i])
+        name(model, largest(errors))
     }
 
     /// What has been measured so far.
@@ -270,7 +276,7 @@ impl Meter {
         let errors = parts.clone().map(|((sums, range), length)| {
             length * (sums.position + range.crossing(self.elapsed) * sums.peak)
         });
-        let worst = errors.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        let worst = largest(errors);
         let travels = parts
             .clone()
             .map(|((_, range), length)| length * range.width());
@@ -278,24 +284,21 @@ impl Meter {
         let sizes = parts
             .clone()
             .map(|((sums, _), length)| length * sums.acceleration.sqrt());
-        let largest = sizes.fold(0.0, f64::max);
+        let size = sizes.fold(0.0, f64::max);
         let changes = parts.map(|((sums, _), length)| {
-            let carries = length * sums.acceleration.sqrt() >= LEAST_SHARE * largest;
+            let carries = length * sums.acceleration.sqrt() >= LEAST_SHARE * size;
             let moves = length * sums.shaking.sqrt() > SHAKEN * travel;
             match carries && moves {
                 true => (sums.change / sums.acceleration).sqrt(),
                 false => 0.0,
             }
         });
-        let roughest = changes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        let name = |of: Option<(usize, f64)>| {
-            of.map_or(String::new(), |(i, _)| model.unknown_names()[i].clone())
-        };
+        let roughest = largest(changes);
         Integration {
             estimated_error: worst.map_or(0.0, |w| w.1),
-            estimated_error_of: name(worst),
+            estimated_error_of: name(model, worst).to_owned(),
             acceleration_change: roughest.map_or(0.0, |r| r.1),
-            acceleration_change_of: name(roughest),
+            acceleration_change_of: name(model, roughest).to_owned(),
             travel,
             lost: self.lost,
             turnover: self.turnover + self.dissipated.max(0.0),

@@ -77,24 +77,26 @@ impl Report {
     fn energy_warning(&self) -> Option<String> {
         let ledger = self.ledger.as_ref()?;
         let integration = self.integration.as_ref()?;
-        let dissipated =
-            ledger.contact_dissipated + ledger.friction_dissipated + ledger.damping_dissipated;
-        let [least, greatest] = integration.lost;
-        let (verb, changed) = match -least > greatest {
-            true => ("gained", -least),
-            false => ("lost", greatest),
+        let verb = |lost: f64| match lost < 0.0 {
+            true => "gained",
+            false => "lost",
         };
+        let [least, greatest] = integration.lost;
+        let most = if -least > greatest { least } else { greatest };
+        let changed = most.abs();
         if changed > OF_TURNOVER * integration.turnover {
             return Some(format!(
-                "the integrator {verb} {changed:.1e} J, {}",
+                "the integrator {} {changed:.1e} J, {}",
+                verb(most),
                 share(changed / integration.turnover, "the energy in play")
             ));
         }
-        (dissipated > 0.0 && ledger.numerical.abs() > OF_DISSIPATED * dissipated).then(|| {
+        let (dissipated, numerical) = (ledger.dissipated(), ledger.numerical.abs());
+        (dissipated > 0.0 && numerical > OF_DISSIPATED * dissipated).then(|| {
             format!(
-                "the integrator {verb} {:.1e} J, {}: a smaller integrator.step would make its part small",
-                ledger.numerical.abs(),
-                share(ledger.numerical.abs() / dissipated, "what was dissipated")
+                "the integrator {} {numerical:.1e} J, {}: a smaller integrator.step would make its part small",
+                verb(ledger.numerical),
+                share(numerical / dissipated, "what was dissipated")
             )
         })
     }

@@ -10,7 +10,7 @@ use std::io;
 
 /// A run may take this many times the steps that its duration and step ask for.
 const PATIENCE: f64 = 100.0;
-/// Energy lost by the integrator beyond this part of the largest kinetic and elastic energy has a name ...
+/// Energy lost by the integrator beyond this part of the energy in play has a name ...
 const NOTABLE: f64 = 0.01;
 /// ... and energy gained beyond this part: then the motion lives on it.
 const FAILED: f64 = 0.5;
@@ -154,7 +154,7 @@ pub fn judge_stop(stopped: &Stopped) -> Outcome {
     }
 }
 
-/// Energy gained and lost by the integrator over the largest kinetic and elastic energy.
+/// Energy gained and lost by the integrator over the energy in play.
 fn changes(report: &Report) -> [f64; 2] {
     let Some(integration) = &report.integration else {
         return [0.0; 2];

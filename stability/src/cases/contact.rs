@@ -1,6 +1,6 @@
 //! Contacts and friction at their limits.
 
-use super::{Check, apart, column, largest, order, run, try_run};
+use super::{Check, apart, column, imbalance, largest, order, run, try_run};
 
 const JOURNAL: &str = "bouncing-journal.toml";
 const GRAZING: &str = "hard/grazing.toml";
@@ -18,8 +18,7 @@ pub(super) fn restitution() -> Vec<Check> {
             "integrator.step=4e-7",
         ];
         let (_, report) = run(JOURNAL, &settings);
-        let integration = report.integration.as_ref().expect("a dynamic run");
-        worst[0] = worst[0].max(largest(integration.lost) / integration.turnover);
+        worst[0] = worst[0].max(imbalance(&report));
     }
     for stiffness in [1e8, 1e10, 1e12, 1e14, 1e16, 1e17] {
         let contact = format!(
@@ -30,8 +29,7 @@ pub(super) fn restitution() -> Vec<Check> {
         let step = 2e-4 / (2e-4 / (8e-7 * (1.1e11_f64 / stiffness).powf(0.4))).ceil();
         let step = format!("integrator.step={step:e}");
         let (_, report) = run(JOURNAL, &[&contact, &step, "output.interval=2e-4"]);
-        let integration = report.integration.as_ref().expect("a dynamic run");
-        worst[1] = worst[1].max(largest(integration.lost) / integration.turnover);
+        worst[1] = worst[1].max(imbalance(&report));
     }
     vec![
         Check::below(
@@ -181,9 +179,8 @@ pub(super) fn speed() -> Vec<Check> {
         let run = |step: &str| run("slider-crank/both.toml", &[&settings[..], &[step]].concat());
         let (recording, report) = run("integrator.step=2e-7");
         let (fine, _) = run("integrator.step=5e-8");
-        let integration = report.integration.as_ref().expect("a dynamic run");
         worst[0] = worst[0].max(apart(&recording, &fine, "slider.x"));
-        worst[1] = worst[1].max(largest(integration.lost) / integration.turnover);
+        worst[1] = worst[1].max(imbalance(&report));
     }
     vec![
         Check::below(

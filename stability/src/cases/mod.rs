@@ -171,10 +171,20 @@ fn apart(a: &Recording, b: &Recording, name: &str) -> f64 {
     largest(pairs.map(|(a, b)| a - b))
 }
 
-/// Energy gained by the integrator over the largest kinetic and elastic energy; negative while it has only lost some.
-fn gain(report: &Report) -> f64 {
+/// Least and greatest energy lost by the integrator over the energy in play; a negative loss is a gain.
+fn lost(report: &Report) -> [f64; 2] {
     let integration = report.integration.as_ref().expect("a dynamic run");
-    -integration.lost[0] / integration.turnover
+    integration.lost.map(|lost| lost / integration.turnover)
+}
+
+/// Energy gained by the integrator over the energy in play.
+fn gain(report: &Report) -> f64 {
+    -lost(report)[0]
+}
+
+/// Energy lost or gained by the integrator over the energy in play, whichever is more.
+fn imbalance(report: &Report) -> f64 {
+    largest(lost(report))
 }
 
 /// Order of y in x between two points.

@@ -1,6 +1,7 @@
 //! The scenes of the project with steps far too long.
 
 use super::{Check, largest};
+use crate::map::difference;
 use crate::outcome::{Outcome, Stopped, judge, judge_stop, record};
 use looselink::scene::{Analysis, Scene};
 use looselink::simulate::Recording;
@@ -61,16 +62,13 @@ pub(super) fn long_steps() -> Vec<Check> {
             };
             let outcome = match rows(path, long, long) {
                 Ok(Ok((recording, report))) => {
-                    let columns = exact
-                        .names()
-                        .iter()
-                        .skip(1)
-                        .filter_map(|name| Some((exact.get(name)?, recording.get(name)?)));
-                    let (mut error, mut range) = (0.0_f64, 0.0_f64);
-                    for (a, b) in columns {
-                        error = error.max(largest(a.iter().zip(b).map(|(a, b)| a - b)));
-                        range = range.max(largest(a.iter().map(|x| x - a[0])));
-                    }
+                    let error = difference(&exact, &recording);
+                    let columns = exact.names().iter().skip(1);
+                    let ranges = columns.filter_map(|name| {
+                        let x = exact.get(name)?;
+                        Some(largest(x.iter().map(|v| v - x[0])))
+                    });
+                    let range = ranges.fold(0.0, f64::max);
                     judge(error, 0.01 * range, UNSAID * range, &report)
                 }
                 Ok(Err(stopped)) => judge_stop(&stopped),
