@@ -26,7 +26,8 @@ cargo fmt --all --check
 cargo clippy --workspace --all-targets -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 
-count=$(cargo test --workspace --quiet -- --list 2>/dev/null | grep -c ': test$')
+cargo test --workspace --no-run
+count=$(cargo test --workspace --quiet -- --list | grep -c ': test$')
 echo "$count tests"
 if [ "$count" -lt "$fewest_tests" ]; then
     echo "fewer tests than the $fewest_tests there have been" >&2
