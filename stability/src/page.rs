@@ -170,7 +170,7 @@ fn cases(checks: &[Vec<Check>], records: &Records) -> String {
 }
 
 /// Process faults are tests; the page says which.
-const FAULTS: &str = "## Process faults\n\n`tests/stability/process.rs` kills runs with SIGKILL at 200 random instants, 200 more while they replace an earlier \
+const FAULTS: &str = "## Process faults\n\n`tests/stability/process/` kills runs with SIGKILL at 200 random instants, 200 more while they replace an earlier \
     result and 40 while one stands in their way, `precision` and `ablate` 32 times; limits the size of files; fills the disk behind \
     single files; and tries folders where nobody can write, files, links and the result of another scene. What is on disk is \
     readable up to its last row, equal to the rows of the uninterrupted run byte for byte, and marked `incomplete`; an earlier \
