@@ -46,6 +46,8 @@ const HALVINGS: i32 = 24;
 const LEFT_OPEN: f64 = 1e-6;
 /// What is wrong with a step into the second zero of an angle.
 const HALF_TURN: &str = "the direction it holds turns over by half a turn";
+/// What is wrong with a step that makes up turns.
+const TURN: &str = "it turns by more than half a turn in one step";
 /// Part of a step below which a difference of times is rounding.
 const GRID_ROUNDING: f64 = 1e-6;
 
@@ -166,7 +168,7 @@ pub struct Simulation {
     meter: Meter,
     stall: Stall,
     counters: LoopCounters,
-    /// Failed steps by the unknown or multiplier that had no solution.
+    /// Failed steps by the unknown or multiplier they failed for.
     halved: Vec<u64>,
     delta: Vec<f64>,
     rate: Vec<f64>,
@@ -361,6 +363,7 @@ impl Simulation {
     }
 
     /// Steps into `trial` towards `target`, halving the step while it fails; returns the clamps and the time reached.
+    /// What follows is tried whole again: a full step passes a singular pose that short ones creep up to.
     fn try_step(&mut self, target: f64) -> Result<(usize, f64), RunError> {
         let mut t = target;
         loop {
@@ -369,8 +372,8 @@ impl Simulation {
                 Err(error) => {
                     self.counters.rejected += 1;
                     self.stall.failure();
-                    if let StepError::Stage(failure) = &error {
-                        self.halved[failure.index()] += 1;
+                    if let Some(index) = error.index() {
+                        self.halved[index] += 1;
                     }
                     let half = 0.5 * (t - self.state.t);
                     if half < self.pacer.scale() * 2.0_f64.powi(-HALVINGS) {
@@ -393,10 +396,8 @@ impl Simulation {
             ..
         } = self;
         let clamps = stepper.step(model, state, t, trial, newton, work)?;
-        match model.half_turned(trial) {
-            Some(index) => Err(StepError::HalfTurn(index)),
-            None => Ok(clamps),
-        }
+        check_turns(model, state, trial)?;
+        Ok(clamps)
     }
 
     /// Opens and closes contacts.
@@ -536,7 +537,7 @@ impl Simulation {
                 format!("{joint} closed or opened {changes} times")
             }
             (None, Some((index, times))) => format!(
-                "{times} times {} had no solution and the step was halved, now to {step:.1e} s",
+                "{times} times the step failed for {} and was halved, now to {step:.1e} s",
                 self.model.unknown_name(index)
             ),
             (None, None) => format!(
@@ -554,9 +555,9 @@ impl Simulation {
     fn failed(&self, error: StepError, step: f64) -> RunError {
         match error {
             StepError::Prescribe(error) => RunError::Drive(error),
-            StepError::HalfTurn(index) => RunError::Physics {
+            StepError::Turn { index, cause } => RunError::Physics {
                 name: self.model.unknown_name(index),
-                cause: HALF_TURN.to_owned(),
+                cause: cause.to_owned(),
                 t: self.state.t,
                 step,
             },
@@ -570,6 +571,16 @@ impl Simulation {
                 }
             }
         }
+    }
+}
+
+/// Refuses a step whose turns are not what the mechanism did.
+fn check_turns(model: &Model, from: &State, to: &State) -> Result<(), StepError> {
+    let half = model.half_turned(to).map(|index| (index, HALF_TURN));
+    let wound = || model.wound(from, to).map(|index| (index, TURN));
+    match half.or_else(wound) {
+        Some((index, cause)) => Err(StepError::Turn { index, cause }),
+        None => Ok(()),
     }
 }
 

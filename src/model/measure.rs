@@ -5,6 +5,7 @@ use crate::force::ClearanceJoint;
 use crate::marker::Marker;
 use crate::math::plane::{Vec2, add, cross, dot, norm, scale, sub};
 use crate::system::{Integral, State, Work};
+use std::f64::consts::PI;
 
 /// Position, velocity and acceleration of a body: centre of mass, and angle (of a link: of its chord).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -346,6 +347,19 @@ impl Model {
     pub fn half_turned(&self, at: &State) -> Option<usize> {
         let turned = self.constraints.iter().find(|c| c.term.half_turn(at));
         turned.map(|c| self.shape.unknowns + c.row)
+    }
+
+    /// The unknown angle of a rigid body that differs by more than half a turn between two states, if there is one: joints
+    /// see an angle but for whole turns, so that nothing else stops a step from making them up.
+    pub fn wound(&self, from: &State, to: &State) -> Option<usize> {
+        self.bodies.iter().find_map(|body| match body.coordinates {
+            BodyCoordinates::Rigid { x } => {
+                let angle = x + 2;
+                let way = (to.q[angle] - from.q[angle]).abs();
+                (angle < self.shape.unknowns && way > PI).then_some(angle)
+            }
+            _ => None,
+        })
     }
 
     /// The constraint left out as a repetition of others that is open by the most, as the unknown that would be its multiplier

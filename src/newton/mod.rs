@@ -201,11 +201,13 @@ impl Newton {
                 return Err(Failure::NotFinite { index: worst });
             }
             let rate = update / last;
-            let error = if iteration == 0 || rate >= 1.0 {
+            let linear = if iteration == 0 || rate >= 1.0 {
                 update
             } else {
                 rate / (1.0 - rate) * update
             };
+            // after a leap the rate says nothing; a curvature of one per metre bends the constraints by this
+            let error = linear.max(update * update * w.q / w.v);
             let rounding = iteration >= 2 && rate > 0.3 && update < ROUNDING_BAND * tolerance;
             if error <= tolerance || rounding {
                 self.counters.stagnations += u64::from(error > tolerance);

@@ -1,7 +1,8 @@
 //! Static runs: a load path, and the equilibrium that a motion starts from.
 
 use super::{
-    Control, GRID_ROUNDING, HALF_TURN, HALVINGS, Observer, Progress, RunError, Simulation, describe,
+    Control, GRID_ROUNDING, HALVINGS, Observer, Progress, RunError, Simulation, check_turns,
+    describe,
 };
 use crate::model::Model;
 use crate::newton::Failure;
@@ -146,9 +147,9 @@ impl Simulation {
     fn no_equilibrium(&self, error: StepError, t: f64) -> RunError {
         match error {
             StepError::Prescribe(error) => RunError::Drive(error),
-            StepError::HalfTurn(index) => RunError::Equilibrium {
+            StepError::Turn { index, cause } => RunError::Equilibrium {
                 name: self.model.unknown_name(index),
-                cause: HALF_TURN.to_owned(),
+                cause: cause.to_owned(),
                 t,
             },
             StepError::Stage(failure) => {
@@ -176,9 +177,6 @@ impl Simulation {
             .as_mut()
             .expect("a static scene has a static solver");
         statics.solve(model, trial, t / scene.simulation.duration, work)?;
-        match model.half_turned(trial) {
-            Some(index) => Err(StepError::HalfTurn(index)),
-            None => Ok(()),
-        }
+        check_turns(model, state, trial)
     }
 }

@@ -86,7 +86,7 @@ pub struct Report {
     /// What the accuracy asked for cost; absent with a fixed step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<AccuracyReport>,
-    /// Steps that were halved because a stage had no solution.
+    /// Steps that failed and were halved.
     pub rejected_steps: u64,
     /// The same by the coordinate or constraint that had none.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]

@@ -8,6 +8,8 @@ const OF_DISSIPATED: f64 = 0.05;
 const OF_TURNOVER: f64 = 0.01;
 /// Accelerations that change more than this from step to step, relative, belong to vibrations of six steps a period or less.
 const UNRESOLVED: f64 = 1.0;
+/// A Green strain of -1/2 is a centre line of zero length, through which the theory lets a beam be pressed.
+const CRUSHED: f64 = -0.4;
 /// An estimated error beyond this part of the longest way is told.
 const OF_TRAVEL: f64 = 0.01;
 
@@ -43,13 +45,19 @@ impl Report {
                 "{name} repeats other constraints: the forces in its loop are one choice among many"
             )
         }));
+        let crushed = self.strain.iter().filter(|(_, strain)| **strain < CRUSHED);
+        warnings.extend(crushed.map(|(name, strain)| {
+            format!(
+                "{name} is pressed together to a strain of {strain:.2}: at -0.5 its centre line has no length left"
+            )
+        }));
         if self.rejected_steps > 0 {
             let most = self.rejected_by.iter().max_by_key(|(_, times)| **times);
             let most = most.map_or(String::new(), |(name, times)| {
                 format!(", {times} times that of {name}")
             });
             warnings.push(format!(
-                "{} steps halved because a stage had no solution{most}",
+                "{} steps failed and were halved{most}",
                 self.rejected_steps
             ));
         }

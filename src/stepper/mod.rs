@@ -26,8 +26,24 @@ pub enum StepError {
     Stage(Failure),
     /// The prescribed motion has none.
     Prescribe(PrescribeError),
-    /// The step ends in the second zero of an angle, half a turn off; the unknown that is its multiplier.
-    HalfTurn(usize),
+    /// The step turns something further than the mechanism did.
+    Turn {
+        /// The unknown that is the angle, or the multiplier of the constraint that holds it.
+        index: usize,
+        /// What is wrong.
+        cause: &'static str,
+    },
+}
+
+impl StepError {
+    /// The unknown or multiplier it is about.
+    pub fn index(&self) -> Option<usize> {
+        match self {
+            StepError::Stage(failure) => Some(failure.index()),
+            StepError::Turn { index, .. } => Some(*index),
+            StepError::Prescribe(_) => None,
+        }
+    }
 }
 
 impl From<Failure> for StepError {

@@ -170,3 +170,48 @@ initial.bodies.right = { x = 0.0, y = 1.0, theta = -0.7853981633974483 }
         "{text}"
     );
 }
+
+/// Accelerations grow without bound where the lever cannot go further. A step from there turned the crank by 1e9 rad, and
+/// Newton's method took the angle that its first leap happened on for the solution: the pin was open by 10 mm.
+const DEAD_CENTRE: &str = r#"
+format = 1
+title = "a slotted lever is driven into its dead centre"
+simulation = { duration = 0.03 }
+integrator = { method = "generalized_alpha", spectral_radius = 0.76, step = 6e-4, newton_tolerance = 1e-11 }
+output = { interval = 6e-4, channels = ["*"] }
+materials.wood = { density = 2600.0 }
+sections.bar = { width = 0.012, height = 0.05 }
+bodies.ground = { type = "ground", points.A = [0.0, 0.0], points.B = [0.0, -0.38] }
+bodies.crank = { type = "rigid_body", mass = 0.01, inertia = 1.2e-5, points.A = [0.074, 0.0], points.P = [-0.092, 0.0] }
+bodies.lever = { type = "link", model = "rigid", length = 0.7, section = "bar", material = "wood" }
+joints.A = { type = "revolute", bearing = "ground.A", journal = "crank.A", model = "ideal" }
+joints.B = { type = "revolute", bearing = "ground.B", journal = "lever.start", model = "ideal" }
+joints.P = { type = "prismatic", guide = "lever.start", direction = [1.0, 0.0], slider = "crank.P", rotation = "free" }
+drives.swing = { type = "angle", joint = "B", angle = { type = "harmonic", mean = 2.6473, amplitude = 2.6031, frequency = 0.42745, phase = 5.9944 } }
+initial.sketch = { A = [0.0, 0.0], P = [-0.154, 0.061] }
+"#;
+
+#[test]
+fn a_dead_centre_makes_up_no_turns() {
+    let (error, kept) = stopped(DEAD_CENTRE);
+    assert!(error.to_string().starts_with("crank.theta: "), "{error}");
+    let [x, y, theta] = ["crank.x", "crank.y", "crank.theta"].map(|name| kept.get(name).unwrap());
+    for ((x, y), theta) in x.iter().zip(y).zip(theta) {
+        let (s, c) = theta.sin_cos();
+        let open = (x + 0.074 * c).hypot(y + 0.074 * s);
+        // rounding of 0.1 m, seen through steps halved 24 times
+        assert!(open < 1e-12, "the pin is open by {open:e} m");
+        // it starts within half a turn of zero, and its centre is half a turn on
+        assert!(theta.abs() < 7.0, "{theta} rad");
+    }
+}
+
+/// A lever in a guide may be longer than all other bodies together; where a given pose is off, the lever is not the fault.
+#[test]
+fn a_long_lever_is_not_blamed_for_a_pose() {
+    let text =
+        DEAD_CENTRE.to_owned() + "initial.bodies.crank = { x = -0.074, y = 0.001, theta = 0.0 }\n";
+    let error = Simulation::new(&parse(&text)).expect_err("it starts");
+    let text = error.to_string();
+    assert!(text.contains("joint P (line) stays open by"), "{text}");
+}

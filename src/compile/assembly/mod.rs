@@ -11,7 +11,7 @@ use super::{Compiler, Mode, known_roles, numbering, terms};
 use crate::math::dense::Equations;
 use crate::math::plane::{norm, sub};
 use crate::model::Model;
-use crate::scene::{BodyKind, PointRef, Scene, SceneError};
+use crate::scene::{BodyKind, Joint, JointModel, PointRef, Scene, SceneError};
 use crate::system::State;
 use guess::guess;
 use velocities::velocities;
@@ -120,7 +120,7 @@ fn close(
         return Ok(());
     };
     if open.is_nan() || open > CLOSED {
-        return Err(cannot_close(c, open, &name));
+        return Err(cannot_close(c, open, &name, held.contains(&true)));
     }
     for (placed, name) in mechanism.constraints.iter().zip(names(mechanism)) {
         if placed.term.half_turn(state) {
@@ -134,11 +134,14 @@ fn close(
     Ok(())
 }
 
-/// Names the body that is larger than all others together, if there is one, or else the constraint that stays open.
-fn cannot_close(c: &Compiler, open: f64, name: &str) -> SceneError {
+/// Names the body that is larger than all others together, if there is one and neither a guide nor a given pose explains the
+/// opening, or else the constraint that stays open.
+fn cannot_close(c: &Compiler, open: f64, name: &str, holds: bool) -> SceneError {
     let sizes: Vec<f64> = (0..c.scene.bodies.len()).map(|b| size(c, b)).collect();
     let total: f64 = sizes.iter().sum();
-    if let Some(b) = sizes.iter().position(|s| *s > total - s) {
+    let guides = |joint: &Joint| matches!(joint.model, JointModel::Prismatic { .. });
+    let pinned = !holds && !c.scene.joints.iter().any(guides);
+    if let Some(b) = sizes.iter().position(|s| pinned && *s > total - s) {
         let body = &c.scene.bodies[b];
         let message = format!(
             "the mechanism cannot be assembled: {} is {:?} m long, more than all other bodies together ({:.4} m)",
