@@ -45,6 +45,49 @@ pub(super) fn restitution() -> Vec<Check> {
     ]
 }
 
+/// Six journals in bearings of their own that hit within one step, each at an instant of its own: the largest error of these
+/// instants \[s\], the time from the first to the last over the step, and by how much their ratios of rebound differ.
+fn six_at_once() -> [f64; 3] {
+    let speeds: [f64; 6] = std::array::from_fn(|k| 0.02 * (1.0 + 1e-4 * k as f64));
+    let mut settings = vec![
+        "simulation.duration=1.2e-3".to_owned(),
+        "output.channels=[\"*.vx\"]".to_owned(),
+    ];
+    for (k, speed) in speeds.iter().enumerate().skip(1) {
+        settings.extend([
+            format!(
+                "bodies.journal{k}={{ type = \"rigid_body\", mass = 0.05, inertia = 2.49e-6, points.center = [0.0, 0.0] }}"
+            ),
+            format!(
+                "joints.pin{k}={{ type = \"revolute\", bearing = \"ground.bearing\", journal = \"journal{k}.center\", model = \"clearance\", contact = \"aluminium\" }}"
+            ),
+            format!(
+                "initial.bodies.journal{k}={{ x = 0.0, y = 0.0, theta = 0.0, vx = {speed}, vy = 0.0, omega = 0.0 }}"
+            ),
+        ]);
+    }
+    let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+    let (recording, _) = run(JOURNAL, &settings);
+    let onsets = &recording.onsets;
+    assert_eq!(onsets.len(), speeds.len(), "one impact each");
+    // the fastest is the last of the scene
+    let arrivals = speeds.iter().rev().map(|speed| 2e-5 / speed);
+    let errors = onsets.iter().zip(arrivals).map(|(onset, t)| onset.t - t);
+    let rebounds = (0..speeds.len()).map(|k| {
+        let name = match k {
+            0 => "journal.vx".to_owned(),
+            k => format!("journal{k}.vx"),
+        };
+        column(&recording, &name).last().expect("rows") / speeds[k]
+    });
+    let (least, greatest) = rebounds.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
+    [
+        largest(errors),
+        (onsets[5].t - onsets[0].t) / 1.6e-6,
+        greatest - least,
+    ]
+}
+
 pub(super) fn onsets() -> Vec<Check> {
     let floor = "contacts.steel.impact_velocity_floor=1e-12";
     let mut deepest = 0.0_f64;
@@ -80,6 +123,7 @@ pub(super) fn onsets() -> Vec<Check> {
         last - first
     });
     let spread = largest(groups.collect::<Vec<f64>>());
+    let [instants, within, rebounds] = six_at_once();
     let off = ["platform.x", "platform.y"].map(|name| largest(column(&together, name).to_vec()));
     vec![
         Check::new(
@@ -108,6 +152,21 @@ pub(super) fn onsets() -> Vec<Check> {
             1e-9,
         ),
         Check::new("Onsets of that run", report.onsets as f64, 6.0..=f64::MAX),
+        Check::new(
+            "Six journals that hit within one step: time from the first to the last over the step",
+            within,
+            0.1..=1.0,
+        ),
+        Check::below(
+            "The same: error of their six instants; the onset tolerance over the speed is allowed [s]",
+            instants,
+            5e-12,
+        ),
+        Check::below(
+            "The same: difference of their ratios of rebound",
+            rebounds,
+            1e-4,
+        ),
     ]
 }
 

@@ -1,6 +1,6 @@
 //! Runs of millions of steps.
 
-use super::schemes::{truss, truss_order};
+use super::schemes::{pendulum, truss, truss_order};
 use super::{Check, column, flexible::fly, imbalance, largest, run};
 use crate::memory;
 
@@ -23,6 +23,12 @@ pub(super) fn revolutions() -> Vec<Check> {
             truss_order(),
             1.8..=2.2,
         ),
+        Check::below(
+            "Stiff spring pendulum, 10,000 swings, 7,400,000 steps of Bathe's scheme of 1.6 periods of the spring: energy gained, \
+             relative",
+            pendulum(10_000.0),
+            1e-12,
+        ),
     ]
 }
 
@@ -35,6 +41,11 @@ pub(super) fn spinning_link() -> Vec<Check> {
             1e-9,
         ),
         Check::below("The same: energy gained, relative", flight.gain, 1e-12),
+        Check::below(
+            "The same: change of angular momentum, relative",
+            flight.angular.abs(),
+            1e-2,
+        ),
     ]
 }
 

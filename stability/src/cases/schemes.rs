@@ -5,6 +5,8 @@ use crate::outcome::Stopped;
 
 const TRUSS: &str = "hard/stiff-truss.toml";
 const PENDULUM: &str = "stiff-spring-pendulum.toml";
+/// One swing of the stiff spring pendulum there and back, from the horizontal: 4 K(sin 45 deg) sqrt(L/g) \[s\].
+const SWING: f64 = 7.416_298_7;
 /// One turn of the truss \[s\].
 pub(super) const TURN: f64 = 2.477_689_2;
 
@@ -94,6 +96,13 @@ pub(super) fn truss(turns: f64, step: f64) -> [f64; 2] {
     let momentum = |k: usize| x[k] * vy[k] - y[k] * vx[k];
     let deviations = (0..x.len()).map(|k| momentum(k) / momentum(0) - 1.0);
     [largest(deviations), gain(&report)]
+}
+
+/// Energy gained in so many swings of the stiff spring pendulum, relative.
+pub(super) fn pendulum(swings: f64) -> f64 {
+    let duration = format!("simulation.duration={}", (swings * SWING).ceil());
+    let settings = ["integrator.step=0.01", "output.interval=1", &duration];
+    gain(&run(PENDULUM, &settings).1)
 }
 
 /// Order of the error of position of the truss.
