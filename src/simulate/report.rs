@@ -88,7 +88,7 @@ pub struct Report {
     pub accuracy: Option<AccuracyReport>,
     /// Steps that failed and were halved.
     pub rejected_steps: u64,
-    /// The same by the coordinate or constraint that had none.
+    /// The same by the coordinate or constraint that they failed for.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub rejected_by: BTreeMap<String, u64>,
     /// Steps tried to locate contact onsets and losses.
