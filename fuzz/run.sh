@@ -10,6 +10,12 @@ cd "$(dirname "$0")/.."
 seconds=("${1:-1200}" "${2:-1800}" "${3:-600}")
 export RUSTC_BOOTSTRAP=1
 
+cargo fuzz --version > /dev/null 2>&1 || {
+    echo "cargo-fuzz is missing: cargo install cargo-fuzz" >&2
+    exit 2
+}
+mkdir -p fuzz/corpus fuzz/artifacts/{scene,mechanism,study}
+
 # seconds an input, MiB of memory, bytes of an input
 limits=(-timeout=5 -rss_limit_mb=1024 -max_len=16384)
 
@@ -46,8 +52,7 @@ fuzz scene "${seconds[0]}" && scene=$(record scene)
 fuzz mechanism "${seconds[1]}" && mechanism=$(record mechanism)
 fuzz study "${seconds[2]}" && study=$(record study)
 found=$(sed 's/.*/    "&"/' fuzz/found.txt | paste -sd, | sed 's/,    /,\n    /g')
-mkdir -p stability/records
-cat > stability/records/fuzz.json << END
+cat > stability/records/fuzz.json.tmp << END
 {
   "command": "fuzz/run.sh ${seconds[*]}",
   "engine": "libFuzzer (cargo-fuzz), mutation by line and value and by byte",
@@ -62,4 +67,6 @@ $found
   ]
 }
 END
+# the earlier record stays until this one is whole
+mv stability/records/fuzz.json.tmp stability/records/fuzz.json
 cat stability/records/fuzz.json
