@@ -2,7 +2,7 @@
 #![no_main]
 
 use fuzz::{Pool, mutate, scene, scenes, show};
-use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target, fuzzer_mutate};
+use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target};
 use looselink::scene::{BodyKind, LinkModel, Scene};
 use looselink::simulate::Simulation;
 use std::sync::LazyLock;
@@ -30,11 +30,7 @@ fuzz_target!(
 );
 
 fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
-    // bytes at random in one case of eight
-    let by_line = (seed % 8 != 0).then(|| mutate(data, size, max_size, seed, &POOL));
-    by_line
-        .flatten()
-        .unwrap_or_else(|| fuzzer_mutate(data, size, max_size))
+    mutate(data, size, max_size, seed, 8, &POOL)
 });
 
 fn is_small(scene: &Scene) -> bool {

@@ -2,7 +2,7 @@
 #![no_main]
 
 use fuzz::{Pool, is_toml, mutate, show, studies};
-use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target, fuzzer_mutate};
+use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target};
 use looselink::precision::{Study, StudyError};
 use std::path::Path;
 use std::sync::LazyLock;
@@ -31,11 +31,7 @@ fuzz_target!(
 );
 
 fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
-    // bytes at random in one case of four
-    let by_line = (seed % 4 != 0).then(|| mutate(data, size, max_size, seed, &POOL));
-    by_line
-        .flatten()
-        .unwrap_or_else(|| fuzzer_mutate(data, size, max_size))
+    mutate(data, size, max_size, seed, 4, &POOL)
 });
 
 fn check(text: &str) -> Result<(), StudyError> {

@@ -2,6 +2,7 @@
 //! checks behind the syntax and the compiler behind the checks.
 
 use crate::{OVERRIDE, Pool};
+use libfuzzer_sys::fuzzer_mutate;
 
 /// Values on the edges of what numbers and types allow.
 const VALUES: [&str; 36] = [
@@ -65,9 +66,26 @@ impl Random {
     }
 }
 
+/// Changes the input in `data`, of which `size` bytes count, and returns its new size: by line, but for one case in `bytes_in`
+/// and for what has no lines to change, where the fuzzer changes bytes.
+pub fn mutate(
+    data: &mut [u8],
+    size: usize,
+    most: usize,
+    seed: u32,
+    bytes_in: u32,
+    pool: &Pool,
+) -> usize {
+    let by_line = !seed.is_multiple_of(bytes_in);
+    let changed = by_line.then(|| change_text(data, size, most, seed, pool));
+    changed
+        .flatten()
+        .unwrap_or_else(|| fuzzer_mutate(data, size, most))
+}
+
 /// Changes the text in `data`, of which `size` bytes count, in one to four places; returns the new size, or nothing for
 /// what is no text, or no longer fits.
-pub fn mutate(data: &mut [u8], size: usize, most: usize, seed: u32, pool: &Pool) -> Option<usize> {
+fn change_text(data: &mut [u8], size: usize, most: usize, seed: u32, pool: &Pool) -> Option<usize> {
     let text = std::str::from_utf8(&data[..size]).ok()?;
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     let mut random = Random(seed.into());
