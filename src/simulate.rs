@@ -33,7 +33,7 @@ use crate::newton::{Failure, Newton};
 use crate::record::Recorder;
 use crate::scene::{Accuracy, Analysis, Method, Pace, Scene, SceneError};
 use crate::statics::Statics;
-use crate::stepper::{StepError, Stepper, stepper};
+use crate::stepper::{LocalError, StepError, Stepper, look_ahead, stepper};
 use crate::system::{PrescribeError, State, System, Work};
 use control::{Controller, Verdict};
 use pace::Pacer;
@@ -44,6 +44,9 @@ const HALVINGS: i32 = 24;
 /// A constraint that repeats others may be open by this part of the largest coordinate: rounding divided by the distance from
 /// a singular pose, and far below any motion.
 const LEFT_OPEN: f64 = 1e-6;
+/// Lengths of a step that leaps over a singular pose: so many powers of this ratio, longer ones first.
+const LEAPS: i32 = 20;
+const LEAP: f64 = 2.0;
 /// What is wrong with a step into the second zero of an angle.
 const HALF_TURN: &str = "the direction it holds turns over by half a turn";
 /// What is wrong with a step that makes up turns.
@@ -136,6 +139,7 @@ struct LoopCounters {
     steps: u64,
     rejected: u64,
     location_trials: u64,
+    leap_trials: u64,
     onsets: u64,
     unlocated: u64,
     clamps: u64,
@@ -166,6 +170,7 @@ pub struct Simulation {
     impacts: Impacts,
     closures: Closures,
     meter: Meter,
+    local_error: LocalError,
     stall: Stall,
     counters: LoopCounters,
     /// Failed steps by the unknown or multiplier they failed for.
@@ -245,6 +250,7 @@ impl Simulation {
             impacts,
             closures: Closures::new(shape.contacts),
             meter: Meter::new(scene, &model),
+            local_error: LocalError::new(shape.unknowns),
             stall: Stall::new(
                 shape.contacts,
                 scene.simulation.duration,
@@ -316,10 +322,20 @@ impl Simulation {
         self.pacer.begin(self.state.t);
         while self.state.t < target {
             let goal = self.pacer.goal(self.state.t, target);
-            let (mut clamps, reached) = self.try_step(goal)?;
+            let (mut clamps, mut reached) = self.try_step(goal)?;
+            if matches!(self.pacer, Pacer::Controller(_)) && self.newton.met_singular_pose() {
+                (clamps, reached) = self.leap(reached, target)?;
+            }
+            self.estimate_error()?;
             if let Pacer::Controller(controller) = &mut self.pacer {
-                match controller.judge(&*self.stepper, &self.model, &self.state, &self.trial, goal)
-                {
+                match controller.judge(
+                    &self.model,
+                    &mut self.work,
+                    &self.state,
+                    &self.trial,
+                    &self.local_error,
+                    goal,
+                ) {
                     Verdict::Keep => {}
                     Verdict::Repeat => continue,
                     Verdict::Stuck(worst) => {
@@ -330,8 +346,11 @@ impl Simulation {
             }
             if self.locates {
                 clamps = self.locate_change(clamps, reached)?;
+                if self.trial.t != reached {
+                    self.estimate_error()?;
+                }
             }
-            self.meter.step(&*self.stepper, &self.state, &self.trial);
+            self.meter.step(&self.state, &self.trial, &self.local_error);
             self.stepper.accept();
             std::mem::swap(&mut self.state, &mut self.trial);
             self.counters.steps += 1;
@@ -385,7 +404,53 @@ impl Simulation {
         }
     }
 
+    /// Takes a step that met a singular pose with other lengths, up to `target`, until it passes the pose; returns what
+    /// [`Simulation::try_step`] does.
+    ///
+    /// In such a pose the constraints do not determine the acceleration, and Newton's method does not determine the position
+    /// in the direction they have lost. Neither is of any use to the estimate or to the next step.
+    fn leap(&mut self, reached: f64, target: f64) -> Result<(usize, f64), RunError> {
+        let t = self.state.t;
+        let longer = (1..=LEAPS).map(|k| (reached - t) * LEAP.powi(k));
+        let shorter = (1..=LEAPS).map(|k| (reached - t) * LEAP.powi(-k));
+        for length in longer.filter(|length| t + length <= target).chain(shorter) {
+            self.counters.leap_trials += 1;
+            let step = self.try_step(t + length)?;
+            if !self.newton.met_singular_pose() {
+                return Ok(step);
+            }
+        }
+        self.try_step(reached)
+    }
+
+    /// The local error of the trial step, as far as it stays in the motion.
+    fn estimate_error(&mut self) -> Result<(), RunError> {
+        let Simulation {
+            stepper,
+            model,
+            state,
+            trial,
+            output,
+            newton,
+            work,
+            local_error,
+            ..
+        } = self;
+        if stepper.looks_ahead(state)
+            && let Err(error) = look_ahead(model, state, trial, output, newton, work)
+        {
+            return Err(self.failed(error, self.trial.t - self.state.t));
+        }
+        stepper.local_error(state, trial, output, local_error);
+        let implicit = stepper.estimate().implicit;
+        for e in [&mut local_error.q, &mut local_error.v] {
+            newton.filter(model, implicit, &trial.v, e);
+        }
+        Ok(())
+    }
+
     fn step_to(&mut self, t: f64) -> Result<usize, StepError> {
+        self.newton.forget_singular_pose();
         let Simulation {
             stepper,
             model,
@@ -542,7 +607,7 @@ impl Simulation {
             ),
             (None, None) => format!(
                 "the error of {} keeps the steps at {step:.1e} s",
-                self.meter.worst(&self.model)
+                self.meter.worst(&self.model, &self.local_error)
             ),
         };
         RunError::Stalled {

@@ -179,6 +179,8 @@ pub trait System {
         to: &mut State,
         work: &mut Work,
     ) -> Result<(), PrescribeError>;
+    /// The rows of M x that belong to unknown coordinates, x without known ones.
+    fn momentum(&self, x: &[f64], out: &mut [f64]);
     /// r = M a + f + Phi_q^T lambda and phi = Phi.
     fn residual(&self, at: &State, r: &mut [f64], phi: &mut [f64], work: &mut Work);
     /// The residual, and the tangent with it.

@@ -60,6 +60,11 @@ impl System for Chain {
     fn prescribe(&self, _: &State, _: &mut State, _: &mut Work) -> Result<(), PrescribeError> {
         Ok(())
     }
+    fn momentum(&self, x: &[f64], out: &mut [f64]) {
+        for ((out, m), x) in out.iter_mut().zip(&self.masses).zip(x) {
+            *out = m * x;
+        }
+    }
     fn residual(&self, at: &State, r: &mut [f64], _: &mut [f64], _: &mut Work) {
         for i in 0..self.masses.len() {
             let pull = self.springs[i] * self.stretch(i, &at.q)

@@ -269,6 +269,16 @@ impl System for Model {
         Ok(())
     }
 
+    fn momentum(&self, x: &[f64], out: &mut [f64]) {
+        for (i, out) in out.iter_mut().enumerate().take(self.shape.unknowns) {
+            let range = self.mass.row_start[i]..self.mass.row_start[i + 1];
+            let row = self.mass.columns[range.clone()]
+                .iter()
+                .zip(&self.mass.values[range]);
+            *out = row.filter_map(|(&j, m)| Some(m * x.get(j)?)).sum();
+        }
+    }
+
     fn residual(&self, at: &State, r: &mut [f64], phi: &mut [f64], work: &mut Work) {
         self.count(work);
         self.inertia(&at.a, r);

@@ -477,6 +477,11 @@ impl Model {
         }
     }
 
+    /// True where a link or a spring stores energy.
+    pub fn is_elastic(&self) -> bool {
+        !self.elements.is_empty() || self.has_springs()
+    }
+
     /// True where a spring stores energy.
     pub fn has_springs(&self) -> bool {
         let spring = |e: Effect| matches!(e, Effect::SpringDamper | Effect::TorsionSpring);

@@ -1,7 +1,10 @@
 //! Newton's method on the equations of one stage, and the linear solves of the acceleration level.
 
 mod factors;
+mod response;
 mod singular;
+
+pub use response::Response;
 
 use crate::system::{State, System, Weights, Work};
 use factors::Factors;
@@ -92,6 +95,9 @@ pub struct Newton {
     stage: Factors,
     /// The matrix of the acceleration level.
     level: Factors,
+    /// True where the state made consistent last is a pose in which the constraints lose rank.
+    in_singular_pose: bool,
+    met_singular_pose: bool,
     /// True once `level` holds the mass matrix of a system without multipliers, which never changes.
     holds_mass: bool,
     /// Work done so far.
@@ -110,6 +116,8 @@ impl Newton {
             b: vec![0.0; size],
             stage: Factors::new(system.symbolic()),
             level: Factors::new(system.level_symbolic()),
+            in_singular_pose: false,
+            met_singular_pose: false,
             holds_mass: false,
             counters: Counters::default(),
         }
@@ -279,7 +287,9 @@ impl Newton {
         self.renew_level(system, s)?;
         let n = system.shape().unknowns;
         let pivots = || system.level_symbolic().pivot_range(&self.level.values, n);
-        Ok(system.shape().multipliers > 0 && (self.level.dense.is_some() || pivots() < SINGULAR))
+        self.in_singular_pose =
+            system.shape().multipliers > 0 && (self.level.dense.is_some() || pivots() < SINGULAR);
+        Ok(self.in_singular_pose)
     }
 
     /// From the factors of the acceleration level to (a, lambda).
@@ -352,6 +362,7 @@ impl Newton {
     ) -> Result<(), Failure> {
         let n = system.shape().unknowns;
         self.counters.singular_poses += 1;
+        self.met_singular_pose = true;
         let k = &mut self.level.values;
         system.level(s, &mut self.phi, k);
         let Some(truncated) = Truncated::new(system.level_symbolic(), k, n) else {
@@ -389,6 +400,49 @@ impl Newton {
             self.make_consistent(system, s, work)?;
         }
         Ok(system.powers(s, work))
+    }
+
+    /// True where a state has been made consistent in a singular pose since [`Newton::forget_singular_pose`].
+    pub fn met_singular_pose(&self) -> bool {
+        self.met_singular_pose
+    }
+
+    /// A step begins.
+    pub fn forget_singular_pose(&mut self) {
+        self.met_singular_pose = false;
+    }
+
+    /// Takes out of a local error e of velocities or coordinates what the last step does not leave in the motion: the part
+    /// across the constraints, which the projection takes out, and of an `implicit` scheme what its stage matrix holds down
+    /// of modes faster than the step,
+    ///
+    /// ```text
+    /// (M + w.v C + w.q K) x + Phi_q^T mu = M e        Phi_q x = 0
+    /// ```
+    ///
+    /// (Hosea & Shampine 1996, Appl. Numer. Math. 20:21, for systems without constraints). In a pose where the constraints
+    /// lose rank they do not say which directions are free, but for that of the velocity v: x is the part of e along it.
+    pub fn filter(&mut self, system: &dyn System, implicit: bool, v: &[f64], e: &mut [f64]) {
+        let n = system.shape().unknowns;
+        let constrained = system.shape().multipliers > 0;
+        if !implicit && !constrained {
+            return;
+        }
+        system.momentum(e, &mut self.b);
+        if constrained && self.in_singular_pose {
+            let along: f64 = self.b[..n].iter().zip(v).map(|(b, v)| b * v).sum();
+            system.momentum(&v[..n], &mut self.b);
+            let square: f64 = self.b[..n].iter().zip(v).map(|(b, v)| b * v).sum();
+            let part = if square > 0.0 { along / square } else { 0.0 };
+            e.iter_mut().zip(v).for_each(|(e, v)| *e = part * v);
+            return;
+        }
+        self.b[n..].fill(0.0);
+        match implicit {
+            true => self.stage.solve(system.symbolic(), &mut self.b),
+            false => self.level.solve(system.level_symbolic(), &mut self.b),
+        }
+        e.copy_from_slice(&self.b[..n]);
     }
 
     /// Solves the acceleration level for the right side `b`, whose unknown part is set, and -phi.

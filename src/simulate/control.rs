@@ -1,20 +1,26 @@
 //! Steps that follow an estimate of the local error.
 //!
-//! A step of length h has the local errors e_q and e_v (see the stepper's estimate). With l_i the way that a unit of
-//! coordinate i moves a point of its body by, and H the horizon,
+//! A step of length h has the local errors e_q and e_v (see the stepper's estimate and [`crate::newton::Newton::filter`]).
+//! With l_i the distance by which a unit of coordinate i moves a point of its body, and H the horizon,
 //!
 //! ```text
-//! E = max_i l_i (|e_q,i| + H kappa_i |e_v,i|),   kappa_i = max_t |sum e_v,i| / sum |e_v,i|
+//! E = max_i l_i (|e_q,i| + min(H kappa_i |e_v,i|, |y_i|)),   kappa_i = max_t |sum e_v,i| / sum |e_v,i|
 //! ```
 //!
 //! is the error of position that this step leaves behind within the horizon if nothing amplifies it. An error of velocity
-//! goes on as H e_v in free flight; in a vibration those of one half of the period take back those of the other, and the
-//! coherence kappa, measured over the run so far, says how much of them stays.
+//! grows to H e_v in free flight. In a vibration it does not: y is how far it moves the elastic mechanism
+//! ([`crate::newton::Response`]), and the coherence kappa says how much of the errors of velocity in the run so far has
+//! added up.
 //!
 //! The steps of a horizon may add up to the accuracy p. Where the estimate is the error of the step, H/h of them add up as
 //! they are: r = E H/(h p). A scheme that goes on with a solution of higher order than its estimate has smaller errors of
-//! varying sign, but where a contact has just changed: r = E sqrt(H/h)/p. Either way the error of the run falls in proportion
-//! to p (Stetter 1979, Lect. Notes Math. 679:245; Shampine 1985, BIT 25:530).
+//! varying sign, but where a contact has just changed: H/h is replaced by its square root, but not for y, since errors of a
+//! vibration shift its phase and add up. Either way the error of the run falls in proportion to p (Stetter 1979, Lect. Notes
+//! Math. 679:245; Shampine 1985, BIT 25:530).
+//!
+//! A step with r > 1 is taken again, unless its error is a small part of what the steps before it have left of their shares.
+//! Near a singular pose rounding is multiplied by the inverse of the distance: it does not fall with the step, and shorter
+//! steps would only meet more of it.
 //!
 //! The balance of energies needs no estimate: what a step changes of it is the error of that step. Those of a horizon may add
 //! up to the energy e, where one is asked for: r = |change| H/(h e), and the larger r counts. However short a step, 1e-5 e are
@@ -22,16 +28,17 @@
 //!
 //! With k the order of r in h, the next step is h times 0.9 r^(-0.7/k) r_last^(0.4/k), kept between 0.2 and 5 (PI control:
 //! Gustafsson 1991, ACM Trans. Math. Softw. 17:533; the exponents of Hairer & Wanner, Solving Ordinary Differential
-//! Equations II, IV.2). A step with r > 1 is taken again.
+//! Equations II, IV.2).
 //!
 //! A contact that closes brings its own time scale, far below that of free flight. Each contact remembers how long the first
 //! step after its last onset could be, and begins with that; the controller grows the step again from there.
 
 use super::meter::lengths;
 use crate::model::Model;
+use crate::newton::Response;
 use crate::scene::{Accuracy, Scene};
-use crate::stepper::{Estimate, LocalError, Stepper};
-use crate::system::State;
+use crate::stepper::{Estimate, LocalError};
+use crate::system::{State, Work};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -45,6 +52,8 @@ const LEAST_RATIO: f64 = 1e-4;
 const BALANCE_ROUNDING: f64 = 32.0 * f64::EPSILON;
 /// Least part of the allowed energy that a step may use.
 const LEAST_SHARE: f64 = 1e-5;
+/// Largest part that one step may draw of what earlier steps have left of the accuracy.
+const LARGEST_DRAW: f64 = 1e-3;
 /// A step below this part of the duration is too near to the rounding of t.
 const LEAST_PART: f64 = 1e4 * f64::EPSILON;
 
@@ -55,13 +64,16 @@ pub(super) struct Controller {
     estimate: Estimate,
     /// Metres per unit of each unknown.
     lengths: Vec<f64>,
-    error: LocalError,
+    /// Of a mechanism with elastic parts: how far an error of velocity moves it.
+    response: Option<Response>,
     longest: f64,
     shortest: f64,
     /// The step proposed.
     next: f64,
     /// r of the last step kept.
     last: f64,
+    /// Part of the accuracy that earlier steps have left.
+    unused: f64,
     /// True after a rejection, when the step must not grow.
     rejected: bool,
     /// Length of the first step after the last onset of each contact.
@@ -134,14 +146,14 @@ impl Controller {
             accuracy,
             estimate,
             lengths: lengths(scene, model),
-            error: LocalError {
-                q: vec![0.0; shape.unknowns],
-                v: vec![0.0; shape.unknowns],
-            },
+            response: model
+                .is_elastic()
+                .then(|| Response::new(model, accuracy.horizon)),
             longest,
             shortest: LEAST_PART * scene.simulation.duration,
             next: longest,
             last: 1.0,
+            unused: 0.0,
             rejected: false,
             first_steps: vec![f64::INFINITY; shape.contacts],
             closing: Vec::with_capacity(shape.contacts),
@@ -172,31 +184,37 @@ impl Controller {
     /// r, and the unknown with the largest error or, after the last of them, the balance of energies.
     fn ratio(
         &mut self,
-        stepper: &dyn Stepper,
         model: &Model,
+        work: &mut Work,
         from: &State,
         to: &State,
+        error: &LocalError,
     ) -> (f64, usize) {
-        stepper.local_error(from, to, &mut self.error);
         let Accuracy {
             position,
             energy,
             horizon,
         } = self.accuracy;
-        let mut largest = (0.0, 0);
-        for (i, length) in self.lengths.iter().enumerate() {
-            let [q, v] = [self.error.q[i].abs(), self.error.v[i].abs()];
-            let error = length * (q + horizon * self.sums[i].coherence() * v);
-            if error.is_nan() || error > largest.0 {
-                largest = (error, i);
-            }
-        }
-        let steps = horizon / (to.t - from.t);
+        let h = to.t - from.t;
+        let steps = horizon / h;
         let sum = match self.estimate.is_error {
             true => steps,
             false => steps.sqrt(),
         };
-        let of_position = largest.0 * sum / position;
+        let ways = self.response.as_mut().map(|response| {
+            response.keep_up(model, from, h, work);
+            response.ways(model, h, &error.v)
+        });
+        let mut largest = (0.0, 0);
+        for (i, length) in self.lengths.iter().enumerate() {
+            let coasting = horizon * self.sums[i].coherence() * error.v[i].abs() * sum;
+            let swinging = ways.map_or(f64::INFINITY, |ways| ways[i].abs() * steps);
+            let error = length * (error.q[i].abs() * sum + coasting.min(swinging));
+            if error.is_nan() || error > largest.0 {
+                largest = (error, i);
+            }
+        }
+        let of_position = largest.0 / position;
         if let Some(energy) = energy {
             let [(before, _), (after, size)] = [from, to].map(|s| model.energies(s).balance(s));
             let change = ((after - before).abs() - BALANCE_ROUNDING * size).max(0.0);
@@ -209,19 +227,22 @@ impl Controller {
         (of_position, largest.1)
     }
 
-    /// Looks at a step that was to end at `goal`, before it is cut where a contact changes.
+    /// Looks at a step before it is cut where a contact changes.
     pub fn judge(
         &mut self,
-        stepper: &dyn Stepper,
         model: &Model,
+        work: &mut Work,
         from: &State,
         to: &State,
+        error: &LocalError,
         goal: f64,
     ) -> Verdict {
         let h = to.t - from.t;
-        let (r, worst) = self.ratio(stepper, model, from, to);
+        let (r, worst) = self.ratio(model, work, from, to, error);
+        let share = h / self.accuracy.horizon;
+        let draws = r > 1.0 && r * share <= LARGEST_DRAW * self.unused;
         let order = self.estimate.order - if self.estimate.is_error { 1.0 } else { 0.5 };
-        if r.is_nan() || r > 1.0 {
+        if r.is_nan() || (r > 1.0 && !draws) {
             self.rejections[worst] += 1;
             self.rejected = true;
             // what is not a number counts as far too large
@@ -235,7 +256,9 @@ impl Controller {
         let r = r.max(LEAST_RATIO);
         let change = SAFETY * r.powf(-0.7 / order) * self.last.powf(0.4 / order);
         let greatest = if self.rejected { 1.0 } else { GREATEST_CHANGE };
-        let proposed = h * change.clamp(SMALLEST_CHANGE, greatest);
+        let least = if draws { 1.0 } else { SMALLEST_CHANGE };
+        let proposed = h * change.clamp(least, greatest);
+        self.unused = (self.unused + (1.0 - r) * share).clamp(0.0, 1.0);
         for contact in self.closing.drain(..) {
             self.first_steps[contact] = proposed;
         }
@@ -249,7 +272,7 @@ impl Controller {
         }
         self.taken = [self.taken[0].min(h), self.taken[1].max(h)];
         self.rejected = false;
-        for (sums, error) in self.sums.iter_mut().zip(&self.error.v) {
+        for (sums, error) in self.sums.iter_mut().zip(&error.v) {
             sums.add(*error);
         }
         Verdict::Keep

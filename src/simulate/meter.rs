@@ -22,7 +22,7 @@
 
 use crate::model::{BodyCoordinates, Model};
 use crate::scene::{BodyKind, Scene};
-use crate::stepper::{LocalError, Stepper};
+use crate::stepper::LocalError;
 use crate::system::{Integral, State};
 use serde::Serialize;
 
@@ -60,8 +60,6 @@ pub struct Integration {
 #[derive(Debug)]
 pub(super) struct Meter {
     lengths: Vec<f64>,
-    /// Local error of the step looked at last.
-    error: LocalError,
     sums: Vec<Sums>,
     ranges: Vec<Range>,
     lost: [f64; 2],
@@ -187,10 +185,6 @@ impl Meter {
         let unknowns = model.shape().unknowns;
         Meter {
             lengths: lengths(scene, model),
-            error: LocalError {
-                q: vec![0.0; unknowns],
-                v: vec![0.0; unknowns],
-            },
             sums: vec![Sums::default(); unknowns],
             ranges: vec![Range::EMPTY; unknowns],
             lost: [0.0; 2],
@@ -202,13 +196,12 @@ impl Meter {
         }
     }
 
-    /// A step is about to be accepted.
-    pub fn step(&mut self, stepper: &dyn Stepper, from: &State, to: &State) {
-        stepper.local_error(from, to, &mut self.error);
+    /// A step with a local error is about to be accepted.
+    pub fn step(&mut self, from: &State, to: &State, error: &LocalError) {
         let h = to.t - from.t;
         self.elapsed = to.t;
         let accelerations = from.a.iter().zip(&to.a);
-        let errors = self.error.q.iter().zip(&self.error.v);
+        let errors = error.q.iter().zip(&error.v);
         for ((sums, (q, v)), (a, a_1)) in self.sums.iter_mut().zip(errors).zip(accelerations) {
             let change = (a_1 - a) * (a_1 - a);
             sums.acceleration += h * a_1 * a_1;
@@ -259,14 +252,9 @@ impl Meter {
         name(model, largest(speeds))
     }
 
-    /// The unknown with the largest error of the last step.
-    pub fn worst<'a>(&self, model: &'a Model) -> &'a str {
-        let errors = self
-            .error
-            .q
-            .iter()
-            .zip(&self.lengths)
-            .map(|(e, l)| l * e.abs());
+    /// The unknown with the largest of some local errors.
+    pub fn worst<'a>(&self, model: &'a Model, error: &LocalError) -> &'a str {
+        let errors = error.q.iter().zip(&self.lengths).map(|(e, l)| l * e.abs());
         name(model, largest(errors))
     }
 

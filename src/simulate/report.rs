@@ -93,6 +93,8 @@ pub struct Report {
     pub rejected_by: BTreeMap<String, u64>,
     /// Steps tried to locate contact onsets and losses.
     pub location_trials: u64,
+    /// Steps tried with another length to pass a singular pose.
+    pub leap_trials: u64,
     /// Contacts closed.
     pub onsets: u64,
     /// The first impacts.
@@ -249,6 +251,7 @@ impl Simulation {
                 .map(|(index, times)| (self.model.unknown_name(index), *times))
                 .collect(),
             location_trials: self.counters.location_trials,
+            leap_trials: self.counters.leap_trials,
             onsets: self.counters.onsets,
             impacts: self.impacts.listed.clone(),
             unlocated_changes: self.counters.unlocated,

@@ -4,7 +4,7 @@
 //! v_1 = v + h a_1                q_1 = q + h v_1
 //! ```
 
-use super::defect::Defect;
+use super::history::History;
 use super::{Estimate, LocalError, Stage, StepError, Stepper, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
@@ -13,7 +13,7 @@ use crate::system::{Shape, State, System, Weights, Work};
 #[derive(Debug)]
 pub struct BackwardEuler {
     stage: Stage,
-    defect: Defect,
+    history: History,
 }
 
 impl BackwardEuler {
@@ -21,7 +21,7 @@ impl BackwardEuler {
     pub fn new(shape: Shape) -> BackwardEuler {
         BackwardEuler {
             stage: Stage::new(shape),
-            defect: Defect::new(shape),
+            history: History::new(shape),
         }
     }
 }
@@ -37,7 +37,7 @@ impl Stepper for BackwardEuler {
         work: &mut Work,
     ) -> Result<usize, StepError> {
         let h = t - from.t;
-        self.defect.begin(from);
+        self.history.begin(from);
         to.copy_from(from);
         to.t = t;
         system.prescribe(from, to, work)?;
@@ -51,17 +51,30 @@ impl Stepper for BackwardEuler {
     }
 
     fn accept(&mut self) {
-        self.defect.accept();
+        self.history.accept();
     }
 
     fn estimate(&self) -> Estimate {
         Estimate {
             order: 2.0,
             is_error: true,
+            implicit: true,
         }
     }
 
-    fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {
-        self.defect.local_error(from, to, error);
+    fn looks_ahead(&self, from: &State) -> bool {
+        !self.history.leads_to(from)
+    }
+
+    fn local_error(&self, from: &State, to: &State, ahead: &State, error: &mut LocalError) {
+        let h = to.t - from.t;
+        let differences = self.history.differences(from, to, ahead);
+        let velocities = from.v.iter().zip(&to.v);
+        for (((q, v), (change, second)), (v_0, v_1)) in
+            error.iter_mut().zip(differences).zip(velocities)
+        {
+            *q = -0.5 * h * (v_1 - v_0) - h * h / 12.0 * change;
+            *v = -0.5 * h * change - h / 12.0 * second;
+        }
     }
 }

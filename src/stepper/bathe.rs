@@ -108,7 +108,7 @@ impl Stepper for Bathe {
         Estimate::ERROR_OF_ORDER_2
     }
 
-    fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {
+    fn local_error(&self, from: &State, to: &State, _: &State, error: &mut LocalError) {
         let h = to.t - from.t;
         let [middle] = &self.middle;
         let [e0, e1, e2] = std::array::from_fn(|i| h * (self.quadrature[i] - self.weights[i]));

@@ -158,10 +158,11 @@ impl Stepper for DormandPrince {
         Estimate {
             order: 5.0,
             is_error: false,
+            implicit: false,
         }
     }
 
-    fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {
+    fn local_error(&self, from: &State, to: &State, _: &State, error: &mut LocalError) {
         let h = to.t - from.t;
         let all = || [from].into_iter().chain(&self.stages).chain([to]);
         sum(h, &DIFFERENCE, all(), |s| &s.v, &mut error.q);

@@ -15,7 +15,7 @@
 //! rho is the spectral radius at infinite frequency. b stands for the acceleration at t + (alpha_m - alpha_f) h. What is
 //! carried from step to step is therefore (b - a)/h, so that order two survives a change of the step; it starts at zero.
 
-use super::defect::Defect;
+use super::history::History;
 use super::{Estimate, LocalError, Stage, StepError, Stepper, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
@@ -32,7 +32,7 @@ pub struct GeneralizedAlpha {
     /// The same at its end.
     next_lag: Vec<f64>,
     stage: Stage,
-    defect: Defect,
+    history: History,
 }
 
 impl GeneralizedAlpha {
@@ -58,7 +58,7 @@ impl GeneralizedAlpha {
             lag: zeros.clone(),
             next_lag: zeros,
             stage: Stage::new(shape),
-            defect: Defect::new(shape),
+            history: History::new(shape),
         }
     }
 }
@@ -86,7 +86,7 @@ impl Stepper for GeneralizedAlpha {
                 scale * (self.alpha_f * from.a[i] - self.alpha_m * mean),
             )
         };
-        self.defect.begin(from);
+        self.history.begin(from);
         to.copy_from(from);
         to.t = t;
         system.prescribe(from, to, work)?;
@@ -111,14 +111,29 @@ impl Stepper for GeneralizedAlpha {
 
     fn accept(&mut self) {
         std::mem::swap(&mut self.lag, &mut self.next_lag);
-        self.defect.accept();
+        self.history.accept();
     }
 
     fn estimate(&self) -> Estimate {
         Estimate::ERROR_OF_ORDER_2
     }
 
-    fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {
-        self.defect.local_error(from, to, error);
+    fn looks_ahead(&self, from: &State) -> bool {
+        !self.history.leads_to(from)
+    }
+
+    fn local_error(&self, from: &State, to: &State, ahead: &State, error: &mut LocalError) {
+        let h = to.t - from.t;
+        let differences = self.history.differences(from, to, ahead);
+        let lags = self.lag.iter().zip(&self.next_lag);
+        for (((q, v), (change, second)), (lag, next)) in error.iter_mut().zip(differences).zip(lags)
+        {
+            // (1 - gamma) b + gamma b_1 less the mean of a and a_1, and b_1 - b
+            let mean =
+                (self.gamma - 0.5) * change + h * ((1.0 - self.gamma) * lag + self.gamma * next);
+            let way = change + h * (next - lag);
+            *q = h * h * ((0.5 * self.gamma - self.beta) * way - change / 12.0);
+            *v = -h * mean - h / 12.0 * second;
+        }
     }
 }

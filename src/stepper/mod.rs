@@ -2,9 +2,9 @@
 
 mod backward_euler;
 mod bathe;
-mod defect;
 mod dormand_prince;
 mod generalized_alpha;
+mod history;
 mod trapezoidal;
 mod velocity_verlet;
 
@@ -86,9 +86,14 @@ pub trait Stepper: std::fmt::Debug + Send {
     /// How the scheme estimates its error.
     fn estimate(&self) -> Estimate;
 
+    /// True where the estimate of a step from this state needs an acceleration beyond its end.
+    fn looks_ahead(&self, _from: &State) -> bool {
+        false
+    }
+
     /// The estimated error of the last step, which led from `from` to `to`, before it is accepted: the better solution less
-    /// that of the scheme.
-    fn local_error(&self, from: &State, to: &State, error: &mut LocalError);
+    /// that of the scheme. `ahead` is a state beyond the end, extrapolated, where the scheme looks ahead.
+    fn local_error(&self, from: &State, to: &State, ahead: &State, error: &mut LocalError);
 }
 
 /// What is known of an estimate of the local error.
@@ -99,6 +104,8 @@ pub struct Estimate {
     /// True where it is the error of the solution that the scheme goes on with; false where that solution is of a higher
     /// order.
     pub is_error: bool,
+    /// True of a scheme that solves stages: it keeps stiff modes in hand that its steps do not resolve.
+    pub implicit: bool,
 }
 
 impl Estimate {
@@ -106,6 +113,7 @@ impl Estimate {
     const ERROR_OF_ORDER_2: Estimate = Estimate {
         order: 3.0,
         is_error: true,
+        implicit: true,
     };
 }
 
@@ -116,6 +124,44 @@ pub struct LocalError {
     pub q: Vec<f64>,
     /// Of velocities.
     pub v: Vec<f64>,
+}
+
+impl LocalError {
+    /// Of `unknowns` coordinates.
+    pub fn new(unknowns: usize) -> LocalError {
+        LocalError {
+            q: vec![0.0; unknowns],
+            v: vec![0.0; unknowns],
+        }
+    }
+
+    /// That of every coordinate and of its velocity.
+    fn iter_mut(&mut self) -> impl Iterator<Item = (&mut f64, &mut f64)> {
+        self.q.iter_mut().zip(&mut self.v)
+    }
+}
+
+/// Goes on from the end of a step for once its length with its last acceleration, into `ahead`.
+///
+/// # Errors
+/// Where the prescribed motion or the acceleration does not exist there.
+pub fn look_ahead(
+    system: &dyn System,
+    from: &State,
+    to: &State,
+    ahead: &mut State,
+    newton: &mut Newton,
+    work: &mut Work,
+) -> Result<(), StepError> {
+    let h = to.t - from.t;
+    ahead.copy_from(to);
+    ahead.t = to.t + h;
+    system.prescribe(to, ahead, work)?;
+    for i in 0..system.shape().unknowns {
+        ahead.q[i] = to.q[i] + h * (to.v[i] + 0.5 * h * to.a[i]);
+        ahead.v[i] = to.v[i] + h * to.a[i];
+    }
+    Ok(newton.accelerate(system, ahead, work)?)
 }
 
 /// The scheme that a scene names.

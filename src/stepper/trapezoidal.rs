@@ -7,9 +7,9 @@
 //! It damps nothing, neither the motion nor what rounding and constraints put into the highest modes: the rival that
 //! Bathe's scheme was made to replace. Each step ends consistent, as those of [`super::Bathe`] do.
 //!
-//! Its local error is -h^3/12 (q''', v'''), which [`super::defect`] finds.
+//! Its local error is -h^3/12 (q''', v''').
 
-use super::defect::Defect;
+use super::history::History;
 use super::{Estimate, LocalError, Stage, StepError, Stepper, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
@@ -18,7 +18,7 @@ use crate::system::{Shape, State, System, Weights, Work};
 #[derive(Debug)]
 pub struct Trapezoidal {
     stage: Stage,
-    defect: Defect,
+    history: History,
 }
 
 impl Trapezoidal {
@@ -26,7 +26,7 @@ impl Trapezoidal {
     pub fn new(shape: Shape) -> Trapezoidal {
         Trapezoidal {
             stage: Stage::new(shape),
-            defect: Defect::new(shape),
+            history: History::new(shape),
         }
     }
 }
@@ -43,7 +43,7 @@ impl Stepper for Trapezoidal {
     ) -> Result<usize, StepError> {
         let h = t - from.t;
         let g = 0.5 * h;
-        self.defect.begin(from);
+        self.history.begin(from);
         to.copy_from(from);
         to.t = t;
         system.prescribe(from, to, work)?;
@@ -58,14 +58,23 @@ impl Stepper for Trapezoidal {
     }
 
     fn accept(&mut self) {
-        self.defect.accept();
+        self.history.accept();
     }
 
     fn estimate(&self) -> Estimate {
         Estimate::ERROR_OF_ORDER_2
     }
 
-    fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {
-        self.defect.local_error(from, to, error);
+    fn looks_ahead(&self, from: &State) -> bool {
+        !self.history.leads_to(from)
+    }
+
+    fn local_error(&self, from: &State, to: &State, ahead: &State, error: &mut LocalError) {
+        let h = to.t - from.t;
+        let differences = self.history.differences(from, to, ahead);
+        for ((q, v), (change, second)) in error.iter_mut().zip(differences) {
+            *q = -h * h / 12.0 * change;
+            *v = -h / 12.0 * second;
+        }
     }
 }

@@ -8,7 +8,7 @@
 //! Forces that depend on velocities take the predicted one, whose error of h^2 leaves order two. Symplectic where there are
 //! none; stable while h omega < 2 in every mode.
 
-use super::defect::Defect;
+use super::history::History;
 use super::{Estimate, LocalError, StepError, Stepper, accumulate, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Work};
@@ -18,7 +18,7 @@ use crate::system::{Shape, State, System, Work};
 pub struct VelocityVerlet {
     /// q_1 - q.
     way: Vec<f64>,
-    defect: Defect,
+    history: History,
 }
 
 impl VelocityVerlet {
@@ -26,7 +26,7 @@ impl VelocityVerlet {
     pub fn new(shape: Shape) -> VelocityVerlet {
         VelocityVerlet {
             way: vec![0.0; shape.unknowns],
-            defect: Defect::new(shape),
+            history: History::new(shape),
         }
     }
 }
@@ -43,7 +43,7 @@ impl Stepper for VelocityVerlet {
     ) -> Result<usize, StepError> {
         let n = system.shape().unknowns;
         let h = t - from.t;
-        self.defect.begin(from);
+        self.history.begin(from);
         to.copy_from(from);
         to.t = t;
         system.prescribe(from, to, work)?;
@@ -62,14 +62,26 @@ impl Stepper for VelocityVerlet {
     }
 
     fn accept(&mut self) {
-        self.defect.accept();
+        self.history.accept();
     }
 
     fn estimate(&self) -> Estimate {
-        Estimate::ERROR_OF_ORDER_2
+        Estimate {
+            implicit: false,
+            ..Estimate::ERROR_OF_ORDER_2
+        }
     }
 
-    fn local_error(&self, from: &State, to: &State, error: &mut LocalError) {
-        self.defect.local_error(from, to, error);
+    fn looks_ahead(&self, from: &State) -> bool {
+        !self.history.leads_to(from)
+    }
+
+    fn local_error(&self, from: &State, to: &State, ahead: &State, error: &mut LocalError) {
+        let h = to.t - from.t;
+        let differences = self.history.differences(from, to, ahead);
+        for ((q, v), (change, second)) in error.iter_mut().zip(differences) {
+            *q = h * h / 6.0 * change;
+            *v = -h / 12.0 * second;
+        }
     }
 }

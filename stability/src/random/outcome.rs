@@ -291,10 +291,12 @@ fn remarks(report: &Report) -> Outcome {
 }
 
 /// Every step and every stage has a reason that is counted: a step of the grid, one that ends where a contact changes (an
-/// onset and the loss after it, after each of which the grid begins again), or one that was halved.
+/// onset and the loss after it, after each of which the grid begins again), one that was halved, or
+/// one that was tried with another length to pass a singular pose.
 fn bounded(report: &Report, asked: Option<u64>) -> Result<(), Breach> {
     let repeated = report.accuracy.as_ref().map_or(0, |a| a.rejected_steps);
-    let tried = report.steps + report.rejected_steps + report.location_trials + repeated;
+    let trials = report.location_trials + report.leap_trials;
+    let tried = report.steps + report.rejected_steps + trials + repeated;
     // two stages a step at most; a change may be tried at its end once more
     let stages = 2 * (tried + 2 * report.steps);
     let changes = 2 * report.onsets + report.unlocated_changes;

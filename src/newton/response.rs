@@ -1,0 +1,133 @@
+//! How far an error of velocity moves the mechanism within a time.
+//!
+//! In free flight an error e of velocity grows to H e within the horizon H; in a vibration of angular frequency w it moves
+//! things by e/w at most. With K the elastic stiffness and W^2 = M^-1 K,
+//!
+//! ```text
+//! y = (W^2 + 1/H^2)^(-1/2) e ~ H x_0 + sum_j 2 tau_j x_j,   (M + tau_j^2 K) x_j + Phi_q^T mu = M e,   Phi_q x_j = 0
+//! ```
+//!
+//! with tau_0 = H and every further tau a tenth of the one before: between 1.0 and 1.5 times min(H, 1/w) e for a mode that
+//! is slower than the last tau. Contacts count as open: they give way again within the horizon.
+
+use super::Counters;
+use super::factors::Factors;
+use crate::system::{State, System, Weights, Work};
+
+/// Ratio of neighbouring times.
+const RATIO: f64 = 0.1;
+/// Most times there are: from the horizon to the rounding of the run's end.
+const MOST: usize = 12;
+/// Accepted steps after which one of the factors is renewed.
+const RENEWAL: usize = 16;
+
+/// The matrices of some times, factorised now and then: for an estimate an earlier pose will do.
+#[derive(Debug)]
+pub struct Response {
+    horizon: f64,
+    levels: Vec<Level>,
+    /// How many levels have been factorised.
+    ready: usize,
+    /// Steps since a factor was renewed, and which one was.
+    age: usize,
+    renewed: usize,
+    at: State,
+    r: Vec<f64>,
+    phi: Vec<f64>,
+    b: Vec<f64>,
+    x: Vec<f64>,
+}
+
+/// The matrix of one time.
+#[derive(Debug)]
+struct Level {
+    factors: Factors,
+    /// True where it could not be factorised: it counts as one without stiffness then.
+    singular: bool,
+}
+
+impl Response {
+    /// Memory for a system with elastic parts, within a horizon \[s\].
+    pub fn new(system: &dyn System, horizon: f64) -> Response {
+        let shape = system.shape();
+        let size = shape.unknowns + shape.multipliers;
+        let level = || Level {
+            factors: Factors::new(system.symbolic()),
+            singular: false,
+        };
+        Response {
+            horizon,
+            levels: std::iter::repeat_with(level).take(MOST).collect(),
+            ready: 0,
+            age: 0,
+            renewed: 0,
+            at: State::zeros(shape),
+            r: vec![0.0; shape.coordinates],
+            phi: vec![0.0; shape.multipliers],
+            b: vec![0.0; size],
+            x: vec![0.0; shape.unknowns],
+        }
+    }
+
+    fn time(&self, level: usize) -> f64 {
+        self.horizon * RATIO.powi(level as i32)
+    }
+
+    /// Factorises one matrix at a state.
+    fn renew(&mut self, system: &dyn System, state: &State, level: usize, work: &mut Work) {
+        let tau = self.time(level);
+        let w = Weights {
+            q: tau * tau,
+            v: 0.0,
+        };
+        self.at.copy_from(state);
+        self.at.z.fill(0.0);
+        self.at.lambda.fill(0.0);
+        let (at, r, phi) = (&self.at, &mut self.r, &mut self.phi);
+        let mut counters = Counters::default();
+        let fill = |k: &mut [f64]| system.linearise(at, w, r, phi, k, work);
+        let level = &mut self.levels[level];
+        let renewed = level.factors.renew(system.symbolic(), &mut counters, fill);
+        level.singular = renewed.is_err();
+    }
+
+    /// Sees that there is a matrix for every time down to that of a step of length h, and that none of them gets old.
+    pub fn keep_up(&mut self, system: &dyn System, state: &State, h: f64, work: &mut Work) {
+        while self.ready < MOST && (self.ready == 0 || self.time(self.ready) > h) {
+            self.renew(system, state, self.ready, work);
+            self.ready += 1;
+        }
+        self.age += 1;
+        if self.age >= RENEWAL {
+            self.age = 0;
+            self.renewed = (self.renewed + 1) % self.ready;
+            self.renew(system, state, self.renewed, work);
+        }
+    }
+
+    /// What an error of velocity moves every unknown by within the horizon \[m\], in a step of length h.
+    pub fn ways(&mut self, system: &dyn System, h: f64, error: &[f64]) -> &[f64] {
+        let n = error.len();
+        self.x.fill(0.0);
+        for level in 0..self.ready {
+            let tau = self.time(level);
+            if level > 0 && tau < h {
+                break;
+            }
+            match self.levels[level].singular {
+                true => self.b[..n].copy_from_slice(error),
+                false => {
+                    system.momentum(error, &mut self.b);
+                    self.b[n..].fill(0.0);
+                    let factors = &self.levels[level].factors;
+                    factors.solve(system.symbolic(), &mut self.b);
+                }
+            }
+            let weight = if level == 0 { tau } else { 2.0 * tau };
+            for (x, b) in self.x.iter_mut().zip(&self.b) {
+                *x += weight * b;
+            }
+        }
+        &self.x
+    }
+}
