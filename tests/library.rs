@@ -5,13 +5,9 @@ use ladder::{Rung, Worst};
 
 const MEASURED: &str = "a few times the error measured at the step of the scene";
 
-/// Largest difference of channels from the given values in the row nearest to `t`.
+/// Largest difference of channels from the given values at `t`.
 fn error(run: &Recording, t: f64, expected: &[(&str, f64)]) -> f64 {
-    let times = run.get("t");
-    let row = (0..times.len())
-        .min_by(|a, b| (times[*a] - t).abs().total_cmp(&(times[*b] - t).abs()))
-        .unwrap();
-    assert!((times[row] - t).abs() < 1e-9, "no row at {t}");
+    let row = run.row(t);
     let worst = Worst::new();
     for (name, value) in expected {
         worst.see(run.get(name)[row] - value);

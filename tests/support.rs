@@ -28,6 +28,16 @@ impl Recording {
     pub fn len(&self) -> usize {
         self.kept.rows()
     }
+
+    /// The row at a time.
+    pub fn row(&self, t: f64) -> usize {
+        let times = self.get("t");
+        let row = (0..times.len())
+            .min_by(|a, b| (times[*a] - t).abs().total_cmp(&(times[*b] - t).abs()))
+            .expect("a run has rows");
+        assert!((times[row] - t).abs() < 1e-9, "no row at {t}");
+        row
+    }
 }
 
 /// The file of a scene of the project.

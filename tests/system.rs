@@ -118,7 +118,7 @@ fn stage_matrices_are_the_derivatives() {
         );
 }
 
-/// A Bathe step allocates nothing, in any scene.
+/// A step allocates nothing, in any scene.
 #[test]
 fn steps_do_not_allocate() {
     for name in all_scenes() {
@@ -141,7 +141,12 @@ fn steps_do_not_allocate() {
             }
         });
         assert_eq!(info.count_total, 0, "{name}");
-        assert_eq!(newton.counters.stages, 6000);
+        // stages of an explicit scheme solve no equations; Bathe's scheme has two
+        let stages = match scene.integrator.method.is_explicit() {
+            true => 0,
+            false => 6000,
+        };
+        assert_eq!(newton.counters.stages, stages, "{name}");
     }
 }
 

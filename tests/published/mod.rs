@@ -3,11 +3,15 @@
 //! Status of every number, as its source has it: E exact or closed form, P published, I computed once by others with
 //! quadrature, DOP853 or extended precision.
 
+mod andrews;
 mod cantilever;
+mod car_axis;
+mod first_contact;
 mod four_bar;
 mod impact;
 mod large_bending;
 mod pendulum;
+mod ramped_cantilever;
 mod rotating_beam;
 mod schemes;
 mod spring_pendulum;
@@ -28,6 +32,14 @@ fn run(text: &str, overrides: &[String]) -> Recording {
 /// The last value of a channel.
 fn last(run: &Recording, channel: &str) -> f64 {
     run.get(channel).last().copied().unwrap_or(f64::NAN)
+}
+
+/// The numbers of a file of listed values, row by row: comments behind `#`, then a row of names.
+fn listed(text: &str) -> Vec<Vec<f64>> {
+    let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+    let number = |cell: &str| cell.parse().unwrap_or_else(|e| panic!("`{cell}`: {e}"));
+    rows.map(|row| row.split(',').map(number).collect())
+        .collect()
 }
 
 /// A flexible link from EA, EI and rho A: a section of unit height and the width that gives EI/EA = width^2/12.
