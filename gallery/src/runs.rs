@@ -47,13 +47,19 @@ impl Show {
 }
 
 /// The first entry whose name begins that of the scene counts.
-const SHOWN: [Show; 21] = [
+const SHOWN: [Show; 25] = [
     show("3rrr/case1", "A1.torque", "Torque of motor A1").cut(0.5),
     show("3rrr/", "error.x", "Error of the platform, x").cut(0.5),
     show("ablation/", "rocker.alpha", "Acceleration of the rocker"),
+    show("andrews", "K1.omega", "Angular velocity of K1"),
     show("bouncing-journal", "journal.vx", "Velocity of the journal"),
     show("cantilever-dynamic", "points.beam.end.y", "Tip, y").drawn(1.2),
     show("cantilever-static", "points.beam.end.y", "Tip, y"),
+    show(
+        "car-axis",
+        "points.axle.right.y",
+        "Right end of the axle, y",
+    ),
     show("double-pendulum", "energy.bending", "Bending energy"),
     show(
         "four-bar-three-loose",
@@ -70,7 +76,13 @@ const SHOWN: [Show; 21] = [
     show("n-four-bar", "points.crank0.end.x", "B0, x").drawn(1.2),
     show("pendulum", "points.rod.bob.x", "Point at 1 m, x").drawn(1.18),
     show("quick-return", "ram.vx", "Velocity of the ram").drawn(0.6),
+    show("ramped-cantilever", "points.beam.end.y", "Tip, y").drawn(3.5),
     show("roll-up", "points.beam.end.y", "Tip, y"),
+    show(
+        "slider-crank/free",
+        "points.slider.front.y",
+        "Upper corner of the slider, y",
+    ),
     show("slider-crank/", "slider.ax", "Acceleration of the slider").drawn(0.0096),
     show("soft-pendulum", "points.rod.end.y", "Tip, y"),
     show("spin-up", "hub.torque", "Torque of the hub").drawn(8.0),
