@@ -45,14 +45,14 @@ fn the_squeezer_meets_the_listed_states() {
         .within(
             &angles,
             1e-13,
-            "Newton's method ends at rounding, 1e-17 m on bars of 7 mm, and the branch is ten times as flat",
+            "rounding of coordinates of 0.07 m over levers of 7 mm is 2e-15 rad; times fifty for the linear equations",
         );
     Rung::Published
         .asks("Andrews' mechanism: published accelerations and multipliers at the start, over the largest of each kind")
         .within(
             &rest,
             1e-12,
-            "rounding, times a thousand for the linear equations",
+            "rounding of 2e-16, times some thousands for the condition of the linear equations",
         );
 
     let end = components(&run, run.row(0.03));
@@ -80,7 +80,7 @@ fn the_squeezer_meets_the_listed_states() {
         .within(
             &independent,
             1e-11,
-            "the listed values are good to 1e-12; K1 must be there within 1e-16 s, or small rates at large accelerations differ",
+            "the listed values are good to 1e-12, and a lag of 1e-16 s is 3e-12 of gamma' = 11 rad/s, which changes by 3e5 rad/s²",
         );
 
     let trajectory = listed(TRAJECTORY);

@@ -233,7 +233,7 @@ fn spin_up_bends_back_as_listed() {
         .within(
             &worst,
             1e-9,
-            "ten digits of half a metre are listed, integrated with a tolerance of 1e-10 of the length of 10 m",
+            "ten digits are listed, 1e-10 m; ten times that for the error of the listed integration",
         );
 
     let farthest = |errors: &[[f64; 3]]| {
@@ -259,6 +259,6 @@ fn spin_up_bends_back_as_listed() {
         .within(
             &extrapolated,
             1e-8,
-            "what order 2 leaves to the next orders: a hundredth of the error of 1e-6 at h = 5e-4 s",
+            "a hundredth of the error of 1e-6 at h = 5e-4 s is left to the next orders",
         );
 }
