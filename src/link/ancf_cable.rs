@@ -40,6 +40,15 @@ const T: [[f64; 6]; 6] = [
 /// B_ab = int phi_a' phi_b' dxi.
 const B: [[f64; 3]; 3] = [[12.0, -6.0, -6.0], [-6.0, 4.0, 2.0], [-6.0, 2.0, 4.0]];
 
+/// 420 m_ab/(rho A l) of eq. 10 for the coordinates (r_i, l r_i', r_j, l r_j'): the upper triangle, row by row.
+#[rustfmt::skip]
+const MASS: [f64; 10] = [
+    156.0, 22.0,  54.0, -13.0,
+            4.0,  13.0,  -3.0,
+                 156.0, -22.0,
+                          4.0,
+];
+
 /// Storage position of the pair (a, b).
 const PAIR_OF: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
 
@@ -100,8 +109,8 @@ impl AncfCable {
         let [start, end] = Self::bends(u);
         let bending = self.bending_stiffness / self.length;
         let moments = [
-            scale(bending, add(scale(4.0, start), scale(2.0, end))),
-            scale(bending, add(scale(2.0, start), scale(4.0, end))),
+            scale(bending, add(scale(B[1][1], start), scale(B[1][2], end))),
+            scale(bending, add(scale(B[2][1], start), scale(B[2][2], end))),
         ];
         g[0] = sub(g[0], add(moments[0], moments[1]));
         g[1] = add(g[1], moments[0]);
@@ -123,7 +132,9 @@ impl AncfCable {
         let weights = [1.0, 2.0, 2.0, 1.0, 2.0, 1.0];
         let axial: f64 = (0..6).map(|p| weights[p] * d[p] * w[p]).sum();
         let [start, end] = Self::bends(&u);
-        let bending = 4.0 * (dot(start, start) + dot(start, end) + dot(end, end));
+        let bending = B[1][1] * dot(start, start)
+            + (B[1][2] + B[2][1]) * dot(start, end)
+            + B[2][2] * dot(end, end);
         (
             0.125 * self.axial_stiffness * self.length * axial,
             0.5 * self.bending_stiffness / self.length * bending,
@@ -150,23 +161,15 @@ impl AncfCable {
 
     /// Constant mass matrix of eq. 10 for a mass per length rho A, in the scalar form m_ab that stands before I_2.
     pub fn mass(length: f64, mass_per_length: f64) -> [[f64; 4]; 4] {
-        let (m, l) = (mass_per_length * length / 420.0, length);
-        [
-            [156.0 * m, 22.0 * l * m, 54.0 * m, -13.0 * l * m],
-            [
-                22.0 * l * m,
-                4.0 * l * l * m,
-                13.0 * l * m,
-                -3.0 * l * l * m,
-            ],
-            [54.0 * m, 13.0 * l * m, 156.0 * m, -22.0 * l * m],
-            [
-                -13.0 * l * m,
-                -3.0 * l * l * m,
-                -22.0 * l * m,
-                4.0 * l * l * m,
-            ],
-        ]
+        let unit = mass_per_length * length / 420.0;
+        let size = [1.0, length, 1.0, length];
+        let pairs = (0..4).flat_map(|a| (a..4).map(move |b| (a, b)));
+        let mut mass = [[0.0; 4]; 4];
+        for (entry, (a, b)) in MASS.iter().zip(pairs) {
+            mass[a][b] = entry * size[a] * size[b] * unit;
+            mass[b][a] = mass[a][b];
+        }
+        mass
     }
 }
 
@@ -214,24 +217,24 @@ impl ElasticRoute for AncfCable {
         };
         let inverse = 1.0 / self.length;
         // chord with chord
-        let h = block(0, PAIRS[0]).map(|x| x * inverse * inverse);
+        let h = block(0, (0, 0)).map(|x| x * inverse * inverse);
         put(0, 0, 1.0, h);
         put(4, 4, 1.0, h);
         put(0, 4, -1.0, h);
         put(4, 0, -1.0, h);
-        // chord with the slopes
+        // chord with the slopes, and the slopes with the chord
         for (p, slope) in [(1, 2), (2, 6)] {
-            let h = block(p, PAIRS[p]).map(|x| x * inverse);
+            let h = block(p, (0, p)).map(|x| x * inverse);
             put(0, slope, -1.0, h);
-            put(slope, 0, -1.0, h);
             put(4, slope, 1.0, h);
+            let h = block(p, (p, 0)).map(|x| x * inverse);
+            put(slope, 0, -1.0, h);
             put(slope, 4, 1.0, h);
         }
         // slopes with slopes
-        put(2, 2, 1.0, block(3, PAIRS[3]));
-        let h = block(4, PAIRS[4]);
-        put(2, 6, 1.0, h);
-        put(6, 2, 1.0, h);
-        put(6, 6, 1.0, block(5, PAIRS[5]));
+        put(2, 2, 1.0, block(3, (1, 1)));
+        put(2, 6, 1.0, block(4, (1, 2)));
+        put(6, 2, 1.0, block(4, (2, 1)));
+        put(6, 6, 1.0, block(5, (2, 2)));
     }
 }
