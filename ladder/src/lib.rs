@@ -12,6 +12,7 @@ pub mod answer;
 pub mod figures;
 pub mod mutants;
 pub mod page;
+pub mod seeded;
 mod worst;
 
 pub use answer::{Allowed, Answer, Curve};

@@ -1,9 +1,10 @@
 //! Seeded faults: deliberate mistakes, applied one at a time, that the comparison has to catch.
 
+use ladder::seeded::root;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::{Deserialize, Serialize};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A mistake in one place.
 #[derive(Debug, Clone, Deserialize)]
@@ -30,11 +31,6 @@ pub struct Outcome {
 #[derive(Deserialize)]
 struct List {
     fault: Vec<Fault>,
-}
-
-/// The root of the workspace.
-pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
 /// The list in `verify/faults.toml`.

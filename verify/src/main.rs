@@ -1,5 +1,6 @@
 //! Writes verify/REPORT.md and its pictures.
 
+use ladder::seeded::root;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use plot::save;
 use std::fs;
@@ -8,7 +9,7 @@ use verify::check::Agreement;
 use verify::compare::{
     classes, cost, elements, equations, flexible, impacts, laws, machines, rigid, statistics,
 };
-use verify::faults::{list, outcomes, root};
+use verify::faults::{list, outcomes};
 use verify::figures::{self, overlay};
 use verify::report::Report;
 use verify::trajectory::{Plan, tolerances};

@@ -1,6 +1,7 @@
 //! The list of seeded faults fits the code, and every one of them was caught.
 
-use verify::faults::{list, outcomes, root};
+use ladder::seeded::root;
+use verify::faults::{list, outcomes};
 
 /// The comparison is worth what it catches; fewer faults than these would say little.
 const FEWEST: usize = 15;

@@ -1,11 +1,10 @@
 //! Applies every seeded fault to a copy of the workspace, one at a time, and reports which tests catch it.
 
 use clap::Parser;
+use ladder::seeded::{Copy, root};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use verify::faults::{Fault, Outcome, list, outcomes as known, root};
+use verify::faults::{Fault, Outcome, list, outcomes as known};
 
 /// Tests that take seconds, and those that take a minute and are asked only when the first catch nothing.
 const STAGES: [&[&str]; 2] = [
@@ -29,8 +28,8 @@ fn main() -> Result<()> {
         only.is_none_or(|text| fault.name.contains(text.as_str()))
     };
     let chosen: Vec<&Fault> = faults.iter().filter(chosen).collect();
-    let tree = copy_workspace()?;
-    let sound = tests(&tree, STAGES[0])?;
+    let copy = Copy::new("faults")?;
+    let sound = tests(&copy, STAGES[0])?;
     if !sound.is_empty() {
         return Err(miette!(
             "without a fault these tests fail: {}",
@@ -39,7 +38,7 @@ fn main() -> Result<()> {
     }
     let mut outcomes = Vec::new();
     for fault in chosen {
-        let outcome = seed(&tree, fault)?;
+        let outcome = seed(&copy, fault)?;
         let caught = match outcome.caught_by.len() {
             0 => "NOT CAUGHT".to_owned(),
             _ => outcome.caught_by.join(", "),
@@ -67,87 +66,27 @@ fn keep(faults: &[Fault], fresh: Vec<Outcome>) -> Result<()> {
     fs::write(root().join("verify/faults.json"), text + "\n").into_diagnostic()
 }
 
-/// Copies what is under version control to the target folder, where cargo never looks for a workspace of its own.
-fn copy_workspace() -> Result<PathBuf> {
-    let root = root();
-    let tree = root.join("target/faults/tree");
-    let listed = Command::new("git")
-        .args([
-            "ls-files",
-            "-z",
-            "--cached",
-            "--others",
-            "--exclude-standard",
-        ])
-        .current_dir(&root)
-        .output()
-        .into_diagnostic()
-        .wrap_err("git lists the files to copy")?;
-    let names = String::from_utf8(listed.stdout).into_diagnostic()?;
-    for name in names.split('\0').filter(|name| !name.is_empty()) {
-        let (from, to) = (root.join(name), tree.join(name));
-        let bytes = fs::read(&from).into_diagnostic()?;
-        if fs::read(&to).is_ok_and(|there| there == bytes) {
-            continue;
-        }
-        if let Some(folder) = to.parent() {
-            fs::create_dir_all(folder).into_diagnostic()?;
-        }
-        fs::write(&to, bytes)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot write {}", to.display()))?;
-    }
-    Ok(tree)
-}
-
 /// Puts a fault in, asks the tests, takes it out.
-fn seed(tree: &Path, fault: &Fault) -> Result<Outcome> {
-    let path = tree.join(&fault.file);
-    let sound = fs::read_to_string(&path).into_diagnostic()?;
-    fs::write(&path, fault.applied(tree)?).into_diagnostic()?;
-    let mut caught_by = Vec::new();
-    for stage in STAGES {
-        caught_by = tests(tree, stage).wrap_err_with(|| fault.name.clone())?;
-        if !caught_by.is_empty() {
-            break;
+fn seed(copy: &Copy, fault: &Fault) -> Result<Outcome> {
+    let text = fault.applied(&copy.tree())?;
+    let caught_by = copy.with(&fault.file, &text, || {
+        let quick = tests(copy, STAGES[0])?;
+        if quick.is_empty() {
+            tests(copy, STAGES[1])
+        } else {
+            Ok(quick)
         }
-    }
-    fs::write(&path, sound).into_diagnostic()?;
+    });
     Ok(Outcome {
         name: fault.name.clone(),
-        caught_by,
+        caught_by: caught_by.wrap_err_with(|| fault.name.clone())?,
     })
 }
 
 /// Names of the tests that fail.
-fn tests(tree: &Path, filters: &[&str]) -> Result<Vec<String>> {
-    let output = Command::new(env!("CARGO"))
-        .args([
-            "test",
-            "--release",
-            "--quiet",
-            "-p",
-            "verify",
-            "--test",
-            "agreement",
-            "--",
-        ])
-        .args(["--format", "pretty"])
-        .args(filters)
-        .env("CARGO_TARGET_DIR", root().join("target/faults/build"))
-        .env("RUST_BACKTRACE", "0")
-        .current_dir(tree)
-        .output()
-        .into_diagnostic()?;
-    let text = String::from_utf8_lossy(&output.stdout);
-    let failed = text.lines().filter_map(|line| {
-        let name = line.strip_prefix("test ")?.strip_suffix(" ... FAILED")?;
-        Some(name.rsplit("::").next().unwrap_or(name).to_owned())
-    });
-    let failed: Vec<String> = failed.collect();
-    if failed.is_empty() && !output.status.success() {
-        let errors = String::from_utf8_lossy(&output.stderr);
-        return Err(miette!("the tests did not run:\n{errors}"));
-    }
-    Ok(failed)
+fn tests(copy: &Copy, filters: &[&str]) -> Result<Vec<String>> {
+    copy.failing(
+        &["--release", "-p", "verify", "--test", "agreement"],
+        filters,
+    )
 }
