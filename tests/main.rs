@@ -8,6 +8,7 @@ mod balance;
 mod command_line;
 mod couples;
 mod documents;
+mod drift;
 mod good_input;
 mod hostile_input;
 mod ideal;

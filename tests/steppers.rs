@@ -419,8 +419,9 @@ fn bathe_loses_energy_of_linear_systems_from_the_first_step_as_the_spectral_form
     let (error, gain) = (Worst::new(), Worst::new());
     proptest!(|(
         masses in prop::collection::vec(0.1..10.0_f64, 1..5),
-        stiff in prop::collection::vec(-1.0..5.0_f64, 6),
-        start in prop::array::uniform10(-1.0..1.0_f64),
+        stiff in prop::array::uniform5(-1.0..5.0_f64),
+        q in prop::array::uniform4(-1.0..1.0_f64),
+        v in prop::array::uniform4(0.1..1.0_f64), // never at rest
         log_step in -1.5..2.0_f64,
         gamma in 0.2..0.8_f64,
         spectral_radius in prop_oneof![Just(0.0), 0.0..1.0_f64],
@@ -429,7 +430,7 @@ fn bathe_loses_energy_of_linear_systems_from_the_first_step_as_the_spectral_form
         let chain = Chain::new(masses, stiff[..=n].iter().map(|x| 10.0_f64.powf(*x)).collect());
         // the highest mode turns by 0.03 to 100 radians a step
         let h = 10.0_f64.powf(log_step) / modes(&chain).eigenvalues.max().sqrt();
-        let (q, v) = (&start[..n], &start[5..5 + n]);
+        let (q, v) = (&q[..n], &v[..n]);
         let half = decay_of_modes(&chain, Method::bathe(0.5), &spectral_radius_of_bathe_half, h, q, v);
         let formula = |x| spectral_radius_of_bathe(gamma, spectral_radius, x);
         let method = Method::Bathe { gamma, spectral_radius };
