@@ -42,9 +42,10 @@ impl Bathe {
         let c1 = (1.0 + rho) / (4.0 - 2.0 * gamma * (1.0 - rho));
         let inner = 1.0 / (6.0 * gamma * (1.0 - gamma));
         let last = 0.5 - gamma * inner;
+        let weights = [(gamma - 1.0) * c1 + 0.5, c1, 0.5 - gamma * c1];
         Bathe {
             gamma,
-            weights: [(gamma - 1.0) * c1 + 0.5, c1, 0.5 - gamma * c1],
+            weights,
             quadrature: [1.0 - inner - last, inner, last],
             middle: [State::zeros(shape)],
             stage: Stage::new(shape),
