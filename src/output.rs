@@ -5,7 +5,7 @@
 //! | `channels.csv` | one row an output interval, `name [unit]` above each column |
 //! | `onsets.csv` | one row a contact that closes |
 //! | `scene.toml` | the scene as it was read; overrides are in the summary |
-//! | `summary.json` | status, counters, energy ledger, extremes |
+//! | `summary.json` | status, counters, energy ledger, extremes, warnings |
 //! | `timing.json` | wall and processor time, machine, date |
 //!
 //! Only `timing.json` differs when a run is repeated. `summary.json` says `incomplete` from the first rows to the last, so
@@ -100,6 +100,13 @@ struct Summary<'a, R> {
 #[derive(Serialize)]
 struct Pending {
     status: Status,
+}
+
+#[derive(Serialize)]
+struct Ended<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    warnings: Vec<String>,
 }
 
 impl Folder {
@@ -198,7 +205,8 @@ impl Results {
         self.onsets.close()?;
         let timing = self.stopwatch.stop(report.t);
         replace(&self.folder, TIMING, &json(&timing)?)?;
-        write_summary(&self.folder, &self.header, report)?;
+        let warnings = report.warnings();
+        write_summary(&self.folder, &self.header, Ended { report, warnings })?;
         if self.replaces && report.status == Status::Complete {
             earlier::forget(&self.folder, &FILES)?;
         }

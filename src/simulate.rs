@@ -22,9 +22,10 @@ pub use impacts::Impact;
 use impacts::Impacts;
 pub use meter::Integration;
 use meter::{Gain, Meter};
-pub use observer::{Control, Observer, Onset, Progress};
+pub use observer::{Control, Observer, Onset, Progress, Told};
 pub use recording::{RecordedOnset, Recording};
 pub use report::{Extreme, Inspection, Report, Status};
+pub(crate) use warnings::warning_list;
 
 use crate::compile::compile;
 use crate::initial::{self, redundancy};

@@ -133,12 +133,86 @@ fn an_accuracy_replaces_the_step() {
     expect(&output, 2, "--set:1:");
 }
 
+fn warnings(value: &serde_json::Value) -> Vec<String> {
+    let list = value["warnings"].as_array().expect("a list of warnings");
+    list.iter()
+        .map(|w| w.as_str().unwrap().to_owned())
+        .collect()
+}
+
+/// What `--quiet` leaves on standard error: the warnings, each on a line of its own.
+#[track_caller]
+fn expect_warnings(output: &Output, warnings: &[String]) {
+    let lines = warnings.iter().map(|w| format!("warning: {w}\n"));
+    let shown = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(shown, lines.collect::<String>());
+}
+
 #[test]
-fn quiet_is_silent() {
+fn a_quiet_run_without_warnings_is_silent() {
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), &["--quiet"]);
     expect(&output, 0, "");
     assert!(output.stderr.is_empty() && output.stdout.is_empty());
+    assert!(warnings(&summary(folder.path())).is_empty());
+}
+
+/// Steps that are too long for the contact, in a run that ends and in one that stops.
+#[test]
+fn a_quiet_run_shows_its_warnings() {
+    let folder = tempfile::tempdir().unwrap();
+    let rough = ["--set", "integrator.step=1.6e-5", "--set"];
+    let rows = "output.interval=1.6e-5";
+    let quiet = [&rough[..], &[rows, "--quiet"]].concat();
+    let out = folder.path().join("quiet");
+    let output = run(&out, &quiet);
+    expect(&output, 0, "");
+    let told = warnings(&summary(&out));
+    assert!(!told.is_empty());
+    expect_warnings(&output, &told);
+    assert!(output.stdout.is_empty());
+
+    let out = folder.path().join("loud");
+    let output = run(&out, &[&rough[..], &[rows]].concat());
+    for warning in &told {
+        expect(&output, 0, &format!("warning: {warning}\n"));
+    }
+    expect(&output, 0, "steps in ");
+
+    let out = folder.path().join("stopped");
+    let output = run(&out, &["--quiet", "--set", "bodies.journal.mass=1e-300"]);
+    let told = warnings(&summary(&out));
+    assert!(!told.is_empty());
+    for warning in &told {
+        expect(&output, 3, &format!("warning: {warning}\n"));
+    }
+    expect(&output, 3, "error: the run cannot go on: ");
+}
+
+#[test]
+fn a_quiet_study_shows_the_warnings_of_its_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("study");
+    let study = ["precision", "studies/bouncing-journal.toml", "--smoke"];
+    let output = looselink(&[&study[..], &["--quiet", "--out", out.to_str().unwrap()]].concat());
+    expect(&output, 0, "");
+    let found: serde_json::Value = serde_json::from_str(&read(&out, "precision.json")).unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    let page = read(&out, "precision.md");
+    let mut count = 0;
+    for run in found["runs"].as_array().unwrap() {
+        for warning in warnings(run) {
+            let named = format!(": {warning}\n");
+            let curve = run["curve"].as_str().unwrap();
+            let line = |line: &str| line.contains(curve) && line.ends_with(named.trim_end());
+            assert!(stderr.lines().any(line), "{curve}{named}{stderr}");
+            assert!(page.lines().any(line), "{curve}{named}{page}");
+            count += 1;
+        }
+    }
+    // backward Euler loses most of the energy
+    assert!(count > 0 && stderr.lines().count() == count);
+    assert!(stderr.lines().all(|line| line.starts_with("warning: ")));
 }
 
 #[test]
@@ -337,8 +411,25 @@ fn an_ablation_leaves_tables_numbers_and_a_picture() {
 fn an_ablation_on_standard_output() {
     let output = ablate(&["--json", "--quiet", "--body", "coupler"]);
     expect(&output, 0, "");
-    assert!(output.stderr.is_empty());
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    // variants with the same effects share one run
+    let mut told = std::collections::BTreeMap::new();
+    for variant in json["ablation"]["variants"].as_array().unwrap() {
+        let name = variant["variant"].as_str().unwrap();
+        let named = warnings(variant)
+            .into_iter()
+            .map(|w| format!("{name}: {w}"));
+        told.entry(variant["effects"].to_string())
+            .or_insert_with(|| named.collect::<Vec<_>>());
+    }
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    let mut shown: Vec<&str> = stderr.lines().collect();
+    let mut told: Vec<_> = told.into_values().flatten().collect();
+    told.iter_mut().for_each(|w| w.insert_str(0, "warning: "));
+    shown.sort_unstable();
+    told.sort_unstable();
+    assert!(!told.is_empty(), "contacts of 2 ms in long steps");
+    assert_eq!(shown, told);
     assert_eq!(json["ablation"]["body"]["name"], "coupler");
     assert_eq!(json["timing"]["variants"][0]["runs"], 1);
     expect(

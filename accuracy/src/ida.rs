@@ -1,6 +1,7 @@
 //! The second implementation as a rival: full coordinates, stabilised index 2, IDA with located onsets.
 
 use looselink::precision::{Made, Pace, Study, StudyError, Timing, Work};
+use looselink::simulate::Told;
 use miette::{Result, miette};
 use verify::trajectory::{Plan, Trajectory, tolerances};
 
@@ -21,12 +22,12 @@ pub fn points(
     study: &Study,
     tolerances: &[f64],
     repeats: usize,
-    tell: &mut dyn FnMut(&str),
+    tell: &mut dyn FnMut(Told),
     add: Add,
 ) -> Result<()> {
     let plan = Plan::of_file(&study.scene, &study.set, study.duration, study.interval);
     for &relative in tolerances {
-        tell(&format!("{NAME}, tolerance {relative:e}"));
+        tell(Told::Begun(&format!("{NAME}, tolerance {relative:e}")));
         let made = repeated(&plan, relative, repeats);
         let pace = Pace::Tolerance(relative);
         let added = match &made {
@@ -34,6 +35,8 @@ pub fn points(
                 let made = Made {
                     columns: &|name| run.columns.get(name).map(Vec::as_slice),
                     work: work(run),
+                    // IDA reports failures alone
+                    warnings: Vec::new(),
                     timing: *timing,
                 };
                 add(pace, Ok(made))

@@ -9,6 +9,7 @@ use clap::Parser;
 use looselink::ablation::figure as figure_of_effects;
 use looselink::machine::machine;
 use looselink::precision::{Effort, Outcome, Study, Survey, figure, run};
+use looselink::simulate::Told;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -61,7 +62,7 @@ fn main() -> Result<()> {
             repeats,
             smoke: false,
         };
-        let mut tell = |point: &str| eprintln!("{name}: {point}");
+        let mut tell = |told: Told| show(&name, told);
         if study.statistics.is_some() {
             let survey = Survey::run(&study, effort, &mut tell);
             let mut survey = survey.map_err(|e| miette!("{e}"))?;
@@ -108,6 +109,14 @@ fn main() -> Result<()> {
     std::fs::write(&path, page)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot write {}", path.display()))
+}
+
+/// Shows what is told of the runs of a study.
+fn show(study: &str, told: Told) {
+    match told {
+        Told::Begun(run) => eprintln!("{study}: {run}"),
+        Told::Warned { run, warning } => eprintln!("{study}: {run}: warning: {warning}"),
+    }
 }
 
 /// Files of the folder, in the order of their names.

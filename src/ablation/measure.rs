@@ -213,6 +213,7 @@ pub(super) struct Run {
     pub physics: Physics,
     pub peak_joint: Option<String>,
     pub counts: Counts,
+    pub warnings: Vec<String>,
     pub path: Path,
 }
 
@@ -249,6 +250,7 @@ pub(super) fn run(scene: &Scene, body: &Observed, reference: Reference) -> Resul
         Some(mean(contact))
     });
     let contacts: Vec<f64> = contacts.collect();
+    let report = simulation.report();
     Ok(Run {
         rows: recording.rows(),
         physics: Physics {
@@ -262,7 +264,8 @@ pub(super) fn run(scene: &Scene, body: &Observed, reference: Reference) -> Resul
         peak_joint: peak
             .filter(|(_, force)| *force > 0.0)
             .map(|(joint, _)| joint.name.clone()),
-        counts: counts(&simulation, simulation.report()),
+        warnings: report.warnings(),
+        counts: counts(&simulation, report),
         path,
     })
 }

@@ -19,6 +19,7 @@ pub use report::{Repeatable, Timing};
 pub use variants::{Role, Variant, variants};
 
 use crate::scene::Scene;
+use crate::simulate::Told;
 use measure::{Reference, Run, run, time};
 use serde::Serialize;
 
@@ -48,6 +49,8 @@ pub struct Outcome {
     pub peak_joint: Option<String>,
     /// Sizes and work.
     pub counts: Counts,
+    /// What its run warns of.
+    pub warnings: Vec<String>,
     /// Processor time.
     pub cost: Cost,
 }
@@ -71,12 +74,13 @@ struct Header {
 
 /// Runs every variant of a scene and measures it; variants with the same effects share one measurement.
 ///
-/// `runs` is the number of timed runs, chosen by their length when absent; `tell` hears of what is begun.
+/// `runs` is the number of timed runs, chosen by their length when absent; `tell` hears of what is begun and of
+/// warnings.
 pub fn ablate(
     scene: &Scene,
     body: Observed,
     runs: Option<usize>,
-    tell: &mut dyn FnMut(&str),
+    tell: &mut dyn FnMut(Told),
 ) -> Ablation {
     let variants = variants(scene);
     let mut distinct: Vec<(&Variant, Result<Run, String>)> = Vec::new();
@@ -84,7 +88,8 @@ pub fn ablate(
         if distinct.iter().any(|(v, _)| v.effects == variant.effects) {
             continue;
         }
-        tell(&variant.name());
+        let name = variant.name();
+        tell(Told::Begun(&name));
         let reference = match (variant.role, distinct.first()) {
             (Role::Ideal, _) => Reference::Itself,
             (_, Some((_, Ok(ideal)))) => Reference::Path(&ideal.path),
@@ -94,9 +99,15 @@ pub fn ablate(
             Ok(scene) => run(scene, &body, reference),
             Err(error) => Err(format!("not possible: {error}")),
         };
+        for warning in measured.iter().flat_map(|run| &run.warnings) {
+            tell(Told::Warned {
+                run: &name,
+                warning,
+            });
+        }
         distinct.push((variant, measured));
     }
-    tell("processor times");
+    tell(Told::Begun("processor times"));
     let ran = distinct.iter().filter(|(_, run)| run.is_ok());
     let ran: Vec<&Scene> = ran.filter_map(|(v, _)| v.scene.as_ref().ok()).collect();
     let mut seconds = time(&ran, runs).into_iter();
@@ -109,6 +120,7 @@ pub fn ablate(
             physics: run.physics,
             peak_joint: run.peak_joint,
             counts: run.counts,
+            warnings: run.warnings,
         }
     };
     let outcomes = distinct.into_iter();

@@ -6,6 +6,7 @@ use super::table::Table;
 use super::variants::Role;
 use super::{Ablation, Header, Outcome, Row};
 use crate::machine::{Machine, machine};
+use crate::simulate::warning_list;
 use plot::{digits, si};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -43,6 +44,8 @@ struct RepeatableRow<'a> {
     less_full_scene: Option<Physics>,
     #[serde(skip_serializing_if = "Option::is_none")]
     counts: Option<&'a Counts>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    warnings: Option<&'a [String]>,
 }
 
 impl<'a> RepeatableRow<'a> {
@@ -59,6 +62,7 @@ impl<'a> RepeatableRow<'a> {
             less_rigid_ideal_mechanism: less(ideal),
             less_full_scene: less(full),
             counts: outcome.map(|o| &o.counts),
+            warnings: outcome.map(|o| &*o.warnings),
         }
     }
 }
@@ -134,7 +138,13 @@ impl Ablation {
         for (title, table) in self.tables() {
             page += &format!("## {title}\n\n{}\n", table.markdown());
         }
-        page + "Processor times are in the picture and in `timing.json`.\n"
+        page += "Processor times are in the picture and in `timing.json`.\n";
+        let warnings = self.measured().flat_map(|(row, outcome)| {
+            let name = row.variant.name();
+            let warnings = outcome.warnings.iter();
+            warnings.map(move |warning| format!("{name}: {warning}"))
+        });
+        page + &warning_list(&warnings.collect::<Vec<_>>())
     }
 
     /// What every variant does and what it costs as Markdown without headings, for a page of more than this.

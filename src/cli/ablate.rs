@@ -1,7 +1,7 @@
 //! `looselink ablate`
 
 use super::failure::Failure;
-use super::progress::say;
+use super::progress::show as tell;
 use super::{SceneArguments, print};
 use clap::Args;
 use looselink::ablation::{Ablation, Folder, Observed, Repeatable, Timing, ablate as measure};
@@ -27,7 +27,7 @@ pub struct Arguments {
     /// Machine-readable output.
     #[arg(long)]
     json: bool,
-    /// Show no progress.
+    /// Show no progress; warnings are shown nevertheless.
     #[arg(long)]
     quiet: bool,
 }
@@ -49,11 +49,7 @@ pub fn ablate(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|e| Failure::bad_input(e.to_string()))?;
     folder.iter().try_for_each(Folder::prepare)?;
     let runs = arguments.runs.map(|runs| runs as usize);
-    let ablation = measure(&scene, body, runs, &mut |begun| {
-        if !arguments.quiet {
-            say(begun);
-        }
-    });
+    let ablation = measure(&scene, body, runs, &mut |told| tell(told, arguments.quiet));
     // What was measured is shown also where it cannot be stored.
     let stored = folder.map_or(Ok(()), |folder| folder.write(&ablation));
     show(arguments, &ablation)?;

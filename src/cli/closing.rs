@@ -6,7 +6,7 @@ use looselink::simulate::{AccuracyReport, Report};
 /// Impacts that are shown; summary.json lists more.
 const SHOWN: usize = 3;
 
-/// Lines about a finished run, most of them absent when there is nothing to say.
+/// Lines about a finished run, most of them absent when there is nothing to say; warnings are not among them.
 pub fn lines(report: &Report) -> Vec<String> {
     let mut lines = Vec::new();
     lines.extend(report.ledger.iter().map(energy));
@@ -23,8 +23,6 @@ pub fn lines(report: &Report) -> Vec<String> {
             impact.deepest_penetration
         )
     }));
-    let warnings = report.warnings().into_iter();
-    lines.extend(warnings.map(|warning| format!("warning: {warning}")));
     lines
 }
 

@@ -2,10 +2,11 @@
 
 use super::failure::Failure;
 use super::print;
-use super::progress::say;
+use super::progress::show;
 use clap::Args;
 use looselink::machine::machine;
 use looselink::precision::{Effort, Folder, Study, Survey, page, run};
+use looselink::simulate::Told;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -24,7 +25,7 @@ pub struct Arguments {
     /// Replace a result that stands in the folder; until the new one is whole it is kept in `previous-result` there.
     #[arg(long)]
     force: bool,
-    /// Show no progress.
+    /// Show no progress; warnings are shown nevertheless.
     #[arg(long)]
     quiet: bool,
 }
@@ -42,11 +43,7 @@ pub fn precision(arguments: &Arguments) -> Result<(), Failure> {
         },
         smoke: arguments.smoke,
     };
-    let mut tell = |name: &str| {
-        if !arguments.quiet {
-            say(name);
-        }
-    };
+    let mut tell = |told: Told| show(told, arguments.quiet);
     let machine = machine();
     let (page, stored) = match study.statistics {
         Some(_) => {

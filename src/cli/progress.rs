@@ -1,7 +1,7 @@
 //! How far a run is: a bar on a terminal, a line now and then elsewhere.
 
 use indicatif::{ProgressBar, ProgressStyle};
-use looselink::simulate::Progress;
+use looselink::simulate::{Progress, Told};
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
@@ -77,6 +77,20 @@ fn message(progress: &Progress, started: &Instant) -> String {
     };
     let factor = t / started.elapsed().as_secs_f64();
     format!("t = {t:.4} of {duration} s, {factor:.3} x real time, {contacts} contacts closed")
+}
+
+/// A warning, shown with `--quiet` too.
+pub fn warn(warning: &str) {
+    say(&format!("warning: {warning}"));
+}
+
+/// Shows what is told of many runs; with `quiet` the warnings alone.
+pub fn show(told: Told, quiet: bool) {
+    match told {
+        Told::Begun(name) if !quiet => say(name),
+        Told::Begun(_) => {}
+        Told::Warned { run, warning } => warn(&format!("{run}: {warning}")),
+    }
 }
 
 /// A line on standard error.

@@ -3,7 +3,7 @@
 use super::SceneArguments;
 use super::closing;
 use super::failure::{Failure, INTERRUPTED};
-use super::progress::{Display, Pace};
+use super::progress::{Display, Pace, warn};
 use clap::Args;
 use looselink::output::{Folder, OutputError, Results, earlier_result};
 use looselink::simulate::{Control, Observer, Onset, Progress};
@@ -23,7 +23,7 @@ pub struct Arguments {
     /// Replace a result that stands in the folder; until the new one is complete it is kept in `previous-result` there.
     #[arg(long)]
     force: bool,
-    /// Show no progress.
+    /// Show no progress; warnings are shown nevertheless.
     #[arg(long)]
     quiet: bool,
 }
@@ -95,10 +95,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             for line in closing::lines(&report) {
                 watch.display.finish(&line);
             }
+            report.warnings().iter().for_each(|warning| warn(warning));
             Ok(())
         }
         Err(error) => {
             watch.display.finish("");
+            report.warnings().iter().for_each(|warning| warn(warning));
             let kept = match stored {
                 Ok(()) => format!("; the results up to there are in `{out}`"),
                 Err(second) => format!("; and the result in `{out}` is not closed: {second}"),

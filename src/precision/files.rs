@@ -2,9 +2,9 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `precision.json` | errors and work of all points |
+//! | `precision.json` | errors, work and warnings of all points |
 //! | `timing.json` | their processor times, and the machine |
-//! | `precision.md` | both as tables |
+//! | `precision.md` | both as tables, and the warnings |
 //! | `precision.svg`, `precision.png` | the diagrams |
 //!
 //! The first is the same bytes when the study is repeated. It comes last: without it there is no result. A result that is

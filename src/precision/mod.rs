@@ -22,7 +22,7 @@ pub use table::{page, table};
 
 use crate::instructions::Instructions;
 use crate::scene::{Scene, SceneError};
-use crate::simulate::{Recording, Report, RunError, Simulation};
+use crate::simulate::{Recording, Report, RunError, Simulation, Told};
 use cpu_time::ThreadTime;
 use errors::Series;
 use serde::Serialize;
@@ -43,6 +43,8 @@ pub struct Outcome {
     pub title: String,
     /// Difference between the two runs of the reference: nothing below it is told apart.
     pub floor: Errors,
+    /// Warnings of the two runs of the reference, coarse and fine.
+    pub reference_warnings: [Vec<String>; 2],
     /// All points, curve by curve.
     pub runs: Vec<Run>,
     /// Their times, in the same order.
@@ -65,18 +67,20 @@ impl Outcome {
         pace: Pace,
         made: Result<Made, String>,
     ) -> Result<(), StudyError> {
-        let (result, timing) = match made {
+        let (result, warnings, timing) = match made {
             Ok(made) => {
                 let errors = Series::of(study, made.columns)?.errors(&self.exact);
                 let work = made.work;
-                (Ok(Measured { errors, work }), Some(made.timing))
+                let measured = Measured { errors, work };
+                (Ok(measured), made.warnings, Some(made.timing))
             }
-            Err(error) => (Err(error), None),
+            Err(error) => (Err(error), Vec::new(), None),
         };
         self.runs.push(Run {
             curve: curve.to_owned(),
             pace,
             result,
+            warnings,
         });
         self.timings.push(timing);
         Ok(())
@@ -86,6 +90,30 @@ impl Outcome {
     pub fn curves(&self) -> Vec<&str> {
         distinct(self.runs.iter().map(|run| &*run.curve))
     }
+
+    /// All warnings, each after the name of its run.
+    pub fn warnings(&self) -> Vec<String> {
+        let runs = self.runs.iter();
+        let runs = runs.map(|run| (&*run.curve, run.pace, &*run.warnings));
+        named_warnings(&self.reference_warnings, runs)
+    }
+}
+
+fn named_warnings<'a>(
+    reference: &[Vec<String>; 2],
+    runs: impl Iterator<Item = (&'a str, Pace, &'a [String])>,
+) -> Vec<String> {
+    let mut all = Vec::new();
+    let mut add = |name: &str, warnings: &[String]| {
+        all.extend(warnings.iter().map(|warning| format!("{name}: {warning}")));
+    };
+    for (name, warnings) in ["coarse reference", "fine reference"].iter().zip(reference) {
+        add(name, warnings);
+    }
+    for (curve, pace, warnings) in runs {
+        add(&format!("{curve}, {pace}"), warnings);
+    }
+    all
 }
 
 /// Names without those that came before.
@@ -100,12 +128,14 @@ fn distinct<'a>(all: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 }
 
 /// A run that reached its end.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Made<'a> {
     /// What it recorded, by the names of channels.
     pub columns: Columns<'a>,
     /// Work done.
     pub work: Work,
+    /// What it warns of.
+    pub warnings: Vec<String>,
     /// Its time.
     pub timing: Timing,
 }
@@ -119,6 +149,8 @@ pub struct Run {
     pub pace: Pace,
     /// What came of it.
     pub result: Result<Measured, String>,
+    /// What a run that reached its end warns of.
+    pub warnings: Vec<String>,
 }
 
 /// What a run that reached its end gave.
@@ -188,7 +220,7 @@ enum Failed {
     Run(#[from] RunError),
 }
 
-/// Makes all runs of a study; `tell` is called before each with its name.
+/// Makes all runs of a study; `tell` is called before each with its name, and with its warnings.
 ///
 /// # Errors
 /// A study that cannot be made: a faulty scene, a channel that the scene does not have, a reference that fails. A point of a
@@ -196,12 +228,13 @@ enum Failed {
 pub fn run(
     study: &Study,
     effort: Effort,
-    tell: &mut dyn FnMut(&str),
+    tell: &mut dyn FnMut(Told),
 ) -> Result<Outcome, StudyError> {
-    let [rough, exact] = references(study, tell, Series::of)?;
+    let ([rough, exact], reference_warnings) = references(study, tell, Series::of)?;
     let mut outcome = Outcome {
         title: study.title.clone(),
         floor: rough.errors(&exact),
+        reference_warnings,
         runs: Vec::new(),
         timings: Vec::new(),
         exact,
@@ -218,37 +251,50 @@ type Columns<'a> = &'a dyn Fn(&str) -> Option<&'a [f64]>;
 /// Takes a point of a curve.
 type Add<'a> = &'a mut dyn FnMut(&str, Pace, Result<Made, String>) -> Result<(), StudyError>;
 
-/// Coarse and fine run of the reference.
+/// Tells the warnings of a run and gives them back.
+fn warnings(report: &Report, run: &str, tell: &mut dyn FnMut(Told)) -> Vec<String> {
+    let warnings = report.warnings();
+    for warning in &warnings {
+        tell(Told::Warned { run, warning });
+    }
+    warnings
+}
+
+/// Coarse and fine run of the reference, and their warnings.
 fn references<T>(
     study: &Study,
-    tell: &mut dyn FnMut(&str),
+    tell: &mut dyn FnMut(Told),
     of: fn(&Study, Columns) -> Result<T, StudyError>,
-) -> Result<[T; 2], StudyError> {
+) -> Result<([T; 2], [Vec<String>; 2]), StudyError> {
     let mut run = |pace: Pace| {
-        tell(&format!("reference, {pace}"));
+        let name = format!("reference, {pace}");
+        tell(Told::Begun(&name));
         let scene = study.scene(&study.reference.set, study.reference.elements, pace)?;
         let failed = |e: Failed| match e {
             Failed::Scene(e) => StudyError::Scene(e),
             Failed::Run(e) => StudyError::plain(format!("the reference with {pace} fails: {e}")),
         };
-        let (recording, _) = record(&scene).map_err(failed)?;
-        of(study, &|name| recording.get(name))
+        let (recording, report) = record(&scene).map_err(failed)?;
+        let found = of(study, &|name| recording.get(name))?;
+        Ok::<_, StudyError>((found, warnings(&report, &name, tell)))
     };
     let [coarse, fine] = study.reference.paces();
-    Ok([run(coarse)?, run(fine)?])
+    let ((coarse, of_coarse), (fine, of_fine)) = (run(coarse)?, run(fine)?);
+    Ok(([coarse, fine], [of_coarse, of_fine]))
 }
 
 /// Makes all points of all curves and gives each to `add`.
 fn points(
     study: &Study,
     effort: Effort,
-    tell: &mut dyn FnMut(&str),
+    tell: &mut dyn FnMut(Told),
     add: Add,
 ) -> Result<(), StudyError> {
     let count = if effort.smoke { 1 } else { usize::MAX };
     for curve in &study.curves {
         for pace in curve.paces().into_iter().take(count) {
-            tell(&format!("{}, {pace}", curve.name));
+            let name = format!("{}, {pace}", curve.name);
+            tell(Told::Begun(&name));
             let scene = study.scene(&curve.set, curve.elements, pace)?;
             let made = record(&scene).and_then(|(recording, report)| {
                 Ok((recording, report, time(&scene, effort.repeats)?))
@@ -258,6 +304,7 @@ fn points(
                     let made = Made {
                         columns: &|name| recording.get(name),
                         work: Work::of(&report),
+                        warnings: warnings(&report, &name, tell),
                         timing,
                     };
                     add(&curve.name, pace, Ok(made))?;

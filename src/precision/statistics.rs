@@ -7,9 +7,11 @@
 use super::diagram::color;
 use super::errors::larger;
 use super::{
-    Columns, Effort, Made, Pace, Study, StudyError, Timing, Work, distinct, points, references,
+    Columns, Effort, Made, Pace, Study, StudyError, Timing, Work, distinct, named_warnings, points,
+    references,
 };
 use crate::machine::Machine;
+use crate::simulate::{Told, warning_list};
 use plot::{Axis, Figure, Mark, Panel, palette};
 use serde::Serialize;
 use std::fmt::Write;
@@ -40,6 +42,8 @@ pub struct Survey {
     pub title: String,
     /// The runs of the reference: coarse and fine.
     pub reference: [Measures; 2],
+    /// Their warnings.
+    pub reference_warnings: [Vec<String>; 2],
     /// All points, curve by curve.
     pub runs: Vec<Sampled>,
     /// Their times, in the same order.
@@ -56,6 +60,8 @@ pub struct Sampled {
     pub pace: Pace,
     /// What came of it.
     pub result: Result<(Measures, Work), String>,
+    /// What a run that reached its end warns of.
+    pub warnings: Vec<String>,
 }
 
 impl Measures {
@@ -118,20 +124,23 @@ impl Study {
 }
 
 impl Survey {
-    /// Makes all runs of a study of statistics; `tell` is called before each with its name.
+    /// Makes all runs of a study of statistics; `tell` is called before each with its name, and with its
+    /// warnings.
     ///
     /// # Errors
     /// A study that cannot be made: a faulty scene, a channel that the scene does not have, a reference that fails.
     pub fn run(
         study: &Study,
         effort: Effort,
-        tell: &mut dyn FnMut(&str),
+        tell: &mut dyn FnMut(Told),
     ) -> Result<Survey, StudyError> {
         let brief = effort.smoke.then(|| study.brief());
         let study = brief.as_ref().unwrap_or(study);
+        let (reference, reference_warnings) = references(study, tell, Measures::of)?;
         let mut survey = Survey {
             title: study.title.clone(),
-            reference: references(study, tell, Measures::of)?,
+            reference,
+            reference_warnings,
             runs: Vec::new(),
             timings: Vec::new(),
         };
@@ -152,17 +161,18 @@ impl Survey {
         pace: Pace,
         made: Result<Made, String>,
     ) -> Result<(), StudyError> {
-        let (result, timing) = match made {
+        let (result, warnings, timing) = match made {
             Ok(made) => {
                 let measures = Measures::of(study, made.columns)?;
-                (Ok((measures, made.work)), Some(made.timing))
+                (Ok((measures, made.work)), made.warnings, Some(made.timing))
             }
-            Err(error) => (Err(error), None),
+            Err(error) => (Err(error), Vec::new(), None),
         };
         self.runs.push(Sampled {
             curve: curve.to_owned(),
             pace,
             result,
+            warnings,
         });
         self.timings.push(timing);
         Ok(())
@@ -175,6 +185,13 @@ impl Survey {
     /// Names of the curves in the order of their first points.
     fn curves(&self) -> Vec<&str> {
         distinct(self.runs.iter().map(|run| &*run.curve))
+    }
+
+    /// All warnings, each after the name of its run.
+    pub fn warnings(&self) -> Vec<String> {
+        let runs = self.runs.iter();
+        let runs = runs.map(|run| (&*run.curve, run.pace, &*run.warnings));
+        named_warnings(&self.reference_warnings, runs)
     }
 
     /// What the statistics are and what they took, a line a run. `duration` is the simulated time \[s\].
@@ -231,9 +248,10 @@ impl Survey {
     /// A page with the diagram, the table, and where it was measured.
     pub fn page(&self, study: &Study, machine: &Machine) -> String {
         format!(
-            "# {}\n\n![Statistics](precision.png)\n\n{}\nProcessor time of the integration on one core. {machine}.\n",
+            "# {}\n\n![Statistics](precision.png)\n\n{}\nProcessor time of the integration on one core. {machine}.\n{}",
             self.title,
-            self.table(study.duration)
+            self.table(study.duration),
+            warning_list(&self.warnings())
         )
     }
 

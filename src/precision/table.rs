@@ -3,6 +3,7 @@
 use super::errors::NORMS;
 use super::{Outcome, Pace};
 use crate::machine::Machine;
+use crate::simulate::warning_list;
 use std::fmt::Write;
 
 const WRITES: &str = "a string takes any text";
@@ -48,10 +49,11 @@ pub fn table(outcome: &Outcome) -> String {
 /// A page with the diagrams and both tables.
 pub fn page(outcome: &Outcome, machine: &Machine) -> String {
     format!(
-        "# {}\n\n![Work and precision](precision.png)\n\n{}\n{}",
+        "# {}\n\n![Work and precision](precision.png)\n\n{}\n{}{}",
         outcome.title,
         table(outcome),
-        timing_table(outcome, machine)
+        timing_table(outcome, machine),
+        warning_list(&outcome.warnings())
     )
 }
 

@@ -24,6 +24,20 @@ pub struct Progress {
     pub contacts: Option<usize>,
 }
 
+/// What is told while many runs are made, one after the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Told<'a> {
+    /// Something begins: a run with this name, or a part of the work.
+    Begun(&'a str),
+    /// The run with this name has ended with a warning.
+    Warned {
+        /// Name of the run.
+        run: &'a str,
+        /// See [`super::Report::warnings`].
+        warning: &'a str,
+    },
+}
+
 /// Whether a run goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Control {

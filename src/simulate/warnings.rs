@@ -21,6 +21,15 @@ fn share(part: f64, of: &str) -> String {
     }
 }
 
+/// Warnings of several runs as a part of a page in Markdown; empty where no run warns.
+pub(crate) fn warning_list(warnings: &[String]) -> String {
+    let lines = warnings.iter().map(|warning| format!("* {warning}\n"));
+    match warnings.is_empty() {
+        true => String::new(),
+        false => format!("\nWarnings:\n\n{}", lines.collect::<String>()),
+    }
+}
+
 impl Report {
     /// A line for everything that makes the results worth less than they look: none for a run that can be trusted.
     pub fn warnings(&self) -> Vec<String> {
