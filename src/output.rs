@@ -3,7 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | `channels.csv` | one row an output interval, `name [unit]` above each column |
-//! | `onsets.csv` | one row a contact that closes |
+//! | `onsets.csv` | one row a contact, when it opens; last those that are closed at the end, without end and exit velocity |
 //! | `scene.toml` | the scene as it was read; overrides are in the summary |
 //! | `summary.json` | status, counters, energy ledger, extremes, warnings |
 //! | `timing.json` | wall and processor time, machine, date |
@@ -19,7 +19,7 @@ mod earlier;
 mod timing;
 
 use crate::scene::Scene;
-use crate::simulate::{Channel, Onset, Report, Status};
+use crate::simulate::{Channel, Contact, Report, Status};
 use csv::CsvFile;
 pub use earlier::earlier_result;
 use serde::Serialize;
@@ -34,6 +34,17 @@ const ONSETS: &str = "onsets.csv";
 const SCENE: &str = "scene.toml";
 const SUMMARY: &str = "summary.json";
 pub(crate) const TIMING: &str = "timing.json";
+/// The columns of `onsets.csv`.
+const CONTACT: [&str; 8] = [
+    "t [s]",
+    "joint",
+    "impact_velocity [m/s]",
+    "delta [m]",
+    "angle [rad]",
+    "deepest_penetration [m]",
+    "end [s]",
+    "exit_velocity [m/s]",
+];
 /// The summary first, which closes a result.
 const FILES: [&str; 5] = [SUMMARY, CHANNELS, ONSETS, SCENE, TIMING];
 
@@ -152,12 +163,11 @@ impl Folder {
         let status = Status::Incomplete;
         write_summary(&folder, &header, Pending { status })?;
         replace(&folder, SCENE, scene.text().as_bytes())?;
-        let columns = ["t [s]", "joint", "impact_velocity [m/s]", "delta [m]"];
         Ok(Results {
             header,
             replaces: self.replace,
             channels,
-            onsets: CsvFile::create(folder.join(ONSETS), columns.map(str::to_owned))?,
+            onsets: CsvFile::create(folder.join(ONSETS), CONTACT.map(str::to_owned))?,
             folder,
             stopwatch: Stopwatch::start(),
         })
@@ -174,15 +184,29 @@ impl Results {
         self.channels.end_row()
     }
 
-    /// Appends a contact onset.
+    /// Appends a contact; what a contact without an end does not have stays empty.
     ///
     /// # Errors
     /// When it cannot be stored; the message names the file.
-    pub fn onset(&mut self, onset: &Onset) -> io::Result<()> {
+    pub fn contact(&mut self, contact: &Contact) -> io::Result<()> {
+        let Contact {
+            onset,
+            deepest_penetration,
+            end,
+        } = contact;
         self.onsets.number(onset.t);
         self.onsets.text(onset.joint);
         self.onsets.number(onset.impact_velocity);
         self.onsets.number(onset.delta);
+        self.onsets.number(onset.angle);
+        self.onsets.number(*deepest_penetration);
+        match end {
+            Some(end) => {
+                self.onsets.number(end.t);
+                self.onsets.number(end.exit_velocity);
+            }
+            None => (0..2).for_each(|_| self.onsets.text("")),
+        }
         self.onsets.end_row()
     }
 

@@ -248,6 +248,7 @@ fn joint_value(
     cache: &mut Cache,
 ) -> f64 {
     let clearance = || model.clearance(j, at).unwrap_or_default();
+    let rates = || model.eccentricity_rates(j, at).unwrap_or_default();
     match quantity {
         JointQuantity::Fx => cache.force(model, j, at, work)[0],
         JointQuantity::Fy => cache.force(model, j, at, work)[1],
@@ -255,6 +256,9 @@ fn joint_value(
         JointQuantity::Ex => clearance().0[0],
         JointQuantity::Ey => clearance().0[1],
         JointQuantity::Eccentricity => crate::math::plane::norm(clearance().0),
+        JointQuantity::ExRate => rates().0[0],
+        JointQuantity::EyRate => rates().0[1],
+        JointQuantity::EccentricityRate => rates().1,
         JointQuantity::Penetration => clearance().1,
         JointQuantity::Contact => f64::from(u8::from(clearance().2)),
         JointQuantity::Couple => model.joint_couple(j, at),

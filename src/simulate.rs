@@ -22,8 +22,8 @@ pub use impacts::Impact;
 use impacts::Impacts;
 pub use meter::Integration;
 use meter::{Gain, Meter};
-pub use observer::{Control, Observer, Onset, Progress, Told};
-pub use recording::{RecordedOnset, Recording};
+pub use observer::{Contact, Control, End, Observer, Onset, Progress, Told};
+pub use recording::Recording;
 pub use report::{Extreme, Inspection, Report, Status};
 pub(crate) use warnings::warning_list;
 
@@ -218,11 +218,9 @@ impl Simulation {
                 })?;
         }
         model.powers(&mut state, &mut work);
-        let mut impacts = Impacts::new();
-        for &(contact, velocity, _) in &started {
-            if let Some(joint) = model.contact_joint(contact) {
-                impacts.begin(&model, joint, velocity, &state);
-            }
+        let mut impacts = Impacts::new(shape.contacts);
+        for &(contact, velocity, delta) in &started {
+            impacts.begin(&model, contact, [delta, velocity], &state);
         }
         let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
         let extremes = vec![Extreme::default(); recorder.channels().len()];
@@ -297,6 +295,11 @@ impl Simulation {
             Analysis::Dynamic => self.run_to_end(observer),
             Analysis::Static => self.run_loads(observer),
         };
+        let closed = match &result {
+            Err(RunError::Output(_)) => Ok(()),
+            _ => self.impacts.finish(&self.model, observer),
+        };
+        let result = result.and_then(|()| Ok(closed?));
         (self.status, self.error) = match &result {
             Ok(()) => (Status::Complete, None),
             Err(RunError::Interrupted { .. }) => (Status::Incomplete, None),
@@ -361,7 +364,8 @@ impl Simulation {
                 self.check_left_out()?;
             }
             self.commit(observer)?;
-            self.impacts.step(&self.model, taken, &self.state);
+            let impacts = &mut self.impacts;
+            impacts.step(&self.model, taken, &self.state, observer)?;
             let (before, after) = (&self.trial.z, &self.state.z);
             self.closures.step(&self.model, self.state.t, before, after);
             self.stall
@@ -480,24 +484,16 @@ impl Simulation {
             started.push((c, velocity, delta))
         });
         self.counters.onsets += onsets as u64;
-        for &(contact, velocity, _) in started.iter() {
-            if let Some(joint) = model.contact_joint(contact) {
-                self.impacts.begin(model, joint, velocity, state);
-            }
+        for &(contact, velocity, delta) in started.iter() {
+            self.impacts.begin(model, contact, [delta, velocity], state);
         }
         self.tell_onsets(observer)
     }
 
     fn tell_onsets(&self, observer: &mut dyn Observer) -> Result<(), RunError> {
-        for &(contact, impact_velocity, delta) in &self.started {
-            if let Some(j) = self.model.contact_joint(contact) {
-                let joint = &self.model.joints()[j].name;
-                observer.onset(&Onset {
-                    t: self.state.t,
-                    joint,
-                    impact_velocity,
-                    delta,
-                })?;
+        for &(contact, ..) in &self.started {
+            if let Some(onset) = self.impacts.onset(&self.model, contact) {
+                observer.onset(&onset)?;
             }
         }
         Ok(())

@@ -1,9 +1,10 @@
 //! Cases 3 and 4 and the bouncing journal: joints with clearance.
 
 use crate::rrr;
-use crate::support::run;
+use crate::support::{load, run};
 use ladder::{Rung, Worst};
 use looselink::contact::{LankaraniNikravesh, NormalLaw};
+use looselink::simulate::{Contact, Control, Impact, Observer, Progress, RunError, Simulation};
 
 /// Velocity of the journal after its first rebound over the velocity before, at a step that is a fraction of the
 /// contact time.
@@ -209,6 +210,125 @@ fn no_friction_is_evaluated_unless_the_scene_names_it() {
         slipping.ledger.unwrap().friction_dissipated,
     );
     assert!(material > 2.0 * printed, "{material:e} {printed:e}");
+}
+
+/// A contact of Hertz's law against its closed form: depth d = (5 m v^2/(4 K))^(2/5), duration d/v times
+/// (4/5) sqrt(pi) Gamma(2/5)/Gamma(9/10) (Johnson, Contact Mechanics, section 11.4), and it leaves as fast as it came.
+#[test]
+fn a_contact_of_hertz_has_the_depth_and_the_duration_of_the_closed_form() {
+    const DURATION: f64 = 2.943_275_184_3;
+    let (mass, speed, stiffness): (f64, f64, f64) = (0.05, 0.02, 1e11);
+    let depth = (1.25 * mass * speed * speed / stiffness).powf(0.4);
+    let duration = DURATION * depth / speed;
+    let law = "contacts.aluminium={law=\"hertz\",bearing_radius=0.01,clearance=2e-5,stiffness=1e11,exponent=1.5}";
+    let mut errors = [const { Vec::new() }; 3];
+    for steps in [50.0, 71.0, 100.0, 141.0, 200.0] {
+        let step = duration / steps;
+        let [step, rows] = [step, (1.5e-3 / step).ceil() * step];
+        let overrides = [
+            law.to_owned(),
+            format!("integrator.step={step:e}"),
+            format!("output.interval={rows:e}"),
+            format!("simulation.duration={rows:e}"),
+        ];
+        let overrides: Vec<&str> = overrides.iter().map(String::as_str).collect();
+        let (run, _) = run("bouncing-journal.toml", &overrides);
+        let [contact] = &run.onsets[..] else {
+            panic!("{:?}", run.onsets)
+        };
+        assert_eq!(contact.angle, 0.0);
+        let [end, exit] = [contact.end, contact.exit_velocity].map(Option::unwrap);
+        let found = [
+            contact.deepest_penetration / depth,
+            (end - contact.t) / duration,
+            exit / speed,
+        ];
+        for (errors, found) in errors.iter_mut().zip(found) {
+            errors.push((1.0 / steps, (found - 1.0).abs()));
+        }
+    }
+    let cut = "order 2 on average: beginning and end of the contact cut the steps at other places for each h";
+    let lost =
+        "order 3 on average: what Bathe's scheme loses of the energy of a vibration falls as h^3";
+    let answers = [
+        ("depth", 1.6..2.4, cut),
+        ("duration", 1.6..2.4, cut),
+        ("exit velocity", 2.6..3.4, lost),
+    ];
+    for ((quantity, orders, reason), errors) in answers.into_iter().zip(errors) {
+        Rung::OrderInTime
+            .asks(format!(
+                "Bouncing journal, Hertz's law: {quantity} of a contact against the closed form, relative error"
+            ))
+            .falls_on_average("Step h over the contact time", &errors, orders, reason);
+    }
+}
+
+/// A run that is stopped tells the contact that is closed then.
+#[test]
+fn a_run_that_is_stopped_tells_the_contacts_that_are_closed() {
+    #[derive(Default)]
+    struct Stop(Vec<Impact>);
+    impl Observer for Stop {
+        fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
+            Ok(())
+        }
+        fn contact(&mut self, contact: &Contact) -> std::io::Result<()> {
+            self.0.push(contact.into());
+            Ok(())
+        }
+        fn step(&mut self, progress: &Progress) -> std::io::Result<Control> {
+            let closed = progress.contacts == Some(1) && progress.t > 1.02e-3;
+            Ok(if closed {
+                Control::Stop
+            } else {
+                Control::Continue
+            })
+        }
+    }
+    let mut told = Stop::default();
+    let mut simulation = Simulation::new(&load("bouncing-journal.toml", &[])).unwrap();
+    let ended = simulation.run(&mut told);
+    assert!(matches!(ended, Err(RunError::Interrupted { .. })));
+    assert_eq!(told.0, simulation.report().impacts);
+    assert_eq!((told.0.len(), told.0[0].end), (1, None));
+    assert!(told.0[0].deepest_penetration > 1e-7);
+}
+
+/// The rates of the eccentricity are the derivatives of the eccentricity, in the flight of six journals before any closes.
+#[test]
+fn rates_of_the_eccentricity_are_its_derivatives() {
+    const INTERVAL: f64 = 2e-5;
+    let overrides = [
+        "integrator.method=dormand_prince",
+        "integrator.step=1e-5",
+        "output.interval=2e-5",
+        "simulation.duration=3e-3",
+        "output.channels=[\"*.e*\"]",
+    ];
+    let (run, report) = run("3rrr/case3.toml", &overrides);
+    assert_eq!(report.onsets, 0);
+    for quantity in ["ex", "ey", "eccentricity"] {
+        let error = |span: usize| {
+            let mut worst = 0.0_f64;
+            for joint in ["B1", "B2", "B3", "C1", "C2", "C3"] {
+                let value = run.get(&format!("{joint}.{quantity}"));
+                let rate = run.get(&format!("{joint}.{quantity}_rate"));
+                let size = rate.iter().fold(0.0_f64, |m, r| m.max(r.abs()));
+                // near the centre the eccentricity grows as t^2, its rate as t, and the next derivative is not small
+                for i in 50..value.len() - span {
+                    let difference =
+                        (value[i + span] - value[i - span]) / (2.0 * span as f64 * INTERVAL);
+                    worst = worst.max((difference - rate[i]).abs() / size);
+                }
+            }
+            worst
+        };
+        let errors = [8, 4, 2].map(|span| (span as f64 * INTERVAL, error(span)));
+        Rung::Derivatives
+            .asks(format!("Channel {quantity}_rate against the central difference of {quantity}, 3-RRR with loose joints, relative"))
+            .falls("Span of the difference [s]", &errors, 1.8..2.2, "the error of a central difference");
+    }
 }
 
 /// Rounding does not shake stiff links: at steps so small that Bathe's error is gone, the velocity of the first impact of

@@ -1,14 +1,14 @@
 //! Runs scenes of the project and keeps what they tell.
 
 use looselink::scene::Scene;
-use looselink::simulate::{self, RecordedOnset, Report, Simulation};
+use looselink::simulate::{self, Impact, Report, Simulation};
 use std::path::{Path, PathBuf};
 
 /// All rows and onsets of a run.
 #[derive(Debug)]
 pub struct Recording {
     kept: simulate::Recording,
-    pub onsets: Vec<RecordedOnset>,
+    pub onsets: Vec<Impact>,
 }
 
 impl Recording {

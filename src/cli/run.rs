@@ -6,7 +6,7 @@ use super::failure::{Failure, INTERRUPTED};
 use super::progress::{Display, Pace, warn};
 use clap::Args;
 use looselink::output::{Folder, OutputError, Results, earlier_result};
-use looselink::simulate::{Control, Observer, Onset, Progress};
+use looselink::simulate::{Contact, Control, Observer, Progress};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -45,8 +45,8 @@ impl Observer for Watch {
         self.results.row(values)
     }
 
-    fn onset(&mut self, onset: &Onset) -> io::Result<()> {
-        self.results.onset(onset)
+    fn contact(&mut self, contact: &Contact) -> io::Result<()> {
+        self.results.contact(contact)
     }
 
     fn step(&mut self, progress: &Progress) -> io::Result<Control> {

@@ -286,6 +286,13 @@ impl Model {
         Some((g.e, g.delta, at.z[contact] > 0.0 && g.delta > 0.0))
     }
 
+    /// Rates of the eccentricity vector and of its length, which is also that of the penetration, of a loose joint \[m/s\].
+    pub fn eccentricity_rates(&self, index: usize, at: &State) -> Option<(Vec2, f64)> {
+        let (joint, _) = self.loose_joint(index)?;
+        let g = joint.geometry(&at.q, &at.v);
+        Some((g.e_dot, ClearanceJoint::rate(&g)))
+    }
+
     /// Penetration of a loose joint, its rate, and whether the contact is closed.
     pub fn penetration(&self, index: usize, at: &State) -> Option<(f64, f64, bool)> {
         let (joint, contact) = self.loose_joint(index)?;

@@ -42,6 +42,9 @@ pub(super) enum JointQuantity {
     Ex,
     Ey,
     Eccentricity,
+    ExRate,
+    EyRate,
+    EccentricityRate,
     Penetration,
     Contact,
     /// Couple of the first side on the second.
@@ -109,8 +112,8 @@ pub(super) fn available(model: &Model, analysis: Analysis) -> Vec<(Channel, Quan
     }
     for (j, joint) in model.joints().iter().enumerate() {
         use JointQuantity::{
-            Angle, Contact, Couple, Eccentricity, Ex, Ey, Force, Fx, Fy, Penetration, Speed,
-            Travel, TravelRate,
+            Angle, Contact, Couple, Eccentricity, EccentricityRate, Ex, ExRate, Ey, EyRate, Force,
+            Fx, Fy, Penetration, Speed, Travel, TravelRate,
         };
         let mut joint_channel = |name: &str, unit, q| {
             add(
@@ -130,6 +133,13 @@ pub(super) fn available(model: &Model, analysis: Analysis) -> Vec<(Channel, Quan
                 ("penetration", Penetration),
             ] {
                 joint_channel(name, "m", q);
+            }
+            for (name, q) in [
+                ("ex_rate", ExRate),
+                ("ey_rate", EyRate),
+                ("eccentricity_rate", EccentricityRate),
+            ] {
+                joint_channel(name, "m/s", q);
             }
             joint_channel("contact", "1", Contact);
         }

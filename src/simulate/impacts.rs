@@ -1,14 +1,16 @@
-//! The first impacts of a run, for its summary.
+//! Every contact from its onset to its end, and the first of them for the summary.
 
+use super::observer::{Contact, End, Observer, Onset};
 use super::top::top;
 use crate::model::Model;
 use crate::system::State;
 use serde::Serialize;
+use std::io;
 
-/// Impacts that the summary lists.
+/// Contacts that the summary lists.
 const LISTED: usize = 10;
 
-/// One impact, from its onset to its first loss of contact.
+/// A contact that was told, kept after the run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Impact {
     /// Onset \[s\].
@@ -17,6 +19,8 @@ pub struct Impact {
     pub joint: String,
     /// delta_dot at onset \[m/s\].
     pub impact_velocity: f64,
+    /// Penetration at the located onset \[m\], zero but for the onset tolerance.
+    pub delta: f64,
     /// Direction of the eccentricity vector at onset, from the x axis \[rad\].
     pub angle: f64,
     /// Largest penetration \[m\]; so far, for a contact that is still closed.
@@ -24,58 +28,160 @@ pub struct Impact {
     /// When the contact was lost \[s\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub end: Option<f64>,
+    /// -delta_dot when the contact was lost \[m/s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exit_velocity: Option<f64>,
 }
 
-/// Watches the first impacts.
-#[derive(Debug, Default)]
+impl From<&Contact<'_>> for Impact {
+    fn from(contact: &Contact) -> Impact {
+        let onset = &contact.onset;
+        Impact {
+            t: onset.t,
+            joint: onset.joint.to_owned(),
+            impact_velocity: onset.impact_velocity,
+            delta: onset.delta,
+            angle: onset.angle,
+            deepest_penetration: contact.deepest_penetration,
+            end: contact.end.map(|end| end.t),
+            exit_velocity: contact.end.map(|end| end.exit_velocity),
+        }
+    }
+}
+
+/// Follows every contact.
+#[derive(Debug)]
 pub(super) struct Impacts {
-    pub listed: Vec<Impact>,
-    /// Joint, and penetration and its rate at the last accepted step, of each listed impact.
-    open: Vec<Option<(usize, f64, f64)>>,
+    /// What is known of each contact that is closed.
+    closed: Vec<Option<Course>>,
+    /// The first courses of the run.
+    listed: Vec<Course>,
+}
+
+/// A contact from its onset on.
+#[derive(Debug, Clone, Copy)]
+struct Course {
+    joint: usize,
+    t: f64,
+    impact_velocity: f64,
+    delta: f64,
+    angle: f64,
+    deepest: f64,
+    end: Option<End>,
+    /// Penetration and its rate at the last accepted step.
+    before: [f64; 2],
+    /// Where it stands among the first of the run.
+    listed: Option<usize>,
+}
+
+impl Course {
+    fn onset<'a>(&self, model: &'a Model) -> Onset<'a> {
+        Onset {
+            t: self.t,
+            joint: &model.joints()[self.joint].name,
+            impact_velocity: self.impact_velocity,
+            delta: self.delta,
+            angle: self.angle,
+        }
+    }
+
+    fn contact<'a>(&self, model: &'a Model) -> Contact<'a> {
+        Contact {
+            onset: self.onset(model),
+            deepest_penetration: self.deepest,
+            end: self.end,
+        }
+    }
 }
 
 impl Impacts {
-    /// Memory for the list, so that the step loop does not allocate.
-    pub fn new() -> Impacts {
+    /// All memory that is needed, so that the step loop does not allocate.
+    pub fn new(contacts: usize) -> Impacts {
         Impacts {
+            closed: vec![None; contacts],
             listed: Vec::with_capacity(LISTED),
-            open: Vec::with_capacity(LISTED),
         }
     }
 
     /// A contact has closed.
-    pub fn begin(&mut self, model: &Model, joint: usize, impact_velocity: f64, at: &State) {
-        if self.listed.len() == LISTED {
+    pub fn begin(&mut self, model: &Model, contact: usize, [delta, rate]: [f64; 2], at: &State) {
+        let Some(joint) = model.contact_joint(contact) else {
             return;
-        }
-        let ([x, y], delta, _) = model.clearance(joint, at).unwrap_or_default();
-        self.listed.push(Impact {
+        };
+        let ([x, y], ..) = model.clearance(joint, at).unwrap_or_default();
+        let mut course = Course {
+            joint,
             t: at.t,
-            joint: model.joints()[joint].name.clone(),
-            impact_velocity,
+            impact_velocity: rate,
+            delta,
             angle: y.atan2(x),
-            deepest_penetration: delta,
+            deepest: delta,
             end: None,
-        });
-        self.open.push(Some((joint, delta, impact_velocity)));
+            before: [delta, rate],
+            listed: None,
+        };
+        if self.listed.len() < LISTED {
+            course.listed = Some(self.listed.len());
+            self.listed.push(course);
+        }
+        self.closed[contact] = Some(course);
     }
 
-    /// A step of length h has been accepted. Between two steps the penetration is the cubic through both ends, whose top
-    /// has an error of h^4.
-    pub fn step(&mut self, model: &Model, h: f64, at: &State) {
-        for (impact, open) in self.listed.iter_mut().zip(&mut self.open) {
-            let Some((joint, before, rate_before)) = *open else {
+    /// The onset of a contact that is closed.
+    pub fn onset<'a>(&self, model: &'a Model, contact: usize) -> Option<Onset<'a>> {
+        self.closed[contact].map(|course| course.onset(model))
+    }
+
+    /// A step of length h has been accepted; contacts that it lost are told. Between two steps the penetration is the cubic
+    /// through both ends, whose top has an error of h^4.
+    ///
+    /// # Errors
+    /// When a contact cannot be told.
+    pub fn step(
+        &mut self,
+        model: &Model,
+        h: f64,
+        at: &State,
+        observer: &mut dyn Observer,
+    ) -> io::Result<()> {
+        for slot in &mut self.closed {
+            let Some(course) = slot else { continue };
+            let Some((delta, rate, closed)) = model.penetration(course.joint, at) else {
                 continue;
             };
-            let Some((delta, rate, closed)) = model.penetration(joint, at) else {
-                continue;
-            };
+            let [before, rate_before] = course.before;
             let top = top(h, [before, delta], [rate_before, rate]).map_or(delta, |(_, top)| top);
-            impact.deepest_penetration = impact.deepest_penetration.max(delta).max(top);
-            *open = closed.then_some((joint, delta, rate));
+            course.deepest = course.deepest.max(delta).max(top);
+            course.before = [delta, rate];
+            course.end = (!closed).then_some(End {
+                t: at.t,
+                exit_velocity: -rate,
+            });
+            if let Some(place) = course.listed {
+                self.listed[place] = *course;
+            }
             if !closed {
-                impact.end = Some(at.t);
+                observer.contact(&course.contact(model))?;
+                *slot = None;
             }
         }
+        Ok(())
+    }
+
+    /// The run has ended: contacts that are still closed are told, in the order of the joints.
+    ///
+    /// # Errors
+    /// When a contact cannot be told.
+    pub fn finish(&self, model: &Model, observer: &mut dyn Observer) -> io::Result<()> {
+        let mut closed = self.closed.iter().flatten();
+        closed.try_for_each(|course| observer.contact(&course.contact(model)))
+    }
+
+    /// The first contacts of the run.
+    pub fn listed(&self, model: &Model) -> Vec<Impact> {
+        let listed = self.listed.iter();
+        listed
+            .map(|course| Impact::from(&course.contact(model)))
+            .collect()
     }
 }

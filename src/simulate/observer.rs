@@ -11,6 +11,28 @@ pub struct Onset<'a> {
     pub impact_velocity: f64,
     /// Penetration at the located instant \[m\], zero but for the onset tolerance.
     pub delta: f64,
+    /// Direction of the eccentricity vector, from the x axis \[rad\].
+    pub angle: f64,
+}
+
+/// A contact that has opened again, or that is still closed when the run ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact<'a> {
+    /// How it began.
+    pub onset: Onset<'a>,
+    /// Largest penetration \[m\].
+    pub deepest_penetration: f64,
+    /// How it ended; absent when it is still closed.
+    pub end: Option<End>,
+}
+
+/// The end of a contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End {
+    /// When \[s\].
+    pub t: f64,
+    /// -delta_dot \[m/s\]: over the impact velocity it is the restitution delivered.
+    pub exit_velocity: f64,
 }
 
 /// Where a run is.
@@ -58,7 +80,17 @@ pub trait Observer {
     ///
     /// # Errors
     /// When it cannot be stored; the run stops.
-    fn onset(&mut self, onset: &Onset) -> std::io::Result<()>;
+    fn onset(&mut self, _onset: &Onset) -> std::io::Result<()> {
+        Ok(())
+    }
+    /// A contact has opened, or the run has ended while it is closed: every contact is told once. Those that open within
+    /// one step come in the order of the joints, and so do those that are closed at the end.
+    ///
+    /// # Errors
+    /// When it cannot be stored; the run stops.
+    fn contact(&mut self, _contact: &Contact) -> std::io::Result<()> {
+        Ok(())
+    }
     /// A step has been taken.
     ///
     /// # Errors
@@ -69,10 +101,6 @@ pub trait Observer {
 /// Discards everything, for whoever looks at the final state and the report alone.
 impl Observer for () {
     fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
-        Ok(())
-    }
-
-    fn onset(&mut self, _: &Onset) -> std::io::Result<()> {
         Ok(())
     }
 

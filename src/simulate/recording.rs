@@ -1,28 +1,15 @@
 //! Results in memory, for programs that look at a run when it is over.
 
-use super::{Control, Observer, Onset, Progress, Simulation};
+use super::{Contact, Control, Impact, Observer, Onset, Progress, Simulation};
 use std::io::Result;
-
-/// An onset that was told.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RecordedOnset {
-    /// When \[s\].
-    pub t: f64,
-    /// The joint.
-    pub joint: String,
-    /// delta_dot at onset \[m/s\].
-    pub impact_velocity: f64,
-    /// Penetration at the located instant \[m\].
-    pub delta: f64,
-}
 
 /// Keeps what a run tells, column by column.
 #[derive(Debug, Clone)]
 pub struct Recording {
     names: Vec<String>,
     columns: Vec<Vec<f64>>,
-    /// Onsets in the order of time.
-    pub onsets: Vec<RecordedOnset>,
+    /// Contacts in the order of their onsets.
+    pub onsets: Vec<Impact>,
     /// The run is stopped after this many onsets.
     pub most_onsets: usize,
 }
@@ -71,12 +58,19 @@ impl Observer for Recording {
     }
 
     fn onset(&mut self, onset: &Onset) -> Result<()> {
-        self.onsets.push(RecordedOnset {
-            t: onset.t,
-            joint: onset.joint.to_owned(),
-            impact_velocity: onset.impact_velocity,
-            delta: onset.delta,
-        });
+        self.onsets.push(Impact::from(&Contact {
+            onset: *onset,
+            deepest_penetration: onset.delta,
+            end: None,
+        }));
+        Ok(())
+    }
+
+    fn contact(&mut self, contact: &Contact) -> Result<()> {
+        let mut latest = self.onsets.iter_mut().rev();
+        if let Some(kept) = latest.find(|onset| onset.joint == contact.onset.joint) {
+            *kept = Impact::from(contact);
+        }
         Ok(())
     }
 

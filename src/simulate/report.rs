@@ -97,7 +97,7 @@ pub struct Report {
     pub leap_trials: u64,
     /// Contacts closed.
     pub onsets: u64,
-    /// The first impacts.
+    /// The first contacts; [`super::Observer::contact`] tells all of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub impacts: Vec<Impact>,
     /// Onsets and losses kept although the gap could not be brought within the tolerance.
@@ -253,7 +253,7 @@ impl Simulation {
             location_trials: self.counters.location_trials,
             leap_trials: self.counters.leap_trials,
             onsets: self.counters.onsets,
-            impacts: self.impacts.listed.clone(),
+            impacts: self.impacts.listed(&self.model),
             unlocated_changes: self.counters.unlocated,
             clamps: self.counters.clamps,
             ended_contacts: self.closures.ended,

@@ -2,7 +2,7 @@
 
 use looselink::scene::Scene;
 use looselink::simulate::{
-    Control, Observer, Onset, Progress, Recording, Report, RunError, Simulation,
+    Contact, Control, Observer, Onset, Progress, Recording, Report, RunError, Simulation,
 };
 use plot::{Color, palette};
 use serde::Serialize;
@@ -94,6 +94,10 @@ impl Observer for Watch {
 
     fn onset(&mut self, onset: &Onset) -> io::Result<()> {
         self.recording.onset(onset)
+    }
+
+    fn contact(&mut self, contact: &Contact) -> io::Result<()> {
+        self.recording.contact(contact)
     }
 
     fn step(&mut self, _: &Progress) -> io::Result<Control> {

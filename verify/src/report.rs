@@ -49,7 +49,7 @@ const NOT_CHECKED: [(&str, &str); 10] = [
         "the reference starts where Looselink has assembled them; that the start satisfies its own constraints it checks",
     ),
     (
-        "angles of links, eccentricity vectors, lengths and pulls of springs, applied loads",
+        "angles of links, eccentricity vectors and rates of the eccentricity, lengths and pulls of springs, applied loads",
         "channels without a counterpart (some listed below); what they do to the motion is compared",
     ),
     (

@@ -178,20 +178,12 @@ impl Plan {
             result => result.into_diagnostic().wrap_err_with(|| self.name())?,
         }
         let seconds = clock.elapsed().as_secs_f64();
-        let listed = simulation.report().impacts;
-        let closed = recording
-            .onsets
-            .iter()
-            .enumerate()
-            .map(|(i, onset)| Impact {
-                t: onset.t,
-                joint: onset.joint.clone(),
-                velocity: onset.impact_velocity,
-                course: listed.get(i).and_then(|impact| {
-                    impact.end?;
-                    Some([impact.angle, impact.deepest_penetration])
-                }),
-            });
+        let closed = recording.onsets.iter().map(|onset| Impact {
+            t: onset.t,
+            joint: onset.joint.clone(),
+            velocity: onset.impact_velocity,
+            course: onset.end.map(|_| [onset.angle, onset.deepest_penetration]),
+        });
         let closed = closed.collect();
         let mut columns: BTreeMap<_, _> = recording.into_columns().collect();
         let t = columns

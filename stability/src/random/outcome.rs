@@ -1,7 +1,7 @@
 //! One run: what it told, and how it ended.
 
 use looselink::scene::{Scene, SceneError};
-use looselink::simulate::{Control, Observer, Onset, Progress, Report, RunError, Simulation};
+use looselink::simulate::{Control, Observer, Progress, Report, RunError, Simulation};
 use std::collections::HashMap;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -141,10 +141,6 @@ struct Watch {
 impl Observer for Watch {
     fn row(&mut self, values: &[f64]) -> io::Result<()> {
         self.rows.values.extend_from_slice(values);
-        Ok(())
-    }
-
-    fn onset(&mut self, _: &Onset) -> io::Result<()> {
         Ok(())
     }
 
