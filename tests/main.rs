@@ -5,6 +5,7 @@ mod accuracy;
 mod bad_input;
 mod bad_mechanism;
 mod balance;
+mod bits;
 mod command_line;
 mod couples;
 mod documents;
