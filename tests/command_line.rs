@@ -71,6 +71,7 @@ fn a_run_leaves_a_result() {
     assert_eq!(summary["onsets"], 1);
     let timing: serde_json::Value = serde_json::from_str(&read(&out, "timing.json")).unwrap();
     assert!(timing["wall_seconds"].as_f64().unwrap() > 0.0);
+    assert!(timing["cpu_seconds"].as_f64().unwrap() > 0.0);
 
     let channels = read(&out, "channels.csv");
     let mut lines = channels.lines();

@@ -1,15 +1,13 @@
 //! How long a run took, where and when: all that differs when it is repeated.
 
+use cpu_time::ProcessTime;
 use serde::Serialize;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
-
-/// Clock ticks a second of `/proc`, fixed by Linux for all machines.
-const TICKS: f64 = 100.0;
 
 #[derive(Debug)]
 pub(super) struct Stopwatch {
     wall: Instant,
-    cpu: Option<f64>,
+    cpu: Option<ProcessTime>,
     date: String,
 }
 
@@ -19,7 +17,7 @@ pub(super) struct Timing {
     date: String,
     machine: String,
     wall_seconds: f64,
-    /// Absent where the system does not tell.
+    /// Processor time of the process in user and system mode; absent where the system has no such clock.
     cpu_seconds: Option<f64>,
     /// Simulated time over wall time.
     real_time_factor: f64,
@@ -30,31 +28,22 @@ impl Stopwatch {
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
         Stopwatch {
             wall: Instant::now(),
-            cpu: cpu_seconds(),
+            cpu: ProcessTime::try_now().ok(),
             date: date(since.map_or(0, |s| s.as_secs())),
         }
     }
 
     pub(super) fn stop(&self, simulated: f64) -> Timing {
         let wall_seconds = self.wall.elapsed().as_secs_f64();
-        let cpu = cpu_seconds().zip(self.cpu);
+        let cpu = self.cpu.and_then(|started| started.try_elapsed().ok());
         Timing {
             date: self.date.clone(),
             machine: machine(),
             wall_seconds,
-            cpu_seconds: cpu.map(|(now, then)| now - then),
+            cpu_seconds: cpu.map(|cpu| cpu.as_secs_f64()),
             real_time_factor: simulated / wall_seconds,
         }
     }
-}
-
-/// Processor time of this process in user and system mode \[s\].
-fn cpu_seconds() -> Option<f64> {
-    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The second field is the program's name in parentheses, which may contain anything.
-    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
-    let ticks = |index: usize| fields.get(index)?.parse::<f64>().ok();
-    Some((ticks(11)? + ticks(12)?) / TICKS)
 }
 
 /// Processor, threads and system.
@@ -93,7 +82,22 @@ fn date(seconds: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::date;
+    use super::{Stopwatch, date};
+
+    /// Work of some milliseconds at most takes a processor time between nothing and a hundredth of a second, again and again:
+    /// a clock that ticks every 10 ms says nothing most of the time.
+    #[test]
+    fn short_runs_have_a_processor_time() {
+        let times = (1..=20).map(|n| {
+            let stopwatch = Stopwatch::start();
+            let sum: f64 = (0..n * 1000).map(|k| f64::from(k).sqrt()).sum();
+            assert!(std::hint::black_box(sum) > 0.0);
+            stopwatch.stop(1.0).cpu_seconds.unwrap()
+        });
+        let times: Vec<f64> = times.collect();
+        assert!(times.iter().all(|t| *t > 0.0), "{times:?}");
+        assert!(times.iter().any(|t| *t < 1e-3), "{times:?}");
+    }
 
     #[test]
     fn dates() {
