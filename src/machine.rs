@@ -71,15 +71,15 @@ pub fn machine() -> Machine {
     }
 }
 
-/// Processor time of a run \[s\].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+/// Processor time of a run that was made several times \[s\].
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Timing {
-    /// Median of the repeats; of an even number of them the mean of the two in the middle.
+    /// See [`median`]; of a single run its time.
     pub median: f64,
     /// Shortest.
     pub least: f64,
-    /// Number of repeats.
-    pub repeats: usize,
+    /// Every time, in the order of the runs.
+    pub seconds: Vec<f64>,
     /// Least number of instructions, where the machine counts them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub instructions: Option<u64>,
@@ -87,13 +87,11 @@ pub struct Timing {
 
 impl Timing {
     /// Of at least one measured time \[s\].
-    pub fn of(mut seconds: Vec<f64>) -> Timing {
-        seconds.sort_by(f64::total_cmp);
-        let n = seconds.len();
+    pub fn of(seconds: Vec<f64>) -> Timing {
         Timing {
-            median: 0.5 * (seconds[(n - 1) / 2] + seconds[n / 2]),
-            least: seconds[0],
-            repeats: n,
+            median: median(&seconds),
+            least: seconds.iter().copied().fold(f64::INFINITY, f64::min),
+            seconds,
             instructions: None,
         }
     }
@@ -107,13 +105,23 @@ impl Timing {
     }
 }
 
+/// The value in the middle of at least one; of an even number of values the mean of the two in the middle.
+pub fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let n = sorted.len();
+    0.5 * (sorted[(n - 1) / 2] + sorted[n / 2])
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Timing;
+    use super::{Timing, median};
 
     #[test]
     fn medians() {
-        let median = |seconds: &[f64]| Timing::of(seconds.to_vec()).median;
+        let timing = Timing::of(vec![9.0, 1.0, 2.0]);
+        assert_eq!((timing.median, timing.least), (2.0, 1.0));
+        assert_eq!(timing.seconds, [9.0, 1.0, 2.0]);
         assert_eq!(median(&[3.0]), 3.0);
         assert_eq!(median(&[9.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(&[4.0, 1.0, 9.0, 2.0]), 3.0);

@@ -192,7 +192,17 @@ fn the_command_writes_a_study() {
     );
     let read = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
     let found = read("precision.json");
-    assert!(!found.contains("seconds") && read("timing.json").contains("\"median\""));
+    assert!(!found.contains("seconds"));
+    let timing: serde_json::Value = serde_json::from_str(&read("timing.json")).unwrap();
+    for run in timing["runs"].as_array().unwrap() {
+        let seconds = run["timing"]["seconds"].as_array().unwrap();
+        assert_eq!(seconds.len(), 1, "a smoke test is timed once");
+        assert_eq!(run["timing"]["median"], seconds[0]);
+    }
+    let rows: Vec<&str> = shown.lines().filter(|l| l.starts_with("| ")).collect();
+    let width = |row: &str| row.matches('|').count();
+    assert!(rows.iter().all(|row| width(row) == width(rows[0])));
+    assert!(rows[0].contains("| processor time | least | runs |"));
     assert!(std::fs::metadata(out.join("precision.png")).unwrap().len() > 10_000);
     command(&study, &[]).code(2);
     command(&study, &["--force"]).success();

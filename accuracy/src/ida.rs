@@ -37,7 +37,7 @@ pub fn points(
                     work: work(run),
                     // IDA reports failures alone
                     warnings: Vec::new(),
-                    timing: *timing,
+                    timing: timing.clone(),
                 };
                 add(pace, Ok(made))
             }

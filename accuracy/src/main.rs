@@ -4,6 +4,7 @@
 mod effects;
 mod ida;
 mod page;
+mod timings;
 
 use clap::Parser;
 use looselink::ablation::figure as figure_of_effects;
@@ -98,6 +99,12 @@ fn main() -> Result<()> {
     }
     let ablation = effects::ablation(&root.join("scenes/3rrr/case4.toml"))?;
     plot::save(&figure_of_effects(&ablation), &pictures, "ablation")?;
+    timings::write(
+        &root.join("accuracy/timings.json"),
+        &made,
+        &surveyed,
+        &ablation,
+    )?;
     let page = page::page(
         &made,
         &surveyed,

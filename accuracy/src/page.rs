@@ -2,7 +2,7 @@
 
 use crate::{Made, Surveyed, effects};
 use looselink::ablation::Ablation;
-use looselink::machine::Machine;
+use looselink::machine::{Machine, median};
 use looselink::precision::{Outcome, Pace};
 use std::fmt::Write;
 
@@ -21,7 +21,9 @@ pub fn page(
         "# What accuracy costs\n\n\
          Every method on every study of [studies](studies), error against processor time. Written by `cargo run --release -p \
          accuracy` in {:.0} minutes; one study alone: `cargo run --release -- precision studies/case3.toml --out out/case3` \
-         ([docs/study.md](docs/study.md)). Times: median of five runs after one that is not timed, one core, {machine}.\n\n",
+         ([docs/study.md](docs/study.md)). Processor times are those of one core, {machine}: the \
+         median of so many runs as the column `runs` says, after one that is not timed. Every single time is in \
+         [accuracy/timings.json](accuracy/timings.json).\n\n",
         (seconds / 60.0).ceil()
     );
     out += &conclusions(made, surveyed);
@@ -123,7 +125,7 @@ fn time_at(outcome: &Outcome, curve: &str, error: f64) -> Option<(f64, Pace)> {
         .filter(|(run, _)| run.curve == curve)
         .filter_map(|(run, timing)| {
             let error = run.result.as_ref().ok()?.errors.position;
-            Some((error, (*timing)?.median, run.pace))
+            Some((error, timing.as_ref()?.median, run.pace))
         })
         .collect();
     let reached = points.iter().filter(|p| p.0 <= error).map(|p| (p.1, p.2));
@@ -221,7 +223,7 @@ fn conclusions(made: &[Made], surveyed: &[Surveyed]) -> String {
                  {}; in {} of the {cells} pairs it does not come so far with the steps tried.",
                 plot::digits(least),
                 plot::digits(most),
-                plot::digits(ratios[ratios.len() / 2]),
+                plot::digits(median(&ratios)),
                 cells - ratios.len()
             ),
         );
@@ -267,7 +269,7 @@ fn long_runs(one: &Surveyed) -> String {
         let converged = measures.deviation(exact) < deviation
             && (measures.contact - exact.contact).abs() < contact
             && measures.loss().abs() < loss;
-        converged.then_some((run, (*timing)?.median))
+        Some((run, timing.as_ref()?.median)).filter(|_| converged)
     });
     let mut good: Vec<_> = good.collect();
     good.sort_by(|a, b| a.1.total_cmp(&b.1));

@@ -176,11 +176,13 @@ pub struct Counts {
 }
 
 /// Processor time of a variant.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cost {
     /// Timed runs, after one that is not.
     pub runs: usize,
-    /// Processor time of a run, compilation left out, median over the runs \[s\].
+    /// Processor time of each of them, compilation left out \[s\].
+    pub seconds: Vec<f64>,
+    /// Their median; of a single run its time \[s\].
     pub cpu_seconds: f64,
     /// Processor time of a step \[µs\].
     pub microseconds_a_step: f64,
@@ -302,7 +304,8 @@ impl Cost {
         let timing = Timing::of(seconds);
         let cpu_seconds = timing.median;
         Cost {
-            runs: timing.repeats,
+            runs: timing.seconds.len(),
+            seconds: timing.seconds,
             cpu_seconds,
             microseconds_a_step: 1e6 * cpu_seconds / steps as f64,
             cpu_seconds_a_simulated_second: cpu_seconds / simulated,

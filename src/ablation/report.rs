@@ -106,7 +106,7 @@ impl Ablation {
         let row = |row: &Row| {
             Some(TimingRow {
                 variant: row.variant.name(),
-                cost: row.outcome.as_ref().ok()?.cost,
+                cost: row.outcome.as_ref().ok()?.cost.clone(),
             })
         };
         Timing {

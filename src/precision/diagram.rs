@@ -130,7 +130,7 @@ fn against_time(
     unit: &'static str,
     of: fn(&super::Errors) -> f64,
 ) -> Panel {
-    let seconds = |i: usize| outcome.timings[i].map(|t| t.median);
+    let seconds = |i: usize| outcome.timings[i].as_ref().map(|t| t.median);
     let mut marks = Vec::new();
     for curve in outcome.curves() {
         let color = color(&outcome.curves(), curve);

@@ -44,7 +44,7 @@ impl Meshes {
                 let error = run.result.as_ref().ok()?.errors.position;
                 Some(Point {
                     pace: run.pace,
-                    seconds: (*timing)?.median,
+                    seconds: timing.as_ref()?.median,
                     error,
                     kept: error,
                 })

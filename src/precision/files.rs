@@ -3,8 +3,8 @@
 //! | file | content |
 //! |---|---|
 //! | `precision.json` | errors, work and warnings of all points |
-//! | `timing.json` | their processor times, and the machine |
-//! | `precision.md` | both as tables, and the warnings |
+//! | `timing.json` | the processor time of every timed run, and the machine |
+//! | `precision.md` | both as a table, and the warnings |
 //! | `precision.svg`, `precision.png` | the diagrams |
 //!
 //! The first is the same bytes when the study is repeated. It comes last: without it there is no result. A result that is
@@ -34,28 +34,26 @@ struct Times<'a> {
     runs: Vec<Time<'a>>,
 }
 
-#[derive(Serialize)]
-struct Time<'a> {
+/// The time of a point of a curve.
+#[derive(Debug, Serialize)]
+pub struct Time<'a> {
     curve: &'a str,
     pace: Pace,
-    seconds: Option<Timing>,
+    /// Absent for a run that failed.
+    timing: Option<&'a Timing>,
 }
 
-impl<'a> Times<'a> {
-    fn new(
-        machine: &'a Machine,
+impl<'a> Time<'a> {
+    pub(super) fn of(
         runs: impl Iterator<Item = (&'a str, Pace)>,
-        seconds: &[Option<Timing>],
-    ) -> Times<'a> {
-        let runs = runs.zip(seconds).map(|((curve, pace), seconds)| Time {
+        timings: &'a [Option<Timing>],
+    ) -> Vec<Time<'a>> {
+        let times = runs.zip(timings).map(|((curve, pace), timing)| Time {
             curve,
             pace,
-            seconds: *seconds,
+            timing: timing.as_ref(),
         });
-        Times {
-            machine,
-            runs: runs.collect(),
-        }
+        times.collect()
     }
 }
 
@@ -87,8 +85,10 @@ impl Folder {
     /// When a file cannot be written.
     pub fn write(&self, study: &Study, outcome: &Outcome) -> Result<(), OutputError> {
         let machine = machine();
-        let runs = outcome.runs.iter().map(|run| (&*run.curve, run.pace));
-        let times = Times::new(&machine, runs, &outcome.timings);
+        let times = Times {
+            machine: &machine,
+            runs: outcome.times(),
+        };
         let page = page(outcome, &machine);
         self.write_all(&times, page, &figure(study, outcome), outcome)
     }
@@ -99,8 +99,10 @@ impl Folder {
     /// When a file cannot be written.
     pub fn write_survey(&self, study: &Study, survey: &Survey) -> Result<(), OutputError> {
         let machine = machine();
-        let runs = survey.runs.iter().map(|run| (&*run.curve, run.pace));
-        let times = Times::new(&machine, runs, &survey.timings);
+        let times = Times {
+            machine: &machine,
+            runs: survey.times(),
+        };
         let page = survey.page(study, &machine);
         self.write_all(&times, page, &survey.figure(study), survey)
     }

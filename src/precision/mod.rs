@@ -15,7 +15,7 @@ mod table;
 pub use crate::machine::Timing;
 pub use diagram::figure;
 pub use errors::Errors;
-pub use files::Folder;
+pub use files::{Folder, Time};
 pub use statistics::{Measures, Sampled, Survey};
 pub use study::{Curve, Pace, Reference, Statistics, Study, StudyError};
 pub use table::{page, table};
@@ -89,6 +89,12 @@ impl Outcome {
     /// Names of the curves in the order of their first points.
     pub fn curves(&self) -> Vec<&str> {
         distinct(self.runs.iter().map(|run| &*run.curve))
+    }
+
+    /// The time of every point.
+    pub fn times(&self) -> Vec<Time<'_>> {
+        let runs = self.runs.iter().map(|run| (&*run.curve, run.pace));
+        Time::of(runs, &self.timings)
     }
 
     /// All warnings, each after the name of its run.

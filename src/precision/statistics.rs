@@ -6,9 +6,10 @@
 
 use super::diagram::color;
 use super::errors::larger;
+use super::table::TIMES;
 use super::{
-    Columns, Effort, Made, Pace, Study, StudyError, Timing, Work, distinct, named_warnings, points,
-    references,
+    Columns, Effort, Made, Pace, Study, StudyError, Time, Timing, Work, distinct, named_warnings,
+    points, references,
 };
 use crate::machine::Machine;
 use crate::simulate::{Told, warning_list};
@@ -187,6 +188,12 @@ impl Survey {
         distinct(self.runs.iter().map(|run| &*run.curve))
     }
 
+    /// The time of every point.
+    pub fn times(&self) -> Vec<Time<'_>> {
+        let runs = self.runs.iter().map(|run| (&*run.curve, run.pace));
+        Time::of(runs, &self.timings)
+    }
+
     /// All warnings, each after the name of its run.
     pub fn warnings(&self) -> Vec<String> {
         let runs = self.runs.iter();
@@ -197,8 +204,8 @@ impl Survey {
     /// What the statistics are and what they took, a line a run. `duration` is the simulated time \[s\].
     pub fn table(&self, duration: f64) -> String {
         let mut out = String::from(
-            "| method | step or accuracy | envelopes | rms | deviation | in contact | dissipated in contact | lost by the integrator | processor time | real time factor | steps | repeated | onsets |\n\
-             |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+            "| method | step or accuracy | envelopes | rms | deviation | in contact | dissipated in contact | lost by the integrator | processor time | runs | real time factor | steps | repeated | onsets |\n\
+             |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         );
         let cells = |m: &Measures| {
             let envelope = m.envelope.iter().map(|e| plot::si(*e, "m"));
@@ -221,15 +228,16 @@ impl Survey {
             match (&run.result, timing) {
                 (Ok((measures, work)), Some(timing)) => writeln!(
                     out,
-                    " {} | {} | {} | {} | {} | {} |",
+                    " {} | {} | {} | {} | {} | {} | {} |",
                     cells(measures),
                     plot::si(timing.median, "s"),
+                    timing.seconds.len(),
                     plot::digits(duration / timing.median),
                     work.steps,
                     work.rejected_steps,
                     work.onsets
                 ),
-                (Err(error), _) => writeln!(out, " failed: {error} {}|", "| ".repeat(10)),
+                (Err(error), _) => writeln!(out, " failed: {error} {}|", "| ".repeat(11)),
                 (Ok(_), None) => unreachable!("a run that reached its end was timed"),
             }
             .expect(WRITES);
@@ -237,7 +245,7 @@ impl Survey {
         for (name, measures) in ["coarse", "fine"].iter().zip(&self.reference) {
             writeln!(
                 out,
-                "| reference | {name} | {} | | | | | |",
+                "| reference | {name} | {} | | | | | | |",
                 cells(measures)
             )
             .expect(WRITES);
@@ -248,7 +256,7 @@ impl Survey {
     /// A page with the diagram, the table, and where it was measured.
     pub fn page(&self, study: &Study, machine: &Machine) -> String {
         format!(
-            "# {}\n\n![Statistics](precision.png)\n\n{}\nProcessor time of the integration on one core. {machine}.\n{}",
+            "# {}\n\n![Statistics](precision.png)\n\n{}\n{TIMES} {machine}.\n{}",
             self.title,
             self.table(study.duration),
             warning_list(&self.warnings())
@@ -268,7 +276,7 @@ impl Survey {
                 let (x, y): (Vec<f64>, Vec<f64>) = points
                     .filter_map(|(run, timing)| {
                         let (measures, _) = run.result.as_ref().ok()?;
-                        Some(((*timing)?.median / duration, of(measures).abs()))
+                        Some((timing.as_ref()?.median / duration, of(measures).abs()))
                     })
                     .filter(|(_, y)| *y > 0.0)
                     .unzip();

@@ -1,90 +1,101 @@
-//! A study as tables in Markdown: what was found, and what it took.
+//! A study as a table in Markdown: what was found, and what it took.
 
 use super::errors::NORMS;
 use super::{Outcome, Pace};
-use crate::machine::Machine;
+use crate::machine::{Machine, Timing};
 use crate::simulate::warning_list;
-use std::fmt::Write;
 
-const WRITES: &str = "a string takes any text";
+/// What the processor times of a table are.
+pub(super) const TIMES: &str = "Processor time of the integration on one core, reading and compiling of the scene left \
+    out: the median of so many runs as `runs` says, after one that is not timed; `timing.json` has each of them.";
 
-/// Errors and work of all runs.
+/// Errors, times and work of all runs.
 pub fn table(outcome: &Outcome) -> String {
-    let mut out = String::from(
-        "| method | step or accuracy | position | achieved / asked | acceleration | impulse | energy | steps | repeated | location trials | factorisations |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|\n",
-    );
-    let cells = |errors: &super::Errors| NORMS.map(|(_, unit, of)| plot::si(of(errors), unit));
-    for run in &outcome.runs {
-        write!(out, "| {} | {} |", run.curve, run.pace).expect(WRITES);
+    let counted = |timing: &Timing| timing.instructions.is_some();
+    let counted = outcome.timings.iter().flatten().any(counted);
+    let mut heads = vec![
+        "method",
+        "step or accuracy",
+        "position",
+        "achieved / asked",
+        "acceleration",
+        "impulse",
+        "energy",
+        "processor time",
+        "least",
+        "runs",
+        "steps",
+        "repeated",
+        "location trials",
+        "factorisations",
+    ];
+    if counted {
+        heads.push("instructions");
+    }
+    let row = |cells: Vec<String>| {
+        let missing = heads.len().saturating_sub(cells.len());
+        format!("| {} |{}\n", cells.join(" | "), " |".repeat(missing))
+    };
+    let heading = heads.iter().map(|head| (*head).to_owned()).collect();
+    let mut out = row(heading) + "|" + &"---|".repeat(heads.len()) + "\n";
+    let norms = |errors: &super::Errors| NORMS.map(|(_, unit, of)| plot::si(of(errors), unit));
+    for (run, timing) in outcome.runs.iter().zip(&outcome.timings) {
+        let mut cells = vec![run.curve.clone(), run.pace.to_string()];
         match &run.result {
             Ok(measured) => {
-                let [position, acceleration, impulse, energy] = cells(&measured.errors);
+                let [position, others @ ..] = norms(&measured.errors);
                 let asked = match run.pace {
                     Pace::Step(_) | Pace::Tolerance(_) => String::new(),
                     Pace::Accuracy { position, .. } => {
                         plot::digits(measured.errors.position / position)
                     }
                 };
+                cells.extend([position, asked]);
+                cells.extend(others);
+                let of =
+                    |number: fn(&Timing) -> String| timing.as_ref().map_or(String::new(), number);
+                cells.extend([
+                    of(|t| plot::si(t.median, "s")),
+                    of(|t| plot::si(t.least, "s")),
+                    of(|t| t.seconds.len().to_string()),
+                ]);
                 let w = measured.work;
-                writeln!(
-                    out,
-                    " {position} | {asked} | {acceleration} | {impulse} | {energy} | {} | {} | {} | {} |",
-                    w.steps, w.rejected_steps, w.location_trials, w.factorisations
-                )
+                let work = [
+                    w.steps,
+                    w.rejected_steps,
+                    w.location_trials,
+                    w.factorisations,
+                ];
+                cells.extend(work.map(|n| n.to_string()));
+                if counted {
+                    cells.push(of(|t| match t.instructions {
+                        Some(n) => plot::digits(n as f64),
+                        None => "–".to_owned(),
+                    }));
+                }
             }
-            Err(error) => writeln!(out, " failed: {error} | | | | | | | | |"),
+            Err(error) => cells.push(format!("failed: {error}")),
         }
-        .expect(WRITES);
+        out += &row(cells);
     }
-    let [position, acceleration, impulse, _] = cells(&outcome.floor);
-    writeln!(
-        out,
-        "| floor | reference, coarse against fine | {position} | | {acceleration} | {impulse} | | | | | |"
-    )
-    .expect(WRITES);
-    out
+    let [position, acceleration, impulse, _] = norms(&outcome.floor);
+    let floor = [
+        "floor",
+        "reference, coarse against fine",
+        &position,
+        "",
+        &acceleration,
+        &impulse,
+    ];
+    out + &row(floor.map(str::to_owned).to_vec())
 }
 
-/// A page with the diagrams and both tables.
+/// A page with the diagrams and the table, and where it was measured.
 pub fn page(outcome: &Outcome, machine: &Machine) -> String {
     format!(
-        "# {}\n\n![Work and precision](precision.png)\n\n{}\n{}{}",
+        "# {}\n\n![Work and precision](precision.png)\n\n{}\n{TIMES} {machine}.\n{}",
         outcome.title,
         table(outcome),
-        timing_table(outcome, machine),
         warning_list(&outcome.warnings())
     )
-}
-
-/// Processor times of all runs, and where they were measured.
-fn timing_table(outcome: &Outcome, machine: &Machine) -> String {
-    let mut out = String::from(
-        "| method | step or accuracy | position error | median | least | runs | instructions |\n|---|---|---|---|---|---|---|\n",
-    );
-    for (run, timing) in outcome.runs.iter().zip(&outcome.timings) {
-        let (Some(timing), Ok(measured)) = (timing, &run.result) else {
-            continue;
-        };
-        writeln!(
-            out,
-            "| {} | {} | {} | {} | {} | {} | {} |",
-            run.curve,
-            run.pace,
-            plot::si(measured.errors.position, "m"),
-            plot::si(timing.median, "s"),
-            plot::si(timing.least, "s"),
-            timing.repeats,
-            timing
-                .instructions
-                .map_or("–".to_owned(), |n| plot::digits(n as f64))
-        )
-        .expect(WRITES);
-    }
-    writeln!(
-        out,
-        "\nProcessor time of the integration on one core, reading and compiling of the scene left out. {machine}."
-    )
-    .expect(WRITES);
-    out
 }

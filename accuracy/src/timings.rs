@@ -1,0 +1,41 @@
+//! The raw times behind the page.
+
+use crate::{Made, Surveyed};
+use looselink::ablation::{self, Ablation};
+use looselink::machine::{Machine, machine};
+use looselink::precision::Time;
+use miette::{IntoDiagnostic, Result, WrapErr};
+use serde::Serialize;
+use std::path::Path;
+
+#[derive(Serialize)]
+struct Timings<'a> {
+    machine: Machine,
+    studies: Vec<Study<'a>>,
+    ablation: ablation::Timing,
+}
+
+#[derive(Serialize)]
+struct Study<'a> {
+    study: &'a str,
+    runs: Vec<Time<'a>>,
+}
+
+/// Writes the processor time of every timed run.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write(path: &Path, made: &[Made], surveyed: &[Surveyed], ablation: &Ablation) -> Result<()> {
+    let made = made.iter().map(|one| (&*one.name, one.outcome.times()));
+    let surveyed = surveyed.iter().map(|one| (&*one.name, one.survey.times()));
+    let studies = made.chain(surveyed);
+    let timings = Timings {
+        machine: machine(),
+        studies: studies.map(|(study, runs)| Study { study, runs }).collect(),
+        ablation: ablation.timing(),
+    };
+    let text = serde_json::to_string_pretty(&timings).into_diagnostic()?;
+    std::fs::write(path, text + "\n")
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot write {}", path.display()))
+}
