@@ -59,7 +59,7 @@ const GRID_ROUNDING: f64 = 1e-6;
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The equations have no solution that the method finds.
-    #[error("{name}: {cause} at t = {t} s (step halved down to {step:.1e} s)")]
+    #[error("{name}: {cause} at t = {t} s (step halved down to {} s)", short(step))]
     Physics {
         /// Coordinate or constraint.
         name: String,
@@ -73,7 +73,8 @@ pub enum RunError {
     /// No step is short enough for the accuracy that the scene asks for.
     #[error(
         "the accuracy of {accuracy} cannot be reached at t = {t} s: the estimated error of {name} is too large even at a step of \
-         {step:.1e} s"
+         {} s",
+        short(step)
     )]
     Accuracy {
         /// Coordinate with the largest error, or the balance of energies.
@@ -87,8 +88,10 @@ pub enum RunError {
     },
     /// The integrator has put far more energy into the motion than the scene has.
     #[error(
-        "{name}: the method is unstable with these steps: at t = {t} s it has put {gained:.1e} J into the motion, where the scene \
-         supplies {supplied:.1e} J"
+        "{name}: the method is unstable with these steps: at t = {t} s it has put {} J into the motion, where the scene \
+         supplies {} J",
+        short(gained),
+        short(supplied)
     )]
     Unstable {
         /// Coordinate with the largest velocity.
@@ -132,6 +135,11 @@ pub enum RunError {
     /// Results could not be stored.
     #[error("{0}")]
     Output(#[from] std::io::Error),
+}
+
+/// A number of a message.
+fn short(value: &f64) -> String {
+    plot::number(*value, 2)
 }
 
 /// Counts of the loop, beside those of Newton's method.
@@ -549,7 +557,10 @@ impl Simulation {
         match self.model.widest_left_out(&self.state) {
             Some((index, open)) if open > LEFT_OPEN * size => Err(RunError::Physics {
                 name: self.model.unknown_name(index),
-                cause: format!("the other constraints do not allow it, it is off by {open:.1e}"),
+                cause: format!(
+                    "the other constraints do not allow it, it is off by {}",
+                    short(&open)
+                ),
                 t: self.state.t,
                 step: self.state.t - self.trial.t,
             }),
@@ -599,12 +610,14 @@ impl Simulation {
                 format!("{joint} closed or opened {changes} times")
             }
             (None, Some((index, times))) => format!(
-                "{times} times the step failed for {} and was halved, now to {step:.1e} s",
-                self.model.unknown_name(index)
+                "{times} times the step failed for {} and was halved, now to {} s",
+                self.model.unknown_name(index),
+                short(&step)
             ),
             (None, None) => format!(
-                "the error of {} keeps the steps at {step:.1e} s",
-                self.meter.worst(&self.model, &self.local_error)
+                "the error of {} keeps the steps at {} s",
+                self.meter.worst(&self.model, &self.local_error),
+                short(&step)
             ),
         };
         RunError::Stalled {
@@ -689,7 +702,10 @@ fn describe(model: &Model, failure: &Failure) -> (String, String) {
     match *failure {
         Failure::NoConvergence { index, update } => (
             model.unknown_name(index),
-            format!("Newton's method does not converge (last update {update:.1e} m/s)"),
+            format!(
+                "Newton's method does not converge (last update {} m/s)",
+                short(&update)
+            ),
         ),
         Failure::NotFinite { index } => (
             model.unknown_name(index),

@@ -134,7 +134,7 @@ fn starts_that_are_missing_or_wrong() {
     check(
         &error,
         "off the pin",
-        "the start violates joint pin (x): by 1.000e-3 m",
+        "the start violates joint pin (x): by 0.001 m",
         "[initial]",
     );
 }
@@ -179,7 +179,7 @@ fn a_journal_outside_its_bearing() {
     check(
         &error,
         "outside",
-        "joint pin starts 4.998e-2 m deep in the wall",
+        "joint pin starts 0.04998 m deep in the wall",
         "[joints.pin]",
     );
     let pressed = ["initial.bodies.journal.x=2.01e-5".to_owned()];

@@ -15,7 +15,7 @@ pub fn si(value: f64, unit: &str) -> String {
         (1e-12, "p"),
     ];
     if value == 0.0 || !value.is_finite() {
-        return format!("{value}\u{a0}{unit}");
+        return format!("{}\u{a0}{unit}", plain(value));
     }
     let size = rounded(value.abs());
     let (factor, prefix) = PREFIXES
@@ -25,27 +25,58 @@ pub fn si(value: f64, unit: &str) -> String {
     format!("{}\u{a0}{prefix}{unit}", digits(value / factor))
 }
 
-/// A value with three significant digits.
+/// A value with three significant digits; powers of ten as in print.
 pub fn digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
+        return plain(value);
     }
-    let magnitude = rounded(value.abs()).log10().floor() as i32;
+    let magnitude = magnitude(value, 3);
     if !(-4..6).contains(&magnitude) {
         let mantissa = value / 10f64.powi(magnitude);
         return format!("{mantissa:.2}·10{}", superscript(magnitude));
     }
     let text = format!("{value:.*}", (2 - magnitude).max(0) as usize);
     // a step of 2 µs is not 2.00 µs; the tolerance is that of a few products
-    let short = if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        &text
-    };
+    let short = without_zeros(&text);
     let exact = short
         .parse::<f64>()
         .is_ok_and(|v| (v - value).abs() <= 1e-14 * value.abs());
     if exact { short.into() } else { text }
+}
+
+/// A value with at most so many significant digits; powers of ten as in a file, such as `1.25e-8`. For messages, and for
+/// tables whose numbers are compared with those of a file.
+pub fn number(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return plain(value);
+    }
+    let magnitude = magnitude(value, digits);
+    if !(-3..6).contains(&magnitude) {
+        let text = format!("{value:.*e}", digits - 1);
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        return format!("{}e{exponent}", without_zeros(mantissa));
+    }
+    let decimals = (digits as i32 - 1 - magnitude).max(0) as usize;
+    without_zeros(&format!("{value:.decimals$}")).to_owned()
+}
+
+/// Zero, which has no sign here, or what is not finite.
+fn plain(value: f64) -> String {
+    format!("{}", value + 0.0)
+}
+
+/// The power of ten of the first digit, of a value rounded to so many digits.
+fn magnitude(value: f64, digits: usize) -> i32 {
+    let text = format!("{value:.*e}", digits - 1);
+    let exponent = text.split_once('e').and_then(|(_, e)| e.parse().ok());
+    exponent.unwrap_or(0)
+}
+
+fn without_zeros(text: &str) -> &str {
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.'),
+        false => text,
+    }
 }
 
 /// A fraction in per cent.
@@ -73,5 +104,31 @@ mod tests {
         assert_eq!(digits(1234.6), "1235");
         assert_eq!(digits(-4.123e-8), "-4.12·10⁻⁸");
         assert_eq!(percent(0.98765), "98.8\u{a0}%");
+        assert_eq!((digits(0.0), digits(-0.0)), ("0".into(), "0".into()));
+        assert_eq!(si(-0.0, "m"), "0\u{a0}m");
+    }
+
+    #[test]
+    fn numbers_of_messages_and_tables() {
+        for (value, digits, text) in [
+            (0.0, 4, "0"),
+            (-0.0, 4, "0"),
+            (1.0, 4, "1"),
+            (36.0, 4, "36"),
+            (1e-9, 4, "1e-9"),
+            (-1.25e-8, 3, "-1.25e-8"),
+            (5.00e-8, 3, "5e-8"),
+            (9.9996e-4, 4, "0.001"),
+            (9.96e-10, 2, "1e-9"),
+            (-2.802161641234, 10, "-2.802161641"),
+            (12.39669421, 10, "12.39669421"),
+            (0.0012868065791, 10, "0.001286806579"),
+            (123456.7, 3, "123457"),
+            (999999.7, 6, "1e6"),
+            (3.0e12, 2, "3e12"),
+            (f64::INFINITY, 2, "inf"),
+        ] {
+            assert_eq!(number(value, digits), text);
+        }
     }
 }

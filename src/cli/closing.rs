@@ -2,6 +2,7 @@
 
 use looselink::record::Ledger;
 use looselink::simulate::{AccuracyReport, Report};
+use plot::number;
 
 /// Impacts that are shown; summary.json lists more.
 const SHOWN: usize = 3;
@@ -14,13 +15,13 @@ pub fn lines(report: &Report) -> Vec<String> {
     let first = report.impacts.iter().take(SHOWN).enumerate();
     lines.extend(first.map(|(k, impact)| {
         format!(
-            "impact {}: {} at {:.9} s with {:.6e} m/s at {:.4} degrees, {:.6e} m deep",
+            "impact {}: {} at {:.9} s with {} m/s at {:.4} degrees, {} m deep",
             k + 1,
             impact.joint,
             impact.t,
-            impact.impact_velocity,
+            number(impact.impact_velocity, 7),
             impact.angle.to_degrees(),
-            impact.deepest_penetration
+            number(impact.deepest_penetration, 7)
         )
     }));
     lines
@@ -30,8 +31,10 @@ pub fn lines(report: &Report) -> Vec<String> {
 fn accuracy(control: &AccuracyReport) -> String {
     let [shortest, longest] = control.steps;
     let mut line = format!(
-        "accuracy: {} asked for, steps from {shortest:.1e} to {longest:.1e} s",
-        control.asked
+        "accuracy: {} asked for, steps from {} to {} s",
+        control.asked,
+        number(shortest, 2),
+        number(longest, 2)
     );
     let most = control.rejected_by.iter().max_by_key(|(_, count)| **count);
     if let Some((name, count)) = most {
@@ -46,15 +49,17 @@ fn accuracy(control: &AccuracyReport) -> String {
 /// What the integrator did to the energy.
 fn energy(ledger: &Ledger) -> String {
     let (dissipated, numerical) = (ledger.dissipated(), ledger.numerical.abs());
+    let changed = number(numerical, 2);
     let verb = match ledger.numerical < 0.0 {
         true => "gained",
         false => "lost",
     };
     if dissipated <= 0.0 {
-        return format!("energy: {numerical:.1e} J {verb} by the integrator");
+        return format!("energy: {changed} J {verb} by the integrator");
     }
     format!(
-        "energy: {dissipated:.3e} J dissipated, {numerical:.1e} J {verb} by the integrator ({:.1} %)",
+        "energy: {} J dissipated, {changed} J {verb} by the integrator ({:.1} %)",
+        number(dissipated, 4),
         100.0 * numerical / dissipated
     )
 }

@@ -8,6 +8,7 @@ use crate::model::{BodyCoordinates, Model};
 use crate::motion;
 use crate::scene::{BodyKind, Drive, LinkModel, PointRef, Scene, SceneError};
 use crate::system::State;
+use plot::number;
 
 /// Largest distance of two prescribed points that a joint holds together \[m\]: the digits of typed positions.
 const HELD_TOLERANCE: f64 = 1e-9;
@@ -87,8 +88,11 @@ fn sweep(
                 let distance = norm(sub(a, b));
                 if distance > HELD_TOLERANCE {
                     let message = format!(
-                        "drive {}: the path pulls joint {} apart, by {distance:.3e} m at t = {} s",
-                        drive.name, joint.name, to.t
+                        "drive {}: the path pulls joint {} apart, by {} m at t = {} s",
+                        drive.name,
+                        joint.name,
+                        number(distance, 4),
+                        to.t
                     );
                     return Err(c.joint_error(j, message, "both of its points are prescribed"));
                 }

@@ -7,6 +7,7 @@ use crate::math::plane::{Vec2, add, cross, dot, norm, perp, scale, sub};
 use crate::model::{BodyCoordinates, Model};
 use crate::scene::{BodyKind, ForceKind, JointModel, Scene, SceneError};
 use crate::system::State;
+use plot::number;
 
 /// Largest distance by which a start may miss a constraint \[m\] or a rate \[m/s\]: the digits of a typed position.
 const START_TOLERANCE: f64 = 1e-9;
@@ -93,8 +94,9 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
             .map_or(0.0, |(_, delta, _)| delta);
         if delta > contact.clearance {
             let message = format!(
-                "joint {} starts {delta:.3e} m deep in the wall of its bearing, more than its clearance",
-                scene.joints[j].name
+                "joint {} starts {} m deep in the wall of its bearing, more than its clearance",
+                scene.joints[j].name,
+                number(delta, 4)
             );
             return Err(scene.error(scene.joints[j].span, message, "this joint"));
         }
@@ -115,7 +117,11 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
     if let Some((distance, rate, name)) = model.worst_constraint(&state)
         && (distance > START_TOLERANCE || rate > START_TOLERANCE)
     {
-        let message = format!("the start violates {name}: by {distance:.3e} m and {rate:.3e} m/s");
+        let message = format!(
+            "the start violates {name}: by {} m and {} m/s",
+            number(distance, 4),
+            number(rate, 4)
+        );
         return Err(scene.error(scene.initial.span, message, "this start"));
     }
     if let Some(index) = model.half_turned(&state) {

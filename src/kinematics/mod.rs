@@ -12,6 +12,7 @@ pub(crate) use series::Series;
 use crate::math::plane::{norm, sub};
 use crate::model::Model;
 use crate::system::{Inner, PrescribeError, State, System};
+use plot::number;
 
 /// An update below this leaves, by the quadratic convergence of Newton's method, an error far below rounding.
 const LAST_UPDATE: f64 = 1e-9;
@@ -216,7 +217,10 @@ impl Kinematics {
         let worst = self.mechanism.worst_constraint(at);
         let message = match worst {
             Some((value, _, name)) => {
-                format!("the ideal rigid mechanism cannot close: {name} is off by {value:.3e} m")
+                format!(
+                    "the ideal rigid mechanism cannot close: {name} is off by {} m",
+                    number(value, 4)
+                )
             }
             None => "the ideal rigid mechanism cannot follow the path".to_owned(),
         };

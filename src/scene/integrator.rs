@@ -4,6 +4,7 @@ use super::error::SceneError;
 use super::field::Field;
 use super::fields::Fields;
 use super::{Accuracy, Analysis, Integrator, Method, Pace, Simulation};
+use plot::number;
 
 /// More steps than this are a slip of the pen: a week of computing at 20 microseconds a step.
 const MOST_STEPS: f64 = 1e10;
@@ -152,7 +153,11 @@ fn step(field: &Field, simulation: &Simulation) -> Result<f64, SceneError> {
     }
     let steps = simulation.duration / step;
     if steps > MOST_STEPS {
-        let message = format!("`{}` is too small: {steps:.1e} steps in all", field.path);
+        let message = format!(
+            "`{}` is too small: {} steps in all",
+            field.path,
+            number(steps, 2)
+        );
         return Err(field.fault(message, "at most 1e10 steps"));
     }
     Ok(step)

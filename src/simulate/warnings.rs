@@ -1,6 +1,7 @@
 //! What a user should know of a run before the numbers are used.
 
 use super::Report;
+use plot::number;
 
 /// Energy lost or gained by the integrator beyond this part of what was dissipated is told ...
 const OF_DISSIPATED: f64 = 0.05;
@@ -39,8 +40,11 @@ impl Report {
         warnings.extend(self.acceleration_warning());
         warnings.extend(self.chatter.iter().map(|chatter| {
             format!(
-                "{} chatters from {:.6e} to {:.6e} s: {} onsets within a few steps each",
-                chatter.joint, chatter.from, chatter.to, chatter.onsets
+                "{} chatters from {} to {} s: {} onsets within a few steps each",
+                chatter.joint,
+                number(chatter.from, 7),
+                number(chatter.to, 7),
+                chatter.onsets
             )
         }));
         if self.accuracy.is_none() && self.brief_contacts > 0 {
@@ -103,16 +107,18 @@ impl Report {
         let changed = most.abs();
         if changed > OF_TURNOVER * integration.turnover {
             return Some(format!(
-                "the integrator {} {changed:.1e} J, {}",
+                "the integrator {} {} J, {}",
                 verb(most),
+                number(changed, 2),
                 share(changed / integration.turnover, "the energy in play")
             ));
         }
         let (dissipated, numerical) = (ledger.dissipated(), ledger.numerical.abs());
         (dissipated > 0.0 && numerical > OF_DISSIPATED * dissipated).then(|| {
             format!(
-                "the integrator {} {numerical:.1e} J, {}: a smaller integrator.step would make its part small",
+                "the integrator {} {} J, {}: a smaller integrator.step would make its part small",
                 verb(ledger.numerical),
+                number(numerical, 2),
                 share(numerical / dissipated, "what was dissipated")
             )
         })
@@ -135,8 +141,10 @@ impl Report {
         let (error, travel) = (integration.estimated_error, integration.travel);
         (error > OF_TRAVEL * travel).then(|| {
             format!(
-                "the estimated error of {} is {error:.1e} m where the longest way of a point is {travel:.1e} m",
-                integration.estimated_error_of
+                "the estimated error of {} is {} m where the longest way of a point is {} m",
+                integration.estimated_error_of,
+                number(error, 2),
+                number(travel, 2)
             )
         })
     }

@@ -5,7 +5,7 @@ use crate::compare::cost::{Curves, ERRORS, time_at};
 use crate::compare::statistics::{QUANTITIES, RELATIVE, STEPS, Spread};
 use crate::faults::{Fault, Outcome};
 use crate::reference;
-use plot::{digits, si};
+use plot::{digits, number, si};
 use std::fmt::Write;
 
 /// Everything the page is made of.
@@ -137,7 +137,7 @@ impl Report {
             );
             for (i, (name, unit, ..)) in QUANTITIES.iter().enumerate() {
                 let both = spread.rust.iter().chain(&spread.cpp);
-                let cells: Vec<String> = both.map(|m| four(m.values[i])).collect();
+                let cells: Vec<String> = both.map(|m| number(m.values[i], 4)).collect();
                 let name = name.replace('|', "\\|");
                 put(page, format!("| {name} [{unit}] | {} |", cells.join(" | ")));
             }
@@ -254,31 +254,15 @@ fn table(page: &mut String, title: &str, text: &str, rows: &[Agreement]) {
         let cells = [
             row.quantity.clone(),
             row.scene.clone(),
-            number(row.rust),
-            number(row.cpp),
-            format!("{:.1e}", row.difference),
-            format!("{:.0e}", row.tolerance),
+            // enough digits to see the agreement
+            number(row.rust, 10),
+            number(row.cpp, 10),
+            number(row.difference, 2),
+            number(row.tolerance, 1),
             row.reason.clone(),
         ];
         let cells = cells.map(|cell| cell.replace('|', "\\|"));
         put(page, format!("| {verdict} | {} |", cells.join(" | ")));
     }
     put(page, String::new());
-}
-
-/// Enough digits to see the agreement.
-fn number(x: f64) -> String {
-    if x == x.trunc() && x.abs() < 1e6 {
-        return format!("{x}");
-    }
-    format!("{x:.9e}")
-}
-
-/// Four digits, or powers of ten for small numbers.
-fn four(x: f64) -> String {
-    if x.abs() < 1e-2 {
-        format!("{x:.3e}")
-    } else {
-        format!("{x:.4}")
-    }
 }

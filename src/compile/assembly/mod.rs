@@ -14,6 +14,7 @@ use crate::model::Model;
 use crate::scene::{BodyKind, Joint, JointModel, PointRef, Scene, SceneError};
 use crate::system::State;
 use guess::guess;
+use plot::number;
 use velocities::velocities;
 
 /// Largest opening of an assembled constraint \[m\]: far above rounding, far below anything measurable.
@@ -155,7 +156,10 @@ fn cannot_close(c: &Compiler, open: f64, name: &str, holds: bool) -> SceneError 
             "too large, or its unit is not the metre",
         );
     }
-    let message = format!("the mechanism cannot be assembled: {name} stays open by {open:.3e} m");
+    let message = format!(
+        "the mechanism cannot be assembled: {name} stays open by {} m",
+        number(open, 4)
+    );
     let error = c
         .scene
         .error(c.scene.initial.span, message, "from this start");

@@ -8,6 +8,7 @@ use crate::model::{BodyCoordinates, Model};
 use crate::scene::{BodyState, SceneError};
 use crate::system::{State, System};
 use faer::Mat;
+use plot::number;
 
 /// Velocities of least kinetic energy under the constraints and the given ones.
 pub(super) fn velocities(
@@ -28,7 +29,8 @@ pub(super) fn velocities(
             {
                 let name = &mechanism.names[n + placed.row + d];
                 let message = format!(
-                    "the prescribed motions contradict each other at t = 0: {name} is off by {off:.3e} m/s"
+                    "the prescribed motions contradict each other at t = 0: {name} is off by {} m/s",
+                    number(off, 4)
                 );
                 return Err(c.scene.error(c.scene.initial.span, message, "this start"));
             }
@@ -78,9 +80,10 @@ pub(super) fn velocities(
 
 fn contradiction(c: &Compiler, given: &BodyState, component: usize, off: f64) -> SceneError {
     let message = format!(
-        "the velocity of {} contradicts the constraints: {} is off by {off:.3e}",
+        "the velocity of {} contradicts the constraints: {} is off by {}",
         c.scene.bodies[given.body].name,
-        ["vx", "vy", "omega"][component]
+        ["vx", "vy", "omega"][component],
+        number(off, 4)
     );
     c.scene.error(given.span, message, "this velocity")
 }

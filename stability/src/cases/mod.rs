@@ -60,8 +60,8 @@ impl Check {
     pub fn bound(&self) -> String {
         match (self.least, self.greatest) {
             (1.0, 1.0) => "yes".to_owned(),
-            (f64::MIN, greatest) => format!("at most {greatest:.3e}"),
-            (least, f64::MAX) => format!("at least {least:.3e}"),
+            (f64::MIN, greatest) => format!("at most {}", plot::number(greatest, 4)),
+            (least, f64::MAX) => format!("at least {}", plot::number(least, 4)),
             (least, greatest) => format!("{least} to {greatest}"),
         }
     }
@@ -71,8 +71,7 @@ impl Check {
         match (self.least, self.greatest, self.value) {
             (1.0, 1.0, 1.0) => "yes".to_owned(),
             (1.0, 1.0, _) => "no".to_owned(),
-            // 0 has no sign here
-            (_, _, value) => format!("{:.3e}", value + 0.0),
+            (_, _, value) => plot::number(value, 4),
         }
     }
 }

@@ -175,7 +175,10 @@ impl Convergence {
                 (true, _) => (self.sizes[q], 1e-4, "of the largest"),
             };
             rows.push(Agreement {
-                quantity: format!("{name}, h = {:.2e} s", self.steps[self.steps.len() - 1]),
+                quantity: format!(
+                    "{name}, h = {} s",
+                    plot::number(self.steps[self.steps.len() - 1], 3)
+                ),
                 scene: scene.clone(),
                 rust: finest.rust,
                 cpp: finest.cpp,

@@ -87,8 +87,9 @@ impl Series {
             rows.for_each(|(r, c)| position.see(*r, *c, 1.0));
         }
         let how = format!(
-            "h = {:.2e} s, IDA relative {:.0e}",
-            self.step, self.relative
+            "h = {} s, IDA relative {}",
+            plot::number(self.step, 3),
+            plot::number(self.relative, 1)
         );
         let last = |impacts: &[Impact]| impacts.len().min(self.impacts) as f64;
         let mut rows = vec![
