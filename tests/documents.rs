@@ -32,6 +32,13 @@ fn files_named_in_documents_exist() {
 }
 
 #[test]
+fn the_citation_is_of_this_version() {
+    let citation = read("CITATION.cff");
+    let version = concat!("version: ", env!("CARGO_PKG_VERSION"));
+    assert!(citation.lines().any(|line| line == version), "{version}");
+}
+
+#[test]
 fn the_scene_of_the_readme_runs() {
     let text = read("README.md");
     let (_, rest) = text.split_once("```toml\n").unwrap();
