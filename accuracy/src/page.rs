@@ -20,9 +20,9 @@ pub fn page(
     let mut out = format!(
         "# What accuracy costs\n\n\
          Every method on every study of [studies](studies), error against processor time. Written by `cargo run --release -p \
-         accuracy` in {:.0} minutes; one study alone: `cargo run --release -- precision studies/case3.toml --out out/case3` \
+         accuracy` in {:.0} min; one study alone: `cargo run --release -- precision studies/case3.toml --out out/case3` \
          ([docs/study.md](docs/study.md)). Processor times are those of one core, {machine}: the \
-         median of so many runs as the column `runs` says, after one that is not timed. Every single time is in \
+         median of as many runs as the column `runs` says, after one that is not timed. Every single time is in \
          [accuracy/timings.json](accuracy/timings.json).\n\n",
         (seconds / 60.0).ceil()
     );
@@ -31,30 +31,43 @@ pub fn page(
     out += &fastest(made);
     for one in made {
         out += &format!(
-            "## {}\n\n![{}](accuracy/figures/{}.png)\n\n{}\n",
+            "## {}\n\n![{}](accuracy/figures/{}.png)\n\n{}\n{}",
             one.study.title,
             one.study.title,
             one.name,
-            looselink::precision::table(&one.outcome)
+            looselink::precision::table(&one.outcome),
+            folded(&one.outcome.warnings())
         );
     }
     for one in surveyed {
         out += &format!(
-            "## {}\n\n![{}](accuracy/figures/{}.png)\n\n{}\n\n{}\n",
+            "## {}\n\n![{}](accuracy/figures/{}.png)\n\n{}\n\n{}\n{}",
             one.study.title,
             one.study.title,
             one.name,
             long_runs(one),
-            one.survey.table(one.study.duration)
+            one.survey.table(one.study.duration),
+            folded(&one.survey.warnings())
         );
     }
     out += &effects::section(ablation);
+    out += &folded(&ablation.warnings());
     out += &omissions(made);
     out
 }
 
 fn line(out: &mut String, text: &str) {
     writeln!(out, "{text}").expect("a string takes any text");
+}
+
+/// The warnings of the runs of a table, folded up: coarse runs have many.
+fn folded(warnings: &[String]) -> String {
+    if warnings.is_empty() {
+        return "No run warns.\n\n".to_owned();
+    }
+    let list: String = warnings.iter().map(|w| format!("* {w}\n")).collect();
+    let count = warnings.len();
+    format!("<details><summary>Warnings of these runs: {count}</summary>\n\n{list}\n</details>\n\n")
 }
 
 /// Error achieved over error asked for, over all studies.

@@ -139,12 +139,17 @@ impl Ablation {
             page += &format!("## {title}\n\n{}\n", table.markdown());
         }
         page += "Processor times are in the picture and in `timing.json`.\n";
+        page + &warning_list(&self.warnings())
+    }
+
+    /// All warnings, each after the name of its variant.
+    pub fn warnings(&self) -> Vec<String> {
         let warnings = self.measured().flat_map(|(row, outcome)| {
             let name = row.variant.name();
             let warnings = outcome.warnings.iter();
             warnings.map(move |warning| format!("{name}: {warning}"))
         });
-        page + &warning_list(&warnings.collect::<Vec<_>>())
+        warnings.collect()
     }
 
     /// What every variant does and what it costs as Markdown without headings, for a page of more than this.

@@ -7,7 +7,7 @@ use crate::simulate::warning_list;
 
 /// What the processor times of a table are.
 pub(super) const TIMES: &str = "Processor time of the integration on one core, reading and compiling of the scene left \
-    out: the median of so many runs as `runs` says, after one that is not timed; `timing.json` has each of them.";
+    out: the median of as many runs as the column `runs` says, after one that is not timed; `timing.json` has each of them.";
 
 /// Errors, times and work of all runs.
 pub fn table(outcome: &Outcome) -> String {
