@@ -60,6 +60,12 @@ pub fn number(value: f64, digits: usize) -> String {
     without_zeros(&format!("{value:.decimals$}")).to_owned()
 }
 
+/// A value with all the digits that it takes to read it back, such as `10`, `0.001` or `1.25e-6`.
+pub fn exact(value: f64) -> String {
+    let text = format!("{:?}", value + 0.0);
+    text.trim_end_matches(".0").to_owned()
+}
+
 /// Zero, which has no sign here, or what is not finite.
 fn plain(value: f64) -> String {
     format!("{}", value + 0.0)
@@ -129,6 +135,9 @@ mod tests {
             (f64::INFINITY, 2, "inf"),
         ] {
             assert_eq!(number(value, digits), text);
+        }
+        for text in ["0", "10", "100", "0.001", "1.25e-6", "-1e-9", "1e300"] {
+            assert_eq!(exact(text.parse().unwrap()), text);
         }
     }
 }

@@ -5,6 +5,7 @@ use super::{SceneArguments, print};
 use clap::Args;
 use looselink::scene::{Analysis, Pace, Scene};
 use looselink::simulate::{Inspection, Simulation};
+use plot::exact;
 use std::fmt::Write;
 
 #[derive(Debug, Args)]
@@ -43,24 +44,27 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
             "duration",
             match (scene.integrator.pace, scene.simulation.analysis) {
                 (Pace::Step(step), Analysis::Dynamic) => format!(
-                    "{duration:?} s, about {:.0} steps of {step:?} s",
-                    duration / step
+                    "{} s, about {:.0} steps of {} s",
+                    exact(duration),
+                    duration / step,
+                    exact(step)
                 ),
                 (Pace::Step(step), Analysis::Static) => format!(
-                    "load path to t = {duration:?} in about {:.0} steps",
+                    "load path to t = {} in about {:.0} steps",
+                    exact(duration),
                     duration / step
                 ),
                 (Pace::Accuracy(accuracy), _) => {
-                    format!("{duration:?} s, with an accuracy of {accuracy}")
+                    format!("{} s, with an accuracy of {accuracy}", exact(duration))
                 }
             },
         ),
         (
             "channels",
             format!(
-                "{} every {:?} s",
+                "{} every {} s",
                 simulation.channels().len(),
-                scene.output.interval
+                exact(scene.output.interval)
             ),
         ),
         ("method", scene.integrator.method.name().to_owned()),

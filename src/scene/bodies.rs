@@ -208,8 +208,9 @@ fn link_points(
         let node = place.round();
         if !(node > 0.0 && node < elements as f64 && (place - node).abs() <= 1e-9 * node) {
             let requirement = format!(
-                "lie at a node between the ends: a multiple of {:?} m below {length:?} m",
-                length / elements as f64
+                "lie at a node between the ends: a multiple of {} m below {} m",
+                plot::exact(length / elements as f64),
+                plot::exact(length)
             );
             return Err(field.must(&requirement));
         }

@@ -145,10 +145,10 @@ fn cannot_close(c: &Compiler, open: f64, name: &str, holds: bool) -> SceneError 
     if let Some(b) = sizes.iter().position(|s| pinned && *s > total - s) {
         let body = &c.scene.bodies[b];
         let message = format!(
-            "the mechanism cannot be assembled: {} is {:?} m long, more than all other bodies together ({:.4} m)",
+            "the mechanism cannot be assembled: {} is {} m long, more than all other bodies together ({} m)",
             body.name,
-            sizes[b],
-            total - sizes[b]
+            plot::exact(sizes[b]),
+            number(total - sizes[b], 4)
         );
         return c.scene.error(
             body.span,
