@@ -211,7 +211,7 @@ bodies.bob = { type = "rigid_body", mass = 0.4, inertia = 1e-3, points.top = [0.
 joints.O = { type = "revolute", bearing = "ground.O", journal = "rod.start", model = "ideal" }
 joints.P = { type = "revolute", bearing = "rod.middle", journal = "bob.top", model = "ideal" }
 [initial.bodies]
-rod = { x = 0.0, y = 0.0, theta = 0.0, vx = 0.0, vy = 0.0, omega = 0.0 }
+rod = { x = 0.1, y = 0.0, theta = 0.0, vx = 0.0, vy = 0.0, omega = 0.0 }
 bob = { x = 0.1, y = -0.05, theta = 0.0, vx = 0.0, vy = 0.0, omega = 0.0 }
 "#;
 

@@ -22,7 +22,7 @@ forces.coil = { type = "torsion_spring", joint = "O", stiffness = 5.0, damping =
 forces.twist = { type = "torque", point = "crank.end", reaction = "antenna.end", value = 0.3 }
 drives.motor = { type = "angle", joint = "O", angle = { type = "harmonic", mean = 0.2, amplitude = 0.5, frequency = 3.0, phase = 0.0 } }
 initial.sketch = { tip = [0.39, 0.26] }
-initial.bodies.antenna = { x = 0.3940199733523725, y = 0.2596007992385184, theta = 0.9 }
+initial.bodies.antenna = { x = 0.4561809701794389, y = 0.33793349020126673, theta = 0.9 }
 "#;
 
 fn crank(body: &str) -> Recording {

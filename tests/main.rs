@@ -24,5 +24,6 @@ mod precision;
 mod published;
 mod rrr;
 mod stability;
+mod start;
 mod support;
 mod system;

@@ -5,18 +5,33 @@ pub(crate) mod redundancy;
 use crate::compile::assembly::assemble;
 use crate::math::plane::{Vec2, add, cross, dot, norm, perp, scale, sub};
 use crate::model::{BodyCoordinates, Model};
-use crate::scene::{BodyKind, ForceKind, JointModel, Scene, SceneError};
+use crate::scene::{BodyKind, BodyState, ForceKind, JointModel, Scene, SceneError};
 use crate::system::State;
 use plot::number;
 
 /// Largest distance by which a start may miss a constraint \[m\] or a rate \[m/s\]: the digits of a typed position.
 const START_TOLERANCE: f64 = 1e-9;
+/// What a pose that is off may have been taken for.
+const CENTRE: &str = "`x` and `y` are those of the centre of mass, of a straight link its middle; `theta` points from `start` to `end`";
 
 /// Position and velocity of a body: of a rigid body (x, y, theta), of a link its `start` and its direction.
 #[derive(Debug, Clone, Copy)]
 struct Start {
     position: [f64; 3],
     velocity: [f64; 3],
+}
+
+impl Start {
+    /// The start that the scene gives to a body.
+    fn given(state: &BodyState, kind: &BodyKind) -> Start {
+        let (mut position, mut velocity) = (state.position, state.velocity);
+        if let BodyKind::Link(link) = kind {
+            let start = link.start(state);
+            position[..2].copy_from_slice(&start[0]);
+            velocity[..2].copy_from_slice(&start[1]);
+        }
+        Start { position, velocity }
+    }
 }
 
 /// Writes coordinates and remembers which were written, so that two bodies that share a node must agree on it.
@@ -82,7 +97,8 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
                 "the start of {} does not fit what its ends are joined to",
                 body.name
             );
-            return Err(scene.error(span, message, "this start violates a joint"));
+            let error = scene.error(span, message, "this start violates a joint");
+            return Err(error.with_help(CENTRE));
         }
     }
     for j in 0..scene.joints.len() {
@@ -153,12 +169,7 @@ fn starts(scene: &Scene, model: &Model, state: &State) -> Result<Vec<Option<Star
         );
         return Err(scene.error(given.span, message, "remove this"));
     }
-    let exact = |b: usize| {
-        given(b).map(|g| Start {
-            position: g.position,
-            velocity: g.velocity,
-        })
-    };
+    let exact = |b: usize| given(b).map(|g| Start::given(g, &scene.bodies[b].kind));
     let incomplete = (0..scene.bodies.len()).any(|b| free[b] && given(b).is_none());
     let assembled = model.kinematics.is_none()
         && (incomplete || !scene.initial.sketch.is_empty() || !scene.initial.velocities.is_empty());

@@ -23,6 +23,7 @@ pub use crate::motion::Function;
 pub use error::{SceneError, Span};
 pub(crate) use reader::read_file;
 
+use crate::math::plane::{Vec2, perp, scale, sub};
 use error::Sources;
 use serde::Serialize;
 use std::path::Path;
@@ -298,6 +299,14 @@ impl Link {
                 self.points[inner - 2].node as f64 / elements as f64
             }
         }
+    }
+
+    /// Position \[m\] and velocity \[m/s\] of its `start` in a state: half the length behind the centre of mass, the link
+    /// being straight.
+    pub(crate) fn start(&self, state: &BodyState) -> [Vec2; 2] {
+        let ([x, y, theta], [vx, vy, omega]) = (state.position, state.velocity);
+        let half = scale(0.5 * self.length, [theta.cos(), theta.sin()]);
+        [sub([x, y], half), sub([vx, vy], scale(omega, perp(half)))]
     }
 }
 
@@ -625,7 +634,7 @@ pub struct SketchPoint {
     pub span: Span,
 }
 
-/// Position and velocity of a body at t = 0. For a link (x, y) is its `start` and theta its direction.
+/// Position and velocity of a body at t = 0: those of its centre of mass, and its angle.
 #[derive(Debug, Clone)]
 pub struct BodyState {
     /// Index into [`Scene::bodies`].
@@ -645,7 +654,7 @@ pub struct BodyState {
 pub struct GivenVelocity {
     /// Index into [`Scene::bodies`].
     pub body: usize,
-    /// 0, 1, 2 for vx, vy \[m/s\] (of a link: of its `start`), omega \[rad/s\].
+    /// 0, 1, 2 for vx, vy of the centre of mass \[m/s\], omega \[rad/s\].
     pub component: usize,
     /// Its value.
     pub value: f64,

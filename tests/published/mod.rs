@@ -42,7 +42,7 @@ fn listed(text: &str) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// A flexible link from EA, EI and rho A: a section of unit height and the width that gives EI/EA = width^2/12.
+/// A flexible link that starts along x from the origin, from EA, EI and rho A: a section of unit height and the width that gives EI/EA = width^2/12.
 fn beam(length: f64, axial: f64, bending: f64, mass_per_length: f64, elements: usize) -> String {
     let width = (12.0 * bending / axial).sqrt();
     format!(
@@ -53,6 +53,8 @@ youngs_modulus = {:?}
 [sections.beam]
 width = {width:?}
 height = 1.0
+[initial.bodies]
+beam = {{ x = {:?}, y = 0.0, theta = 0.0 }}
 [bodies.ground]
 type = "ground"
 points.O = [0.0, 0.0]
@@ -66,6 +68,7 @@ elements = {elements}
 "#,
         mass_per_length / width,
         axial / width,
+        0.5 * length,
     )
 }
 
@@ -85,8 +88,6 @@ newton_tolerance = 1e-11
 [output]
 interval = 1.0
 channels = ["points.*", "beam.strain", "energy.axial", "energy.bending"]
-[initial]
-bodies.beam = {{ x = 0.0, y = 0.0, theta = 0.0 }}
 "#,
         1.0 / steps as f64
     )

@@ -11,8 +11,6 @@ type = "revolute"
 bearing = "ground.O"
 journal = "beam.start"
 model = "ideal"
-[initial]
-bodies.beam = { x = 0.0, y = 0.0, theta = 0.0 }
 "#;
 
 fn pendulum(body: &str, step: f64, interval: f64, duration: f64) -> Recording {

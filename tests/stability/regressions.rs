@@ -100,7 +100,7 @@ joints.O = { type = "revolute", bearing = "ground.O", journal = "beam.start", mo
 drives.hold = { type = "angle", joint = "O", angle = 0.0 }
 forces.coil = { type = "torsion_spring", joint = "O", stiffness = 10.0, damping = 0.0, rest_angle = 1.0 }
 forces.press = { type = "force", point = "beam.end", x = -2e5, y = 0.0, frame = "ground" }
-initial.bodies.beam = { x = 0.0, y = 0.0, theta = 0.0 }
+initial.bodies.beam = { x = 0.5, y = 0.0, theta = 0.0 }
 "#;
 
 #[test]
@@ -160,8 +160,8 @@ joints.A = { type = "revolute", bearing = "ground.A", journal = "left.start", mo
 joints.B = { type = "revolute", bearing = "left.end", journal = "right.start", model = "ideal" }
 joints.C = { type = "revolute", bearing = "ground.C", journal = "right.end", model = "ideal" }
 drives.open = { type = "angle", joint = "B", angle = { type = "smooth_step", from = -2.356194490192345, to = -2.2, start = 0.0, duration = 0.1 } }
-initial.bodies.left = { x = 0.0, y = 0.0, theta = 1.5707963267948966 }
-initial.bodies.right = { x = 0.0, y = 1.0, theta = -0.7853981633974483 }
+initial.bodies.left = { x = 0.0, y = 0.5, theta = 1.5707963267948966 }
+initial.bodies.right = { x = 0.5, y = 0.5, theta = -0.7853981633974483 }
 "#;
     let (error, _) = stopped(text);
     let text = error.to_string();

@@ -110,7 +110,7 @@ bodies.ground = {{ type = "ground", points.O = [0.0, 0.0] }}
 bodies.rod = {{ type = "link", model = "flexible", elements = 1, length = 1.0, section = "bar", material = "soft" }}
 joints.O = {{ type = "revolute", bearing = "ground.O", journal = "rod.start", model = "ideal" }}
 forces.press = {{ type = "force", point = "rod.end", x = {load:e}, y = 0.0, frame = "ground" }}
-initial.bodies.rod = {{ x = 0.0, y = 0.0, theta = 0.0 }}
+initial.bodies.rod = {{ x = 0.5, y = 0.0, theta = 0.0 }}
 "#
         );
         let scene = Scene::parse("rod", &text, &[]).unwrap();

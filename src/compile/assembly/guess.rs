@@ -202,7 +202,8 @@ pub(super) fn guess(
                 hold(*x, 2);
             }
             (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
-                placed.write_link(*ends, link.length, given.position, state);
+                let [x, y] = link.start(given)[0];
+                placed.write_link(*ends, link.length, [x, y, given.position[2]], state);
                 hold(ends[0], 2);
                 hold(ends[1], 2);
             }

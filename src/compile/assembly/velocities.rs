@@ -100,7 +100,7 @@ fn velocity_row(
     let entries: Vec<(usize, f64)> = match (&mechanism.bodies()[body].coordinates, component) {
         (BodyCoordinates::Rigid { x }, _) => vec![(x + component, 1.0)],
         (BodyCoordinates::PointMass { x }, 0 | 1) => vec![(x + component, 1.0)],
-        (BodyCoordinates::RigidLink { ends }, 0 | 1) => vec![(ends[0] + component, 1.0)],
+        (BodyCoordinates::RigidLink { ends }, 0 | 1) => ends.map(|x| (x + component, 0.5)).to_vec(),
         (BodyCoordinates::RigidLink { ends: [i, j] }, _) => {
             let d = sub([state.q[*j], state.q[j + 1]], [state.q[*i], state.q[i + 1]]);
             let b = scale(1.0 / dot(d, d), perp(d));

@@ -392,10 +392,11 @@ fn components(m: &Mechanism) -> Vec<usize> {
     of
 }
 
-/// Position of a body as its state has it: of a link its start, else its centre of mass.
+/// Centre of mass of a body.
 fn position(member: &Member) -> Point {
     match member.form {
         Form::Body { centre } => centre,
+        Form::Rigid | Form::Flexible { .. } => scale(0.5, add(member.pins[0], member.pins[1])),
         _ => member.pins[0],
     }
 }
