@@ -3,7 +3,7 @@
 mod channels;
 
 use crate::model::{Energies, Model, Pose};
-use crate::scene::{Scene, SceneError};
+use crate::scene::{MotionKind, Scene, SceneError};
 use crate::system::{State, Work};
 use channels::{Energy, JointQuantity, Quantity, available, matches};
 use std::f64::consts::TAU;
@@ -82,12 +82,11 @@ impl Recorder {
             }
         }
         let (channels, quantities): (Vec<_>, Vec<_>) = chosen.into_iter().cloned().unzip();
-        let count = channels.len();
         Ok(Recorder {
+            last: quantities.iter().map(|q| given_angle(scene, q)).collect(),
+            row: vec![0.0; channels.len()],
             channels,
             quantities,
-            last: vec![None; count],
-            row: vec![0.0; count],
             initial_energy,
         })
     }
@@ -199,6 +198,26 @@ impl Recorder {
         };
         self.last[channel] = Some((value, speed, t));
         value
+    }
+}
+
+/// What the angle of a channel is nearest to at t = 0, with its rate and that time: the angle that a state of the body or the
+/// drive of the joint gives, and zero of a joint that follows inverse kinematics.
+fn given_angle(scene: &Scene, quantity: &Quantity) -> Option<(f64, f64, f64)> {
+    match *quantity {
+        Quantity::Pose(b, 0, 2) => {
+            let given = scene.initial.bodies.iter().find(|s| s.body == b)?;
+            Some((given.position[2], given.velocity[2], 0.0))
+        }
+        Quantity::Joint(j, JointQuantity::Angle) | Quantity::Actuator(j, 0) => {
+            let driven = scene.motions.iter().find_map(|motion| match &motion.kind {
+                MotionKind::Angle { joint, angle } if *joint == j => Some(angle.at(0.0)),
+                _ => None,
+            });
+            let [angle, rate, _] = driven.unwrap_or_default();
+            Some((angle, rate, 0.0))
+        }
+        _ => None,
     }
 }
 

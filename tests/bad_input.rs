@@ -157,7 +157,7 @@ fn dangling_names() {
         ("joints = [\"A1\"", "joints = [\"D1\"", "there is no joint `D1`; did you mean `A1`?", "\"D1\""),
         ("body = \"platform\"", "body = \"plattform\"", "there is no body `plattform`; did you mean `platform`?", "\"plattform\""),
         ("bearing_material = \"aluminium\"", "bearing_material = \"steel\"", "there is no material `steel`", "\"steel\""),
-        ("\nsketch.B1", "\nsketch.B4", "there is no joint `B4`; did you mean `B1`?", "B4"),
+        ("\nsketch.B1", "\nsketch.B4", "there is no joint or body `B4`; did you mean `B1`?", "B4"),
         ("[initial]", "[initial]\nbodies.plat = { x = 0, y = 0, theta = 0 }", "there is no body `plat`", "plat"),
         ("\"materials.aluminium.density\"", "\"materials.aluminium.densty\"", "the scene has no `materials.aluminium.densty`; did you mean `materials.aluminium.density`?", "\"materials.aluminium.densty\""),
         ("law = \"lankarani_nikravesh\"", "law = \"lankarani\"", "`contacts.pin.law` cannot be \"lankarani\"", "\"lankarani\""),

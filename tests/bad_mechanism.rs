@@ -134,7 +134,7 @@ fn starts_that_are_missing_or_wrong() {
     check(
         &error,
         "off the pin",
-        "the start violates joint pin (x): by 0.001 m",
+        "the start violates joint pin: it is open by 1\u{a0}mm",
         "[initial]",
     );
 }

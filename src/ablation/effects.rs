@@ -5,7 +5,7 @@
 
 use crate::scene::{
     BodyKind, Contact, ForceKind, JointModel, Link, LinkModel, MotionKind, NormalLawKind, PointRef,
-    Scene, SceneError, Span,
+    Scene, SceneError, Sketched, Span,
 };
 use serde::{Serialize, Serializer};
 
@@ -161,11 +161,11 @@ fn drop_inner_points(scene: &mut Scene, why: &str) -> Result<(), SceneError> {
         let user = fastenings(scene).into_iter().find(|f| inner(&f.point));
         if let Some(Fastening { name, span, point }) = user {
             let message = format!(
-                "{name} is fastened to the inner node {}.{}, and {why}",
+                "{name} uses the inner node {}.{}, but {why}",
                 scene.bodies[b].name,
                 link.points[point.point - 2].name
             );
-            return Err(scene.error(span, message, "fastened to an inner node"));
+            return Err(scene.error(span, message, "uses an inner node"));
         }
     }
     for body in &mut scene.bodies {
@@ -208,6 +208,11 @@ fn fastenings(scene: &Scene) -> Vec<Fastening> {
     for motion in &scene.motions {
         if let MotionKind::Point { point, .. } = motion.kind {
             add(format!("drive {}", motion.name), motion.span, point);
+        }
+    }
+    for sketch in &scene.initial.sketch {
+        if let Sketched::Point(point) = sketch.what {
+            add("the sketch".into(), sketch.span, point);
         }
     }
     list

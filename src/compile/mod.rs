@@ -13,6 +13,7 @@ mod terms;
 
 use crate::model::Model;
 use crate::scene::{BodyKind, JointModel, LinkModel, MotionKind, PointRef, Scene, SceneError};
+use crate::scene::{SketchPoint, Sketched};
 
 /// What determines the motion of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,6 +64,39 @@ impl Compiler<'_> {
             BodyKind::PointMass { .. } => true,
             _ => false,
         }
+    }
+
+    /// The points that an entry of the sketch places: both sides of a joint, or the point itself.
+    pub fn sketched_points(&self, sketch: &SketchPoint) -> Vec<PointRef> {
+        match sketch.what {
+            Sketched::Joint(j) => vec![self.scene.joints[j].bearing, self.scene.joints[j].journal],
+            Sketched::Point(point) => vec![point],
+        }
+    }
+
+    /// What an entry of the sketch places, as errors name it.
+    pub fn sketched_name(&self, sketch: &SketchPoint) -> String {
+        match sketch.what {
+            Sketched::Joint(j) => format!("joint {}", self.scene.joints[j].name),
+            Sketched::Point(point) => format!("point {}", self.point_name(point)),
+        }
+    }
+
+    /// Where the sketch draws a joint or a point.
+    pub fn drawn(&self, what: Sketched) -> Option<[f64; 2]> {
+        let mut sketch = self.scene.initial.sketch.iter();
+        sketch.find(|s| s.what == what).map(|s| s.at)
+    }
+
+    /// An error at a sketch that is too far from where the mechanism closes.
+    pub fn far_from_sketch(&self, sketch: &SketchPoint, at: [f64; 2]) -> SceneError {
+        let message = format!(
+            "{} closes at ({:.4}, {:.4}) m, far from its sketch: draw it closer to the branch you mean",
+            self.sketched_name(sketch),
+            at[0],
+            at[1]
+        );
+        self.scene.error(sketch.span, message, "the sketch")
     }
 
     /// An error at joint `joint`.

@@ -5,7 +5,7 @@ use crate::kinematics::Kinematics;
 use crate::marker::Marker;
 use crate::math::plane::{cross, dot, norm, sub};
 use crate::model::{BodyCoordinates, Model};
-use crate::scene::{BodyKind, Drive, Link, PointRef, SceneError};
+use crate::scene::{BodyKind, Drive, Link, PointRef, SceneError, Sketched};
 use crate::system::State;
 
 /// Closes the mechanism at t = 0 from the sketch.
@@ -28,19 +28,11 @@ pub(super) fn close(
     })?;
     for (x, sketch) in guessed {
         let found = [inner.state.q[x], inner.state.q[x + 1]];
-        let (drawn, joint) = (
-            &c.scene.initial.sketch[sketch],
-            &c.scene.joints[c.scene.initial.sketch[sketch].joint],
-        );
-        let lengths =
-            [joint.bearing, joint.journal].map(|p| link(c, p).map_or(f64::INFINITY, |l| l.length));
-        let shortest = lengths[0].min(lengths[1]);
-        if norm(sub(found, drawn.at)) > 0.25 * shortest {
-            let message = format!(
-                "joint {} closes at ({:.4}, {:.4}) m, far from its sketch: draw it closer to the branch you mean",
-                joint.name, found[0], found[1]
-            );
-            return Err(c.scene.error(drawn.span, message, "the sketch"));
+        let drawn = &c.scene.initial.sketch[sketch];
+        let points = c.sketched_points(drawn).into_iter();
+        let lengths = points.map(|p| link(c, p).map_or(f64::INFINITY, |l| l.length));
+        if norm(sub(found, drawn.at)) > 0.25 * lengths.fold(f64::INFINITY, f64::min) {
+            return Err(c.far_from_sketch(drawn, found));
         }
     }
     Ok(inner.state)
@@ -69,8 +61,7 @@ fn guess(
     known[n..].fill(true);
     let mut guessed = Vec::new();
     for (k, sketch) in c.scene.initial.sketch.iter().enumerate() {
-        let joint = &c.scene.joints[sketch.joint];
-        for point in [joint.bearing, joint.journal] {
+        for point in c.sketched_points(sketch) {
             if let Marker::Node { x } = marker(c, mechanism, point) {
                 if x < n {
                     state.q[x..x + 2].copy_from_slice(&sketch.at);
@@ -88,10 +79,11 @@ fn guess(
                         body: b,
                         point: end,
                     });
-                    let message = format!(
-                        "the sketch does not say where {name} is: give the position of a joint there"
-                    );
-                    return Err(c.scene.error(body.span, message, "this body"));
+                    let message = format!("the sketch does not say where {name} is");
+                    let error = c.scene.error(body.span, message, "this body");
+                    return Err(error.with_help(
+                        "give the approximate position of this point, or of a joint there, in `[initial.sketch]`",
+                    ));
                 }
             }
             (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid)) if *x < n => {
@@ -100,7 +92,7 @@ fn guess(
                     .collect();
                 if pairs.len() < 2 {
                     let message = format!(
-                        "the sketch must give the positions of two joints of {}",
+                        "the sketch does not say where {} is: it must place two of its joints or points",
                         body.name
                     );
                     return Err(c.scene.error(body.span, message, "this body"));
@@ -120,25 +112,20 @@ fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) ->
         return None;
     };
     let local = rigid.points[point.point].at;
-    c.scene.joints.iter().enumerate().find_map(|(j, joint)| {
+    let of_joint = c.scene.joints.iter().enumerate().find_map(|(j, joint)| {
         let partner = match () {
             () if joint.bearing == point => joint.journal,
             () if joint.journal == point => joint.bearing,
             () => return None,
         };
-        let drawn = c
-            .scene
-            .initial
-            .sketch
-            .iter()
-            .find(|s| s.joint == j)
-            .map(|s| s.at);
         let known = || {
             c.is_known(partner)
                 .then(|| mechanism.position(&marker(c, mechanism, partner), state))
         };
-        drawn.or_else(known).map(|at| (local, at))
-    })
+        c.drawn(Sketched::Joint(j)).or_else(known)
+    });
+    let at = of_joint.or_else(|| c.drawn(Sketched::Point(point)));
+    at.map(|at| (local, at))
 }
 
 /// A point in the frame of its body and its approximate position.

@@ -2,9 +2,9 @@
 
 pub(crate) mod redundancy;
 
-use crate::compile::assembly::assemble;
+use crate::compile::assembly::{assemble, opening};
 use crate::math::plane::{Vec2, add, cross, dot, norm, perp, scale, sub};
-use crate::model::{BodyCoordinates, Model};
+use crate::model::{BodyCoordinates, Model, Placed};
 use crate::scene::{BodyKind, BodyState, ForceKind, JointModel, Scene, SceneError};
 use crate::system::State;
 use plot::number;
@@ -12,7 +12,7 @@ use plot::number;
 /// Largest distance by which a start may miss a constraint \[m\] or a rate \[m/s\]: the digits of a typed position.
 const START_TOLERANCE: f64 = 1e-9;
 /// What a pose that is off may have been taken for.
-const CENTRE: &str = "`x` and `y` are those of the centre of mass, of a straight link its middle; `theta` points from `start` to `end`";
+pub(crate) const CENTRE: &str = "`x` and `y` are those of the centre of mass, of a straight link its middle; `theta` points from `start` to `end`";
 
 /// Position and velocity of a body: of a rigid body (x, y, theta), of a link its `start` and its direction.
 #[derive(Debug, Clone, Copy)]
@@ -130,16 +130,7 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
             return Err(scene.error(force.span, message, "this spring"));
         }
     }
-    if let Some((distance, rate, name)) = model.worst_constraint(&state)
-        && (distance > START_TOLERANCE || rate > START_TOLERANCE)
-    {
-        let message = format!(
-            "the start violates {name}: by {} m and {} m/s",
-            number(distance, 4),
-            number(rate, 4)
-        );
-        return Err(scene.error(scene.initial.span, message, "this start"));
-    }
+    satisfied(scene, model, &state)?;
     if let Some(index) = model.half_turned(&state) {
         let name = &model.unknown_names()[index];
         let message = format!("the start has {name} half a turn away from its angle");
@@ -147,6 +138,56 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
     }
     model.remember_angles(&mut state);
     Ok(state)
+}
+
+/// Sees that a start satisfies the constraints and their rates.
+fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneError> {
+    let worst = |of: fn(&Placed, &State) -> f64| {
+        let all = model.constraints.iter().map(|p| (of(p, state), p));
+        let worst = all.max_by(|a, b| a.0.total_cmp(&b.0));
+        worst.filter(|(x, _)| x.is_nan() || *x > START_TOLERANCE)
+    };
+    let name = |p: &Placed| {
+        let row = model.names[model.shape().unknowns + p.row].as_str();
+        // what is measured is all rows together, so that none of them is named
+        match p.rows {
+            1 => row,
+            _ => row.split(" (").next().unwrap_or(row),
+        }
+    };
+    if let Some((open, placed)) = worst(|p, at| norm(p.term.value(at))) {
+        let message = format!(
+            "the start violates {}: it is open by {}",
+            name(placed),
+            opening(placed.effect, open, "")
+        );
+        let error = scene.error(scene.initial.span, message, "this start");
+        return Err(error.with_help(CENTRE));
+    }
+    let Some((off, placed)) = worst(|p, at| norm(p.term.velocity(at))) else {
+        return Ok(());
+    };
+    let message = format!(
+        "the velocities of the start violate {}, by {}",
+        name(placed),
+        opening(placed.effect, off, "/s")
+    );
+    let silent = scene.initial.bodies.iter().filter(|s| !s.velocity_given);
+    let silent: Vec<&str> = silent.map(|s| scene.bodies[s.body].name.as_str()).collect();
+    if silent.is_empty() {
+        return Err(scene.error(scene.initial.span, message, "this start"));
+    }
+    let message = format!(
+        "{message}: the scene gives no velocity of {}, which was taken as zero",
+        silent.join(", ")
+    );
+    let error = scene.error(scene.initial.span, message, "this start");
+    Err(error.with_help(if model.kinematics.is_some() {
+        "give `vx`, `vy` and `omega` beside the pose"
+    } else {
+        "add a joint to `[initial.sketch]` or a velocity to `[initial.velocities]`, and the others are found; or give `vx`, \
+         `vy` and `omega` of every body"
+    }))
 }
 
 /// The start of every body that moves freely.

@@ -1,7 +1,7 @@
 //! Faults of a scene, each with the place it stands at.
 
 use super::text::{Text, shortened};
-use miette::{Diagnostic, SourceSpan};
+use miette::{Diagnostic, LabeledSpan};
 use sha2::{Digest, Sha256};
 use std::ops::Range;
 use std::sync::Arc;
@@ -86,13 +86,13 @@ impl Sources {
 #[error("{message}")]
 pub struct SceneError {
     message: String,
-    label: String,
     #[help]
     help: Option<String>,
     #[source_code]
     text: Option<Arc<Text>>,
-    #[label("{label}")]
-    span: Option<SourceSpan>,
+    /// The place, and one that contradicts it.
+    #[label(collection)]
+    labels: Vec<LabeledSpan>,
 }
 
 impl SceneError {
@@ -104,12 +104,30 @@ impl SceneError {
             short if short.len() < written.len() => short.lines().next().map_or(0, str::len),
             whole => whole.len(),
         };
+        let label = LabeledSpan::new(Some(shown(label)), span.start as usize, underlined);
         SceneError {
             message: shown(message),
-            label: shown(label),
             help: None,
             text: sources.0.get(span.source as usize).cloned(),
-            span: Some((span.start as usize, underlined).into()),
+            labels: vec![label],
+        }
+    }
+
+    /// The same fault with a second place, which contradicts the first. Only one text can be shown: a place in another one
+    /// is told as advice.
+    pub(super) fn against(mut self, sources: &Sources, span: Span, label: String) -> SceneError {
+        let mut other = SceneError::new(sources, span, String::new(), label);
+        match (&self.text, &other.text) {
+            (Some(one), Some(two)) if Arc::ptr_eq(one, two) => {
+                self.labels.append(&mut other.labels);
+                self
+            }
+            _ => {
+                let (name, line, column) = other.place().unwrap_or_default();
+                let label = other.labels[0].label().unwrap_or_default();
+                let help = format!("{label}: {name}:{line}:{column}");
+                self.with_help(help)
+            }
         }
     }
 
@@ -117,29 +135,32 @@ impl SceneError {
     pub(super) fn unreadable(message: String) -> SceneError {
         SceneError {
             message,
-            label: String::new(),
             help: None,
             text: None,
-            span: None,
+            labels: Vec::new(),
         }
     }
 
-    /// The same fault with advice.
+    /// The same fault with advice, after any that it has.
     pub fn with_help(mut self, help: impl Into<String>) -> SceneError {
-        self.help = Some(shown(help.into()));
+        let help = shown(help.into());
+        self.help = Some(match self.help {
+            Some(before) => format!("{before}\n{help}"),
+            None => help,
+        });
         self
     }
 
     /// File, line and column (both from 1, columns in characters), if the fault stands in a text.
     pub fn place(&self) -> Option<(&str, usize, usize)> {
-        let (text, span) = (self.text.as_ref()?, self.span?);
+        let (text, span) = (self.text.as_ref()?, self.labels.first()?);
         let (line, column, _) = text.place(span.offset())?;
         Some((text.name(), line + 1, column + 1))
     }
 
     /// The text that is underlined.
     pub fn underlined(&self) -> &str {
-        let (Some(text), Some(span)) = (&self.text, self.span) else {
+        let (Some(text), Some(span)) = (&self.text, self.labels.first()) else {
             return "";
         };
         text.inner()

@@ -6,6 +6,7 @@ use super::fields::Fields;
 use indexmap::IndexMap;
 
 /// A value being read.
+#[derive(Clone)]
 pub(super) struct Field<'a> {
     pub sources: &'a Sources,
     /// Dotted path.

@@ -6,7 +6,7 @@ use super::error::SceneError;
 use super::field::Field;
 use super::fields::Fields;
 use super::names::{RESERVED, check_name, derived, named};
-use super::{BodyKind, Contact, Friction, Joint, JointModel, NormalLawKind, PointRef, Slip};
+use super::{Body, BodyKind, Contact, Friction, Joint, JointModel, NormalLawKind, PointRef, Slip};
 use indexmap::IndexMap;
 
 pub(super) fn read(root: &Fields, bodies: &Bodies) -> Result<IndexMap<String, Joint>, SceneError> {
@@ -161,6 +161,21 @@ fn weld(table: &Fields) -> Result<JointModel, SceneError> {
     })
 }
 
+/// The points of a body in the order of their indices.
+pub(super) fn point_names(body: &Body) -> Vec<&str> {
+    match &body.kind {
+        BodyKind::Link(link) => {
+            let inner = link.points.iter().map(|p| p.name.as_str());
+            ["start", "end"].into_iter().chain(inner).collect()
+        }
+        BodyKind::PointMass { .. } => vec!["center"],
+        BodyKind::Ground { points } | BodyKind::Moving { points, .. } => {
+            points.iter().map(|p| p.name.as_str()).collect()
+        }
+        BodyKind::Rigid(rigid) => rigid.points.iter().map(|p| p.name.as_str()).collect(),
+    }
+}
+
 /// `"body.point"`
 pub(super) fn point(field: &Field, bodies: &Bodies) -> Result<PointRef, SceneError> {
     let text = field.text()?;
@@ -171,17 +186,7 @@ pub(super) fn point(field: &Field, bodies: &Bodies) -> Result<PointRef, SceneErr
     let Some((index, _, found)) = bodies.bodies.get_full(body) else {
         return Err(field.dangling("body", body, bodies.bodies.keys().map(String::as_str)));
     };
-    let names: Vec<&str> = match &found.kind {
-        BodyKind::Link(link) => {
-            let inner = link.points.iter().map(|p| p.name.as_str());
-            ["start", "end"].into_iter().chain(inner).collect()
-        }
-        BodyKind::PointMass { .. } => vec!["center"],
-        BodyKind::Ground { points } | BodyKind::Moving { points, .. } => {
-            points.iter().map(|p| p.name.as_str()).collect()
-        }
-        BodyKind::Rigid(rigid) => rigid.points.iter().map(|p| p.name.as_str()).collect(),
-    };
+    let names = point_names(found);
     match names.iter().position(|name| *name == point) {
         Some(point) => Ok(PointRef { body: index, point }),
         None => {

@@ -611,7 +611,7 @@ pub enum Path2 {
 /// `[initial]`
 #[derive(Debug, Clone)]
 pub struct Initial {
-    /// Approximate positions of joints \[m\]: they choose the branch; index into [`Scene::joints`].
+    /// Approximate positions of joints and points \[m\]: they choose the branch.
     pub sketch: Vec<SketchPoint>,
     /// Exact states of bodies, for mechanisms without a drive.
     pub bodies: Vec<BodyState>,
@@ -623,15 +623,24 @@ pub struct Initial {
     pub span: Span,
 }
 
-/// The approximate position of one joint at t = 0.
+/// The approximate position of a joint or a point at t = 0.
 #[derive(Debug, Clone)]
 pub struct SketchPoint {
-    /// Index into [`Scene::joints`].
-    pub joint: usize,
+    /// What is sketched.
+    pub what: Sketched,
     /// Approximate position \[m\].
     pub at: [f64; 2],
     /// Where it stands.
     pub span: Span,
+}
+
+/// What an entry of the sketch places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sketched {
+    /// A joint, by its index in [`Scene::joints`].
+    Joint(usize),
+    /// A point of a body.
+    Point(PointRef),
 }
 
 /// Position and velocity of a body at t = 0: those of its centre of mass, and its angle.
@@ -713,6 +722,17 @@ impl Scene {
         label: impl Into<String>,
     ) -> SceneError {
         SceneError::new(&self.sources, span, message.into(), label.into())
+    }
+
+    /// An error that points at two spans which contradict each other.
+    pub(crate) fn contradiction(
+        &self,
+        message: impl Into<String>,
+        first: (Span, &str),
+        second: (Span, &str),
+    ) -> SceneError {
+        let error = self.error(first.0, message, first.1);
+        error.against(&self.sources, second.0, second.1.into())
     }
 
     /// Index of the body with this name.

@@ -7,7 +7,7 @@ use super::fields::Fields;
 use super::functions::{Use, function, rows};
 use super::names::named;
 use super::{Body, BodyKind, BodyState, Drive, GivenVelocity, Initial, Joint, JointModel};
-use super::{Motion, MotionKind, Path2, SketchPoint};
+use super::{Motion, MotionKind, Path2, PointRef, SketchPoint, Sketched};
 use super::{forces, joints};
 use indexmap::IndexMap;
 
@@ -249,15 +249,13 @@ pub(super) fn initial(
     };
     let mut table = field.fields()?;
     table.only(&["sketch", "bodies", "velocities", "equilibrium"])?;
-    let sketch = named(table.optional("sketch"), |field| {
-        let Some(joint) = joints.get_index_of(&field.name) else {
-            return Err(field.dangling_key("joint", joints.keys().map(String::as_str)));
-        };
-        Ok(SketchPoint {
-            joint,
-            at: field.numbers("[x, y]")?,
-            span: field.node.span,
-        })
+    let mut sketch = Vec::new();
+    named(table.optional("sketch"), |field| {
+        match joints.get_index_of(&field.name) {
+            Some(joint) => sketch.push(sketched(field, Sketched::Joint(joint))?),
+            None => sketch.extend(sketched_points(field, &bodies.bodies, joints)?),
+        }
+        Ok(())
     })?;
     let states = named(table.optional("bodies"), |field| {
         state(field, &bodies.bodies)
@@ -269,12 +267,54 @@ pub(super) fn initial(
     })?;
     let equilibrium = table.optional("equilibrium").map(|f| f.boolean());
     Ok(Initial {
-        sketch: sketch.into_values().collect(),
+        sketch,
         bodies: states.into_values().collect(),
         velocities,
         equilibrium: equilibrium.transpose()?.unwrap_or(false),
         span: table.span,
     })
+}
+
+fn sketched(field: &Field, what: Sketched) -> Result<SketchPoint, SceneError> {
+    Ok(SketchPoint {
+        what,
+        at: field.numbers("[x, y]")?,
+        span: field.node.span,
+    })
+}
+
+/// `sketch.BODY = { POINT = [x, y], ... }`
+fn sketched_points(
+    field: &Field,
+    bodies: &IndexMap<String, Body>,
+    joints: &IndexMap<String, Joint>,
+) -> Result<Vec<SketchPoint>, SceneError> {
+    let Some((body, _, found)) = bodies.get_full(&field.name) else {
+        let known = joints.keys().chain(bodies.keys()).map(String::as_str);
+        return Err(field.dangling_key("joint or body", known));
+    };
+    if let BodyKind::Ground { .. } | BodyKind::Moving { .. } = found.kind {
+        let message = format!(
+            "the position of `{}` is known at every time; a sketch cannot change it",
+            field.name
+        );
+        return Err(field.key_fault(message, "remove this"));
+    }
+    if !field.is_table() {
+        let message = format!("`{}` is a body: the sketch places its points", field.name);
+        let help = format!("write `{} = {{ POINT = [x, y] }}`", field.name);
+        return Err(field.fault(message, "of which point?").with_help(help));
+    }
+    let names = joints::point_names(found);
+    let points = named(Some(field.clone()), |point| {
+        let Some(index) = names.iter().position(|name| *name == point.name) else {
+            let kind = format!("point of `{}` called", field.name);
+            return Err(point.dangling_key(&kind, names.iter().copied()));
+        };
+        let what = Sketched::Point(PointRef { body, point: index });
+        sketched(point, what)
+    })?;
+    Ok(points.into_values().collect())
 }
 
 /// `velocities.BODY = { vx, vy, omega }`, any of them.

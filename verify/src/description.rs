@@ -266,7 +266,7 @@ enum ForceText {
 #[derive(Deserialize, Default)]
 struct InitialText {
     #[serde(default)]
-    sketch: HashMap<String, [f64; 2]>,
+    sketch: Table,
 }
 
 /// All that the reference needs of a scene; order of bodies and joints is that of the file.
@@ -815,8 +815,9 @@ impl Text {
             .position(|j| j.journal.body == link && j.bearing.body == mechanism.path.body)
             .ok_or_else(|| miette!("the leg of {a_name} does not end on the driven body"))?;
         let b_name = &self.joints[b].0;
-        let sketch = self.initial.sketch.get(b_name);
-        let [bx, by] = *sketch.ok_or_else(|| miette!("no sketch of {b_name}"))?;
+        let sketch = self.initial.sketch.get(b_name).cloned();
+        let sketch = sketch.ok_or_else(|| miette!("no sketch of {b_name}"))?;
+        let [bx, by]: [f64; 2] = sketch.try_into().into_diagnostic()?;
         let path = &mechanism.path;
         let (sin, cos) = path.theta.sin_cos();
         let point = joints[c].bearing;

@@ -4,7 +4,7 @@ use super::super::sketch::fit;
 use super::super::{Compiler, Role};
 use crate::math::plane::{add, rotate, sub};
 use crate::model::{BodyCoordinates, Model};
-use crate::scene::{BodyKind, JointModel, MotionKind, PointRef, SceneError};
+use crate::scene::{BodyKind, JointModel, MotionKind, PointRef, SceneError, Sketched};
 use crate::system::State;
 
 /// Which bodies have a place, and where their points are.
@@ -12,6 +12,8 @@ struct Placed<'a> {
     c: &'a Compiler<'a>,
     mechanism: &'a Model,
     done: Vec<bool>,
+    /// Coordinates of given poses.
+    held: Vec<bool>,
 }
 
 impl Placed<'_> {
@@ -21,11 +23,41 @@ impl Placed<'_> {
         self.mechanism.position(&marker, state)
     }
 
-    /// Where a point is, as far as the sketch, a placed partner or a shared node tells.
+    /// Where a point is, as far as a placed partner, the sketch or a drive tells.
     fn known(&self, point: PointRef, state: &State) -> Option<[f64; 2]> {
         if self.done[point.body] {
             return Some(self.position(point, state));
         }
+        let met = self.met(point, state);
+        let drawn = met.or_else(|| self.c.drawn(Sketched::Point(point)));
+        let [x, y] = self.driven(point);
+        match (drawn, x, y) {
+            (_, Some(x), Some(y)) => Some([x, y]),
+            (Some(at), ..) => Some([x.unwrap_or(at[0]), y.unwrap_or(at[1])]),
+            (None, ..) => None,
+        }
+    }
+
+    /// Coordinates of a point that drives prescribe at t = 0.
+    fn driven(&self, point: PointRef) -> [Option<f64>; 2] {
+        let mut driven = [None; 2];
+        for motion in &self.c.scene.motions {
+            if let MotionKind::Point {
+                point: moved,
+                coordinates,
+            } = &motion.kind
+                && *moved == point
+            {
+                for (known, f) in driven.iter_mut().zip(coordinates) {
+                    *known = f.as_ref().map(|f| f.at(0.0)[0]).or(*known);
+                }
+            }
+        }
+        driven
+    }
+
+    /// Where a point is that a joint brings to a placed body, or that is drawn as a joint.
+    fn met(&self, point: PointRef, state: &State) -> Option<[f64; 2]> {
         let mut joints = self.c.scene.joints.iter().enumerate();
         let prismatic =
             |j: usize| matches!(self.c.scene.joints[j].model, JointModel::Prismatic { .. });
@@ -35,10 +67,9 @@ impl Placed<'_> {
                 () if joint.journal == point => joint.bearing,
                 () => return None,
             };
-            let drawn = self.c.scene.initial.sketch.iter().find(|s| s.joint == j);
             let partner =
                 (self.done[partner.body] && !prismatic(j)).then(|| self.position(partner, state));
-            partner.or(drawn.map(|s| s.at))
+            partner.or_else(|| self.c.drawn(Sketched::Joint(j)))
         })
     }
 
@@ -159,17 +190,29 @@ impl Placed<'_> {
             })
     }
 
-    /// Puts both ends of a link where they are unknown.
+    /// Puts both ends of a link where they are unknown and no given pose holds them.
     fn write_link(&self, ends: [usize; 2], length: f64, pose: [f64; 3], state: &mut State) {
         let n = self.mechanism.shape().unknowns;
         let way = [length * pose[2].cos(), length * pose[2].sin()];
         let points = [[pose[0], pose[1]], add([pose[0], pose[1]], way)];
         for (x, at) in ends.into_iter().zip(points) {
-            if x < n {
+            if x < n && !self.held[x] {
                 state.q[x..x + 2].copy_from_slice(&at);
             }
         }
     }
+}
+
+/// The unknown coordinates of a body.
+pub(super) fn coordinates(mechanism: &Model, body: usize) -> Vec<usize> {
+    let all: Vec<usize> = match &mechanism.bodies()[body].coordinates {
+        BodyCoordinates::Rigid { x } => (*x..x + 3).collect(),
+        BodyCoordinates::PointMass { x } => (*x..x + 2).collect(),
+        BodyCoordinates::RigidLink { ends } => ends.iter().flat_map(|&x| [x, x + 1]).collect(),
+        _ => Vec::new(),
+    };
+    let n = mechanism.shape().unknowns;
+    all.into_iter().filter(|&i| i < n).collect()
 }
 
 /// Poses from the given states, the sketch, and what hangs together; returns the coordinates of given poses.
@@ -183,31 +226,25 @@ pub(super) fn guess(
         c,
         mechanism,
         done: c.roles.iter().map(|r| *r != Role::Free).collect(),
+        held: vec![false; n],
     };
-    let mut held = vec![false; n];
     for given in &c.scene.initial.bodies {
         let body = &c.scene.bodies[given.body];
-        let mut hold = |x: usize, count: usize| {
-            for h in held.iter_mut().skip(x).take(count) {
-                *h = true;
-            }
-        };
         match (&mechanism.bodies()[given.body].coordinates, &body.kind) {
             (BodyCoordinates::Rigid { x }, _) => {
                 state.q[*x..x + 3].copy_from_slice(&given.position);
-                hold(*x, 3);
             }
             (BodyCoordinates::PointMass { x }, _) => {
                 state.q[*x..x + 2].copy_from_slice(&given.position[..2]);
-                hold(*x, 2);
             }
             (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
                 let [x, y] = link.start(given)[0];
                 placed.write_link(*ends, link.length, [x, y, given.position[2]], state);
-                hold(ends[0], 2);
-                hold(ends[1], 2);
             }
             _ => {}
+        }
+        for i in coordinates(mechanism, given.body) {
+            placed.held[i] = true;
         }
         placed.done[given.body] = true;
     }
@@ -225,14 +262,15 @@ pub(super) fn guess(
         }
     }
     match placed.done.iter().position(|d| !d) {
-        None => Ok(held),
+        None => Ok(placed.held),
         Some(b) => {
             let body = &c.scene.bodies[b];
-            let message = format!(
-                "the scene does not say where {} starts: give it in [initial] bodies, or draw two of its joints in [initial] sketch",
-                body.name
-            );
-            Err(c.scene.error(body.span, message, "this body"))
+            let message = format!("the scene does not say where {} starts", body.name);
+            let error = c.scene.error(body.span, message, "this body");
+            Err(error.with_help(
+                "give its pose in `[initial.bodies]`, or the approximate positions of two of its joints or points in \
+                 `[initial.sketch]`",
+            ))
         }
     }
 }

@@ -4,15 +4,19 @@
 //! that the sketch and the given poses make. Velocities: those of least kinetic energy that satisfy the constraints and
 //! what the scene gives.
 
+mod contradictions;
 mod guess;
 mod velocities;
 
 use super::{Compiler, Mode, known_roles, numbering, terms};
 use crate::math::dense::Equations;
 use crate::math::plane::{norm, sub};
-use crate::model::Model;
-use crate::scene::{BodyKind, Joint, JointModel, PointRef, Scene, SceneError};
+use crate::model::{Effect, Model};
+use crate::scene::{
+    BodyKind, Joint, JointModel, PointRef, Scene, SceneError, SketchPoint, Sketched,
+};
 use crate::system::State;
+use contradictions::{blame, check_given};
 use guess::guess;
 use plot::number;
 use velocities::velocities;
@@ -21,7 +25,7 @@ use velocities::velocities;
 const CLOSED: f64 = 1e-12;
 /// Steps of Newton's method.
 const ITERATIONS: usize = 80;
-/// A sketched joint may end this part of the shorter link away from where it was drawn.
+/// A sketched joint may end this part of its smaller body away from where it was drawn.
 const SKETCH: f64 = 0.25;
 /// Largest difference of velocities that agree: the digits of typed numbers \[m/s, rad/s\].
 const AGREEING: f64 = 1e-9;
@@ -48,7 +52,14 @@ pub(crate) fn assemble(scene: &Scene) -> Result<Assembly, SceneError> {
     mechanism.follow_rules(&mut state);
     mechanism.ride(&mut state);
     let held = guess(&c, &mechanism, &mut state)?;
-    close(&c, &mechanism, &mut state, &held)?;
+    check_given(&c, &mechanism, &state, &held)?;
+    let guessed = state.clone();
+    if let Some(open) = close(&mechanism, &mut state, &held) {
+        let blamed = blame(&c, &mechanism, &guessed, &held, open);
+        let holds = held.contains(&true);
+        return Err(blamed.unwrap_or_else(|| cannot_close(&c, &mechanism, open, holds)));
+    }
+    check_turns(&c, &mechanism, &state)?;
     check_sketch(&c, &mechanism, &state)?;
     velocities(&c, &mechanism, &mut state)?;
     Ok(Assembly { mechanism, state })
@@ -90,40 +101,27 @@ pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> f
         .fold(0.0, |m, x| if x.abs() <= m { m } else { x.abs() })
 }
 
-/// The constraint that is open most, by how much, and its name.
-fn widest(model: &Model, state: &State) -> Option<(f64, String)> {
-    let opening = model.constraints.iter().map(|p| {
-        let value = p.term.value(state);
-        (norm(value), p.row)
-    });
-    let widest = opening.max_by(|a, b| a.0.total_cmp(&b.0));
-    widest.map(|(x, row)| (x, model.names[model.shape().unknowns + row].clone()))
+/// The constraint that is open most, and by how much.
+fn widest(model: &Model, state: &State) -> Option<(f64, usize)> {
+    let opening = model.constraints.iter().map(|p| norm(p.term.value(state)));
+    let widest = opening.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+    widest.map(|(i, open)| (open, i))
 }
 
-/// Moves all coordinates that are not held until every constraint is closed.
-fn close(
-    c: &Compiler,
-    mechanism: &Model,
-    state: &mut State,
-    held: &[bool],
-) -> Result<(), SceneError> {
+/// Moves all coordinates that are not held until every constraint is closed; the one that stays open most, if any does.
+fn close(model: &Model, state: &mut State, held: &[bool]) -> Option<(f64, usize)> {
     for _ in 0..ITERATIONS {
-        let open = widest(mechanism, state).map_or(0.0, |(x, _)| x);
-        if open <= CLOSED {
-            break;
-        }
-        let moved = closing_step(mechanism, state, held);
-        if !moved.is_finite() {
+        let open = widest(model, state).map_or(0.0, |(x, _)| x);
+        if open <= CLOSED || !closing_step(model, state, held).is_finite() {
             break;
         }
     }
-    let Some((open, name)) = widest(mechanism, state) else {
-        return Ok(());
-    };
-    if open.is_nan() || open > CLOSED {
-        return Err(cannot_close(c, open, &name, held.contains(&true)));
-    }
-    for (placed, name) in mechanism.constraints.iter().zip(names(mechanism)) {
+    widest(model, state).filter(|(open, _)| open.is_nan() || *open > CLOSED)
+}
+
+/// Sees that no direction was closed the wrong way round.
+fn check_turns(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneError> {
+    for (placed, name) in model.constraints.iter().zip(names(model)) {
         if placed.term.half_turn(state) {
             let message = format!("{name} closes half a turn away from its angle");
             let error = c
@@ -135,9 +133,22 @@ fn close(
     Ok(())
 }
 
+/// How far a constraint is open, or its rate is off with `per` = "/s".
+pub(crate) fn opening(effect: Effect, value: f64, per: &str) -> String {
+    match effect {
+        Effect::Direction => plot::si(value, &format!("rad{per}")),
+        _ => plot::si(value, &format!("m{per}")),
+    }
+}
+
 /// Names the body that is larger than all others together, if there is one and neither a guide nor a given pose explains the
 /// opening, or else the constraint that stays open.
-fn cannot_close(c: &Compiler, open: f64, name: &str, holds: bool) -> SceneError {
+fn cannot_close(
+    c: &Compiler,
+    model: &Model,
+    (open, constraint): (f64, usize),
+    holds: bool,
+) -> SceneError {
     let sizes: Vec<f64> = (0..c.scene.bodies.len()).map(|b| size(c, b)).collect();
     let total: f64 = sizes.iter().sum();
     let guides = |joint: &Joint| matches!(joint.model, JointModel::Prismatic { .. });
@@ -156,15 +167,16 @@ fn cannot_close(c: &Compiler, open: f64, name: &str, holds: bool) -> SceneError 
             "too large, or its unit is not the metre",
         );
     }
+    let name = &model.names[model.shape().unknowns + model.constraints[constraint].row];
     let message = format!(
-        "the mechanism cannot be assembled: {name} stays open by {} m",
-        number(open, 4)
+        "the mechanism cannot be assembled: {name} stays open by {}",
+        opening(model.constraints[constraint].effect, open, "")
     );
     let error = c
         .scene
         .error(c.scene.initial.span, message, "from this start");
     error.with_help(
-        "check the lengths, the given poses, and that the sketch draws the mechanism closed",
+        "check the lengths and the given poses, and that the sketch draws a mechanism that is closed",
     )
 }
 
@@ -201,37 +213,49 @@ fn names(model: &Model) -> impl Iterator<Item = &String> {
         .map(move |p| &model.names[first + p.row])
 }
 
-/// Sees that sketched joints ended near where they were drawn.
-fn check_sketch(c: &Compiler, mechanism: &Model, state: &State) -> Result<(), SceneError> {
-    for drawn in &c.scene.initial.sketch {
-        let joint = &c.scene.joints[drawn.joint];
-        let at = mechanism.position(
-            &c.marker(
-                &mechanism.bodies()[joint.journal.body].coordinates,
-                joint.journal,
-            ),
-            state,
-        );
-        let size = |p: PointRef| match &c.scene.bodies[p.body].kind {
-            BodyKind::Link(link) => link.length,
-            BodyKind::Rigid(rigid) => {
-                let far = rigid
-                    .points
-                    .iter()
-                    .map(|q| norm(sub(q.at, rigid.points[p.point].at)));
-                match far.fold(0.0, f64::max) {
-                    0.0 => f64::INFINITY,
-                    far => far,
-                }
+/// Position of a point of a body.
+fn position(c: &Compiler, model: &Model, state: &State, point: PointRef) -> [f64; 2] {
+    let marker = c.marker(&model.bodies()[point.body].coordinates, point);
+    model.position(&marker, state)
+}
+
+/// True of the guide's point of a prismatic joint, which is not where the joint is.
+fn is_guide(c: &Compiler, drawn: &SketchPoint, point: PointRef) -> bool {
+    let Sketched::Joint(j) = drawn.what else {
+        return false;
+    };
+    let joint = &c.scene.joints[j];
+    matches!(joint.model, JointModel::Prismatic { .. }) && joint.bearing == point
+}
+
+/// How far from its sketch a joint or point may end \[m\].
+fn reach(c: &Compiler, drawn: &SketchPoint) -> f64 {
+    let size = |p: PointRef| match &c.scene.bodies[p.body].kind {
+        BodyKind::Link(link) => link.length,
+        BodyKind::Rigid(rigid) => {
+            let far = rigid
+                .points
+                .iter()
+                .map(|q| norm(sub(q.at, rigid.points[p.point].at)));
+            match far.fold(0.0, f64::max) {
+                0.0 => f64::INFINITY,
+                far => far,
             }
-            _ => f64::INFINITY,
-        };
-        if norm(sub(at, drawn.at)) > SKETCH * size(joint.bearing).min(size(joint.journal)) {
-            let message = format!(
-                "joint {} closes at ({:.4}, {:.4}) m, far from its sketch: draw it closer to the branch you mean",
-                joint.name, at[0], at[1]
-            );
-            return Err(c.scene.error(drawn.span, message, "the sketch"));
+        }
+        _ => f64::INFINITY,
+    };
+    let sizes = c.sketched_points(drawn).into_iter().map(size);
+    SKETCH * sizes.fold(f64::INFINITY, f64::min)
+}
+
+/// Sees that sketched joints and points ended near where they were drawn.
+fn check_sketch(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneError> {
+    for drawn in &c.scene.initial.sketch {
+        for point in c.sketched_points(drawn) {
+            let at = position(c, model, state, point);
+            if !is_guide(c, drawn, point) && norm(sub(at, drawn.at)) > reach(c, drawn) {
+                return Err(c.far_from_sketch(drawn, at));
+            }
         }
     }
     Ok(())
