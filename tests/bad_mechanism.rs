@@ -87,7 +87,7 @@ const CASES: [Case; 11] = [
     ),
     (
         &["initial.bodies={ crank1 = { x = 0.0, y = 0.0, theta = 0.0 } }"],
-        &["the motion of crank1 is prescribed; it cannot have a start of its own"],
+        &["the motion of crank1 is prescribed, so it cannot be given an initial state"],
         "{ x = 0.0, y = 0.0, theta = 0.0 }",
     ),
     (
@@ -95,7 +95,7 @@ const CASES: [Case; 11] = [
             "initial.bodies={ link1 = { x = 0.0, y = 0.0, theta = 0.0 } }",
             "joints.B1.model=ideal",
         ],
-        &["the start of link1 does not fit what its ends are joined to"],
+        &["the pose of link1 does not fit the points that its ends are joined to"],
         "{ x = 0.0, y = 0.0, theta = 0.0 }",
     ),
     (
@@ -179,7 +179,7 @@ fn a_journal_outside_its_bearing() {
     check(
         &error,
         "outside",
-        "joint pin starts 0.04998 m deep in the wall",
+        "the journal of joint pin starts outside its bearing: the penetration of 50.0\u{a0}mm exceeds the clearance of 20\u{a0}µm",
         "[joints.pin]",
     );
     let pressed = ["initial.bodies.journal.x=2.01e-5".to_owned()];

@@ -9,8 +9,8 @@ fn faults_of_the_text_itself() {
     #[rustfmt::skip]
     check_all(&[
         ("length = 0.245", "length 0.245", "not valid TOML: key with no value", "length 0.245"),
-        ("length = 0.245", "length = 0.245\nlength = 0.3", "the key `length` stands here a second time", "length"),
-        ("[bodies.link1]", "[bodies.crank1]", "the key `crank1` stands here a second time", "crank1"),
+        ("length = 0.245", "length = 0.245\nlength = 0.3", "the key `length` is given twice", "length"),
+        ("[bodies.link1]", "[bodies.crank1]", "the key `crank1` is given twice", "crank1"),
         ("title = \"3-RRR, case 4 with friction in B and C\"", "title = \"3-RRR", "not valid TOML", "title = \"3-RRR"),
     ]);
     check(&fault("", &[]), "empty", "the scene is empty", "");

@@ -360,20 +360,20 @@ model = "ideal"
     for (addition, wanted) in [
         (
             "[forces.f]\ntype = 'torque'\npoint = 'ground.pivot'\nvalue = 1.0",
-            "`forces.f` turns the ground, which does not move",
+            "`forces.f` acts on the ground, which does not move",
         ),
         (
             "[drives.d]\ntype = 'point'\npoint = 'ground.rail'\nx = 0.3",
-            "the motion of ground is given; it cannot be driven",
+            "the motion of ground is known at every time, so its points cannot be driven",
         ),
         (
             "[drives.d]\ntype = 'angle'\njoint = 'load'\nangle = 0.3",
-            "`drives.d.joint` needs a direction of bob, a point mass",
+            "`drives.d.joint` needs the direction of bob, but a point mass has none",
         ),
         (
             "[forces.f]\ntype = 'spring_damper'\nfrom = 'crank.end'\nto = 'rod.start'
             stiffness = 1.0\ndamping = 0.0\nrest_length = 0.1",
-            "the ends of f coincide: a spring with a rest length has no direction there",
+            "the ends of f coincide at the start, where the direction of a spring with a rest length is undefined",
         ),
     ] {
         let text = format!("{base}{bob}{addition}");

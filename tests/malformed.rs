@@ -189,7 +189,7 @@ fn ten_malformed_mechanisms_name_the_culprit() {
         (
             "duplicate names",
             changed("[joints.C]", "[joints.coupler]"),
-            &["coupler", "body and of a joint"],
+            &["coupler", "both a body and a joint"],
         ),
         (
             "duplicate tables",

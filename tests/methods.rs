@@ -268,7 +268,7 @@ fn faults_of_the_method_are_named() {
                 "integrator.method=trapezoidal",
                 "integrator.spectral_radius=1",
             ],
-            "`integrator.spectral_radius` belongs to method \"bathe\", \"generalized_alpha\", \"hht\"",
+            "`integrator.spectral_radius` is a parameter of \"bathe\", \"generalized_alpha\", \"hht\" only",
             "spectral_radius",
         ),
         (
@@ -292,7 +292,7 @@ fn faults_of_the_method_are_named() {
         (
             roll_up,
             &["integrator.accuracy={ position = 1e-9 }"],
-            "a static analysis has a `step` of its loads, no `accuracy` over time",
+            "a static analysis takes a `step`, not an `accuracy`",
             "accuracy",
         ),
     ] {
@@ -306,7 +306,7 @@ fn faults_of_the_method_are_named() {
         "method = \"bathe\"\naccuracy = { position = 1e-9, horizon = 0.01 }",
     );
     let error = Scene::parse("scene.toml", &both, &[]).unwrap_err();
-    let message = "`integrator` has a step and an accuracy";
+    let message = "`integrator` has both `step` and `accuracy`";
     check(&error, "both", message, "accuracy");
     let only = both.replace("step = 1.25e-6", "");
     let again = Scene::parse("scene.toml", &only, &["integrator.step=1e-5".to_owned()]);

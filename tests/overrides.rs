@@ -14,7 +14,7 @@ fn overrides_point_into_the_override() {
         ("integrater.step=1e-6", "the scene has no `integrater`; did you mean `integrator`?", "integrater"),
         ("bodies.link9.elements=2", "the scene has no `bodies.link9`; did you mean `bodies.link1`?", "link9"),
         ("joints.B1.model=idea", "cannot be \"idea\"; did you mean `ideal`?", "idea"),
-        ("joints.B1.model.x=1", "`joints.B1.model` is a string, it has no parts", "x"),
+        ("joints.B1.model.x=1", "`joints.B1.model` is a string and has no parts", "x"),
         ("output.channels.9=a", "has the indices 0 to 6, not `9`", "9"),
         ("step", "an override needs `=`", "step"),
         ("=1", "has an empty part", ""),

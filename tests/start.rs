@@ -91,7 +91,7 @@ joints.O = { type = "revolute", bearing = "ground.O", journal = "rod.start", mod
 initial.bodies.rod = { x = 0.0, y = 0.0, theta = 0.0 }
 "#;
     let (error, shown) = refused(text);
-    assert!(error.to_string().contains("the start of rod"), "{error}");
+    assert!(error.to_string().contains("the pose of rod"), "{error}");
     assert!(shown.contains("centre of mass"), "{shown}");
 }
 
@@ -222,7 +222,7 @@ initial.bodies.rocker = { x = 0.525, y = 0.0, theta = 0.0 }
     let (error, _) = refused(&text);
     assert_eq!(
         error.to_string(),
-        "the given poses hold the ends of coupler 550\u{a0}mm apart, and its length is 300\u{a0}mm"
+        "the given poses hold the ends of coupler 550\u{a0}mm apart, but its length is 300\u{a0}mm"
     );
 }
 

@@ -8,7 +8,6 @@ use crate::model::{BodyCoordinates, Model};
 use crate::motion;
 use crate::scene::{BodyKind, Drive, LinkModel, PointRef, Scene, SceneError};
 use crate::system::State;
-use plot::number;
 
 /// Largest distance of two prescribed points that a joint holds together \[m\]: the digits of typed positions.
 const HELD_TOLERANCE: f64 = 1e-9;
@@ -33,7 +32,7 @@ pub(super) fn ideal_mechanism(
         let body = &scene.bodies[drive.body].name;
         let free = shape.unknowns as isize - shape.multipliers as isize;
         let message = format!(
-            "drive {}: the path of {body} does not determine the ideal mechanism: {} unknown coordinates, {} constraints",
+            "drive {}: the path of {body} does not determine the pose of the ideal mechanism, which has {} unknown coordinates and {} constraints",
             drive.name, shape.unknowns, shape.multipliers
         );
         let label = if free > 0 {
@@ -88,10 +87,10 @@ fn sweep(
                 let distance = norm(sub(a, b));
                 if distance > HELD_TOLERANCE {
                     let message = format!(
-                        "drive {}: the path pulls joint {} apart, by {} m at t = {} s",
+                        "drive {}: the path pulls joint {} apart, by {} at t = {} s",
                         drive.name,
                         joint.name,
-                        number(distance, 4),
+                        plot::si(distance, "m"),
                         to.t
                     );
                     return Err(c.joint_error(j, message, "both of its points are prescribed"));
@@ -174,8 +173,12 @@ pub(super) fn mark_driven(
             roles[moved] = Role::Driven;
             false
         });
-        let stuck = (waiting.len() == before)
-            .then(|| (waiting[0], "no driven chain of bodies leads to it"));
+        let stuck = (waiting.len() == before).then(|| {
+            (
+                waiting[0],
+                "no chain of actuated joints connects it to the ground",
+            )
+        });
         if let Some((j, why)) = fault.or(stuck) {
             let message = format!(
                 "drive {} cannot actuate joint {}: {why}",

@@ -29,7 +29,7 @@ pub(super) fn joint_terms(
             let n = numbering.unknowns;
             if bearing.x() >= n && journal.x() >= n {
                 let message = format!(
-                    "joint {} has clearance between two points whose motion is known",
+                    "joint {} has clearance, but both of its points are fixed or prescribed",
                     joint.name
                 );
                 return Err(c.joint_error(j, message, "nothing here can move"));

@@ -169,7 +169,7 @@ pub fn compile(scene: &Scene) -> Result<Model, SceneError> {
             Some(kinematics)
         }
         [_, second, ..] => {
-            let message = "a scene can have one drive that follows inverse kinematics";
+            let message = "a scene can have only one drive of type \"inverse_kinematics\"";
             return Err(scene.error(second.span, message, "the second one"));
         }
     };

@@ -65,10 +65,7 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
     let mut connections = Vec::new();
     for (j, joint) in c.scene.joints.iter().enumerate() {
         let redundant = |what: &str| {
-            let message = format!(
-                "joint {} repeats what other joints already enforce: {what}",
-                joint.name
-            );
+            let message = format!("joint {} is redundant: {what}", joint.name);
             c.joint_error(j, message, "redundant joint")
         };
         let (bearing, journal) = (joint.bearing, joint.journal);
@@ -82,7 +79,9 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
         } else if free_end(bearing) && free_end(journal) {
             let (a, b) = (nodes.find(end_of(bearing)), nodes.find(end_of(journal)));
             if a == b {
-                return Err(redundant("its two points already coincide"));
+                return Err(redundant(
+                    "other joints already make its two points coincide",
+                ));
             }
             if nodes.anchor[a].is_some() && nodes.anchor[b].is_some() {
                 return Err(redundant("both of its points are already fixed"));
@@ -101,7 +100,7 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
             };
             let class = nodes.find(end_of(end));
             if nodes.anchor[class].is_some() {
-                return Err(redundant("its link end is already fixed"));
+                return Err(redundant("the link end it joins is already fixed"));
             }
             nodes.anchor[class] = Some(known);
             Connection::Eliminated

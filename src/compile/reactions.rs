@@ -197,7 +197,7 @@ pub(super) fn joint(
                 .or_else(|| hanging(c, model, own, j, joint.bearing).map(|side| (side, -1.0)));
             let Some((side, sign)) = side else {
                 let message = format!(
-                    "the reaction of joint {} is not determined: both sides are held",
+                    "the reaction force of joint {} is undetermined, because its bodies are held by other joints as well",
                     joint.name
                 );
                 return Err(c.joint_error(j, message, "redundant joint"));

@@ -123,7 +123,10 @@ pub(super) fn build(
         .iter()
         .find(|r| r.term.coordinates().iter().all(|&i| i >= n))
     {
-        let message = format!("{} constrains only what is known already", row.names[0]);
+        let message = format!(
+            "{} constrains only points whose motion is known already, because they are fixed or prescribed",
+            row.names[0]
+        );
         return Err(c.scene.error(row.span, message, "nothing here can move"));
     }
     let multipliers = terms.rows.iter().map(|row| row.names.len()).sum();
@@ -349,7 +352,7 @@ fn body_terms(
                 let [i, j] = *ends;
                 if i >= numbering.unknowns && j >= numbering.unknowns {
                     let message = format!(
-                        "the length of {} repeats what the joints of both its ends already fix",
+                        "the length of {} is redundant: the joints at its two ends fix it already",
                         body.name
                     );
                     return Err(c.scene.error(body.span, message, "redundant link"));

@@ -7,7 +7,6 @@ use crate::math::plane::{Vec2, add, cross, dot, norm, perp, scale, sub};
 use crate::model::{BodyCoordinates, Model, Placed};
 use crate::scene::{BodyKind, BodyState, ForceKind, JointModel, Scene, SceneError};
 use crate::system::State;
-use plot::number;
 
 /// Largest distance by which a start may miss a constraint \[m\] or a rate \[m/s\]: the digits of a typed position.
 const START_TOLERANCE: f64 = 1e-9;
@@ -94,10 +93,10 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
             let given = scene.initial.bodies.iter().find(|s| s.body == b);
             let span = given.map_or(body.span, |g| g.span);
             let message = format!(
-                "the start of {} does not fit what its ends are joined to",
+                "the pose of {} does not fit the points that its ends are joined to",
                 body.name
             );
-            let error = scene.error(span, message, "this start violates a joint");
+            let error = scene.error(span, message, "does not fit its joints");
             return Err(error.with_help(CENTRE));
         }
     }
@@ -110,9 +109,10 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
             .map_or(0.0, |(_, delta, _)| delta);
         if delta > contact.clearance {
             let message = format!(
-                "joint {} starts {} m deep in the wall of its bearing, more than its clearance",
+                "the journal of joint {} starts outside its bearing: the penetration of {} exceeds the clearance of {}",
                 scene.joints[j].name,
-                number(delta, 4)
+                plot::si(delta, "m"),
+                plot::si(contact.clearance, "m")
             );
             return Err(scene.error(scene.joints[j].span, message, "this joint"));
         }
@@ -124,7 +124,7 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
             && (length.is_nan() || length <= START_TOLERANCE)
         {
             let message = format!(
-                "the ends of {} coincide: a spring with a rest length has no direction there",
+                "the ends of {} coincide at the start, where the direction of a spring with a rest length is undefined",
                 force.name
             );
             return Err(scene.error(force.span, message, "this spring"));
@@ -133,7 +133,7 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
     satisfied(scene, model, &state)?;
     if let Some(index) = model.half_turned(&state) {
         let name = &model.unknown_names()[index];
-        let message = format!("the start has {name} half a turn away from its angle");
+        let message = format!("{name} starts half a turn away from the angle it holds");
         return Err(scene.error(scene.initial.span, message, "this start"));
     }
     model.remember_angles(&mut state);
@@ -197,7 +197,7 @@ fn starts(scene: &Scene, model: &Model, state: &State) -> Result<Vec<Option<Star
     for (b, body) in scene.bodies.iter().enumerate() {
         if let Some(given) = given(b).filter(|_| !free[b]) {
             let message = format!(
-                "the motion of {} is prescribed; it cannot have a start of its own",
+                "the motion of {} is prescribed, so it cannot be given an initial state",
                 body.name
             );
             return Err(scene.error(given.span, message, "remove this"));
@@ -205,7 +205,7 @@ fn starts(scene: &Scene, model: &Model, state: &State) -> Result<Vec<Option<Star
     }
     if let (Some(kinematics), Some(given)) = (&model.kinematics, scene.initial.velocities.first()) {
         let message = format!(
-            "the velocities of this scene are those of the ideal mechanism that {} moves",
+            "the velocity of {} cannot be given: with inverse kinematics all velocities are those of the ideal mechanism",
             kinematics.mechanism.bodies()[given.body].name
         );
         return Err(scene.error(given.span, message, "remove this"));

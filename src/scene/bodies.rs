@@ -193,7 +193,7 @@ fn link_points(
     let points = table.optional("points");
     if let Some(field) = points.as_ref().filter(|_| !flexible) {
         let message = format!(
-            "`{}`: a rigid link has no points but `start` and `end`",
+            "`{}`: a rigid link has only the points `start` and `end`",
             field.path
         );
         let error = field.key_fault(message, "not on a rigid link");
@@ -201,14 +201,14 @@ fn link_points(
     }
     let points = named(points, |field| {
         if ["start", "end"].contains(&field.name.as_str()) {
-            let message = format!("every link has a point `{}` of its own", field.name);
+            let message = format!("`{}` is already the name of an end of the link", field.name);
             return Err(field.key_fault(message, "taken"));
         }
         let place = field.number()? / length * elements as f64;
         let node = place.round();
         if !(node > 0.0 && node < elements as f64 && (place - node).abs() <= 1e-9 * node) {
             let requirement = format!(
-                "lie at a node between the ends: a multiple of {} m below {} m",
+                "lie at a node between the ends: a multiple of {} m, less than {} m",
                 plot::exact(length / elements as f64),
                 plot::exact(length)
             );
@@ -262,7 +262,7 @@ fn inertia(
         return Ok((mass, table.required("inertia", purpose)?.positive()?));
     };
     if let Some(typed) = table.optional("inertia") {
-        let message = format!("`{}` is given by the plate already", typed.path);
+        let message = format!("`{}` is already given by the plate", typed.path);
         return Err(typed.key_fault(message, "remove this or the plate"));
     }
     #[derive(Clone, Copy)]

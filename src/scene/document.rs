@@ -130,7 +130,7 @@ impl Place<'_> {
         match error.message() {
             "duplicate key" => self.error(
                 range,
-                &format!("the key `{written}` stands here a second time"),
+                &format!("the key `{written}` is given twice"),
                 "already given",
             ),
             message => self.error(range, &format!("not valid TOML: {message}"), "here"),
@@ -155,7 +155,7 @@ impl Place<'_> {
     fn value(&self, spanned: Spanned<DeValue<'_>>, depth: usize) -> Result<Node, SceneError> {
         let range = spanned.span();
         if depth > DEPTH {
-            return Err(self.error(range, "nested too deeply for a scene", "here"));
+            return Err(self.error(range, "this is nested too deeply for a scene", "here"));
         }
         let value = match spanned.into_inner() {
             DeValue::String(text) => Value::Text(text.into_owned()),

@@ -190,14 +190,12 @@ impl<'a> Field<'a> {
             return Err(self.wrong_type(shape));
         };
         if items.len() != N {
-            return Err(self.fault(
-                format!(
-                    "`{}` must be {shape}, not {} values",
-                    self.path,
-                    items.len()
-                ),
-                format!("{} values", items.len()),
-            ));
+            let count = match items.len() {
+                1 => "1 value".to_owned(),
+                n => format!("{n} values"),
+            };
+            let message = format!("`{}` must be {shape}, not {count}", self.path);
+            return Err(self.fault(message, count));
         }
         let mut result = [0.0; N];
         for (x, item) in result.iter_mut().zip(self.items()?) {

@@ -50,7 +50,7 @@ impl<'a> Fields<'a> {
             self.sources,
             self.table[key].key,
             message,
-            "not known here".into(),
+            "unknown key".into(),
         )
         .with_help(format!("keys of this table: {}", list.join(", ")))
     }

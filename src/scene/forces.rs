@@ -20,10 +20,7 @@ pub(super) fn read(
         check_name(field, &RESERVED)?;
         let taken = bodies.bodies.contains_key(&field.name) || joints.contains_key(&field.name);
         if taken {
-            let message = format!(
-                "`{}` is the name of a body or joint and of a force",
-                field.name
-            );
+            let message = format!("`{}` names both a force and a body or joint", field.name);
             let help = "channels are called `name.quantity`, so names must differ";
             return Err(field.key_fault(message, "taken").with_help(help));
         }
@@ -112,7 +109,8 @@ fn force(
                 component("x", "the first component [N]")?,
                 component("y", "the second component [N]")?,
             ];
-            let purpose = "what its direction keeps to: \"ground\" or \"body\"";
+            let purpose =
+                "the frame of its components, which a follower turns with: \"ground\" or \"body\"";
             let frames = [("ground", false), ("body", true)];
             let follower = table.required("frame", purpose)?.choice(&frames)?;
             if follower {
@@ -139,7 +137,7 @@ fn force(
             let reaction = reaction.transpose()?;
             let fixed = |p: PointRef| matches!(bodies.bodies[p.body].kind, BodyKind::Ground { .. });
             if fixed(place) && reaction.is_none_or(fixed) {
-                let message = format!("`{}` turns the ground, which does not move", field.path);
+                let message = format!("`{}` acts on the ground, which does not move", field.path);
                 return Err(point_field.fault(message, "does nothing"));
             }
             let value = table.required("value", "the torque [N m]")?;
@@ -174,7 +172,10 @@ fn rates(
 pub(super) fn turns(field: &Field, point: PointRef, bodies: &Bodies) -> Result<(), SceneError> {
     match bodies.bodies.get_index(point.body) {
         Some((name, body)) if matches!(body.kind, BodyKind::PointMass { .. }) => {
-            let message = format!("`{}` needs a direction of {name}, a point mass", field.path);
+            let message = format!(
+                "`{}` needs the direction of {name}, but a point mass has none",
+                field.path
+            );
             Err(field.fault(message, "a point has no direction"))
         }
         _ => Ok(()),

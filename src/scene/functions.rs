@@ -53,7 +53,7 @@ pub(super) fn function(field: &Field, purpose: Use, duration: f64) -> Result<Fun
             table.only(&["type", "mean", "amplitude", "frequency", "phase"])?;
             let number = |key, purpose| table.required(key, purpose)?.number();
             Function::Harmonic {
-                mean: number("mean", "the value it swings about")?,
+                mean: number("mean", "the mean value")?,
                 amplitude: number("amplitude", "the largest deviation from the mean")?,
                 frequency: number("frequency", "periods a second [Hz]")?,
                 phase: number("phase", "the phase of the sine at t = 0 [rad]")?,

@@ -62,7 +62,11 @@ fn method(table: &Fields, name: &str) -> Result<Method, SceneError> {
             && !owners.contains(&name)
         {
             let owners: Vec<String> = owners.iter().map(|o| format!("{o:?}")).collect();
-            let message = format!("`{}` belongs to method {}", field.path, owners.join(", "));
+            let message = format!(
+                "`{}` is a parameter of {} only",
+                field.path,
+                owners.join(", ")
+            );
             return Err(field.key_fault(message, "remove this"));
         }
     }
@@ -131,7 +135,7 @@ fn pace_field<'a>(table: &Fields<'a>) -> Result<Field<'a>, SceneError> {
             std::cmp::Ordering::Less => Ok(accuracy),
             std::cmp::Ordering::Greater => Ok(step),
             std::cmp::Ordering::Equal => {
-                let message = "`integrator` has a step and an accuracy: one of them rules the step";
+                let message = "`integrator` has both `step` and `accuracy`: give only one of them";
                 Err(accuracy.key_fault(message, "remove this or `step`"))
             }
         },
@@ -166,7 +170,7 @@ fn step(field: &Field, simulation: &Simulation) -> Result<f64, SceneError> {
 /// `loose` where a joint has clearance.
 fn accuracy(field: &Field, simulation: &Simulation, loose: bool) -> Result<Accuracy, SceneError> {
     if simulation.analysis == Analysis::Static {
-        let message = "a static analysis has a `step` of its loads, no `accuracy` over time";
+        let message = "a static analysis takes a `step`, not an `accuracy`";
         return Err(field.key_fault(message, "write `step`"));
     }
     let mut table = field.fields()?;
@@ -181,8 +185,8 @@ fn accuracy(field: &Field, simulation: &Simulation, loose: bool) -> Result<Accur
         Some(energy) => Some(energy.positive()?),
         None => None,
     };
-    let purpose = "the time [s] over which errors may add up to `position`; required since a joint has clearance: such \
-                   motion is chaotic, and beyond some tens of milliseconds no step keeps two runs together";
+    let purpose = "the time [s] over which errors may add up to `position`; it is required because a joint has clearance: \
+                   such motion is chaotic, and beyond some tens of milliseconds no step is small enough";
     let horizon = match table.optional("horizon") {
         None if loose => Some(table.required("horizon", purpose)?),
         other => other,
@@ -205,8 +209,7 @@ fn newton_tolerance(table: &Fields, method: Method) -> Result<f64, SceneError> {
 }
 
 fn onset_tolerance(table: &Fields, clearance: Option<f64>) -> Result<f64, SceneError> {
-    let purpose =
-        "the largest |delta| of a located contact onset [m], needed since a joint has clearance";
+    let purpose = "the largest penetration or gap at a located contact onset [m]; it is required because a joint has clearance";
     let field = match clearance {
         Some(_) => Some(table.required("onset_tolerance", purpose)?),
         None => table.optional("onset_tolerance"),

@@ -14,7 +14,7 @@ pub(super) fn read(root: &Fields, bodies: &Bodies) -> Result<IndexMap<String, Jo
     named(root.optional("joints"), |field| {
         check_name(field, &RESERVED)?;
         if bodies.bodies.contains_key(&field.name) {
-            let message = format!("`{}` is the name of a body and of a joint", field.name);
+            let message = format!("`{}` names both a body and a joint", field.name);
             let help = "channels are called `name.quantity`, so names must differ";
             return Err(field
                 .key_fault(message, "a body has this name")
@@ -90,7 +90,10 @@ fn joint(
     for p in turning {
         let (name, body) = bodies.bodies.get_index(p.body).expect("a point has a body");
         if matches!(body.kind, BodyKind::PointMass { .. }) {
-            let message = format!("`{}` needs a direction of {name}, a point mass", field.path);
+            let message = format!(
+                "`{}` needs the direction of {name}, but a point mass has none",
+                field.path
+            );
             return Err(field.key_fault(message, "a point has no direction"));
         }
     }
@@ -138,7 +141,10 @@ fn prismatic(table: &Fields) -> Result<JointModel, SceneError> {
         .choice(&[("free", false), ("locked", true)])?;
     let angle = table.optional("angle");
     if let Some(angle) = angle.as_ref().filter(|_| !locked) {
-        let message = format!("`{}` holds an angle that is free", angle.path);
+        let message = format!(
+            "`{}` is the angle of a locked rotation, but this rotation is free",
+            angle.path
+        );
         return Err(angle.key_fault(message, "remove this, or lock the rotation"));
     }
     let angle = angle.map(|a| a.number()).transpose()?.unwrap_or(0.0);
@@ -265,7 +271,7 @@ fn stiffness(
     if let Some(typed) = table.optional("stiffness") {
         if let Some(material) = keys.iter().find_map(|key| table.optional(key)) {
             let message = format!(
-                "`{}` and a typed `stiffness` exclude each other",
+                "`{}` cannot be combined with a given `stiffness`",
                 material.path
             );
             return Err(material.key_fault(message, "remove this or the stiffness"));

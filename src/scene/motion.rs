@@ -69,7 +69,9 @@ pub(super) fn drives(
                 let point = joints::point(&point_field, bodies)?;
                 let (name, body) = bodies.bodies.get_index(point.body).expect("it is there");
                 if let BodyKind::Ground { .. } | BodyKind::Moving { .. } = body.kind {
-                    let message = format!("the motion of {name} is given; it cannot be driven");
+                    let message = format!(
+                        "the motion of {name} is known at every time, so its points cannot be driven"
+                    );
                     return Err(point_field.fault(message, "not a free body"));
                 }
                 let coordinate = |key| {
@@ -105,7 +107,7 @@ fn actuated(
     let (index, joint) = field.lookup("joint", joints)?;
     if !matches!(joint.model, JointModel::Ideal | JointModel::Clearance(_)) {
         let message = format!(
-            "the joint `{}` is not revolute: it cannot be turned",
+            "the joint `{}` is not revolute, so a drive cannot turn it",
             joint.name
         );
         return Err(field.fault(message, "not a revolute joint"));
@@ -330,7 +332,7 @@ fn given_velocities(
         if let Some(value) = table.optional(key) {
             if component == 2 && matches!(bodies[body].kind, BodyKind::PointMass { .. }) {
                 let message = format!("`{}` is a point mass and does not turn", field.name);
-                return Err(value.key_fault(message, "not here"));
+                return Err(value.key_fault(message, "remove this"));
             }
             given.push(GivenVelocity {
                 body,
@@ -341,7 +343,13 @@ fn given_velocities(
         }
     }
     if given.is_empty() {
-        return Err(field.key_fault(format!("`{}` gives no velocity", field.path), "empty"));
+        return Err(field.key_fault(
+            format!(
+                "`{}` gives none of the velocities vx, vy and omega",
+                field.path
+            ),
+            "empty",
+        ));
     }
     Ok(given)
 }
@@ -353,12 +361,12 @@ fn moving_body(field: &Field, bodies: &IndexMap<String, Body>) -> Result<usize, 
     };
     match found.kind {
         BodyKind::Ground { .. } => {
-            let message = format!("`{}` is ground and has no state", field.name);
+            let message = format!("`{}` is the ground and has no initial state", field.name);
             Err(field.key_fault(message, "does not move"))
         }
         BodyKind::Moving { .. } => {
             let message = format!(
-                "`{}` follows its path; it cannot have a start of its own",
+                "`{}` follows its path, so it cannot be given an initial state",
                 field.name
             );
             Err(field.key_fault(message, "prescribed"))
@@ -409,7 +417,11 @@ fn state(field: &Field, bodies: &IndexMap<String, Body>) -> Result<BodyState, Sc
 fn point_state(field: &Field, body: usize) -> Result<BodyState, SceneError> {
     let mut table = field.fields()?;
     table.only(&["x", "y", "vx", "vy"])?;
-    let number = |key: &'static str| table.required(key, "of the point mass")?.number();
+    let number = |key: &'static str| {
+        table
+            .required(key, "the position of the point mass [m]")?
+            .number()
+    };
     let position = [number("x")?, number("y")?, 0.0];
     let velocity_given = ["vx", "vy"].iter().any(|key| table.optional(key).is_some());
     let mut velocity = [0.0; 3];

@@ -26,12 +26,13 @@ pub(super) fn named<T>(
 pub(super) fn check_name(field: &Field, reserved: &[&str]) -> Result<(), SceneError> {
     let name = &field.name;
     if reserved.contains(&name.as_str()) {
-        let message = format!("the name `{name}` is reserved for channels of the program's own");
+        let message =
+            format!("the name `{name}` is reserved: channels of the program begin with it");
         return Err(field.key_fault(message, "reserved"));
     }
     let fine = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
     if name.is_empty() || !name.chars().all(fine) {
-        let message = format!("`{name}` cannot be a name");
+        let message = format!("`{name}` is not a valid name");
         let help = "names consist of letters, digits, `_` and `-`";
         return Err(field.key_fault(message, "not a name").with_help(help));
     }

@@ -73,7 +73,7 @@ fn apply_one(sources: &Sources, source: usize, root: &mut Node) -> Result<(), Sc
             }
         }
         other => {
-            let message = format!("`{}` is {}, it has no parts", join(parents), other.kind());
+            let message = format!("`{}` is {} and has no parts", join(parents), other.kind());
             Err(malformed(last.span, &message, "cannot be set"))
         }
     }

@@ -136,7 +136,7 @@ initial.bodies.block = { x = 0.0, y = 0.0, theta = 3.141592653589793 }
     let error = Simulation::new(&parse(text)).expect_err("it starts");
     assert_eq!(
         error.to_string(),
-        "the start has joint O (angle) half a turn away from its angle"
+        "joint O (angle) starts half a turn away from the angle it holds"
     );
     assert!(error.place().is_some());
 }

@@ -85,7 +85,7 @@ fn wrong_length(c: &Compiler, placed: &Placed, state: &State) -> Result<(), Scen
     let error = match (given(c, own), neighbour) {
         (Some(pose), _) => {
             let message = format!(
-                "the given pose of {} does not fit what its ends are joined to: they are {distance} apart, and its length \
+                "the given pose of {} does not fit the points that its ends are joined to: they are {distance} apart, but its length \
                  is {length}",
                 body.name
             );
@@ -93,7 +93,7 @@ fn wrong_length(c: &Compiler, placed: &Placed, state: &State) -> Result<(), Scen
         }
         (None, Some(pose)) => {
             let message = format!(
-                "the given poses hold the ends of {} {distance} apart, and its length is {length}",
+                "the given poses hold the ends of {} {distance} apart, but its length is {length}",
                 body.name
             );
             let places = [(pose.span, "this pose"), (body.span, "this link")];

@@ -123,7 +123,7 @@ fn close(model: &Model, state: &mut State, held: &[bool]) -> Option<(f64, usize)
 fn check_turns(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneError> {
     for (placed, name) in model.constraints.iter().zip(names(model)) {
         if placed.term.half_turn(state) {
-            let message = format!("{name} closes half a turn away from its angle");
+            let message = format!("{name} closes half a turn away from the angle it holds");
             let error = c
                 .scene
                 .error(c.scene.initial.span, message, "from this start");

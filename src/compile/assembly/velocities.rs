@@ -1,14 +1,13 @@
 //! Velocities at the start, from a few of them.
 
 use super::super::{Compiler, Role};
-use super::{AGREEING, row};
+use super::{AGREEING, opening, row};
 use crate::math::dense::{Added, Equations};
 use crate::math::plane::{dot, perp, scale, sub};
 use crate::model::{BodyCoordinates, Model};
 use crate::scene::{BodyState, SceneError};
 use crate::system::{State, System};
 use faer::Mat;
-use plot::number;
 
 /// Velocities of least kinetic energy under the constraints and the given ones.
 pub(super) fn velocities(
@@ -29,8 +28,8 @@ pub(super) fn velocities(
             {
                 let name = &mechanism.names[n + placed.row + d];
                 let message = format!(
-                    "the prescribed motions contradict each other at t = 0: {name} is off by {} m/s",
-                    number(off, 4)
+                    "the prescribed motions contradict each other at t = 0: the rate of {name} is off by {}",
+                    opening(placed.effect, off.abs(), "/s")
                 );
                 return Err(c.scene.error(c.scene.initial.span, message, "this start"));
             }
@@ -53,7 +52,7 @@ pub(super) fn velocities(
         let body = &c.scene.bodies[given.body].name;
         let key = ["vx", "vy", "omega"][given.component];
         if c.roles[given.body] != Role::Free {
-            let message = format!("the motion of {body} is prescribed; it cannot be given {key}");
+            let message = format!("the motion of {body} is prescribed, so `{key}` cannot be given");
             return Err(c.scene.error(given.span, message, "remove this"));
         }
         let Some((a, known)) = velocity_row(mechanism, state, given.body, given.component) else {
@@ -63,10 +62,12 @@ pub(super) fn velocities(
             let implied = given.value - off;
             let message = if off.abs() > AGREEING {
                 format!(
-                    "{key} of {body} contradicts what is given before: that makes it {implied:.6}"
+                    "{key} of {body} contradicts the joints, drives and velocities given before, which make it {implied:.6}"
                 )
             } else {
-                format!("{key} of {body} repeats what is given before: that makes it {implied:.6}")
+                format!(
+                    "{key} of {body} repeats the joints, drives and velocities given before, which make it {implied:.6}"
+                )
             };
             return Err(c.scene.error(given.span, message, "leave this out"));
         }
@@ -79,11 +80,11 @@ pub(super) fn velocities(
 }
 
 fn contradiction(c: &Compiler, given: &BodyState, component: usize, off: f64) -> SceneError {
+    let (key, unit) = [("vx", "m/s"), ("vy", "m/s"), ("omega", "rad/s")][component];
     let message = format!(
-        "the velocity of {} contradicts the constraints: {} is off by {}",
+        "the given velocity of {} contradicts the joints and drives: {key} is off by {}",
         c.scene.bodies[given.body].name,
-        ["vx", "vy", "omega"][component],
-        number(off, 4)
+        plot::si(off.abs(), unit)
     );
     c.scene.error(given.span, message, "this velocity")
 }
