@@ -331,3 +331,38 @@ initial.sketch.rod = { end = [0.41, 0.01] }
         assert!(error.to_string().contains(message), "{error}");
     }
 }
+
+/// With inverse kinematics a sketched point chooses the branch as a sketched joint does.
+#[test]
+fn a_sketched_point_chooses_the_branch_of_inverse_kinematics() {
+    let arm = r#"
+bodies.ground = { type = "ground", points.shoulder = [0.0, 0.0] }
+bodies.upper = { type = "link", model = "rigid", length = 0.3, section = "bar", material = "steel" }
+bodies.lower = { type = "link", model = "rigid", length = 0.3, section = "bar", material = "steel" }
+bodies.hand = { type = "rigid_body", mass = 0.2, inertia = 1e-4, points.wrist = [-0.05, 0.0] }
+joints.shoulder = { type = "revolute", bearing = "ground.shoulder", journal = "upper.start", model = "ideal" }
+joints.elbow = { type = "revolute", bearing = "upper.end", journal = "lower.start", model = "ideal" }
+joints.wrist = { type = "revolute", bearing = "lower.end", journal = "hand.wrist", model = "ideal" }
+drives.draw = { type = "inverse_kinematics", joints = ["shoulder", "elbow", "wrist"], body = "hand", path = { type = "circle", center = [0.35, 0.0], radius = 0.05, frequency = 1.0, phase = 0.0, theta = 0.0 } }
+"#;
+    for side in [1.0, -1.0] {
+        let sketches = [
+            format!("initial.sketch.elbow = [0.2, {}]\n", 0.25 * side),
+            format!("initial.sketch.lower.start = [0.2, {}]\n", 0.25 * side),
+        ];
+        let [joint, point] =
+            sketches.map(|sketch| run(&(arm.to_owned() + &sketch)).get("points.upper.end.y")[0]);
+        assert_eq!(joint, point);
+        // the wrist is at (0.35, 0), so that the elbow is at half of it
+        let height = (0.09_f64 - 0.175 * 0.175).sqrt();
+        assert!((point - side * height).abs() < 1e-12, "{point}");
+    }
+    let far = arm.to_owned() + "initial.sketch.lower.start = [0.2, 0.1]\n";
+    let (error, _) = refused(&far);
+    assert!(
+        error
+            .to_string()
+            .starts_with("point lower.start closes at (0.1750, 0.24"),
+        "{error}"
+    );
+}
