@@ -226,16 +226,19 @@ initial.bodies.rocker = { x = 0.525, y = 0.0, theta = 0.0 }
     );
 }
 
-/// Poses without velocities beside a drive that moves: the velocities were taken as zero, and the error says so.
-#[test]
-fn velocities_taken_as_zero_are_told() {
-    let text = r#"
+/// A slider whose drive moves it from the start on, with a pose and no velocities.
+const PUSHED: &str = r#"
 bodies.ground = { type = "ground", points.O = [0.0, 0.0] }
 bodies.slider = { type = "rigid_body", mass = 1.0, inertia = 0.1, points.pin = [0.1, 0.0] }
 joints.slot = { type = "prismatic", guide = "ground.O", direction = [1.0, 0.0], slider = "slider.pin", rotation = "locked" }
 drives.push = { type = "point", point = "slider.pin", x = { type = "polynomial", coefficients = [0.3, 1.0] } }
 initial.bodies.slider = { x = 0.2, y = 0.0, theta = 0.0 }
 "#;
+
+/// Poses without velocities beside a drive that moves: the velocities were taken as zero, and the error says so.
+#[test]
+fn velocities_taken_as_zero_are_told() {
+    let text = PUSHED;
     let (error, shown) = refused(text);
     assert_eq!(
         error.to_string(),
@@ -243,6 +246,7 @@ initial.bodies.slider = { x = 0.2, y = 0.0, theta = 0.0 }
          taken as zero"
     );
     assert!(shown.contains("[initial.sketch]"), "{shown}");
+    assert_eq!(error.underlined(), "{ x = 0.2, y = 0.0, theta = 0.0 }");
     // as the advice says
     let sketched = run(&(text.to_owned() + "initial.sketch.slot = [0.3, 0.0]\n"));
     assert!((sketched.get("slider.vx")[0] - 1.0).abs() < 1e-14);
@@ -251,6 +255,26 @@ initial.bodies.slider = { x = 0.2, y = 0.0, theta = 0.0 }
         "theta = 0.0, vx = 1.0, vy = 0.0, omega = 0.0 }",
     );
     assert!((run(&typed).get("slider.vx")[0] - 1.0).abs() < 1e-14);
+}
+
+/// A static analysis has no velocities: a drive that moves from the start on, and a pose without velocities, are a load path.
+#[test]
+fn a_static_start_needs_no_velocities() {
+    let text = HEAD.replace("duration = 1e-3", "analysis = \"static\", duration = 1e-3")
+        + r#"
+bodies.ground = { type = "ground", points.O = [0.0, 0.0] }
+bodies.beam = { type = "link", model = "flexible", elements = 2, length = 1.0, section = "bar", material = "steel" }
+joints.O = { type = "revolute", bearing = "ground.O", journal = "beam.start", model = "ideal" }
+drives.turn = { type = "angle", joint = "O", angle = { type = "polynomial", coefficients = [0.0, 10.0] } }
+initial.bodies.beam = { x = 0.5, y = 0.0, theta = 0.0 }
+"#;
+    let scene = Scene::parse("start", &text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let y = run_scene(&scene).0.get("points.beam.end.y");
+    // turned as a whole by 0.01 rad; the last update of Newton's method is rounding, EI = 1.7 N m2 the least stiffness
+    assert!(
+        y[0].abs() < 1e-12 && (y[1] - 0.01_f64.sin()).abs() < 1e-12,
+        "{y:?}"
+    );
 }
 
 /// A rod that hangs from a driven point has one joint or none: its points are sketched, or known from the drive.

@@ -5,7 +5,7 @@ pub(crate) mod redundancy;
 use crate::compile::assembly::{assemble, opening};
 use crate::math::plane::{Vec2, add, cross, dot, norm, perp, scale, sub};
 use crate::model::{BodyCoordinates, Model, Placed};
-use crate::scene::{BodyKind, BodyState, ForceKind, JointModel, Scene, SceneError};
+use crate::scene::{Analysis, BodyKind, BodyState, ForceKind, JointModel, Scene, SceneError};
 use crate::system::State;
 
 /// Largest distance by which a start may miss a constraint \[m\] or a rate \[m/s\]: the digits of a typed position.
@@ -164,6 +164,10 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
         let error = scene.error(scene.initial.span, message, "this start");
         return Err(error.with_help(CENTRE));
     }
+    // nothing moves in a static analysis, whatever its drives prescribe
+    if scene.simulation.analysis == Analysis::Static {
+        return Ok(());
+    }
     let Some((off, placed)) = worst(|p, at| norm(p.term.velocity(at))) else {
         return Ok(());
     };
@@ -173,15 +177,19 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
         opening(placed.effect, off, "/s")
     );
     let silent = scene.initial.bodies.iter().filter(|s| !s.velocity_given);
-    let silent: Vec<&str> = silent.map(|s| scene.bodies[s.body].name.as_str()).collect();
-    if silent.is_empty() {
+    let silent: Vec<&BodyState> = silent.collect();
+    let Some(first) = silent.first() else {
         return Err(scene.error(scene.initial.span, message, "this start"));
-    }
+    };
+    let names: Vec<&str> = silent
+        .iter()
+        .map(|s| scene.bodies[s.body].name.as_str())
+        .collect();
     let message = format!(
         "{message}: the scene gives no velocity of {}, which was taken as zero",
-        silent.join(", ")
+        names.join(", ")
     );
-    let error = scene.error(scene.initial.span, message, "this start");
+    let error = scene.error(first.span, message, "no velocity here");
     Err(error.with_help(if model.kinematics.is_some() {
         "give `vx`, `vy` and `omega` beside the pose"
     } else {
