@@ -14,6 +14,8 @@ cargo fuzz --version > /dev/null 2>&1 || {
     echo "cargo-fuzz is missing: cargo install cargo-fuzz" >&2
     exit 2
 }
+# what is fuzzed, for records/state
+digests=$(cargo run --quiet --release -p records -- --digests fuzz)
 mkdir -p fuzz/corpus fuzz/artifacts/{scene,mechanism,study}
 
 # seconds an input, MiB of memory, bytes of an input
@@ -69,4 +71,6 @@ $found
 END
 # the earlier record stays until this one is whole
 mv stability/records/fuzz.json.tmp stability/records/fuzz.json
+echo "$digests" > records/state/fuzz.json
+cargo run --quiet --release -p records
 cat stability/records/fuzz.json

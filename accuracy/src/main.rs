@@ -12,6 +12,7 @@ use looselink::machine::machine;
 use looselink::precision::{Effort, Outcome, Study, Survey, figure, run};
 use looselink::simulate::Told;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use records::Run;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -48,6 +49,7 @@ const LONG: (&[f64], usize) = (&[1e-6], 1);
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
+    let campaign = Run::begin("accuracy")?;
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
         .ok_or_else(|| miette!("the crate has no folder above it"))?;
@@ -115,7 +117,8 @@ fn main() -> Result<()> {
     let path = root.join("ACCURACY.md");
     std::fs::write(&path, page)
         .into_diagnostic()
-        .wrap_err_with(|| format!("cannot write {}", path.display()))
+        .wrap_err_with(|| format!("cannot write {}", path.display()))?;
+    campaign.finish()
 }
 
 /// Shows what is told of the runs of a study.

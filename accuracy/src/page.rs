@@ -18,12 +18,13 @@ pub fn page(
     seconds: f64,
 ) -> String {
     let mut out = format!(
-        "# What accuracy costs\n\n\
+        "# What accuracy costs\n\n{}\n\
          Every method on every study of [studies](studies), error against processor time. Written by `cargo run --release -p \
          accuracy` in {:.0} min; one study alone: `cargo run --release -- precision studies/case3.toml --out out/case3` \
          ([docs/study.md](docs/study.md)). Processor times are those of one core, {machine}: the \
          median of as many runs as the column `runs` says, after one that is not timed. Every single time is in \
          [accuracy/timings.json](accuracy/timings.json).\n\n",
+         records::place("accuracy"),
         (seconds / 60.0).ceil()
     );
     out += &conclusions(made, surveyed);

@@ -134,13 +134,14 @@ fn mutation(page: &mut String, mutants: &Record, reasons: &BTreeMap<String, Stri
     put(
         page,
         format!(
-            "## Mutation testing\n\n\
+            "## Mutation testing\n\n{}\n\
              Do the tests notice a mistake? [{}](https://mutants.rs) changes one operator, sign or return value at a time in \
              the kernels (`src/link`, `src/contact`, `src/constraint`, `src/force`, `src/stepper`), and the tests of \
              [tests/kernels.rs](tests/kernels.rs) run. Of {} possible mutants {} were drawn with seed {}; \
              {} of them compile, and **{} of those are caught**. `cargo run --release -p ladder --bin mutate` repeats this; it \
              needs `cargo install cargo-mutants`.\n\n\
              | file | drawn | do not compile | caught | run for ever | survive |\n|---|---|---|---|---|---|",
+            records::place("mutation"),
             mutants.tool,
             mutants.possible,
             total.viable() + total.unviable,

@@ -27,6 +27,7 @@ use clap::{Parser, Subcommand};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use numbers::Numbers;
 use plot::Figure;
+use records::Run;
 use std::fs;
 use std::path::Path;
 
@@ -59,14 +60,17 @@ fn main() -> Result<()> {
 }
 
 fn reproduce(settings: Settings) -> Result<()> {
+    let run = Run::begin("reproduction")?;
     let mut numbers = Numbers::default();
     let campaign = Campaign::run(settings)?;
     let figures = figures::all(&campaign, &mut numbers);
     let page = reproduction::page(&campaign, &mut numbers);
-    write(&figures, "REPRODUCTION.md", &page, "numbers.json", &numbers)
+    write(&figures, "REPRODUCTION.md", &page, "numbers.json", &numbers)?;
+    run.finish()
 }
 
 fn scan(step: f64) -> Result<()> {
+    let run = Run::begin("scans")?;
     let mut numbers = Numbers::default();
     let scans = scans::run(step)?;
     let names: Vec<String> = scans.iter().map(|s| format!("scans-{}", s.slug)).collect();
@@ -76,7 +80,8 @@ fn scan(step: f64) -> Result<()> {
         .zip(scans.iter().map(|s| scans_page::figure(s, step)))
         .collect();
     let page = scans_page::page(&scans, step, &mut numbers);
-    write(&figures, "SCANS.md", &page, "scans.json", &numbers)
+    write(&figures, "SCANS.md", &page, "scans.json", &numbers)?;
+    run.finish()
 }
 
 /// Writes figures, a page and the numbers in both.

@@ -4,11 +4,13 @@ mod soak;
 
 use clap::{Parser, Subcommand};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use records::Run;
 use stability::cases::CASES;
 use stability::map::{Made, Map, files};
 use stability::outcome::Outcome;
+use stability::page;
 use stability::random::soak::scene;
-use stability::{page, records};
+use stability::records::{Records, write_long};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -75,6 +77,7 @@ fn make(path: &Path) -> Result<Made> {
 }
 
 fn write_page() -> Result<()> {
+    let run = Run::begin("maps")?;
     let started = Instant::now();
     let paths = files().into_diagnostic()?;
     let made = paths
@@ -86,13 +89,14 @@ fn write_page() -> Result<()> {
         eprintln!("case {}: {}", case.number, case.title);
         checks.push((case.checks)());
     }
-    let records = records::Records::read().into_diagnostic()?;
+    let records = Records::read().into_diagnostic()?;
     let minutes = started.elapsed().as_secs_f64() / 60.0;
     let text = page::page(&made, &checks, &records, minutes);
     let path = root()?.join("STABILITY.md");
     std::fs::write(&path, text)
         .into_diagnostic()
-        .wrap_err_with(|| format!("cannot write {}", path.display()))
+        .wrap_err_with(|| format!("cannot write {}", path.display()))?;
+    run.finish()
 }
 
 fn show_map(name: &str) -> Result<()> {
@@ -121,6 +125,7 @@ fn show_map(name: &str) -> Result<()> {
 }
 
 fn long() -> Result<()> {
+    let run = Run::begin("long")?;
     let mut found = Vec::new();
     for case in &CASES {
         let Some(checks) = case.long else { continue };
@@ -131,5 +136,6 @@ fn long() -> Result<()> {
         }
         found.push((case.number, made));
     }
-    records::write_long(&found).into_diagnostic()
+    write_long(&found).into_diagnostic()?;
+    run.finish()
 }

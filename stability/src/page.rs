@@ -4,6 +4,7 @@ use crate::cases::{CASES, Check};
 use crate::map::Made;
 use crate::outcome::Outcome;
 use crate::records::Records;
+use records::place;
 use std::fmt::Write;
 
 const WRITES: &str = "a string takes any text";
@@ -11,7 +12,7 @@ const WRITES: &str = "a string takes any text";
 /// What the page says.
 pub fn page(made: &[Made], checks: &[Vec<Check>], records: &Records, minutes: f64) -> String {
     let mut out = format!(
-        "# Hard cases\n\n\
+        "# Hard cases\n\n{}\n\
          Where methods come to their limits: what becomes of a run, and whether it says so. Written by `cargo run --release -p \
          stability` in {:.0} minutes. Every run ends in one of these ways:\n\n\
          | outcome | what it means |\n|---|---|\n\
@@ -24,6 +25,7 @@ pub fn page(made: &[Made], checks: &[Vec<Check>], records: &Records, minutes: f6
          A report warns of the energy that the integrator has lost or gained, of the error that its steps are estimated to \
          make, of accelerations that the steps do not resolve, of contacts that last a few steps only, of chatter, halved \
          steps, clamped forces and singular poses (`src/simulate/warnings.rs`).\n\n",
+        place("maps"),
         minutes.ceil()
     );
     out += &in_short(made, checks, records);
@@ -134,10 +136,11 @@ fn rivalry(made: &[Made]) -> String {
 }
 
 fn cases(checks: &[Vec<Check>], records: &Records) -> String {
-    let mut out = String::from(
-        "## The fifteen cases\n\nEach criterion is a test (`cargo test --test tests stability::cases`) or, where it says so, a \
+    let mut out = format!(
+        "## The fifteen cases\n\n{}\nEach criterion is a test (`cargo test --test tests stability::cases`) or, where it says so, a \
          long run (`cargo run --release -p stability -- long`).\n\n\
          | case | criterion | found | bound | verdict |\n|---|---|--:|--:|---|\n",
+        place("long")
     );
     for (case, short) in CASES.iter().zip(checks) {
         let long = records
@@ -179,14 +182,16 @@ const FAULTS: &str = "## Process faults\n\n`tests/stability/process/` kills runs
 fn random(records: &Records) -> String {
     let soak = &records.soak;
     let mut out = format!(
-        "## Random mechanisms\n\n\
+        "## Random mechanisms\n\n{}\n\
          Chains, loops and parallel mechanisms that nobody drew, with play, friction, flexible links, springs, loads and drives, \
          masses over six decades and steps over five, every method. Of every run it is asked that it ends in one of the ways \
          above, that its rows are finite, that constraints are kept, that forces are mass times acceleration, that momentum \
          changes by forces only, that the ledger closes, that work has a reason, and that a second run gives the same bytes \
          (`stability/src/random`). Runs that take thirty times the steps asked for are cut short. Some hundred are among the tests; `cargo run --release -p stability -- soak` has run {} with \
          seed {}:\n\n| outcome | scenes |\n|---|--:|\n",
-        soak.scenes, soak.seed
+        place("soak"),
+        soak.scenes,
+        soak.seed
     );
     for (outcome, count) in &soak.outcomes {
         line(&mut out, &format!("| {outcome} | {count} |"));
@@ -204,9 +209,12 @@ fn random(records: &Records) -> String {
     let fuzz = &records.fuzz;
     out += &format!(
         "\nWhat every soak and test has found is a named scene or test: `tests/stability/regressions.rs`, `scenes/hard`.\n\n\
-         ## Random input\n\n{}, {}: `{}`.\n\n\
+         ## Random input\n\n{}\n{}, {}: `{}`.\n\n\
          | target | inputs | seconds | edges covered | open failures |\n|---|--:|--:|--:|--:|\n",
-        fuzz.engine, fuzz.limits, fuzz.command
+        place("fuzz"),
+        fuzz.engine,
+        fuzz.limits,
+        fuzz.command
     );
     for one in &fuzz.targets {
         line(

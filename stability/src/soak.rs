@@ -3,6 +3,7 @@
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::{IntoDiagnostic, Result, miette};
+use records::Run;
 use stability::random::soak::Tally;
 use std::path::{Path, PathBuf};
 
@@ -31,6 +32,11 @@ const LINES: u64 = 500;
 
 /// Runs the scenes; a failing one is an error.
 pub fn soak(arguments: &Arguments) -> Result<()> {
+    // a tally elsewhere is no record of the project
+    let run = match arguments.tally {
+        Some(_) => None,
+        None => Some(Run::begin("soak")?),
+    };
     // a panic is a failure that is written down; its message is not for the terminal
     std::panic::set_hook(Box::new(|_| {}));
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len}  {msg}").into_diagnostic()?;
@@ -54,6 +60,9 @@ pub fn soak(arguments: &Arguments) -> Result<()> {
     let path = arguments.tally.as_ref().unwrap_or(&own);
     let text = serde_json::to_string_pretty(&tally).into_diagnostic()?;
     std::fs::write(path, text + "\n").into_diagnostic()?;
+    if let Some(run) = run {
+        run.finish()?;
+    }
     match tally.failures.len() {
         0 => Ok(()),
         n => Err(miette!(

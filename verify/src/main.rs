@@ -3,6 +3,7 @@
 use ladder::seeded::root;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use plot::save;
+use records::Run;
 use std::fs;
 use std::process::ExitCode;
 use verify::check::Agreement;
@@ -15,6 +16,7 @@ use verify::report::Report;
 use verify::trajectory::{Plan, tolerances};
 
 fn main() -> Result<ExitCode> {
+    let run = Run::begin("comparison")?;
     let folder = root().join("verify");
     let pictures = folder.join("figures");
 
@@ -53,6 +55,7 @@ fn main() -> Result<ExitCode> {
     fs::write(&path, report.page())
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot write {}", path.display()))?;
+    run.finish()?;
     let rows = report.sections.iter().flat_map(|s| &s.2);
     let failed: Vec<&Agreement> = rows.filter(|row| !row.holds()).collect();
     for row in &failed {

@@ -93,13 +93,14 @@ impl Report {
         put(
             page,
             format!(
-                "# Looselink against a second implementation\n\n\
+                "# Looselink against a second implementation\n\n{}\n\
                  [reference-cpp](../reference-cpp/README.md) is a C++ program written from the paper and \
                  [EQUATIONS.md](../EQUATIONS.md) alone, by other routes: Gauss quadrature, automatic differentiation, every \
                  joint a constraint, a stabilised index-2 system, IDA's variable-order BDF with root finding. It shares the \
                  numbers of the scene with Looselink and nothing else; even the scene is read twice.\n\n\
                  **{held} of {all} agreements hold.** This page is written by `cargo run --release -p verify`; \
                  `cargo test -p verify` asserts the same rows. {}.\n",
+                records::place("comparison"),
                 reference::versions()
             ),
         );
@@ -192,11 +193,12 @@ impl Report {
         put(
             page,
             format!(
-                "## Seeded faults\n\n\
+                "## Seeded faults\n\n{}\n\
                  {} mistakes, put in one at a time by `cargo run --release -p verify --bin faults` \
                  ([faults.toml](faults.toml) has the changed lines), and the tests that failed then. Tests that take a \
                  minute are asked only when the quick ones catch nothing.\n\n\
                  | in | mistake | caught by |\n|---|---|---|",
+                records::place("faults"),
                 self.faults.len()
             ),
         );

@@ -9,6 +9,7 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
+use records::Run;
 use serde::Deserialize;
 use std::fs;
 use std::path::Path;
@@ -66,6 +67,11 @@ enum Summary {
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    // what is only revised keeps the digests of the run that it revises
+    let run = match arguments.again {
+        true => None,
+        false => Some(Run::begin("mutation")?),
+    };
     let all = list(&root)?;
     let before = arguments.again.then(Record::read).transpose()?;
     let drawn = match &before {
@@ -120,6 +126,9 @@ fn main() -> Result<()> {
     let [path, _] = paths();
     let text = serde_json::to_string_pretty(&record).into_diagnostic()?;
     fs::write(&path, text + "\n").into_diagnostic()?;
+    if let Some(run) = run {
+        run.finish()?;
+    }
     let total = record.total();
     println!("{:.1} % caught of {total:?}", 100.0 * record.caught());
     Ok(())

@@ -3,6 +3,7 @@
 use clap::Parser;
 use ladder::seeded::{Copy, root};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use records::Run;
 use std::fs;
 use verify::faults::{Fault, Outcome, list, outcomes as known};
 
@@ -22,6 +23,11 @@ struct Arguments {
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
+    // some faults run again say nothing of the others
+    let run = match arguments.only {
+        Some(_) => None,
+        None => Some(Run::begin("faults")?),
+    };
     let faults = list()?;
     let chosen = |fault: &&Fault| {
         let only = arguments.only.as_ref();
@@ -48,6 +54,9 @@ fn main() -> Result<()> {
     }
     let missed = outcomes.iter().filter(|o| o.caught_by.is_empty()).count();
     keep(&faults, outcomes)?;
+    if let Some(run) = run {
+        run.finish()?;
+    }
     match missed {
         0 => Ok(()),
         n => Err(miette!("{n} faults were not caught")),
