@@ -9,6 +9,7 @@
 //! every answer is also written there, and the program of this crate makes VERIFICATION.md of them.
 
 pub mod answer;
+pub mod compare;
 pub mod figures;
 pub mod mutants;
 pub mod page;

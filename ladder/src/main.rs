@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use ladder::mutants::{Record, reasons};
-use ladder::{Answer, FOLDER, Rung, figures, page};
+use ladder::{Answer, FOLDER, Rung, compare, figures, page};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -70,10 +70,10 @@ fn check(path: &Path, answers: &[Answer]) -> Result<ExitCode> {
     let page = fs::read_to_string(path)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", path.display()))?;
-    let stale = page::stale(&page, answers);
+    let stale = compare::stale(&page, answers);
     if stale.is_empty() {
         println!(
-            "VERIFICATION.md has the {} rows of the tests",
+            "VERIFICATION.md has the {} rows of the tests, with their bounds, reasons and numbers",
             answers.len()
         );
         return Ok(ExitCode::SUCCESS);
