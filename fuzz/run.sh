@@ -16,7 +16,7 @@ cargo fuzz --version > /dev/null 2>&1 || {
 }
 # what is fuzzed, for records/state
 digests=$(cargo run --quiet --release -p records -- --digests fuzz)
-mkdir -p fuzz/corpus fuzz/artifacts/{scene,mechanism,study}
+mkdir -p fuzz/corpus fuzz/artifacts/{scene,mechanism,study} records/state
 
 # seconds an input, MiB of memory, bytes of an input
 limits=(-timeout=5 -rss_limit_mb=1024 -max_len=16384)
