@@ -40,7 +40,7 @@ fn main() -> Result<ExitCode> {
     }
     let text = page::page(&answers, &pictures, &Record::read()?, &reasons()?)?;
     fs::write(&path, text).into_diagnostic()?;
-    records::write(&root)?;
+    records::write_notes(&root)?;
     let failed: Vec<&Answer> = answers.iter().filter(|a| !a.holds()).collect();
     for answer in &failed {
         eprintln!("does not hold: {}", answer.question);

@@ -16,6 +16,6 @@ mod rust;
 mod state;
 
 pub use digest::{Digests, Tree};
-pub use notes::{Findings, check, place, write};
+pub use notes::{Findings, check, place, write_notes};
 pub use registry::{Record, Registry};
 pub use state::{Run, State, digests, root, state};

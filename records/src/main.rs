@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use miette::{IntoDiagnostic, Result, miette};
-use records::{check, digests, root, write};
+use records::{check, digests, root, write_notes};
 
 /// Brings the notes on the state of the records up to date, in all pages; repeats no campaign.
 #[derive(Parser)]
@@ -26,7 +26,7 @@ fn main() -> Result<()> {
         return Ok(());
     }
     if !arguments.check {
-        write(&root())?;
+        write_notes(&root())?;
     }
     let findings = check(&root())?;
     for line in &findings.outdated {

@@ -15,7 +15,7 @@ const OPENS: &str = "<!-- record: ";
 const CLOSES: &str = "<!-- /record -->\n";
 
 /// The place of a note, for the program that writes the page; the note comes with [`Run::finish`](crate::Run::finish) or
-/// [`write`].
+/// [`write_notes`].
 pub fn place(name: &str) -> String {
     format!("{OPENS}{name} -->\n{CLOSES}")
 }
@@ -113,7 +113,7 @@ fn open(root: &Path, page: &str) -> Result<String> {
 ///
 /// # Errors
 /// A page that cannot be read or written.
-pub fn write(root: &Path) -> Result<()> {
+pub fn write_notes(root: &Path) -> Result<()> {
     let present = Present::of(root)?;
     for (page, notes) in present.notes() {
         let text = open(root, page)?;

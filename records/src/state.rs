@@ -81,7 +81,7 @@ impl Run {
         fs::write(&path, text + "\n")
             .into_diagnostic()
             .wrap_err_with(|| format!("cannot write {}", path.display()))?;
-        notes::write(&self.root)
+        notes::write_notes(&self.root)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Which records a change outdates, and what pages say of it.
 
 use crate::support::Copy;
-use records::{Registry, Run, check, root, write};
+use records::{Registry, Run, check, root, write_notes};
 use std::fs;
 
 /// What rests on motions.
@@ -169,7 +169,7 @@ fn a_page_that_does_not_say_so_fails() {
     let kernel = copy.change("src/stepper/bathe.rs", "fn ", "const fn ");
     let unsaid = failures();
     assert_eq!(unsaid.len(), 9, "{unsaid:#?}");
-    write(copy.root()).unwrap();
+    write_notes(copy.root()).unwrap();
     assert_eq!(failures(), [""; 0]);
     for page in pages {
         let text = copy.read(page);
@@ -185,7 +185,7 @@ fn a_page_that_does_not_say_so_fails() {
     // said without reason
     copy.write("src/stepper/bathe.rs", &kernel);
     assert_eq!(failures().len(), 9);
-    write(copy.root()).unwrap();
+    write_notes(copy.root()).unwrap();
     assert_eq!(pages.map(|page| copy.read(page)), current);
     // without a place, and with one for what is no record
     let without = copy.change(
@@ -209,7 +209,7 @@ fn a_page_that_does_not_say_so_fails() {
         failures(),
         ["VERIFICATION.md does not say of which state record mutation is"]
     );
-    write(copy.root()).unwrap();
+    write_notes(copy.root()).unwrap();
     assert!(
         copy.read("VERIFICATION.md")
             .contains("unknown earlier state")

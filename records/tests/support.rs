@@ -1,6 +1,6 @@
 //! A copy of the sources, whose records are all of its state.
 
-use records::{Registry, Tree, check, root, write};
+use records::{Registry, Tree, check, root, write_notes};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -38,7 +38,7 @@ impl Copy {
             let text = serde_json::to_string(&digests).unwrap();
             copy.write(&format!("records/state/{name}.json"), &text);
         }
-        write(copy.root()).unwrap();
+        write_notes(copy.root()).unwrap();
         assert_eq!(copy.outdated(), [""; 0]);
         copy
     }
