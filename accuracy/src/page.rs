@@ -24,7 +24,7 @@ pub fn page(
          ([docs/study.md](docs/study.md)). Processor times are those of one core, {machine}: the \
          median of as many runs as the column `runs` says, after one that is not timed. Every single time is in \
          [accuracy/timings.json](accuracy/timings.json).\n\n",
-         records::place("accuracy"),
+        records::place("accuracy"),
         (seconds / 60.0).ceil()
     );
     out += &conclusions(made, surveyed);

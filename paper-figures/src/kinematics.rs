@@ -10,7 +10,7 @@
 //! By the triangle inequality | ||C_i - B_i|| - l2 | <= |e_B| + |e_C| for rigid links, hence
 //! |e_x| <= sum_i |J^-1|_{xi} (|e_B| + |e_C|)_i to first order in the eccentricities e.
 
-use looselink::scene::{BodyKind, JointModel, Path2, PointRef, Scene};
+use looselink::scene::{BodyKind, JointModel, Path2, PointRef, Scene, Sketched};
 use miette::{Result, miette};
 use std::f64::consts::TAU;
 
@@ -195,8 +195,8 @@ fn end_on(scene: &Scene, joint: &str, body: &str) -> Result<Vector> {
 }
 
 fn sketched(scene: &Scene, joint: &str) -> Result<Vector> {
-    let index = scene.joint(joint);
-    let point = scene.initial.sketch.iter().find(|p| Some(p.joint) == index);
+    let place = scene.joint(joint).map(Sketched::Joint);
+    let point = scene.initial.sketch.iter().find(|p| Some(p.what) == place);
     point
         .map(|p| p.at)
         .ok_or_else(|| miette!("the scene does not sketch the joint {joint}"))
