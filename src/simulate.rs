@@ -248,6 +248,7 @@ impl Simulation {
             newton,
             statics,
             work,
+            meter: Meter::new(scene, &model, &state),
             trial: state.clone(),
             output: state.clone(),
             state,
@@ -256,7 +257,6 @@ impl Simulation {
             strains: vec![0.0; scene.bodies.len()],
             impacts,
             closures: Closures::new(shape.contacts),
-            meter: Meter::new(scene, &model),
             local_error: LocalError::new(shape.unknowns),
             stall: Stall::new(
                 shape.contacts,

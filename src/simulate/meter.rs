@@ -33,7 +33,7 @@ const SLOPE_WAY: f64 = 4.0 / 27.0;
 const LEAST_SHARE: f64 = 0.1;
 /// and those that the changes move by less than this part of the longest way: rounding.
 const SHAKEN: f64 = 1e-9;
-/// A motion with this many times the energy that the scene supplies is not that of the mechanism.
+/// A motion with this many times the energy that the scene supplies, or that of a plain motion, is not that of the mechanism.
 const UNSTABLE: f64 = 10.0;
 
 /// What the integrator did to a run.
@@ -68,6 +68,8 @@ pub(super) struct Meter {
     initial: Option<Initial>,
     /// Largest energy that the scene has supplied: that at the start, and work and weight since.
     supplied: f64,
+    /// Energy of a plain motion, see [`plain_motion`].
+    plain: f64,
     elapsed: f64,
 }
 
@@ -170,6 +172,33 @@ pub fn lengths(scene: &Scene, model: &Model) -> Vec<f64> {
     lengths
 }
 
+/// Kinetic energy \[J\] of all bodies at the speed that takes one of them through the mechanism once in the run.
+///
+/// A motion that begins at rest has no energy to measure a gain by, and its first steps have errors as large as itself.
+fn plain_motion(scene: &Scene, model: &Model, start: &State) -> f64 {
+    let lengths = lengths(scene, model);
+    let places = start.q.iter().enumerate();
+    let places = places.filter(|(i, _)| lengths.get(*i).is_none_or(|length| *length == 1.0));
+    let mut extent = Range::EMPTY;
+    places.for_each(|(_, q)| extent.see(*q, 0.0));
+    let (mut mass, mut size) = (0.0, extent.width());
+    for body in &scene.bodies {
+        mass += match &body.kind {
+            BodyKind::Link(link) => {
+                size = size.max(link.length);
+                link.density * link.area * link.length
+            }
+            BodyKind::Rigid(rigid) => {
+                size = size.max((rigid.inertia / rigid.mass).sqrt());
+                rigid.mass
+            }
+            BodyKind::PointMass { mass } => *mass,
+            BodyKind::Ground { .. } | BodyKind::Moving { .. } => 0.0,
+        };
+    }
+    0.5 * mass * (size / scene.simulation.duration).powi(2)
+}
+
 /// The largest of some values, with its index.
 fn largest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
@@ -181,7 +210,8 @@ fn name(model: &Model, largest: Option<(usize, f64)>) -> &str {
 }
 
 impl Meter {
-    pub fn new(scene: &Scene, model: &Model) -> Meter {
+    /// For a run from a start.
+    pub fn new(scene: &Scene, model: &Model, start: &State) -> Meter {
         let unknowns = model.shape().unknowns;
         Meter {
             lengths: lengths(scene, model),
@@ -192,6 +222,7 @@ impl Meter {
             dissipated: 0.0,
             initial: None,
             supplied: 0.0,
+            plain: plain_motion(scene, model, start),
             elapsed: 0.0,
         }
     }
@@ -237,7 +268,8 @@ impl Meter {
         let weight = (energies.gravity - initial.gravity).abs();
         self.supplied = self.supplied.max(initial.turnover + work + weight);
         let supplied = self.supplied;
-        match -lost > UNSTABLE * supplied + f64::EPSILON.sqrt() * size || !lost.is_finite() {
+        let bound = UNSTABLE * supplied.max(self.plain) + f64::EPSILON.sqrt() * size;
+        match -lost > bound || !lost.is_finite() {
             true => Err(Gain {
                 gained: -lost,
                 supplied,

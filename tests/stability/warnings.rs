@@ -45,6 +45,34 @@ fn an_unstable_method_is_stopped_by_name() {
     assert!(report.error.is_some_and(|e| e.contains("unstable")));
 }
 
+/// The first steps of a motion that begins at rest have errors as large as the energy there is: no sign of instability.
+#[test]
+fn a_smooth_start_from_rest_is_not_stopped() {
+    let methods = [
+        "integrator.method=bathe",
+        "integrator.method=trapezoidal",
+        "integrator.method=backward_euler",
+        "integrator={ method = \"generalized_alpha\", spectral_radius = 0.8, step = 1e-3, newton_tolerance = 1e-10 }",
+        "integrator={ method = \"hht\", spectral_radius = 0.8, step = 1e-3, newton_tolerance = 1e-10 }",
+    ];
+    for method in methods {
+        for step in [1e-4, 3e-4, 1e-3, 1e-2] {
+            for rows in [1.0, 2.0, 3.0, 5.0, 10.0, 30.0] {
+                let interval = step * rows;
+                let settings = [
+                    method.to_owned(),
+                    format!("integrator.step={step:e}"),
+                    format!("output.interval={interval:e}"),
+                    format!("simulation.duration={:e}", 10.0 * interval),
+                ];
+                let settings = settings.each_ref().map(String::as_str);
+                let (ended, _) = end("spin-up.toml", &settings);
+                assert!(ended.is_ok(), "{settings:?}: {ended:?}");
+            }
+        }
+    }
+}
+
 /// Steps that are halved on and on end in an error, not in a wait.
 #[test]
 fn a_run_that_comes_to_a_halt_says_where() {
