@@ -10,6 +10,7 @@ mod observer;
 mod pace;
 mod recording;
 mod report;
+mod resume;
 mod stall;
 mod top;
 mod warnings;

@@ -1,0 +1,48 @@
+//! A run that is taken over: steps to a time, and goes on from another state of the same mechanism.
+
+use super::{Observer, RunError, Simulation};
+use crate::system::{State, System};
+
+impl Simulation {
+    /// Steps to time `t` \[s\] and records a row there, as the run of a scene does at its intervals.
+    ///
+    /// # Errors
+    /// See [`RunError`].
+    pub fn advance_to(&mut self, t: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
+        self.advance(t, observer)?;
+        self.record(observer)
+    }
+
+    /// Goes on, at the time reached, from the coordinates, velocities and contact memory of `other`.
+    ///
+    /// Velocities are projected on the constraints, and accelerations and multipliers follow from the equations of
+    /// motion. Coordinates are taken as they are: a sum of nearby consistent states, d apart, misses the constraints by
+    /// d^2. Contacts close and open as `other` says where its memory contradicts its gaps. What the energy ledger holds
+    /// is that of the run so far, so that it jumps by the difference of the two energies.
+    ///
+    /// # Errors
+    /// [`RunError::Physics`] where the state has no accelerations.
+    ///
+    /// # Panics
+    /// When `other` belongs to another mechanism.
+    pub fn resume(&mut self, other: &State) -> Result<(), RunError> {
+        let Simulation {
+            model,
+            state,
+            newton,
+            work,
+            ..
+        } = self;
+        state.q.copy_from_slice(&other.q);
+        state.q_low.copy_from_slice(&other.q_low);
+        state.v.copy_from_slice(&other.v);
+        state.z.copy_from_slice(&other.z);
+        let tolerance = self.scene.integrator.onset_tolerance;
+        model.commit(state, tolerance, &mut |_, _, _| {});
+        if let Err(failure) = newton.make_consistent(model, state, work) {
+            return Err(self.failed(failure.into(), 0.0));
+        }
+        model.powers(state, work);
+        Ok(())
+    }
+}
