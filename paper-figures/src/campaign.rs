@@ -1,7 +1,7 @@
 //! The runs behind Figs. 5 to 9 and the reproduction report.
 
 use crate::kinematics::Geometry;
-use crate::runs::{Plan, Recording, run_all};
+use crate::runs::{Pace, Plan, Recording, run_all};
 use looselink::scene::{BodyKind, LinkModel};
 use miette::{Result, miette};
 
@@ -17,7 +17,7 @@ pub struct Settings {
     /// Time between recorded rows of the fine runs (s).
     #[arg(long, default_value_t = 1e-5)]
     pub interval: f64,
-    /// Step of the many-period runs of the stroboscopic sections and of the comparisons (s).
+    /// Step of the finer of the two many-period runs of case 2 (s).
     #[arg(long, default_value_t = 2e-5)]
     pub section_step: f64,
     /// Periods of the stroboscopic sections, after those that are left out.
@@ -32,14 +32,8 @@ pub struct Settings {
 pub const DURATION: f64 = 3.0;
 /// First instant looked at \[s\].
 pub const FROM: f64 = 1.0;
-/// Relative change of one parameter between twin runs.
-pub const TWIN_CHANGE: f64 = 1e-6;
-/// Simulated time of twin runs \[s\].
-pub const TWIN_DURATION: f64 = 1.0;
-/// Step of twin runs \[s\].
-pub const TWIN_STEP: f64 = 1e-5;
 
-/// All recordings.
+/// All recordings; their numbers are those of the table of runs.
 pub struct Campaign {
     /// How they were made.
     pub settings: Settings,
@@ -55,14 +49,10 @@ pub struct Campaign {
     pub loose: Recording,
     /// Case 4, fine.
     pub both: Recording,
-    /// Many periods, one row a period: case 2 coarse, then cases 2, 3 and 4 at the section step.
-    pub sections: [Recording; 4],
     /// Case 2 with ten times the Young's modulus, coarse.
     pub stiffer: Recording,
-    /// Case 3 with half the clearance at the section step.
-    pub tighter: Recording,
-    /// Cases 2, 3 and 4, each twice, the second time with one parameter changed by [`TWIN_CHANGE`].
-    pub twins: [(Recording, Recording); 3],
+    /// Many periods, one row a period: case 2 coarse, then cases 2, 3 and 4.
+    pub sections: [Recording; 4],
 }
 
 impl Campaign {
@@ -72,72 +62,55 @@ impl Campaign {
     /// The first run that fails.
     pub fn run(settings: Settings) -> Result<Campaign> {
         let s = &settings;
-        let plan = |case, step, interval, duration| Plan {
+        let plan = |case, pace, interval, duration| Plan {
             case,
-            step,
+            pace,
             interval,
             duration,
             overrides: Vec::new(),
         };
-        let short = |case, step: f64| plan(case, step, s.interval.max(step), DURATION);
+        let short = |case, step: f64| {
+            let interval = s.interval.max(step);
+            plan(case, Pace::bathe(step), interval, DURATION)
+        };
         let geometry = Geometry::of(&short(3, s.fine).scene()?)?;
         let modulus = youngs_modulus(&short(2, s.fine))?;
         let period = 1.0 / geometry.frequency;
-        let long = |case, step| {
-            plan(
-                case,
-                step,
-                period,
-                f64::from(s.periods + s.skipped) * period,
-            )
-        };
-        let twin = |case| plan(case, TWIN_STEP, TWIN_STEP, TWIN_DURATION);
-        let (clearance, passive) = ("contacts.pin.clearance", "materials.passive.youngs_modulus");
-        let nudged = |value: f64| format!("{:e}", value * (1.0 + TWIN_CHANGE));
-        // the longest first, so that no core is left with one of them at the end
+        let periods = f64::from(s.periods + s.skipped) * period;
+        let long = |case, pace| plan(case, pace, period, periods);
+        let passive = "materials.passive.youngs_modulus";
         let plans = [
-            long(4, s.section_step),
-            long(3, s.section_step),
-            long(2, s.section_step),
-            short(4, s.fine),
-            short(3, s.fine),
-            short(2, s.fine),
-            long(2, s.coarse),
-            plan(3, s.section_step, s.section_step, DURATION)
-                .with(clearance, format!("{:e}", 0.5 * geometry.clearance)),
-            twin(2),
-            twin(2).with(passive, nudged(modulus)),
-            twin(3),
-            twin(3).with(clearance, nudged(geometry.clearance)),
-            twin(4),
-            twin(4).with(clearance, nudged(geometry.clearance)),
             short(1, s.coarse),
+            short(2, s.fine),
             short(2, s.coarse),
+            short(3, s.fine),
+            short(4, s.fine),
             short(2, s.coarse).with(passive, format!("{:e}", 10.0 * modulus)),
+            long(2, Pace::bathe(s.coarse)),
+            long(2, Pace::bathe(s.section_step)),
+            long(3, Pace::Controlled),
+            long(4, Pace::Controlled),
         ];
-        let done: Result<Vec<Recording>> = run_all(&plans).into_iter().collect();
-        let done: [Recording; 17] = done?.try_into().map_err(|_| miette!("a run is missing"))?;
+        // the longest first, so that no core is left with one of them at the end
+        let backwards: Vec<Plan> = plans.iter().rev().cloned().collect();
+        let done: Result<Vec<Recording>> = run_all(&backwards).into_iter().rev().collect();
+        let mut done = done?;
+        for (run, number) in done.iter_mut().zip(1..) {
+            run.number = number;
+        }
+        let done: [Recording; 10] = done.try_into().map_err(|_| miette!("a run is missing"))?;
         let [
-            l4,
-            l3,
-            l2,
-            both,
-            loose,
-            flexible,
-            l2c,
-            tighter,
-            t2,
-            u2,
-            t3,
-            u3,
-            t4,
-            u4,
             ideal,
+            flexible,
             flexible_coarse,
+            loose,
+            both,
             stiffer,
+            long2_coarse,
+            long2,
+            long3,
+            long4,
         ] = done;
-        let sections = [l2c, l2, l3, l4];
-        let twins = [(t2, u2), (t3, u3), (t4, u4)];
         Ok(Campaign {
             settings,
             geometry,
@@ -146,48 +119,23 @@ impl Campaign {
             flexible_coarse,
             loose,
             both,
-            sections,
             stiffer,
-            tighter,
-            twins,
+            sections: [long2_coarse, long2, long3, long4],
         })
     }
 
-    /// Deviation of the platform acceleration along x from the ideal one over the last two cycles \[m/s2\].
-    pub fn acceleration_deviation(&self, recording: &Recording) -> Vec<f64> {
-        let (t, a) = recording.between("platform.ax", FROM, DURATION);
-        t.iter()
-            .zip(a)
-            .map(|(&t, a)| a - self.geometry.acceleration_x(t))
-            .collect()
-    }
-
-    /// The bound of the error along x over the last two cycles \[m\]: sum_i |J^-1|_{xi} s_i, where the slack s_i of a
-    /// leg is 2 c, the penetrations of its two joints and, of a flexible link, its length times its strain.
-    pub fn bound(&self, recording: &Recording) -> Vec<f64> {
-        let rows = recording.rows(FROM, DURATION);
-        let column = |kind: &str, leg: usize, name: &str| {
-            &recording.column(&format!("{kind}{}.{name}", leg + 1))[rows.clone()]
-        };
-        let penetrations: [_; 3] =
-            std::array::from_fn(|i| (column("B", i, "penetration"), column("C", i, "penetration")));
-        let strains: Option<[_; 3]> = (recording.plan.case == 4)
-            .then(|| std::array::from_fn(|i| column("link", i, "strain")));
-        let g = &self.geometry;
-        recording.t[rows.clone()]
-            .iter()
-            .enumerate()
-            .map(|(k, &t)| {
-                let slack = std::array::from_fn(|i| {
-                    let stretch = strains.map_or(0.0, |s| g.link * s[i][k].abs());
-                    2.0 * g.clearance
-                        + penetrations[i].0[k].max(0.0)
-                        + penetrations[i].1[k].max(0.0)
-                        + stretch
-                });
-                g.bound_x(t, slack)
-            })
-            .collect()
+    /// All of them in the order of their numbers.
+    pub fn runs(&self) -> impl Iterator<Item = &Recording> {
+        [
+            &self.ideal,
+            &self.flexible,
+            &self.flexible_coarse,
+            &self.loose,
+            &self.both,
+            &self.stiffer,
+        ]
+        .into_iter()
+        .chain(&self.sections)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::figures::{caption, step_label, time_axis};
+use crate::measures::bound;
 use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::peak;
@@ -38,7 +39,7 @@ pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
         series(&c.flexible_coarse, palette::VERMILION),
     ];
     let loose = |r: &Recording| {
-        let bound = c.bound(r);
+        let bound = bound(&c.geometry, r);
         let below: Vec<f64> = bound.iter().map(|b| -b).collect();
         let t = &r.t[r.rows(FROM, DURATION)];
         vec![
@@ -57,6 +58,6 @@ pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
                 stretch of the links.";
     Figure {
         rows: vec![row],
-        caption: caption(text, &[&c.flexible, &c.loose, &c.both]),
+        caption: caption(text, &[&c.flexible, &c.flexible_coarse, &c.loose, &c.both]),
     }
 }

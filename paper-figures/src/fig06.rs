@@ -2,6 +2,7 @@
 
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::figures::{caption, step_label, time_axis};
+use crate::measures::deviation;
 use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::{peak, rms};
@@ -19,7 +20,7 @@ pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
         );
         let deviation = numbers.put(
             format!("fig6.{name}.rms_deviation"),
-            rms(&c.acceleration_deviation(first)),
+            rms(&deviation(&c.geometry, first, FROM, DURATION)),
         );
         let mut marks = vec![Mark::series("case 1 (ideal)", palette::GREY, t, a).width(4)];
         for &(recording, color) in shown {
@@ -58,6 +59,9 @@ pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
                 The numbers above the panels belong to the finer step.";
     Figure {
         rows: vec![row],
-        caption: caption(text, &[&c.flexible, &c.loose, &c.both]),
+        caption: caption(
+            text,
+            &[&c.ideal, &c.flexible, &c.flexible_coarse, &c.loose, &c.both],
+        ),
     }
 }

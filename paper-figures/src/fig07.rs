@@ -53,6 +53,6 @@ pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
                 joint. The numbers above the panels belong to the finer step.";
     Figure {
         rows: vec![row],
-        caption: caption(text, &[&c.flexible, &c.loose, &c.both]),
+        caption: caption(text, &[&c.flexible, &c.flexible_coarse, &c.loose, &c.both]),
     }
 }

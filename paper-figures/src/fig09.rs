@@ -97,7 +97,19 @@ pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
     );
     Figure {
         rows: vec![top, bottom],
-        caption: caption(&text, &[&c.flexible, &c.loose, &c.both]),
+        caption: caption(
+            &text,
+            &[
+                &c.flexible,
+                &c.flexible_coarse,
+                &c.loose,
+                &c.both,
+                coarse2,
+                fine2,
+                loose,
+                both,
+            ],
+        ),
     }
 }
 

@@ -4,11 +4,11 @@ use crate::campaign::{Campaign, DURATION, FROM};
 use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::{fig05, fig06, fig07, fig08, fig09};
-use looselink::scene::Method;
 use miette::Result;
 use plot::si;
 use plot::{Axis, Figure, save};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// File name and content of every figure.
@@ -39,18 +39,33 @@ pub fn time_axis() -> Axis {
 
 /// Legend entry of a recording.
 pub fn step_label(recording: &Recording) -> String {
-    format!("h = {}", si(recording.plan.step, "s"))
+    recording.plan.pace.label()
 }
 
-/// A caption: what is seen, then the scenes, the method and the steps it was made with.
+/// A caption: what is seen, then the scenes it was made with, and what every run warns of.
 pub fn caption(text: &str, made_with: &[&Recording]) -> String {
-    let scenes: Vec<String> = made_with.iter().map(|r| r.plan.scene_name()).collect();
-    let method = match made_with[0].scene.integrator.method {
-        Method::Bathe { gamma, .. } => format!("Bathe method (γ = {gamma})"),
-        other => other.name().to_owned(),
+    let scenes: BTreeSet<String> = made_with.iter().map(|r| r.plan.scene_name()).collect();
+    let scenes: Vec<String> = scenes.into_iter().collect();
+    let warned: Vec<String> = made_with
+        .iter()
+        .filter(|r| !r.warnings.is_empty())
+        .map(|r| {
+            format!(
+                "Run {} ({}, {}) warns: {}.",
+                r.number,
+                r.plan.scene_name(),
+                r.plan.pace.label(),
+                r.warnings.join("; ")
+            )
+        })
+        .collect();
+    let warned = if warned.is_empty() {
+        "No run warns of anything.".to_owned()
+    } else {
+        warned.join(" ")
     };
     format!(
-        "{text} Scenes: {}. {method}, step h as in the legends, rows every {}.",
+        "{text} Scenes: {}. Bathe's method with the step h, unless the legend says otherwise; rows every {}. {warned}",
         scenes.join(", "),
         si(made_with[0].plan.interval, "s")
     )

@@ -1,41 +1,49 @@
 //! The quantities that the statements of the paper are decided by, over the last two of three cycles.
 
-use crate::campaign::{Campaign, DURATION, FROM};
-use crate::numbers::Numbers;
+use crate::campaign::{DURATION, FROM};
+use crate::kinematics::Geometry;
 use crate::runs::Recording;
-use crate::signal::{cycle_distance, fraction, mean, median_frequency, peak, rms};
+use crate::signal::{
+    coincidence, cycle_distance, fraction, mean, median_frequency, peak, peaks, rms,
+};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
-/// What is measured on one run.
-pub struct Measures {
-    /// Step \[s\].
-    pub step: f64,
-    /// Largest |e_x| \[m\].
-    pub error_peak: f64,
-    /// Deviation of the acceleration along x from the ideal one \[m/s2\].
-    pub deviation: Vec<f64>,
-    /// Its root mean square.
-    pub deviation_rms: f64,
-    /// The frequency below which half of its power lies \[Hz\].
-    pub deviation_frequency: f64,
-    /// Root mean square of the deviation in the last cycle over that in the first.
-    pub settling: f64,
-    /// Rms difference between the accelerations of cycles 2 and 3 over their rms deviation from the mean.
-    pub repetition: f64,
-    /// Largest force in B1 \[N\].
-    pub force_peak: f64,
-    /// Cubic mean of the force in B1 \[N\], the equivalent load of bearing life.
-    pub force_cubic_mean: f64,
-    /// Root mean square of the difference between the force in B1 and its mean \[N\].
-    pub force_ripple: f64,
-    /// The frequency below which half of the power of that difference lies \[Hz\].
-    pub force_frequency: f64,
-    /// Fraction of the time in contact of B1, and the least over the six joints; none for ideal joints.
-    pub contact: Option<(f64, f64)>,
-}
+/// Peaks that are compared with other events.
+pub const PEAKS: usize = 50;
+/// Least distance between two of them \[s\].
+const PEAKS_APART: f64 = 2e-3;
+/// Two events this close count as simultaneous \[s\].
+pub const SIMULTANEOUS: f64 = 5e-4;
+/// An impact lasts less than this, so its force peak follows its onset within this time \[s\].
+pub const AFTER_ONSET: f64 = 1e-3;
+/// Joints with clearance.
+const JOINTS: [&str; 6] = ["B1", "B2", "B3", "C1", "C2", "C3"];
+
+/// Named numbers of one run, in SI units.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Measures(pub BTreeMap<String, f64>);
 
 impl Measures {
-    /// Measures a run and keeps the numbers under `name`.
-    pub fn of(c: &Campaign, recording: &Recording, name: &str, numbers: &mut Numbers) -> Measures {
+    /// A number of this run.
+    ///
+    /// # Panics
+    /// When the run has no such number: the callers name those that their case has.
+    pub fn get(&self, name: &str) -> f64 {
+        *self
+            .0
+            .get(name)
+            .unwrap_or_else(|| panic!("no measure {name}"))
+    }
+
+    fn put(&mut self, name: &str, value: f64) {
+        self.0.insert(name.into(), value);
+    }
+
+    /// Measures a run of [`DURATION`].
+    pub fn of(g: &Geometry, recording: &Recording) -> Measures {
+        let mut m = Measures::default();
         let between = |channel: &str| recording.between(channel, FROM, DURATION).1;
         let (error, acceleration, force) = (
             between("error.x"),
@@ -43,83 +51,181 @@ impl Measures {
             between("B1.force"),
         );
         let interval = recording.plan.interval;
-        let deviation = c.acceleration_deviation(recording);
+        let deviation = deviation(g, recording, FROM, DURATION);
+        let ideal = |t: &[f64]| rms(&t.iter().map(|&t| g.acceleration_x(t)).collect::<Vec<_>>());
         let cycle = |from: f64| {
-            let (t, a) = recording.between("platform.ax", from, from + 1.0 / c.geometry.frequency);
-            rms(&t
-                .iter()
-                .zip(a)
-                .map(|(&t, a)| a - c.geometry.acceleration_x(t))
-                .collect::<Vec<_>>())
+            rms(&self::deviation(
+                g,
+                recording,
+                from,
+                from + 1.0 / g.frequency,
+            ))
         };
         let average = mean(force);
         let ripple: Vec<f64> = force.iter().map(|f| f - average).collect();
-        let contact = (recording.plan.case >= 3).then(|| {
-            let of = |joint: &str| fraction(between(&format!("{joint}.penetration")), |d| d > 0.0);
-            let all = ["B1", "B2", "B3", "C1", "C2", "C3"].map(of);
-            (all[0], all.into_iter().fold(1.0, f64::min))
+        let cubes: Vec<f64> = force.iter().map(|f| f.powi(3)).collect();
+        // largest |e_x| [m]
+        m.put("error_peak", peak(error));
+        m.put("error_rms", rms(error));
+        // deviation of the acceleration along x from the ideal one [m/s2]
+        m.put("deviation_peak", peak(&deviation));
+        m.put("deviation_rms", rms(&deviation));
+        m.put(
+            "deviation_share",
+            rms(&deviation) / ideal(&recording.t[recording.rows(FROM, DURATION)]),
+        );
+        // the frequency below which half of its power lies [Hz]
+        m.put(
+            "deviation_frequency",
+            median_frequency(&deviation, interval),
+        );
+        // its rms in the last cycle over that in the first
+        m.put("settling", cycle(2.0) / cycle(0.0));
+        // rms difference between the accelerations of cycles 2 and 3 over their rms deviation from the mean; the last
+        // sample belongs to the next cycle
+        let whole = &acceleration[..acceleration.len() - 1];
+        m.put("repetition", cycle_distance(whole));
+        // force in B1 [N]; its cubic mean is the equivalent load of bearing life
+        m.put("force_peak", peak(force));
+        m.put("force_cubic_mean", mean(&cubes).cbrt());
+        m.put("force_ripple", rms(&ripple));
+        m.put("force_frequency", median_frequency(&ripple, interval));
+        m.put("energy_lost", energy_lost(recording));
+        if recording.plan.case >= 3 {
+            m.contacts(g, recording, &deviation);
+        }
+        m
+    }
+
+    /// What only loose joints have.
+    fn contacts(&mut self, g: &Geometry, recording: &Recording, deviation: &[f64]) {
+        let t = &recording.t[recording.rows(FROM, DURATION)];
+        let between = |channel: &str| recording.between(channel, FROM, DURATION).1;
+        let share = JOINTS.map(|joint| {
+            fraction(between(&format!("{joint}.penetration")), |delta| {
+                delta > 0.0
+            })
         });
-        let mut put = |what: &str, value: f64| numbers.put(format!("{name}.{what}"), value);
-        if let Some((first, least)) = contact {
-            put("contact_fraction_b1", first);
-            put("contact_fraction_least", least);
+        self.put("contact_b1", share[0]);
+        self.put("contact_least", share.into_iter().fold(1.0, f64::min));
+        // part of the bound of the error that is used at the same instant
+        let used = between("error.x").iter().zip(bound(g, recording));
+        let used = used.map(|(e, b)| e.abs() / b);
+        self.put("bound_used", used.fold(0.0, f64::max));
+        let apart = (PEAKS_APART / recording.plan.interval) as usize;
+        let times = |y: &[f64]| -> Vec<f64> {
+            let chosen = peaks(y, PEAKS, apart);
+            chosen.into_iter().map(|i| t[i]).collect()
+        };
+        let highest = times(deviation);
+        let middle = 0.5 * AFTER_ONSET;
+        let shifted: Vec<f64> = recording.onsets.iter().map(|t| t + middle).collect();
+        self.put("peaks_after_onset", coincidence(&highest, &shifted, middle));
+        let onsets: Vec<f64> = recording
+            .onsets
+            .iter()
+            .copied()
+            .filter(|t| *t >= FROM)
+            .collect();
+        self.put("onsets", onsets.len() as f64);
+        self.put(
+            "after_onset_by_chance",
+            covered(&onsets) / (DURATION - FROM),
+        );
+        let forces = ["B1", "B2", "B3"].map(|joint| times(between(&format!("{joint}.force"))));
+        let one = coincidence(&highest, &forces[0], SIMULTANEOUS);
+        self.put("peaks_with_b1", one);
+        let any = coincidence(&highest, &forces.concat(), SIMULTANEOUS);
+        self.put("peaks_with_any", any);
+        // rows in which there is no force without positive penetration
+        let rows = recording.column("B1.penetration").iter();
+        let rows: Vec<f64> = rows
+            .zip(recording.column("B1.force"))
+            .map(|(delta, force)| f64::from(u8::from(*delta > 0.0 || *force == 0.0)))
+            .collect();
+        self.put("force_only_in_contact", mean(&rows));
+        if let Some(ledger) = &recording.report.ledger {
+            self.put("contact_dissipated", ledger.contact_dissipated);
         }
-        Measures {
-            step: recording.plan.step,
-            error_peak: put("error_x_peak", peak(error)),
-            deviation_rms: put("acceleration_deviation_rms", rms(&deviation)),
-            deviation_frequency: put(
-                "acceleration_deviation_frequency",
-                median_frequency(&deviation, interval),
-            ),
-            settling: put(
-                "acceleration_deviation_last_over_first_cycle",
-                cycle(2.0) / cycle(0.0),
-            ),
-            // the last sample belongs to the next cycle
-            repetition: put(
-                "cycle_distance",
-                cycle_distance(&acceleration[..acceleration.len() - 1]),
-            ),
-            force_peak: put("force_b1_peak", peak(force)),
-            force_cubic_mean: put(
-                "force_b1_cubic_mean",
-                mean(&force.iter().map(|f| f.powi(3)).collect::<Vec<_>>()).cbrt(),
-            ),
-            force_ripple: put("force_b1_ripple_rms", rms(&ripple)),
-            force_frequency: put(
-                "force_b1_ripple_frequency",
-                median_frequency(&ripple, interval),
-            ),
-            deviation,
-            contact,
-        }
+        let report = &recording.report;
+        self.put("unlocated", report.unlocated_changes as f64);
+        let changes = (report.onsets + report.ended_contacts) as f64;
+        self.put("trials_a_change", report.location_trials as f64 / changes);
+        let first = |joint: &str| recording.column(&format!("{joint}.eccentricity"))[0];
+        self.put(
+            "start_eccentricity",
+            JOINTS.map(first).into_iter().fold(0.0, f64::max),
+        );
     }
 }
 
-/// The measures of the runs of the figures.
-pub struct AllMeasures {
-    /// Case 1.
-    pub ideal: Measures,
-    /// Case 2, fine step.
-    pub flexible: Measures,
-    /// Case 2, coarse step.
-    pub flexible_coarse: Measures,
-    /// Case 3.
-    pub loose: Measures,
-    /// Case 4.
-    pub both: Measures,
+/// Deviation of the platform acceleration along x from the ideal one \[m/s2\].
+pub fn deviation(g: &Geometry, recording: &Recording, from: f64, to: f64) -> Vec<f64> {
+    let (t, a) = recording.between("platform.ax", from, to);
+    let pairs = t.iter().zip(a);
+    pairs.map(|(&t, a)| a - g.acceleration_x(t)).collect()
 }
 
-impl AllMeasures {
-    /// Measures all runs.
-    pub fn of(c: &Campaign, numbers: &mut Numbers) -> AllMeasures {
-        AllMeasures {
-            ideal: Measures::of(c, &c.ideal, "case1", numbers),
-            flexible: Measures::of(c, &c.flexible, "case2", numbers),
-            flexible_coarse: Measures::of(c, &c.flexible_coarse, "case2_coarse", numbers),
-            loose: Measures::of(c, &c.loose, "case3", numbers),
-            both: Measures::of(c, &c.both, "case4", numbers),
-        }
+/// Energy that the integrator lost (positive) or gained, over that dissipated in contacts; where nothing dissipates, over
+/// the largest elastic energy of the links.
+pub fn energy_lost(recording: &Recording) -> f64 {
+    let Some(ledger) = &recording.report.ledger else {
+        return f64::NAN;
+    };
+    let of = if recording.plan.case >= 3 {
+        ledger.contact_dissipated
+    } else {
+        let axial = recording.column("energy.axial").iter();
+        let bending = recording.column("energy.bending");
+        axial.zip(bending).map(|(a, b)| a + b).fold(0.0, f64::max)
+    };
+    ledger.numerical / of
+}
+
+/// The bound of the error along x over the last two cycles \[m\]: sum_i |J^-1|_{xi} s_i, where the slack s_i of a
+/// leg is 2 c, the penetrations of its two joints and, of a flexible link, its length times its strain.
+pub fn bound(g: &Geometry, recording: &Recording) -> Vec<f64> {
+    let rows = recording.rows(FROM, DURATION);
+    let column = |kind: &str, leg: usize, name: &str| {
+        &recording.column(&format!("{kind}{}.{name}", leg + 1))[rows.clone()]
+    };
+    let penetrations: [_; 3] =
+        std::array::from_fn(|i| (column("B", i, "penetration"), column("C", i, "penetration")));
+    let strains: Option<[_; 3]> =
+        (recording.plan.case == 4).then(|| std::array::from_fn(|i| column("link", i, "strain")));
+    recording.t[rows.clone()]
+        .iter()
+        .enumerate()
+        .map(|(k, &t)| {
+            let slack = std::array::from_fn(|i| {
+                let stretch = strains.map_or(0.0, |s| g.link * s[i][k].abs());
+                2.0 * g.clearance
+                    + penetrations[i].0[k].max(0.0)
+                    + penetrations[i].1[k].max(0.0)
+                    + stretch
+            });
+            g.bound_x(t, slack)
+        })
+        .collect()
+}
+
+/// The time that lies within [`AFTER_ONSET`] after one of these instants, which are in order \[s\].
+fn covered(onsets: &[f64]) -> f64 {
+    let mut end = f64::NEG_INFINITY;
+    let mut sum = 0.0;
+    for &t in onsets {
+        sum += t + AFTER_ONSET - end.max(t);
+        end = t + AFTER_ONSET;
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn overlapping_times_after_onsets_count_once() {
+        assert!((covered(&[0.0, 0.25e-3, 5e-3]) - 2.25e-3).abs() < 1e-15);
     }
 }

@@ -2,12 +2,14 @@
 
 use crate::campaign::{DURATION, FROM};
 use crate::kinematics::Geometry;
+use crate::measures::energy_lost;
 use crate::runs::{Plan, Recording};
 use crate::scans_list::{all, baseline};
 use crate::signal::{fraction, mean, peak, rms};
 use miette::Result;
 use plot::Axis;
 use rayon::prelude::*;
+use std::cmp::Reverse;
 use std::collections::HashMap;
 
 /// One scanned quantity.
@@ -37,7 +39,7 @@ pub struct Entry {
 }
 
 /// What is read off a run, over the last two cycles.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Values {
     /// Largest |e_x| \[m\].
     pub error_peak: f64,
@@ -53,6 +55,11 @@ pub struct Values {
     pub force_mean: f64,
     /// Fraction of the time B1 is in contact; none for ideal joints.
     pub contact: Option<f64>,
+    /// Energy that the integrator lost or gained, over that dissipated in contacts or, without them, over the largest
+    /// elastic energy.
+    pub energy_lost: f64,
+    /// What the run warns of.
+    pub warnings: Vec<String>,
 }
 
 impl Values {
@@ -75,17 +82,19 @@ impl Values {
             force_mean: mean(force),
             contact: (recording.plan.case >= 3)
                 .then(|| fraction(between("B1.penetration").1, |d| d > 0.0)),
+            energy_lost: energy_lost(recording),
+            warnings: recording.warnings.clone(),
         })
     }
 }
 
-/// Makes all scans at one step, except the scan of the step itself.
+/// Makes all scans.
 ///
 /// # Errors
 /// When the baseline scene cannot be read; runs that fail are kept with their message.
-pub fn run(step: f64) -> Result<Vec<Scan>> {
-    let geometry = Geometry::of(&baseline(3, step).scene()?)?;
-    let mut scans = all(step, &geometry);
+pub fn run() -> Result<Vec<Scan>> {
+    let geometry = Geometry::of(&baseline(3).scene()?)?;
+    let mut scans = all(&geometry);
     let mut unique: HashMap<String, Plan> = HashMap::new();
     for entry in scans.iter().flat_map(|s| &s.entries) {
         unique
@@ -94,7 +103,7 @@ pub fn run(step: f64) -> Result<Vec<Scan>> {
     }
     let mut plans: Vec<(String, Plan)> = unique.into_iter().collect();
     // the longest first, so that no core is left with one of them at the end
-    plans.sort_by(|a, b| a.1.step.total_cmp(&b.1.step).then_with(|| a.0.cmp(&b.0)));
+    plans.sort_by_key(|(key, plan)| (Reverse(plan.effort()), key.clone()));
     let outcomes: HashMap<String, Result<Values, String>> = plans
         .into_par_iter()
         .with_max_len(1)

@@ -2,7 +2,7 @@
 
 use crate::campaign::DURATION;
 use crate::kinematics::Geometry;
-use crate::runs::Plan;
+use crate::runs::{Pace, Plan};
 use crate::scans::{Entry, Scan};
 use plot::Axis;
 use plot::{digits, si};
@@ -13,10 +13,10 @@ const THICKNESS: f64 = 0.01;
 const INTERVAL: f64 = 2e-5;
 
 /// A case as its scene has it.
-pub fn baseline(case: u32, step: f64) -> Plan {
+pub fn baseline(case: u32) -> Plan {
     Plan {
         case,
-        step,
+        pace: Pace::Controlled,
         interval: INTERVAL,
         duration: DURATION,
         overrides: Vec::new(),
@@ -27,7 +27,6 @@ pub fn baseline(case: u32, step: f64) -> Plan {
 /// value `base` is overridden too, so that its label is right whatever the scene says.
 fn entries(
     cases: &[u32],
-    step: f64,
     values: &[(f64, String)],
     base: f64,
     change: impl Fn(f64) -> Vec<String>,
@@ -41,7 +40,7 @@ fn entries(
                 baseline: *value == base,
                 plan: Plan {
                     overrides: change(*value),
-                    ..baseline(case, step)
+                    ..baseline(case)
                 },
                 outcome: Err("not run".into()),
             });
@@ -51,7 +50,7 @@ fn entries(
 }
 
 /// All scans, their runs not yet made.
-pub fn all(step: f64, geometry: &Geometry) -> Vec<Scan> {
+pub fn all(geometry: &Geometry) -> Vec<Scan> {
     let with = |values: &[f64], unit: &str| {
         values
             .iter()
@@ -69,7 +68,7 @@ pub fn all(step: f64, geometry: &Geometry) -> Vec<Scan> {
                 "contacts.pin.friction={{ law = \"ambrosio\", coefficient = {c:?}, v0 = 1e-4, v1 = 1e-3, slip = \"{slip}\" }}"
             )]
         };
-        entries(&[3, 4], step, &plain(&[0.0, 0.05, 0.1, 0.3]), 0.0, change)
+        entries(&[3, 4], &plain(&[0.0, 0.05, 0.1, 0.3]), 0.0, change)
     };
     let scan = |slug, title, axis, entries| Scan {
         slug,
@@ -87,7 +86,6 @@ pub fn all(step: f64, geometry: &Geometry) -> Vec<Scan> {
             Axis::new("Young's modulus", "Pa", 1.0).log(),
             entries(
                 &[2, 4],
-                step,
                 &modulus,
                 7e9,
                 one("materials.passive.youngs_modulus"),
@@ -97,13 +95,7 @@ pub fn all(step: f64, geometry: &Geometry) -> Vec<Scan> {
             "clearance",
             "Radial clearance (printed 20 µm)",
             Axis::new("Radial clearance", "µm", 1e6).log(),
-            entries(
-                &[3, 4],
-                step,
-                &clearance,
-                2e-5,
-                one("contacts.pin.clearance"),
-            ),
+            entries(&[3, 4], &clearance, 2e-5, one("contacts.pin.clearance")),
         ),
         scan(
             "platform-mass",
@@ -111,7 +103,6 @@ pub fn all(step: f64, geometry: &Geometry) -> Vec<Scan> {
             Axis::new("Platform mass over assumed", "", 1.0).log(),
             entries(
                 &[2, 3, 4],
-                step,
                 &plain(&[0.1, 0.3, 1.0, 3.0, 10.0]),
                 1.0,
                 |factor| {
@@ -128,10 +119,31 @@ pub fn all(step: f64, geometry: &Geometry) -> Vec<Scan> {
             Axis::new("Restitution coefficient", "", 1.0),
             entries(
                 &[3, 4],
-                step,
                 &plain(&[0.3, 0.5, 0.7, 0.9, 1.0]),
                 0.9,
                 one("contacts.pin.restitution"),
+            ),
+        ),
+        scan(
+            "bearing-radius",
+            "Bearing radius (assumed 10 mm); contact stiffness follows eq. 25",
+            Axis::new("Bearing radius", "mm", 1e3).log(),
+            entries(
+                &[3, 4],
+                &with(&[2.5e-3, 5e-3, 1e-2, 2e-2, 4e-2], "m"),
+                1e-2,
+                one("contacts.pin.bearing_radius"),
+            ),
+        ),
+        scan(
+            "contact-stiffness",
+            "Contact stiffness, by the Young's modulus of the pins (assumed 70 GPa)",
+            Axis::new("Young's modulus of the pins", "Pa", 1.0).log(),
+            entries(
+                &[3, 4],
+                &with(&[7e8, 7e9, 7e10, 7e11], "Pa"),
+                7e10,
+                one("materials.aluminium.youngs_modulus"),
             ),
         ),
         scan(
@@ -150,11 +162,11 @@ pub fn all(step: f64, geometry: &Geometry) -> Vec<Scan> {
             "reading",
             "Reading of the geometry",
             Axis::new("Reading", "", 1.0).over(0.5, 6.5),
-            readings(step, geometry),
+            readings(geometry),
         ),
         scan(
             "step",
-            "Step of the integrator",
+            "Step of Bathe's method",
             Axis::new("Step h", "µs", 1e6).log(),
             steps(),
         ),
@@ -167,7 +179,10 @@ fn steps() -> Vec<Entry> {
         label: si(h, "s"),
         at: h,
         baseline: false,
-        plan: baseline(case, h),
+        plan: Plan {
+            pace: Pace::bathe(h),
+            ..baseline(case)
+        },
         outcome: Err("not run".into()),
     };
     [2, 3, 4]
@@ -177,7 +192,7 @@ fn steps() -> Vec<Entry> {
 }
 
 /// Readings of "0.4 m" and of the elbow branch.
-fn readings(step: f64, printed: &Geometry) -> Vec<Entry> {
+fn readings(printed: &Geometry) -> Vec<Entry> {
     let flipped = |legs: [f64; 3]| {
         let elbow = std::array::from_fn(|i| printed.elbow[i] * legs[i]);
         Geometry {
@@ -208,7 +223,7 @@ fn readings(step: f64, printed: &Geometry) -> Vec<Entry> {
         .enumerate()
         .map(|(i, (label, _))| ((i + 1) as f64, label.to_string()))
         .collect();
-    entries(&[2, 3, 4], step, &values, 1.0, |value| {
+    entries(&[2, 3, 4], &values, 1.0, |value| {
         let g = &readings[value as usize - 1].1;
         let start = g.pose(0.0);
         let point =

@@ -101,15 +101,6 @@ pub fn cycle_distance(y: &[f64]) -> f64 {
     rms(&difference) / rms(&deviation)
 }
 
-/// Rate of exponential growth \[1/s\] of a distance between its first `floor` and its first `ceiling`: the slope of the
-/// line through the two first passages.
-pub fn growth_rate(t: &[f64], distance: &[f64], floor: f64, ceiling: f64) -> Option<f64> {
-    let start = distance.iter().position(|d| d.abs() >= floor)?;
-    let end = distance.iter().position(|d| d.abs() >= ceiling)?;
-    (t[end] > t[start])
-        .then(|| (distance[end].abs() / distance[start].abs()).ln() / (t[end] - t[start]))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -155,13 +146,5 @@ mod tests {
             coincidence(&[1.0, 2.0, 3.0, 4.0], &[0.95, 3.05, 8.0], 0.1),
             0.5
         );
-    }
-
-    #[test]
-    fn growth_rate_of_an_exponential() {
-        let t: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
-        let d: Vec<f64> = t.iter().map(|t| 1e-12 * (30.0 * t).exp()).collect();
-        assert!((growth_rate(&t, &d, 1e-11, 1e-3).unwrap() - 30.0).abs() < 1e-6);
-        assert!(growth_rate(&t, &d, 1e-11, 1e30).is_none());
     }
 }

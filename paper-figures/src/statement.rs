@@ -1,46 +1,105 @@
 //! One statement of the paper and what decides it.
 
-/// A row of the reproduction table.
+use crate::interval::Verdict;
+use crate::warned::Source;
+use std::fmt::Write;
+
+/// What a verdict rests on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Basis {
+    /// A quantity of runs, which could have come out otherwise.
+    Measurement,
+    /// The equations or the scene: it could not have come out otherwise.
+    Construction,
+    /// A value that the paper does not give and the scene assumes.
+    Assumption,
+}
+
+impl Basis {
+    /// In words, after "decided".
+    pub fn words(self) -> &'static str {
+        match self {
+            Basis::Measurement => "by measurement",
+            Basis::Construction => "by construction",
+            Basis::Assumption => "by an assumed value",
+        }
+    }
+}
+
+/// A statement.
 pub struct Statement {
+    /// By which other parts of the report refer to it.
+    pub key: &'static str,
     /// Where the paper says it.
     pub place: &'static str,
     /// What the paper says.
     pub says: &'static str,
-    /// What the runs give, with the step.
+    /// What the runs give.
     pub measured: String,
     /// The condition under which the statement counts as holding.
     pub criterion: &'static str,
-    /// Whether the condition is met.
-    pub holds: bool,
+    /// How that condition comes out.
+    pub verdict: Verdict,
+    /// What the verdict rests on.
+    pub basis: Basis,
     /// Measured over claimed, where the paper gives a number.
     pub factor: Option<f64>,
     /// What is behind it.
     pub why: String,
+    /// The runs it comes from, with their warnings.
+    pub sources: Vec<Source>,
 }
 
 impl Statement {
     /// The verdict in words.
-    pub fn verdict(&self) -> String {
-        let words = if self.holds {
-            "holds"
-        } else {
-            "**does not hold**"
-        };
-        match self.factor {
-            Some(factor) => format!(
-                "{words}; measured is {} of the paper's value",
-                plot::digits(factor)
-            ),
-            None => words.into(),
+    pub fn verdict(&self) -> &'static str {
+        match self.verdict {
+            Verdict::Holds => "holds",
+            Verdict::Fails => "**does not hold**",
+            Verdict::Undecided => "undecided",
         }
     }
 
-    /// The row in Markdown.
-    pub fn row(&self) -> String {
-        let cell = |text: &str| text.replace('|', "\\|");
-        let measured = format!("{} *Criterion: {}*", self.measured, self.criterion);
-        let cells = [self.place, self.says, &measured, &self.verdict(), &self.why].map(cell);
-        format!("| {} |\n", cells.join(" | "))
+    /// The verdict and what it rests on.
+    pub fn decided(&self) -> String {
+        match self.verdict {
+            Verdict::Undecided => "undecided".into(),
+            _ => format!("{}, {}", self.verdict(), self.basis.words()),
+        }
+    }
+
+    /// The row of the list of all statements.
+    pub fn row(&self, number: usize) -> String {
+        let says = self.says.replace('|', "\\|");
+        format!(
+            "| {number} | {} | {says} | {} |\n",
+            self.place,
+            self.decided()
+        )
+    }
+
+    /// The paragraph with what decides it.
+    pub fn paragraph(&self, number: usize) -> String {
+        let mut text = format!(
+            "### {number}. {}\n\n*{}* Verdict: {}.\n\n* Measured: {}",
+            self.place,
+            self.says,
+            self.decided(),
+            self.measured
+        );
+        if let Some(factor) = self.factor {
+            let _ = write!(
+                text,
+                " The paper's number is {} times as large.",
+                plot::digits(1.0 / factor)
+            );
+        }
+        let _ = write!(text, "\n* Criterion: {}.\n* {}\n", self.criterion, self.why);
+        if !self.sources.is_empty() {
+            let told: Vec<String> = self.sources.iter().map(Source::told).collect();
+            let _ = writeln!(text, "* From: {}.", told.join(", "));
+        }
+        text + "\n"
     }
 }
 
@@ -48,22 +107,35 @@ impl Statement {
 mod tests {
     use super::*;
 
-    #[test]
-    fn bars_inside_a_cell_do_not_split_it() {
-        let statement = Statement {
+    fn statement() -> Statement {
+        Statement {
+            key: "small",
             place: "Sect. 6",
             says: "|e| is small",
             measured: "|e| = 1.".into(),
             criterion: "|e| < 2",
-            holds: false,
+            verdict: Verdict::Fails,
+            basis: Basis::Measurement,
             factor: Some(0.5),
-            why: String::new(),
-        };
-        assert_eq!(statement.row().replace("\\|", "").matches('|').count(), 6);
-        assert!(
-            statement
-                .row()
-                .contains("**does not hold**; measured is 0.5 of")
-        );
+            why: "Because.".into(),
+            sources: vec![Source {
+                name: "run 4".into(),
+                warnings: vec!["2 clamps".into()],
+            }],
+        }
+    }
+
+    #[test]
+    fn bars_inside_a_cell_do_not_split_it() {
+        let row = statement().row(7);
+        assert_eq!(row.replace("\\|", "").matches('|').count(), 5);
+        assert!(row.contains("**does not hold**, by measurement"));
+    }
+
+    #[test]
+    fn warnings_stand_beside_the_verdict() {
+        let text = statement().paragraph(7);
+        assert!(text.contains("run 4 (warns: 2 clamps)"));
+        assert!(text.contains("The paper's number is 2 times as large."));
     }
 }

@@ -1,299 +1,333 @@
 //! Statements about Figs. 7 to 9 and the conclusions: forces, contact, periodicity.
 
-use crate::campaign::{Campaign, DURATION, FROM, TWIN_CHANGE, TWIN_DURATION, TWIN_STEP};
+use crate::campaign::{DURATION, FROM};
+use crate::ensembles::{RETARDATIONS, damped_name};
+use crate::evidence::{Evidence, statement};
 use crate::fig09;
-use crate::measures::AllMeasures;
-use crate::numbers::Numbers;
+use crate::interval::{Interval, Verdict};
+use crate::measures::{PEAKS, SIMULTANEOUS};
+use crate::record::{BOTH, LOOSE};
 use crate::runs::Recording;
-use crate::signal::{coincidence, growth_rate, peak, peaks};
-use crate::statement::Statement;
-use crate::statements_acceleration::{PEAKS, PEAKS_APART, SIMULTANEOUS};
+use crate::statement::{Basis, Statement};
+use crate::warned::Source;
 use plot::{digits, percent, si};
 
 /// Cycles further apart than this fraction of their amplitude do not repeat.
 const REPEATS: f64 = 0.01;
+/// A motion is chaotic if neighbours part faster than e-fold in a cycle of one second \[1/s\].
+const CHAOTIC: f64 = 1.0;
 
 /// The statements.
-pub fn statements(c: &Campaign, m: &AllMeasures, numbers: &mut Numbers) -> Vec<Statement> {
+pub fn statements(e: &Evidence) -> Vec<Statement> {
     let mut all = vec![
-        same_phenomena(m),
-        simultaneous_peaks(c, numbers),
-        enlarged_forces(m),
-        service_life(m),
+        same_phenomena(e),
+        simultaneous_peaks(e),
+        enlarged_forces(e),
+        service_life(e),
     ];
-    all.extend([sign_of_penetration(c, numbers), mostly_in_contact(m)]);
-    all.extend([
-        periodic_flexible(c, m, numbers),
-        not_periodic_loose(c, m, numbers),
-        chaotic(c, numbers),
-    ]);
-    all.extend([smoother(m), nonlinear_interaction(m)]);
+    all.extend([sign_of_penetration(e), mostly_in_contact(e)]);
+    all.extend([periodic_flexible(e), not_periodic_loose(e), chaotic(e)]);
+    all.extend([smoother(e), nonlinear_interaction(e)]);
     all
 }
 
-fn same_phenomena(m: &AllMeasures) -> Statement {
-    let ripple = [
-        m.flexible.force_ripple,
-        m.loose.force_ripple,
-        m.both.force_ripple,
-    ];
-    let frequency = [
-        m.flexible.force_frequency,
-        m.loose.force_frequency,
-        m.both.force_frequency,
-    ];
+fn newton(value: f64) -> String {
+    si(value, "N")
+}
+
+fn hertz(value: f64) -> String {
+    si(value, "Hz")
+}
+
+fn acceleration(value: f64) -> String {
+    si(value, "m/s²")
+}
+
+fn same_phenomena(e: &Evidence) -> Statement {
+    let mut text = Vec::new();
+    let mut verdict = Verdict::Holds;
+    let mut compare = |name: &str, words: &str, show: fn(f64) -> String| {
+        let two = e.flexible.get(name);
+        let three = e.loose().mean(name);
+        text.push(format!(
+            "{words} {}, {}, {}",
+            show(two),
+            three.told(show),
+            e.both().mean(name).told(show)
+        ));
+        let grows = e.both().mean_with(e.loose(), name, |b, a| b / a);
+        verdict = verdict.and(three.above(two)).and(grows.above(1.0));
+    };
+    compare("force_ripple", "rms about the mean", newton);
+    compare("force_frequency", "median frequency", hertz);
     Statement {
-        place: "Sect. 6, Fig. 7",
-        says: "The same phenomena (larger and higher-frequency vibration from case 2 to 3 to 4) can be observed in the contact forces.",
-        measured: format!("Rms about the mean {}, {}, {} N and median frequency {}, {}, {} Hz in cases 2, 3, 4 (h = {}).", digits(ripple[0]), digits(ripple[1]), digits(ripple[2]), digits(frequency[0]), digits(frequency[1]), digits(frequency[2]), si(m.both.step, "s")),
-        criterion: "both grow from case 2 to 3 to 4",
-        holds: ripple.is_sorted() && frequency.is_sorted(),
-        factor: None,
+        measured: format!("in cases 2, 3 and 4, {}.", text.join("; ")),
+        criterion: "both grow from case 2 to 3 and from 3 to 4",
+        verdict,
         why: "The force of case 2 is the reaction of an ideal joint; Fig. 7a of the paper calls it a contact force.".into(),
+        sources: e.all_cases(),
+        ..statement("same phenomena", "Sect. 6, Fig. 7", "The same phenomena (larger and higher-frequency vibration from case 2 to 3 to 4) can be observed in the contact forces.")
     }
 }
 
-fn simultaneous_peaks(c: &Campaign, numbers: &mut Numbers) -> Statement {
-    let mut share = |r: &Recording, name: &str| {
-        let t = &r.t[r.rows(FROM, DURATION)];
-        let apart = (PEAKS_APART / r.plan.interval) as usize;
-        let of = |y: &[f64], count| {
-            peaks(y, count, apart)
-                .into_iter()
-                .map(|i| t[i])
-                .collect::<Vec<f64>>()
-        };
-        let acceleration = of(&c.acceleration_deviation(r), PEAKS);
-        let force = |joint: &str| {
-            of(
-                r.between(&format!("{joint}.force"), FROM, DURATION).1,
-                PEAKS,
-            )
-        };
-        let one = coincidence(&acceleration, &force("B1"), SIMULTANEOUS);
-        let any: Vec<f64> = ["B1", "B2", "B3"]
-            .iter()
-            .flat_map(|joint| force(joint))
-            .collect();
-        let any = coincidence(&acceleration, &any, SIMULTANEOUS);
-        (
-            numbers.put(format!("{name}.peaks_with_b1"), one),
-            numbers.put(format!("{name}.peaks_with_any"), any),
-        )
-    };
-    let (loose, both) = (share(&c.loose, "case3"), share(&c.both, "case4"));
+fn simultaneous_peaks(e: &Evidence) -> Statement {
+    let of = |name: &str| [e.loose(), e.both()].map(|ensemble| ensemble.mean(name));
+    let (one, any) = (of("peaks_with_b1"), of("peaks_with_any"));
     let chance = PEAKS as f64 * 2.0 * SIMULTANEOUS / (DURATION - FROM);
     Statement {
-        place: "Sect. 6, Fig. 7",
-        says: "The high peaks of the acceleration and of the contact force occur at the same time.",
         measured: format!(
-            "Of the {PEAKS} highest acceleration peaks, within {} of one of the {PEAKS} highest force peaks of B1: case 3 {}, case 4 {}; of B1, B2 or B3: {}, {} (h = {}).",
+            "of the {PEAKS} highest acceleration peaks, within {} of one of the {PEAKS} highest force peaks of B1: case 3 {}, case 4 {}; of B1, B2 or B3: {}, {}.",
             si(SIMULTANEOUS, "s"),
-            percent(loose.0),
-            percent(both.0),
-            percent(loose.1),
-            percent(both.1),
-            si(c.settings.fine, "s")
+            one[0].told(percent),
+            one[1].told(percent),
+            any[0].told(percent),
+            any[1].told(percent)
         ),
         criterion: "at least 90 % with one of the three joints, in both cases",
-        holds: loose.1 >= 0.9 && both.1 >= 0.9,
-        factor: None,
+        verdict: any[0].above(0.9).and(any[1].above(0.9)),
         why: format!(
             "Three legs push the platform, so B1 alone cannot account for every peak. Chance would give {} for one joint.",
             percent(chance)
         ),
+        sources: e.ensembles(),
+        ..statement(
+            "simultaneous",
+            "Sect. 6, Fig. 7",
+            "The high peaks of the acceleration and of the contact force occur at the same time.",
+        )
     }
 }
 
-fn enlarged_forces(m: &AllMeasures) -> Statement {
-    let reference = m.ideal.force_peak;
-    let ratio = [&m.flexible, &m.loose, &m.both].map(|m| m.force_peak / reference);
-    Statement {
-        place: "Sect. 6, 7, Fig. 7",
-        says: "The contact forces are enlarged by the clearance.",
-        measured: format!("Peak force in B1 over that of case 1 ({}): case 2 {}, case 3 {}, case 4 {} (h = {}).", si(reference, "N"), digits(ratio[0]), digits(ratio[1]), digits(ratio[2]), si(m.both.step, "s")),
-        criterion: "above 1.5 in cases 3 and 4",
-        holds: ratio[1] > 1.5 && ratio[2] > 1.5,
-        factor: None,
-        why: "After a loss of contact the journal returns with a speed that a stiff contact stops in a fraction of a millisecond.".into(),
-    }
-}
-
-fn service_life(m: &AllMeasures) -> Statement {
-    let ratio =
-        [&m.loose, &m.both].map(|x| (x.force_cubic_mean / m.ideal.force_cubic_mean).powi(-3));
-    Statement {
-        place: "Sect. 6, 7",
-        says: "The enlarged contact forces decrease the service life of the components, or even lead to failure.",
-        measured: format!("Cubic-mean load of B1 gives {} (case 3) and {} (case 4) of the life of case 1 (h = {}).", percent(ratio[0]), percent(ratio[1]), si(m.both.step, "s")),
-        criterion: "life ~ (cubic-mean load)^-3, as for rolling bearings, falls below 90 % in both",
-        holds: ratio.iter().all(|r| *r < 0.9),
-        factor: None,
-        why: "Neither wear nor strength is part of the model, so failure cannot be decided here; the load spectrum can.".into(),
-    }
-}
-
-fn sign_of_penetration(c: &Campaign, numbers: &mut Numbers) -> Statement {
-    let consistent = |r: &Recording| {
-        let (delta, force) = (r.column("B1.penetration"), r.column("B1.force"));
-        delta
-            .iter()
-            .zip(force)
-            .filter(|(d, f)| **d > 0.0 || **f == 0.0)
-            .count() as f64
-            / delta.len() as f64
+fn enlarged_forces(e: &Evidence) -> Statement {
+    let (one, two) = (e.ideal.get("force_peak"), e.flexible.get("force_peak"));
+    let over = |reference: f64| {
+        [e.loose(), e.both()].map(|ensemble| ensemble.mean_of("force_peak", |f| f / reference))
     };
-    let share = consistent(&c.loose).min(consistent(&c.both));
-    numbers.put("b1.force_only_in_contact", share);
+    let (rigid, flexible) = (over(one), over(two));
+    let verdict = rigid.iter().chain(&flexible).map(|i| i.above(1.5));
     Statement {
-        place: "Sect. 6, Fig. 8",
-        says: "Positive penetration means contact, negative means that journal and bearing are separated.",
         measured: format!(
-            "In {} of the rows of cases 3 and 4 there is no force without positive penetration (h = {}).",
-            percent(share),
-            si(c.settings.fine, "s")
+            "peak force in B1 of case 3 {} times that of case 1 ({}) and {} times that of case 2 ({}); of case 4 {} and {} times.",
+            rigid[0].told(digits),
+            newton(one),
+            flexible[0].told(digits),
+            newton(two),
+            rigid[1].told(digits),
+            flexible[1].told(digits)
+        ),
+        criterion: "above 1.5 times the forces of cases 1 and 2, in cases 3 and 4",
+        verdict: verdict.fold(Verdict::Holds, Verdict::and),
+        why: "After a loss of contact the journal returns with a speed that a stiff contact stops in a fraction of a millisecond.".into(),
+        sources: with_ideal(e),
+        ..statement("enlarged", "Sect. 6, 7, Fig. 7", "The contact forces are enlarged by the clearance.")
+    }
+}
+
+/// Run 1, the fine run of case 2, and the ensembles.
+fn with_ideal(e: &Evidence) -> Vec<Source> {
+    let mut sources = vec![e.c.ideal.source(), e.c.flexible.source()];
+    sources.extend(e.ensembles());
+    sources
+}
+
+fn service_life(e: &Evidence) -> Statement {
+    let of = |reference: f64| {
+        [e.loose(), e.both()]
+            .map(|m| m.mean_of("force_cubic_mean", |load| (load / reference).powi(-3)))
+    };
+    let rigid = of(e.ideal.get("force_cubic_mean"));
+    let flexible = of(e.flexible.get("force_cubic_mean"));
+    let verdict = rigid.iter().chain(&flexible).map(|i| i.below(0.9));
+    Statement {
+        measured: format!(
+            "the cubic-mean load of B1 gives, of the life of case 1, {} (case 3) and {} (case 4); of the life of case 2, {} and {}.",
+            rigid[0].told(percent),
+            rigid[1].told(percent),
+            flexible[0].told(percent),
+            flexible[1].told(percent)
+        ),
+        criterion: "life ~ (cubic-mean load)⁻³, as for rolling bearings, falls below 90 % of that of case 1 and of that of case 2, in cases 3 and 4",
+        verdict: verdict.fold(Verdict::Holds, Verdict::and),
+        why: "Case 1 has no vibration, and case 2 has that of its unstrained start, which never decays. Neither wear nor strength is part of the model, so failure cannot be decided here; the load spectrum can.".into(),
+        sources: with_ideal(e),
+        ..statement("service life", "Sect. 1, 6, 7", "The enlarged contact forces decrease the service life of the components, or even lead to failure.")
+    }
+}
+
+fn sign_of_penetration(e: &Evidence) -> Statement {
+    let all = [LOOSE, BOTH].map(|name| e.e.ensemble(name).values("force_only_in_contact"));
+    let share = all.concat().into_iter().fold(1.0, f64::min);
+    Statement {
+        measured: format!(
+            "in {} of the rows of every run there is no force without positive penetration.",
+            percent(share)
         ),
         criterion: "in all rows",
-        holds: share == 1.0,
-        factor: None,
-        why: "By construction of the contact law; the text writes \"passive\" for negative.".into(),
+        verdict: Verdict::of(share == 1.0),
+        basis: Basis::Construction,
+        why: "The contact law is evaluated for positive penetration only. The text writes \"passive\" for negative.".into(),
+        sources: e.ensembles(),
+        ..statement("sign", "Sect. 4.1, 6, Fig. 8", "Positive penetration means contact, negative means that journal and bearing are separated.")
     }
 }
 
-fn mostly_in_contact(m: &AllMeasures) -> Statement {
-    let (loose, both) = (
-        m.loose.contact.unwrap_or_default(),
-        m.both.contact.unwrap_or_default(),
-    );
+fn mostly_in_contact(e: &Evidence) -> Statement {
+    let of = |name: &str| [e.loose(), e.both()].map(|ensemble| ensemble.mean(name));
+    let (first, least) = (of("contact_b1"), of("contact_least"));
     Statement {
-        place: "Sect. 6, 7, Fig. 8",
-        says: "For most of the time the joint components keep contact.",
-        measured: format!("B1 is in contact {} (case 3) and {} (case 4) of the time; the joint that is least, {} and {} (h = {}).", percent(loose.0), percent(both.0), percent(loose.1), percent(both.1), si(m.both.step, "s")),
-        criterion: "B1 above 50 % in both cases",
-        holds: loose.0 > 0.5 && both.0 > 0.5,
-        factor: None,
-        why: "Inertia forces press the journals against the bearings except where their direction along a leg changes.".into(),
-    }
-}
-
-fn periodic_flexible(c: &Campaign, m: &AllMeasures, numbers: &mut Numbers) -> Statement {
-    let [coarse, fine, ..] = &c.sections;
-    let mut spread = |r: &Recording, name: &str| {
-        numbers.put(
-            format!("{name}.section_spread"),
-            fig09::spread(&fig09::section(c, r).1),
-        )
-    };
-    let spreads = [spread(coarse, "case2_coarse"), spread(fine, "case2")];
-    let repetition = [m.flexible.repetition, m.flexible_coarse.repetition];
-    Statement {
-        place: "Sect. 6, 7, Fig. 9a",
-        says: "Case 2 is a periodic motion; the mechanism with flexible links is a periodical system.",
         measured: format!(
-            "Distance between the accelerations of cycles 2 and 3: {} at h = {}, {} at h = {}. Spread of the stroboscopic section over {} periods: {} m/s² at h = {}, {} m/s² at h = {}.",
-            percent(repetition[0]), si(m.flexible.step, "s"), percent(repetition[1]), si(m.flexible_coarse.step, "s"), c.settings.periods,
-            digits(spreads[1]), si(fine.plan.step, "s"), digits(spreads[0]), si(coarse.plan.step, "s")
+            "B1 is in contact {} (case 3) and {} (case 4) of the time; the joint that is least, {} and {}.",
+            first[0].told(percent),
+            first[1].told(percent),
+            least[0].told(percent),
+            least[1].told(percent)
+        ),
+        criterion: "all six joints above 50 % in both cases",
+        verdict: least[0].above(0.5).and(least[1].above(0.5)),
+        why: "Inertia forces press the journals against the bearings except where their direction along a leg changes.".into(),
+        sources: e.ensembles(),
+        ..statement("mostly in contact", "Sect. 6, 7, Fig. 8", "For most of the time the joint components keep contact.")
+    }
+}
+
+fn spread(e: &Evidence, r: &Recording) -> f64 {
+    fig09::spread(&fig09::section(e.c, r).1)
+}
+
+fn periodic_flexible(e: &Evidence) -> Statement {
+    let [coarse, fine, ..] = &e.c.sections;
+    let repetition = [&e.flexible, &e.flexible_coarse].map(|m| m.get("repetition"));
+    let quiet = e.e.single("quasi-static start");
+    let damped = RETARDATIONS.map(|time| e.e.single(&damped_name(time)));
+    let mut sources = e.case_2();
+    sources.extend([coarse.source(), fine.source(), quiet.source()]);
+    sources.extend(damped.map(|single| single.source()));
+    Statement {
+        measured: format!(
+            "distance between the accelerations of cycles 2 and 3: {} at the finer step, {} at the coarser. Spread of the stroboscopic section over {} periods: {} at {}, {} at {}. Started in its quasi-static deformation: distance {}. With structural damping: {} at a retardation time of {}, {} at {}.",
+            percent(repetition[0]),
+            percent(repetition[1]),
+            e.c.settings.periods,
+            acceleration(spread(e, fine)),
+            fine.plan.pace.label(),
+            acceleration(spread(e, coarse)),
+            coarse.plan.pace.label(),
+            percent(quiet.measures.get("repetition")),
+            percent(damped[0].measures.get("repetition")),
+            si(RETARDATIONS[0], "s"),
+            percent(damped[1].measures.get("repetition")),
+            si(RETARDATIONS[1], "s")
         ),
         criterion: "the distance is below 1 % of the amplitude at both steps",
-        holds: repetition.iter().all(|r| *r < REPEATS),
-        factor: None,
-        why: "Undamped ringing is not commensurate with the period: the motion repeats as far as the step has damped the start.".into(),
+        verdict: Verdict::of(repetition.iter().all(|r| *r < REPEATS)),
+        why: "The undamped ringing of the unstrained start is not commensurate with the period, so the motion repeats only as far as the step has damped it. A start without that ringing, or damping, shows the periodic motion that the paper means.".into(),
+        sources,
+        ..statement("periodic", "Sect. 6, 7, Fig. 9a", "Case 2 is a periodic motion; the mechanism with flexible links is a periodical system.")
     }
 }
 
-fn not_periodic_loose(c: &Campaign, m: &AllMeasures, numbers: &mut Numbers) -> Statement {
-    let [_, _, loose, both] = &c.sections;
-    let mut spread = |r: &Recording, name: &str| {
-        numbers.put(
-            format!("{name}.section_spread"),
-            fig09::spread(&fig09::section(c, r).1),
-        )
-    };
-    let spreads = [spread(loose, "case3"), spread(both, "case4")];
+fn not_periodic_loose(e: &Evidence) -> Statement {
+    let [_, _, loose, both] = &e.c.sections;
+    let distance = [e.loose(), e.both()].map(|ensemble| ensemble.mean("repetition"));
+    let mut sources = e.ensembles();
+    sources.extend([loose.source(), both.source()]);
     Statement {
-        place: "Sect. 6, 7, Fig. 9b, c",
-        says: "Cases 3 and 4 are non-periodic: the curve does not repeat from cycle to cycle.",
         measured: format!(
-            "Distance between the accelerations of cycles 2 and 3: case 3 {}, case 4 {} (h = {}). Spread of the stroboscopic section over {} periods: {} and {} m/s² (h = {}).",
-            percent(m.loose.repetition), percent(m.both.repetition), si(m.both.step, "s"), c.settings.periods, digits(spreads[0]), digits(spreads[1]), si(loose.plan.step, "s")
+            "distance between the accelerations of cycles 2 and 3: case 3 {}, case 4 {}. Spread of the stroboscopic section over {} periods: {} and {}.",
+            distance[0].told(percent),
+            distance[1].told(percent),
+            e.c.settings.periods,
+            acceleration(spread(e, loose)),
+            acceleration(spread(e, both))
         ),
         criterion: "the distance is above 1 % of the amplitude in both",
-        holds: m.loose.repetition > REPEATS && m.both.repetition > REPEATS,
-        factor: None,
-        why: "Two cycles that differ are not yet chaos; the stroboscopic section over many periods and the row below say more.".into(),
+        verdict: distance[0].above(REPEATS).and(distance[1].above(REPEATS)),
+        why: "Two cycles that differ are not yet chaos; the sections over many periods and the exponents of the next statement say more.".into(),
+        sources,
+        ..statement("not periodic", "Sect. 6, 7, Fig. 9b, c", "Cases 3 and 4 are non-periodic: the curve does not repeat from cycle to cycle.")
     }
 }
 
-fn chaotic(c: &Campaign, numbers: &mut Numbers) -> Statement {
-    // from ten times the displacement that the change itself makes to a twentieth of the clearance
-    let (floor, ceiling) = (
-        20.0 * TWIN_CHANGE * c.geometry.clearance,
-        0.05 * c.geometry.clearance,
-    );
-    let mut text = Vec::new();
-    let mut holds = true;
-    for (case, (one, other)) in (2..).zip(&c.twins) {
-        let pairs = one.column("error.x").iter().zip(other.column("error.x"));
-        let apart: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
-        let rate = growth_rate(&one.t, &apart, floor, ceiling);
-        numbers.put(format!("case{case}.twin_growth_rate"), rate.unwrap_or(0.0));
-        let largest = numbers.put(format!("case{case}.twin_largest_distance"), peak(&apart));
-        holds &= rate.is_some() == (case > 2);
-        text.push(match rate {
-            Some(rate) => format!(
-                "case {case} e-fold in {}, largest {}",
-                si(1.0 / rate, "s"),
-                si(largest, "m")
-            ),
-            None => format!(
-                "case {case} never reach {}, largest {}",
-                si(ceiling, "m"),
-                si(largest, "m")
-            ),
-        });
-    }
+fn chaotic(e: &Evidence) -> Statement {
+    let rate = |value: f64| si(value, "1/s");
+    let of = |case: u32| -> Vec<(f64, Interval)> {
+        let exponents = e.e.exponents(case);
+        exponents.map(|x| (x.distance, x.mean())).collect()
+    };
+    let told = |case: u32| {
+        let each: Vec<String> = of(case)
+            .into_iter()
+            .map(|(distance, x)| format!("{} (d₀ = {distance:e})", x.told(rate)))
+            .collect();
+        format!("case {case} {}", each.join(", "))
+    };
+    let above = |case: u32| {
+        of(case)
+            .iter()
+            .map(|(_, x)| x.above(CHAOTIC))
+            .fold(Verdict::Holds, Verdict::and)
+    };
+    let below = of(2)
+        .iter()
+        .map(|(_, x)| x.below(CHAOTIC))
+        .fold(Verdict::Holds, Verdict::and);
     Statement {
-        place: "Sect. 6, Fig. 9",
-        says: "The collision between the joint components causes chaotic motion.",
-        measured: format!("Two runs of {} that differ by {TWIN_CHANGE:e} in one parameter part in e_x: {} (h = {}).", si(TWIN_DURATION, "s"), text.join("; "), si(TWIN_STEP, "s")),
-        criterion: "twins part to a twentieth of the clearance in cases 3 and 4 and not in case 2",
-        holds,
-        factor: None,
-        why: "Sensitivity to a tiny change is the mark of chaos, but parting twins alone do not prove it: impacts multiply a difference, phases of lasting contact shrink it again.".into(),
-    }
-}
-
-fn smoother(m: &AllMeasures) -> Statement {
-    let crest = |m: &crate::measures::Measures| peak(&m.deviation);
-    Statement {
-        place: "Sect. 7",
-        says: "The mechanism is influenced by the link flexibility in a smoother way than by the clearance.",
         measured: format!(
-            "Largest deviation of the acceleration: case 2 {} m/s² (h = {}) and {} m/s² (h = {}), case 3 {} m/s² (h = {}).",
-            digits(crest(&m.flexible)),
-            si(m.flexible.step, "s"),
-            digits(crest(&m.flexible_coarse)),
-            si(m.flexible_coarse.step, "s"),
-            digits(crest(&m.loose)),
-            si(m.loose.step, "s")
+            "largest Lyapunov exponent by Benettin's method: {}; {}; {}.",
+            told(2),
+            told(3),
+            told(4)
         ),
-        criterion: "case 2 is less than half of case 3 at both steps",
-        holds: crest(&m.flexible).max(crest(&m.flexible_coarse)) < 0.5 * crest(&m.loose),
-        factor: None,
-        why: "Flexibility adds a linear vibration, clearance adds impacts.".into(),
+        criterion: "above one e-fold a cycle in cases 3 and 4, below in case 2, for both distances d₀ between the neighbouring motions",
+        verdict: above(3).and(above(4)).and(below),
+        why: "Impacts multiply a small difference, and phases of lasting contact shrink it again; the exponent says which of the two wins.".into(),
+        sources: e.e.exponents.iter().map(|x| x.source()).collect(),
+        ..statement("chaotic", "Sect. 6, Fig. 9", "The collision between the joint components causes chaotic motion.")
     }
 }
 
-fn nonlinear_interaction(m: &AllMeasures) -> Statement {
-    let apart = m.flexible.deviation_rms.hypot(m.loose.deviation_rms);
-    let ratio = m.both.deviation_rms / apart;
+fn smoother(e: &Evidence) -> Statement {
+    let flexible = [&e.flexible, &e.flexible_coarse].map(|m| m.get("deviation_peak"));
+    let ratio = e
+        .loose()
+        .mean_of("deviation_peak", |peak| flexible[0].max(flexible[1]) / peak);
     Statement {
-        place: "Sect. 7",
-        says: "Joint clearance and link flexibility interact with each other in a nonlinear way.",
-        measured: format!("Rms deviation of the acceleration in case 4: {} m/s²; independent contributions of cases 2 and 3 would give {} m/s² (h = {}).", digits(m.both.deviation_rms), digits(apart), si(m.both.step, "s")),
-        criterion: "differs by more than 10 % from the root of the sum of squares",
-        holds: (ratio - 1.0).abs() > 0.1,
-        factor: None,
-        why: "A flexible link changes the impacts themselves: their speed, their stiffness and their times.".into(),
+        measured: format!(
+            "largest deviation of the acceleration: case 2 {} at the finer step and {} at the coarser, case 3 {}; the larger of the former over the latter {}.",
+            acceleration(flexible[0]),
+            acceleration(flexible[1]),
+            e.loose().mean("deviation_peak").told(acceleration),
+            ratio.told(digits)
+        ),
+        criterion: "the ratio is below 0.5",
+        verdict: ratio.below(0.5),
+        why: "Flexibility adds a linear vibration, clearance adds impacts.".into(),
+        sources: e.all_cases(),
+        ..statement(
+            "smoother",
+            "Sect. 7",
+            "The mechanism is influenced by the link flexibility in a smoother way than by the clearance.",
+        )
+    }
+}
+
+fn nonlinear_interaction(e: &Evidence) -> Statement {
+    let flexible = e.flexible.get("deviation_rms");
+    let ratio = e
+        .both()
+        .mean_with(e.loose(), "deviation_rms", |b, a| b / flexible.hypot(a));
+    Statement {
+        measured: format!(
+            "rms deviation of the acceleration: case 2 {}, case 3 {}, case 4 {}, which is {} of the root of the sum of the squares of the others.",
+            acceleration(flexible),
+            e.loose().mean("deviation_rms").told(acceleration),
+            e.both().mean("deviation_rms").told(acceleration),
+            ratio.told(digits)
+        ),
+        criterion: "the last ratio differs from 1 by more than 0.1",
+        verdict: ratio.within(0.9, 1.1).not(),
+        why: "Independent contributions would add up as squares. A flexible link changes the impacts themselves: their speed, their stiffness and their times.".into(),
+        sources: e.all_cases(),
+        ..statement("nonlinear", "Sect. 7", "Joint clearance and link flexibility interact with each other in a nonlinear way.")
     }
 }

@@ -1,182 +1,192 @@
 //! Statements about Fig. 5: the displacement error of the platform.
 
-use crate::campaign::{Campaign, DURATION, FROM};
+use crate::campaign::{DURATION, FROM};
+use crate::evidence::{Evidence, statement};
 use crate::fig05::CLAIMED;
-use crate::measures::AllMeasures;
-use crate::numbers::Numbers;
+use crate::interval::Verdict;
+use crate::record::TIGHTER;
 use crate::runs::Recording;
-use crate::signal::{peak, rms, smooth};
+use crate::signal::{peak, smooth};
 use crate::statement::Statement;
 use plot::{digits, percent, si};
 
 /// The statements.
-pub fn statements(c: &Campaign, m: &AllMeasures, numbers: &mut Numbers) -> Vec<Statement> {
+pub fn statements(e: &Evidence) -> Vec<Statement> {
     vec![
-        error_flexible(m),
-        stiffness_matters(c, numbers),
-        error_loose(c, m),
-        clearance_matters(c, m, numbers),
-        largest_in_case_4(m),
-        composition(c, m, numbers),
-        both_matter(m),
+        error_flexible(e),
+        stiffness_matters(e),
+        error_loose(e),
+        clearance_matters(e),
+        largest_in_case_4(e),
+        composition(e),
+        both_matter(e),
     ]
 }
 
-/// Within a factor of two of the paper's +-0.2 mm.
-fn near_claim(error: f64) -> bool {
-    (0.5..=2.0).contains(&(error / CLAIMED))
+/// Limits within a factor of two of the paper's +-0.2 mm \[m\].
+const NEAR: (f64, f64) = (0.5 * CLAIMED, 2.0 * CLAIMED);
+
+fn metres(value: f64) -> String {
+    si(value, "m")
 }
 
-fn error_flexible(m: &AllMeasures) -> Statement {
+fn error_flexible(e: &Evidence) -> Statement {
+    let [fine, coarse] = [&e.flexible, &e.flexible_coarse].map(|m| m.get("error_peak"));
     Statement {
-        place: "Sect. 6, Fig. 5a",
-        says: "Case 2: the positioning error along x is around ±0.2 mm.",
         measured: format!(
-            "Largest |e_x| {} at h = {}, {} at h = {}.",
-            si(m.flexible.error_peak, "m"), si(m.flexible.step, "s"), si(m.flexible_coarse.error_peak, "m"), si(m.flexible_coarse.step, "s")
+            "largest |e_x| {} at {}, {} at {}.",
+            metres(fine),
+            e.c.flexible.plan.pace.label(),
+            metres(coarse),
+            e.c.flexible_coarse.plan.pace.label()
         ),
         criterion: "between 0.1 and 0.4 mm",
-        holds: near_claim(m.flexible.error_peak),
-        factor: Some(m.flexible.error_peak / CLAIMED),
-        why: "Pin-ended links move the platform only by changing their length, and E A / l2 is millions of newtons per metre: see the second argument below.".into(),
+        verdict: Verdict::of((NEAR.0..=NEAR.1).contains(&fine)),
+        factor: Some(fine / CLAIMED),
+        why: "Pin-ended links move the platform only by changing their length, and E A / l₂ is millions of newtons per metre: see the second argument below.".into(),
+        sources: e.case_2(),
+        ..statement("error 2", "Sect. 6, Fig. 5a", "Case 2: the positioning error along x is around ±0.2 mm.")
     }
 }
 
-fn stiffness_matters(c: &Campaign, numbers: &mut Numbers) -> Statement {
+fn stiffness_matters(e: &Evidence) -> Statement {
     // means over 20 ms: the answer without the start-up vibration
     let slow = |r: &Recording| {
         let width = (0.02 / r.plan.interval) as usize;
         peak(&smooth(r.between("error.x", FROM, DURATION).1, width))
     };
-    let (soft, stiff) = (slow(&c.flexible_coarse), slow(&c.stiffer));
-    let ratio = numbers.put("case2.error_ratio_of_ten_moduli", soft / stiff);
+    let (soft, stiff) = (slow(&e.c.flexible_coarse), slow(&e.c.stiffer));
     Statement {
-        place: "Sect. 6, Fig. 5a",
-        says: "These errors are caused by the deformation of the passive links and influenced by their stiffness.",
         measured: format!(
-            "With ten times the Young's modulus the error (means over 20 ms) falls from {} to {}, {} times (h = {}).",
-            si(soft, "m"),
-            si(stiff, "m"),
-            digits(ratio),
-            si(c.settings.coarse, "s")
+            "with ten times the Young's modulus the largest mean of e_x over 20 ms falls from {} to {}, {} times.",
+            metres(soft),
+            metres(stiff),
+            digits(soft / stiff)
         ),
         criterion: "the ratio is between 5 and 20",
-        holds: (5.0..=20.0).contains(&ratio),
-        factor: None,
+        verdict: Verdict::of((5.0..=20.0).contains(&(soft / stiff))),
         why: "Deformation under a load that hardly changes goes with 1/E.".into(),
+        sources: vec![e.c.flexible_coarse.source(), e.c.stiffer.source()],
+        ..statement(
+            "stiffness",
+            "Sect. 6, Fig. 5a",
+            "These errors are caused by the deformation of the passive links and influenced by their stiffness.",
+        )
     }
 }
 
-fn error_loose(c: &Campaign, m: &AllMeasures) -> Statement {
-    let bound = c.geometry.largest_bound_x(2.0 * c.geometry.clearance);
+fn error_loose(e: &Evidence) -> Statement {
+    let bound = e.c.geometry.largest_bound_x(2.0 * e.c.geometry.clearance);
+    let error = e.loose().mean("error_peak");
     Statement {
-        place: "Sect. 6, Fig. 5b",
-        says: "Case 3: the errors along x are around ±0.2 mm.",
         measured: format!(
-            "Largest |e_x| {} at h = {}; kinematic bound without penetration {}.",
-            si(m.loose.error_peak, "m"),
-            si(m.loose.step, "s"),
-            si(bound, "m")
+            "largest |e_x| {}; the kinematic bound without penetration is {}.",
+            error.told(metres),
+            metres(bound)
         ),
         criterion: "between 0.1 and 0.4 mm",
-        holds: near_claim(m.loose.error_peak),
-        factor: Some(m.loose.error_peak / CLAIMED),
+        verdict: error.within(NEAR.0, NEAR.1),
+        factor: Some(error.mean / CLAIMED),
         why: format!(
             "No motion of a mechanism with the printed dimensions can leave the bound, whatever its contact law: see the first argument below. The bound is {} of the claim.",
             digits(bound / CLAIMED)
         ),
+        sources: vec![e.loose().source()],
+        ..statement(
+            "error 3",
+            "Sect. 6, Fig. 5b",
+            "Case 3: the errors along x are around ±0.2 mm.",
+        )
     }
 }
 
-fn clearance_matters(c: &Campaign, m: &AllMeasures, numbers: &mut Numbers) -> Statement {
-    let half = peak(c.tighter.between("error.x", FROM, DURATION).1);
-    let ratio = numbers.put(
-        "case3.error_ratio_of_half_clearance",
-        m.loose.error_peak / half,
-    );
+fn clearance_matters(e: &Evidence) -> Statement {
+    let half = e.e.ensemble(TIGHTER);
+    let ratio = e.loose().mean_with(half, "error_peak", |a, b| a / b);
     Statement {
-        place: "Sect. 6, Fig. 5b",
-        says: "These errors are influenced by the clearance size.",
         measured: format!(
-            "Half the clearance gives {} instead of {}, {} times less (h = {}).",
-            si(half, "m"),
-            si(m.loose.error_peak, "m"),
-            digits(ratio),
-            si(c.tighter.plan.step, "s")
+            "largest |e_x| with half the clearance {} instead of {}; the ratio is {}.",
+            half.mean("error_peak").told(metres),
+            e.loose().mean("error_peak").told(metres),
+            ratio.told(digits)
         ),
         criterion: "the ratio is between 1.5 and 2.5",
-        holds: (1.5..=2.5).contains(&ratio),
-        factor: None,
+        verdict: ratio.within(1.5, 2.5),
         why: "The mechanism rides on its bound, which is proportional to the clearance.".into(),
+        sources: vec![e.loose().source(), half.source()],
+        ..statement(
+            "clearance",
+            "Sect. 6, Fig. 5b",
+            "These errors are influenced by the clearance size.",
+        )
     }
 }
 
-fn largest_in_case_4(m: &AllMeasures) -> Statement {
-    let others = m.flexible.error_peak.max(m.loose.error_peak);
+fn largest_in_case_4(e: &Evidence) -> Statement {
+    let flexible = e.flexible.get("error_peak");
+    let ratio = e
+        .both()
+        .mean_with(e.loose(), "error_peak", |b, a| b / a.max(flexible));
     Statement {
-        place: "Sect. 6, Fig. 5c",
-        says: "Case 4 has the largest deviation.",
         measured: format!(
-            "Largest |e_x|: case 2 {}, case 3 {}, case 4 {} (h = {}).",
-            si(m.flexible.error_peak, "m"),
-            si(m.loose.error_peak, "m"),
-            si(m.both.error_peak, "m"),
-            si(m.both.step, "s")
+            "largest |e_x|: case 2 {}, case 3 {}, case 4 {}; case 4 over the larger of the others {}.",
+            metres(flexible),
+            e.loose().mean("error_peak").told(metres),
+            e.both().mean("error_peak").told(metres),
+            ratio.told(digits)
         ),
-        criterion: "case 4 above cases 2 and 3",
-        holds: m.both.error_peak > others,
-        factor: None,
-        why: format!(
-            "Case 4 over the larger of the two: {}; the flexibility can only add the stretch of the links to what the clearance allows.",
-            percent(m.both.error_peak / others - 1.0)
-        ),
+        criterion: "the ratio is above 1",
+        verdict: ratio.above(1.0),
+        why: "The flexibility can only add the stretch of the links to what the clearance allows."
+            .into(),
+        sources: e.all_cases(),
+        ..statement(
+            "largest",
+            "Sect. 6, Fig. 5c",
+            "Case 4 has the largest deviation.",
+        )
     }
 }
 
-fn composition(c: &Campaign, m: &AllMeasures, numbers: &mut Numbers) -> Statement {
-    let (two, three, four) = (error(&c.flexible), error(&c.loose), error(&c.both));
-    let width = (0.02 / c.settings.interval) as usize;
-    let rest: Vec<f64> = (0..four.len())
-        .map(|i| four[i] - two[i] - three[i])
-        .collect();
-    let share = numbers.put(
-        "case4.error_not_composed",
-        rms(&smooth(&rest, width)) / rms(&smooth(four, width)),
-    );
-    let sum = m.flexible.error_peak + m.loose.error_peak;
+fn composition(e: &Evidence) -> Statement {
+    let flexible = e.flexible.get("error_peak");
+    let rest = e.both().mean("not_composed");
+    let sum = e
+        .both()
+        .mean_with(e.loose(), "error_peak", |b, a| b / (a + flexible));
     Statement {
-        place: "Sect. 6, Fig. 5c",
-        says: "The error of case 4 can be seen as the composition of cases 2 and 3.",
-        measured: format!("Means over 20 ms: e4 − e2 − e3 is {} of e4 (rms); the largest errors are {} and {} + {} (h = {}).", percent(share), si(m.both.error_peak, "m"), si(m.flexible.error_peak, "m"), si(m.loose.error_peak, "m"), si(m.both.step, "s")),
+        measured: format!(
+            "of means over 20 ms, e₄ − e₂ − e₃ is {} of e₄ (rms); the largest error of case 4 is {} of the sum of those of cases 2 and 3.",
+            rest.told(percent),
+            sum.told(digits)
+        ),
         criterion: "the rest is below 20 % and the largest error within 20 % of the sum",
-        holds: share < 0.2 && (m.both.error_peak / sum - 1.0).abs() < 0.2,
-        factor: None,
-        why: "Means, because single impacts of two runs do not happen at the same instants. The sum is made up of the part of the clearance almost alone.".into(),
+        verdict: rest.below(0.2).and(sum.within(0.8, 1.2)),
+        why: "Means, because single impacts of two runs do not happen at the same instants. Almost all of the sum is the part of the clearance.".into(),
+        sources: e.all_cases(),
+        ..statement("composition", "Sect. 6, Fig. 5c", "The error of case 4 can be seen as the composition of cases 2 and 3.")
     }
 }
 
-fn error(recording: &Recording) -> &[f64] {
-    recording.between("error.x", FROM, DURATION).1
-}
-
-fn both_matter(m: &AllMeasures) -> Statement {
-    let (flexible, loose) = (
-        m.flexible.error_peak / m.both.error_peak,
-        m.loose.error_peak / m.both.error_peak,
-    );
+fn both_matter(e: &Evidence) -> Statement {
+    let flexible = e.flexible.get("error_peak");
+    let part = e.both().mean_of("error_peak", |b| flexible / b);
+    let other = e.both().mean_with(e.loose(), "error_peak", |b, a| a / b);
     Statement {
-        place: "Sect. 6, 7",
-        says: "Both link flexibility and joint clearance are important influence factors of the positioning accuracy.",
         measured: format!(
-            "Share of the largest error of case 4: flexibility alone {}, clearance alone {} (h = {}).",
-            percent(flexible),
-            percent(loose),
-            si(m.both.step, "s")
+            "largest error over that of case 4: with flexibility alone {}, with clearance alone {}.",
+            part.told(percent),
+            other.told(percent)
         ),
         criterion: "each above 10 %",
-        holds: flexible > 0.1 && loose > 0.1,
-        factor: None,
+        verdict: part.above(0.1).and(other.above(0.1)),
         why: "With the printed stiffness the links hardly stretch under the forces of this motion."
             .into(),
+        sources: e.all_cases(),
+        ..statement(
+            "both matter",
+            "Sect. 6, 7",
+            "Both link flexibility and joint clearance are important influence factors of the positioning accuracy.",
+        )
     }
 }

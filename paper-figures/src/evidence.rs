@@ -1,0 +1,83 @@
+//! Everything that the statements are decided by.
+
+use crate::campaign::Campaign;
+use crate::interval::Verdict;
+use crate::measures::Measures;
+use crate::record::{BOTH, Ensemble, LOOSE, Record, Timings};
+use crate::runs::Recording;
+use crate::statement::{Basis, Statement};
+use crate::warned::Source;
+
+/// The runs of the main job, what they measure, and the records of `ensembles`.
+pub struct Evidence<'a> {
+    /// The runs of the figures.
+    pub c: &'a Campaign,
+    /// The record of the ensembles.
+    pub e: &'a Record,
+    /// The record of times.
+    pub t: &'a Timings,
+    /// Case 1.
+    pub ideal: Measures,
+    /// Case 2, fine step.
+    pub flexible: Measures,
+    /// Case 2, coarse step.
+    pub flexible_coarse: Measures,
+}
+
+impl<'a> Evidence<'a> {
+    /// Measures the runs that are not chaotic.
+    pub fn of(c: &'a Campaign, e: &'a Record, t: &'a Timings) -> Evidence<'a> {
+        let measure = |r: &Recording| Measures::of(&c.geometry, r);
+        Evidence {
+            c,
+            e,
+            t,
+            ideal: measure(&c.ideal),
+            flexible: measure(&c.flexible),
+            flexible_coarse: measure(&c.flexible_coarse),
+        }
+    }
+
+    /// The ensemble of case 3.
+    pub fn loose(&self) -> &Ensemble {
+        self.e.ensemble(LOOSE)
+    }
+
+    /// The ensemble of case 4.
+    pub fn both(&self) -> &Ensemble {
+        self.e.ensemble(BOTH)
+    }
+
+    /// The ensembles of cases 3 and 4.
+    pub fn ensembles(&self) -> Vec<Source> {
+        vec![self.loose().source(), self.both().source()]
+    }
+
+    /// Both runs of case 2, and the ensembles of cases 3 and 4.
+    pub fn all_cases(&self) -> Vec<Source> {
+        let mut sources = self.case_2();
+        sources.extend(self.ensembles());
+        sources
+    }
+
+    /// Both runs of case 2.
+    pub fn case_2(&self) -> Vec<Source> {
+        vec![self.c.flexible.source(), self.c.flexible_coarse.source()]
+    }
+}
+
+/// A statement to be filled in.
+pub fn statement(key: &'static str, place: &'static str, says: &'static str) -> Statement {
+    Statement {
+        key,
+        place,
+        says,
+        measured: String::new(),
+        criterion: "",
+        verdict: Verdict::Undecided,
+        basis: Basis::Measurement,
+        factor: None,
+        why: String::new(),
+        sources: Vec::new(),
+    }
+}

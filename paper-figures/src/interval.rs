@@ -1,0 +1,144 @@
+//! Means of ensembles with their 95 % intervals, and what they decide.
+
+/// Starts of every ensemble.
+pub const STARTS: usize = 16;
+/// 97.5 % quantile of Student's t distribution with [`STARTS`] - 1 degrees of freedom.
+const STUDENT: f64 = 2.131_449_546;
+/// The same with 2 [`STARTS`] - 2 degrees of freedom, for the difference of two means.
+const STUDENT_OF_TWO: f64 = 2.042_272_456;
+
+/// How a criterion comes out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Met.
+    Holds,
+    /// Missed.
+    Fails,
+    /// The interval straddles the limit.
+    Undecided,
+}
+
+impl Verdict {
+    /// Of a quantity that is known.
+    pub fn of(holds: bool) -> Verdict {
+        if holds {
+            Verdict::Holds
+        } else {
+            Verdict::Fails
+        }
+    }
+
+    /// Both are met; one missed is enough to miss.
+    pub fn and(self, other: Verdict) -> Verdict {
+        match (self, other) {
+            (Verdict::Fails, _) | (_, Verdict::Fails) => Verdict::Fails,
+            (Verdict::Holds, Verdict::Holds) => Verdict::Holds,
+            _ => Verdict::Undecided,
+        }
+    }
+
+    /// The opposite.
+    pub fn not(self) -> Verdict {
+        match self {
+            Verdict::Holds => Verdict::Fails,
+            Verdict::Fails => Verdict::Holds,
+            Verdict::Undecided => Verdict::Undecided,
+        }
+    }
+
+    /// One is met at least.
+    pub fn or(self, other: Verdict) -> Verdict {
+        match (self, other) {
+            (Verdict::Holds, _) | (_, Verdict::Holds) => Verdict::Holds,
+            (Verdict::Fails, Verdict::Fails) => Verdict::Fails,
+            _ => Verdict::Undecided,
+        }
+    }
+}
+
+/// A mean and the half width of its 95 % interval, from [`STARTS`] independent values.
+#[derive(Debug, Clone, Copy)]
+pub struct Interval {
+    /// The mean.
+    pub mean: f64,
+    /// Student's half width.
+    pub half: f64,
+}
+
+impl Interval {
+    /// Of one value a start.
+    ///
+    /// # Panics
+    /// When there are not [`STARTS`] values.
+    pub fn of(values: &[f64]) -> Interval {
+        assert_eq!(values.len(), STARTS, "an ensemble is incomplete");
+        let n = STARTS as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+        let half = STUDENT * (squares / (n - 1.0) / n).sqrt();
+        Interval { mean, half }
+    }
+
+    /// Whether the mean lies between two limits.
+    pub fn within(&self, low: f64, high: f64) -> Verdict {
+        let (least, largest) = (self.mean - self.half, self.mean + self.half);
+        if least >= low && largest <= high {
+            Verdict::Holds
+        } else if largest < low || least > high {
+            Verdict::Fails
+        } else {
+            Verdict::Undecided
+        }
+    }
+
+    /// Whether the mean lies above a limit.
+    pub fn above(&self, limit: f64) -> Verdict {
+        self.within(limit, f64::INFINITY)
+    }
+
+    /// Whether the mean lies below a limit.
+    pub fn below(&self, limit: f64) -> Verdict {
+        self.within(f64::NEG_INFINITY, limit)
+    }
+
+    /// Whether two means of [`STARTS`] values each differ at the 95 % level.
+    pub fn differs(&self, other: &Interval) -> bool {
+        let error = self.half.hypot(other.half) / STUDENT;
+        (self.mean - other.mean).abs() > STUDENT_OF_TWO * error
+    }
+
+    /// Mean and interval, each number written by `show`.
+    pub fn told(&self, show: impl Fn(f64) -> String) -> String {
+        format!("{} ± {}", show(self.mean), show(self.half))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn interval_of_an_arithmetic_sequence() {
+        let values: Vec<f64> = (0..STARTS).map(|i| i as f64).collect();
+        let interval = Interval::of(&values);
+        // variance of 0..15: n (n + 1) / 12 = 22.667
+        let half = 2.131_449_546 * (272.0 / 12.0 / 16.0_f64).sqrt();
+        assert!((interval.mean - 7.5).abs() < 1e-12 && (interval.half - half).abs() < 1e-12);
+        assert_eq!(interval.above(8.0), Verdict::Undecided);
+        assert_eq!(interval.above(1.0), Verdict::Holds);
+        assert_eq!(interval.below(1.0), Verdict::Fails);
+        assert_eq!(interval.within(9.0, 20.0), Verdict::Undecided);
+        assert_eq!(interval.within(0.0, 20.0), Verdict::Holds);
+    }
+
+    #[test]
+    fn means_differ_when_they_are_two_standard_errors_apart() {
+        let at = |mean| Interval {
+            mean,
+            half: STUDENT,
+        };
+        // standard error of the difference: the square root of 2
+        assert!(!at(0.0).differs(&at(2.8)));
+        assert!(at(0.0).differs(&at(3.0)));
+    }
+}

@@ -1,0 +1,288 @@
+//! Statements of the abstract and of section 1: what flexibility and clearance do, and what methods are good for.
+
+use crate::evidence::{Evidence, statement};
+use crate::interval::Verdict;
+use crate::methods::{HORIZON, explicit};
+use crate::record::{Long, Work};
+use crate::runs::words;
+use crate::statement::Statement;
+use crate::warned::Source;
+use plot::{digits, percent, si};
+
+/// Errors at which work is compared, as parts of the largest error of the platform.
+const LEVELS: [f64; 2] = [1e-2, 1e-4];
+/// "Much" more work.
+const MUCH: f64 = 2.0;
+/// A run whose vibration has grown by this factor is unstable.
+const GROWN: f64 = 1.5;
+
+/// The statements.
+pub fn statements(e: &Evidence) -> Vec<Statement> {
+    vec![
+        represents_well(e),
+        flexibility_matters(e),
+        vibration(e),
+        high_modes(e),
+        explicit_inefficient(e),
+        explicit_fails(e),
+        implicit_efficient(e),
+        others_unstable(e),
+        bathe_stable(e),
+    ]
+}
+
+fn represents_well(e: &Evidence) -> Statement {
+    let lost = [e.loose(), e.both()].map(|m| m.mean_of("energy_lost", f64::abs));
+    Statement {
+        measured: format!(
+            "energy that the integrator alone lost or gained in three cycles, over that dissipated in contacts: case 3 {}, case 4 {}; in case 2, where nothing dissipates, over the largest elastic energy {}. The runs of the figures with Bathe's method: case 3 {}, case 4 {}.",
+            lost[0].told(percent),
+            lost[1].told(percent),
+            percent(e.flexible.get("energy_lost").abs()),
+            percent(crate::measures::energy_lost(&e.c.loose).abs()),
+            percent(crate::measures::energy_lost(&e.c.both).abs())
+        ),
+        criterion: "below 5 % of the contact dissipation in cases 3 and 4, so that what is seen is the model and not the integrator",
+        verdict: lost[0].below(0.05).and(lost[1].below(0.05)),
+        why: "The paper compares with no measurement and no second code; the energy ledger is the part of the claim that a run can decide.".into(),
+        sources: e.all_cases().into_iter().chain([e.c.loose.source(), e.c.both.source()]).collect(),
+        ..statement("represents", "Abstract", "The methodology can represent the dynamic performances of the system with link flexibility and joint clearance well.")
+    }
+}
+
+fn flexibility_matters(e: &Evidence) -> Statement {
+    let share = e.flexible.get("deviation_share");
+    let peak = e.both().mean_with(e.loose(), "force_peak", |b, a| b / a);
+    Statement {
+        measured: format!(
+            "flexible links change the acceleration of the ideal mechanism by {} (rms, case 2), and the peak force of the mechanism with clearance to {} of what it is with rigid links.",
+            percent(share),
+            peak.told(digits)
+        ),
+        criterion: "both change by more than 10 %",
+        verdict: Verdict::of(share > 0.1).and(peak.within(0.9, 1.1).not()),
+        why: "The first is the vibration of an undamped start.".into(),
+        sources: e.all_cases(),
+        ..statement(
+            "flexibility",
+            "Sect. 1",
+            "Link flexibility plays an important role in the dynamic performances of the mechanical system.",
+        )
+    }
+}
+
+fn vibration(e: &Evidence) -> Statement {
+    let share = [e.loose(), e.both()].map(|m| m.mean("deviation_share"));
+    let two = e.flexible.get("deviation_share");
+    Statement {
+        measured: format!(
+            "rms deviation of the acceleration over the rms of the ideal one: case 2 {}, case 3 {}, case 4 {}.",
+            percent(two),
+            share[0].told(percent),
+            share[1].told(percent)
+        ),
+        criterion: "above 5 % in cases 2, 3 and 4",
+        verdict: Verdict::of(two > 0.05)
+            .and(share[0].above(0.05))
+            .and(share[1].above(0.05)),
+        why: "Noise is not part of the model; for service life see the statement about it below."
+            .into(),
+        sources: e.all_cases(),
+        ..statement(
+            "vibration",
+            "Sect. 1",
+            "Joint clearances and link flexibility can cause vibration and noise.",
+        )
+    }
+}
+
+fn high_modes(e: &Evidence) -> Statement {
+    let frequency = e.flexible.get("deviation_frequency");
+    Statement {
+        measured: format!(
+            "half of the power of the vibration of case 2 lies above {}.",
+            si(frequency, "Hz")
+        ),
+        criterion: "above 50 Hz, fifty times the frequency of the motion",
+        verdict: Verdict::of(frequency > 50.0),
+        why: "The platform vibrates on the axial and bending stiffness of the links.".into(),
+        sources: vec![e.c.flexible.source()],
+        ..statement(
+            "modes",
+            "Sect. 1",
+            "The deformation modes of the flexible multibody system with joint clearance are associated with high frequencies.",
+        )
+    }
+}
+
+/// The least work of a class of methods that gives an error below a part of the largest error, with this step and with
+/// all shorter ones of the same method: a coarse step can be right by accident.
+fn cheapest<'a>(e: &'a Evidence, case: u32, is_explicit: bool, level: f64) -> Option<&'a Work> {
+    let runs: Vec<&Work> = e.e.work.iter().filter(|w| w.case == case).collect();
+    let good = |w: &Work| w.error.is_some_and(|error| error <= level * w.size);
+    let reached = |w: &&&Work| {
+        let finer = runs
+            .iter()
+            .filter(|f| f.method == w.method && f.step <= w.step);
+        explicit(&w.method) == is_explicit && finer.into_iter().all(|f| good(f))
+    };
+    runs.iter()
+        .filter(reached)
+        .min_by_key(|w| w.evaluations)
+        .copied()
+}
+
+/// Explicit over implicit work at every level of both cases, in words, and the runs.
+fn work(e: &Evidence) -> (Vec<f64>, String, Vec<Source>) {
+    let (mut ratios, mut text, mut sources) = (Vec::new(), Vec::new(), Vec::new());
+    for case in [2, 4] {
+        for level in LEVELS {
+            let pair = [true, false].map(|x| cheapest(e, case, x, level));
+            let [Some(one), Some(other)] = pair else {
+                text.push(format!(
+                    "case {case} at {}: not reached by both kinds",
+                    percent(level)
+                ));
+                continue;
+            };
+            let ratio = one.evaluations as f64 / other.evaluations as f64;
+            ratios.push(ratio);
+            let told = |w: &Work| {
+                format!(
+                    "{} {} with h = {}",
+                    w.evaluations,
+                    words(&w.method),
+                    si(w.step, "s")
+                )
+            };
+            text.push(format!(
+                "case {case} at {}: {}, {}, ratio {}",
+                percent(level),
+                told(one),
+                told(other),
+                digits(ratio)
+            ));
+            sources.extend([one, other].map(source));
+        }
+    }
+    (ratios, text.join("; "), sources)
+}
+
+fn source(w: &Work) -> Source {
+    Source {
+        name: format!(
+            "case {}, {} with h = {}",
+            w.case,
+            words(&w.method),
+            si(w.step, "s")
+        ),
+        warnings: w.warnings.clone(),
+    }
+}
+
+fn explicit_inefficient(e: &Evidence) -> Statement {
+    let (ratios, text, sources) = work(e);
+    Statement {
+        measured: format!(
+            "least number of evaluations of the elastic force with which the best explicit and the best implicit method keep e_x over {} within a part of its largest value: {text}.",
+            si(HORIZON, "s")
+        ),
+        criterion: "\"can be\" asks for one case and accuracy: more than twice the work of the best implicit method in one of them",
+        verdict: Verdict::of(ratios.iter().any(|r| *r > MUCH)),
+        why: "An implicit evaluation includes the tangent and a factorisation, which are not counted: the comparison favours the implicit methods. Processor times are in ACCURACY.md.".into(),
+        sources,
+        ..statement("explicit", "Sect. 1", "For such a system explicit integration methods can be very inefficient.")
+    }
+}
+
+fn explicit_fails(e: &Evidence) -> Statement {
+    let useless = |w: &Work| w.error.is_none_or(|error| error > w.size);
+    let explicit_runs: Vec<&Work> = e.e.work.iter().filter(|w| explicit(&w.method)).collect();
+    let steps = explicit_runs.iter().filter(|w| useless(w));
+    let bathe_works = |w: &Work| {
+        let same = |b: &&Work| b.method == "bathe" && b.case == w.case && b.step == w.step;
+        let bathe = e.e.work.iter().find(same);
+        bathe.is_some_and(|b| b.error.is_some_and(|error| error < 0.1 * b.size))
+    };
+    let failed: Vec<&Work> = steps.copied().filter(|w| bathe_works(w)).collect();
+    let told: Vec<String> = failed.iter().map(|w| source(w).name).collect();
+    Statement {
+        measured: if told.is_empty() {
+            "at no step does an explicit method stop or miss e_x by more than its size where Bathe's method keeps it within a tenth.".into()
+        } else {
+            format!(
+                "runs that stop, or miss e_x by more than its size, at a step with which Bathe's method keeps it within a tenth: {}.",
+                told.join("; ")
+            )
+        },
+        criterion: "there is such a run",
+        verdict: Verdict::of(!failed.is_empty()),
+        why: "The step of an explicit method is bounded by the highest frequency of the model."
+            .into(),
+        sources: failed.iter().map(|w| source(w)).collect(),
+        ..statement(
+            "explicit fails",
+            "Sect. 1",
+            "Explicit integration methods can even fail.",
+        )
+    }
+}
+
+fn implicit_efficient(e: &Evidence) -> Statement {
+    let (ratios, _, sources) = work(e);
+    let told: Vec<String> = ratios.iter().map(|r| digits(*r)).collect();
+    Statement {
+        measured: format!(
+            "work of the best explicit method over that of the best implicit one, as above: {}.",
+            told.join(", ")
+        ),
+        criterion: "above 2 in both cases at both accuracies",
+        verdict: Verdict::of(ratios.len() == 4 && ratios.iter().all(|r| *r > MUCH)),
+        why: "With links this stiff and impacts this short, accuracy asks for steps that are short enough for explicit methods too.".into(),
+        sources,
+        ..statement("implicit", "Sect. 1", "For such a stiff system implicit integration methods are much more efficient than explicit methods.")
+    }
+}
+
+/// What became of the vibration in long runs, in words.
+fn grown(runs: &[&Long]) -> String {
+    let told: Vec<String> = runs
+        .iter()
+        .map(|l| {
+            let (method, step) = (words(&l.method), si(l.step, "s"));
+            format!("{method} in case {} at h = {step}: {}", l.case, l.told())
+        })
+        .collect();
+    told.join("; ")
+}
+
+fn others_unstable(e: &Evidence) -> Statement {
+    let others: Vec<&Long> = e.e.long.iter().filter(|l| l.method != "bathe").collect();
+    let stays = others
+        .iter()
+        .map(|l| l.stays(GROWN))
+        .fold(Verdict::Holds, Verdict::and);
+    Statement {
+        measured: format!(
+            "rms deviation of the acceleration in the last cycle over that in the second, of 34 cycles in case 2 and 10 cycles in case 4: {}. The trapezoidal rule is Newmark's method of constant average acceleration; generalised-α and HHT have the spectral radius 0.8.",
+            grown(&others)
+        ),
+        criterion: "\"may\" asks for one of these: runs that stop, or whose vibration grows by more than half",
+        verdict: stays.not(),
+        why: "In case 4 this step is far longer than those that resolve contacts; in case 2, which is nearly linear, no method becomes unstable.".into(),
+        sources: others.iter().map(|l| l.source()).collect(),
+        ..statement("others unstable", "Sect. 1", "The generalised-α, Newmark and HHT methods may become unstable for long time simulation.")
+    }
+}
+
+fn bathe_stable(e: &Evidence) -> Statement {
+    let bathe: Vec<&Long> = e.e.long.iter().filter(|l| l.method == "bathe").collect();
+    Statement {
+        measured: format!("the same for Bathe's method: {}.", grown(&bathe)),
+        criterion: "no run stops, and no vibration grows by more than half",
+        verdict: bathe.iter().map(|l| l.stays(GROWN)).fold(Verdict::Holds, Verdict::and),
+        why: "At the price of the vibration itself, which a coarse step damps away, and of the energy of contacts, which it does not resolve: see the warnings.".into(),
+        sources: bathe.iter().map(|l| l.source()).collect(),
+        ..statement("bathe stable", "Sect. 1", "Bathe's two-step method overcomes this limitation for long time durations.")
+    }
+}
