@@ -389,7 +389,7 @@ fn starts_section(record: &Record) -> String {
 }
 
 fn exponents_section(record: &Record) -> String {
-    let rate = |v: f64| si(v, "1/s");
+    let rate = |v: f64| format!("{} s⁻¹", digits(v));
     let mut text = format!(
         "## Largest Lyapunov exponents\n\n\
          ![Growth of the distance between neighbouring motions](figures/ensembles-exponents.png)\n\n\

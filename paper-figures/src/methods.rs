@@ -25,10 +25,10 @@ const RADIUS: f64 = 0.8;
 pub const HORIZON: f64 = 4e-3;
 /// Time between compared rows \[s\]; no step is longer.
 const ROWS: f64 = 1e-4;
-/// Largest step \[s\]; the others are halves of it, one after the other.
-const LARGEST: f64 = 1e-4;
-/// How often it is halved.
-const HALVINGS: i32 = 9;
+/// Steps, as parts of the time between rows.
+const PARTS: [u32; 18] = [
+    1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512,
+];
 /// Step of the reference, Dormand and Prince's pair of order 5 \[s\].
 const REFERENCE: f64 = 5e-8;
 /// Cases, steps \[s\], cycles and starts of the long runs; case 4 is chaotic.
@@ -77,7 +77,7 @@ pub fn work() -> Result<Vec<Work>> {
             .iter()
             .filter(|m| case > 2 || **m != "velocity_verlet");
         let jobs: Vec<(&'static str, f64)> = methods
-            .flat_map(|m| (0..=HALVINGS).map(|k| (*m, LARGEST * 0.5_f64.powi(k))))
+            .flat_map(|m| PARTS.map(|parts| (*m, ROWS / f64::from(parts))))
             .collect();
         let run = |&(method, step): &(&'static str, f64)| {
             let mut work = Work {

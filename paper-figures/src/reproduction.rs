@@ -74,7 +74,7 @@ pub fn page(e: &Evidence, numbers: &mut Numbers) -> String {
     }
     page += "## All statements\n\n| | where | the paper says | verdict |\n|---|---|---|---|\n";
     page.extend((1..).zip(&statements).map(|(i, s)| s.row(i)));
-    page += "\n## Criteria that exclude each other\n\nNo model can meet both of these:\n\n";
+    page += "\n## Criteria that exclude each other\n\nWith what the paper prints, both of a pair cannot hold:\n\n";
     for (one, other, why) in CONFLICTS {
         let number = |key: &str| {
             statements
@@ -116,14 +116,16 @@ fn count(statements: &[Statement], numbers: &mut Numbers) -> String {
         let (holds, fails) = (of(basis, Verdict::Holds), of(basis, Verdict::Fails));
         numbers.put(format!("statements.by_{name}.hold"), holds as f64);
         numbers.put(format!("statements.by_{name}.do_not_hold"), fails as f64);
-        format!("by {name}, {holds} hold and {fails} do not")
+        format!("| by {name} | {holds} | {fails} |\n")
     })
     .collect();
     format!(
-        "**Of {} statements, decided {}; {undecided} are undecided.** \"By construction\" means that the equations or the \
-         scene leave no other outcome; \"by an assumed value\", that a value which the paper does not give decides.",
+        "{} statements of the paper can be checked. {undecided} of them are undecided; the others are decided\n\n\
+         | | hold | do not hold |\n|---|---|---|\n{}\n\
+         \"By construction\" means that the equations or the scene leave no other outcome; \"by an assumed value\", that a \
+         value which the paper does not give decides.",
         statements.len(),
-        told.join("; ")
+        told.concat()
     )
 }
 
@@ -225,7 +227,7 @@ fn stiffness_argument(c: &Campaign, numbers: &mut Numbers) -> String {
         si(strain * length, "m"),
         si(strain * axial, "N"),
         si(CLAIMED * stiffness, "N"),
-        c.flexible.source().told(),
+        c.flexible.plan.pace.label(),
     )
 }
 

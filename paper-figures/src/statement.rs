@@ -95,12 +95,28 @@ impl Statement {
             );
         }
         let _ = write!(text, "\n* Criterion: {}.\n* {}\n", self.criterion, self.why);
-        if !self.sources.is_empty() {
-            let told: Vec<String> = self.sources.iter().map(Source::told).collect();
-            let _ = writeln!(text, "* From: {}.", told.join(", "));
-        }
+        text += &from(&self.sources);
         text + "\n"
     }
+}
+
+/// The runs, each once, those without warnings together.
+fn from(sources: &[Source]) -> String {
+    let mut told: Vec<String> = Vec::new();
+    let silent = sources.iter().filter(|s| s.warnings.is_empty());
+    let mut names: Vec<&str> = silent.map(|s| s.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    if !names.is_empty() {
+        told.push(format!("* Without warnings: {}.\n", names.join("; ")));
+    }
+    for source in sources.iter().filter(|s| !s.warnings.is_empty()) {
+        let line = format!("* {} warns: {}.\n", source.name, source.warnings.join("; "));
+        if !told.contains(&line) {
+            told.push(line);
+        }
+    }
+    told.concat()
 }
 
 #[cfg(test)]
@@ -135,7 +151,7 @@ mod tests {
     #[test]
     fn warnings_stand_beside_the_verdict() {
         let text = statement().paragraph(7);
-        assert!(text.contains("run 4 (warns: 2 clamps)"));
+        assert!(text.contains("* run 4 warns: 2 clamps."));
         assert!(text.contains("The paper's number is 2 times as large."));
     }
 }

@@ -249,7 +249,7 @@ fn not_periodic_loose(e: &Evidence) -> Statement {
 }
 
 fn chaotic(e: &Evidence) -> Statement {
-    let rate = |value: f64| si(value, "1/s");
+    let rate = |value: f64| format!("{} s⁻¹", digits(value));
     let of = |case: u32| -> Vec<(f64, Interval)> {
         let exponents = e.e.exponents(case);
         exponents.map(|x| (x.distance, x.mean())).collect()

@@ -9,16 +9,6 @@ pub struct Source {
     pub warnings: Vec<String>,
 }
 
-impl Source {
-    /// The name and what it warns of.
-    pub fn told(&self) -> String {
-        match self.warnings.as_slice() {
-            [] => format!("{} (no warning)", self.name),
-            warnings => format!("{} (warns: {})", self.name, warnings.join("; ")),
-        }
-    }
-}
-
 /// The warnings of several runs, each kind once: how many runs have it, and every number from its least to its largest.
 pub fn merged(runs: &[&[String]]) -> Vec<String> {
     let mut kinds: Vec<(Vec<String>, Vec<Vec<String>>)> = Vec::new();
