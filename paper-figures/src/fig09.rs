@@ -92,7 +92,8 @@ pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
     let text = format!(
         "Top: acceleration against velocity of the platform along x over cycles 2 and 3, the curve the paper calls a \
          Poincaré map. Bottom: stroboscopic section, one point a period at t = kT over {} periods after the first {}, \
-         as deviation from the ideal mechanism; a periodic motion gives one point. Its spread is that of the first step in the legend.",
+         as deviation from the ideal mechanism; a periodic motion gives one point. Its spread is that of the first step in the legend. \
+         Controlled: steps that keep the errors within 10 ms below 1 µm and 100 nJ.",
         c.settings.periods, c.settings.skipped
     );
     Figure {

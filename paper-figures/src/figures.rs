@@ -51,9 +51,9 @@ pub fn caption(text: &str, made_with: &[&Recording]) -> String {
         .filter(|r| !r.warnings.is_empty())
         .map(|r| {
             format!(
-                "Run {} ({}, {}) warns: {}.",
+                "Run {} (case {}, {}) warns: {}.",
                 r.number,
-                r.plan.scene_name(),
+                r.plan.case,
                 r.plan.pace.label(),
                 r.warnings.join("; ")
             )

@@ -157,7 +157,10 @@ impl Long {
                 words(&self.method),
                 self.cycles
             ),
-            warnings: merged(&all),
+            warnings: match all.as_slice() {
+                [one] => one.to_vec(),
+                all => merged(all),
+            },
         }
     }
 }

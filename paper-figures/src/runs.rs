@@ -31,7 +31,7 @@ impl Pace {
         match self {
             Pace::Steps("bathe", step) => format!("h = {}", si(step, "s")),
             Pace::Steps(method, step) => format!("{}, h = {}", words(method), si(step, "s")),
-            Pace::Controlled => "trapezoidal, 1 µm and 100 nJ in 10 ms".into(),
+            Pace::Controlled => "trapezoidal, controlled".into(),
         }
     }
 
