@@ -22,7 +22,7 @@ const METHODS: [&str; 6] = [
 /// Spectral radius at infinite frequency of generalised-alpha and HHT.
 const RADIUS: f64 = 0.8;
 /// Compared over this time \[s\], which the first impacts of case 4 fall into.
-pub const HORIZON: f64 = 4e-3;
+pub const HORIZON: f64 = 6e-3;
 /// Time between compared rows \[s\]; no step is longer.
 const ROWS: f64 = 1e-4;
 /// Steps, as parts of the time between rows.
