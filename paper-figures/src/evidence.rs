@@ -3,7 +3,7 @@
 use crate::campaign::Campaign;
 use crate::interval::Verdict;
 use crate::measures::Measures;
-use crate::record::{BOTH, Ensemble, LOOSE, Record, Timings};
+use crate::record::{Ensemble, Record, Timings};
 use crate::runs::Recording;
 use crate::statement::{Basis, Statement};
 use crate::warned::Source;
@@ -16,6 +16,8 @@ pub struct Evidence<'a> {
     pub e: &'a Record,
     /// The record of times.
     pub t: &'a Timings,
+    loose: Ensemble,
+    both: Ensemble,
     /// Case 1.
     pub ideal: Measures,
     /// Case 2, fine step.
@@ -32,20 +34,22 @@ impl<'a> Evidence<'a> {
             c,
             e,
             t,
+            loose: e.together(3),
+            both: e.together(4),
             ideal: measure(&c.ideal),
             flexible: measure(&c.flexible),
             flexible_coarse: measure(&c.flexible_coarse),
         }
     }
 
-    /// The ensemble of case 3.
+    /// The ensembles of case 3 together.
     pub fn loose(&self) -> &Ensemble {
-        self.e.ensemble(LOOSE)
+        &self.loose
     }
 
-    /// The ensemble of case 4.
+    /// The ensembles of case 4 together.
     pub fn both(&self) -> &Ensemble {
-        self.e.ensemble(BOTH)
+        &self.both
     }
 
     /// The ensembles of cases 3 and 4.

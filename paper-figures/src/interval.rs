@@ -2,7 +2,11 @@
 
 /// Starts of every ensemble.
 pub const STARTS: usize = 16;
-/// 97.5 % quantile of Student's t distribution with [`STARTS`] - 1 degrees of freedom.
+/// Starts of three ensembles together.
+pub const OF_THREE: usize = 3 * STARTS;
+/// 97.5 % quantile of Student's t distribution with [`OF_THREE`] - 1 degrees of freedom.
+const STUDENT_OF_THREE: f64 = 2.011_740_514;
+/// The same with [`STARTS`] - 1 degrees of freedom.
 const STUDENT: f64 = 2.131_449_546;
 /// The same with 2 [`STARTS`] - 2 degrees of freedom, for the difference of two means.
 const STUDENT_OF_TWO: f64 = 2.042_272_456;
@@ -56,7 +60,7 @@ impl Verdict {
     }
 }
 
-/// A mean and the half width of its 95 % interval, from [`STARTS`] independent values.
+/// A mean and the half width of its 95 % interval, from independent values.
 #[derive(Debug, Clone, Copy)]
 pub struct Interval {
     /// The mean.
@@ -66,16 +70,20 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Of one value a start.
+    /// Of one value a start, of one ensemble or of three together.
     ///
     /// # Panics
-    /// When there are not [`STARTS`] values.
+    /// When there are not that many values.
     pub fn of(values: &[f64]) -> Interval {
-        assert_eq!(values.len(), STARTS, "an ensemble is incomplete");
-        let n = STARTS as f64;
+        let student = match values.len() {
+            STARTS => STUDENT,
+            OF_THREE => STUDENT_OF_THREE,
+            n => panic!("an ensemble of {n} runs is incomplete"),
+        };
+        let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
         let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
-        let half = STUDENT * (squares / (n - 1.0) / n).sqrt();
+        let half = student * (squares / (n - 1.0) / n).sqrt();
         Interval { mean, half }
     }
 

@@ -11,8 +11,6 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Name of the ensemble of case 3.
-pub const LOOSE: &str = "A";
 /// Name of the ensemble of case 4.
 pub const BOTH: &str = "B";
 /// Name of the ensemble of case 3 with half the clearance.
@@ -34,7 +32,7 @@ pub struct Record {
 }
 
 /// Runs that differ by the direction of a tiny displacement of the platform at the start.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Ensemble {
     /// A letter.
     pub name: String,
@@ -51,7 +49,7 @@ pub struct Ensemble {
 }
 
 /// One run of an ensemble.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Member {
     /// What was measured.
     pub measures: Measures,
@@ -173,6 +171,18 @@ impl Record {
     pub fn ensemble(&self, name: &str) -> &Ensemble {
         let found = self.ensembles.iter().find(|e| e.name == name);
         found.unwrap_or_else(|| panic!("no ensemble {name}"))
+    }
+
+    /// The ensembles of a case that differ by the size of the displacement alone, as one.
+    pub fn together(&self, case: u32) -> Ensemble {
+        let all = self.ensembles.iter().filter(|e| e.case == case);
+        let all: Vec<&Ensemble> = all.filter(|e| e.changed.is_empty()).collect();
+        let names: Vec<&str> = all.iter().map(|e| e.name.as_str()).collect();
+        Ensemble {
+            name: names.join(", "),
+            members: all.iter().flat_map(|e| e.members.clone()).collect(),
+            ..all[0].clone()
+        }
     }
 
     /// The run of case 2 of this name.

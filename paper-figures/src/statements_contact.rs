@@ -6,7 +6,6 @@ use crate::evidence::{Evidence, statement};
 use crate::fig09;
 use crate::interval::{Interval, Verdict};
 use crate::measures::{PEAKS, SIMULTANEOUS};
-use crate::record::{BOTH, LOOSE};
 use crate::runs::Recording;
 use crate::statement::{Basis, Statement};
 use crate::warned::Source;
@@ -155,7 +154,7 @@ fn service_life(e: &Evidence) -> Statement {
 }
 
 fn sign_of_penetration(e: &Evidence) -> Statement {
-    let all = [LOOSE, BOTH].map(|name| e.e.ensemble(name).values("force_only_in_contact"));
+    let all = [e.loose(), e.both()].map(|ensemble| ensemble.values("force_only_in_contact"));
     let share = all.concat().into_iter().fold(1.0, f64::min);
     Statement {
         measured: format!(

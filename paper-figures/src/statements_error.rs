@@ -4,7 +4,7 @@ use crate::campaign::{DURATION, FROM};
 use crate::evidence::{Evidence, statement};
 use crate::fig05::CLAIMED;
 use crate::interval::Verdict;
-use crate::record::TIGHTER;
+use crate::record::{BOTH, TIGHTER};
 use crate::runs::Recording;
 use crate::signal::{peak, smooth};
 use crate::statement::Statement;
@@ -150,7 +150,7 @@ fn largest_in_case_4(e: &Evidence) -> Statement {
 
 fn composition(e: &Evidence) -> Statement {
     let flexible = e.flexible.get("error_peak");
-    let rest = e.both().mean("not_composed");
+    let rest = e.e.ensemble(BOTH).mean("not_composed");
     let sum = e
         .both()
         .mean_with(e.loose(), "error_peak", |b, a| b / (a + flexible));
