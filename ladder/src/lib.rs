@@ -10,6 +10,7 @@
 
 pub mod answer;
 pub mod compare;
+pub mod constants;
 pub mod figures;
 pub mod mutants;
 pub mod page;

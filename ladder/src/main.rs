@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use ladder::mutants::{Record, reasons};
-use ladder::{Answer, FOLDER, Rung, compare, figures, page};
+use ladder::{Answer, FOLDER, Rung, compare, constants, figures, page};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -38,7 +38,13 @@ fn main() -> Result<ExitCode> {
             pictures.push(rung);
         }
     }
-    let text = page::page(&answers, &pictures, &Record::read()?, &reasons()?)?;
+    let text = page::page(
+        &answers,
+        &pictures,
+        &constants::Record::load()?,
+        &Record::read()?,
+        &reasons()?,
+    )?;
     fs::write(&path, text).into_diagnostic()?;
     records::write_notes(&root)?;
     let failed: Vec<&Answer> = answers.iter().filter(|a| !a.holds()).collect();

@@ -3,7 +3,7 @@
 use crate::answer::short;
 use crate::compare::{cell, link};
 use crate::mutants::Record;
-use crate::{Answer, Rung};
+use crate::{Answer, Rung, constants};
 use miette::{Result, miette};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -15,6 +15,7 @@ use std::fmt::Write;
 pub fn page(
     answers: &[Answer],
     pictures: &[Rung],
+    constants: &constants::Record,
     mutants: &Record,
     reasons: &BTreeMap<String, String>,
 ) -> Result<String> {
@@ -38,6 +39,7 @@ pub fn page(
         }
         put(&mut page, String::new());
     }
+    numbers(&mut page, constants);
     mutation(&mut page, mutants, reasons)?;
     Ok(page)
 }
@@ -97,6 +99,30 @@ fn head(page: &mut String, answers: &[Answer]) {
                 slug(rung),
                 rows.len()
             ),
+        );
+    }
+    put(page, String::new());
+}
+
+/// Which numbers of the kernels the property tests notice a change of.
+fn numbers(page: &mut String, record: &constants::Record) {
+    put(
+        page,
+        format!(
+            "## Numbers of the kernels\n\n{}\n\
+             Every number of the element and of Bathe's scheme is changed by {} of the largest in its table, one at a time, and \
+             the three property tests of mass, tangent and decay run. `cargo run --release -p ladder --bin constants` repeats \
+             this.\n\n| table | file | numbers | caught |\n|---|---|---|---|",
+            records::place("constants"),
+            plot::number(record.change, 1),
+        ),
+    );
+    for table in record.numbers.chunk_by(|a, b| a.table == b.table) {
+        let caught = table.iter().filter(|n| !n.caught_by.is_empty()).count();
+        let (name, file) = (&table[0].table, &table[0].file);
+        put(
+            page,
+            format!("| {name} | `{file}` | {} | {caught} |", table.len()),
         );
     }
     put(page, String::new());
@@ -198,13 +224,29 @@ mod tests {
     fn a_page_has_the_rows_that_it_is_made_of() {
         let rows = [answer("one?", 0.1), answer("two?", 0.2)];
         let reasons = [(record().survivors[0].clone(), "equal".to_owned())].into();
-        let page = page(&rows, &[], &record(), &reasons).unwrap();
+        let page = page(
+            &rows,
+            &[],
+            &constants::Record::load().unwrap(),
+            &record(),
+            &reasons,
+        )
+        .unwrap();
         assert!(page.contains("75"), "the share of caught mutants");
         assert_eq!(stale(&page, &rows), [""; 0]);
     }
 
     #[test]
     fn a_survivor_needs_a_reason() {
-        assert!(page(&[answer("one?", 0.1)], &[], &record(), &BTreeMap::new()).is_err());
+        assert!(
+            page(
+                &[answer("one?", 0.1)],
+                &[],
+                &constants::Record::load().unwrap(),
+                &record(),
+                &BTreeMap::new()
+            )
+            .is_err()
+        );
     }
 }

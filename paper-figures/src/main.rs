@@ -77,6 +77,7 @@ const ENSEMBLES: &str = "ensembles.json";
 const TIMINGS: &str = "timings.json";
 
 fn reproduce(settings: Settings) -> Result<()> {
+    let run = Run::begin("reproduction")?;
     // before the runs, so that a missing record is told at once
     let (record, timings) = (record::load(ENSEMBLES)?, record::load(TIMINGS)?);
     let mut numbers = Numbers::default();
@@ -85,19 +86,23 @@ fn reproduce(settings: Settings) -> Result<()> {
     let evidence = Evidence::of(&campaign, &record, &timings);
     let page = reproduction::page(&evidence, &mut numbers);
     write(&figures, "REPRODUCTION.md", &page)?;
-    numbers.save(&record::file("numbers.json"))
+    numbers.save(&record::file("numbers.json"))?;
+    run.finish()
 }
 
 fn gather() -> Result<()> {
+    let run = Run::begin("ensembles")?;
     let timings = timings::run()?;
     let record = ensembles::run()?;
     record::save(&record, ENSEMBLES)?;
     record::save(&timings, TIMINGS)?;
     let figures = ensembles_page::figures(&record);
-    write(&figures, "ENSEMBLES.md", &ensembles_page::page(&record))
+    write(&figures, "ENSEMBLES.md", &ensembles_page::page(&record))?;
+    run.finish()
 }
 
 fn scan() -> Result<()> {
+    let run = Run::begin("scans")?;
     let mut numbers = Numbers::default();
     let scans = scans::run()?;
     let names: Vec<String> = scans.iter().map(|s| format!("scans-{}", s.slug)).collect();
@@ -108,7 +113,8 @@ fn scan() -> Result<()> {
         .collect();
     let page = scans_page::page(&scans, &mut numbers);
     write(&figures, "SCANS.md", &page)?;
-    numbers.save(&record::file("scans.json"))
+    numbers.save(&record::file("scans.json"))?;
+    run.finish()
 }
 
 /// Writes figures and a page.

@@ -183,7 +183,8 @@ pub fn page(scans: &[Scan], numbers: &mut Numbers) -> String {
          of its deviation from the ideal one; F is the force in B1. \"Energy lost\" is what the integrator alone lost \
          (negative: gained), over the energy that contacts dissipated or, in case 2, over the largest elastic energy. The \
          last column is what the run itself warns of. The dashed lines of the pictures are the ±0.2 mm that the paper reads \
-         off Fig. 5.\n\n"
+         off Fig. 5.\n\n",
+        records::place("scans"),
     );
     for scan in scans {
         let _ = write!(

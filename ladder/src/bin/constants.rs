@@ -3,11 +3,11 @@
 //! without any of them noticing.
 
 use clap::Parser;
-use ladder::seeded::{Copy, root};
+use ladder::constants::{Number, Record, path};
+use ladder::seeded::Copy;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use serde::{Deserialize, Serialize};
+use records::Run;
 use std::fs;
-use std::path::PathBuf;
 
 /// The property tests.
 const TESTS: [&str; 3] = [
@@ -108,30 +108,6 @@ impl Table {
     }
 }
 
-/// The file that is written.
-#[derive(Serialize, Deserialize)]
-struct Record {
-    /// By which part of the largest number of its table each number was changed.
-    change: f64,
-    tests: Vec<String>,
-    numbers: Vec<Number>,
-}
-
-#[derive(Clone, Serialize, Deserialize)]
-struct Number {
-    table: String,
-    file: String,
-    /// Its place in the table, from one, row by row.
-    place: usize,
-    /// What the file has there.
-    number: String,
-    caught_by: Vec<String>,
-}
-
-fn record_path() -> PathBuf {
-    root().join("ladder/constants.json")
-}
-
 /// Changes the numbers of the kernels one at a time and records which property tests notice.
 #[derive(Parser)]
 struct Arguments {
@@ -142,6 +118,7 @@ struct Arguments {
 
 fn main() -> Result<()> {
     let only = Arguments::parse().only.unwrap_or_default();
+    let run = Run::begin("constants")?;
     let copy = Copy::new("constants")?;
     let tests = || copy.failing(&["--profile", "mutants", "--test", "kernels"], &TESTS);
     let sound = tests()?;
@@ -150,13 +127,11 @@ fn main() -> Result<()> {
     }
     let mut changed = Vec::new();
     for table in &TABLES {
-        let path = copy.tree().join(table.file);
-        let text = fs::read_to_string(&path).into_diagnostic()?;
+        let text = fs::read_to_string(copy.tree().join(table.file)).into_diagnostic()?;
         // all tables first: a table that is not found fails at once
         changed.push((table, table.changed(&text)?));
     }
-    let known = fs::read_to_string(record_path()).unwrap_or_default();
-    let known = serde_json::from_str(&known).map_or(Vec::new(), |record: Record| record.numbers);
+    let known = Record::load().map_or(Vec::new(), |record| record.numbers);
     let mut numbers = Vec::new();
     for (table, changed) in changed {
         if !table.name.contains(&only) {
@@ -190,7 +165,10 @@ fn main() -> Result<()> {
         numbers,
     };
     let text = serde_json::to_string_pretty(&record).into_diagnostic()?;
-    fs::write(record_path(), text + "\n").into_diagnostic()?;
+    fs::write(path(), text + "\n").into_diagnostic()?;
+    if only.is_empty() {
+        run.finish()?;
+    }
     println!("{} of {all} numbers caught", all - survived);
     match survived {
         0 => Ok(()),
@@ -200,15 +178,14 @@ fn main() -> Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use super::{CHANGE, Record, TABLES, TESTS, record_path};
+    use super::{CHANGE, Record, TABLES, TESTS};
     use ladder::seeded::root;
     use std::fs;
 
     /// The record is that of the numbers in the code, by the tests of today, and every one was caught.
     #[test]
     fn every_number_is_on_record_as_caught() {
-        let text = fs::read_to_string(record_path()).unwrap();
-        let record: Record = serde_json::from_str(&text).unwrap();
+        let record = Record::load().unwrap();
         assert_eq!((record.change, record.tests.len()), (CHANGE, TESTS.len()));
         assert!(
             TESTS
