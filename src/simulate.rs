@@ -437,10 +437,11 @@ impl Simulation {
         self.try_step(reached)
     }
 
-    /// The local error of the trial step, as far as it stays in the motion.
+    /// The local error of the trial step; where it rules the steps, as far as it stays in the motion.
     fn estimate_error(&mut self) -> Result<(), RunError> {
         let Simulation {
             stepper,
+            pacer,
             model,
             state,
             trial,
@@ -456,9 +457,12 @@ impl Simulation {
             return Err(self.failed(error, self.trial.t - self.state.t));
         }
         stepper.local_error(state, trial, output, local_error);
-        let implicit = stepper.estimate().implicit;
-        for e in [&mut local_error.q, &mut local_error.v] {
-            newton.filter(model, implicit, &trial.v, e);
+        // equal steps do not follow the estimate: the two solves would only refine what the report says of it
+        if let Pacer::Controller(_) = pacer {
+            let implicit = stepper.estimate().implicit;
+            for e in [&mut local_error.q, &mut local_error.v] {
+                newton.filter(model, implicit, &trial.v, e);
+            }
         }
         Ok(())
     }

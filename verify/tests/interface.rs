@@ -139,7 +139,8 @@ fn channels_without_a_counterpart_are_known() {
         plan.rust(1e-5).unwrap(),
         plan.cpp(&tolerances(1e-6, 1e-9, 1e-7)).unwrap(),
     );
-    let (eccentricity, angles) = ([".ex", ".ey"], [".theta"]);
+    let eccentricity = [".ex", ".ey", ".ex_rate", ".ey_rate", ".eccentricity_rate"];
+    let angles = [".theta"];
     let known = |name: &String| {
         eccentricity
             .iter()
