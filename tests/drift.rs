@@ -185,7 +185,7 @@ fn holds(name: &str, strategy: impl Strategy<Value = Drawn>) {
     });
     Rung::Balance
         .asks(format!("{name}: largest energy that Bathe's scheme loses or gains at three steps, over its bound"))
-        .within(&used, 1.0, "((h ω)²/12 + n (h ω)⁴/144) of the energy in play over n steps, ω the highest frequency");
+        .within(&used, 1.0, "((h ω)²/12 + n (h ω)⁴/144) of the energy in play over n steps, ω the highest frequency; of random mechanisms");
     Rung::OrderInTime
         .asks(format!(
             "{name}: largest deviation from 2 of the order in which this energy falls"
@@ -193,7 +193,7 @@ fn holds(name: &str, strategy: impl Strategy<Value = Drawn>) {
         .within(
             &off,
             ORDER_TOLERANCE,
-            "the leading term is of order 2; the next is smaller by h ω, at most a fifth",
+            "the leading term is of order 2; the next is smaller by h ω, at most a fifth; of random mechanisms",
         );
 }
 

@@ -73,8 +73,8 @@ fn head(page: &mut String, answers: &[Answer]) {
              page; `./test.sh` fails when a row fails, when the page lacks a row or has one that no test asks, and when a row of the \
              page has another bound, reason or number than the test. The numbers are those of one machine. A number may differ \
              by a twentieth of itself, an order by a twentieth of the distance between its bounds; where the reason names \
-             rounding, random draws or chaos, and below 1e-9, by a factor of ten, because rounding differs between machines and \
-             random draws between runs ([ladder/src/compare.rs](ladder/src/compare.rs)).\n\n\
+             rounding, random draws or chaos, and below 1e-9, by a factor of ten, of random mechanisms by a thousand, because rounding \
+             differs between machines and random draws between runs ([ladder/src/compare.rs](ladder/src/compare.rs)).\n\n\
              | rung | rows | hold | nearest to its bound |\n|---|---|---|---|",
             answers.len()
         ),

@@ -143,8 +143,8 @@ impl LocalError {
 
 /// Goes on from the end of a step for once its length with its last acceleration, into `ahead`.
 ///
-/// # Errors
-/// Where the prescribed motion or the acceleration does not exist there.
+/// Where the prescribed motion or the acceleration does not exist there, the acceleration is taken to bend over the
+/// step by as much as it has changed, which is too much for a smooth motion.
 pub fn look_ahead(
     system: &dyn System,
     from: &State,
@@ -152,16 +152,21 @@ pub fn look_ahead(
     ahead: &mut State,
     newton: &mut Newton,
     work: &mut Work,
-) -> Result<(), StepError> {
+) {
     let h = to.t - from.t;
     ahead.copy_from(to);
     ahead.t = to.t + h;
-    system.prescribe(to, ahead, work)?;
-    for i in 0..system.shape().unknowns {
+    let unknowns = system.shape().unknowns;
+    let prescribed = system.prescribe(to, ahead, work);
+    for i in 0..unknowns {
         ahead.q[i] = to.q[i] + h * (to.v[i] + 0.5 * h * to.a[i]);
         ahead.v[i] = to.v[i] + h * to.a[i];
     }
-    Ok(newton.accelerate(system, ahead, work)?)
+    if prescribed.is_err() || newton.accelerate(system, ahead, work).is_err() {
+        for i in 0..unknowns {
+            ahead.a[i] = 3.0 * to.a[i] - 2.0 * from.a[i];
+        }
+    }
 }
 
 /// The scheme that a scene names.
