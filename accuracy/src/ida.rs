@@ -1,7 +1,7 @@
 //! The second implementation as a rival: full coordinates, stabilised index 2, IDA with located onsets.
 
 use looselink::precision::{Made, Pace, Study, StudyError, Timing, Work};
-use looselink::simulate::Told;
+use looselink::simulate::Notice;
 use miette::{Result, miette};
 use verify::trajectory::{Plan, Trajectory, tolerances};
 
@@ -22,12 +22,12 @@ pub fn points(
     study: &Study,
     tolerances: &[f64],
     repeats: usize,
-    tell: &mut dyn FnMut(Told),
+    tell: &mut dyn FnMut(Notice),
     add: Add,
 ) -> Result<()> {
     let plan = Plan::of_file(&study.scene, &study.set, study.duration, study.interval);
     for &relative in tolerances {
-        tell(Told::Begun(&format!("{NAME}, tolerance {relative:e}")));
+        tell(Notice::Begun(&format!("{NAME}, tolerance {relative:e}")));
         let made = repeated(&plan, relative, repeats);
         let pace = Pace::Tolerance(relative);
         let added = match &made {

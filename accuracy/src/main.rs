@@ -10,7 +10,7 @@ use clap::Parser;
 use looselink::ablation::figure as figure_of_effects;
 use looselink::machine::machine;
 use looselink::precision::{Effort, Outcome, Study, Survey, figure, run};
-use looselink::simulate::Told;
+use looselink::simulate::Notice;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use records::Run;
 use std::path::{Path, PathBuf};
@@ -65,7 +65,7 @@ fn main() -> Result<()> {
             repeats,
             smoke: false,
         };
-        let mut tell = |told: Told| show(&name, told);
+        let mut tell = |notice: Notice| show(&name, notice);
         if study.statistics.is_some() {
             let survey = Survey::run(&study, effort, &mut tell);
             let mut survey = survey.map_err(|e| miette!("{e}"))?;
@@ -122,10 +122,10 @@ fn main() -> Result<()> {
 }
 
 /// Shows what is told of the runs of a study.
-fn show(study: &str, told: Told) {
-    match told {
-        Told::Begun(run) => eprintln!("{study}: {run}"),
-        Told::Warned { run, warning } => eprintln!("{study}: {run}: warning: {warning}"),
+fn show(study: &str, notice: Notice) {
+    match notice {
+        Notice::Begun(run) => eprintln!("{study}: {run}"),
+        Notice::Warned { run, warning } => eprintln!("{study}: {run}: warning: {warning}"),
     }
 }
 

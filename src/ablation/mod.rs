@@ -19,7 +19,7 @@ pub use report::{Repeatable, Timing};
 pub use variants::{Role, Variant, variants};
 
 use crate::scene::Scene;
-use crate::simulate::Told;
+use crate::simulate::Notice;
 use measure::{Reference, Run, run, time};
 use serde::Serialize;
 
@@ -80,7 +80,7 @@ pub fn ablate(
     scene: &Scene,
     body: Observed,
     runs: Option<usize>,
-    tell: &mut dyn FnMut(Told),
+    tell: &mut dyn FnMut(Notice),
 ) -> Ablation {
     let variants = variants(scene);
     let mut distinct: Vec<(&Variant, Result<Run, String>)> = Vec::new();
@@ -89,7 +89,7 @@ pub fn ablate(
             continue;
         }
         let name = variant.name();
-        tell(Told::Begun(&name));
+        tell(Notice::Begun(&name));
         let reference = match (variant.role, distinct.first()) {
             (Role::Ideal, _) => Reference::Itself,
             (_, Some((_, Ok(ideal)))) => Reference::Path(&ideal.path),
@@ -100,14 +100,14 @@ pub fn ablate(
             Err(error) => Err(format!("not possible: {error}")),
         };
         for warning in measured.iter().flat_map(|run| &run.warnings) {
-            tell(Told::Warned {
+            tell(Notice::Warned {
                 run: &name,
                 warning,
             });
         }
         distinct.push((variant, measured));
     }
-    tell(Told::Begun("processor times"));
+    tell(Notice::Begun("processor times"));
     let ran = distinct.iter().filter(|(_, run)| run.is_ok());
     let ran: Vec<&Scene> = ran.filter_map(|(v, _)| v.scene.as_ref().ok()).collect();
     let mut seconds = time(&ran, runs).into_iter();

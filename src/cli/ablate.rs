@@ -49,7 +49,9 @@ pub fn ablate(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|e| Failure::bad_input(e.to_string()))?;
     folder.iter().try_for_each(Folder::prepare)?;
     let runs = arguments.runs.map(|runs| runs as usize);
-    let ablation = measure(&scene, body, runs, &mut |told| tell(told, arguments.quiet));
+    let ablation = measure(&scene, body, runs, &mut |notice| {
+        tell(notice, arguments.quiet)
+    });
     // What was measured is shown also where it cannot be stored.
     let stored = folder.map_or(Ok(()), |folder| folder.write(&ablation));
     show(arguments, &ablation)?;

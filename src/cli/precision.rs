@@ -6,7 +6,7 @@ use super::progress::show;
 use clap::Args;
 use looselink::machine::machine;
 use looselink::precision::{Effort, Folder, Study, Survey, page, run};
-use looselink::simulate::Told;
+use looselink::simulate::Notice;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -43,7 +43,7 @@ pub fn precision(arguments: &Arguments) -> Result<(), Failure> {
         },
         smoke: arguments.smoke,
     };
-    let mut tell = |told: Told| show(told, arguments.quiet);
+    let mut tell = |notice: Notice| show(notice, arguments.quiet);
     let machine = machine();
     let (page, stored) = match study.statistics {
         Some(_) => {

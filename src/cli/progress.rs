@@ -1,7 +1,7 @@
 //! How far a run is: a bar on a terminal, a line now and then elsewhere.
 
 use indicatif::{ProgressBar, ProgressStyle};
-use looselink::simulate::{Progress, Told};
+use looselink::simulate::{Notice, Progress};
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
@@ -85,11 +85,11 @@ pub fn warn(warning: &str) {
 }
 
 /// Shows what is told of many runs; with `quiet` the warnings alone.
-pub fn show(told: Told, quiet: bool) {
-    match told {
-        Told::Begun(name) if !quiet => say(name),
-        Told::Begun(_) => {}
-        Told::Warned { run, warning } => warn(&format!("{run}: {warning}")),
+pub fn show(notice: Notice, quiet: bool) {
+    match notice {
+        Notice::Begun(name) if !quiet => say(name),
+        Notice::Begun(_) => {}
+        Notice::Warned { run, warning } => warn(&format!("{run}: {warning}")),
     }
 }
 

@@ -90,11 +90,6 @@ pub(super) fn mass(parts: Vec<Inertia>, numbering: &Numbering, mode: Mode) -> Ma
 }
 
 impl Mass {
-    /// Its columns in row i.
-    pub(super) fn row(&self, i: usize) -> &[usize] {
-        &self.columns[self.row_start[i]..self.row_start[i + 1]]
-    }
-
     /// The sum over unknowns in the layout of a matrix; the unit matrix in the ideal mechanism.
     pub(super) fn matrix(&self, unknowns: usize, symbolic: &Symbolic, mode: Mode) -> Vec<f64> {
         let mut matrix = vec![0.0; symbolic.len()];
@@ -102,9 +97,7 @@ impl Mass {
             if mode == Mode::Ideal {
                 matrix[symbolic.slot(i, i) as usize] = 1.0;
             }
-            let values = &self.values[self.row_start[i]..];
-            let row = self.row(i).iter().zip(values);
-            for (&j, m) in row.filter(|(j, _)| **j < unknowns) {
+            for (&j, m) in self.row(i).filter(|(j, _)| **j < unknowns) {
                 matrix[symbolic.slot(i, j) as usize] = *m;
             }
         }

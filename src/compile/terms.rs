@@ -500,7 +500,7 @@ fn analyse_level(terms: &Terms, mass: &Mass, n: usize) -> Symbolic {
         pattern.cliques.extend(pairs);
     }
     for i in 0..n {
-        for &j in mass.row(i) {
+        for (&j, _) in mass.row(i) {
             pattern.add(&[i, j]);
         }
     }

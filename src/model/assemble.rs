@@ -19,11 +19,7 @@ impl Model {
     #[inline]
     fn inertia(&self, a: &[f64], r: &mut [f64]) {
         for (i, r) in r.iter_mut().enumerate() {
-            let range = self.mass.row_start[i]..self.mass.row_start[i + 1];
-            let row = self.mass.columns[range.clone()]
-                .iter()
-                .zip(&self.mass.values[range]);
-            *r = row.map(|(&j, m)| m * a[j]).sum();
+            *r = self.mass.row(i).map(|(&j, m)| m * a[j]).sum();
         }
         for &(i, weight) in &self.weight {
             r[i] += weight;
@@ -271,10 +267,7 @@ impl System for Model {
 
     fn momentum(&self, x: &[f64], out: &mut [f64]) {
         for (i, out) in out.iter_mut().enumerate().take(self.shape.unknowns) {
-            let range = self.mass.row_start[i]..self.mass.row_start[i + 1];
-            let row = self.mass.columns[range.clone()]
-                .iter()
-                .zip(&self.mass.values[range]);
+            let row = self.mass.row(i);
             *out = row.filter_map(|(&j, m)| Some(m * x.get(j)?)).sum();
         }
     }

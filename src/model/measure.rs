@@ -167,10 +167,7 @@ impl Model {
     pub fn energies(&self, at: &State) -> Energies {
         let mut energies = Energies::default();
         for (i, v) in at.v.iter().enumerate() {
-            let range = self.mass.row_start[i]..self.mass.row_start[i + 1];
-            let row = self.mass.columns[range.clone()]
-                .iter()
-                .zip(&self.mass.values[range]);
+            let row = self.mass.row(i);
             energies.kinetic += 0.5 * v * row.map(|(&j, m)| m * at.v[j]).sum::<f64>();
         }
         for element in &self.elements {
@@ -362,8 +359,8 @@ impl Model {
         self.bodies.iter().find_map(|body| match body.coordinates {
             BodyCoordinates::Rigid { x } => {
                 let angle = x + 2;
-                let way = (to.q[angle] - from.q[angle]).abs();
-                (angle < self.shape.unknowns && way > PI).then_some(angle)
+                let turned = (to.q[angle] - from.q[angle]).abs();
+                (angle < self.shape.unknowns && turned > PI).then_some(angle)
             }
             _ => None,
         })

@@ -263,6 +263,15 @@ pub(crate) struct Mass {
     pub known: Vec<(usize, usize, f64)>,
 }
 
+impl Mass {
+    /// Row i of the sum: columns and masses.
+    #[inline]
+    pub fn row(&self, i: usize) -> impl Iterator<Item = (&usize, &f64)> {
+        let range = self.row_start[i]..self.row_start[i + 1];
+        self.columns[range.clone()].iter().zip(&self.values[range])
+    }
+}
+
 /// A mass matrix on some coordinates, row by row.
 #[derive(Debug)]
 pub(crate) struct Inertia {

@@ -111,11 +111,11 @@ impl Function {
                 duration,
             } => {
                 let [s, by_u, by_u2] = quintic((t - start) / duration);
-                let way = to - from;
+                let increment = to - from;
                 [
-                    from + way * s,
-                    way * by_u / duration,
-                    way * by_u2 / (duration * duration),
+                    from + increment * s,
+                    increment * by_u / duration,
+                    increment * by_u2 / (duration * duration),
                 ]
             }
             Function::SpinUp {

@@ -30,10 +30,10 @@ impl Path for Line {
         let s_ddot = by_u2 / (self.duration * self.duration);
         let mut motion = Motion::default();
         for i in 0..3 {
-            let way = self.to[i] - self.from[i];
-            motion.position[i] = self.from[i] + way * s;
-            motion.velocity[i] = way * s_dot;
-            motion.acceleration[i] = way * s_ddot;
+            let increment = self.to[i] - self.from[i];
+            motion.position[i] = self.from[i] + increment * s;
+            motion.velocity[i] = increment * s_dot;
+            motion.acceleration[i] = increment * s_ddot;
         }
         motion
     }

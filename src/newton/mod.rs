@@ -275,6 +275,24 @@ impl Newton {
         self.end_acceleration_level(system, s, work)
     }
 
+    /// The accelerations at a state beside the motion: a singular pose there is neither counted nor remembered.
+    ///
+    /// # Errors
+    /// As [`Newton::make_consistent`].
+    pub fn accelerate_aside(
+        &mut self,
+        system: &dyn System,
+        s: &mut State,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
+        let poses = self.counters.singular_poses;
+        let of_the_motion = (self.in_singular_pose, self.met_singular_pose);
+        let result = self.accelerate(system, s, work);
+        self.counters.singular_poses = poses;
+        (self.in_singular_pose, self.met_singular_pose) = of_the_motion;
+        result
+    }
+
     /// Factorises the acceleration level. Returns true in a pose where the constraints lose rank.
     fn begin_acceleration_level(
         &mut self,
@@ -329,10 +347,10 @@ impl Newton {
             self.solve_for_phi(system);
             worst = (0, 0.0);
             for i in 0..n {
-                let way = self.b[i] + s.q_low[i];
+                let increment = self.b[i] + s.q_low[i];
                 let before = s.q[i];
-                s.q[i] = before + way;
-                s.q_low[i] = way - (s.q[i] - before);
+                s.q[i] = before + increment;
+                s.q_low[i] = increment - (s.q[i] - before);
                 let moved = self.b[i].abs();
                 if moved.is_nan() || moved > worst.1 {
                     worst = (i, moved);

@@ -18,7 +18,7 @@ use crate::system::{State, System, Weights, Work};
 const RATIO: f64 = 0.1;
 /// Most times there are: from the horizon to the rounding of the run's end.
 const MOST: usize = 12;
-/// Accepted steps after which one of the factors is renewed.
+/// judged steps after which one of the factors is renewed.
 const RENEWAL: usize = 16;
 
 /// The matrices of some times, factorised now and then: for an estimate an earlier pose will do.
@@ -106,7 +106,7 @@ impl Response {
     }
 
     /// What an error of velocity moves every unknown by within the horizon \[m\], in a step of length h.
-    pub fn ways(&mut self, system: &dyn System, h: f64, error: &[f64]) -> &[f64] {
+    pub fn displacement(&mut self, system: &dyn System, h: f64, error: &[f64]) -> &[f64] {
         let n = error.len();
         self.x.fill(0.0);
         for level in 0..self.ready {

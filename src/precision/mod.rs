@@ -22,7 +22,7 @@ pub use table::{page, table};
 
 use crate::instructions::Instructions;
 use crate::scene::{Scene, SceneError};
-use crate::simulate::{Recording, Report, RunError, Simulation, Told};
+use crate::simulate::{Notice, Recording, Report, RunError, Simulation};
 use cpu_time::ThreadTime;
 use errors::Series;
 use serde::Serialize;
@@ -234,7 +234,7 @@ enum Failed {
 pub fn run(
     study: &Study,
     effort: Effort,
-    tell: &mut dyn FnMut(Told),
+    tell: &mut dyn FnMut(Notice),
 ) -> Result<Outcome, StudyError> {
     let ([rough, exact], reference_warnings) = references(study, tell, Series::of)?;
     let mut outcome = Outcome {
@@ -258,10 +258,10 @@ type Columns<'a> = &'a dyn Fn(&str) -> Option<&'a [f64]>;
 type Add<'a> = &'a mut dyn FnMut(&str, Pace, Result<Made, String>) -> Result<(), StudyError>;
 
 /// Tells the warnings of a run and gives them back.
-fn warnings(report: &Report, run: &str, tell: &mut dyn FnMut(Told)) -> Vec<String> {
+fn warnings(report: &Report, run: &str, tell: &mut dyn FnMut(Notice)) -> Vec<String> {
     let warnings = report.warnings();
     for warning in &warnings {
-        tell(Told::Warned { run, warning });
+        tell(Notice::Warned { run, warning });
     }
     warnings
 }
@@ -269,12 +269,12 @@ fn warnings(report: &Report, run: &str, tell: &mut dyn FnMut(Told)) -> Vec<Strin
 /// Coarse and fine run of the reference, and their warnings.
 fn references<T>(
     study: &Study,
-    tell: &mut dyn FnMut(Told),
+    tell: &mut dyn FnMut(Notice),
     of: fn(&Study, Columns) -> Result<T, StudyError>,
 ) -> Result<([T; 2], [Vec<String>; 2]), StudyError> {
     let mut run = |pace: Pace| {
         let name = format!("reference, {pace}");
-        tell(Told::Begun(&name));
+        tell(Notice::Begun(&name));
         let scene = study.scene(&study.reference.set, study.reference.elements, pace)?;
         let failed = |e: Failed| match e {
             Failed::Scene(e) => StudyError::Scene(e),
@@ -293,14 +293,14 @@ fn references<T>(
 fn points(
     study: &Study,
     effort: Effort,
-    tell: &mut dyn FnMut(Told),
+    tell: &mut dyn FnMut(Notice),
     add: Add,
 ) -> Result<(), StudyError> {
     let count = if effort.smoke { 1 } else { usize::MAX };
     for curve in &study.curves {
         for pace in curve.paces().into_iter().take(count) {
             let name = format!("{}, {pace}", curve.name);
-            tell(Told::Begun(&name));
+            tell(Notice::Begun(&name));
             let scene = study.scene(&curve.set, curve.elements, pace)?;
             let made = record(&scene).and_then(|(recording, report)| {
                 Ok((recording, report, time(&scene, effort.repeats)?))

@@ -12,7 +12,7 @@ use super::{
     points, references,
 };
 use crate::machine::Machine;
-use crate::simulate::{Told, warning_list};
+use crate::simulate::{Notice, warning_list};
 use plot::{Axis, Figure, Mark, Panel, palette};
 use serde::Serialize;
 use std::fmt::Write;
@@ -133,7 +133,7 @@ impl Survey {
     pub fn run(
         study: &Study,
         effort: Effort,
-        tell: &mut dyn FnMut(Told),
+        tell: &mut dyn FnMut(Notice),
     ) -> Result<Survey, StudyError> {
         let brief = effort.smoke.then(|| study.brief());
         let study = brief.as_ref().unwrap_or(study);

@@ -85,8 +85,8 @@ impl Stepper for Bathe {
         system.prescribe(middle, to, work)?;
         for i in 0..n {
             let v_hat = from.v[i] + h * (c0 * from.a[i] + c1 * middle.a[i]);
-            let way = h * (c0 * from.v[i] + c1 * middle.v[i] + c2 * v_hat);
-            self.stage.set(from, i, v_hat, way);
+            let increment = h * (c0 * from.v[i] + c1 * middle.v[i] + c2 * v_hat);
+            self.stage.set(from, i, v_hat, increment);
         }
         let w = Weights { q: g * g, v: g };
         clamps += self.stage.solve(system, w, from, to, newton, work)?;

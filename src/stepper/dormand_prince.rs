@@ -65,7 +65,7 @@ pub struct DormandPrince {
     /// Stages 2 to 6.
     stages: [State; 5],
     /// Changes of q or v.
-    way: Vec<f64>,
+    increment: Vec<f64>,
 }
 
 impl DormandPrince {
@@ -73,7 +73,7 @@ impl DormandPrince {
     pub fn new(shape: Shape) -> DormandPrince {
         DormandPrince {
             stages: std::array::from_fn(|_| State::zeros(shape)),
-            way: vec![0.0; shape.unknowns],
+            increment: vec![0.0; shape.unknowns],
         }
     }
 }
@@ -116,13 +116,13 @@ impl Stepper for DormandPrince {
             stage.t = if *c == 1.0 { t } else { from.t + c * h };
             system.prescribe(from, stage, work)?;
             let before = || [from].into_iter().chain(&*done);
-            sum(h, row, before(), |s| &s.v, &mut self.way);
+            sum(h, row, before(), |s| &s.v, &mut self.increment);
             for k in 0..shape.unknowns {
-                stage.q[k] = from.q[k] + (from.q_low[k] + self.way[k]);
+                stage.q[k] = from.q[k] + (from.q_low[k] + self.increment[k]);
             }
-            sum(h, row, before(), |s| &s.a, &mut self.way);
+            sum(h, row, before(), |s| &s.a, &mut self.increment);
             for k in 0..shape.unknowns {
-                stage.v[k] = from.v[k] + self.way[k];
+                stage.v[k] = from.v[k] + self.increment[k];
             }
             newton.accelerate(system, stage, work)?;
             if WEIGHTS[i + 1] != 0.0 {
@@ -133,12 +133,12 @@ impl Stepper for DormandPrince {
         // the known coordinates of the last stage are those of the end
         to.copy_from(&stages[4]);
         let all = || [from].into_iter().chain(stages);
-        sum(h, &WEIGHTS, all(), |s| &s.a, &mut self.way);
+        sum(h, &WEIGHTS, all(), |s| &s.a, &mut self.increment);
         for k in 0..shape.unknowns {
-            to.v[k] = from.v[k] + self.way[k];
+            to.v[k] = from.v[k] + self.increment[k];
         }
-        sum(h, &WEIGHTS, all(), |s| &s.v, &mut self.way);
-        accumulate(from, &self.way, 0.0, to);
+        sum(h, &WEIGHTS, all(), |s| &s.v, &mut self.increment);
+        accumulate(from, &self.increment, 0.0, to);
         if shape.multipliers > 0 {
             newton.project_positions(system, to)?;
             newton.make_consistent(system, to, work)?;

@@ -93,8 +93,8 @@ impl Stepper for GeneralizedAlpha {
         for i in 0..n {
             let (mean, next) = known(from, &self.lag, i);
             let v_hat = from.v[i] + h * ((1.0 - gamma) * mean + gamma * next);
-            let way = h * (from.v[i] + h * ((0.5 - beta) * mean + beta * next));
-            self.stage.set(from, i, v_hat, way);
+            let increment = h * (from.v[i] + h * ((0.5 - beta) * mean + beta * next));
+            self.stage.set(from, i, v_hat, increment);
         }
         let w = Weights {
             q: h * h * beta * by_a,
@@ -131,8 +131,8 @@ impl Stepper for GeneralizedAlpha {
             // (1 - gamma) b + gamma b_1 less the mean of a and a_1, and b_1 - b
             let mean =
                 (self.gamma - 0.5) * change + h * ((1.0 - self.gamma) * lag + self.gamma * next);
-            let way = change + h * (next - lag);
-            *q = h * h * ((0.5 * self.gamma - self.beta) * way - change / 12.0);
+            let increment = change + h * (next - lag);
+            *q = h * h * ((0.5 * self.gamma - self.beta) * increment - change / 12.0);
             *v = -h * mean - h / 12.0 * second;
         }
     }

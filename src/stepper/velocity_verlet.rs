@@ -17,7 +17,7 @@ use crate::system::{Shape, State, System, Work};
 #[derive(Debug)]
 pub struct VelocityVerlet {
     /// q_1 - q.
-    way: Vec<f64>,
+    increment: Vec<f64>,
     history: History,
 }
 
@@ -25,7 +25,7 @@ impl VelocityVerlet {
     /// Memory for a system.
     pub fn new(shape: Shape) -> VelocityVerlet {
         VelocityVerlet {
-            way: vec![0.0; shape.unknowns],
+            increment: vec![0.0; shape.unknowns],
             history: History::new(shape),
         }
     }
@@ -48,10 +48,10 @@ impl Stepper for VelocityVerlet {
         to.t = t;
         system.prescribe(from, to, work)?;
         for i in 0..n {
-            self.way[i] = h * (from.v[i] + 0.5 * h * from.a[i]);
+            self.increment[i] = h * (from.v[i] + 0.5 * h * from.a[i]);
             to.v[i] = from.v[i] + h * from.a[i];
         }
-        accumulate(from, &self.way, 0.0, to);
+        accumulate(from, &self.increment, 0.0, to);
         newton.accelerate(system, to, work)?;
         for i in 0..n {
             to.v[i] = from.v[i] + 0.5 * h * (from.a[i] + to.a[i]);
