@@ -4,6 +4,7 @@ mod change;
 mod closures;
 mod control;
 mod equilibrium;
+mod foresight;
 mod impacts;
 mod meter;
 mod observer;
@@ -23,7 +24,7 @@ pub use impacts::Impact;
 use impacts::Impacts;
 pub use meter::Integration;
 use meter::{Gain, Meter};
-pub use observer::{Contact, Control, End, Observer, Onset, Progress, Told};
+pub use observer::{Contact, Control, End, Notice, Observer, Onset, Progress};
 pub use recording::Recording;
 pub use report::{Extreme, Inspection, Report, Status};
 pub(crate) use warnings::warning_list;
@@ -46,9 +47,9 @@ const HALVINGS: i32 = 24;
 /// A constraint that repeats others may be open by this part of the largest coordinate: rounding divided by the distance from
 /// a singular pose, and far below any motion.
 const LEFT_OPEN: f64 = 1e-6;
-/// Lengths of a step that leaps over a singular pose: so many powers of this ratio, longer ones first.
-const LEAPS: i32 = 20;
-const LEAP: f64 = 2.0;
+/// Lengths that are tried for a step through a singular pose: so many powers of this ratio, longer ones first.
+const PASSAGES: i32 = 20;
+const PASSAGE_RATIO: f64 = 2.0;
 /// What is wrong with a step into the second zero of an angle.
 const HALF_TURN: &str = "the direction it holds turns over by half a turn";
 /// What is wrong with a step that makes up turns.
@@ -86,6 +87,19 @@ pub enum RunError {
         step: f64,
         /// What was asked for.
         accuracy: Accuracy,
+    },
+    /// The accuracy takes more steps than a run may take.
+    #[error(
+        "the accuracy of {accuracy} takes about {} steps, more than the 1e8 that a run may take; {affordable} can be afforded",
+        short(steps)
+    )]
+    Unaffordable {
+        /// What was asked for.
+        accuracy: Accuracy,
+        /// The number of steps foreseen.
+        steps: f64,
+        /// What takes 1e8 steps.
+        affordable: Accuracy,
     },
     /// The integrator has put far more energy into the motion than the scene has.
     #[error(
@@ -149,7 +163,7 @@ struct LoopCounters {
     steps: u64,
     rejected: u64,
     location_trials: u64,
-    leap_trials: u64,
+    singular_pose_trials: u64,
     onsets: u64,
     unlocated: u64,
     clamps: u64,
@@ -182,6 +196,8 @@ pub struct Simulation {
     impacts: Impacts,
     closures: Closures,
     meter: Meter,
+    /// True of the pilot that foresees how many steps a run takes.
+    is_pilot: bool,
     local_error: LocalError,
     stall: Stall,
     counters: LoopCounters,
@@ -253,6 +269,7 @@ impl Simulation {
             statics,
             work,
             meter: Meter::new(scene, &model, &state),
+            is_pilot: false,
             trial: state.clone(),
             output: state.clone(),
             state,
@@ -340,7 +357,7 @@ impl Simulation {
             let goal = self.pacer.goal(self.state.t, target);
             let (mut clamps, mut reached) = self.try_step(goal)?;
             if matches!(self.pacer, Pacer::Controller(_)) {
-                (clamps, reached) = self.leap((clamps, reached), target)?;
+                (clamps, reached) = self.pass_singular_pose((clamps, reached), target)?;
             }
             self.estimate_error();
             if let Pacer::Controller(controller) = &mut self.pacer {
@@ -352,6 +369,7 @@ impl Simulation {
                     &self.local_error,
                     goal,
                 ) {
+                    Verdict::Keep if self.counters.steps == 0 => self.foresee()?,
                     Verdict::Keep => {}
                     Verdict::Repeat => continue,
                     Verdict::Stuck(worst) => {
@@ -427,17 +445,21 @@ impl Simulation {
     ///
     /// In such a pose the constraints do not determine the acceleration, and Newton's method does not determine the position
     /// in the direction they have lost. Neither is of any use to the estimate or to the next step.
-    fn leap(&mut self, step: (usize, f64), target: f64) -> Result<(usize, f64), RunError> {
+    fn pass_singular_pose(
+        &mut self,
+        step: (usize, f64),
+        target: f64,
+    ) -> Result<(usize, f64), RunError> {
         let meets = self.newton.met_singular_pose();
         if !meets || self.stays_in_singular_pose {
             self.stays_in_singular_pose = meets;
             return Ok(step);
         }
         let (t, (_, reached)) = (self.state.t, step);
-        let longer = (1..=LEAPS).map(|k| (reached - t) * LEAP.powi(k));
-        let shorter = (1..=LEAPS).map(|k| (reached - t) * LEAP.powi(-k));
+        let longer = (1..=PASSAGES).map(|k| (reached - t) * PASSAGE_RATIO.powi(k));
+        let shorter = (1..=PASSAGES).map(|k| (reached - t) * PASSAGE_RATIO.powi(-k));
         for length in longer.filter(|length| t + length <= target).chain(shorter) {
-            self.counters.leap_trials += 1;
+            self.counters.singular_pose_trials += 1;
             let step = self.try_step(t + length)?;
             if !self.newton.met_singular_pose() {
                 return Ok(step);
@@ -539,8 +561,10 @@ impl Simulation {
         {
             return Err(self.failed(failure.into(), 0.0));
         }
+        // with an accuracy a gain is an error that was allowed, and a step that is too long is taken again
         if self.scene.simulation.analysis == Analysis::Dynamic
             && let Err(gain) = meter.row(model, output)
+            && matches!(self.pacer, Pacer::Grid(_))
         {
             return Err(self.unstable(gain));
         }

@@ -3,7 +3,7 @@
 use crate::support::{Recording, load, run, run_scene};
 use ladder::{Rung, Worst};
 use looselink::scene::Scene;
-use looselink::simulate::{RunError, Simulation};
+use looselink::simulate::{Control, Observer, Progress, RunError, Simulation};
 
 /// A scene, its duration, the time between rows, the step of the reference, channels of position.
 const SCENES: [(&str, f64, f64, f64, &[&str]); 5] = [
@@ -302,6 +302,69 @@ fn an_accuracy_out_of_reach_is_an_error() {
             .to_string()
             .starts_with("the accuracy of 1e-18 m over 0.01 s cannot be reached at t =")
     );
+}
+
+/// Backward Euler, of order 1, would take 5e10 steps for a nanometre: the run is refused before its first step, with an
+/// accuracy that it then begins with.
+#[test]
+fn an_accuracy_that_takes_too_many_steps_is_refused() {
+    let settings = |position: f64| {
+        let pace = format!("integrator.accuracy={{ position = {position:e}, horizon = 1.0 }}");
+        ["integrator.method=backward_euler".to_owned(), pace]
+    };
+    let simulation = |position| {
+        let settings = settings(position);
+        let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+        Simulation::new(&load("pendulum.toml", &settings)).unwrap()
+    };
+    let mut refused = simulation(1e-9);
+    let error = refused.run(&mut ()).unwrap_err();
+    let RunError::Unaffordable {
+        steps, affordable, ..
+    } = error
+    else {
+        panic!("{error}");
+    };
+    assert_eq!(refused.state().t, 0.0);
+    assert_eq!(refused.report().steps, 0);
+
+    let mut coarse = simulation(1e-3);
+    coarse.run(&mut ()).unwrap();
+    let taken = coarse.report().steps as f64;
+    let worst = Worst::new();
+    worst.see((steps / taken / 1e6).ln());
+    Rung::HardCases
+        .asks("Backward Euler: steps foreseen for 1 nm over a million times those taken for 1 mm")
+        .within(
+            &worst,
+            4.0_f64.ln(),
+            "a factor of 4: the step is inverse to the rate of the acceleration, which varies along a swing",
+        );
+
+    struct Begun;
+    impl Observer for Begun {
+        fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
+            Ok(())
+        }
+        fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
+            Ok(Control::Stop)
+        }
+    }
+    let begun = simulation(affordable.position).run(&mut Begun).unwrap_err();
+    assert!(matches!(begun, RunError::Interrupted { .. }), "{begun}");
+}
+
+/// An explicit method at its limit of stability shakes a stiff blade by less than the accuracy allows. That is more energy
+/// than the slow start has supplied, and no reason to stop the run.
+#[test]
+fn a_gain_within_the_accuracy_does_not_stop_a_run() {
+    let settings = [
+        "simulation.duration=0.15",
+        "integrator.method=dormand_prince",
+        "integrator.accuracy={ position = 1e-4, horizon = 15.0 }",
+    ];
+    let mut simulation = Simulation::new(&load("spin-up.toml", &settings)).unwrap();
+    simulation.run(&mut ()).unwrap();
 }
 
 /// A journal that is thrown up and falls again touches the bearing between the ends of one long step; the contact is found

@@ -79,6 +79,7 @@ impl Simulation {
                 return Ok(clamps);
             }
             // there and back again within the step
+            self.counters.location_trials += 1;
             (clamps, t) = self.try_step(middle)?;
             (past, rate) = self.furthest_past();
             if past <= tolerance {

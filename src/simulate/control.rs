@@ -201,14 +201,14 @@ impl Controller {
             true => steps,
             false => steps.sqrt(),
         };
-        let ways = self.response.as_mut().map(|response| {
+        let displacement = self.response.as_mut().map(|response| {
             response.keep_up(model, from, h, work);
-            response.ways(model, h, &error.v)
+            response.displacement(model, h, &error.v)
         });
         let mut largest = (0.0, 0);
         for (i, length) in self.lengths.iter().enumerate() {
             let coasting = horizon * self.sums[i].coherence() * error.v[i].abs() * sum;
-            let swinging = ways.map_or(f64::INFINITY, |ways| ways[i].abs() * steps);
+            let swinging = displacement.map_or(f64::INFINITY, |y| y[i].abs() * steps);
             let error = length * (error.q[i].abs() * sum + coasting.min(swinging));
             if error.is_nan() || error > largest.0 {
                 largest = (error, i);
@@ -241,7 +241,7 @@ impl Controller {
         let (r, worst) = self.ratio(model, work, from, to, error);
         let share = h / self.accuracy.horizon;
         let draws = r > 1.0 && r * share <= LARGEST_DRAW * self.unused;
-        let order = self.estimate.order - if self.estimate.is_error { 1.0 } else { 0.5 };
+        let order = self.estimate.order_of_ratio();
         if r.is_nan() || (r > 1.0 && !draws) {
             self.rejections[worst] += 1;
             self.rejected = true;

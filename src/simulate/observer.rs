@@ -48,7 +48,7 @@ pub struct Progress {
 
 /// What is told while many runs are made, one after the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Told<'a> {
+pub enum Notice<'a> {
     /// Something begins: a run with this name, or a part of the work.
     Begun(&'a str),
     /// The run with this name has ended with a warning.

@@ -94,7 +94,7 @@ pub struct Report {
     /// Steps tried to locate contact onsets and losses.
     pub location_trials: u64,
     /// Steps tried with another length to pass a singular pose.
-    pub leap_trials: u64,
+    pub singular_pose_trials: u64,
     /// Contacts closed.
     pub onsets: u64,
     /// The first contacts; [`super::Observer::contact`] tells all of them.
@@ -251,7 +251,7 @@ impl Simulation {
                 .map(|(index, times)| (self.model.unknown_name(index), *times))
                 .collect(),
             location_trials: self.counters.location_trials,
-            leap_trials: self.counters.leap_trials,
+            singular_pose_trials: self.counters.singular_pose_trials,
             onsets: self.counters.onsets,
             impacts: self.impacts.listed(&self.model),
             unlocated_changes: self.counters.unlocated,

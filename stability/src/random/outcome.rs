@@ -291,7 +291,7 @@ fn remarks(report: &Report) -> Outcome {
 /// one that was tried with another length to pass a singular pose.
 fn bounded(report: &Report, asked: Option<u64>) -> Result<(), Breach> {
     let repeated = report.accuracy.as_ref().map_or(0, |a| a.rejected_steps);
-    let trials = report.location_trials + report.leap_trials;
+    let trials = report.location_trials + report.singular_pose_trials;
     let tried = report.steps + report.rejected_steps + trials + repeated;
     // two stages a step at most; a change may be tried at its end once more
     let stages = 2 * (tried + 2 * report.steps);
@@ -303,8 +303,14 @@ fn bounded(report: &Report, asked: Option<u64>) -> Result<(), Breach> {
         false => Err(Breach::new(
             "work has a reason",
             format!(
-                "{} steps and {} stages, {asked:?} asked for",
-                report.steps, report.stages
+                "{} steps and {} stages, {asked:?} steps asked for; {} onsets, {} changes not located, {} steps halved, {} \
+                 trials",
+                report.steps,
+                report.stages,
+                report.onsets,
+                report.unlocated_changes,
+                report.rejected_steps,
+                trials
             ),
         )),
     }

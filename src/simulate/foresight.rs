@@ -1,0 +1,94 @@
+//! How many steps an accuracy takes, found out before the run begins.
+//!
+//! Where the first step is that short, a pilot run takes more of them. With a mean step h over the second half of them, a run of duration T is foreseen to take
+//! T/h steps: the first half may lie in a transient of the start. The pilot ends as soon as it foresees no more than a run
+//! may take; where it still foresees more after its last step, the run is refused. The accuracy that can be afforded follows
+//! from the order k of the estimate, since the number of steps grows as the accuracy to the power -1/k.
+
+use super::{Control, Observer, Progress, RunError, Simulation};
+use crate::scene::{Accuracy, Pace};
+use std::io::Result;
+
+/// Most steps that a run may be foreseen to take: hours for a mechanism of a few bodies.
+const MOST_STEPS: f64 = 1e8;
+/// Steps after which the pilot ends at the latest: seconds.
+const PILOT_STEPS: u64 = 1 << 17;
+
+/// Foresees the number of steps whenever the pilot has taken twice as many as the time before.
+struct Pilot {
+    steps: u64,
+    /// When the pilot had taken half its steps \[s\].
+    half_way: f64,
+    foreseen: f64,
+}
+
+impl Observer for Pilot {
+    fn row(&mut self, _: &[f64]) -> Result<()> {
+        Ok(())
+    }
+
+    fn step(&mut self, progress: &Progress) -> Result<Control> {
+        self.steps += 1;
+        if !self.steps.is_power_of_two() {
+            return Ok(Control::Continue);
+        }
+        let half = (self.steps as f64 / 2.0).ceil();
+        self.foreseen = half * progress.duration / (progress.t - self.half_way);
+        self.half_way = progress.t;
+        Ok(
+            match self.foreseen > MOST_STEPS && self.steps < PILOT_STEPS {
+                true => Control::Continue,
+                false => Control::Stop,
+            },
+        )
+    }
+}
+
+/// A number of two digits, at least x.
+fn rounded_up(x: f64) -> f64 {
+    // 5 % more than x is at least x after rounding to two digits
+    format!("{:.1e}", 1.05 * x).parse().unwrap_or(x)
+}
+
+impl Simulation {
+    /// Refuses an accuracy that takes too many steps; the first of them is in `trial`.
+    ///
+    /// # Errors
+    /// [`RunError::Unaffordable`].
+    pub(super) fn foresee(&self) -> std::result::Result<(), RunError> {
+        let Pace::Accuracy(accuracy) = self.scene.integrator.pace else {
+            return Ok(());
+        };
+        let duration = self.scene.simulation.duration;
+        let first = self.trial.t - self.state.t;
+        if self.is_pilot || duration <= MOST_STEPS * first {
+            return Ok(());
+        }
+        // the scene has been compiled once
+        let Ok(mut pilot) = Simulation::new(&self.scene) else {
+            return Ok(());
+        };
+        pilot.is_pilot = true;
+        let mut watch = Pilot {
+            steps: 0,
+            half_way: 0.0,
+            foreseen: 0.0,
+        };
+        // an error on the way is that of the run, which meets it again
+        let _ = pilot.advance(duration, &mut watch);
+        if watch.steps < PILOT_STEPS || watch.foreseen <= MOST_STEPS {
+            return Ok(());
+        }
+        let order = self.stepper.estimate().order_of_ratio();
+        let factor = (watch.foreseen / MOST_STEPS).powf(order);
+        Err(RunError::Unaffordable {
+            accuracy,
+            steps: watch.foreseen,
+            affordable: Accuracy {
+                position: rounded_up(factor * accuracy.position),
+                energy: accuracy.energy.map(|energy| rounded_up(factor * energy)),
+                horizon: accuracy.horizon,
+            },
+        })
+    }
+}
