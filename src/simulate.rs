@@ -90,16 +90,22 @@ pub enum RunError {
     },
     /// The accuracy takes more steps than a run may take.
     #[error(
-        "the accuracy of {accuracy} takes about {} steps, more than the 1e8 that a run may take; {affordable} can be afforded",
-        short(steps)
+        "the accuracy of {accuracy} takes about {} steps for the error of {name}, more than the 1e8 that a run may take; {}",
+        short(steps),
+        affordable.map_or_else(
+            || "so does a looser one with this method".to_owned(),
+            |accuracy| format!("{accuracy} can be afforded")
+        )
     )]
     Unaffordable {
         /// What was asked for.
         accuracy: Accuracy,
         /// The number of steps foreseen.
         steps: f64,
-        /// What takes 1e8 steps.
-        affordable: Accuracy,
+        /// Coordinate with the largest error.
+        name: String,
+        /// What takes fewer than 1e8 steps; `None` where stability keeps the steps of the method short.
+        affordable: Option<Accuracy>,
     },
     /// The integrator has put far more energy into the motion than the scene has.
     #[error(

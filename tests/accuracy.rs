@@ -320,7 +320,9 @@ fn an_accuracy_that_takes_too_many_steps_is_refused() {
     let mut refused = simulation(1e-9);
     let error = refused.run(&mut ()).unwrap_err();
     let RunError::Unaffordable {
-        steps, affordable, ..
+        steps,
+        affordable: Some(affordable),
+        ..
     } = error
     else {
         panic!("{error}");

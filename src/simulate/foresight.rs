@@ -59,15 +59,37 @@ impl Simulation {
         let Pace::Accuracy(accuracy) = self.scene.integrator.pace else {
             return Ok(());
         };
-        let duration = self.scene.simulation.duration;
         let first = self.trial.t - self.state.t;
-        if self.is_pilot || duration <= MOST_STEPS * first {
+        if self.is_pilot || self.scene.simulation.duration <= MOST_STEPS * first {
             return Ok(());
         }
-        // the scene has been compiled once
-        let Ok(mut pilot) = Simulation::new(&self.scene) else {
+        let Some((steps, name)) = self.too_many_steps(accuracy) else {
             return Ok(());
         };
+        let order = self.stepper.estimate().order_of_ratio();
+        let factor = (steps / MOST_STEPS).powf(order);
+        let affordable = Accuracy {
+            position: rounded_up(factor * accuracy.position),
+            energy: accuracy.energy.map(|energy| rounded_up(factor * energy)),
+            horizon: accuracy.horizon,
+        };
+        // stability may keep the steps of an explicit method short, whatever the accuracy
+        let is_affordable = self.too_many_steps(affordable).is_none();
+        Err(RunError::Unaffordable {
+            accuracy,
+            steps,
+            name,
+            affordable: is_affordable.then_some(affordable),
+        })
+    }
+
+    /// How many steps a pilot with this accuracy foresees, if a run may not take them, and the coordinate with the largest
+    /// error.
+    fn too_many_steps(&self, accuracy: Accuracy) -> Option<(f64, String)> {
+        let mut scene = self.scene.clone();
+        scene.integrator.pace = Pace::Accuracy(accuracy);
+        // the scene has been compiled once
+        let mut pilot = Simulation::new(&scene).ok()?;
         pilot.is_pilot = true;
         let mut watch = Pilot {
             steps: 0,
@@ -75,20 +97,11 @@ impl Simulation {
             foreseen: 0.0,
         };
         // an error on the way is that of the run, which meets it again
-        let _ = pilot.advance(duration, &mut watch);
-        if watch.steps < PILOT_STEPS || watch.foreseen <= MOST_STEPS {
-            return Ok(());
-        }
-        let order = self.stepper.estimate().order_of_ratio();
-        let factor = (watch.foreseen / MOST_STEPS).powf(order);
-        Err(RunError::Unaffordable {
-            accuracy,
-            steps: watch.foreseen,
-            affordable: Accuracy {
-                position: rounded_up(factor * accuracy.position),
-                energy: accuracy.energy.map(|energy| rounded_up(factor * energy)),
-                horizon: accuracy.horizon,
-            },
+        let _ = pilot.advance(scene.simulation.duration, &mut watch);
+        let too_many = watch.steps >= PILOT_STEPS && watch.foreseen > MOST_STEPS;
+        too_many.then(|| {
+            let name = pilot.meter.worst(&pilot.model, &pilot.local_error);
+            (watch.foreseen, name.to_owned())
         })
     }
 }

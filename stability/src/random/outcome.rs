@@ -242,7 +242,7 @@ fn refused(error: &SceneError) -> Result<Outcome, Breach> {
     }
 }
 
-/// An error must name something of the scene, and the time.
+/// An error must name something of the scene and, where the run had begun, the time.
 fn stopped(scene: &Scene, error: &RunError) -> Result<Outcome, Breach> {
     let text = error.to_string();
     let bodies = scene.bodies.iter().map(|b| &b.name);
@@ -252,7 +252,8 @@ fn stopped(scene: &Scene, error: &RunError) -> Result<Outcome, Breach> {
     let mut names = bodies.chain(joints).chain(drives).chain(motions);
     let in_energy = text.contains("the balance of energies");
     let named = in_energy || names.any(|n| text.contains(n.as_str()));
-    match named && text.contains("t = ") {
+    let begun = !matches!(error, RunError::Unaffordable { .. });
+    match named && (!begun || text.contains("t = ")) {
         true => Ok(Outcome::Stopped(text)),
         false => Err(Breach::new("errors say what, when and why", text)),
     }
