@@ -44,23 +44,23 @@ use stall::{Stall, Stalled};
 
 /// A step is halved this many times at most before the run gives up.
 const HALVINGS: i32 = 24;
-/// A constraint that repeats others may be open by this part of the largest coordinate: rounding divided by the distance from
-/// a singular pose, and far below any motion.
+/// Largest violation of a redundant constraint that was left out, relative to the largest coordinate: above rounding divided by
+/// the distance from a singular pose, and far below any motion.
 const LEFT_OPEN: f64 = 1e-6;
-/// Lengths that are tried for a step through a singular pose: so many powers of this ratio, longer ones first.
+/// Lengths tried for a step that met a singular pose: this many powers of this ratio, longer ones first.
 const PASSAGES: i32 = 20;
 const PASSAGE_RATIO: f64 = 2.0;
-/// What is wrong with a step into the second zero of an angle.
+/// Message for a step that ends in the second zero of a prescribed angle.
 const HALF_TURN: &str = "the direction it holds turns over by half a turn";
-/// What is wrong with a step that makes up turns.
+/// Message for a step that turns a body by more than half a turn.
 const TURN: &str = "it turns by more than half a turn in one step";
-/// Part of a step below which a difference of times is rounding.
+/// A difference of times below this part of a step is rounding.
 const GRID_ROUNDING: f64 = 1e-6;
 
 /// Why a run ended early.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// The equations have no solution that the method finds.
+    /// The method found no solution of the equations.
     #[error("{name}: {cause} at t = {t} s (step halved down to {} s)", short(step))]
     Physics {
         /// Coordinate or constraint.
@@ -72,20 +72,20 @@ pub enum RunError {
         /// The last step tried \[s\].
         step: f64,
     },
-    /// No step is short enough for the accuracy that the scene asks for.
+    /// Even the shortest step is too long for the accuracy of the scene.
     #[error(
         "the accuracy of {accuracy} cannot be reached at t = {t} s: the estimated error of {name} is too large even at a step of \
          {} s",
         short(step)
     )]
     Accuracy {
-        /// Coordinate with the largest error, or the balance of energies.
+        /// Coordinate with the largest error, or the energy balance.
         name: String,
         /// When \[s\].
         t: f64,
         /// The last step tried \[s\].
         step: f64,
-        /// What was asked for.
+        /// The accuracy asked for.
         accuracy: Accuracy,
     },
     /// The accuracy takes more steps than a run may take.
@@ -107,7 +107,7 @@ pub enum RunError {
         /// What takes fewer than 1e8 steps; `None` where stability keeps the steps of the method short.
         affordable: Option<Accuracy>,
     },
-    /// The integrator has put far more energy into the motion than the scene has.
+    /// The integrator has put far more energy into the motion than the scene supplies.
     #[error(
         "{name}: the method is unstable with these steps: at t = {t} s it has put {} J into the motion, where the scene \
          supplies {} J",
@@ -121,10 +121,10 @@ pub enum RunError {
         t: f64,
         /// Energy gained \[J\].
         gained: f64,
-        /// Energy at the start, and work and weight since \[J\].
+        /// Energy supplied: that at the start plus the work of drives, loads and weight since \[J\].
         supplied: f64,
     },
-    /// The steps are too short to get to the end.
+    /// The steps are so short that the run would not end.
     #[error("the run has come to a halt at t = {t} s, after {steps} steps: {cause}")]
     Stalled {
         /// When \[s\].
@@ -158,7 +158,7 @@ pub enum RunError {
     Output(#[from] std::io::Error),
 }
 
-/// A number of a message.
+/// A number as messages print it.
 fn short(value: &f64) -> String {
     plot::number(*value, 2)
 }
@@ -187,7 +187,7 @@ pub struct Simulation {
     /// True where constraints that repeat others are left out.
     leaves_out: bool,
     newton: Newton,
-    /// True while steps meet a singular pose that no length of a step passes.
+    /// True while steps end in a singular pose whatever their length.
     stays_in_singular_pose: bool,
     statics: Option<Statics>,
     work: Work,
@@ -211,7 +211,7 @@ pub struct Simulation {
     halved: Vec<u64>,
     delta: Vec<f64>,
     rate: Vec<f64>,
-    /// Distance to the change of every contact, and its rate, at the state looked at last.
+    /// Distance of every contact to its next change, and its rate, at the last state examined.
     last_gaps: Vec<[f64; 2]>,
     started: Vec<(usize, f64, f64)>,
     status: Status,
@@ -345,7 +345,7 @@ impl Simulation {
 
     fn run_to_end(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
         let (interval, duration) = (self.scene.output.interval, self.scene.simulation.duration);
-        // what is left of the duration below this is the rounding of duration/interval
+        // a remainder of the duration below this is the rounding of duration/interval
         let rows = (duration / interval + GRID_ROUNDING).floor() as u64;
         self.tell_onsets(observer)?;
         self.record(observer)?;
@@ -422,8 +422,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Steps into `trial` towards `target`, halving the step while it fails; returns the clamps and the time reached.
-    /// What follows is tried whole again: a full step passes a singular pose that short ones creep up to.
+    /// Steps into `trial` towards `target` and halves the step while it fails; returns the clamps and the time reached.
+    /// The next step has full length again: a full step passes a singular pose that shorter ones only approach.
     fn try_step(&mut self, target: f64) -> Result<(usize, f64), RunError> {
         let mut t = target;
         loop {
@@ -445,12 +445,12 @@ impl Simulation {
         }
     }
 
-    /// Takes a step that met a singular pose with other lengths, up to `target`, until it passes the pose; takes and returns
-    /// what [`Simulation::try_step`] does. Where no length passes, the mechanism is not leaving the pose: the next steps are
-    /// taken as they are, until one does not meet it.
+    /// Repeats a step that met a singular pose with other lengths, at most to `target`, until it passes the pose. The
+    /// argument and the result are those of [`Simulation::try_step`]. If no length passes the pose, the mechanism stays in it:
+    /// the step is kept, and so are the following ones, until one does not meet a singular pose.
     ///
-    /// In such a pose the constraints do not determine the acceleration, and Newton's method does not determine the position
-    /// in the direction they have lost. Neither is of any use to the estimate or to the next step.
+    /// In such a pose the constraints do not determine the acceleration in the direction they have lost, and Newton's method
+    /// does not determine the position. Neither can be used for the error estimate or for the next step.
     fn pass_singular_pose(
         &mut self,
         step: (usize, f64),
@@ -475,7 +475,7 @@ impl Simulation {
         self.try_step(reached)
     }
 
-    /// The local error of the trial step; where it rules the steps, as far as it stays in the motion.
+    /// The local error of the trial step. With an accuracy, the part of it that does not stay in the motion is filtered out.
     fn estimate_error(&mut self) {
         let Simulation {
             stepper,
@@ -493,7 +493,7 @@ impl Simulation {
             look_ahead(model, state, trial, output, newton, work);
         }
         stepper.local_error(state, trial, output, local_error);
-        // equal steps do not follow the estimate: the two solves would only refine what the report says of it
+        // equal steps do not depend on the estimate: the two solves would only refine the reported error
         if let Pacer::Controller(_) = pacer {
             let implicit = stepper.estimate().implicit;
             for e in [&mut local_error.q, &mut local_error.v] {
@@ -575,7 +575,7 @@ impl Simulation {
             return Err(self.unstable(gain));
         }
         let row = recorder.row(model, output, work);
-        // coordinates are numbers still when their squares are none
+        // coordinates can be finite where their squares overflow
         if let Some(channel) = row.iter().position(|x| !x.is_finite()) {
             let channel = recorder.channels()[channel].name.clone();
             return Err(self.overflown(&channel));
@@ -593,7 +593,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Sees that a constraint that was left out still repeats the others: a motion that they do not allow does not.
+    /// Checks that a constraint that was left out is still satisfied; a prescribed motion may contradict the others.
     fn check_left_out(&self) -> Result<(), RunError> {
         let size = self.state.q.iter().fold(0.0_f64, |m, q| m.max(q.abs()));
         match self.model.widest_left_out(&self.state) {
@@ -610,7 +610,7 @@ impl Simulation {
         }
     }
 
-    /// A row that cannot be shown, by the coordinate that is fastest.
+    /// The error of a row with a value that is not finite; it names the fastest coordinate.
     fn overflown(&self, channel: &str) -> RunError {
         RunError::Physics {
             name: self.meter.fastest(&self.model, &self.state).to_owned(),
@@ -691,7 +691,7 @@ impl Simulation {
     }
 }
 
-/// Refuses a step whose turns are not what the mechanism did.
+/// Refuses a step that may have added a turn to a body or a half turn to a prescribed angle.
 fn check_turns(model: &Model, from: &State, to: &State) -> Result<(), StepError> {
     let half = model.half_turned(to).map(|index| (index, HALF_TURN));
     let wound = || model.wound(from, to).map(|index| (index, TURN));
@@ -701,7 +701,7 @@ fn check_turns(model: &Model, from: &State, to: &State) -> Result<(), StepError>
     }
 }
 
-/// Refuses velocity Verlet for a mechanism with constraint rows, which it does not keep.
+/// Refuses velocity Verlet for a mechanism with constraint rows, which this method cannot satisfy.
 fn refuse_constraints(scene: &Scene, model: &Model) -> Result<(), SceneError> {
     let shape = model.shape();
     if scene.integrator.method != Method::VelocityVerlet || shape.multipliers == 0 {
@@ -722,7 +722,7 @@ fn refuse_constraints(scene: &Scene, model: &Model) -> Result<(), SceneError> {
     ))
 }
 
-/// Takes constraints out of the equations that repeat others.
+/// Removes redundant constraints from the equations.
 fn keep_independent(scene: &Scene, model: &mut Model, start: &State) -> Result<(), SceneError> {
     match redundancy::find(model, start) {
         redundancy::Redundancy::Rows(rows) => {
@@ -739,7 +739,7 @@ fn keep_independent(scene: &Scene, model: &mut Model, start: &State) -> Result<(
     }
 }
 
-/// The unknown and what is wrong with it.
+/// The unknown and the cause of a failure, for the message.
 fn describe(model: &Model, failure: &Failure) -> (String, String) {
     match *failure {
         Failure::NoConvergence { index, update } => (

@@ -3,7 +3,7 @@
 use super::{Counters, Failure};
 use crate::math::lu::{DenseLu, Symbolic};
 
-/// Memory for a matrix that is filled, factorised and solved with many times.
+/// A matrix that is filled, factorised and solved many times.
 #[derive(Debug)]
 pub(super) struct Factors {
     pub values: Vec<f64>,
@@ -20,7 +20,7 @@ impl Factors {
         }
     }
 
-    /// Fills the matrix and factorises it; a weak pivot fills it once more and exchanges rows.
+    /// Fills the matrix and factorises it; after a weak pivot, once more as a dense matrix with row exchanges.
     pub fn renew(
         &mut self,
         symbolic: &Symbolic,

@@ -10,14 +10,14 @@ use crate::system::{State, System, Weights, Work};
 use factors::Factors;
 use singular::{SINGULAR, Truncated};
 
-/// A stage takes this many iterations at most; a stage that converges at all is far below.
+/// Largest number of iterations of a stage; a stage that converges needs far fewer.
 const MAX_ITERATIONS: usize = 15;
-/// The tangent is renewed when an update is not smaller than this part of the one before.
+/// The tangent is renewed when an update is larger than this part of the previous one.
 const SLOW: f64 = 0.1;
-/// Updates that no longer shrink are rounding if they are below this many tolerances.
+/// Updates that no longer decrease count as rounding below this many tolerances.
 const ROUNDING_BAND: f64 = 1e4;
-/// A projection of positions ends when it moves them by less than this part of the largest: Newton's method has squared
-/// the error once more by then.
+/// A projection of positions ends when its update is below this part of the largest position: the error left is the square of
+/// the update, by Newton's quadratic convergence.
 const PROJECTED: f64 = 1e-10;
 
 /// Counts of the work done.
@@ -74,7 +74,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The unknown or multiplier it is about.
+    /// Index of the unknown or multiplier that failed.
     pub fn index(&self) -> usize {
         match *self {
             Failure::NoConvergence { index, .. }
@@ -151,10 +151,10 @@ impl Newton {
 
     /// Solves M a + f + Phi_q^T lambda = 0, Phi = 0 for (a, lambda) with q = q_hat + w.q a, v = v_hat + w.v a.
     ///
-    /// `s` holds the guess of (a, lambda) and the known coordinates, and takes the solution. Constraint rows are divided
-    /// by w.q, so that the matrix tends to the one of the acceleration level as the step shrinks. Converged when the
-    /// estimated error of every velocity is below the tolerance, which grows to the rounding of Phi seen through the
-    /// step, 16 eps |q| w.v/w.q, where there are constraints.
+    /// `s` holds the guess of (a, lambda) and the known coordinates; the solution overwrites the guess. Constraint rows are
+    /// divided by w.q, so that the matrix tends to that of the acceleration level as the step decreases. The iteration has
+    /// converged when the estimated error of every velocity is below the tolerance. With constraints the tolerance is at least
+    /// 16 eps |q| w.v/w.q, the rounding of Phi as an error of velocity.
     ///
     /// # Errors
     /// See [`Failure`].
@@ -214,7 +214,7 @@ impl Newton {
             } else {
                 rate / (1.0 - rate) * update
             };
-            // after a leap the rate says nothing; a curvature of one per metre bends the constraints by this
+            // after one large update the rate says nothing: this is its error for constraints with a curvature of 1/m
             let error = linear.max(update * update * w.q / w.v);
             let rounding = iteration >= 2 && rate > 0.3 && update < ROUNDING_BAND * tolerance;
             if error <= tolerance || rounding {
@@ -234,11 +234,11 @@ impl Newton {
         })
     }
 
-    /// Makes a state consistent at its (q, v): v is moved, by the least kinetic energy, to Phi_q v = 0, then
-    /// M a + Phi_q^T lambda = -f, Phi_q a = gamma give (a, lambda).
+    /// Makes a state consistent at its q: v is projected on Phi_q v + Phi_t = 0 with the change of least kinetic energy, then
+    /// M a + Phi_q^T lambda = -f and d2(Phi)/dt2 = 0, that is Phi_q a = gamma, give (a, lambda).
     ///
-    /// Bathe's scheme on the position level leaves multipliers and constrained accelerations of order one; these are of
-    /// order two. A direction in which the constraints have lost rank is left out, and counted.
+    /// The multipliers and constrained accelerations of Bathe's stages on the position level are of order one; those found
+    /// here are of order two. A direction in which the constraints have lost rank is left out and counted.
     ///
     /// # Errors
     /// [`Failure::Singular`] where the constraints contradict or repeat each other.
@@ -310,7 +310,7 @@ impl Newton {
         Ok(self.in_singular_pose)
     }
 
-    /// From the factors of the acceleration level to (a, lambda).
+    /// Solves for (a, lambda) with the factors of the acceleration level.
     fn end_acceleration_level(
         &mut self,
         system: &dyn System,
@@ -332,7 +332,7 @@ impl Newton {
         }
     }
 
-    /// Moves q, by the least kinetic energy, to Phi = 0: the projection that ends a step of an explicit scheme on a
+    /// Projects q on Phi = 0, in the norm of the mass matrix: the projection that ends a step of an explicit scheme on a
     /// constrained system (Eich 1993, SIAM J. Numer. Anal. 30:1467).
     ///
     /// # Errors
@@ -403,8 +403,8 @@ impl Newton {
         }
     }
 
-    /// Ends a stage: rates made consistent where there are constraints, then the integrands of the ledger. Returns the
-    /// number of clamped contacts.
+    /// Ends a stage: makes v and a consistent if there are constraints, then evaluates the integrands of the energy ledger.
+    /// Returns the number of clamped contacts.
     ///
     /// # Errors
     /// As [`Newton::make_consistent`].
@@ -425,21 +425,21 @@ impl Newton {
         self.met_singular_pose
     }
 
-    /// A step begins.
+    /// Begins a step: forgets singular poses met before.
     pub fn forget_singular_pose(&mut self) {
         self.met_singular_pose = false;
     }
 
-    /// Takes out of a local error e of velocities or coordinates what the last step does not leave in the motion: the part
-    /// across the constraints, which the projection takes out, and of an `implicit` scheme what its stage matrix holds down
-    /// of modes faster than the step,
+    /// Removes from a local error e of velocities or coordinates the parts that do not stay in the motion: the part normal to
+    /// the constraints, which the projection removes, and, for an `implicit` scheme, the modes faster than the step, which its
+    /// stage matrix suppresses,
     ///
     /// ```text
     /// (M + w.v C + w.q K) x + Phi_q^T mu = M e        Phi_q x = 0
     /// ```
     ///
-    /// (Hosea & Shampine 1996, Appl. Numer. Math. 20:21, for systems without constraints). In a pose where the constraints
-    /// lose rank they do not say which directions are free, but for that of the velocity v: x is the part of e along it.
+    /// (Hosea & Shampine 1996, Appl. Numer. Math. 20:21, for systems without constraints). In a singular pose the constraints do
+    /// not determine the free directions; only that of the velocity v is known to be one. There x is the part of e along v.
     pub fn filter(&mut self, system: &dyn System, implicit: bool, v: &[f64], e: &mut [f64]) {
         let n = system.shape().unknowns;
         let constrained = system.shape().multipliers > 0;
@@ -463,7 +463,7 @@ impl Newton {
         e.copy_from_slice(&self.b[..n]);
     }
 
-    /// Solves the acceleration level for the right side `b`, whose unknown part is set, and -phi.
+    /// Solves the acceleration level with the right side `b`, whose first part (unknowns) is set, and -phi.
     fn solve_for_phi(&mut self, system: &dyn System) {
         let n = system.shape().unknowns;
         for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
@@ -472,7 +472,7 @@ impl Newton {
         self.level.solve(system.level_symbolic(), &mut self.b);
     }
 
-    /// Solves for the right side `b` (unknowns set) and -phi, and adds the unknown part to a level of the state.
+    /// Solves as above and adds the first part of the solution to the positions, velocities or accelerations of the state.
     fn move_by(
         &mut self,
         system: &dyn System,

@@ -1,14 +1,14 @@
-//! How far an error of velocity moves the mechanism within a time.
+//! The distance by which an error of velocity moves the mechanism within a horizon.
 //!
-//! In free flight an error e of velocity grows to H e within the horizon H; in a vibration of angular frequency w it moves
-//! things by e/w at most. With K the elastic stiffness and W^2 = M^-1 K,
+//! In free flight an error e of velocity \[m/s\] grows to a distance H e within the horizon H \[s\]. In a vibration of angular
+//! frequency w \[rad/s\] the distance is at most e/w. With K the elastic stiffness and W^2 = M^-1 K,
 //!
 //! ```text
 //! y = (W^2 + 1/H^2)^(-1/2) e ~ H x_0 + sum_j 2 tau_j x_j,   (M + tau_j^2 K) x_j + Phi_q^T mu = M e,   Phi_q x_j = 0
 //! ```
 //!
-//! with tau_0 = H and every further tau a tenth of the one before: between 1.0 and 1.5 times min(H, 1/w) e for a mode that
-//! is slower than the last tau. Contacts count as open: they give way again within the horizon.
+//! with tau_0 = H and each further tau a tenth of the previous one. For a mode slower than the last tau this is between 1.0 and
+//! 1.5 times min(H, 1/w) e. Contacts count as open, because they open again within the horizon.
 
 use super::Counters;
 use super::factors::Factors;
@@ -16,12 +16,12 @@ use crate::system::{State, System, Weights, Work};
 
 /// Ratio of neighbouring times.
 const RATIO: f64 = 0.1;
-/// Most times there are: from the horizon to the rounding of the run's end.
+/// Largest number of times: from the horizon down to the rounding of the end of the run.
 const MOST: usize = 12;
-/// judged steps after which one of the factors is renewed.
+/// Judged steps after which one of the factors is renewed.
 const RENEWAL: usize = 16;
 
-/// The matrices of some times, factorised now and then: for an estimate an earlier pose will do.
+/// The matrices of all tau, factorised now and then: for an estimate the matrix of an earlier pose is accurate enough.
 #[derive(Debug)]
 pub struct Response {
     horizon: f64,
@@ -42,7 +42,7 @@ pub struct Response {
 #[derive(Debug)]
 struct Level {
     factors: Factors,
-    /// True where it could not be factorised: it counts as one without stiffness then.
+    /// True if it could not be factorised; it then counts as one without stiffness.
     singular: bool,
 }
 
@@ -91,7 +91,7 @@ impl Response {
         level.singular = renewed.is_err();
     }
 
-    /// Sees that there is a matrix for every time down to that of a step of length h, and that none of them gets old.
+    /// Provides a matrix for every tau down to the step h, and renews one of them after every few steps.
     pub fn keep_up(&mut self, system: &dyn System, state: &State, h: f64, work: &mut Work) {
         while self.ready < MOST && (self.ready == 0 || self.time(self.ready) > h) {
             self.renew(system, state, self.ready, work);
@@ -105,7 +105,7 @@ impl Response {
         }
     }
 
-    /// What an error of velocity moves every unknown by within the horizon \[m\], in a step of length h.
+    /// y: the distance by which an error of velocity in a step of length h moves every unknown within the horizon \[m\].
     pub fn displacement(&mut self, system: &dyn System, h: f64, error: &[f64]) -> &[f64] {
         let n = error.len();
         self.x.fill(0.0);

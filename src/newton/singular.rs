@@ -1,16 +1,16 @@
 //! The acceleration level where constraints lose rank, as in a parallelogram whose bars lie in one line.
 //!
 //! With S = G M^-1 G^T, G = Phi_q, the projection of v takes dv = -M^-1 G^T S^-1 G v, and lambda = S^-1 (G M^-1 (-r) + phi).
-//! Close to such a pose one eigenvalue of S is the square of the distance, and its direction is what rounding has made of
-//! it: to divide by it throws the mechanism off its branch. It is left out, which lets the mechanism coast in that
-//! direction until the next stage holds it again.
+//! Close to such a pose one eigenvalue of S is the square of the distance from it, and rounding determines its eigenvector.
+//! Dividing by this eigenvalue could throw the mechanism off its branch. The direction is left out: the mechanism moves on
+//! unconstrained in it until a later stage, where the constraints have full rank again.
 
 use crate::math::lu::Symbolic;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
-/// Pivots and eigenvalues below this part of the largest belong to a singular pose: 1e-5 m of distance for bars of 1 m, at
-/// which rounding turns the direction by 1e-6.
+/// Pivots and eigenvalues below this part of the largest belong to a singular pose. For bars of 1 m it corresponds to a
+/// distance of 1e-5 m, at which rounding turns the direction by 1e-6.
 pub const SINGULAR: f64 = 1e-10;
 
 /// M^-1 G^T and the pseudo-inverse of S.
@@ -34,7 +34,7 @@ impl Truncated {
         let gradient = Mat::from_fn(m, n, |i, j| dense[(n + i, j)]);
         let spread = mass.solve(gradient.transpose());
         let s = &gradient * &spread;
-        // rows that were left out as redundant have lambda = 0 in their place
+        // the equation of a row left out as redundant is lambda = 0
         let kept = |i: usize| dense[(n + i, n + i)] == 0.0;
         let size = Mat::from_fn(
             m,
@@ -63,7 +63,7 @@ impl Truncated {
         })
     }
 
-    /// The change of v that takes the violation phi = Phi_q v out of it.
+    /// The change of v that removes the violation phi of the velocity constraints.
     pub fn projection(&self, phi: &[f64]) -> Vec<f64> {
         let phi = Mat::from_fn(phi.len(), 1, |i, _| phi[i]);
         let change = &self.spread * (&self.inverse * phi);

@@ -13,8 +13,8 @@ fn side(z: f64) -> f64 {
 }
 
 impl Simulation {
-    /// The contact of `trial` that is furthest past its change: the distance (an open one's penetration, a closed one's gap)
-    /// and its rate.
+    /// The contact of `trial` that is furthest past its change: the distance (penetration of an open contact, gap of a closed
+    /// one) and its rate.
     fn furthest_past(&mut self) -> (f64, f64) {
         self.model
             .gaps(&self.trial, &mut self.delta, &mut self.rate);
@@ -28,8 +28,8 @@ impl Simulation {
         furthest
     }
 
-    /// The contact that is furthest past its change inside the trial step: the distance and the time, at a state that the
-    /// stepper has there or at the top of the cubic between neighbouring states.
+    /// The contact that is furthest past its change inside the trial step, as (distance, time): at an interior stage of the
+    /// stepper, or at the maximum of the cubic between neighbouring states.
     fn furthest_past_inside(&mut self) -> (f64, f64) {
         let states = [&self.state]
             .into_iter()
@@ -78,12 +78,12 @@ impl Simulation {
             if inside <= tolerance {
                 return Ok(clamps);
             }
-            // there and back again within the step
+            // the contact changes and changes back within the step
             self.counters.location_trials += 1;
             (clamps, t) = self.try_step(middle)?;
             (past, rate) = self.furthest_past();
             if past <= tolerance {
-                // nearly there
+                // within rounding of the change
                 return Ok(clamps);
             }
             high = t;

@@ -1,16 +1,16 @@
-//! Contacts that the steps do not resolve: closed for a few steps only, or closing and opening over and over.
+//! Contacts that the steps do not resolve: closed for a few steps only, or closing and opening repeatedly (chatter).
 
 use crate::model::Model;
 use serde::Serialize;
 
-/// A contact closed, or open, for fewer steps than these is brief: its course is a guess of the integrator's.
+/// A contact, or the flight between two, is brief if it has fewer steps than this: the steps do not resolve it.
 const FEW_STEPS: u64 = 4;
-/// So many brief contacts with brief flights between them are chatter.
+/// This many brief contacts with brief flights between them are chatter.
 const CHATTER: u64 = 10;
 /// Stretches of chatter that the summary lists.
 const LISTED: usize = 10;
 
-/// A stretch of time in which a joint closed and opened within a few steps, over and over.
+/// A period of chatter: a joint closed and opened repeatedly, within a few steps each.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Chatter {
     /// The joint.
@@ -39,11 +39,11 @@ pub(super) struct Closures {
 struct Closure {
     /// Steps since the contact last closed or opened.
     steps: u64,
-    /// Brief contacts since the last that was not, with brief flights between.
+    /// Brief contacts in succession, with brief flights between them.
     streak: u64,
     /// Onset of the first of them \[s\].
     from: f64,
-    /// Where the streak stands in the list.
+    /// Index of the present period of chatter in the list.
     listed: Option<usize>,
 }
 
@@ -61,7 +61,7 @@ impl Closures {
         }
     }
 
-    /// A step has been accepted that led from memory `before` to `after` at time t.
+    /// Records an accepted step to time t, from contact memory `before` to `after`.
     pub fn step(&mut self, model: &Model, t: f64, before: &[f64], after: &[f64]) {
         for (c, contact) in self.contacts.iter_mut().enumerate() {
             contact.steps += 1;

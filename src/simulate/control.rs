@@ -1,4 +1,4 @@
-//! Steps that follow an estimate of the local error.
+//! Step size control by an estimate of the local error.
 //!
 //! A step of length h has the local errors e_q and e_v (see the stepper's estimate and [`crate::newton::Newton::filter`]).
 //! With l_i the distance by which a unit of coordinate i moves a point of its body, and H the horizon,
@@ -7,31 +7,31 @@
 //! E = max_i l_i (|e_q,i| + min(H kappa_i |e_v,i|, |y_i|)),   kappa_i = max_t |sum e_v,i| / sum |e_v,i|
 //! ```
 //!
-//! is the error of position that this step leaves behind within the horizon if nothing amplifies it. An error of velocity
-//! grows to H e_v in free flight. In a vibration it does not: y is how far it moves the elastic mechanism
-//! ([`crate::newton::Response`]), and the coherence kappa says how much of the errors of velocity in the run so far has
-//! added up.
+//! is the error of position that this step causes within the horizon if nothing amplifies it. An error of velocity grows to
+//! H e_v in free flight. In a vibration it stays bounded: y is the distance by which it moves the elastic mechanism
+//! ([`crate::newton::Response`]). The coherence kappa is the fraction of the errors of velocity in the run so far that has
+//! added up rather than cancelled.
 //!
-//! The steps of a horizon may add up to the accuracy p. Where the estimate is the error of the step, H/h of them add up as
-//! they are: r = E H/(h p). A scheme that goes on with a solution of higher order than its estimate has smaller errors of
-//! varying sign, but where a contact has just changed: H/h is replaced by its square root, but not for y, since errors of a
-//! vibration shift its phase and add up. Either way the error of the run falls in proportion to p (Stetter 1979, Lect. Notes
-//! Math. 679:245; Shampine 1985, BIT 25:530).
+//! The errors of all steps of a horizon may add up to the accuracy p. If the estimate is the error of the step itself, the H/h
+//! steps of a horizon add up directly: r = E H/(h p). A scheme that continues with a solution of higher order than its
+//! estimate has smaller errors of varying sign. H/h is then replaced by its square root, except for y: errors of a vibration
+//! shift its phase and add up. Either way the error of the run falls in proportion to p (Stetter 1979, Lect. Notes Math.
+//! 679:245; Shampine 1985, BIT 25:530).
 //!
-//! A step with r > 1 is taken again, unless its error is a small part of what the steps before it have left of their shares.
-//! Near a singular pose rounding is multiplied by the inverse of the distance: it does not fall with the step, and shorter
-//! steps would only meet more of it.
+//! A step with r > 1 is repeated, unless its error is a small part of the allowance that earlier steps have not used. Near a
+//! singular pose rounding is divided by the distance from the pose. It does not fall with the step, so shorter steps would
+//! only accumulate more of it.
 //!
-//! The balance of energies needs no estimate: what a step changes of it is the error of that step. Those of a horizon may add
-//! up to the energy e, where one is asked for: r = |change| H/(h e), and the larger r counts. However short a step, 1e-5 e are
-//! its share: below, the rounding of positions against stiff contacts would be taken for errors.
+//! The energy balance needs no estimate: its change in a step is the error of that step. If the scene asks for an accuracy e of
+//! the energy, the changes of a horizon may add up to e: r = |change| H/(h e), and the larger r counts. Every step may change
+//! the balance by 1e-5 e, however short it is: below that, rounding of positions in stiff contacts would count as an error.
 //!
 //! With k the order of r in h, the next step is h times 0.9 r^(-0.7/k) r_last^(0.4/k), kept between 0.2 and 5 (PI control:
 //! Gustafsson 1991, ACM Trans. Math. Softw. 17:533; the exponents of Hairer & Wanner, Solving Ordinary Differential
 //! Equations II, IV.2).
 //!
-//! A contact that closes brings its own time scale, far below that of free flight. Each contact remembers how long the first
-//! step after its last onset could be, and begins with that; the controller grows the step again from there.
+//! A closed contact has a time scale far below that of free flight. The first step after an onset therefore has the length
+//! that was accepted after the previous onset of the same contact; the controller increases the step from there.
 
 use super::meter::lengths;
 use crate::model::Model;
@@ -43,18 +43,18 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 const SAFETY: f64 = 0.9;
-/// Least and greatest ratio of a step to the one before.
+/// Smallest and largest ratio of a step to the previous one.
 const SMALLEST_CHANGE: f64 = 0.2;
 const GREATEST_CHANGE: f64 = 5.0;
-/// Ratios below this are taken for it: a step far too short says that the next one may grow, not by how much.
+/// Lower bound of r in the formula of the next step: a much smaller r shows that the step may grow, but not by how much.
 const LEAST_RATIO: f64 = 1e-4;
-/// Changes of the balance of energies below this part of them are rounding: a sum of a few dozen terms.
+/// A change of the energy balance below this part of its terms is rounding of a sum of a few dozen terms.
 const BALANCE_ROUNDING: f64 = 32.0 * f64::EPSILON;
-/// Least part of the allowed energy that a step may use.
+/// Part of the allowed energy that every step may use, however short.
 const LEAST_SHARE: f64 = 1e-5;
-/// Largest part that one step may draw of what earlier steps have left of the accuracy.
+/// Largest part of the unused allowance of earlier steps that one step may use.
 const LARGEST_DRAW: f64 = 1e-3;
-/// A step below this part of the duration is too near to the rounding of t.
+/// Steps below this part of the duration are refused: they approach the rounding of t.
 const LEAST_PART: f64 = 1e4 * f64::EPSILON;
 
 /// Chooses steps.
@@ -64,7 +64,7 @@ pub(super) struct Controller {
     estimate: Estimate,
     /// Metres per unit of each unknown.
     lengths: Vec<f64>,
-    /// Of a mechanism with elastic parts: how far an error of velocity moves it.
+    /// For mechanisms with elastic parts: how far an error of velocity moves them.
     response: Option<Response>,
     longest: f64,
     shortest: f64,
@@ -72,7 +72,7 @@ pub(super) struct Controller {
     next: f64,
     /// r of the last step kept.
     last: f64,
-    /// Part of the accuracy that earlier steps have left.
+    /// Part of the accuracy that earlier steps have not used.
     unused: f64,
     /// True after a rejection, when the step must not grow.
     rejected: bool,
@@ -80,7 +80,7 @@ pub(super) struct Controller {
     first_steps: Vec<f64>,
     /// Contacts that closed at the end of the last step.
     closing: Vec<usize>,
-    /// Rejected steps by the unknown with the largest error, and at the end those by the balance of energies.
+    /// Rejected steps by the unknown with the largest error; the last entry is the energy balance.
     rejections: Vec<u64>,
     /// Shortest and longest step.
     taken: [f64; 2],
@@ -113,27 +113,27 @@ impl Sums {
     }
 }
 
-/// What the accuracy asked for cost.
+/// Steps that an accuracy required.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AccuracyReport {
-    /// What was asked for.
+    /// The accuracy asked for.
     #[serde(flatten)]
     pub asked: Accuracy,
     /// The shortest and the longest step taken \[s\], before it was cut where a contact changed; 0 before the first step.
     pub steps: [f64; 2],
-    /// Steps taken again because their estimated error was too large.
+    /// Steps repeated because their estimated error was too large.
     pub rejected_steps: u64,
     /// The same by the coordinate with the largest error.
     pub rejected_by: BTreeMap<String, u64>,
 }
 
-/// What becomes of a step.
+/// Verdict on a step.
 pub(super) enum Verdict {
     /// It is kept.
     Keep,
-    /// It is taken again, shorter.
+    /// It is repeated with a shorter length.
     Repeat,
-    /// It cannot be made shorter: the unknown with the largest error or, after the last of them, the balance of energies.
+    /// It cannot be made shorter: index of the unknown with the largest error, or the number of unknowns for the energy balance.
     Stuck(usize),
 }
 
@@ -168,7 +168,7 @@ impl Controller {
         self.longest
     }
 
-    /// Where the step from t shall end: not just before the target.
+    /// The end of the step from t; a step never ends just short of the target.
     pub fn goal(&mut self, t: f64, target: f64) -> f64 {
         let left = target - t;
         self.next = self.next.min(self.longest);
@@ -181,7 +181,7 @@ impl Controller {
         }
     }
 
-    /// r, and the unknown with the largest error or, after the last of them, the balance of energies.
+    /// r, and the index of the unknown with the largest error, or the number of unknowns for the energy balance.
     fn ratio(
         &mut self,
         model: &Model,
@@ -227,7 +227,7 @@ impl Controller {
         (of_position, largest.1)
     }
 
-    /// Looks at a step before it is cut where a contact changes.
+    /// Accepts or rejects a step, before it is cut where a contact changes.
     pub fn judge(
         &mut self,
         model: &Model,
@@ -245,7 +245,7 @@ impl Controller {
         if r.is_nan() || (r > 1.0 && !draws) {
             self.rejections[worst] += 1;
             self.rejected = true;
-            // what is not a number counts as far too large
+            // an r that is not finite counts as far too large
             let change = (SAFETY * r.powf(-1.0 / order)).max(SMALLEST_CHANGE);
             self.next = h * change.min(SAFETY);
             return match self.next < self.shortest {
@@ -262,7 +262,7 @@ impl Controller {
         for contact in self.closing.drain(..) {
             self.first_steps[contact] = proposed;
         }
-        // a step that only a row of output has shortened says little
+        // a step shortened by a recorded row is no basis for the next one
         let shortened = to.t == goal && h < (1.0 - 1e-9) * self.next;
         if shortened {
             self.next = self.next.max(proposed);

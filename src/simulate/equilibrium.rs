@@ -11,7 +11,7 @@ use crate::statics::Statics;
 use crate::stepper::StepError;
 use crate::system::{State, System, Work};
 
-/// The solver that a scene needs, and the start in equilibrium where it asks for that.
+/// The static solver, if the scene needs one; moves the start to its equilibrium where the scene asks for it.
 pub(super) fn prepare(
     scene: &Scene,
     model: &Model,
@@ -72,7 +72,7 @@ pub(super) fn prepare(
     Ok(Some(statics))
 }
 
-/// The unknown and what is wrong with it, in the words of statics.
+/// The unknown and the cause of a failure of a static solve, for the message.
 fn explain(model: &Model, failure: &Failure) -> (String, String) {
     match failure {
         Failure::Singular { index } => (
@@ -109,7 +109,7 @@ impl Simulation {
         let smallest = step * 2.0_f64.powi(-HALVINGS);
         loop {
             let left = target - self.state.t;
-            // the load factor is a path, not a clock: what is left below this is rounding
+            // a remainder of the load factor below this is rounding
             let next = if left <= (1.0 + GRID_ROUNDING) * step {
                 target
             } else {

@@ -1,4 +1,4 @@
-//! Every contact from its onset to its end, and the first of them for the summary.
+//! Records every contact from its onset to its end, and keeps the first ones for the summary.
 
 use super::observer::{Contact, End, Observer, Onset};
 use super::top::top;
@@ -10,7 +10,7 @@ use std::io;
 /// Contacts that the summary lists.
 const LISTED: usize = 10;
 
-/// A contact that was told, kept after the run.
+/// A contact that was reported, kept after the run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Impact {
     /// Onset \[s\].
@@ -19,7 +19,7 @@ pub struct Impact {
     pub joint: String,
     /// delta_dot at onset \[m/s\].
     pub impact_velocity: f64,
-    /// Penetration at the located onset \[m\], zero but for the onset tolerance.
+    /// Penetration at the located onset \[m\], zero within the onset tolerance.
     pub delta: f64,
     /// Direction of the eccentricity vector at onset, from the x axis \[rad\].
     pub angle: f64,
@@ -54,7 +54,7 @@ impl From<&Contact<'_>> for Impact {
 pub(super) struct Impacts {
     /// What is known of each contact that is closed.
     closed: Vec<Option<Course>>,
-    /// The first courses of the run.
+    /// The first contacts of the run.
     listed: Vec<Course>,
 }
 
@@ -70,7 +70,7 @@ struct Course {
     end: Option<End>,
     /// Penetration and its rate at the last accepted step.
     before: [f64; 2],
-    /// Where it stands among the first of the run.
+    /// Its index among the first contacts of the run.
     listed: Option<usize>,
 }
 
@@ -95,7 +95,7 @@ impl Course {
 }
 
 impl Impacts {
-    /// All memory that is needed, so that the step loop does not allocate.
+    /// Allocates all memory, so that the step loop does not.
     pub fn new(contacts: usize) -> Impacts {
         Impacts {
             closed: vec![None; contacts],
@@ -132,8 +132,8 @@ impl Impacts {
         self.closed[contact].map(|course| course.onset(model))
     }
 
-    /// A step of length h has been accepted; contacts that it lost are told. Between two steps the penetration is the cubic
-    /// through both ends, whose top has an error of h^4.
+    /// Records an accepted step of length h and reports the contacts that it opened. Between two steps the penetration is the
+    /// cubic through values and rates at both ends, whose maximum has an error of h^4.
     ///
     /// # Errors
     /// When a contact cannot be told.
@@ -168,7 +168,7 @@ impl Impacts {
         Ok(())
     }
 
-    /// The run has ended: contacts that are still closed are told, in the order of the joints.
+    /// Ends the run: reports the contacts that are still closed, in the order of the joints.
     ///
     /// # Errors
     /// When a contact cannot be told.

@@ -1,24 +1,24 @@
-//! What the integrator does to a run: the errors it is estimated to make, and the energy it loses or gains.
+//! Measures the integrator during a run: its estimated error, and the energy it loses or gains.
 //!
-//! Every step has the local errors e_q and e_v (see the stepper's estimate). With l_i the way that a unit of coordinate i
-//! moves a point of its body by,
+//! Every step has the local errors e_q and e_v (see the stepper's estimate). With l_i the largest distance by which a unit
+//! change of coordinate i moves a point of its body,
 //!
 //! ```text
 //! E = max_i l_i (sum |e_q,i| + tau_i max_t |sum e_v,i|),   tau_i = (max q_i - min q_i)/max |v_i|
 //! ```
 //!
-//! is the error of position of the whole run if nothing amplifies it; impacts do, and a mechanism with loose joints is
-//! chaotic. tau turns an error of velocity into the error of position that it grows to while the coordinate crosses its range.
+//! is the error of position \[m\] of the whole run if nothing amplifies it. Impacts do amplify it, and a mechanism with
+//! clearance is chaotic. An error of velocity grows for tau_i \[s\], the time in which the coordinate crosses its range.
 //!
-//! Positions may be right where accelerations, and forces with them, are not: a scheme that damps nothing leaves a vibration
-//! that the steps do not resolve in the accelerations for ever. Over the run, with da the change of a over a step,
+//! Accelerations and forces may be wrong where positions are right: an undamped scheme keeps a vibration that the steps do not
+//! resolve in the accelerations. Over the run, with da the change of a over a step,
 //!
 //! ```text
 //! rho_i = sqrt(int da_i^2 dt / int a_i^2 dt)
 //! ```
 //!
-//! is 2 pi/n for a vibration of n steps a period; the largest one counts among the coordinates that carry a tenth of the
-//! largest acceleration, and that it moves by more than rounding.
+//! is 2 pi/n for a vibration of n steps a period. The largest rho_i is reported, over the coordinates with at least a tenth of
+//! the largest acceleration whose changes move points by more than rounding.
 
 use crate::model::{BodyCoordinates, Model};
 use crate::scene::{BodyKind, Scene};
@@ -29,34 +29,34 @@ use serde::Serialize;
 /// A unit of slope of a cubic beam moves points by this part of its length at most, x (1 - x)^2 at x = 1/3.
 const SLOPE_WAY: f64 = 4.0 / 27.0;
 
-/// Coordinates with less than this part of the largest acceleration are left out where changes of accelerations are looked at,
+/// Coordinates with less than this part of the largest acceleration do not count for rho,
 const LEAST_SHARE: f64 = 0.1;
-/// and those that the changes move by less than this part of the longest way: rounding.
+/// nor do those whose changes h^2 da are below this part of the largest range of motion, which are rounding.
 const SHAKEN: f64 = 1e-9;
-/// A motion with this many times the energy that the scene supplies, or that of a plain motion, is not that of the mechanism.
+/// A run is stopped when the integrator has gained this many times the larger of the energy supplied and [`plain_motion`].
 const UNSTABLE: f64 = 10.0;
 
-/// What the integrator did to a run.
+/// What was measured of the integrator.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Integration {
     /// Estimated error of position \[m\], if nothing amplifies it.
     pub estimated_error: f64,
     /// The coordinate that has it.
     pub estimated_error_of: String,
-    /// Root mean square change of an acceleration from step to step over that of the acceleration, of the coordinate where it is
-    /// the largest; 2 pi over the steps of a period.
+    /// Largest rho of a coordinate: rms change of its acceleration from step to step over the rms of the acceleration; 2 pi/n
+    /// for n steps a period.
     pub acceleration_change: f64,
     /// The coordinate that has it.
     pub acceleration_change_of: String,
-    /// The longest way of a point of the mechanism over the recorded rows \[m\].
+    /// Largest range of motion of a coordinate over the recorded rows, as a distance \[m\].
     pub travel: f64,
     /// Least and greatest energy lost by the integrator over the recorded rows \[J\]; a negative loss is a gain.
     pub lost: [f64; 2],
-    /// Energy in play \[J\]: the largest sum of kinetic and elastic energy over the recorded rows, and what was dissipated.
+    /// Energy in play \[J\]: the largest sum of kinetic and elastic energy over the recorded rows, plus the energy dissipated.
     pub turnover: f64,
 }
 
-/// Measures while a run goes on.
+/// Measures during a run.
 #[derive(Debug)]
 pub(super) struct Meter {
     lengths: Vec<f64>,
@@ -66,9 +66,9 @@ pub(super) struct Meter {
     turnover: f64,
     dissipated: f64,
     initial: Option<Initial>,
-    /// Largest energy that the scene has supplied: that at the start, and work and weight since.
+    /// Largest energy supplied so far: that at the start plus the work of drives, loads and weight.
     supplied: f64,
-    /// Energy of a plain motion, see [`plain_motion`].
+    /// See [`plain_motion`].
     plain: f64,
     elapsed: f64,
 }
@@ -82,12 +82,12 @@ struct Initial {
     turnover: f64,
 }
 
-/// Energy that the integrator has put into a motion, far beyond what the scene has.
+/// Energy that the integrator has put into the motion, far beyond what the scene supplies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gain {
-    /// What it has put in \[J\].
+    /// Energy gained \[J\].
     pub gained: f64,
-    /// Energy at the start, and work and weight since \[J\].
+    /// Energy supplied: that at the start plus the work of drives, loads and weight since \[J\].
     pub supplied: f64,
 }
 
@@ -104,11 +104,11 @@ struct Sums {
     acceleration: f64,
     /// ... of that of its change over a step ...
     change: f64,
-    /// ... and the largest square of a way h^2 da.
+    /// ... and the largest square of a displacement h^2 da.
     shaking: f64,
 }
 
-/// What an unknown went through over the recorded rows.
+/// Range of an unknown over the recorded rows.
 #[derive(Debug, Clone, Copy)]
 struct Range {
     least: f64,
@@ -143,7 +143,7 @@ impl Range {
     }
 }
 
-/// The way \[m\] that a unit of each unknown moves a point of its body by.
+/// l_i: the largest distance \[m\] by which a unit change of each unknown moves a point of its body.
 pub fn lengths(scene: &Scene, model: &Model) -> Vec<f64> {
     let mut lengths = vec![1.0; model.shape().coordinates];
     for (body, place) in scene.bodies.iter().zip(model.bodies()) {
@@ -172,9 +172,10 @@ pub fn lengths(scene: &Scene, model: &Model) -> Vec<f64> {
     lengths
 }
 
-/// Kinetic energy \[J\] of all bodies at the speed that takes one of them through the mechanism once in the run.
+/// Kinetic energy \[J\] of all bodies at the speed that crosses the mechanism once in the duration of the run.
 ///
-/// A motion that begins at rest has no energy to measure a gain by, and its first steps have errors as large as itself.
+/// A gain of energy is measured against it at a start from rest, where the energy supplied is zero and the errors of the first
+/// steps are as large as the motion.
 fn plain_motion(scene: &Scene, model: &Model, start: &State) -> f64 {
     let lengths = lengths(scene, model);
     let places = start.q.iter().enumerate();
@@ -227,7 +228,7 @@ impl Meter {
         }
     }
 
-    /// A step with a local error is about to be accepted.
+    /// Records a step that is about to be accepted, with its local error.
     pub fn step(&mut self, from: &State, to: &State, error: &LocalError) {
         let h = to.t - from.t;
         self.elapsed = to.t;
@@ -247,7 +248,7 @@ impl Meter {
     /// A row is recorded.
     ///
     /// # Errors
-    /// A motion that lives on the energy that the integrator has put into it.
+    /// When the integrator has put far more energy into the motion than the scene supplies.
     pub fn row(&mut self, model: &Model, at: &State) -> Result<(), Gain> {
         for (range, (q, v)) in self.ranges.iter_mut().zip(at.q.iter().zip(&at.v)) {
             range.see(*q, *v);

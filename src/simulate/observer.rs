@@ -1,4 +1,4 @@
-//! What a run tells while it is under way.
+//! What a run reports while it is under way.
 
 /// A contact that closes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,7 +9,7 @@ pub struct Onset<'a> {
     pub joint: &'a str,
     /// delta_dot at onset \[m/s\].
     pub impact_velocity: f64,
-    /// Penetration at the located instant \[m\], zero but for the onset tolerance.
+    /// Penetration at the located instant \[m\], zero within the onset tolerance.
     pub delta: f64,
     /// Direction of the eccentricity vector, from the x axis \[rad\].
     pub angle: f64,
@@ -31,7 +31,7 @@ pub struct Contact<'a> {
 pub struct End {
     /// When \[s\].
     pub t: f64,
-    /// -delta_dot \[m/s\]: over the impact velocity it is the restitution delivered.
+    /// -delta_dot \[m/s\]: divided by the impact velocity it is the restitution delivered.
     pub exit_velocity: f64,
 }
 
@@ -46,10 +46,10 @@ pub struct Progress {
     pub contacts: Option<usize>,
 }
 
-/// What is told while many runs are made, one after the other.
+/// Reports of a series of runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Notice<'a> {
-    /// Something begins: a run with this name, or a part of the work.
+    /// A run with this name begins, or another part of the work.
     Begun(&'a str),
     /// The run with this name has ended with a warning.
     Warned {
@@ -83,7 +83,7 @@ pub trait Observer {
     fn onset(&mut self, _onset: &Onset) -> std::io::Result<()> {
         Ok(())
     }
-    /// A contact has opened, or the run has ended while it is closed: every contact is told once. Those that open within
+    /// A contact has opened, or the run has ended while it is closed: called once for every contact. Contacts that open within
     /// one step come in the order of the joints, and so do those that are closed at the end.
     ///
     /// # Errors
@@ -94,11 +94,11 @@ pub trait Observer {
     /// A step has been taken.
     ///
     /// # Errors
-    /// When it cannot be told; the run stops.
+    /// When it cannot be reported; the run stops.
     fn step(&mut self, progress: &Progress) -> std::io::Result<Control>;
 }
 
-/// Discards everything, for whoever looks at the final state and the report alone.
+/// Discards everything, for callers that need only the final state and the report.
 impl Observer for () {
     fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
         Ok(())

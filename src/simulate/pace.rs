@@ -1,4 +1,4 @@
-//! How long the next step is: a grid of equal steps, or a controller that follows an estimate of the error.
+//! Length of the next step: a grid of equal steps, or a controller with an error estimate.
 
 use super::GRID_ROUNDING;
 use super::control::Controller;
@@ -6,9 +6,9 @@ use crate::system::State;
 
 /// Equal steps from an anchor.
 ///
-/// The grid starts afresh where a step is cut by a contact. The first step after an onset is half as long as the others: the
-/// force grows as t^1.5, so that step alone has an error of h^2.5, which a whole one would make as large as the h^2 of all
-/// others together. Measured on the instant of the fourth impact of case 3, h from 4e-6 to 5e-7 s: orders 2.4, 2.1, 2.2
+/// The grid restarts where a step is cut by a contact. The first step after an onset is half as long as the others. The force
+/// grows as t^1.5 there, so this step alone has an error of h^2.5; with full length it would be as large as the error h^2 of
+/// all other steps together. Measured on the instant of the fourth impact of case 3, h from 4e-6 to 5e-7 s: orders 2.4, 2.1, 2.2
 /// with the half step, 1.7, 1.2, 1.8 without.
 #[derive(Debug)]
 pub(super) struct Grid {
@@ -17,12 +17,12 @@ pub(super) struct Grid {
     count: f64,
 }
 
-/// What the length of the next step follows.
+/// Rule for the length of the next step.
 #[derive(Debug)]
 pub(super) enum Pacer {
     /// A grid.
     Grid(Grid),
-    /// The estimated error.
+    /// Control by the estimated error.
     Controller(Box<Controller>),
 }
 
@@ -36,7 +36,7 @@ impl Pacer {
         })
     }
 
-    /// The time of a step \[s\] by which to tell a short one.
+    /// Time \[s\] against which a step counts as short.
     pub fn scale(&self) -> f64 {
         match self {
             Pacer::Grid(grid) => grid.step,
@@ -44,14 +44,14 @@ impl Pacer {
         }
     }
 
-    /// Begins a way of several steps at t.
+    /// Begins a sequence of steps at t.
     pub fn begin(&mut self, t: f64) {
         if let Pacer::Grid(grid) = self {
             (grid.anchor, grid.count) = (t, 0.0);
         }
     }
 
-    /// Where the step from t shall end, on the way to `target`.
+    /// The end of the next step from t towards `target`.
     pub fn goal(&mut self, t: f64, target: f64) -> f64 {
         match self {
             Pacer::Grid(grid) => {
@@ -67,7 +67,7 @@ impl Pacer {
         }
     }
 
-    /// A step has been kept that was to end at `goal`; `onsets` are the contacts that closed at its end.
+    /// Records an accepted step that was planned to end at `goal`; `onsets` are the contacts that closed at its end.
     pub fn kept(&mut self, at: &State, goal: f64, onsets: impl Iterator<Item = usize>) {
         match self {
             Pacer::Grid(grid) => {

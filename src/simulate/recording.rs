@@ -1,9 +1,9 @@
-//! Results in memory, for programs that look at a run when it is over.
+//! Results in memory, for programs that evaluate a run after its end.
 
 use super::{Contact, Control, Impact, Observer, Onset, Progress, Simulation};
 use std::io::Result;
 
-/// Keeps what a run tells, column by column.
+/// Keeps the results of a run, column by column.
 #[derive(Debug, Clone)]
 pub struct Recording {
     names: Vec<String>,

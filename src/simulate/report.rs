@@ -1,4 +1,4 @@
-//! What a run reports of itself, and what a scene will be, before it runs.
+//! The report of a run, and the inspection of a scene before it runs.
 
 use super::pace::Pacer;
 use super::{AccuracyReport, Chatter, Impact, Integration, Simulation};
@@ -57,7 +57,7 @@ impl Extreme {
     }
 }
 
-/// The report of a run; nothing in it differs when the run is repeated.
+/// The report of a run; a repeated run has the same report.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
     /// How the run ended.
@@ -71,7 +71,7 @@ pub struct Report {
     pub effects: BTreeMap<String, u64>,
     /// Accepted steps.
     pub steps: u64,
-    /// Stages solved, those of rejected steps and of onset location among them.
+    /// Stages solved, including those of rejected steps and of onset location.
     pub stages: u64,
     /// Newton iterations.
     pub newton_iterations: u64,
@@ -83,12 +83,12 @@ pub struct Report {
     pub stagnations: u64,
     /// Stages that ended in a nearly singular pose, where the singular direction was left out.
     pub singular_poses: u64,
-    /// What the accuracy asked for cost; absent with a fixed step.
+    /// Steps that the accuracy required; absent with equal steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<AccuracyReport>,
     /// Steps that failed and were halved.
     pub rejected_steps: u64,
-    /// The same by the coordinate or constraint that they failed for.
+    /// The same by the coordinate or constraint that failed.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub rejected_by: BTreeMap<String, u64>,
     /// Steps tried to locate contact onsets and losses.
@@ -97,7 +97,7 @@ pub struct Report {
     pub singular_pose_trials: u64,
     /// Contacts closed.
     pub onsets: u64,
-    /// The first contacts; [`super::Observer::contact`] tells all of them.
+    /// The first contacts; [`super::Observer::contact`] receives all of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub impacts: Vec<Impact>,
     /// Onsets and losses kept although the gap could not be brought within the tolerance.
@@ -108,17 +108,17 @@ pub struct Report {
     pub ended_contacts: u64,
     /// Those of them that were closed for fewer than four steps.
     pub brief_contacts: u64,
-    /// The first stretches of time in which a contact closed and opened within a few steps, over and over.
+    /// The first periods of chatter.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub chatter: Vec<Chatter>,
-    /// What the integrator did to the motion and to the energy; a static analysis has none.
+    /// What was measured of the integrator; absent in a static analysis.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub integration: Option<Integration>,
     /// Energy ledger at the end; a static analysis keeps none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ledger: Option<Ledger>,
-    /// Constraints left out because they repeat others: their multipliers are zero, and the forces of the joints of that
-    /// loop are one choice among many.
+    /// Redundant constraints that were left out: their multipliers are zero, and the forces of the joints of that loop are not
+    /// unique.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub redundant: Vec<String>,
     /// Axial strain of largest magnitude over the recorded rows, of every flexible link.
@@ -138,7 +138,7 @@ pub struct Inspection {
     pub contacts: usize,
     /// Effects present.
     pub effects: Vec<String>,
-    /// Values the scene assumes, and what the program makes of what it says.
+    /// Values that the scene assumes, and values that the program derives from it.
     pub assumptions: Vec<String>,
     /// Names of the unknown coordinates.
     pub coordinates: Vec<String>,
@@ -146,7 +146,7 @@ pub struct Inspection {
     pub constraints: Vec<String>,
 }
 
-/// Notes on what the program makes of a scene.
+/// Notes on values that the program derives from a scene.
 fn notes(scene: &Scene) -> Vec<String> {
     let mut notes: Vec<String> = scene
         .assumptions

@@ -1,4 +1,4 @@
-//! A run that is taken over: steps to a time, and goes on from another state of the same mechanism.
+//! Lets a program control a run: step to a time, and continue from another state of the same mechanism.
 
 use super::{Observer, RunError, Simulation};
 use crate::system::{State, System};
@@ -16,9 +16,9 @@ impl Simulation {
     /// Goes on, at the time reached, from the coordinates, velocities and contact memory of `other`.
     ///
     /// Velocities are projected on the constraints, and accelerations and multipliers follow from the equations of
-    /// motion. Coordinates are taken as they are: a sum of nearby consistent states, d apart, misses the constraints by
-    /// d^2. Contacts close and open as `other` says where its memory contradicts its gaps. What the energy ledger holds
-    /// is that of the run so far, so that it jumps by the difference of the two energies.
+    /// motion. Coordinates are not projected: a combination of consistent states at a distance d violates the constraints by
+    /// d^2. Contacts close and open where the memory of `other` contradicts its gaps. The energy ledger keeps its integrals, so
+    /// its balance jumps by the difference of the two energies.
     ///
     /// # Errors
     /// [`RunError::Physics`] where the state has no accelerations.

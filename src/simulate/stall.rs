@@ -1,15 +1,16 @@
-//! A run whose steps are so much shorter than what was asked for that it will not end.
+//! Detects a run that will not end because its steps are far too short.
 
-/// With equal steps: this many steps tried at least, and on average shorter than this part of the step asked for.
+/// Equal steps: the least number of steps tried, and the average step relative to that of the scene.
 const OF_EQUAL_STEPS: (u64, f64) = (20_000, 0.02);
-/// With an accuracy: some ten seconds of computing, and an average step at which the whole run takes weeks.
+/// Steps of an accuracy: the same, the average relative to the duration. The number takes some ten seconds; at that average
+/// the whole run would take weeks.
 const OF_ACCURACY: (u64, f64) = (1_000_000, 1e-11);
 
 /// Watches the pace of a run.
 #[derive(Debug)]
 pub(super) struct Stall {
     steps: u64,
-    /// Accepted and failed.
+    /// Steps accepted and failed.
     tried: u64,
     patience: u64,
     /// Least average step \[s\].
@@ -48,7 +49,7 @@ impl Stall {
         self.tried += 1;
     }
 
-    /// A step to t has been accepted that led from memory `before` to `after`.
+    /// Records an accepted step to t, from contact memory `before` to `after`.
     pub fn step(&mut self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Stalled> {
         for (changes, (before, after)) in self.changes.iter_mut().zip(before.iter().zip(after)) {
             *changes += u64::from((*before > 0.0) != (*after > 0.0));
@@ -62,7 +63,7 @@ impl Stall {
         let busiest = busiest.max_by_key(|(_, changes)| *changes);
         Err(Stalled {
             steps: self.steps,
-            // changes explain a halt where there are some every few steps
+            // changes of a contact are the cause only if there is one every few steps
             contact: busiest.filter(|(_, changes)| 10 * changes > self.steps),
         })
     }

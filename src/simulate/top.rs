@@ -1,7 +1,7 @@
-//! The top of a cubic that is known by its ends and its slopes there.
+//! The maximum of a cubic given by its values and slopes at both ends.
 
-/// Where on \[0, h\] the cubic with ends y and slopes v is largest, and its value there; `None` where it has no top inside.
-/// Between two steps a smooth quantity is this cubic but for an error of h^4.
+/// Place and value of the maximum on \[0, h\] of the cubic with end values y and slopes v; `None` without a maximum inside.
+/// Between two steps a smooth quantity differs from this cubic by h^4.
 pub(super) fn top(h: f64, [y0, y1]: [f64; 2], [v0, v1]: [f64; 2]) -> Option<(f64, f64)> {
     if !(v0 > 0.0 && v1 < 0.0) {
         return None;

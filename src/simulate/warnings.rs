@@ -3,18 +3,18 @@
 use super::Report;
 use plot::number;
 
-/// Energy lost or gained by the integrator beyond this part of what was dissipated is told ...
+/// Warn of energy lost or gained by the integrator beyond this part of the energy dissipated ...
 const OF_DISSIPATED: f64 = 0.05;
-/// ... and beyond this part of the energy in play.
+/// ... or beyond this part of the energy in play.
 const OF_TURNOVER: f64 = 0.01;
-/// Accelerations that change more than this from step to step, relative, belong to vibrations of six steps a period or less.
+/// Relative change of accelerations from step to step of a vibration with six steps a period.
 const UNRESOLVED: f64 = 1.0;
-/// A Green strain of -1/2 is a centre line of zero length, through which the theory lets a beam be pressed.
+/// At a Green strain of -1/2 the centre line has no length; nothing in the theory prevents further compression.
 const CRUSHED: f64 = -0.4;
-/// An estimated error beyond this part of the longest way is told.
+/// Warn of an estimated error beyond this part of the largest range of motion.
 const OF_TRAVEL: f64 = 0.01;
 
-/// A part of something in words.
+/// A fraction in words.
 fn share(part: f64, of: &str) -> String {
     match part {
         part if part < 10.0 => format!("{:.1} % of {of}", 100.0 * part),
@@ -32,7 +32,7 @@ pub(crate) fn warning_list(warnings: &[String]) -> String {
 }
 
 impl Report {
-    /// A line for everything that makes the results worth less than they look: none for a run that can be trusted.
+    /// One line for every reason why the results may be less accurate than they look.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         warnings.extend(self.energy_warning());

@@ -9,16 +9,17 @@
 //! c1 = (1 + rho)/(4 - 2 gamma (1 - rho)),  c0 = (gamma - 1) c1 + 1/2,  c2 = 1/2 - gamma c1
 //! ```
 //!
-//! For gamma = 1/2 and rho = 0 all c are 1/3. Both sub-steps are affine in the acceleration, q = q_hat + g^2 a, v = v_hat + g a with
-//! g = gamma h/2 and c2 h; taking a as the unknown keeps v and a free of the rounding eps |q|/h and eps |q|/h^2 that
-//! differencing q would bring.
+//! For gamma = 1/2 and rho = 0 all c are 1/3. Both sub-steps are affine in the acceleration, q = q_hat + g^2 a and
+//! v = v_hat + g a, with g = gamma h/2 in the first and c2 h in the second. The unknown is a: differencing q would bring
+//! rounding of eps |q|/h into v and eps |q|/h^2 into a.
 //!
 //! On the position level of a constrained system the stage's multipliers and constrained accelerations are of order one
-//! and carry the rounding of Phi divided by g^2. Every stage is therefore ended by a projection of v on Phi_q v = 0 and
-//! an acceleration-level solve; what the next stage builds on, and what is recorded, is consistent and of order two.
+//! and contain the rounding of Phi divided by g^2. Every stage therefore ends with a projection of v on Phi_q v + Phi_t = 0
+//! and an acceleration-level solve. The next stage and the recorded rows use this consistent state, which is of order two.
 //!
-//! The local error is that of the scheme against the quadrature w through the same three points that is exact for quadratic
-//! integrands, as Hosea & Shampine (1996, Appl. Numer. Math. 20:21) do for gamma = 2 - sqrt 2, where the scheme is TR-BDF2:
+//! The local error is the difference between the scheme and the quadrature with weights w at the same three points that is
+//! exact for quadratic integrands, as in Hosea & Shampine (1996, Appl. Numer. Math. 20:21) for gamma = 2 - sqrt 2, where the
+//! scheme is TR-BDF2:
 //! e_v = h sum (w - c) a, e_q = h sum (w - c) v, both of h^3.
 
 use super::{Estimate, LocalError, Stage, StepError, Stepper, integrate};

@@ -1,11 +1,11 @@
 //! The explicit Runge-Kutta pair of orders 5 and 4 of Dormand & Prince (1980, J. Comput. Appl. Math. 6:19).
 //!
-//! On y = (q, v) with stages Y_i = y + h sum_j a_ij F_j, F = (V, A), seven of them; the last is the end of the step and the
-//! first of the next. A_i solves the acceleration level at (Q_i, V_i). With constraint rows that is index reduction, and
-//! every step ends with a projection of q on Phi = 0 and of v on Phi_q v = 0 (Eich 1993, SIAM J. Numer. Anal. 30:1467),
-//! which keeps the order.
+//! Applied to y = (q, v) with seven stages Y_i = y + h sum_j a_ij F_j, F = (V, A). The last stage is the end of the step and
+//! the first stage of the next. A_i is the solution of the acceleration level at (Q_i, V_i). With constraint rows this reduces
+//! the index, and every step ends with a projection of q on Phi = 0 and of v on Phi_q v + Phi_t = 0 (Eich 1993, SIAM J. Numer.
+//! Anal. 30:1467), which keeps the order.
 //!
-//! The local error is the difference of the two solutions, of h^5; the step goes on with the one of order 5.
+//! The local error is the difference of the two solutions, of order h^5. The step continues with the solution of order 5.
 
 use super::{Estimate, LocalError, StepError, Stepper, accumulate, integrate};
 use crate::newton::Newton;
@@ -48,7 +48,7 @@ const WEIGHTS: [f64; 6] = [
     11.0 / 84.0,
 ];
 
-/// Weights of order 5 less those of order 4, stages 1 to 7.
+/// Weights of order 5 minus those of order 4, stages 1 to 7.
 const DIFFERENCE: [f64; 7] = [
     71.0 / 57600.0,
     0.0,

@@ -12,8 +12,8 @@
 //! HHT:                alpha_m = 0,                      alpha_f = (1 - rho)/(1 + rho)
 //! ```
 //!
-//! rho is the spectral radius at infinite frequency. b stands for the acceleration at t + (alpha_m - alpha_f) h. What is
-//! carried from step to step is therefore (b - a)/h, so that order two survives a change of the step; it starts at zero.
+//! rho is the spectral radius at infinite frequency. b approximates the acceleration at t + (alpha_m - alpha_f) h. The scheme
+//! therefore carries (b - a)/h from step to step, which keeps order two when the step changes. It starts at zero.
 
 use super::history::History;
 use super::{Estimate, LocalError, Stage, StepError, Stepper, integrate_ends};
@@ -128,7 +128,7 @@ impl Stepper for GeneralizedAlpha {
         let lags = self.lag.iter().zip(&self.next_lag);
         for (((q, v), (change, second)), (lag, next)) in error.iter_mut().zip(differences).zip(lags)
         {
-            // (1 - gamma) b + gamma b_1 less the mean of a and a_1, and b_1 - b
+            // (1 - gamma) b + gamma b_1 minus the mean of a and a_1, and b_1 - b
             let mean =
                 (self.gamma - 0.5) * change + h * ((1.0 - self.gamma) * lag + self.gamma * next);
             let increment = change + h * (next - lag);

@@ -1,32 +1,32 @@
-//! The accelerations of the step before, from which schemes of order 2 estimate their local errors.
+//! The accelerations of the previous step, from which schemes of order 1 and 2 estimate their local errors.
 //!
-//! Such a scheme adds h sum w a to the velocity with weights of its own; an exact integration adds
+//! Such a scheme adds h sum w a to the velocity, with its own weights w. To order 3, exact integration adds
 //!
 //! ```text
 //! h/2 (a + a_1) - h/12 (h^2 a'')     to v
 //! h/2 (v + v_1) - h^2/12 (a_1 - a)   to q
 //! ```
 //!
-//! to order 3 (Hairer, Nørsett & Wanner 1993, Solving Ordinary Differential Equations I, III.2). The local error is the
-//! difference of the two formulas. It is not measured as a difference of what the step did to v: that would take what
-//! Newton's method and the projection on the constraints leave for an error of the scheme.
+//! (Hairer, Nørsett & Wanner 1993, Solving Ordinary Differential Equations I, III.2). The local error is the difference of the
+//! two formulas. It is not computed from the change of v in the step, which also contains the residual of Newton's method
+//! and the projection on the constraints.
 //!
-//! With the accelerations a_0 at the step before, h_0 long, a'' is the second divided difference over both steps. After a
-//! contact has changed, and at the start, that would reach across a kink. There the acceleration a_2 that an explicit
-//! extrapolation of the step finds at t + 2 h stands in for a_0.
+//! a'' is the second divided difference over this step and the previous one, of length h_0, at whose beginning the
+//! acceleration was a_0. At the start, and after a change of a contact, there is no smooth previous step. There the
+//! acceleration a_2 at t + 2 h, from an explicit extrapolation of the step, replaces a_0.
 
 use crate::system::{Shape, State};
 
 /// The memory of the estimate.
 #[derive(Debug)]
 pub(super) struct History {
-    /// Where the step before the last began.
+    /// Beginning of the previous step.
     before: Beginning,
-    /// Where the last step began.
+    /// Beginning of the present step.
     last: Beginning,
 }
 
-/// What is remembered of the beginning of a step.
+/// Values at the beginning of a step.
 #[derive(Debug)]
 struct Beginning {
     t: f64,
@@ -65,13 +65,13 @@ impl History {
         std::mem::swap(&mut self.before, &mut self.last);
     }
 
-    /// True where the step before leads smoothly to a step from this state.
+    /// True if the previous step leads to this state without a change of a contact.
     pub fn leads_to(&self, from: &State) -> bool {
         from.t > self.before.t && self.before.z == from.z
     }
 
-    /// (a_1 - a, h^2 a'') of every unknown over the step that has begun last \[m/s2\]; `ahead` holds a_2 where the step
-    /// before does not lead to this one.
+    /// (a_1 - a, h^2 a'') of every unknown over the present step \[m/s2\]; `ahead` holds a_2 if the previous step does not lead
+    /// to this one.
     pub fn differences<'a>(
         &'a self,
         from: &'a State,
@@ -79,7 +79,7 @@ impl History {
         ahead: &'a State,
     ) -> impl Iterator<Item = (f64, f64)> + 'a {
         let h = to.t - from.t;
-        // a neighbour of both ends: its acceleration, how far it is from the start, and from the end of the step
+        // the third point: its acceleration, and its distance in time from the start and from the end of the step
         let (neighbour, t) = match self.leads_to(from) {
             true => (&self.before.a, self.before.t),
             false => (&ahead.a, ahead.t),

@@ -26,11 +26,11 @@ pub enum StepError {
     Stage(Failure),
     /// The prescribed motion has none.
     Prescribe(PrescribeError),
-    /// The step turns something further than the mechanism did.
+    /// The step may have added a turn.
     Turn {
-        /// The unknown that is the angle, or the multiplier of the constraint that holds it.
+        /// The unknown angle, or the multiplier of the constraint that prescribes it.
         index: usize,
-        /// What is wrong.
+        /// The message.
         cause: &'static str,
     },
 }
@@ -80,7 +80,7 @@ pub trait Stepper: std::fmt::Debug + Send {
         &[]
     }
 
-    /// The last step is kept, and the next one begins where it ended.
+    /// The last step is accepted; the next one begins at its end.
     fn accept(&mut self) {}
 
     /// How the scheme estimates its error.
@@ -91,25 +91,24 @@ pub trait Stepper: std::fmt::Debug + Send {
         false
     }
 
-    /// The estimated error of the last step, which led from `from` to `to`, before it is accepted: the better solution less
-    /// that of the scheme. `ahead` is a state beyond the end, extrapolated, where the scheme looks ahead.
+    /// The estimated error of the last step, from `from` to `to`, before it is accepted: the more accurate solution minus that
+    /// of the scheme. `ahead` is an extrapolated state beyond the end, if the scheme looks ahead.
     fn local_error(&self, from: &State, to: &State, ahead: &State, error: &mut LocalError);
 }
 
-/// What is known of an estimate of the local error.
+/// Properties of an estimate of the local error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// The estimate falls with this power of the step.
+    /// The power of the step with which the estimate falls.
     pub order: f64,
-    /// True where it is the error of the solution that the scheme goes on with; false where that solution is of a higher
-    /// order.
+    /// True if it is the error of the solution with which the scheme continues; false if that solution is of a higher order.
     pub is_error: bool,
-    /// True of a scheme that solves stages: it keeps stiff modes in hand that its steps do not resolve.
+    /// True for a scheme with implicit stages, which is stable for stiff modes that its steps do not resolve.
     pub implicit: bool,
 }
 
 impl Estimate {
-    /// That of a scheme of order 2 which goes on with the solution it estimates.
+    /// The estimate of a scheme of order 2 which continues with the solution that it estimates.
     const ERROR_OF_ORDER_2: Estimate = Estimate {
         order: 3.0,
         is_error: true,
@@ -147,10 +146,10 @@ impl LocalError {
     }
 }
 
-/// Goes on from the end of a step for once its length with its last acceleration, into `ahead`.
+/// Extrapolates from the end of a step by its own length with its last acceleration, into `ahead`.
 ///
-/// Where the prescribed motion or the acceleration does not exist there, the acceleration is taken to bend over the
-/// step by as much as it has changed, which is too much for a smooth motion.
+/// If the prescribed motion or the acceleration does not exist there, a'' is estimated from the change of the acceleration
+/// over the step, which overestimates the error of a smooth motion.
 pub fn look_ahead(
     system: &dyn System,
     from: &State,
@@ -194,7 +193,7 @@ pub fn stepper(method: Method, system: &dyn System) -> Box<dyn Stepper> {
     }
 }
 
-/// What an implicit stage starts from: q = q_hat + w.q a and v = v_hat + w.v a.
+/// The predictor of an implicit stage: q = q_hat + w.q a and v = v_hat + w.v a.
 #[derive(Debug)]
 struct Stage {
     q_hat: Vec<f64>,
@@ -212,14 +211,14 @@ impl Stage {
         }
     }
 
-    /// Sets what belongs to unknown `i`.
+    /// Sets the predictor of unknown `i`.
     fn set(&mut self, from: &State, i: usize, v_hat: f64, increment: f64) {
         self.v_hat[i] = v_hat;
         self.increment[i] = increment;
         self.q_hat[i] = from.q[i] + increment;
     }
 
-    /// Solves the stage into `to` and ends it; returns the number of clamped contacts.
+    /// Solves the stage into `to` and makes it consistent; returns the number of clamped contacts.
     fn solve(
         &self,
         system: &dyn System,
@@ -256,9 +255,9 @@ fn integrate(h: f64, weighted: &[(f64, &[f64; INTEGRALS])], integrals: &mut [f64
 
 /// Sets q of a solved stage to q of `from` + `increment` + `weight` a with a compensated sum (Kahan 1965, Commun. ACM 8:40).
 ///
-/// Rounding q at every step shakes a stiff link at random: by eps |q| a step, which its highest modes turn into a velocity
-/// that grows with the square root of the number of steps. Measured in case 4 against IDA: an impact velocity off by
-/// 7e-9 m/s after 3.6 ms at a step of 6e-9 s, and growing as the step shrinks; 2e-11 m/s with the sum compensated.
+/// Rounding of q excites a stiff link at random, by eps |q| in every step. In its highest modes this gives a velocity that grows
+/// with the square root of the number of steps. Measured in case 4 against IDA: the error of an impact velocity after 3.6 ms
+/// at a step of 6e-9 s is 7e-9 m/s, growing as the step shrinks; with the compensated sum it is 2e-11 m/s.
 fn accumulate(from: &State, increment: &[f64], weight: f64, to: &mut State) {
     for (i, increment) in increment.iter().enumerate() {
         let increment = increment + weight * to.a[i] + from.q_low[i];

@@ -4,8 +4,8 @@
 //! v_1 = v + h/2 (a + a_1)                q_1 = q + h/2 (v + v_1)
 //! ```
 //!
-//! It damps nothing, neither the motion nor what rounding and constraints put into the highest modes: the rival that
-//! Bathe's scheme was made to replace. Each step ends consistent, as those of [`super::Bathe`] do.
+//! It has no numerical damping, neither of the motion nor of what rounding and constraints excite in the highest modes. Bathe's
+//! scheme was made to replace it. Each step ends in a consistent state, as with [`super::Bathe`].
 //!
 //! Its local error is -h^3/12 (q''', v''').
 

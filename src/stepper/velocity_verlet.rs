@@ -5,8 +5,8 @@
 //! q_1 = q + h v + h^2/2 a                a_1 = a(q_1, v + h a)                v_1 = v + h/2 (a + a_1)
 //! ```
 //!
-//! Forces that depend on velocities take the predicted one, whose error of h^2 leaves order two. Symplectic where there are
-//! none; stable while h omega < 2 in every mode.
+//! Forces that depend on velocities are evaluated with the predicted velocity; its error of h^2 keeps order two. Without such
+//! forces the scheme is symplectic. It is stable while h omega < 2 in every mode.
 
 use super::history::History;
 use super::{Estimate, LocalError, StepError, Stepper, accumulate, integrate_ends};
