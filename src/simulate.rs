@@ -51,9 +51,9 @@ const LEFT_OPEN: f64 = 1e-6;
 const PASSAGES: i32 = 20;
 const PASSAGE_RATIO: f64 = 2.0;
 /// Message for a step that ends in the second zero of a prescribed angle.
-const HALF_TURN: &str = "the direction it holds turns over by half a turn";
+const HALF_TURN: &str = "its direction has flipped by half a turn";
 /// Message for a step that turns a body by more than half a turn.
-const TURN: &str = "it turns by more than half a turn in one step";
+const TURN: &str = "it rotates by more than half a turn in one step";
 /// A difference of times below this part of a step is rounding.
 const GRID_ROUNDING: f64 = 1e-6;
 
@@ -61,7 +61,7 @@ const GRID_ROUNDING: f64 = 1e-6;
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The method found no solution of the equations.
-    #[error("{name}: {cause} at t = {t} s (step halved down to {} s)", short(step))]
+    #[error("{name}: {cause} at t = {t} s (last step tried: {} s)", short(step))]
     Physics {
         /// Coordinate or constraint.
         name: String,
@@ -74,7 +74,7 @@ pub enum RunError {
     },
     /// Even the shortest step is too long for the accuracy of the scene.
     #[error(
-        "the accuracy of {accuracy} cannot be reached at t = {t} s: the estimated error of {name} is too large even at a step of \
+        "the accuracy of {accuracy} cannot be reached at t = {t} s: the estimated error of {name} is too large even with a step of \
          {} s",
         short(step)
     )]
@@ -109,8 +109,8 @@ pub enum RunError {
     },
     /// The integrator has put far more energy into the motion than the scene supplies.
     #[error(
-        "{name}: the method is unstable with these steps: at t = {t} s it has put {} J into the motion, where the scene \
-         supplies {} J",
+        "{name}: the method is unstable with these steps: up to t = {t} s the integrator has added {} J, \
+         the scene {} J",
         short(gained),
         short(supplied)
     )]
@@ -125,7 +125,9 @@ pub enum RunError {
         supplied: f64,
     },
     /// The steps are so short that the run would not end.
-    #[error("the run has come to a halt at t = {t} s, after {steps} steps: {cause}")]
+    #[error(
+        "the steps are too short for the run to end, at t = {t} s after {steps} steps: {cause}"
+    )]
     Stalled {
         /// When \[s\].
         t: f64,
@@ -600,7 +602,7 @@ impl Simulation {
             Some((index, open)) if open > LEFT_OPEN * size => Err(RunError::Physics {
                 name: self.model.unknown_name(index),
                 cause: format!(
-                    "the other constraints do not allow it, it is off by {}",
+                    "the other constraints contradict it; it is violated by {}",
                     short(&open)
                 ),
                 t: self.state.t,
@@ -614,7 +616,7 @@ impl Simulation {
     fn overflown(&self, channel: &str) -> RunError {
         RunError::Physics {
             name: self.meter.fastest(&self.model, &self.state).to_owned(),
-            cause: format!("{channel} is not finite, the motion grows beyond all bounds"),
+            cause: format!("{channel} is not finite: the motion grows without bound"),
             t: self.state.t,
             step: self.state.t - self.trial.t,
         }
@@ -649,15 +651,15 @@ impl Simulation {
             (Some((contact, changes)), _) => {
                 let joint = self.model.contact_joint(contact);
                 let joint = joint.map_or("", |j| &self.model.joints()[j].name);
-                format!("{joint} closed or opened {changes} times")
+                format!("contact in {joint} was made or lost {changes} times")
             }
             (None, Some((index, times))) => format!(
-                "{times} times the step failed for {} and was halved, now to {} s",
+                "for {} the step failed and was halved {times} times, down to {} s",
                 self.model.unknown_name(index),
                 short(&step)
             ),
             (None, None) => format!(
-                "the error of {} keeps the steps at {} s",
+                "the error of {} limits the step to {} s",
                 self.meter.worst(&self.model, &self.local_error),
                 short(&step)
             ),
@@ -709,7 +711,7 @@ fn refuse_constraints(scene: &Scene, model: &Model) -> Result<(), SceneError> {
     }
     let first = &model.unknown_names()[shape.unknowns];
     let message = format!(
-        "method \"velocity_verlet\" keeps no constraints, and this mechanism has {}, the first: {first}",
+        "method \"velocity_verlet\" cannot enforce constraints; the first of the {} constraints here is {first}",
         shape.multipliers
     );
     let error = scene.error(
@@ -718,7 +720,7 @@ fn refuse_constraints(scene: &Scene, model: &Model) -> Result<(), SceneError> {
         "cannot take this scene",
     );
     Err(error.with_help(
-        "\"dormand_prince\" is explicit and takes constraints; so do all implicit methods",
+        "use an implicit method, or \"dormand_prince\", which is explicit and enforces constraints",
     ))
 }
 
@@ -731,10 +733,10 @@ fn keep_independent(scene: &Scene, model: &mut Model, start: &State) -> Result<(
         }
         redundancy::Redundancy::SingularStart(name) => {
             let message = format!(
-                "the start is a singular pose: there {name} depends on the other constraints"
+                "the start is a singular pose, in which {name} depends on the other constraints"
             );
             let error = scene.error(scene.initial.span, message, "this start");
-            Err(error.with_help("start a little away from the dead centre"))
+            Err(error.with_help("start slightly away from the dead centre"))
         }
     }
 }

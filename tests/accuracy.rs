@@ -214,7 +214,7 @@ fn an_accuracy_of_energy_holds_the_balance() {
             "accuracy={{ position = 1e-5, energy = {energy:e}, horizon = 0.01 }}"
         ));
         assert!(free > 3.0 * energy, "{method}: {free:e} J without");
-        assert!(control.rejected_by["the balance of energies"] > 0);
+        assert!(control.rejected_by["the energy balance"] > 0);
         worst.see(held / energy);
     }
     Rung::HardCases

@@ -199,7 +199,7 @@ fn an_accuracy_replaces_the_step() {
     expect(
         &output,
         0,
-        "accuracy: 1e-8 m over 0.02 s asked for, steps from",
+        "accuracy: 1e-8 m over 0.02 s requested, steps from",
     );
     let control = &summary(&out)["accuracy"];
     assert_eq!(control["position"], 1e-8);
@@ -415,7 +415,7 @@ fn usage_errors() {
 fn check_and_inspect() {
     let output = looselink(&["check", SCENE]);
     expect(&output, 0, "");
-    assert!(String::from_utf8_lossy(&output.stdout).contains("no fault found"));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("no error found"));
     let output = looselink(&["inspect", SCENE]);
     expect(&output, 0, "");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -551,7 +551,7 @@ fn a_run_that_cannot_go_on_keeps_what_it_has() {
     // A body without mass flies freely up to its first contact, whose force no step is short enough for.
     let output = run(folder.path(), &["--set", "bodies.journal.mass=1e-300"]);
     expect(&output, 3, "the run cannot go on: journal.");
-    expect(&output, 3, "the results up to there are in");
+    expect(&output, 3, "the results up to that time are in");
     let summary = summary(folder.path());
     assert_eq!(summary["status"], "failed");
     assert!(summary["error"].as_str().unwrap().contains(" at t = "));

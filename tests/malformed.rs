@@ -234,9 +234,7 @@ fn a_redundant_bar_of_a_parallelogram_is_named_and_left_out() {
     let mut simulation = Simulation::new(&scene).unwrap_or_else(|e| panic!("{e}"));
     let notes = simulation.inspect().assumptions;
     assert!(
-        notes
-            .iter()
-            .any(|n| n.contains("repeats other constraints")),
+        notes.iter().any(|n| n.contains("is redundant")),
         "{notes:?}"
     );
     simulation.run(&mut ()).unwrap_or_else(|e| panic!("{e}"));

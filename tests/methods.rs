@@ -150,7 +150,7 @@ fn velocity_verlet_takes_what_it_can() {
     }
     let constrained = load("pendulum.toml", &["integrator.method=velocity_verlet"]);
     let error = Simulation::new(&constrained).unwrap_err();
-    let message = "method \"velocity_verlet\" keeps no constraints, and this mechanism has 2, the first: joint pivot (x)";
+    let message = "method \"velocity_verlet\" cannot enforce constraints; the first of the 2 constraints here is joint pivot (x)";
     check(&error, "a pendulum", message, "velocity_verlet");
 }
 

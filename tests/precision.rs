@@ -129,7 +129,7 @@ steps = [1e-3]
     .unwrap();
     let first = outcome(&study);
     let failed = |i: usize| first.runs[i].result.as_ref().unwrap_err().as_str();
-    assert!(failed(0).starts_with("method \"velocity_verlet\" keeps no constraints"));
+    assert!(failed(0).starts_with("method \"velocity_verlet\" cannot enforce constraints"));
     assert!(failed(1).starts_with("the accuracy of 1e-20 m over 0.5 s cannot be reached at t = "));
     assert!(first.runs[2].result.is_ok());
     assert_eq!(first.timings.iter().flatten().count(), 1);

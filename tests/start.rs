@@ -242,8 +242,8 @@ fn velocities_taken_as_zero_are_told() {
     let (error, shown) = refused(text);
     assert_eq!(
         error.to_string(),
-        "the velocities of the start violate drive push (x), by 1\u{a0}m/s: the scene gives no velocity of slider, which was \
-         taken as zero"
+        "the velocities of the start violate drive push (x), by 1\u{a0}m/s: the scene gives no velocity for slider, so \
+         zero was assumed"
     );
     assert!(shown.contains("[initial.sketch]"), "{shown}");
     assert_eq!(error.underlined(), "{ x = 0.2, y = 0.0, theta = 0.0 }");

@@ -23,7 +23,7 @@ pub fn ablation(path: &Path) -> Result<Ablation> {
 /// Its part of the page.
 pub fn section(ablation: &Ablation) -> String {
     format!(
-        "## What every effect does and costs\n\n![Case 4, effect by effect](accuracy/figures/ablation.png)\n\n{}\n\n{}\n",
+        "## Influence and cost of each effect\n\n![Case 4, effect by effect](accuracy/figures/ablation.png)\n\n{}\n\n{}\n",
         conclusion(ablation).unwrap_or_default(),
         ablation.summary()
     )
@@ -46,10 +46,9 @@ fn conclusion(ablation: &Ablation) -> Option<String> {
         .max_by(|a, b| far(a.1).total_cmp(&far(b.1)))?;
     let costs = removed.iter().min_by(|a, b| a.2.total_cmp(&b.2))?;
     Some(format!(
-        "Without {} the RMS error of displacement is {} times that of the full scene: no other effect changes it as much when \
-         it is removed. The scene without {} takes the least processor time of those with one effect removed, {} times that \
-         of the full scene. Loose joints are chaotic: small differences between variants that have them are those of two \
-         motions, not of an effect.",
+        "Removing {} changes the rms displacement error most: to {} times that of the full scene. Removing {} leaves the \
+         cheapest variant, with {} times the processor time of the full scene. Variants with clearance are chaotic, so a small \
+         difference between two of them is not the influence of an effect.",
         moves.0,
         plot::digits(moves.1),
         costs.0,

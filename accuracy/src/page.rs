@@ -19,11 +19,11 @@ pub fn page(
 ) -> String {
     let mut out = format!(
         "# What accuracy costs\n\n{}\n\
-         Every method on every study of [studies](studies), error against processor time. Written by `cargo run --release -p \
-         accuracy` in {:.0} min; one study alone: `cargo run --release -- precision studies/case3.toml --out out/case3` \
-         ([docs/study.md](docs/study.md)). Processor times are those of one core, {machine}: the \
-         median of as many runs as the column `runs` says, after one that is not timed. Every single time is in \
-         [accuracy/timings.json](accuracy/timings.json).\n\n",
+         Error against processor time for every method in every study of [studies](studies). `cargo run --release -p accuracy` \
+         writes this page in {:.0} min; `cargo run --release -- precision studies/case3.toml --out out/case3` runs one study \
+         ([docs/study.md](docs/study.md)). A processor time is the median over the number of runs in column `runs`, after one \
+         run that is not timed, on one core: {machine}. [accuracy/timings.json](accuracy/timings.json) has every single \
+         time.\n\n",
         records::place("accuracy"),
         (seconds / 60.0).ceil()
     );
@@ -64,7 +64,7 @@ fn line(out: &mut String, text: &str) {
 /// The warnings of the runs of a table, folded up: coarse runs have many.
 fn folded(warnings: &[String]) -> String {
     if warnings.is_empty() {
-        return "No run warns.\n\n".to_owned();
+        return "No run has a warning.\n\n".to_owned();
     }
     let list: String = warnings.iter().map(|w| format!("* {w}\n")).collect();
     let count = warnings.len();
@@ -86,18 +86,17 @@ fn asked(made: &[Made]) -> String {
     }
     let within = |bound: f64| rows.iter().filter(|(_, ratio, _)| *ratio <= bound).count();
     let worst = rows.iter().max_by(|a, b| a.1.total_cmp(&b.1));
-    let mut out = String::from("## Is what was asked for achieved?\n\n");
+    let mut out = String::from("## Is the requested accuracy reached?\n\n");
     if let Some((position, ratio, name)) = worst {
         line(
             &mut out,
             &format!(
-                "Of {} runs with an accuracy {} achieve it, {} within ten times of it, {} within a hundred. The largest ratio of \
-                 error achieved to error asked for is {} ({name}, {}). The table shows the ratio; below one, accuracy was given \
-                 away. Errors below twice the floor of a reference are not counted.\n",
+                "The table shows the achieved error over the requested accuracy. Of {} runs with a requested accuracy {} reach \
+                 it, and {} stay within three times of it. The largest ratio is {} ({name}, {}). Runs whose error is below twice the \
+                 uncertainty of the reference are left out.\n",
                 rows.len(),
                 within(1.0),
-                within(10.0),
-                within(100.0),
+                within(3.0),
                 plot::digits(*ratio),
                 plot::si(*position, "m")
             ),
@@ -223,7 +222,7 @@ fn conclusions(made: &[Made], surveyed: &[Surveyed]) -> String {
     line(
         &mut out,
         &format!(
-            "* Over {cells} pairs of a study and an error from {} to {}, the fastest curve is, so many times: {}.",
+            "* Fastest method, counted over {cells} pairs of a study and an error between {} and {}: {}.",
             plot::si(LEVELS[0], "m"),
             plot::si(LEVELS[LEVELS.len() - 1], "m"),
             wins.join(", ")
@@ -233,8 +232,8 @@ fn conclusions(made: &[Made], surveyed: &[Surveyed]) -> String {
         line(
             &mut out,
             &format!(
-                "* The scheme of the paper, Bathe's with a fixed step, takes {} to {} times as long as the fastest, in the median \
-                 {}; in {} of the {cells} pairs it does not come so far with the steps tried.",
+                "* The scheme of the paper, Bathe's with a fixed step, takes {} to {} times as long as the fastest method (median \
+                 {}). In {} of the {cells} pairs it does not reach the error with the steps tried.",
                 plot::digits(least),
                 plot::digits(most),
                 plot::digits(median(&ratios)),
@@ -254,8 +253,8 @@ fn conclusions(made: &[Made], surveyed: &[Surveyed]) -> String {
     line(
         &mut out,
         &format!(
-            "* Explicit methods against implicit ones: for an error of {} the fastest explicit curve takes, of the time of the \
-             fastest implicit one, {}. Their steps shrink with the length of an element, so compare `case2` and `case2-4elements`.",
+            "* Time of the fastest explicit method over that of the fastest implicit one, for an error of {}: {}. The stable \
+             step of explicit methods shrinks with the element length: compare `case2` with `case2-4elements`.",
             plot::si(level, "m"),
             explicit.join(", ")
         ),
@@ -289,7 +288,7 @@ fn long_runs(one: &Surveyed) -> String {
     good.sort_by(|a, b| a.1.total_cmp(&b.1));
     let told = |(run, time): &(&looselink::precision::Sampled, f64)| {
         format!(
-            "{} with {} ({} times as fast as the mechanism moves)",
+            "{} with {} ({} times real time)",
             run.curve,
             run.pace,
             plot::digits(one.study.duration / time)
@@ -297,19 +296,22 @@ fn long_runs(one: &Surveyed) -> String {
     };
     let [deviation, contact, loss] = CONVERGED.map(plot::percent);
     let mut text = format!(
-        "{} of {} runs have envelopes and rms within {deviation}, the share of contact within {contact} and an energy lost below \
-         {loss} of that of contacts.",
+        "{} of {} runs count as converged: envelopes and rms within {deviation} of the reference, the share of contact within \
+         {contact}, and an energy lost or gained by the integrator below {loss} of the contact dissipation.",
         good.len(),
         one.survey.runs.len()
     );
     if let Some(first) = good.first() {
-        text += &format!(" The fastest of them is {}", told(first));
+        text += &format!(" The fastest of these is {}", told(first));
         let controlled = |(run, _): &&(&looselink::precision::Sampled, f64)| {
             matches!(run.pace, Pace::Accuracy { .. })
         };
         text += &match good.iter().find(controlled) {
             Some(other) if other.1 > first.1 => {
-                format!(", the fastest with an accuracy {}.", told(other))
+                format!(
+                    "; the fastest with a requested accuracy is {}.",
+                    told(other)
+                )
             }
             _ => ".".to_owned(),
         };
@@ -321,9 +323,10 @@ fn long_runs(one: &Surveyed) -> String {
 fn fastest(made: &[Made]) -> String {
     let mut out = String::from(
         "## Which method for which error?\n\n\
-         The curve that comes below an error of position first, with its step or accuracy and its processor time, and how many \
-         times as long the scheme of the paper, Bathe's with a fixed step, takes for it. Between points both are interpolated; a dash: no curve came so \
-         far; no brackets: Bathe's did not.\n\n",
+         The fastest method for an error of position, with its step or accuracy and its processor time. In brackets: how many \
+         times as long the scheme of the paper takes, Bathe's with a fixed step; no brackets where it did not reach the error. \
+         Values are interpolated between the runs of a curve and never extrapolated: where the coarsest run is already below the \
+         error, its time counts. A dash: no method reached the error.\n\n",
     );
     let heads: Vec<String> = LEVELS.iter().map(|e| plot::si(*e, "m")).collect();
     line(&mut out, &format!("| study | {} |", heads.join(" | ")));
@@ -348,7 +351,7 @@ fn fastest(made: &[Made]) -> String {
     out + "\n"
 }
 
-/// What diverged.
+/// What failed or was left out.
 fn omissions(made: &[Made]) -> String {
     let mut out = String::from("## Omissions\n\n");
     let mut none = true;
@@ -372,16 +375,16 @@ fn omissions(made: &[Made]) -> String {
     }
     let mut timings = made.iter().flat_map(|one| &one.outcome.timings).flatten();
     let counts = match timings.all(|timing| timing.instructions.is_none()) {
-        true => " Counts of instructions are not shown: the machine has none.",
+        true => " Instruction counts are missing: the machine has no counter.",
         false => "",
     };
     line(
         &mut out,
         &format!(
-            "* Velocity Verlet runs only where there are no constraint rows. Bathe's scheme with an accuracy was not run where \
-             it would take more than some seconds a point.{counts}\n\
-             * Beyond the first impacts runs with loose joints go different ways; studies of errors end before that, those of \
-             two seconds compare statistics."
+            "* Velocity Verlet runs only on scenes without constraints. Bathe's scheme with a requested accuracy was not run where \
+             a point would take more than some seconds.{counts}\n\
+             * Loose joints are chaotic: after the first impacts two runs diverge. Studies of errors end before that; the studies \
+             of two seconds compare statistics."
         ),
     );
     out

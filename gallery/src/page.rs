@@ -23,11 +23,11 @@ pub fn entry(run: &Run) -> String {
     };
     let onsets = match sizes.contacts {
         0 => String::new(),
-        _ => format!(", {} contacts closed", report.onsets),
+        _ => format!("; contact onsets: {}", report.onsets),
     };
     format!(
         "## {}\n\n{}\n\n![{name}](gallery/{slug}.png)\n\n    looselink run scenes/{name}.toml --out out/{slug}\n\n\
-         {} unknowns, {} multipliers, {} contacts; {length}{onsets}.\n",
+         Unknowns: {}; multipliers: {}; contacts: {}; {length}{onsets}.\n",
         run.scene.title,
         first_sentence(run.scene.text()),
         sizes.unknowns,
@@ -40,9 +40,9 @@ pub fn entry(run: &Run) -> String {
 pub fn page(entries: &[String]) -> String {
     format!(
         "# Scenes\n\n\
-         Every scene of this folder, run once: on the left the mechanism at five instants, light to dark, with the points \
-         of the ground in black; on the right one of its channels. The comment at the head of each file says where its data \
-         come from and what to look at. `cargo run --release -p gallery` writes this page.\n\n{}",
+         `cargo run --release -p gallery` runs every scene of this folder and writes this page. Left: the mechanism at five \
+         instants, from light to dark, with the points of the ground in black. Right: one of its channels. The comment at the \
+         head of each file gives the source of its data and what to look at.\n\n{}",
         entries.join("\n")
     )
 }

@@ -31,9 +31,9 @@ pub fn convergence(rung: Rung, answers: &[Answer]) -> Option<Figure> {
     Some(Figure {
         rows: rows.collect(),
         caption: format!(
-            "{title}: measured errors (dots), and lines of the least and the greatest slope that the tests allow. Where a panel \
-             has several curves each is divided by its error at the largest abscissa. Scene, method and reference of every \
-             curve are in the table."
+            "{title}: measured errors (dots) and the least and greatest slopes that the tests allow (lines). Where a panel \
+             has several curves, each is divided by its error at the largest abscissa. The table has scene, method and \
+             reference of every curve."
         ),
     })
 }
@@ -98,7 +98,7 @@ fn panel(family: &[&Answer]) -> Option<Panel> {
     let y = if alone {
         "Error"
     } else {
-        "Error over the largest"
+        "Error over its largest value"
     };
     Some(Panel {
         title,

@@ -69,35 +69,38 @@ impl Rung {
         match self {
             Rung::Identities => (
                 "Identities",
-                "Does what must hold for all numbers hold for random ones?",
+                "Properties that hold for all inputs, tested on random ones.",
             ),
             Rung::Derivatives => (
                 "Derivatives",
-                "Does the central difference tend to the tangent as the square of its span? An order below 2 is a wrong \
-                 derivative, one above it a test that sees none.",
+                "Do derivatives agree with central differences, whose error is of order 2 in the span? A lower order means a \
+                 wrong derivative; a higher order, a test that does not see it.",
             ),
-            Rung::Routes => ("Routes", "Does another way to the same quantity agree?"),
+            Rung::Routes => (
+                "Routes",
+                "Do two independent ways to compute a quantity agree?",
+            ),
             Rung::OrderInTime => (
                 "Order in time",
-                "Does the error fall with the step as the scheme promises? The bounds are on both sides.",
+                "Does the error fall with the order of the scheme? Orders are bounded from below and above.",
             ),
             Rung::OrderInElements => (
                 "Order in elements",
-                "Does the error fall with the number of elements as the element promises?",
+                "Does the error fall with the order of the element?",
             ),
-            Rung::Balance => ("Balance", "Are energy and momentum accounted for?"),
+            Rung::Balance => ("Balance", "Do energy and momentum balance?"),
             Rung::Codes => (
                 "Code to code",
-                "Does the independent C++ implementation agree? [verify/REPORT.md](verify/REPORT.md) has every row; here is, \
-                 for each comparison, the one that comes nearest to what it is allowed.",
+                "Does the independent C++ implementation agree? [verify/REPORT.md](verify/REPORT.md) has every row; listed here \
+                 is the row of each comparison that is closest to its tolerance.",
             ),
             Rung::Published => (
                 "Published and exact cases",
-                "Do digits come out that were computed elsewhere?",
+                "Do results agree with published digits and closed forms?",
             ),
             Rung::HardCases => (
                 "Hard cases",
-                "Does what is known to be difficult stay in hand?",
+                "Are results right in cases known to be difficult?",
             ),
         }
     }

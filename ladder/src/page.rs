@@ -68,14 +68,14 @@ fn head(page: &mut String, answers: &[Answer]) {
         page,
         format!(
             "# Verification\n\n\
-             A ladder of questions, each rung on those before it. Every row is a test: the number it obtained, what is \
-             allowed, and why that. **{held} of {} rows hold.** `cargo run --release -p ladder` runs the tests and writes this \
-             page; `./test.sh` fails when a row fails, when the page lacks a row or has one that no test asks, and when a row of the \
-             page has another bound, reason or number than the test. The numbers are those of one machine. A number may differ \
-             by a twentieth of itself, an order by a twentieth of the distance between its bounds; where the reason names \
-             rounding, random draws or chaos, and below 1e-9, by a factor of ten, of random mechanisms by a thousand, because rounding \
-             differs between machines and random draws between runs ([ladder/src/compare.rs](ladder/src/compare.rs)).\n\n\
-             | rung | rows | hold | nearest to its bound |\n|---|---|---|---|",
+             The questions form a ladder: each rung rests on those before it. Every row is a test with its number, the allowed \
+             range and the reason for that range. **{held} of {} rows hold.** `cargo run --release -p ladder` runs the tests \
+             and writes this page. `./test.sh` fails when a row fails, when the page lacks the row of a test or has a row \
+             without a test, and when bound, reason or number of a row differ from those of the test. A number may differ by \
+             5 % between machines, an order by 5 % of the width of its range. A number below 1e-9, or whose reason names \
+             rounding, random draws or chaos, may differ by a factor of ten; one of random mechanisms by a factor of 1000 \
+             ([ladder/src/compare.rs](ladder/src/compare.rs)).\n\n\
+             | rung | rows | hold | closest to its bound |\n|---|---|---|---|",
             answers.len()
         ),
     );
@@ -110,9 +110,9 @@ fn numbers(page: &mut String, record: &constants::Record) {
         page,
         format!(
             "## Numbers of the kernels\n\n{}\n\
-             Every number of the element and of Bathe's scheme is changed by {} of the largest in its table, one at a time, and \
-             the three property tests of mass, tangent and decay run. `cargo run --release -p ladder --bin constants` repeats \
-             this.\n\n| table | file | numbers | caught |\n|---|---|---|---|",
+             `cargo run --release -p ladder --bin constants` changes every number of the element and of Bathe's scheme, one at a \
+             time, by {} of the largest number in its table, and runs the property tests of mass, tangent and decay. A change is \
+             caught when a test fails.\n\n| table | file | numbers | caught |\n|---|---|---|---|",
             records::place("constants"),
             plot::number(record.change, 1),
         ),
@@ -134,12 +134,11 @@ fn mutation(page: &mut String, mutants: &Record, reasons: &BTreeMap<String, Stri
         page,
         format!(
             "## Mutation testing\n\n{}\n\
-             Do the tests notice a mistake? [{}](https://mutants.rs) changes one operator, sign or return value at a time in \
-             the kernels (`src/link`, `src/contact`, `src/constraint`, `src/force`, `src/stepper`), and the tests of \
-             [tests/kernels.rs](tests/kernels.rs) run. Of {} possible mutants {} were drawn with seed {}; \
-             {} of them compile, and **{} of those are caught**. `cargo run --release -p ladder --bin mutate` repeats this; it \
-             needs `cargo install cargo-mutants`.\n\n\
-             | file | drawn | do not compile | caught | run for ever | survive |\n|---|---|---|---|---|---|",
+             [{}](https://mutants.rs) changes one operator, sign or return value at a time in the kernels (`src/link`, \
+             `src/contact`, `src/constraint`, `src/force`, `src/stepper`), and the tests of [tests/kernels.rs](tests/kernels.rs) \
+             run. Of {} possible mutants {} were drawn with seed {}; {} of them compile, and **{} of those are caught**. \
+             `cargo run --release -p ladder --bin mutate` repeats this; it needs `cargo install cargo-mutants`.\n\n\
+             | file | drawn | do not compile | caught | time out | survive |\n|---|---|---|---|---|---|",
             records::place("mutation"),
             mutants.tool,
             mutants.possible,
@@ -166,8 +165,7 @@ fn mutation(page: &mut String, mutants: &Record, reasons: &BTreeMap<String, Stri
     line("all", &total);
     put(
         page,
-        "\nThe survivors:\n\n| mutant | why no test can notice, or why none does |\n|---|---|"
-            .into(),
+        "\nSurviving mutants:\n\n| mutant | why no test fails |\n|---|---|".into(),
     );
     for survivor in &mutants.survivors {
         let reason = reasons

@@ -108,10 +108,14 @@ fn from(sources: &[Source]) -> String {
     names.sort_unstable();
     names.dedup();
     if !names.is_empty() {
-        told.push(format!("* Without warnings: {}.\n", names.join("; ")));
+        told.push(format!("* Runs without warnings: {}.\n", names.join("; ")));
     }
     for source in sources.iter().filter(|s| !s.warnings.is_empty()) {
-        let line = format!("* {} warns: {}.\n", source.name, source.warnings.join("; "));
+        let line = format!(
+            "* Warnings of {}: {}.\n",
+            source.name,
+            source.warnings.join("; ")
+        );
         if !told.contains(&line) {
             told.push(line);
         }
@@ -136,7 +140,7 @@ mod tests {
             why: "Because.".into(),
             sources: vec![Source {
                 name: "run 4".into(),
-                warnings: vec!["2 clamps".into()],
+                warnings: vec!["clamps: 2".into()],
             }],
         }
     }
@@ -151,7 +155,7 @@ mod tests {
     #[test]
     fn warnings_stand_beside_the_verdict() {
         let text = statement().paragraph(7);
-        assert!(text.contains("* run 4 warns: 2 clamps."));
+        assert!(text.contains("* Warnings of run 4: clamps: 2."));
         assert!(text.contains("The paper's number is 2 times as large."));
     }
 }

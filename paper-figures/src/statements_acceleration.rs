@@ -37,7 +37,7 @@ fn very_different(e: &Evidence) -> Statement {
     let share = loose(e, "deviation_share");
     Statement {
         measured: format!(
-            "rms deviation over the rms of the ideal acceleration: case 2 {} at the finer step and {} at the coarser, case 3 {}, case 4 {}.",
+            "rms deviation from the ideal acceleration over the rms of the latter: case 2 {} at the finer step and {} at the coarser, case 3 {}, case 4 {}.",
             percent(fine),
             percent(e.flexible_coarse.get("deviation_share")),
             share[0].told(percent),
@@ -45,7 +45,7 @@ fn very_different(e: &Evidence) -> Statement {
         ),
         criterion: "above 25 % in cases 2 (finer step), 3 and 4",
         verdict: Verdict::of(fine > 0.25).and(share[0].above(0.25)).and(share[1].above(0.25)),
-        why: "Accelerations are second derivatives: displacements of micrometres at hundreds of hertz make them.".into(),
+        why: "A displacement of a micrometre at hundreds of hertz is an acceleration of metres per second squared.".into(),
         sources: e.all_cases(),
         ..statement("very different", "Sect. 6, Fig. 6", "The accelerations are very different from their ideal values.")
     }
@@ -55,13 +55,13 @@ fn slightly_vibrated(e: &Evidence) -> Statement {
     let share = [&e.flexible, &e.flexible_coarse].map(|m| m.get("deviation_share"));
     Statement {
         measured: format!(
-            "rms deviation over the rms of the ideal acceleration: {} at the finer step, {} at the coarser.",
+            "rms deviation from the ideal acceleration over the rms of the latter: {} at the finer step, {} at the coarser.",
             percent(share[0]),
             percent(share[1])
         ),
         criterion: "between 1 % and 25 % at both steps",
         verdict: Verdict::of(share.iter().all(|s| (0.01..=0.25).contains(s))),
-        why: "The vibration is the ringing of the unstrained start; how much is left after one cycle depends on the step.".into(),
+        why: "The unstrained start excites this vibration; how much of it is left after one cycle depends on the step.".into(),
         sources: e.case_2(),
         ..statement("slightly", "Sect. 6, Fig. 6a", "Case 2: the acceleration is slightly vibrated.")
     }
@@ -91,14 +91,14 @@ fn by_impacts(e: &Evidence) -> Statement {
     let share = e.loose().mean("peaks_after_onset");
     Statement {
         measured: format!(
-            "{} of the {PEAKS} highest peaks of the deviation follow a contact onset within {}; {} of the time does.",
+            "{} of the {PEAKS} highest peaks of the deviation follow a contact onset within {}. By chance it would be {}.",
             share.told(percent),
             si(AFTER_ONSET, "s"),
             e.loose().mean("after_onset_by_chance").told(percent)
         ),
         criterion: "at least 90 % of the peaks",
         verdict: share.above(0.9),
-        why: "What does not follow an onset rings on from an earlier one, or comes from the force at a loss of contact.".into(),
+        why: "The other peaks come later after an impact, or from the change of the force at a loss of contact.".into(),
         sources: vec![e.loose().source()],
         ..statement("by impacts", "Sect. 6, Fig. 6b", "The vibrations are caused by the impacts of journal and bearing.")
     }
@@ -112,9 +112,9 @@ fn unstable(e: &Evidence) -> Statement {
             growth[0].told(digits),
             growth[1].told(digits)
         ),
-        criterion: "unstable means growing: above 1.5 in case 3 or 4",
+        criterion: "unstable means that the deviation grows: above 1.5 in case 3 or 4",
         verdict: growth[0].above(1.5).or(growth[1].above(1.5)),
-        why: "The model has no controller: the cranks follow their motion whatever the forces. Only growth can be decided here.".into(),
+        why: "The model has no controller: the cranks follow their prescribed motion whatever the forces. Only growth can be decided.".into(),
         sources: e.ensembles(),
         ..statement("unstable", "Sect. 6, Fig. 6b", "These vibrations make the system unstable and difficult to control.")
     }
@@ -135,7 +135,7 @@ fn larger_in_case_4(e: &Evidence) -> Statement {
         ),
         criterion: "the ratio of the rms deviations is above 1",
         verdict: ratio.above(1.0),
-        why: "A flexible link stores part of the energy of an impact and gives it back, which lowers the peak and prolongs the ringing.".into(),
+        why: "A flexible link stores part of the energy of an impact and returns it, which lowers the peak and prolongs the vibration.".into(),
         sources: e.ensembles(),
         ..statement("larger", "Sect. 6, Fig. 6c", "Case 4: the vibration amplitude is larger than in case 3.")
     }
@@ -155,7 +155,7 @@ fn higher_frequency_in_case_4(e: &Evidence) -> Statement {
         ),
         criterion: "the ratio of these frequencies is above 1",
         verdict: ratio.above(1.0),
-        why: "A link in series with the contact makes it softer, which lowers the frequency of the contact; its own vibrations add higher ones.".into(),
+        why: "A flexible link in series with the contact lowers the frequency of the contact, but adds its own, higher frequencies.".into(),
         sources: e.ensembles(),
         ..statement("higher", "Sect. 6, Fig. 6c", "Case 4: the frequency is higher than in case 3.")
     }

@@ -57,7 +57,7 @@ fn same_phenomena(e: &Evidence) -> Statement {
         let grows = e.both().mean_with(e.loose(), name, |b, a| b / a);
         verdict = verdict.and(three.above(two)).and(grows.above(1.0));
     };
-    compare("force_ripple", "rms about the mean", newton);
+    compare("force_ripple", "rms of the force about its mean", newton);
     compare("force_frequency", "median frequency", hertz);
     Statement {
         measured: format!("in cases 2, 3 and 4, {}.", text.join("; ")),
@@ -85,7 +85,7 @@ fn simultaneous_peaks(e: &Evidence) -> Statement {
         criterion: "at least 90 % with one of the three joints, in both cases",
         verdict: any[0].above(0.9).and(any[1].above(0.9)),
         why: format!(
-            "Three legs push the platform, so B1 alone cannot account for every peak. Chance would give {} for one joint.",
+            "Three legs act on the platform, so B1 alone cannot explain every peak. By chance it would be {} for one joint.",
             percent(chance)
         ),
         sources: e.ensembles(),
@@ -116,7 +116,7 @@ fn enlarged_forces(e: &Evidence) -> Statement {
         ),
         criterion: "above 1.5 times the forces of cases 1 and 2, in cases 3 and 4",
         verdict: verdict.fold(Verdict::Holds, Verdict::and),
-        why: "After a loss of contact the journal returns with a speed that a stiff contact stops in a fraction of a millisecond.".into(),
+        why: "After a loss of contact, the stiff contact stops the returning journal in a fraction of a millisecond.".into(),
         sources: with_ideal(e),
         ..statement("enlarged", "Sect. 6, 7, Fig. 7", "The contact forces are enlarged by the clearance.")
     }
@@ -139,15 +139,15 @@ fn service_life(e: &Evidence) -> Statement {
     let verdict = rigid.iter().chain(&flexible).map(|i| i.below(0.9));
     Statement {
         measured: format!(
-            "the cubic-mean load of B1 gives, of the life of case 1, {} (case 3) and {} (case 4); of the life of case 2, {} and {}.",
+            "life by the cubic-mean load of B1: {} (case 3) and {} (case 4) of that of case 1; {} and {} of that of case 2.",
             rigid[0].told(percent),
             rigid[1].told(percent),
             flexible[0].told(percent),
             flexible[1].told(percent)
         ),
-        criterion: "life ~ (cubic-mean load)⁻³, as for rolling bearings, falls below 90 % of that of case 1 and of that of case 2, in cases 3 and 4",
+        criterion: "life ~ (cubic-mean load)⁻³, as for rolling bearings, is below 90 % of that of case 1 and of case 2, in cases 3 and 4",
         verdict: verdict.fold(Verdict::Holds, Verdict::and),
-        why: "Case 1 has no vibration, and case 2 has that of its unstrained start, which never decays. Neither wear nor strength is part of the model, so failure cannot be decided here; the load spectrum can.".into(),
+        why: "Case 1 has no vibration; case 2 has the undamped vibration of its start. Wear and strength are not part of the model, so only the load spectrum can be compared.".into(),
         sources: with_ideal(e),
         ..statement("service life", "Sect. 1, 6, 7", "The enlarged contact forces decrease the service life of the components, or even lead to failure.")
     }
@@ -158,10 +158,10 @@ fn sign_of_penetration(e: &Evidence) -> Statement {
     let share = all.concat().into_iter().fold(1.0, f64::min);
     Statement {
         measured: format!(
-            "in {} of the rows of every run there is no force without positive penetration.",
+            "least share of rows in a run that have no force without positive penetration: {}.",
             percent(share)
         ),
-        criterion: "in all rows",
+        criterion: "100 %",
         verdict: Verdict::of(share == 1.0),
         basis: Basis::Construction,
         why: "The contact law is evaluated for positive penetration only. The text writes \"passive\" for negative.".into(),
@@ -175,7 +175,7 @@ fn mostly_in_contact(e: &Evidence) -> Statement {
     let (first, least) = (of("contact_b1"), of("contact_least"));
     Statement {
         measured: format!(
-            "B1 is in contact {} (case 3) and {} (case 4) of the time; the joint that is least, {} and {}.",
+            "B1 is in contact {} (case 3) and {} (case 4) of the time; the joint with the least contact {} and {}.",
             first[0].told(percent),
             first[1].told(percent),
             least[0].told(percent),
@@ -183,7 +183,7 @@ fn mostly_in_contact(e: &Evidence) -> Statement {
         ),
         criterion: "all six joints above 50 % in both cases",
         verdict: least[0].above(0.5).and(least[1].above(0.5)),
-        why: "Inertia forces press the journals against the bearings except where their direction along a leg changes.".into(),
+        why: "Inertia forces press journal and bearing together, except where the force along a leg changes sign.".into(),
         sources: e.ensembles(),
         ..statement("mostly in contact", "Sect. 6, 7, Fig. 8", "For most of the time the joint components keep contact.")
     }
@@ -219,7 +219,7 @@ fn periodic_flexible(e: &Evidence) -> Statement {
         ),
         criterion: "the distance is below 1 % of the amplitude at both steps",
         verdict: Verdict::of(repetition.iter().all(|r| *r < REPEATS)),
-        why: "The undamped ringing of the unstrained start is not commensurate with the period, so the motion repeats only as far as the step has damped it. A start without that ringing, or damping, shows the periodic motion that the paper means.".into(),
+        why: "The unstrained start excites an undamped vibration that is not commensurate with the period, so the motion becomes periodic only as numerical damping removes it. A quasi-static start, or structural damping, gives a periodic motion.".into(),
         sources,
         ..statement("periodic", "Sect. 6, 7, Fig. 9a", "Case 2 is a periodic motion; the mechanism with flexible links is a periodical system.")
     }
@@ -241,7 +241,7 @@ fn not_periodic_loose(e: &Evidence) -> Statement {
         ),
         criterion: "the distance is above 1 % of the amplitude in both",
         verdict: distance[0].above(REPEATS).and(distance[1].above(REPEATS)),
-        why: "Two cycles that differ are not yet chaos; the sections over many periods and the exponents of the next statement say more.".into(),
+        why: "Two different cycles do not prove chaos: see the Lyapunov exponents in the next statement.".into(),
         sources,
         ..statement("not periodic", "Sect. 6, 7, Fig. 9b, c", "Cases 3 and 4 are non-periodic: the curve does not repeat from cycle to cycle.")
     }
@@ -277,9 +277,9 @@ fn chaotic(e: &Evidence) -> Statement {
             told(3),
             told(4)
         ),
-        criterion: "above one e-fold a cycle in cases 3 and 4, below in case 2, for both distances d₀ between the neighbouring motions",
+        criterion: "above 1 s⁻¹, one e-fold per cycle, in cases 3 and 4 and below it in case 2, for both initial distances d₀",
         verdict: above(3).and(above(4)).and(below),
-        why: "Impacts multiply a small difference, and phases of lasting contact shrink it again; the exponent says which of the two wins.".into(),
+        why: "Impacts amplify a small difference, and phases of lasting contact reduce it; the exponent is the net rate.".into(),
         sources: e.e.exponents.iter().map(|x| x.source()).collect(),
         ..statement("chaotic", "Sect. 6, Fig. 9", "The collision between the joint components causes chaotic motion.")
     }
@@ -292,7 +292,7 @@ fn smoother(e: &Evidence) -> Statement {
         .mean_of("deviation_peak", |peak| flexible[0].max(flexible[1]) / peak);
     Statement {
         measured: format!(
-            "largest deviation of the acceleration: case 2 {} at the finer step and {} at the coarser, case 3 {}; the larger of the former over the latter {}.",
+            "largest deviation of the acceleration: case 2 {} at the finer step and {} at the coarser, case 3 {}; ratio of the larger value of case 2 to case 3: {}.",
             acceleration(flexible[0]),
             acceleration(flexible[1]),
             e.loose().mean("deviation_peak").told(acceleration),
@@ -317,15 +317,15 @@ fn nonlinear_interaction(e: &Evidence) -> Statement {
         .mean_with(e.loose(), "deviation_rms", |b, a| b / flexible.hypot(a));
     Statement {
         measured: format!(
-            "rms deviation of the acceleration: case 2 {}, case 3 {}, case 4 {}, which is {} of the root of the sum of the squares of the others.",
+            "rms deviation of the acceleration: case 2 {}, case 3 {}, case 4 {}; ratio of case 4 to the root of the sum of squares of cases 2 and 3: {}.",
             acceleration(flexible),
             e.loose().mean("deviation_rms").told(acceleration),
             e.both().mean("deviation_rms").told(acceleration),
             ratio.told(digits)
         ),
-        criterion: "the last ratio differs from 1 by more than 0.1",
+        criterion: "the ratio differs from 1 by more than 0.1",
         verdict: ratio.within(0.9, 1.1).not(),
-        why: "Independent contributions would add up as squares. A flexible link changes the impacts themselves: their speed, their stiffness and their times.".into(),
+        why: "The squares of independent contributions would add up. Flexible links change the speed, stiffness and times of the impacts themselves.".into(),
         sources: e.all_cases(),
         ..statement("nonlinear", "Sect. 7", "Joint clearance and link flexibility interact with each other in a nonlinear way.")
     }

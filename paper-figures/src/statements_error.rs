@@ -43,7 +43,7 @@ fn error_flexible(e: &Evidence) -> Statement {
         criterion: "between 0.1 and 0.4 mm",
         verdict: Verdict::of((NEAR.0..=NEAR.1).contains(&fine)),
         factor: Some(fine / CLAIMED),
-        why: "Pin-ended links move the platform only by changing their length, and E A / l₂ is millions of newtons per metre: see the second argument below.".into(),
+        why: "Pin-ended links move the platform only by changing length, and they are too stiff for that: see the second argument below.".into(),
         sources: e.case_2(),
         ..statement("error 2", "Sect. 6, Fig. 5a", "Case 2: the positioning error along x is around ±0.2 mm.")
     }
@@ -58,14 +58,14 @@ fn stiffness_matters(e: &Evidence) -> Statement {
     let (soft, stiff) = (slow(&e.c.flexible_coarse), slow(&e.c.stiffer));
     Statement {
         measured: format!(
-            "with ten times the Young's modulus the largest mean of e_x over 20 ms falls from {} to {}, {} times.",
+            "with ten times the Young's modulus the largest 20 ms mean of e_x falls from {} to {}, by a factor of {}.",
             metres(soft),
             metres(stiff),
             digits(soft / stiff)
         ),
         criterion: "the ratio is between 5 and 20",
         verdict: Verdict::of((5.0..=20.0).contains(&(soft / stiff))),
-        why: "Deformation under a load that hardly changes goes with 1/E.".into(),
+        why: "Under a load that hardly changes, the deformation is proportional to 1/E.".into(),
         sources: vec![e.c.flexible_coarse.source(), e.c.stiffer.source()],
         ..statement(
             "stiffness",
@@ -88,7 +88,7 @@ fn error_loose(e: &Evidence) -> Statement {
         verdict: error.within(NEAR.0, NEAR.1),
         factor: Some(error.mean / CLAIMED),
         why: format!(
-            "No motion of a mechanism with the printed dimensions can leave the bound, whatever its contact law: see the first argument below. The bound is {} of the claim.",
+            "No mechanism with the printed dimensions can exceed this bound by more than the penetration allows, whatever its contact law: see the first argument below. The bound is {} times the claimed value.",
             digits(bound / CLAIMED)
         ),
         sources: vec![e.loose().source()],
@@ -112,7 +112,9 @@ fn clearance_matters(e: &Evidence) -> Statement {
         ),
         criterion: "the ratio is between 1.5 and 2.5",
         verdict: ratio.within(1.5, 2.5),
-        why: "The mechanism rides on its bound, which is proportional to the clearance.".into(),
+        why:
+            "The largest error reaches the kinematic bound, which is proportional to the clearance."
+                .into(),
         sources: vec![e.loose().source(), half.source()],
         ..statement(
             "clearance",
@@ -137,8 +139,7 @@ fn largest_in_case_4(e: &Evidence) -> Statement {
         ),
         criterion: "the ratio is above 1",
         verdict: ratio.above(1.0),
-        why: "The flexibility can only add the stretch of the links to what the clearance allows."
-            .into(),
+        why: "Flexibility adds the stretch of the links to what the clearance allows.".into(),
         sources: e.all_cases(),
         ..statement(
             "largest",
@@ -156,13 +157,13 @@ fn composition(e: &Evidence) -> Statement {
         .mean_with(e.loose(), "error_peak", |b, a| b / (a + flexible));
     Statement {
         measured: format!(
-            "of means over 20 ms, e₄ − e₂ − e₃ is {} of e₄ (rms); the largest error of case 4 is {} of the sum of those of cases 2 and 3.",
+            "20 ms means: e₄ − e₂ − e₃ is {} of e₄ (rms). The largest error of case 4 is {} times the sum of those of cases 2 and 3.",
             rest.told(percent),
             sum.told(digits)
         ),
-        criterion: "the rest is below 20 % and the largest error within 20 % of the sum",
+        criterion: "the remainder is below 20 %, and the largest error is within 20 % of the sum",
         verdict: rest.below(0.2).and(sum.within(0.8, 1.2)),
-        why: "Means, because single impacts of two runs do not happen at the same instants. Almost all of the sum is the part of the clearance.".into(),
+        why: "Means are compared because the impacts of two runs happen at different instants. Almost all of the sum is due to the clearance.".into(),
         sources: e.all_cases(),
         ..statement("composition", "Sect. 6, Fig. 5c", "The error of case 4 can be seen as the composition of cases 2 and 3.")
     }
@@ -174,7 +175,7 @@ fn both_matter(e: &Evidence) -> Statement {
     let other = e.both().mean_with(e.loose(), "error_peak", |b, a| a / b);
     Statement {
         measured: format!(
-            "largest error over that of case 4: with flexibility alone {}, with clearance alone {}.",
+            "largest error over that of case 4: {} with flexibility alone, {} with clearance alone.",
             part.told(percent),
             other.told(percent)
         ),

@@ -35,16 +35,16 @@ fn represents_well(e: &Evidence) -> Statement {
     let lost = [e.loose(), e.both()].map(|m| m.mean_of("energy_lost", f64::abs));
     Statement {
         measured: format!(
-            "energy that the integrator alone lost or gained in three cycles, over that dissipated in contacts: case 3 {}, case 4 {}; in case 2, where nothing dissipates, over the largest elastic energy {}. The runs of the figures with Bathe's method: case 3 {}, case 4 {}.",
+            "energy lost or gained by the integrator in three cycles, over the contact dissipation: case 3 {}, case 4 {}; in case 2, where nothing dissipates, over the largest elastic energy: {}. Runs of the figures with Bathe's method: case 3 {}, case 4 {}.",
             lost[0].told(percent),
             lost[1].told(percent),
             percent(e.flexible.get("energy_lost").abs()),
             percent(crate::measures::energy_lost(&e.c.loose).abs()),
             percent(crate::measures::energy_lost(&e.c.both).abs())
         ),
-        criterion: "below 5 % of the contact dissipation in cases 3 and 4, so that what is seen is the model and not the integrator",
+        criterion: "below 5 % of the contact dissipation in cases 3 and 4, so that the results are those of the model and not of the integrator",
         verdict: lost[0].below(0.05).and(lost[1].below(0.05)),
-        why: "The paper compares with no measurement and no second code; the energy ledger is the part of the claim that a run can decide.".into(),
+        why: "The paper compares with no measurement and no second code. A run can decide only whether the energy balance closes.".into(),
         sources: e.all_cases().into_iter().chain([e.c.loose.source(), e.c.both.source()]).collect(),
         ..statement("represents", "Abstract", "The methodology can represent the dynamic performances of the system with link flexibility and joint clearance well.")
     }
@@ -55,13 +55,13 @@ fn flexibility_matters(e: &Evidence) -> Statement {
     let peak = e.both().mean_with(e.loose(), "force_peak", |b, a| b / a);
     Statement {
         measured: format!(
-            "flexible links change the acceleration of the ideal mechanism by {} (rms, case 2), and the peak force of the mechanism with clearance to {} of what it is with rigid links.",
+            "flexible links change the acceleration of the ideal mechanism by {} (rms, case 2). With clearance, the peak force with flexible links is {} times that with rigid links.",
             percent(share),
             peak.told(digits)
         ),
         criterion: "both change by more than 10 %",
         verdict: Verdict::of(share > 0.1).and(peak.within(0.9, 1.1).not()),
-        why: "The first is the vibration of an undamped start.".into(),
+        why: "The change of the acceleration is the undamped vibration of the start.".into(),
         sources: e.all_cases(),
         ..statement(
             "flexibility",
@@ -76,7 +76,7 @@ fn vibration(e: &Evidence) -> Statement {
     let two = e.flexible.get("deviation_share");
     Statement {
         measured: format!(
-            "rms deviation of the acceleration over the rms of the ideal one: case 2 {}, case 3 {}, case 4 {}.",
+            "rms deviation from the ideal acceleration over the rms of the latter: case 2 {}, case 3 {}, case 4 {}.",
             percent(two),
             share[0].told(percent),
             share[1].told(percent)
@@ -85,8 +85,7 @@ fn vibration(e: &Evidence) -> Statement {
         verdict: Verdict::of(two > 0.05)
             .and(share[0].above(0.05))
             .and(share[1].above(0.05)),
-        why: "Noise is not part of the model; for service life see the statement about it below."
-            .into(),
+        why: "Noise is not part of the model.".into(),
         sources: e.all_cases(),
         ..statement(
             "vibration",
@@ -105,7 +104,7 @@ fn high_modes(e: &Evidence) -> Statement {
         ),
         criterion: "above 50 Hz, fifty times the frequency of the motion",
         verdict: Verdict::of(frequency > 50.0),
-        why: "The platform vibrates on the axial and bending stiffness of the links.".into(),
+        why: "The platform vibrates on the stiffness of the links.".into(),
         sources: vec![e.c.flexible.source()],
         ..statement(
             "modes",
@@ -140,7 +139,7 @@ fn work(e: &Evidence) -> (Vec<f64>, String, Vec<Source>) {
             let pair = [true, false].map(|x| cheapest(e, case, x, level));
             let [Some(one), Some(other)] = pair else {
                 text.push(format!(
-                    "case {case} at {}: not reached by both kinds",
+                    "case {case} at {}: not reached by both kinds of method",
                     percent(level)
                 ));
                 continue;
@@ -149,14 +148,14 @@ fn work(e: &Evidence) -> (Vec<f64>, String, Vec<Source>) {
             ratios.push(ratio);
             let told = |w: &Work| {
                 format!(
-                    "{} {} with h = {}",
+                    "{} evaluations by {} with h = {}",
                     w.evaluations,
                     words(&w.method),
                     si(w.step, "s")
                 )
             };
             text.push(format!(
-                "case {case} at {}: {}, {}, ratio {}",
+                "case {case} at {}: {} against {}, ratio {}",
                 percent(level),
                 told(one),
                 told(other),
@@ -184,12 +183,12 @@ fn explicit_inefficient(e: &Evidence) -> Statement {
     let (ratios, text, sources) = work(e);
     Statement {
         measured: format!(
-            "least number of evaluations of the elastic force with which the best explicit and the best implicit method keep e_x over {} within a part of its largest value: {text}.",
+            "least number of evaluations of the elastic force with which an explicit and an implicit method keep the error of e_x over {} below the given part of its largest value: {text}.",
             si(HORIZON, "s")
         ),
-        criterion: "\"can be\" asks for one case and accuracy: more than twice the work of the best implicit method in one of them",
+        criterion: "\"can be\" requires one case and accuracy in which the best explicit method takes more than twice the work of the best implicit one",
         verdict: Verdict::of(ratios.iter().any(|r| *r > MUCH)),
-        why: "An implicit evaluation includes the tangent and a factorisation, which are not counted: the comparison favours the implicit methods. Processor times are in ACCURACY.md.".into(),
+        why: "The tangents and factorisations of the implicit methods are not counted, so the comparison favours them. ACCURACY.md compares processor times.".into(),
         sources,
         ..statement("explicit", "Sect. 1", "For such a system explicit integration methods can be very inefficient.")
     }
@@ -208,10 +207,10 @@ fn explicit_fails(e: &Evidence) -> Statement {
     let told: Vec<String> = failed.iter().map(|w| source(w).name).collect();
     Statement {
         measured: if told.is_empty() {
-            "at no step does an explicit method stop or miss e_x by more than its size where Bathe's method keeps it within a tenth.".into()
+            "no run of an explicit method stops or has an error of e_x above its largest value at a step at which the error of Bathe's method is below a tenth of it.".into()
         } else {
             format!(
-                "runs that stop, or miss e_x by more than its size, at a step with which Bathe's method keeps it within a tenth: {}.",
+                "runs that stop, or whose error of e_x exceeds its largest value, at a step at which the error of Bathe's method is below a tenth of it: {}.",
                 told.join("; ")
             )
         },
@@ -233,12 +232,12 @@ fn implicit_efficient(e: &Evidence) -> Statement {
     let told: Vec<String> = ratios.iter().map(|r| digits(*r)).collect();
     Statement {
         measured: format!(
-            "work of the best explicit method over that of the best implicit one, as above: {}.",
+            "work of the best explicit method over that of the best implicit one, as in the statement on explicit methods: {}.",
             told.join(", ")
         ),
         criterion: "above 2 in both cases at both accuracies",
         verdict: Verdict::of(ratios.len() == 4 && ratios.iter().all(|r| *r > MUCH)),
-        why: "With links this stiff and impacts this short, accuracy asks for steps that are short enough for explicit methods too.".into(),
+        why: "Stiff links and short impacts require steps, for accuracy, at which explicit methods are stable too.".into(),
         sources,
         ..statement("implicit", "Sect. 1", "For such a stiff system implicit integration methods are much more efficient than explicit methods.")
     }
@@ -264,14 +263,19 @@ fn others_unstable(e: &Evidence) -> Statement {
         .fold(Verdict::Holds, Verdict::and);
     Statement {
         measured: format!(
-            "rms deviation of the acceleration in the last cycle over that in the second, of 34 cycles in case 2 and 10 cycles in case 4: {}. The trapezoidal rule is Newmark's method of constant average acceleration; generalised-α and HHT have the spectral radius 0.8.",
+            "rms deviation of the acceleration in the last cycle over that in the second, in runs of 34 cycles of case 2 and 10 cycles of case 4: {}. The trapezoidal rule is Newmark's method with constant average acceleration; generalised-α and HHT have a spectral radius of 0.8.",
             grown(&others)
         ),
-        criterion: "\"may\" asks for one of these: runs that stop, or whose vibration grows by more than half",
+        criterion: "\"may\" requires one run that stops, or whose vibration grows by more than half",
         verdict: stays.not(),
-        why: "In case 4 this step is far longer than those that resolve contacts; case 2 is nearly linear.".into(),
+        why: "In case 4 the step is far too long to resolve the contacts; case 2 is nearly linear."
+            .into(),
         sources: others.iter().map(|l| l.source()).collect(),
-        ..statement("others unstable", "Sect. 1", "The generalised-α, Newmark and HHT methods may become unstable for long time simulation.")
+        ..statement(
+            "others unstable",
+            "Sect. 1",
+            "The generalised-α, Newmark and HHT methods may become unstable for long time simulation.",
+        )
     }
 }
 
@@ -281,7 +285,7 @@ fn bathe_stable(e: &Evidence) -> Statement {
         measured: format!("the same for Bathe's method: {}.", grown(&bathe)),
         criterion: "no run stops, and no vibration grows by more than half",
         verdict: bathe.iter().map(|l| l.stays(GROWN)).fold(Verdict::Holds, Verdict::and),
-        why: "At the price of the vibration itself, which a coarse step damps away, and of the energy of contacts, which it does not resolve: see the warnings.".into(),
+        why: "A coarse step damps the vibration away and does not resolve the contacts: see the warnings.".into(),
         sources: bathe.iter().map(|l| l.source()).collect(),
         ..statement("bathe stable", "Sect. 1", "Bathe's two-step method overcomes this limitation for long time durations.")
     }

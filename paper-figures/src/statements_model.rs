@@ -37,11 +37,11 @@ fn coordinates(e: &Evidence) -> Statement {
     };
     let count: usize = e.c.both.scene.bodies.iter().map(|b| of(&b.kind)).sum();
     Statement {
-        measured: format!("the scene of case 4 has {count}; cranks with coordinates of their own would add 12."),
+        measured: format!("the scene of case 4 has {count}; separate coordinates for the cranks would add 12."),
         criterion: "the count is 27",
         verdict: Verdict::of(count == 27),
         basis: Basis::Construction,
-        why: "A cubic element has 4 coordinates a node, one element a link gives 3 × 8, and the driven pins B_i are shared.".into(),
+        why: "A cubic element has 4 coordinates per node, so one element per link gives 3 × 8; the platform has 3. The cranks have none, because their pins are known functions of time.".into(),
         ..statement("coordinates", "Abstract, Sect. 3, 7", "Natural coordinates for rigid and ANCF for flexible links lower the global coordinates: 27 in all, 24 of the flexible links and 3 of the platform.")
     }
 }
@@ -62,12 +62,12 @@ fn constant_mass(e: &Evidence) -> Statement {
             .sum();
     Statement {
         measured: format!(
-            "the matrices of the {elements} elements of case 4 are integrated once, when the scene is compiled; the kernel has no argument for coordinates."
+            "the mass matrices of the {elements} elements of case 4 are integrated once, when the scene is compiled, and do not depend on the coordinates."
         ),
         criterion: "the integral of eq. 10 does not contain q",
         verdict: Verdict::Holds,
         basis: Basis::Construction,
-        why: "r = S q is linear in q, so that S alone stands in the integral.".into(),
+        why: "r = S q is linear in q, so the integrand contains only S.".into(),
         ..statement(
             "mass",
             "Sect. 2.2, eq. 10",
@@ -117,7 +117,7 @@ fn invariants_exact() -> Statement {
     }
     Statement {
         measured: format!(
-            "force and tangent by eqs. 14 and 15 as printed and by five-point Gauss quadrature, which is exact here, differ by {} in {} states at most, relative to the axial stiffness and to the largest entry of the tangent.",
+            "force and tangent by eqs. 14 and 15 as printed differ from five-point Gauss quadrature, which is exact here, by at most {} in {} states, relative to the axial stiffness and to the largest entry of the tangent.",
             digits(worst),
             states().len()
         ),
@@ -125,7 +125,7 @@ fn invariants_exact() -> Statement {
         criterion: "below 1e-14, a hundred rounding errors",
         verdict: Verdict::of(worst < 1e-14),
         basis: Basis::Construction,
-        why: "An identity of integrals of polynomials. Eq. 11 writes U_l twice, where the second is the bending energy U_t.".into(),
+        why: "Both evaluate the same integrals of polynomials exactly. Eq. 11 prints U_l twice; the second is the bending energy U_t.".into(),
         ..statement("invariants", "Sect. 2.2, eqs. 13-15", "The invariant matrices give the elastic force and its tangent.")
     }
 }
@@ -134,14 +134,14 @@ fn invariants_efficient(e: &Evidence) -> Statement {
     let t = e.t;
     Statement {
         measured: format!(
-            "force and tangent of an element by eqs. 14 and 15 as printed take {} times as long as by five-point Gauss quadrature; with the 35 distinct integrals of the symmetric tensor behind those matrices they take {} of that time (measured on {}).",
+            "eqs. 14 and 15 as printed take {} times the time of five-point Gauss quadrature for force and tangent of an element. With the 35 distinct integrals of the symmetric tensor behind those matrices it is {} times (measured on {}).",
             digits(t.literal / t.gauss),
             digits(t.reduced / t.gauss),
             t.day
         ),
         criterion: "the invariant matrices as printed take less time than quadrature",
         verdict: Verdict::of(t.literal < t.gauss),
-        why: "Eq. 14 needs 64 quadratic forms of 8 × 8 matrices, in which the same 35 numbers stand over and over. The idea improves the efficiency once their symmetry is used.".into(),
+        why: "Eq. 14 needs 64 quadratic forms with 8 × 8 matrices, which repeat the same 35 numbers. The method is efficient once this symmetry is used.".into(),
         ..statement("efficiency", "Sect. 2.2", "The invariant matrix method improves the computation efficiency.")
     }
 }
@@ -155,7 +155,7 @@ fn tangent_dominates(e: &Evidence) -> Statement {
     let (literal, reduced) = (part(t.literal), part(t.reduced));
     Statement {
         measured: format!(
-            "elastic force and tangent take {} of the time of a step of case 2 by eqs. 14 and 15 as printed, {} with the reduced tensor ({} evaluations a step; measured on {}).",
+            "elastic force and tangent take {} of the time of a step of case 2 by eqs. 14 and 15 as printed, and {} with the reduced tensor ({} evaluations per step; measured on {}).",
             percent(literal),
             percent(reduced),
             digits(t.evaluations),
@@ -163,7 +163,7 @@ fn tangent_dominates(e: &Evidence) -> Statement {
         ),
         criterion: "more than half of the time, by the equations as printed",
         verdict: Verdict::of(literal > 0.5),
-        why: "It is a property of the route: once the symmetry is used, the linear algebra takes more.".into(),
+        why: "It depends on the method of evaluation: with the reduced tensor the rest of the step takes more time.".into(),
         ..statement("most time", "Sect. 2.2, eq. 15", "The derivative of the elastic force will be the most time consuming part in simulation.")
     }
 }
@@ -173,12 +173,13 @@ fn no_constraints(e: &Evidence) -> Statement {
     let (unknowns, multipliers) = compiled.map_or((0, usize::MAX), |i| (i.unknowns, i.multipliers));
     Statement {
         measured: format!(
-            "compiled, case 4 has {unknowns} unknown coordinates and {multipliers} multipliers."
+            "case 4 has {unknowns} unknown coordinates and {multipliers} multipliers."
         ),
         criterion: "no multiplier",
         verdict: Verdict::of(multipliers == 0),
         basis: Basis::Construction,
-        why: "The driven pins are known functions of time, and loose joints are forces.".into(),
+        why: "The driven pins are known functions of time, and joints with clearance are forces."
+            .into(),
         ..statement(
             "no constraints",
             "Sect. 3.2",
@@ -196,7 +197,7 @@ fn located(e: &Evidence) -> Statement {
     let tolerance = e.c.both.scene.integrator.onset_tolerance;
     Statement {
         measured: format!(
-            "{missed} of the contact changes of {} runs are not located to {}; {} (case 3) and {} (case 4) further trials a change.",
+            "contact changes of {} runs that are not located to within {}: {missed}. Trial steps per contact change: {} (case 3) and {} (case 4).",
             all.len(),
             si(tolerance, "m"),
             trials[0].told(digits),
@@ -204,9 +205,14 @@ fn located(e: &Evidence) -> Statement {
         ),
         criterion: "all are located",
         verdict: Verdict::of(missed == 0.0),
-        why: "Newton's method inside a bracket, on the penetration as a function of the length of the step.".into(),
+        why: "Bracketed Newton iteration for zero penetration as a function of the step length."
+            .into(),
         sources: e.ensembles(),
-        ..statement("located", "Sect. 4.1", "The moment of contact can be found accurately by the Newton-Raphson method.")
+        ..statement(
+            "located",
+            "Sect. 4.1",
+            "The moment of contact can be found accurately by the Newton-Raphson method.",
+        )
     }
 }
 
@@ -215,13 +221,13 @@ fn dissipates(e: &Evidence) -> Statement {
     let lost = [e.loose(), e.both()].map(|m| m.mean("contact_dissipated"));
     Statement {
         measured: format!(
-            "contacts dissipate in three cycles {} in case 3 and {} in case 4.",
+            "energy dissipated in contacts in three cycles: {} in case 3 and {} in case 4.",
             lost[0].told(joule),
             lost[1].told(joule)
         ),
         criterion: "above 0 in both",
         verdict: lost[0].above(0.0).and(lost[1].above(0.0)),
-        why: "The damping term of eq. 24 does work in every impact, the more the lower the coefficient of restitution."
+        why: "The damping term of eq. 24 dissipates energy in every impact, more for a lower coefficient of restitution."
             .into(),
         sources: e.ensembles(),
         ..statement(
@@ -245,14 +251,14 @@ fn restitution(e: &Evidence) -> Statement {
     });
     Statement {
         measured: format!(
-            "a free impact with c_e = {} returns with {} of its velocity.",
+            "after a free impact with c_e = {} the journal has {} of its impact velocity.",
             digits(typed),
             digits(delivered)
         ),
         criterion: "within 1 % of each other",
         verdict: Verdict::of((delivered / typed - 1.0).abs() < 0.01),
         basis: Basis::Assumption,
-        why: "The paper does not give c_e; 0.9 is assumed. The law approximates small losses: c_e = 0.5 would return 0.7252.".into(),
+        why: "The paper does not give c_e; 0.9 is assumed. The law is an approximation for small losses: c_e = 0.5 gives 0.7252.".into(),
         ..statement("restitution", "Sect. 4.2, eq. 24", "c_e is the restitution coefficient.")
     }
 }
@@ -271,13 +277,13 @@ fn two_sources(e: &Evidence) -> Statement {
     sources.extend(meshes.map(|m| m.source()));
     Statement {
         measured: format!(
-            "median frequency of the deviation of the acceleration: {} with contacts and rigid links (case 3); {} with 1, 2, 4 and 8 elements a link without contacts (case 2).",
+            "median frequency of the deviation of the acceleration: {} with contacts and rigid links (case 3); {} with 1, 2, 4 and 8 elements per link and without contacts (case 2).",
             impacts.told(hertz),
             told.join(", ")
         ),
         criterion: "contacts alone excite more than 50 Hz, and a finer mesh changes the frequency by more than 10 %",
         verdict: impacts.above(50.0).and(Verdict::of(change > 0.1)),
-        why: "A finer mesh adds modes of bending, which hardly move the platform.".into(),
+        why: "A finer mesh adds bending modes, which hardly move the platform.".into(),
         sources,
         ..statement(
             "two sources",
@@ -294,11 +300,11 @@ fn bathe(e: &Evidence) -> Statement {
     };
     let runs = [&e.c.flexible, &e.c.loose, &e.c.both];
     Statement {
-        measured: format!("the runs of the figures use it with a first sub-step of {} h and reach {} s.", digits(gamma), crate::campaign::DURATION),
+        measured: format!("the runs of the figures use this method with a first sub-step of {} h and reach {} s.", digits(gamma), crate::campaign::DURATION),
         criterion: "the first sub-step is h/2 and these runs reach the end",
         verdict: Verdict::of(gamma == 0.5 && runs.iter().all(|r| r.t.last().is_some_and(|t| *t > crate::campaign::DURATION - r.plan.interval))),
         basis: Basis::Construction,
-        why: "The paper prints no step. Without damping the step decides how long a vibration lasts, so every statement here says which was used.".into(),
+        why: "The paper prints no step. Without physical damping, the step determines how fast a vibration decays.".into(),
         sources: runs.map(|r| r.source()).to_vec(),
         ..statement("bathe", "Abstract, Sect. 5", "The two-step Bathe method with two equal sub-steps solves the motion equations.")
     }

@@ -44,11 +44,11 @@ fn geometry(e: &Evidence) -> Statement {
         .all(|(r, p)| (r - p).abs() < 1e-9 * p);
     let lengths: Vec<String> = read[..4].iter().map(|v| digits(*v)).collect();
     Statement {
-        measured: format!("the scenes have {} m and a clearance of {}.", lengths.join(", "), si(read[4], "m")),
+        measured: format!("the scenes have the lengths {} m and a clearance of {}.", lengths.join(", "), si(read[4], "m")),
         criterion: "equal to the printed digits",
         verdict: Verdict::of(holds),
         basis: Basis::Construction,
-        why: "Not printed and therefore assumed: density, bearing radius, contact material, restitution, friction, elbow branch. The scenes mark each of them.".into(),
+        why: "Density, bearing radius, contact material, restitution, friction and elbow branch are not printed. They are assumed and marked in the scenes.".into(),
         ..statement("geometry", "Tables 1, 2", "Driving link 0.245 m, passive link 0.242 m, moving stage 0.112 m, fixed stage 0.4 m (circumradii), clearance 0.02 mm.")
     }
 }
@@ -84,10 +84,10 @@ fn sections(e: &Evidence) -> Statement {
             digits(passive),
             digits(bending)
         ),
-        criterion: "those of the printed rectangles, the passive links bending about the side of 0.03 m",
+        criterion: "those of the printed rectangles; the passive links bend about the axis of the 0.03 m side",
         verdict: Verdict::of(holds),
         basis: Basis::Construction,
-        why: "The width is taken to lie in the plane of the motion, the height across it. The thickness of the platform gives its mass, for which a full triangular plate is assumed.".into(),
+        why: "The width is assumed to lie in the plane of motion, the height normal to it. The mass of the platform is that of a solid triangular plate, which is assumed.".into(),
         ..statement("sections", "Table 1", "Sections: driving link 0.015 m × 0.03 m, passive link 0.005 m × 0.03 m; moving stage 0.01 m thick.")
     }
 }
@@ -112,7 +112,7 @@ fn cases(e: &Evidence) -> Statement {
         criterion: "as stated",
         verdict: Verdict::of(read == [(false, 0), (true, 0), (false, 6), (true, 6)]),
         basis: Basis::Construction,
-        why: "Cranks and platform are rigid in all cases, the drives have no backlash.".into(),
+        why: "Cranks and platform are rigid in all cases; the drives have no backlash.".into(),
         ..statement(
             "cases",
             "Sect. 6, Table 2",
@@ -171,7 +171,7 @@ fn modulus(e: &Evidence) -> Statement {
         verdict: Verdict::of((modulus / ALUMINIUM - 1.0).abs() < 0.2),
         basis: Basis::Construction,
         why: format!(
-            "Kept as printed, although aluminium is {} times as stiff: a slip of the decimal point or a deliberately soft link.",
+            "The printed value is used, although aluminium is {} times as stiff. It may be a misprint or a deliberately soft link.",
             digits(ALUMINIUM / modulus)
         ),
         ..statement(
@@ -195,7 +195,8 @@ fn trajectory(e: &Evidence) -> Statement {
         criterion: "within 1 nm",
         verdict: Verdict::of(error < 1e-9 && e.c.geometry.radius == 0.1),
         basis: Basis::Construction,
-        why: "Case 1 has no degree of freedom: its motion is the inverse kinematics.".into(),
+        why: "Case 1 has no degree of freedom: its motion follows from the inverse kinematics."
+            .into(),
         sources: vec![ideal.source()],
         ..statement(
             "trajectory",
@@ -212,7 +213,7 @@ fn concentric_start(e: &Evidence) -> Statement {
         criterion: "below a millionth of the clearance",
         verdict: Verdict::of(largest < 1e-6 * e.c.geometry.clearance),
         basis: Basis::Construction,
-        why: "The normal of eq. 20 does not exist there; no contact law is evaluated before the gap closes.".into(),
+        why: "The normal of eq. 20 is undefined at the centre; no contact law is evaluated before the gap closes.".into(),
         sources: vec![e.c.both.source()],
         ..statement("concentric", "Sect. 6", "At t = 0 the journal and bearing centres coincide.")
     }
@@ -238,13 +239,13 @@ fn steady(e: &Evidence) -> Statement {
     let settling = [&e.flexible, &e.flexible_coarse].map(|m| m.get("settling"));
     Statement {
         measured: format!(
-            "case 2, vibration (rms deviation of the acceleration from the ideal one) in the third cycle over that in the first: {} at the finer step, {} at the coarser.",
+            "rms deviation from the ideal acceleration in the third cycle over that in the first, case 2: {} at the finer step, {} at the coarser.",
             digits(settling[0]),
             digits(settling[1])
         ),
         criterion: "below 0.1 at both steps",
         verdict: Verdict::of(settling.iter().all(|s| *s < 0.1)),
-        why: "The links start unstrained and nothing in the model damps them; only the integrator does, and the more the coarser its step. \"Steady\" is a property of the step.".into(),
+        why: "The links start unstrained and the model has no damping. Only the integrator damps, more with a coarser step, so the step decides whether the motion becomes steady.".into(),
         sources: e.case_2(),
         ..statement("steady", "Sect. 6", "Results are taken for two full cycles after the system runs steadily.")
     }

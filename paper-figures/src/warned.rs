@@ -1,4 +1,4 @@
-//! What runs say of themselves, in the words of the library, beside what is made of them.
+//! Warnings of runs, shown beside the results that rest on them.
 
 /// A run, or a group of runs that are alike, and what it warns of.
 #[derive(Debug, Clone)]
@@ -9,7 +9,7 @@ pub struct Source {
     pub warnings: Vec<String>,
 }
 
-/// The warnings of several runs, each kind once: how many runs have it, and every number from its least to its largest.
+/// The warnings of several runs, each kind once: every number from its least to its largest, and how many runs have it.
 pub fn merged(runs: &[&[String]]) -> Vec<String> {
     let mut kinds: Vec<(Vec<String>, Vec<Vec<String>>)> = Vec::new();
     for warning in runs.iter().flat_map(|warnings| warnings.iter()) {
@@ -22,14 +22,14 @@ pub fn merged(runs: &[&[String]]) -> Vec<String> {
     kinds
         .into_iter()
         .map(|(words, all)| {
-            let mut text = format!("{} of {} runs: ", all.len(), runs.len());
+            let mut text = String::new();
             for (i, word) in words.iter().enumerate() {
                 text += word;
                 if i + 1 < words.len() {
                     text += &range(all.iter().map(|numbers| numbers[i].as_str()));
                 }
             }
-            text
+            text + &format!(" (in {} of {} runs)", all.len(), runs.len())
         })
         .collect()
 }
@@ -79,15 +79,15 @@ mod tests {
             vec![],
             vec![
                 "the integrator lost 8e-7 J, 5.5 % of B1".to_owned(),
-                "2 clamps".to_owned(),
+                "clamps: 2".to_owned(),
             ],
         ];
         let runs: Vec<&[String]> = runs.iter().map(Vec::as_slice).collect();
         assert_eq!(
             merged(&runs),
             [
-                "2 of 3 runs: the integrator lost 8e-7 to 1.2e-6 J, 5.5 to 7.0 % of B1",
-                "1 of 3 runs: 2 clamps"
+                "the integrator lost 8e-7 to 1.2e-6 J, 5.5 to 7.0 % of B1 (in 2 of 3 runs)",
+                "clamps: 2 (in 1 of 3 runs)"
             ]
         );
     }

@@ -171,10 +171,10 @@ impl Ablation {
         [
             effects,
             format!(
-                "Errors are distances of {body} from {from}, accelerations those of its centre."
+                "Errors are distances of {body} from {from}; accelerations are those of its centre."
             ),
             format!(
-                "All is seen in {} rows, one every {interval}, over {duration}.",
+                "All values are taken from {} rows, one every {interval}, over {duration}.",
                 header.rows
             ),
         ]
@@ -182,16 +182,16 @@ impl Ablation {
 
     /// The tables of what repeats, with their titles.
     fn tables(&self) -> Vec<(&'static str, Table)> {
-        let mut tables = vec![("What each variant does", self.physics())];
+        let mut tables = vec![("Results of each variant", self.physics())];
         for (title, role) in [
-            ("Less the rigid ideal mechanism", Role::Ideal),
-            ("Less the full scene", Role::Full),
+            ("Difference from the rigid ideal mechanism", Role::Ideal),
+            ("Difference from the full scene", Role::Full),
         ] {
             if let Some(reference) = self.outcome(role) {
                 tables.push((title, self.less(role, &reference.physics)));
             }
         }
-        tables.push(("Sizes and work", self.work()));
+        tables.push(("Size and work", self.work()));
         tables
     }
 

@@ -12,22 +12,22 @@ use std::path::PathBuf;
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// The body whose displacement and acceleration are compared; the driven one, or else the last that moves.
+    /// The body whose displacement and acceleration are compared; by default the driven one, or else the last that moves.
     #[arg(long, value_name = "NAME")]
     body: Option<String>,
-    /// Timed runs of every variant, after one that is not timed; up to five within a second when absent.
+    /// Timed runs of every variant, after one that is not timed; by default up to five within a second.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     runs: Option<u32>,
     /// The folder that receives tables, numbers and a picture; it is created.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace a result that stands in the folder; until the new one is whole it is kept in `previous-result` there.
+    /// Replace an existing result; it is kept in `previous-result` inside the folder until the new one is complete.
     #[arg(long, requires = "out")]
     force: bool,
     /// Machine-readable output.
     #[arg(long)]
     json: bool,
-    /// Show no progress; warnings are shown nevertheless.
+    /// Show no progress; warnings are still shown.
     #[arg(long)]
     quiet: bool,
 }

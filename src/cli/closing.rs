@@ -15,7 +15,7 @@ pub fn lines(report: &Report) -> Vec<String> {
     let first = report.impacts.iter().take(SHOWN).enumerate();
     lines.extend(first.map(|(k, impact)| {
         format!(
-            "impact {}: {} at {:.9} s with {} m/s at {:.4} degrees, {} m deep",
+            "impact {}: {} at t = {:.9} s, velocity {} m/s, direction {:.4} degrees, penetration {} m",
             k + 1,
             impact.joint,
             impact.t,
@@ -31,7 +31,7 @@ pub fn lines(report: &Report) -> Vec<String> {
 fn accuracy(control: &AccuracyReport) -> String {
     let [shortest, longest] = control.steps;
     let mut line = format!(
-        "accuracy: {} asked for, steps from {} to {} s",
+        "accuracy: {} requested, steps from {} s to {} s",
         control.asked,
         number(shortest, 2),
         number(longest, 2)
@@ -39,7 +39,7 @@ fn accuracy(control: &AccuracyReport) -> String {
     let most = control.rejected_by.iter().max_by_key(|(_, count)| **count);
     if let Some((name, count)) = most {
         line += &format!(
-            "; {} taken again because their estimated error was too large, {count} of them in {name}",
+            "; rejected for their estimated error: {}, {count} of them because of {name}",
             control.rejected_steps
         );
     }

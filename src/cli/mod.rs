@@ -35,18 +35,18 @@ enum Command {
         after_help = "Example:\n  looselink run scenes/3rrr/case4.toml --out out/case4 --set integrator.step=5e-6"
     )]
     Run(run::Arguments),
-    /// Show what a scene will be, without running it.
+    /// Show the compiled scene without running it.
     #[command(after_help = "Example:\n  looselink inspect scenes/3rrr/case4.toml --json")]
     Inspect(inspect::Arguments),
-    /// Read a scene, close its mechanism and report the first fault.
+    /// Read a scene, assemble its mechanism and report the first error.
     #[command(
         after_help = "Example:\n  looselink check scenes/3rrr/case4.toml --set bodies.link1.elements=4"
     )]
     Check(SceneArguments),
-    /// Show what accuracy costs: a scene with several methods and steps, errors against time.
+    /// Measure error against processor time for several methods and steps.
     #[command(after_help = "Example:\n  looselink precision studies/case3.toml --out out/case3")]
     Precision(precision::Arguments),
-    /// Measure what every effect of a scene does and costs: each added to the rigid ideal mechanism, each removed.
+    /// Measure the influence and cost of each effect: added to the rigid ideal mechanism, and removed from the full scene.
     #[command(
         after_help = "Example:\n  looselink ablate scenes/3rrr/case4.toml --set simulation.duration=0.05 --out out/ablation"
     )]
@@ -61,9 +61,8 @@ struct SceneArguments {
     /// Replace a field of the scene, for example `integrator.step=1e-6`; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
-    /// Follow an estimate of the error instead of a step: the error allowed in positions \[m\], that in the balance of energies
-    /// \[J\], and the time \[s\] over which they may gather, for example `position=1e-9,horizon=0.01`; a number alone is the
-    /// position.
+    /// Choose the steps by their estimated error: the allowed error of positions \[m\] and of the energy balance \[J\], and the
+    /// time \[s\] over which errors may accumulate, for example `position=1e-9,horizon=0.01`; a number alone is the position.
     #[arg(long, value_name = "position=M[,energy=J][,horizon=S]")]
     accuracy: Option<String>,
 }
@@ -102,7 +101,7 @@ pub fn main(arguments: &Arguments) -> ExitCode {
 
 fn check(arguments: &SceneArguments) -> Result<(), Failure> {
     let (scene, _) = arguments.load()?;
-    print(&format!("{}: no fault found\n", scene.title))
+    print(&format!("{}: no error found\n", scene.title))
 }
 
 /// Writes to standard output; a reader that has gone away is no fault.

@@ -19,13 +19,13 @@ pub struct Arguments {
     /// Timed runs of every point, after a first one that is not timed.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
-    /// Only the first point of every curve, timed once: to see that a study works.
+    /// Run only the first point of every curve and time it once, to check that the study works.
     #[arg(long)]
     smoke: bool,
-    /// Replace a result that stands in the folder; until the new one is whole it is kept in `previous-result` there.
+    /// Replace an existing result; it is kept in `previous-result` inside the folder until the new one is complete.
     #[arg(long)]
     force: bool,
-    /// Show no progress; warnings are shown nevertheless.
+    /// Show no progress; warnings are still shown.
     #[arg(long)]
     quiet: bool,
 }

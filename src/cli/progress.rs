@@ -76,7 +76,7 @@ fn message(progress: &Progress, started: &Instant) -> String {
         return format!("equilibrium at t = {t:.4} of {duration}");
     };
     let factor = t / started.elapsed().as_secs_f64();
-    format!("t = {t:.4} of {duration} s, {factor:.3} x real time, {contacts} contacts closed")
+    format!("t = {t:.4} s of {duration} s, {factor:.3} x real time, closed contacts: {contacts}")
 }
 
 /// A warning, shown with `--quiet` too.

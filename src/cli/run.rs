@@ -20,10 +20,10 @@ pub struct Arguments {
     /// The folder that receives the results; it is created.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Replace a result that stands in the folder; until the new one is complete it is kept in `previous-result` there.
+    /// Replace an existing result; it is kept in `previous-result` inside the folder until the new one is complete.
     #[arg(long)]
     force: bool,
-    /// Show no progress; warnings are shown nevertheless.
+    /// Show no progress; warnings are still shown.
     #[arg(long)]
     quiet: bool,
 }
@@ -102,8 +102,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             watch.display.finish("");
             report.warnings().iter().for_each(|warning| warn(warning));
             let kept = match stored {
-                Ok(()) => format!("; the results up to there are in `{out}`"),
-                Err(second) => format!("; and the result in `{out}` is not closed: {second}"),
+                Ok(()) => format!("; the results up to that time are in `{out}`"),
+                Err(second) => format!("; the result in `{out}` could not be completed: {second}"),
             };
             Err(Failure::run(&error).and(&kept).and(&earlier(arguments)))
         }

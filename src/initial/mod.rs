@@ -11,7 +11,7 @@ use crate::system::State;
 /// Largest distance by which a start may miss a constraint \[m\] or a rate \[m/s\]: the digits of a typed position.
 const START_TOLERANCE: f64 = 1e-9;
 /// What a pose that is off may have been taken for.
-pub(crate) const CENTRE: &str = "`x` and `y` are those of the centre of mass, of a straight link its middle; `theta` points from `start` to `end`";
+pub(crate) const CENTRE: &str = "`x` and `y` locate the centre of mass, the midpoint of a straight link; `theta` is the direction from `start` to `end`";
 
 /// Position and velocity of a body: of a rigid body (x, y, theta), of a link its `start` and its direction.
 #[derive(Debug, Clone, Copy)]
@@ -186,14 +186,14 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
         .map(|s| scene.bodies[s.body].name.as_str())
         .collect();
     let message = format!(
-        "{message}: the scene gives no velocity of {}, which was taken as zero",
+        "{message}: the scene gives no velocity for {}, so zero was assumed",
         names.join(", ")
     );
     let error = scene.error(first.span, message, "no velocity here");
     Err(error.with_help(if model.kinematics.is_some() {
         "give `vx`, `vy` and `omega` beside the pose"
     } else {
-        "add a joint to `[initial.sketch]` or a velocity to `[initial.velocities]`, and the others are found; or give `vx`, \
+        "add a joint to `[initial.sketch]` or a velocity to `[initial.velocities]`, and the others are computed; or give `vx`, \
          `vy` and `omega` of every body"
     }))
 }

@@ -204,7 +204,7 @@ impl Survey {
     /// What the statistics are and what they took, a line a run. `duration` is the simulated time \[s\].
     pub fn table(&self, duration: f64) -> String {
         let mut out = String::from(
-            "| method | step or accuracy | envelopes | rms | deviation | in contact | dissipated in contact | lost by the integrator | processor time | runs | real time factor | steps | repeated | onsets |\n\
+            "| method | step or accuracy | envelopes | rms | deviation | in contact | dissipated in contact | lost by the integrator | processor time | runs | real-time factor | steps | rejected steps | onsets |\n\
              |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         );
         let cells = |m: &Measures| {
@@ -288,7 +288,7 @@ impl Survey {
             Panel {
                 title: title.into(),
                 note: String::new(),
-                x: Axis::new("Processor time of a simulated second", "s", 1.0).log(),
+                x: Axis::new("Processor time per simulated second", "s", 1.0).log(),
                 y: Axis::new(label, "%", 100.0).log(),
                 marks,
             }
@@ -330,7 +330,7 @@ impl Survey {
             ],
             caption: format!(
                 "{}. Scene {scene}, {} to {}, rows every {}. Reference: {set}{coarse} and {fine}, which deviate from each other by {} \
-                 in envelopes and rms. Dashed: 5 %, 1 % and 3 %. Left of one second the mechanism is simulated faster than it moves.",
+                 in envelopes and rms. Dashed: 5 %, 1 % and 3 %. Left of one second the simulation is faster than real time.",
                 self.title,
                 plot::si(from, "s"),
                 plot::si(duration, "s"),

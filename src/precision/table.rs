@@ -6,8 +6,8 @@ use crate::machine::{Machine, Timing};
 use crate::simulate::warning_list;
 
 /// What the processor times of a table are.
-pub(super) const TIMES: &str = "Processor time of the integration on one core, reading and compiling of the scene left \
-    out: the median of as many runs as the column `runs` says, after one that is not timed; `timing.json` has each of them.";
+pub(super) const TIMES: &str = "Processor time of the integration on one core, without reading and compiling \
+    the scene: the median over the number of runs in column `runs`, after one that is not timed; `timing.json` has every single time.";
 
 /// Errors, times and work of all runs.
 pub fn table(outcome: &Outcome) -> String {
@@ -17,7 +17,7 @@ pub fn table(outcome: &Outcome) -> String {
         "method",
         "step or accuracy",
         "position",
-        "achieved / asked",
+        "achieved / requested",
         "acceleration",
         "impulse",
         "energy",
@@ -25,7 +25,7 @@ pub fn table(outcome: &Outcome) -> String {
         "least",
         "runs",
         "steps",
-        "repeated",
+        "rejected steps",
         "location trials",
         "factorisations",
     ];
@@ -81,7 +81,7 @@ pub fn table(outcome: &Outcome) -> String {
     let [position, acceleration, impulse, _] = norms(&outcome.floor);
     let floor = [
         "floor",
-        "reference, coarse against fine",
+        "reference, difference of its two steps",
         &position,
         "",
         &acceleration,

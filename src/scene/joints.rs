@@ -280,7 +280,7 @@ fn stiffness(
     }
     let mut compliance = 0.0;
     for key in keys {
-        let purpose = "the name of a material, for the stiffness of eq. 25; or type `stiffness`";
+        let purpose = "the name of a material, for the stiffness of eq. 25; or give `stiffness`";
         let name = table.required(key, purpose)?;
         let (_, material) = name.lookup("material", &bodies.materials)?;
         compliance += material.compliance(&name)?;

@@ -291,7 +291,7 @@ impl Controller {
     pub fn name(&self, model: &Model, index: usize) -> String {
         let names = &model.unknown_names()[..self.lengths.len()];
         let name = names.get(index).map(String::as_str);
-        name.unwrap_or("the balance of energies").to_owned()
+        name.unwrap_or("the energy balance").to_owned()
     }
 
     /// What happened so far.

@@ -36,7 +36,7 @@ pub(super) fn prepare(
         }
     }
     if let Some(drive) = scene.drives.first() {
-        let message = "statics have no inverse kinematics";
+        let message = "a static analysis cannot have inverse kinematics";
         return Err(scene.error(drive.span, message, "remove this"));
     }
     let mut statics = Statics::new(model);
@@ -77,7 +77,7 @@ fn explain(model: &Model, failure: &Failure) -> (String, String) {
     match failure {
         Failure::Singular { index } => (
             model.unknown_name(*index),
-            "it is free to move: statics need a spring, a drive or a joint that holds it"
+            "it is free to move: a static analysis needs a spring, a drive or a joint that holds it"
                 .to_owned(),
         ),
         Failure::NoConvergence { index, .. } => (

@@ -157,7 +157,7 @@ fn notes(scene: &Scene) -> Vec<String> {
         if let JointModel::Clearance(contact) = &joint.model {
             let law = normal_law(contact);
             notes.push(format!(
-                "joint {}: {} with restitution {} typed returns {:.4} from a free impact",
+                "joint {}: {} with a restitution of {} gives {:.4} in a free impact",
                 joint.name,
                 law.name(),
                 contact.restitution,
@@ -169,16 +169,14 @@ fn notes(scene: &Scene) -> Vec<String> {
     let drawn = !initial.sketch.is_empty() || !initial.velocities.is_empty();
     let assembled = scene.drives.is_empty() && drawn;
     if assembled && scene.simulation.analysis == Analysis::Dynamic {
-        notes.push(
-            "velocities that the scene does not give are those of least kinetic energy".to_owned(),
-        );
+        notes.push("velocities missing in the scene are those of least kinetic energy".to_owned());
     }
     let unsaid = |s: &&BodyState| {
         !s.velocity_given && !assembled && scene.simulation.analysis == Analysis::Dynamic
     };
     for state in scene.initial.bodies.iter().filter(unsaid) {
         notes.push(format!(
-            "{} starts at rest: the scene gives no velocity",
+            "{} starts at rest, because the scene gives no velocity",
             scene.bodies[state.body].name
         ));
     }
@@ -203,7 +201,7 @@ impl Simulation {
             assumptions: notes(&self.scene)
                 .into_iter()
                 .chain(self.model.redundant().iter().map(|name| {
-                    format!("{name} repeats other constraints: left out, so that the forces in its loop are one choice among many")
+                    format!("{name} is redundant and left out: the constraint forces in its loop are not unique")
                 }))
                 .collect(),
             coordinates: coordinates.to_vec(),

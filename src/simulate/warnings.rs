@@ -40,7 +40,7 @@ impl Report {
         warnings.extend(self.acceleration_warning());
         warnings.extend(self.chatter.iter().map(|chatter| {
             format!(
-                "{} chatters from {} to {} s: {} onsets within a few steps each",
+                "{} chatters from t = {} s to {} s: {} contacts, each shorter than four steps",
                 chatter.joint,
                 number(chatter.from, 7),
                 number(chatter.to, 7),
@@ -49,28 +49,26 @@ impl Report {
         }));
         if self.accuracy.is_none() && self.brief_contacts > 0 {
             warnings.push(format!(
-                "{} of {} contacts lasted fewer than four steps: a smaller integrator.step would resolve them",
+                "{} of {} contacts lasted fewer than four steps: reduce integrator.step to resolve them",
                 self.brief_contacts, self.ended_contacts
             ));
         }
         warnings.extend(self.redundant.iter().map(|name| {
-            format!(
-                "{name} repeats other constraints: the forces in its loop are one choice among many"
-            )
+            format!("{name} is redundant: the constraint forces in its loop are not unique")
         }));
         let crushed = self.strain.iter().filter(|(_, strain)| **strain < CRUSHED);
         warnings.extend(crushed.map(|(name, strain)| {
             format!(
-                "{name} is pressed together to a strain of {strain:.2}: at -0.5 its centre line has no length left"
+                "{name} is compressed to a Green strain of {strain:.2}: at -0.5 the length of its centre line is zero"
             )
         }));
         if self.rejected_steps > 0 {
             let most = self.rejected_by.iter().max_by_key(|(_, times)| **times);
             let most = most.map_or(String::new(), |(name, times)| {
-                format!(", {times} times that of {name}")
+                format!(" ({times} of them for {name})")
             });
             warnings.push(format!(
-                "{} steps failed and were halved{most}",
+                "steps that failed and were halved: {}{most}",
                 self.rejected_steps
             ));
         }
@@ -78,20 +76,20 @@ impl Report {
             (self.clamps, "stages with a contact force clamped at zero"),
             (
                 self.stagnations,
-                "stages accepted at rounding, above the Newton tolerance",
+                "stages in which rounding kept Newton's method above newton_tolerance",
             ),
             (
                 self.singular_poses,
-                "stages in a nearly singular pose, one direction left out",
+                "stages in a nearly singular pose, solved without the singular direction",
             ),
-            (self.fallbacks, "factorisations with row exchanges"),
+            (self.fallbacks, "factorisations that needed row exchanges"),
             (
                 self.unlocated_changes,
-                "contact changes kept outside the onset tolerance",
+                "contact changes not located to within onset_tolerance",
             ),
         ];
         let counted = counts.iter().filter(|(count, _)| *count > 0);
-        warnings.extend(counted.map(|(count, what)| format!("{count} {what}")));
+        warnings.extend(counted.map(|(count, what)| format!("{what}: {count}")));
         warnings
     }
 
@@ -110,16 +108,20 @@ impl Report {
                 "the integrator {} {} J, {}",
                 verb(most),
                 number(changed, 2),
-                share(changed / integration.turnover, "the energy in play")
+                share(changed / integration.turnover, "the energy of the motion")
             ));
         }
         let (dissipated, numerical) = (ledger.dissipated(), ledger.numerical.abs());
+        let key = match self.accuracy {
+            Some(_) => "integrator.accuracy",
+            None => "integrator.step",
+        };
         (dissipated > 0.0 && numerical > OF_DISSIPATED * dissipated).then(|| {
             format!(
-                "the integrator {} {} J, {}: a smaller integrator.step would make its part small",
+                "the integrator {} {} J, {}: reduce {key}",
                 verb(ledger.numerical),
                 number(numerical, 2),
-                share(numerical / dissipated, "what was dissipated")
+                share(numerical / dissipated, "the dissipated energy")
             )
         })
     }
@@ -129,9 +131,10 @@ impl Report {
         let change = integration.acceleration_change;
         (change > UNRESOLVED).then(|| {
             format!(
-                "the acceleration of {} changes by {change:.1} times its size from step to step: a vibration faster than the steps, \
-                 in which accelerations and forces are not to be trusted",
-                integration.acceleration_change_of
+                "the acceleration of {} changes by {:.0} % (rms) from one step to the next: the steps do not resolve a \
+                 vibration, so accelerations and forces are unreliable",
+                integration.acceleration_change_of,
+                100.0 * change
             )
         })
     }
@@ -141,10 +144,13 @@ impl Report {
         let (error, travel) = (integration.estimated_error, integration.travel);
         (error > OF_TRAVEL * travel).then(|| {
             format!(
-                "the estimated error of {} is {} m where the longest way of a point is {} m",
+                "the estimated error of {} is {} m, {}",
                 integration.estimated_error_of,
                 number(error, 2),
-                number(travel, 2)
+                share(
+                    error / travel,
+                    &format!("the largest range of motion, {} m", number(travel, 2))
+                )
             )
         })
     }

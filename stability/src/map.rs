@@ -332,9 +332,9 @@ impl Made {
                 .collect(),
         });
         let caption = format!(
-            "{}. Scene {}, {} long. Accurate: within {} of the reference in every row. Coarse and damped: bounded, and the \
-                 report warns. Failed: the scheme puts energy into the motion, and the report warns. Refused: an error that \
-                 names what and when. {}",
+            "{}. Scene {}, {} long. Accurate: within {} of the reference in every row. Coarse and damped: larger errors, \
+                 with a warning where they are large. Failed: the integrator adds energy, and the run warns or stops. Refused: \
+                 stopped with an error. {}",
             map.title,
             map.scene.display(),
             plot::si(map.duration, "s"),

@@ -13,18 +13,20 @@ const WRITES: &str = "a string takes any text";
 pub fn page(made: &[Made], checks: &[Vec<Check>], records: &Records, minutes: f64) -> String {
     let mut out = format!(
         "# Hard cases\n\n{}\n\
-         Where methods come to their limits: what becomes of a run, and whether it says so. Written by `cargo run --release -p \
-         stability` in {:.0} minutes. Every run ends in one of these ways:\n\n\
-         | outcome | what it means |\n|---|---|\n\
-         | accurate | every compared row is within the tolerance of the map |\n\
-         | coarse | bounded and off by more; by more than a twentieth of what moves only with a warning in the report |\n\
-         | damped | the same, with energy lost |\n\
-         | refused | an error that names the joint or coordinate, the time and the cause, and exit code 2 or 3 |\n\
-         | failed | the scheme has put energy into the motion; the report warns, or the run is stopped by that name |\n\
-         | silent | a wrong answer without a word, or no end: **there must be none** |\n\n\
-         A report warns of the energy that the integrator has lost or gained, of the error that its steps are estimated to \
-         make, of accelerations that the steps do not resolve, of contacts that last a few steps only, of chatter, halved \
-         steps, clamped forces and singular poses (`src/simulate/warnings.rs`).\n\n",
+         This page takes each method to its limits and classifies every run. `cargo run --release -p stability` writes it in \
+         {:.0} minutes. A run ends in one of these ways:\n\n\
+         | outcome | meaning |\n|---|---|\n\
+         | accurate | the error is within the tolerance of the map in every compared row |\n\
+         | coarse | the error is larger but bounded; if it is large (see below), the report warns |\n\
+         | damped | as coarse, and the integrator has lost more than 1 % of the energy of the motion |\n\
+         | refused | the scene was rejected or the run was stopped with an error message |\n\
+         | failed | the integrator has added more than half of the energy of the motion; the report warns, or the run was \
+         stopped |\n\
+         | silent | a large error without a warning, or a run that does not end: **this must not happen** |\n\n\
+         An error is large above 5 % of the range of the compared channel (20 % in map 02, whose channel is an acceleration; \
+         10 % in maps 05a and 05b, where every impact amplifies the error). The report warns of energy that the integrator has \
+         lost or gained, of a large estimated error, of accelerations that the steps do not resolve, of contacts shorter than \
+         four steps, of chatter, halved steps, clamped forces and singular poses (`src/simulate/warnings.rs`).\n\n",
         place("maps"),
         minutes.ceil()
     );
@@ -127,9 +129,9 @@ fn rivalry(made: &[Made]) -> String {
         false => list.join(", "),
     };
     format!(
-        "* Runs in which the trapezoidal rule fails or stops and Bathe's scheme with the same step does neither: {}.\n\
-         * Runs in which the trapezoidal rule is accurate and Bathe's scheme with the same step is not: {}. At the same number \
-         of stages it has twice its step, and four times its error where everything is resolved (case 1).",
+        "* Runs in which the trapezoidal rule fails or is refused and Bathe's scheme with the same step does neither: {}.\n\
+         * Runs in which the trapezoidal rule is accurate and Bathe's scheme with the same step is not: {}. For the same \
+         number of stages its step is twice as long; case 1 has the ratio of the errors where the steps resolve the motion.",
         told(saved),
         told(lost)
     )
@@ -137,8 +139,8 @@ fn rivalry(made: &[Made]) -> String {
 
 fn cases(checks: &[Vec<Check>], records: &Records) -> String {
     let mut out = format!(
-        "## The fifteen cases\n\n{}\nEach criterion is a test (`cargo test --test tests stability::cases`) or, where it says so, a \
-         long run (`cargo run --release -p stability -- long`).\n\n\
+        "## The fifteen cases\n\n{}\nEach criterion is a test (`cargo test --test tests stability::cases`) or, where marked, part \
+         of a long run (`cargo run --release -p stability -- long`).\n\n\
          | case | criterion | found | bound | verdict |\n|---|---|--:|--:|---|\n",
         place("long")
     );
@@ -173,21 +175,22 @@ fn cases(checks: &[Vec<Check>], records: &Records) -> String {
 }
 
 /// Process faults are tests; the page says which.
-const FAULTS: &str = "## Process faults\n\n`tests/stability/process/` kills runs with SIGKILL at 200 random instants, 200 more while they replace an earlier \
-    result and 40 while one stands in their way, `precision` and `ablate` 32 times; limits the size of files; fills the disk behind \
-    single files; and tries folders where nobody can write, files, links and the result of another scene. What is on disk is \
-    readable up to its last row, equal to the rows of the uninterrupted run byte for byte, and marked `incomplete`; an earlier \
-    result is whole, in its place or in `previous-result`.\n\n";
+const FAULTS: &str = "## Process faults\n\nThe tests in `tests/stability/process/` kill runs with SIGKILL: at 200 random instants, at 200 more while an earlier result \
+    is being replaced, at 40 while an earlier result blocks the folder, and 32 times in `precision` and `ablate`. They also limit the \
+    size of files, fill the disk for single files, and write to read-only folders, to files, to links and to the result of another \
+    scene. What is then on disk can be read up to its last row, equals the rows of the uninterrupted run byte for byte, and is marked \
+    `incomplete`. An earlier result is complete, in its place or in `previous-result`.\n\n";
 
 fn random(records: &Records) -> String {
     let soak = &records.soak;
     let mut out = format!(
         "## Random mechanisms\n\n{}\n\
-         Chains, loops and parallel mechanisms that nobody drew, with play, friction, flexible links, springs, loads and drives, \
-         masses over six decades and steps over five, every method. Of every run it is asked that it ends in one of the ways \
-         above, that its rows are finite, that constraints are kept, that forces are mass times acceleration, that momentum \
-         changes by forces only, that the ledger closes, that work has a reason, and that a second run gives the same bytes \
-         (`stability/src/random`). Runs that take thirty times the steps asked for are cut short. Some hundred are among the tests; `cargo run --release -p stability -- soak` has run {} with \
+         The generator draws chains, loops and parallel mechanisms with clearance, friction, flexible links, springs, loads and \
+         drives, for every method, with masses over six decades and steps over five. Every run is checked (`stability/src/random`): \
+         it finishes, is refused or stops with an error that names a part of the scene; its rows are finite; constraints hold; \
+         forces equal mass times acceleration; momentum changes only through forces; the energy ledger closes; the numbers of steps \
+         and stages are accounted for; and a second run gives the same bytes. A run that needs thirty times its nominal number of \
+         steps is cut short. Some hundred mechanisms are among the tests; `cargo run --release -p stability -- soak` has run {} with \
          seed {}:\n\n| outcome | scenes |\n|---|--:|\n",
         place("soak"),
         soak.scenes,
@@ -208,7 +211,7 @@ fn random(records: &Records) -> String {
     }
     let fuzz = &records.fuzz;
     out += &format!(
-        "\nWhat every soak and test has found is a named scene or test: `tests/stability/regressions.rs`, `scenes/hard`.\n\n\
+        "\nEvery fault found in this way is kept as a regression test (`tests/stability/regressions.rs`) or as a scene (`scenes/hard`).\n\n\
          ## Random input\n\n{}\n{}, {}: `{}`.\n\n\
          | target | inputs | seconds | edges covered | open failures |\n|---|--:|--:|--:|--:|\n",
         place("fuzz"),
@@ -225,7 +228,7 @@ fn random(records: &Records) -> String {
             ),
         );
     }
-    line(&mut out, "\nFound and fixed on the way:\n");
+    line(&mut out, "\nFaults found and fixed:\n");
     for found in &fuzz.found_and_fixed {
         line(&mut out, &format!("* {found}."));
     }

@@ -108,7 +108,7 @@ fn a_held_direction_does_not_turn_over() {
     let (error, kept) = stopped(PRESSED);
     let text = error.to_string();
     assert!(
-        text.starts_with("drive hold (angle): the direction it holds turns over by half a turn"),
+        text.starts_with("drive hold (angle): its direction has flipped by half a turn"),
         "{text}"
     );
     // the spring keeps its energy as long as the run goes
@@ -166,7 +166,9 @@ initial.bodies.right = { x = 0.5, y = 0.5, theta = -0.7853981633974483 }
     let (error, _) = stopped(text);
     let text = error.to_string();
     assert!(
-        text.starts_with("drive open (angle): the other constraints do not allow it, it is off by"),
+        text.starts_with(
+            "drive open (angle): the other constraints contradict it; it is violated by"
+        ),
         "{text}"
     );
 }

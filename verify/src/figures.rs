@@ -1,7 +1,7 @@
 //! The pictures of the report.
 
 use crate::compare::cost::Curves;
-use crate::compare::flexible::{Convergence, QUANTITIES};
+use crate::compare::flexible::{Convergence, QUANTITIES, elements};
 use crate::trajectory::{Plan, Trajectory, tolerances};
 use miette::Result;
 use plot::{Axis, Figure, Mark, Panel, palette, si};
@@ -137,10 +137,7 @@ pub fn convergence(runs: &[Convergence]) -> Figure {
             .map(|h_i| 0.3 * top * (h_i / h[0]).powi(2))
             .collect();
         marks.push(Mark::curve("slope 2", palette::BLACK, h, &slope));
-        let elements = match run.elements {
-            1 => "1 element a link".to_owned(),
-            n => format!("{n} elements a link"),
-        };
+        let elements = format!("{} per link", elements(run.elements));
         Panel {
             title: elements,
             note: String::new(),
@@ -182,9 +179,9 @@ pub fn cost(all: &[Curves]) -> Figure {
     };
     Figure {
         rows: vec![all.iter().map(panel).collect()],
-        caption: "Processor time against achieved error, one core, the shortest of three runs; each side measured against the \
+        caption: "Processor time against achieved error, one core, the shortest of three runs; the error of each program is its difference from the \
                   finest run of the other. Looselink with fixed steps from 4 µs to 62.5 ns, IDA with relative tolerances from \
-                  1e-6 to 1e-12. Where a curve turns upright it has come down to the error of the other side's finest run."
+                  1e-6 to 1e-12. A curve turns vertical where it reaches the error of that finest run."
             .into(),
     }
 }

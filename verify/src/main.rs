@@ -73,11 +73,12 @@ fn parts() -> Result<Section> {
         rows.extend(equations::agreements(&plan)?);
     }
     let text = format!(
-        "Numbers are those at the place of the largest difference. Equations: {} states along the path, every coordinate moved \
-         at random (3-RRR: by up to 0.2 mm; other mechanisms: three clearances, or 0.1 m and rad without clearance), with \
-         random rates and impact velocities; M, f and the tangents of the reference's full coordinates are summed over what \
-         Looselink shares. [everything](scenes/everything.toml) has every body, joint, force, damping and prescribed motion \
-         but clearance and inverse kinematics.",
+        "Each row shows the two values where their difference is largest. Equations are compared in {} states along the path. \
+         Every coordinate is displaced at random: by up to 0.2 mm in the 3-RRR, in other mechanisms by three clearances, or by \
+         0.1 m and 0.1 rad without clearance. Rates and impact velocities are random. M, f and the tangents of the reference, \
+         which has separate coordinates for every body, are summed over the nodes that bodies share in Looselink. \
+         [everything](scenes/everything.toml) has every kind of body, joint, force, damping and prescribed motion except \
+         clearance and inverse kinematics.",
         equations::STATES
     );
     Ok(("Elements, laws, equations", text, rows))
@@ -94,16 +95,16 @@ fn ideal(pictures: &std::path::Path) -> Result<Section> {
         .map(|run| {
             let [coarse, fine] = run.relative;
             format!(
-                "{} element(s), relative {coarse:.0e} against {fine:.0e}: {:.0e} m in position, {:.0e} m/s² in acceleration, \
-                 {:.0e} N in B1",
-                run.elements, run.own[0], run.own[1], run.own[3]
+                "{} per link, relative tolerance {coarse:.0e} against {fine:.0e}: {:.0e} m in position, {:.0e} m/s² in \
+                 acceleration, {:.0e} N in B1",
+                flexible::elements(run.elements), run.own[0], run.own[1], run.own[3]
             )
         })
         .collect();
     let text = format!(
-        "Case 2: the difference from IDA falls with the square of Looselink's step. IDA's own error, as the difference of its \
-         runs at two tolerances: {}. Orders are listed from the step on that resolves the highest modes, while the difference \
-         stands twice above that; the tighter run is the one compared with.",
+        "Case 2: the difference from IDA falls with the square of Looselink's step. The error of IDA is estimated by the \
+         difference between its runs with two tolerances: {}. Looselink is compared with the tighter run. An order is listed \
+         for steps that resolve the highest modes and for differences above twice the error of IDA.",
         own.join("; ")
     );
     Ok(("Cases 1 and 2: ideal joints", text, rows))
@@ -115,29 +116,29 @@ fn first_impacts() -> Result<Section> {
         rows.extend(series.agreements()?);
     }
     let text =
-        "Joint by joint in the order of the impacts, to the instant of the last one compared.";
+        "Impacts are compared one by one in their order, channels up to the last compared impact.";
     Ok(("Cases 3 and 4: the first impacts", text.into(), rows))
 }
 
 fn other_mechanisms() -> Result<Section> {
     let mut rows = machines::smooth()?;
     rows.extend(machines::impacts()?);
-    let text = "Every element but clearance and inverse kinematics in one motion, with the order at which the difference \
-                falls; and the first impacts of the loose slider-crank and of a body that hangs loosely on a link welded into \
-                a frame.";
+    let text = "A scene with every kind of element except clearance and inverse kinematics, with the order at which the \
+                difference falls; then the first impacts of a slider-crank with clearance, and of a body that hangs by a joint \
+                with clearance on a welded flexible link.";
     Ok(("Other mechanisms", text.into(), rows))
 }
 
 /// Overlays and differences of cases 2, 3 and 4.
 fn trajectories(pictures: &std::path::Path) -> Result<Vec<(&'static str, String)>> {
-    let horizon = "The difference starts at rounding, grows with every impact and ends at the size of the motion: the chaos \
-                   horizon, which a smaller step moves back.";
+    let horizon = "The difference starts at rounding level, grows with every impact and reaches the size of the motion; a \
+                   smaller step delays this.";
     let list = [
         (
             "case2",
             Plan::new("3rrr/case2", 0.1, 1e-4),
             [1e-6, 2.5e-7],
-            "Without impacts it grows with time only.",
+            "Without impacts the difference grows with time only.",
         ),
         (
             "case3",

@@ -25,45 +25,45 @@ pub struct Report {
 const NOT_CHECKED: [(&str, &str); 10] = [
     (
         "Hertz's law",
-        "the reference has Lankarani-Nikravesh, Hunt-Crossley and Flores; Hertz is their limit without damping",
+        "the reference has the laws of Lankarani-Nikravesh, Hunt-Crossley and Flores, whose limit without damping it is",
     ),
     (
-        "the floor of the impact velocity",
-        "every impact of the compared stretches is far above it",
+        "The floor of the impact velocity",
+        "all compared impacts are far above it",
     ),
     (
-        "clamped forces in motion",
-        "the law is compared where it is clamped; no impact of the first fifteen gets there",
+        "Clamped contact forces in motion",
+        "clamping is compared in the law itself; none of the compared impacts reaches it",
     ),
     (
-        "paths and functions of time from a table, and inverse kinematics along other paths than a circle",
-        "the reference knows the circle of eq. 27 for its legs and functions in closed form for everything else",
+        "Paths and functions of time from a table; inverse kinematics along paths other than a circle",
+        "the reference has the circle of eq. 27 for the inverse kinematics, and closed-form functions otherwise",
     ),
     (
-        "redundant constraints, singular poses, full turns of torsional springs, equilibria",
-        "the reference refuses dependent rows, counts no turns and has no statics: they have published and exact answers in \
-         tests/published, tests/mechanisms.rs and tests/library.rs",
+        "Redundant constraints, singular poses, full turns of torsional springs, equilibria",
+        "the reference refuses dependent constraints, counts no turns and has no static analysis; tests/published, \
+         tests/mechanisms.rs and tests/library.rs compare them with published and exact solutions",
     ),
     (
-        "the start of scenes without inverse kinematics",
-        "the reference starts where Looselink has assembled them; that the start satisfies its own constraints it checks",
+        "The initial state of scenes without inverse kinematics",
+        "the reference takes it from Looselink, and checks that it satisfies its own constraints",
     ),
     (
-        "angles of links, eccentricity vectors and rates of the eccentricity, lengths and pulls of springs, applied loads",
-        "channels without a counterpart (some listed below); what they do to the motion is compared",
+        "Angles of links, eccentricity vectors and their rates, lengths and forces of springs, applied loads",
+        "these channels have no counterpart (some are listed below); their effect on the motion is compared",
     ),
     (
-        "what both sides take from EQUATIONS.md",
-        "a wrong reading of the paper written down there would be in both: the sign conventions, the choice of the branch, \
-         the values that the paper does not give",
+        "What both programs take from EQUATIONS.md",
+        "a misreading of the paper in it would be in both: sign conventions, the choice of the branch, values that the paper \
+         does not give",
     ),
     (
-        "the scene's TOML syntax",
-        "both sides parse it with the same library, each in its own way",
+        "The TOML syntax of the scene",
+        "both programs use the same TOML library",
     ),
     (
-        "the command line and the files it writes",
-        "they have tests of their own",
+        "The command line and the files that it writes",
+        "they have their own tests",
     ),
 ];
 
@@ -94,12 +94,13 @@ impl Report {
             page,
             format!(
                 "# Looselink against a second implementation\n\n{}\n\
-                 [reference-cpp](../reference-cpp/README.md) is a C++ program written from the paper and \
-                 [EQUATIONS.md](../EQUATIONS.md) alone, by other routes: Gauss quadrature, automatic differentiation, every \
-                 joint a constraint, a stabilised index-2 system, IDA's variable-order BDF with root finding. It shares the \
-                 numbers of the scene with Looselink and nothing else; even the scene is read twice.\n\n\
-                 **{held} of {all} agreements hold.** This page is written by `cargo run --release -p verify`; \
-                 `cargo test -p verify` asserts the same rows. {}.\n",
+                 [reference-cpp](../reference-cpp/README.md) is a C++ program, written from the paper and \
+                 [EQUATIONS.md](../EQUATIONS.md) with other methods: Gauss quadrature, automatic differentiation, constraint \
+                 equations for every ideal joint, a stabilised index-2 formulation, and IDA's variable-order BDF with root \
+                 finding. It shares the scene file with Looselink but no code of the mechanics. The last section lists what is \
+                 not cross-checked.\n\n\
+                 **{held} of {all} comparisons agree within their tolerance.** `cargo run --release -p verify` writes this \
+                 page; `cargo test -p verify` asserts the same rows. {}.\n",
                 records::place("comparison"),
                 reference::versions()
             ),
@@ -120,9 +121,9 @@ impl Report {
     fn chaos(&self, page: &mut String) {
         put(
             page,
-            "## Beyond the horizon: each side's own spread\n\n\
-             Loose joints are chaotic: after some tens of milliseconds two runs share no impact, even two of the same code. \
-             What they share is in this table: the measures of cycles 2 and 3 at three steps of Looselink and three \
+            "## Statistics of chaotic motion\n\n\
+             Loose joints are chaotic: after some tens of milliseconds two runs have no impact in common, even two runs of the \
+             same program. The tables compare statistics of cycles 2 and 3 instead, at three steps of Looselink and three \
              tolerances of IDA.\n"
                 .into(),
         );
@@ -160,9 +161,8 @@ impl Report {
             page,
             "## Cost at the same error\n\n\
              ![Processor time against achieved error](figures/cost.png)\n\n\
-             Processor time of the integration on one core, interpolated on the curves of the picture; an empty cell is \
-             outside a curve. A step of IDA costs several of Looselink's, but its order rises to 5 where Bathe's stays 2: the \
-             tighter the accuracy, the better IDA does.\n\n\
+             Processor time of the integration on one core, interpolated on the curves of the picture; an empty cell lies \
+             outside a curve. Bathe's scheme is of order 2 and IDA of order up to 5, so the ratio falls as the error shrinks.\n\n\
              | scene | error of the platform | Looselink | reference | reference / Looselink |\n|---|---|---|---|---|"
                 .into(),
         );
@@ -194,9 +194,9 @@ impl Report {
             page,
             format!(
                 "## Seeded faults\n\n{}\n\
-                 {} mistakes, put in one at a time by `cargo run --release -p verify --bin faults` \
-                 ([faults.toml](faults.toml) has the changed lines), and the tests that failed then. Tests that take a \
-                 minute are asked only when the quick ones catch nothing.\n\n\
+                 `cargo run --release -p verify --bin faults` makes {} mistakes, one at a time, and records the tests that \
+                 fail ([faults.toml](faults.toml) has the changed lines). Tests that take a minute run only when no quick test \
+                 fails.\n\n\
                  | in | mistake | caught by |\n|---|---|---|",
                 records::place("faults"),
                 self.faults.len()
@@ -231,7 +231,7 @@ impl Report {
         put(
             page,
             format!(
-                "\nChannels of case 4 with friction that the reference has no counterpart for: {}.",
+                "\nChannels of case 4 with friction that have no counterpart in the reference: {}.",
                 names.join(", ")
             ),
         );

@@ -85,7 +85,7 @@ pub(super) fn limit() -> Vec<Check> {
     let (least, most) = cost.fold((f64::MAX, 0.0_f64), |(a, b), c| (a.min(c), b.max(c)));
     vec![
         Check::new(
-            "Order of the distance from the ideal mechanism in the clearance, 1 mm to 1 um: least",
+            "Order of the difference from the ideal mechanism in the clearance, 1 mm to 1 um: least",
             orders.iter().copied().fold(f64::MAX, f64::min),
             0.9..=1.1,
         ),
@@ -95,12 +95,12 @@ pub(super) fn limit() -> Vec<Check> {
             0.9..=1.1,
         ),
         Check::below(
-            "1 mm to 1 nm: distance from the ideal mechanism over sum abs(J^-1) 2 (c + penetration)",
+            "1 mm to 1 nm: difference from the ideal mechanism over the kinematic bound sum abs(J^-1) 2 (c + penetration)",
             over,
             1.0,
         ),
         Check::below(
-            "Newton iterations of the dearest clearance over those of the cheapest",
+            "Largest over smallest number of Newton iterations",
             most / least,
             10.0,
         ),

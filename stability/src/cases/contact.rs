@@ -127,43 +127,43 @@ pub(super) fn onsets() -> Vec<Check> {
     let off = ["platform.x", "platform.y"].map(|name| largest(column(&together, name).to_vec()));
     vec![
         Check::new(
-            "Onset at 1e-12 to 1e-6 m/s, then rest: deepest penetration after 50 ms over that under the weight",
+            "Impact at 1e-12 to 1e-6 m/s, then rest: largest penetration in 50 ms over the static one under the weight",
             deepest / weight,
             0.5..=1.5,
         ),
         Check::new(
-            "A hammering bearing under steps longer than its contacts: stretches of chatter found, with joint and time",
+            "Hammering bearing, steps longer than its contacts: phases of chatter reported",
             hammering.chatter.len() as f64,
             1.0..=f64::MAX,
         ),
         Check::below(
-            "Steps of that run over those asked for: not ground through",
+            "The same: steps taken over nominal steps",
             hammering.steps as f64 / 500.0,
             4.0,
         ),
         Check::below(
-            "3-RRR turned about its centre, three joints closing at once: spread of the first onsets of a group [s]",
+            "3-RRR rotated about its centre, three joints close at once: spread of their first onsets [s]",
             spread,
             1e-9,
         ),
         Check::below(
-            "The same: the platform stays in the centre for 50 ms [m]",
+            "The same: displacement of the platform's centre within 50 ms [m]",
             largest(off),
             1e-9,
         ),
-        Check::new("Onsets of that run", report.onsets as f64, 6.0..=f64::MAX),
         Check::new(
-            "Six journals that hit within one step: time from the first to the last over the step",
+            "The same: number of onsets",
+            report.onsets as f64,
+            6.0..=f64::MAX,
+        ),
+        Check::new(
+            "Six journals hit within one step: time from the first to the last over the step",
             within,
             0.1..=1.0,
         ),
+        Check::below("The same: error of the six instants [s]", instants, 5e-12),
         Check::below(
-            "The same: error of their six instants; the onset tolerance over the speed is allowed [s]",
-            instants,
-            5e-12,
-        ),
-        Check::below(
-            "The same: difference of their ratios of rebound",
+            "The same: spread of their coefficients of restitution",
             rebounds,
             1e-4,
         ),
@@ -207,17 +207,17 @@ pub(super) fn stick_slip() -> Vec<Check> {
     };
     vec![
         Check::new(
-            "Order of the arm's way in the width of the friction ramp, 1e-2 to 1e-3 m/s",
+            "Order of the arm's displacement in the width of the friction ramp, 1e-2 to 1e-3 m/s",
             order,
             0.5..=2.0,
         ),
         Check::new(
-            "Coefficients 0.1 to 2: least energy lost to friction in 10 ms, never negative [J]",
+            "Coefficients 0.1 to 2: least energy dissipated by friction in 10 ms [J]",
             dissipated,
             -1e-12..=f64::MAX,
         ),
         Check::yes(
-            "A ramp of 1e-9 m/s is passed with a warning or refused with the joint's body named",
+            "A ramp of 1e-9 m/s: the run ends with a warning, or with an error that names the body of the joint",
             named,
         ),
     ]
@@ -243,7 +243,7 @@ pub(super) fn speed() -> Vec<Check> {
     }
     vec![
         Check::below(
-            "5,000 to 50,000 rpm, step 0.2 us: distance from a quarter of the step after 1.2 ms [m]",
+            "5,000 to 50,000 rpm, step 0.2 us: difference within 1.2 ms from a run with a quarter of the step [m]",
             worst[0],
             5e-6, // a hundredth of the clearance
         ),

@@ -95,19 +95,19 @@ pub(super) fn spinning_link() -> Vec<Check> {
     let long = fly(5e-4, 50.0, 100);
     vec![
         Check::below(
-            "100,000 steps at 1/20 of a period: change of the velocity of the centre of mass, relative",
+            "100,000 steps of 1/20 of a period: change of the velocity of the centre of mass, relative",
             long.linear,
             1e-10,
         ),
         Check::below("The same: energy gained, relative", long.gain, 1e-12),
         Check::below("The same: energy lost, relative", long.lost, 1e-3),
         Check::new(
-            "Order of the error of the angle after 0.5 s in the step",
+            "Order in time of the angle after 0.5 s",
             order(coarse, half),
             1.8..=2.2,
         ),
         Check::new(
-            "Order of the change of angular momentum after 0.5 s in the step",
+            "Order in time of the change of angular momentum after 0.5 s",
             order(coarse_spin, half_spin),
             1.8..=2.2,
         ),
@@ -138,17 +138,17 @@ pub(super) fn rigid_limit() -> Vec<Check> {
     let [soft, stiff, stiffest] = [7e9, 7e11, 7e13].map(flexible);
     vec![
         Check::new(
-            "Order of the distance from the rigid mechanism in Young's modulus, 7e9 to 7e11 Pa",
+            "Order of the difference from the rigid mechanism in Young's modulus, 7e9 to 7e11 Pa",
             order(soft, stiff),
             -1.2..=-0.8,
         ),
         Check::below(
-            "Distance from the rigid mechanism at 7e13 Pa [m]",
+            "Difference from the rigid mechanism at 7e13 Pa [m]",
             stiffest.1,
             1e-9,
         ),
         Check::new(
-            "Distance at 7e7 Pa, bounded [m]",
+            "Difference from it at 7e7 Pa [m]",
             near_buckling.1,
             0.0..=0.05,
         ),
@@ -171,7 +171,7 @@ pub(super) fn platform_mass() -> Vec<Check> {
     }
     vec![
         Check::below(
-            "Eight masses from 0.5 g to 5 t, step 2 us: distance from an eighth of the step after 6 ms [m]",
+            "Eight masses from 0.5 g to 5 t, step 2 us: difference within 6 ms from a run with an eighth of the step [m]",
             error,
             2e-6, // a tenth of the clearance
         ),
@@ -208,12 +208,12 @@ pub(super) fn elements() -> Vec<Check> {
     let (_, stubby) = run("sections.rod.width=0.12");
     vec![
         Check::new(
-            "Order of the tip in the length of an element, 4 to 16 elements",
+            "Order of the tip's position in the element length, 4 to 16 elements",
             order(coarse, fine),
             2.0..=6.0,
         ),
         Check::below(
-            "Tip with 128 elements against 256, in a length of 1.2 m [m]",
+            "Tip of a rod of 1.2 m, 128 against 256 elements [m]",
             finest.1,
             1.2e-6,
         ),

@@ -19,7 +19,7 @@ pub(super) fn revolutions() -> Vec<Check> {
             0.2..=0.6,
         ),
         Check::new(
-            "Order of its position in the step",
+            "Order in time of the position of its mass",
             truss_order(),
             1.8..=2.2,
         ),

@@ -14,26 +14,26 @@ pub(super) fn singular_poses() -> Vec<Check> {
     };
     vec![
         Check::below(
-            "Two four-bar windows through their collinear poses for 10 s: difference of the heights of their cranks [m]",
+            "Two four-bar windows pass their collinear poses for 10 s: difference between the heights of their cranks [m]",
             apart_within(&windows),
             1e-12,
         ),
         Check::new(
-            "Stages of it in a singular pose, counted and warned of",
+            "The same: stages in a singular pose, reported in a warning",
             report.singular_poses as f64,
             1.0..=f64::MAX,
         ),
         Check::yes(
-            "The same, started in a collinear pose, is refused by that name",
+            "The same, started in a collinear pose, is refused as singular",
             refused,
         ),
         Check::below(
-            "3-RRR through two type-2 singularities: distance from its path, all rigid and ideal [m]",
+            "Rigid ideal 3-RRR through two type-2 singularities: distance from its path [m]",
             largest(errors),
             1e-9,
         ),
         Check::new(
-            "Stages of it in a singular pose, counted and warned of",
+            "The same: stages in a singular pose, reported in a warning",
             through.1.singular_poses as f64,
             1.0..=f64::MAX,
         ),
@@ -53,23 +53,23 @@ pub(super) fn redundant() -> Vec<Check> {
         .inspect()
         .assumptions
         .iter()
-        .any(|a| a.contains("repeats"));
+        .any(|a| a.contains("is redundant"));
     // a pendulum: psi'' = -w^2 sin psi, the masses and inertias of three cranks and a coupler
     let (exact, _) = run(scene, &["integrator.step=1e-4"]);
     vec![
         Check::new(
-            "Constraints left out",
+            "Redundant constraints are left out",
             report.redundant.len() as f64,
             1.0..=1.0,
         ),
-        Check::yes("`inspect` and the summary name what is left out", named),
+        Check::yes("`inspect` and the summary name them", named),
         Check::below(
             "Distance from the same motion at a tenth of the step [m]",
             apart(&with, &exact, "coupler.x"),
             1e-5,
         ),
         Check::below(
-            "The coupler keeps its angle [rad]",
+            "Rotation of the coupler [rad]",
             largest(column(&with, "coupler.theta").to_vec()),
             1e-12,
         ),

@@ -31,22 +31,21 @@ pub(super) fn stiff_springs() -> Vec<Check> {
     });
     vec![
         Check::below(
-            "Truss, 40 turns at 1/50 of a turn a step: energy gained by Bathe's scheme, relative",
+            "Truss, 40 turns of 50 steps: energy gained by Bathe's scheme, relative",
             gain(&bathe),
             1e-12,
         ),
         Check::yes(
-            "Truss: the trapezoidal rule is stopped as unstable within these 40 turns",
+            "The same: the trapezoidal rule is stopped as unstable",
             stopped,
         ),
         Check::below(
-            "Stiff spring pendulum, a step of 1.6 periods of the spring: energy gained by Bathe's scheme, relative",
+            "Stiff spring pendulum, step of 1.6 periods of the spring: energy gained by Bathe's scheme, relative",
             gain(&pendulum),
             1e-12,
         ),
         Check::new(
-            "Stiff spring pendulum with 25 stages a period of the spring: error of Bathe's scheme over that of the trapezoidal \
-             rule, the better choice where steps resolve everything",
+            "Stiff spring pendulum, 25 stages per period of the spring: error of Bathe's scheme over that of the trapezoidal rule",
             errors[0] / errors[1],
             1.2..=4.0,
         ),
@@ -70,12 +69,12 @@ pub(super) fn three_springs() -> Vec<Check> {
     }
     vec![
         Check::below(
-            "Ten stiffnesses at 20 steps a period of the drive: error of the acceleration behind the spring, Bathe [m/s2]",
+            "Ten stiffnesses, 20 steps per period of the drive: error of the acceleration behind the spring, Bathe's scheme [m/s2]",
             worst[0],
             0.3,
         ),
         Check::new(
-            "The same of the trapezoidal rule, which rings [m/s2]",
+            "The same: trapezoidal rule, whose acceleration rings [m/s2]",
             worst[1],
             10.0..=f64::MAX,
         ),

@@ -250,7 +250,7 @@ fn stopped(scene: &Scene, error: &RunError) -> Result<Outcome, Breach> {
     let drives = scene.drives.iter().map(|d| &d.name);
     let motions = scene.motions.iter().map(|m| &m.name);
     let mut names = bodies.chain(joints).chain(drives).chain(motions);
-    let in_energy = text.contains("the balance of energies");
+    let in_energy = text.contains("the energy balance");
     let named = in_energy || names.any(|n| text.contains(n.as_str()));
     let begun = !matches!(error, RunError::Unaffordable { .. });
     match named && (!begun || text.contains("t = ")) {

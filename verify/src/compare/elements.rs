@@ -97,7 +97,7 @@ pub fn agreements() -> Result<Vec<Agreement>, Error> {
         "states of small strain are where rounding matters"
     );
     let scene = format!("{STATES} random states");
-    let rounding = "of (EA + EI/l²) max(1, |q|³) with q = (r/l, r′): at small strain the force is a difference of numbers \
+    let rounding = "of (EA + EI/l²) max(1, |q|³) with q = (r/l, r′): at small strain the force is a difference of terms \
                     of that size";
     Ok(vec![
         mass.row(

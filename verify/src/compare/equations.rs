@@ -123,7 +123,7 @@ pub fn agreements(plan: &Plan) -> Result<Vec<Agreement>> {
                 ..row(
                     parts.convective,
                     "convective acceleration of the constraints",
-                    "of 1 m/s² or the largest entry; the reference's rows differenced along the motion",
+                    "of 1 m/s² or the largest entry; truncation of the reference's difference quotient along the motion",
                 )
             },
             Agreement {
@@ -131,7 +131,7 @@ pub fn agreements(plan: &Plan) -> Result<Vec<Agreement>> {
                 ..row(
                     parts.curvature,
                     "curvature of the constraints, d(Φ_qᵀλ)/dq",
-                    "of the largest entry; the reference's rows differenced",
+                    "of the largest entry; truncation of the reference's difference quotient",
                 )
             },
         ]);
@@ -142,13 +142,13 @@ pub fn agreements(plan: &Plan) -> Result<Vec<Agreement>> {
     rows.push(row(
         parts.stiffness,
         "assembled df/dq",
-        "of the largest entry; rounding of delta over delta",
+        "of the largest entry; relative rounding of the penetration, a small difference of coordinates",
     ));
     if shape.contacts > 0 {
         rows.push(row(
             parts.contact,
             "assembled force, contacts closed",
-            "of the largest entry; rounding of delta over delta",
+            "of the largest entry; relative rounding of the penetration, a small difference of coordinates",
         ));
     }
     Ok(rows)

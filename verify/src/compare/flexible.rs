@@ -60,7 +60,15 @@ fn distance(a: &Trajectory, b: &Trajectory, channels: &[&str]) -> Worst {
     worst
 }
 
-/// Runs both sides with 1 or 4 elements a link.
+/// A number of elements, in words.
+pub fn elements(n: usize) -> String {
+    match n {
+        1 => "1 element".to_owned(),
+        n => format!("{n} elements"),
+    }
+}
+
+/// Runs both sides with 1 or 4 elements per link.
 ///
 /// # Errors
 /// A run that fails.
@@ -143,7 +151,7 @@ impl Convergence {
 
     /// The rows.
     pub fn agreements(&self) -> Vec<Agreement> {
-        let scene = format!("case2, {} element(s), {DURATION} s", self.elements);
+        let scene = format!("case2, {} per link, {DURATION} s", elements(self.elements));
         let mut rows = Vec::new();
         for (q, (name, _, relative)) in QUANTITIES.into_iter().enumerate() {
             let orders = self.orders(q);
@@ -170,7 +178,7 @@ impl Convergence {
                 (true, TURNING) => (
                     self.sizes[q],
                     5e-4,
-                    "of the largest; the turning rings highest",
+                    "of the largest; the rotation has the highest frequencies",
                 ),
                 (true, _) => (self.sizes[q], 1e-4, "of the largest"),
             };

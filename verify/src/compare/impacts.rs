@@ -100,7 +100,7 @@ impl Series {
                 cpp: last(&cpp.impacts),
                 difference: f64::from(u32::try_from(mismatches).unwrap_or(u32::MAX)),
                 tolerance: 0.0,
-                reason: "impacts of different joints or missing".into(),
+                reason: "number of impacts that are missing or of another joint".into(),
             },
             instant.row("instants of the impacts [s]", &scene, 1e-8, &how),
             velocity.row(
@@ -109,12 +109,12 @@ impl Series {
                 1e-4,
                 &format!("relative; {how}"),
             ),
-            position.row("platform position until then [m]", &scene, 1e-8, &how),
+            position.row("platform position up to the last impact [m]", &scene, 1e-8, &how),
             first.row(
                 "velocity of the first impact [m/s]",
                 &scene,
                 1e-8,
-                &format!("relative; smooth motion until then, so rounding counts; {how}"),
+                &format!("relative; the motion is smooth until then, so that the error is rounding; {how}"),
             ),
         ];
         let reason = format!("of the largest of its kind; {how}");

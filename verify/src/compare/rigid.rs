@@ -24,6 +24,6 @@ pub fn runs() -> Result<[Trajectory; 2]> {
 /// A run that fails.
 pub fn agreements() -> Result<Vec<Agreement>> {
     let [rust, cpp] = runs()?;
-    let reason = "of the largest of its kind; a hundred times what IDA holds at relative 1e-12";
+    let reason = "of the largest of its kind; a hundred times the error of IDA at a relative tolerance of 1e-12";
     Ok(classes::agreements("case1, 1 s", &rust, &cpp, 1e-8, reason))
 }

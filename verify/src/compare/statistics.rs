@@ -144,23 +144,19 @@ impl Spread {
 }
 
 fn rows(case: u32, rust: Measures, cpp: Measures) -> Vec<Agreement> {
-    let row = |((name, unit, tolerance, relative), (r, c)): (
-        (&str, &str, f64, bool),
-        (&f64, &f64),
-    )| {
-        let measure = if relative { "relative" } else { "absolute" };
-        Agreement {
-            quantity: format!("{name} [{unit}]"),
-            scene: format!("case{case}, cycles 2 and 3"),
-            rust: *r,
-            cpp: *c,
-            difference: (r - c).abs() / if relative { c.abs() } else { 1.0 },
-            tolerance,
-            reason: format!(
-                "{measure}; chaotic runs: their measures scatter, their instants have nothing in common"
-            ),
-        }
-    };
+    let row =
+        |((name, unit, tolerance, relative), (r, c)): ((&str, &str, f64, bool), (&f64, &f64))| {
+            let measure = if relative { "relative" } else { "absolute" };
+            Agreement {
+                quantity: format!("{name} [{unit}]"),
+                scene: format!("case{case}, cycles 2 and 3"),
+                rust: *r,
+                cpp: *c,
+                difference: (r - c).abs() / if relative { c.abs() } else { 1.0 },
+                tolerance,
+                reason: format!("{measure}; scatter between chaotic runs"),
+            }
+        };
     QUANTITIES
         .into_iter()
         .zip(rust.values.iter().zip(&cpp.values))
