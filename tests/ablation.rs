@@ -128,11 +128,11 @@ fn a_removed_effect_leaves_the_run_of_a_scene_that_never_had_it() {
         }
     }
     Rung::Routes
-        .asks("An effect taken out of a scene against a scene that never had it, nine pairs: recorded numbers that differ in a bit, per channel")
+        .asks("Scene with an effect removed against a scene written without it, nine pairs: recorded numbers whose bits differ, per channel")
         .within(
             &worst,
             0.0,
-            "what is absent is in no list of the model: the same arithmetic in the same order",
+            "an absent effect adds nothing to the model: the same arithmetic in the same order",
         );
 }
 

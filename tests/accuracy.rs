@@ -75,8 +75,8 @@ fn the_accuracy_asked_for_is_achieved() {
         }
     }
     Rung::HardCases
-        .asks("Error-controlled Bathe, trapezoidal and Dormand-Prince, 1e-6 to 1e-10 m, with and without impacts: error achieved over error asked for")
-        .within(&worst, 10.0, "errors of single steps are estimated, their growth from impact to impact is not");
+        .asks("Error-controlled Bathe, trapezoidal and Dormand-Prince, 1e-6 to 1e-10 m, with and without impacts: achieved error over requested accuracy")
+        .within(&worst, 10.0, "the estimate does not include the growth of errors from impact to impact");
 }
 
 /// Methods of order 2 on stiff beams, at a start from rest and under a sudden load, and with constraint rows: what the stage
@@ -140,12 +140,12 @@ fn accuracy_is_proportional() {
             (accuracy, worst.value())
         };
         Rung::OrderInTime
-            .asks(format!("{scene}: error of error-controlled Bathe against the error asked for [m]"))
+            .asks(format!("{scene}: error of error-controlled Bathe against the requested accuracy [m]"))
             .falls(
-                "Accuracy asked for [m]",
+                "Requested accuracy [m]",
                 &asked.map(error),
                 0.8..1.2,
-                "in proportion: the estimate is the error of a step, and the steps of a horizon add up to what is asked for",
+                "proportional: the errors of the steps within a horizon add up to the requested accuracy",
             );
     }
 }
@@ -218,8 +218,8 @@ fn an_accuracy_of_energy_holds_the_balance() {
         worst.see(held / energy);
     }
     Rung::HardCases
-        .asks("3-RRR with loose joints, an accuracy of energy asked for: energy lost within a horizon over what was asked for")
-        .within(&worst, 1.0, "what every step changes of the balance is measured, and their sum kept below");
+        .asks("3-RRR with loose joints, requested accuracy of energy: energy lost or gained within a horizon over the requested accuracy")
+        .within(&worst, 1.0, "the change of the energy balance in every step is measured, and their sum is kept below the requested accuracy");
 }
 
 /// Long after two runs have gone different ways their statistics agree, whatever the method: over the second of two seconds
@@ -272,13 +272,19 @@ fn statistics_of_two_seconds_are_those_of_any_method() {
                 short step";
     Rung::HardCases
         .asks(format!("{name}: envelopes and rms of the displacement error, relative"))
-        .within(&envelopes, 0.01, "chaotic runs: one second is a finite sample, two runs of one method differ by half of it");
+        .within(&envelopes, 0.01, "chaotic runs: one second is a finite sample, and two runs of one method differ by half of this bound");
     Rung::HardCases
         .asks(format!("{name}: share of time in contact"))
-        .within(&shares, 0.03, "as above");
+        .within(&shares, 0.03, "chaotic runs: one second is a finite sample");
     Rung::HardCases
-        .asks(format!("{name}: energy lost by the integrator over energy dissipated in contact"))
-        .within(&losses, 0.05, "what the accuracy of energy asks for, with the contacts' dissipation of 2e-5 J a second");
+        .asks(format!(
+            "{name}: energy lost by the integrator over energy dissipated in contact"
+        ))
+        .within(
+            &losses,
+            0.05,
+            "the requested accuracy of energy over the contact dissipation of 2e-5 J per second",
+        );
 }
 
 /// An accuracy below rounding is not ground through: the run ends with the coordinate and the time.
@@ -395,7 +401,7 @@ initial.bodies.journal = { x = 0, y = 0, theta = 0, vx = 0, vy = 0.633, omega = 
         worst.see(recording.onsets[0].t - onset);
     }
     Rung::Published
-        .asks("A journal tossed against its bearing, in and out within one step, three methods: instant of the contact against the closed form [s]")
+        .asks("Journal that touches its bearing and leaves within one step, three methods: instant of contact against the closed form [s]")
         .within(&worst, 1e-11, "the onset tolerance of 1e-13 m over 0.026 m/s");
 }
 
@@ -444,6 +450,6 @@ fn every_method_follows_an_accuracy() {
         see_errors(&worst, &found, &exact, &channels, accuracy);
     }
     Rung::OrderInTime
-        .asks("Accuracies asked of generalised-alpha, HHT, velocity Verlet and backward Euler: error over what was asked for")
-        .within(&worst, 1.0, "what is asked for is achieved");
+        .asks("Generalised-alpha, HHT, velocity Verlet and backward Euler: achieved error over requested accuracy")
+        .within(&worst, 1.0, "the requested accuracy is reached");
 }

@@ -54,10 +54,10 @@ fn a_drive_holds_the_couples_on_its_crank() {
     }
     assert!(link.get("O.torque").iter().any(|m| m.abs() > 1.0));
     Rung::Routes
-        .asks("A driven crank with couples on it, as a rod and as a rigid body: all channels, relative to the largest value")
+        .asks("Driven crank under couples, modelled as a link and as a rigid body: difference of all channels, relative to the largest value")
         .within(&worst,
             1e-9,
-            "positions are rounded differently, which EA = 2e5 N turns into 1e-11 N",
+            "different rounding of positions, times EA = 2e5 N: 1e-11 N",
         );
 }
 
@@ -78,11 +78,11 @@ fn the_ledger_of_every_element_closes() {
     };
     let errors: Vec<_> = [4e-4, 2e-4, 1e-4].map(|h| (h, numerical(h))).into();
     Rung::Balance
-        .asks("Every element in one scene: energy that the ledger does not account for [J]")
+        .asks("Scene with every element: numerical loss of energy [J]")
         .falls(
             "Step h [s]",
             &errors,
             1.8..2.2,
-            "the order of the scheme; stored and dissipated is about 1 J",
+            "the order of the scheme; about 1 J is stored and dissipated",
         );
 }

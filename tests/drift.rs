@@ -184,11 +184,11 @@ fn holds(name: &str, strategy: impl Strategy<Value = Drawn>) {
         prop_assert!(order < 2.0 - ORDER_TOLERANCE, "backward Euler has order {order}");
     });
     Rung::Balance
-        .asks(format!("{name}: largest energy that Bathe's scheme loses or gains at three steps, over its bound"))
-        .within(&used, 1.0, "((h ω)²/12 + n (h ω)⁴/144) of the energy in play over n steps, ω the highest frequency; of random mechanisms");
+        .asks(format!("{name}: largest energy lost or gained by Bathe's scheme at three steps, over its bound"))
+        .within(&used, 1.0, "((h ω)²/12 + n (h ω)⁴/144) times the energy of the motion over n steps, ω the highest frequency; of random mechanisms");
     Rung::OrderInTime
         .asks(format!(
-            "{name}: largest deviation from 2 of the order in which this energy falls"
+            "{name}: largest deviation from 2 of the order of this energy in the step"
         ))
         .within(
             &off,

@@ -81,7 +81,7 @@ fn case_1_is_the_ideal_mechanism() {
         }
     }
     Rung::Routes
-        .asks("Ideal 3-RRR (case 1): angles, speeds, torques and joint forces against inverse dynamics with Newton-Euler, over the largest")
+        .asks("Ideal 3-RRR (case 1): angles, speeds, torques and joint forces against Newton-Euler inverse dynamics, relative to the largest")
         .within(&dynamics,
             1e-12,
             "both are direct solves: rounding times the condition of the pose",
@@ -153,9 +153,9 @@ fn case_2_converges_at_order_two() {
         steps.iter().zip(&runs).skip(from).map(error).collect()
     };
     let smooth = "order 2 of Bathe's scheme; against a step of 6.25e-8 s";
-    let rings = "order 2 from 2e-6 s on: the unstrained start rings the axial modes, which coarser steps do not resolve";
+    let rings = "order 2 from 2e-6 s on: the unstrained start excites axial modes, which coarser steps do not resolve";
     for (name, quantity, from, reason) in [
-        ("platform.x", "place of the platform [m]", 0, smooth),
+        ("platform.x", "position of the platform [m]", 0, smooth),
         ("platform.vx", "velocity of the platform [m/s]", 3, rings),
         (
             "platform.ax",
@@ -229,10 +229,10 @@ fn a_crank_may_be_a_rigid_body() {
         }
     }
     Rung::Routes
-        .asks("3-RRR (cases 1, 2, 4) with cranks as links or as rigid bodies: every recorded number, over max(largest, 1e-3)")
+        .asks("3-RRR (cases 1, 2, 4) with cranks as links or as rigid bodies: difference of all channels, over max(largest value, 1e-3)")
         .within(&worst,
             1e-6,
-            "positions are rounded differently, which EA = 1e6 N turns into 1e-10 N and 0.01 kg into 1e-8 m/s² a step",
+            "different rounding of positions, times EA = 1e6 N: 1e-10 N, and 1e-8 m/s² per step for 0.01 kg",
         );
 }
 
@@ -273,6 +273,6 @@ fn drive_power_integrates_to_the_work() {
         .asks("3-RRR (cases 1 and 2): torque times speed of the drives by Simpson's rule against the recorded work, relative error")
         .within(&worst,
             1e-9,
-            "order 4 of Simpson's rule; in case 2 the ringing power is a hundred times the mean one",
+            "order 4 of Simpson's rule; in case 2 the power of the vibration is a hundred times the mean power",
         );
 }

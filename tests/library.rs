@@ -28,7 +28,7 @@ fn rigid_pendula() {
         worst.see(error(&pendulum, t, &[(x, at[0]), (y, at[1])]));
     }
     Rung::Published
-        .asks("Scene of the pendulum: place after 2 and 10 s against the closed form [m]")
+        .asks("Scene of the pendulum: position after 2 and 10 s against the closed form [m]")
         .within(&worst, 1e-6, MEASURED);
     let (windows, _) = run("n-four-bar.toml", &[]);
     let expected = [
@@ -38,7 +38,7 @@ fn rigid_pendula() {
         ("points.crank0.end.vy", -0.494868845487043),
     ];
     Rung::Published
-        .asks("Scene of four-bar windows: place and velocity after 10 s against the closed form [m, m/s]")
+        .asks("Scene of four-bar windows: position and velocity after 10 s against the closed form [m, m/s]")
         .within(error(&windows, 10.0, &expected), 1.2e-6, MEASURED);
     let [a, b] = ["points.crank0.end.y", "points.crank2.end.y"].map(|name| windows.get(name));
     let apart = Worst::new();
@@ -46,7 +46,7 @@ fn rigid_pendula() {
         apart.see(a - b);
     }
     Rung::HardCases
-        .asks("Scene of four-bar windows: do cranks stay parallel through singular poses? Difference of their heights [m]")
+        .asks("Scene of four-bar windows through singular poses: difference between the heights of its parallel cranks [m]")
         .within(&apart, 1e-12, "rounding; in another branch the cranks turn apart");
 }
 
@@ -62,7 +62,7 @@ fn springs() {
     ];
     Rung::Published
         .asks(
-            "Scene of the stiff spring pendulum: published place and velocity after 10 s [m, m/s]",
+            "Scene of the stiff spring pendulum: published position and velocity after 10 s [m, m/s]",
         )
         .within(error(&pendulum, 10.0, &expected), 2.5e-8, MEASURED);
 
@@ -92,10 +92,10 @@ fn springs() {
         worst.see(error(&springs, t, &[("node2.ax", a2)]) / 1e-8);
     }
     Rung::Published
-        .asks("Scene of three springs: the recursion of the scheme in forty digits, in units of 1e-13 m, 1e-13 m/s and 1e-8 m/s²")
+        .asks("Scene of three springs: difference from the recursion of the scheme in forty digits, in units of 1e-13 m, 1e-13 m/s and 1e-8 m/s²")
         .within(&worst,
             1.0,
-            "no error of its own but rounding, of accelerations that of 1e7 N/m",
+            "rounding only, for accelerations times 1e7 N/m",
         );
     assert!(report.ledger.unwrap().work > 1.0);
 }
@@ -118,23 +118,23 @@ fn flexible_links() {
         worst.see(error(run, t, &expected) / allowed);
     }
     Rung::Published
-        .asks("Scenes of the soft and the stiff pendulum: listed places of the tip, in units of 2e-7, 1e-6 and 3e-7 m")
+        .asks("Scenes of the soft and the stiff pendulum: listed positions of the tip, in units of 2e-7, 1e-6 and 3e-7 m")
         .within(&worst, 1.0, MEASURED);
 
     let tip = |x, y| [("points.beam.end.x", x), ("points.beam.end.y", y)];
     let (cantilever, _) = run("cantilever-static.toml", &[]);
     let expected = tip(2.0 - 0.509285882511, -1.207364220014);
     Rung::Published
-        .asks("Scene of the static cantilever: listed place of the tip [m]")
+        .asks("Scene of the static cantilever: listed position of the tip [m]")
         .within(
             error(&cantilever, 1.0, &expected),
             1e-11,
-            "the digits listed",
+            "the listed digits",
         );
     let (falling, _) = run("cantilever-dynamic.toml", &[]);
     let expected = tip(2.0 - 0.50208361507, -1.23254150237);
     Rung::Published
-        .asks("Scene of the falling cantilever: place of the tip after 20 s against the listed equilibrium [m]")
+        .asks("Scene of the falling cantilever: position of the tip after 20 s against the listed equilibrium [m]")
         .within(error(&falling, 20.0, &expected), 1.5e-4, MEASURED);
     let (circle, _) = run("roll-up.toml", &[]);
     let [x, y] = ["x", "y"].map(|i| *circle.get(&format!("points.beam.end.{i}")).last().unwrap());
@@ -158,7 +158,7 @@ fn spin_up() {
         .within(
             mean / 5.142698461778e-4 - 1.0,
             1e-4,
-            "the blade still vibrates a little",
+            "residual vibration of the blade",
         );
     let ledger = report.ledger.unwrap();
     Rung::Balance
@@ -176,7 +176,7 @@ fn driven_mechanisms() {
         worst.see(x - exact);
     }
     Rung::Routes
-        .asks("Scene of the ideal slider-crank: place of the slider against the closed form [m]")
+        .asks("Scene of the ideal slider-crank: position of the slider against the closed form [m]")
         .within(&worst, 1e-14, "rounding");
     let (shaper, _) = run("quick-return.toml", &[]);
     let x = shaper.get("points.lever.end.x");
@@ -187,7 +187,7 @@ fn driven_mechanisms() {
         .within(
             greatest - least - 0.4,
             1e-5,
-            "the lever swings by asin(0.1/0.25) to both sides; a row every 1/500 of a turn",
+            "the lever swings by asin(0.1/0.25) to each side; there are 500 rows per turn",
         );
 }
 
@@ -200,7 +200,7 @@ fn a_loose_slider_crank() {
     assert_eq!(report.rejected_steps + report.unlocated_changes, 0);
     let ledger = report.ledger.unwrap();
     Rung::HardCases
-        .asks("Scene of the loose slider-crank, 20 turns: numerical loss of energy over what the contact dissipates")
+        .asks("Scene of the loose slider-crank, 20 turns: numerical loss of energy over the contact dissipation")
         .within(
             ledger.numerical / ledger.contact_dissipated,
             1e-3,
@@ -243,7 +243,7 @@ fn a_loose_slider_crank() {
                         "Step h [s]",
                         &errors,
                         1.3..2.7,
-                        "order 2 on average: contacts cut the steps at other places for each h",
+                        "order 2 on average: contacts cut the steps differently for each h",
                     );
             }
         }

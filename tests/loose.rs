@@ -46,16 +46,16 @@ fn a_bouncing_journal_delivers_the_restitution_of_the_formula() {
             .collect();
         worst.see(errors[0].1);
         Rung::OrderInTime
-            .asks(format!("Bouncing journal, restitution {typed} typed: delivered restitution against the formula"))
+            .asks(format!("Bouncing journal, coefficient {typed}: restitution of the run against that of the law"))
             .falls_on_average(
                 "Step h over the contact time",
                 &errors,
                 1.6..2.4,
-                "order 2 on average: beginning and end of the contact cut the steps at other places for each h",
+                "order 2 on average: onset and end of the contact cut the steps differently for each h",
             );
     }
     Rung::Routes
-        .asks("Bouncing journal, 50 steps a contact, five restitutions: delivered restitution against the formula")
+        .asks("Bouncing journal, 50 steps per contact, five coefficients: restitution of the run against that of the law")
         .within(&worst, 2e-4, "the scheme's error at this step");
 }
 
@@ -88,22 +88,24 @@ fn case_3_impacts_converge_at_order_two() {
         ));
     }
     Rung::HardCases
-        .asks("3-RRR with loose joints (case 3): penetration at the located beginnings of contacts over 5 ms [m]")
-        .within(&depths, 1e-12, "far below penetrations of about 1e-7 m; they are located to 1e-15 m");
+        .asks("3-RRR with loose joints (case 3): penetration at the located onsets of contact over 5 ms [m]")
+        .within(&depths, 1e-12, "far below penetrations of about 1e-7 m; the onset tolerance is 1e-15 m");
     Rung::HardCases
         .asks("3-RRR with loose joints (case 3): instant of the first impact at four steps against that at 6.25e-8 s [s]")
         .within(&first,
             1e-9,
-            "no error of the scheme before it: rounding over the impact velocity",
+            "the scheme has no error before this impact: rounding over the impact velocity",
         );
     for (quantity, errors) in [("instant [s]", instants), ("velocity [m/s]", velocities)] {
         Rung::OrderInTime
-            .asks(format!("3-RRR with loose joints (case 3), fourth impact: {quantity}"))
+            .asks(format!(
+                "3-RRR with loose joints (case 3), fourth impact: {quantity}"
+            ))
             .falls(
                 "Step h [s]",
                 &errors,
                 1.6..2.4,
-                "order 2; the first impact that the scheme's error reaches, against a step of 6.25e-8 s",
+                "order 2; the first impact with an error of the scheme; reference step 6.25e-8 s",
             );
     }
 }
@@ -138,7 +140,7 @@ fn case_3_keeps_within_its_clearances() {
         }
     }
     Rung::HardCases
-        .asks("3-RRR with loose joints (case 3), 3 s: do legs stretch by more than the eccentricities of their two joints? Excess [m]")
+        .asks("3-RRR with loose joints (case 3), 3 s: stretch of a leg beyond the eccentricities of its two joints [m]")
         .within(&beyonds,
             1e-12,
             "the triangle inequality: rounding of coordinates near 0.4 m",
@@ -153,11 +155,11 @@ fn case_3_keeps_within_its_clearances() {
         largest.see(error[k] / bound);
     }
     Rung::HardCases
-        .asks("3-RRR with loose joints (case 3): largest error of the platform along x over the bound of linearised kinematics")
+        .asks("3-RRR with loose joints (case 3): largest error of the platform along x over its linearised kinematic bound")
         .between(
             largest.value(),
             0.99..1.02,
-            "clearances are used up; the bound is linear in them, and contacts penetrate",
+            "the clearances are used up; contacts penetrate, and the bound is linear in the clearances",
         );
 }
 
@@ -186,7 +188,7 @@ fn numerical_dissipation_is_small_against_that_of_the_contacts() {
         worst.see(numerical / contact);
     }
     Rung::Balance
-        .asks("3-RRR with loose joints (cases 3 and 4), last two cycles: numerical loss of energy over what the contacts dissipate")
+        .asks("3-RRR with loose joints (cases 3 and 4), last two cycles: numerical loss of energy over the contact dissipation")
         .within(&worst,
             0.05,
             "little, at the step of the scenes, which the figures use",
@@ -247,7 +249,8 @@ fn a_contact_of_hertz_has_the_depth_and_the_duration_of_the_closed_form() {
             errors.push((1.0 / steps, (found - 1.0).abs()));
         }
     }
-    let cut = "order 2 on average: beginning and end of the contact cut the steps at other places for each h";
+    let cut =
+        "order 2 on average: onset and end of the contact cut the steps differently for each h";
     let lost =
         "order 3 on average: what Bathe's scheme loses of the energy of a vibration falls as h^3";
     let answers = [
@@ -386,10 +389,10 @@ fn a_run_takes_over_the_state_of_another() {
     let worst = Worst::new();
     worst.see(apart(&one, &other));
     Rung::Routes
-        .asks("Case 3, a run takes over the state of another in contact: all coordinates 2 ms later")
+        .asks("Case 3, run resumed from a state in contact: difference of all coordinates after 2 ms")
         .within(
             &worst,
             1e-12,
-            "the velocities are projected anew, 1e-16 m/s of rounding; impacts amplify it a thousandfold in 2 ms at most",
+            "velocities are projected again with a rounding of 1e-16 m/s, which impacts amplify at most a thousandfold in 2 ms",
         );
 }

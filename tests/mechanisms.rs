@@ -137,9 +137,9 @@ pin = [0.167, 0.0]
         let torque = r * (c * get("B.fy")[k] - s * get("B.fx")[k]);
         forces.see((get("O.torque")[k] - torque) / (scale * r));
     }
-    let reason = "the mechanism has no freedom: a few roundings";
+    let reason = "the mechanism has no degree of freedom: a few roundings";
     Rung::Routes
-        .asks("Ideal slider-crank: place of the slider against closed-form kinematics [m]")
+        .asks("Ideal slider-crank: position of the slider against closed-form kinematics [m]")
         .within(&places, 1e-15, reason);
     Rung::Routes
         .asks("Ideal slider-crank: rates against closed-form kinematics, over ω (rod) and r ω² (slider)")
@@ -215,7 +215,7 @@ elbow = [0.0, 0.3]
         .within(
             report.ledger.unwrap().numerical,
             1e-11,
-            "quadrature of a smooth power, its error of order 4 in h ω = 8e-4, of some joules",
+            "quadrature of a smooth power: error of order 4 in h ω = 8e-4, times some joules",
         );
 }
 
@@ -253,7 +253,7 @@ bodies.beam = { x = 0.8775825618903728, y = 0.479425538604203, theta = 0.5 }
         worst.see(value - y[0]);
     }
     Rung::Balance
-        .asks("Clamped beam started in equilibrium under its weight: does it stay at rest? Motion of the tip over 0.1 s [m]")
+        .asks("Clamped beam started in equilibrium under its weight: motion of the tip over 0.1 s [m]")
         .within(&worst, 1e-13, "Newton's last update and rounding of 2 m");
     let weight = 7800.0 * 2e-4 * 2.0 * 9.81;
     Rung::Balance
@@ -375,8 +375,8 @@ bodies.body = { x = 0.5, y = 0.3, theta = 0.0 }
     };
     let ((coarse, _), (fine, lost)) = (numerical(4e-6), numerical(1e-6));
     Rung::Balance
-        .asks("Frame with a body in a loose hook, spring and damper, h = 1e-6 s: numerical loss of energy over what is dissipated")
-        .within(fine / lost, 1e-6, "order 2, a hundred times the error at this step; a part missing from the ledger would be of the size of 1");
+        .asks("Frame with a body in a loose hook, spring and damper, h = 1e-6 s: numerical loss of energy over the dissipated energy")
+        .within(fine / lost, 1e-6, "order 2, a hundred times the error at this step; a term missing from the ledger would give about 1");
     assert!(fine < coarse, "{fine:e} {coarse:e}");
 }
 
@@ -418,8 +418,8 @@ bodies.beam = { x = 0.0, y = 0.0, theta = 0.3, vx = 1.0, vy = -0.4, omega = 0.0 
     worst.see((last(&strain, "beam.vx") - 1.0) / 1e-12);
     worst.see(report.ledger.unwrap().damping_dissipated / 1e-15);
     Rung::Identities
-        .asks("Free beam with strain-rate damping: does its flight go on? Speed lost and energy dissipated in 0.5 s, in units of 1e-12 m/s and 1e-15 J")
-        .within(&worst, 1.0, "a flight strains nothing: rounding");
+        .asks("Free beam with strain-rate damping in rigid flight: speed lost and energy dissipated in 0.5 s, in units of 1e-12 m/s and 1e-15 J")
+        .within(&worst, 1.0, "a rigid motion has no strain: rounding");
 }
 
 /// A pin in a slot of a turning lever: the quick-return mechanism's lever angle is that of the crank pin seen from its pivot.
@@ -478,7 +478,7 @@ slot = [0.1, 0.0]
     }
     Rung::Routes
         .asks("Quick return: angle of the lever, travel in its slot and rate against closed-form kinematics, in units of 1e-13 rad, 1e-12 m, 1e-12 m/s")
-        .within(&worst, 1.0, "the mechanism has no freedom: rounding");
+        .within(&worst, 1.0, "the mechanism has no degree of freedom: rounding");
 }
 
 /// The reaction of a hinge that has no multiplier, because its node is known, counts springs, dampers and loads at either
@@ -570,7 +570,7 @@ bodies.bar = { x = 0.4975020826390129, y = 0.04991670832341408, theta = 0.1 }
         .asks("Hinged bar, rigid or flexible, with springs, dampers and loads: numerical loss of energy over 0.3 s [J]")
         .within(&losses,
             1e-6,
-            "some joules of work and storage; order 2 of the scheme",
+            "order 2 of the scheme, times some joules",
         );
 }
 

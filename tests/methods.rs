@@ -116,8 +116,8 @@ fn every_method_has_its_order_on_mechanisms() {
                     .map(|(h, run)| (*h, smooth.error(run, &exact, channel)))
                     .collect();
                 let question =
-                    Rung::OrderInTime.asks(format!("{}: {name}, {channel}", smooth.scene));
-                let reason = "the order of the method; against Dormand and Prince's at a sixteenth of its coarsest step";
+                    Rung::OrderInTime.asks(format!("{}: {name}, error of {channel}", smooth.scene));
+                let reason = "the order of the method; reference: Dormand-Prince with a sixteenth of its coarsest step";
                 if order == 5.0 {
                     // at steps whose error stands above rounding the next terms are not small beside the leading one
                     question.falls_on_average("Step h [s]", &errors, 4.5..5.6, reason);
@@ -140,12 +140,12 @@ fn velocity_verlet_takes_what_it_can() {
     for channel in smooth.channels {
         let errors = [0, 1, 2].map(|i| (steps[i], smooth.error(&runs[i], &exact, channel)));
         Rung::OrderInTime
-            .asks(format!("{}: velocity Verlet, {channel}", smooth.scene))
+            .asks(format!("{}: velocity Verlet, error of {channel}", smooth.scene))
             .falls(
                 "Step h [s]",
                 &errors,
                 1.9..2.1,
-                "the order of the method; against Dormand and Prince's at a sixteenth of its coarsest step",
+                "the order of the method; reference: Dormand-Prince with a sixteenth of its coarsest step",
             );
     }
     let constrained = load("pendulum.toml", &["integrator.method=velocity_verlet"]);
@@ -184,7 +184,7 @@ fn located_impacts_keep_the_order() {
     let steps = [4e-6, 2e-6, 1e-6, 5e-7];
     let located = steps.map(|h| error(h, &[]));
     Rung::OrderInTime
-        .asks("3rrr/case3, 15 impacts, located onsets: place of the platform [m]")
+        .asks("3rrr/case3, 15 impacts, located onsets: error of the platform's position [m]")
         .falls(
             "Step h [s]",
             &located,
@@ -197,8 +197,8 @@ fn located_impacts_keep_the_order() {
         share.see(located.1 / without.1);
     }
     Rung::Routes
-        .asks("3rrr/case3, 15 impacts: largest part that the error with located onsets is of the error without")
-        .within(&share, 0.5, "an onset at the end of its step is late by up to h, at random");
+        .asks("3rrr/case3, 15 impacts: largest ratio of the error with located onsets to the error without")
+        .within(&share, 0.5, "an onset that is not located is late by a random part of h");
 }
 
 /// A method with an explicit step on constraint rows keeps them.

@@ -73,7 +73,7 @@ fn poses_and_velocities_are_those_of_the_channels() {
         }
     }
     Rung::Identities
-        .asks("Pose and velocities given in [initial] for links and a rigid body: do the channels of the first row have them? Largest difference [m, rad, m/s, rad/s]")
+        .asks("Pose and velocities given in [initial] for links and a rigid body: difference from the first row of the channels [m, rad, m/s, rad/s]")
         .within(
             &worst,
             1e-14,
@@ -131,7 +131,7 @@ joints.O = { type = "revolute", bearing = "ground.O", journal = "it.start", mode
         }
     }
     Rung::Identities
-        .asks("Angles beyond half a turn at t = 0, given by a pose or a drive: do the channels start in that turn? Largest difference [rad]")
+        .asks("Angles beyond half a turn at t = 0, given by a pose or a drive: difference from the first row of the channels [rad]")
         .within(&worst, 2e-14, "rounding of 20 rad and of its sine and cosine");
 
     let arm = |theta: f64| {

@@ -114,7 +114,7 @@ fn stage_matrices_are_the_derivatives() {
         .asks("Is the stage matrix of every scene the derivative of its residual? In units of 2e-6 of the largest entry of a column")
         .within(&worst,
             1.0,
-            "positions are rounded at 1e-16/1e-8 in units of accelerations; for EA above 2e7 N, rounding of EA",
+            "rounding of positions, 1e-16/1e-8 in units of accelerations; for EA above 2e7 N, rounding of EA",
         );
 }
 
@@ -186,7 +186,7 @@ fn accepted_states_are_consistent() {
         worst.see(distance / 1e-15);
     }
     Rung::Identities
-        .asks("3-RRR (cases 1, 2, 3): constraints of accepted states, in units of 1e-14 m/s, 1e-11 m/s² and 1e-15 m")
+        .asks("3-RRR (cases 1, 2, 3): violation of the constraints by accepted states, in units of 1e-14 m/s, 1e-11 m/s² and 1e-15 m")
         .within(&worst,
             1.0,
             "rounding of velocities near 1 m/s and of accelerations up to 1e3 m/s²",

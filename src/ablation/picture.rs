@@ -123,10 +123,7 @@ fn caption(ablation: &Ablation, left_out: &[String]) -> String {
     );
     let failed = ablation.rows.iter().filter(|row| row.outcome.is_err());
     let failed: Vec<String> = failed.map(|row| row.variant.short_name()).collect();
-    for (what, names) in [
-        ("Rounding and not drawn", left_out),
-        ("Without a run", &failed),
-    ] {
+    for (what, names) in [("Rounding, not drawn", left_out), ("Not run", &failed)] {
         if !names.is_empty() {
             caption += &format!(" {what}: {}.", names.join("; "));
         }

@@ -95,7 +95,7 @@ pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
 /// A name, what is changed in it and how many elements its flexible links have.
 fn with(name: &str, set: &[String], elements: Option<usize>) -> String {
     let name = Some(name.to_owned()).filter(|name| !name.is_empty());
-    let elements = elements.map(|n| format!("{n} elements a flexible link"));
+    let elements = elements.map(|n| format!("{n} elements per flexible link"));
     let parts = name.into_iter().chain(set.iter().cloned()).chain(elements);
     parts.collect::<Vec<String>>().join(", ")
 }
@@ -188,7 +188,11 @@ fn against_pace(outcome: &Outcome, asked: bool) -> Panel {
         ));
     }
     let (title, label, unit) = match asked {
-        true => ("Error of position as asked for", "Accuracy asked for", "m"),
+        true => (
+            "Error of position against the requested accuracy",
+            "Requested accuracy",
+            "m",
+        ),
         false => ("Error of position against the step", "Step h", "s"),
     };
     Panel {

@@ -127,7 +127,8 @@ impl Meshes {
         }
         Panel {
             title: "Error of position against elements".into(),
-            note: "Black, the finest: the floor of each number of elements.".into(),
+            note: "Black: the finest step, whose error is the floor of each number of elements."
+                .into(),
             x: self.axis(),
             y: Axis::new("Error", "m", 1.0).log(),
             marks,
@@ -149,7 +150,7 @@ impl Meshes {
             marks.push(Mark::points(&floor, mesh.color, &[x], &[y], 11));
         }
         Panel {
-            title: format!("Time to come within {NEAR} times the floor"),
+            title: format!("Time to reach {NEAR} times the floor"),
             note: "Floor of each number of elements:".into(),
             x: self.axis(),
             y: Axis::new("Processor time", "s", 1.0).log(),
@@ -159,7 +160,7 @@ impl Meshes {
 
     fn axis(&self) -> Axis {
         let numbers = self.0.iter().map(|mesh| mesh.elements as f64);
-        Axis::new("Elements a link", "", 1.0).log_at(numbers.collect())
+        Axis::new("Elements per link", "", 1.0).log_at(numbers.collect())
     }
 }
 

@@ -310,7 +310,7 @@ impl Survey {
                 vec![
                     panel(
                         "Energy lost by the integrator",
-                        "Over that of contacts",
+                        "Over the contact dissipation",
                         &Measures::loss,
                         0.05,
                     ),

@@ -41,11 +41,11 @@ fn the_squeezer_meets_the_listed_states() {
         }
     }
     Rung::Published
-        .asks("Andrews' mechanism: angles that the assembly finds against the published ones [rad]")
+        .asks("Andrews' mechanism: assembled angles against the published ones [rad]")
         .within(
             &angles,
             1e-13,
-            "rounding of coordinates of 0.07 m over levers of 7 mm is 2e-15 rad; times fifty for the linear equations",
+            "rounding of coordinates of 0.07 m over levers of 7 mm is 2e-15 rad; times fifty for the condition of the linear equations",
         );
     Rung::Published
         .asks("Andrews' mechanism: published accelerations and multipliers at the start, over the largest of each kind")
@@ -73,14 +73,14 @@ fn the_squeezer_meets_the_listed_states() {
         .within(
             &published,
             1.0,
-            "the published digits, from which two independent integrations differ by up to 3e-10, 6e-8 and 1.3e-6",
+            "accuracy of the published digits: two independent integrations differ from them by up to 3e-10, 6e-8 and 1.3e-6",
         );
     Rung::Published
         .asks("Andrews' mechanism: 27 components after 30 ms against extrapolation in 80-bit arithmetic, largest relative error")
         .within(
             &independent,
             1e-11,
-            "the listed values are good to 1e-12, and a lag of 1e-16 s is 3e-12 of gamma' = 11 rad/s, which changes by 3e5 rad/s²",
+            "the reference is accurate to 1e-12; an error of 1e-16 s in time is 3e-12 of gamma' = 11 rad/s, which changes by 3e5 rad/s²",
         );
 
     let trajectory = listed(TRAJECTORY);
@@ -117,7 +117,7 @@ fn the_squeezer_meets_the_listed_states() {
         pin.see(run.get("points.K1.F.y")[row] - y);
     }
     Rung::Published
-        .asks("Andrews' mechanism (IFToMM A03): place of the point F after 10, 30 and 50 ms [m]")
+        .asks("Andrews' mechanism (IFToMM A03): position of the point F after 10, 30 and 50 ms [m]")
         .within(&pin, 1e-13, "thirteen decimals are listed");
 }
 

@@ -146,7 +146,7 @@ fn elastica_in_the_thin_limit() {
         .asks("Inextensible elastica, P L²/EI = 0.25 ... 10: distance of a thin cantilever's tip from it, over max(5, P L²/EI) EI/(EA L)")
         .within(&worst,
             1.0,
-            "F2 differs from it by a few EI/(EA L²), and the load stretches what hangs along it by P/EA = (P L²/EI) EI/(EA L²)",
+            "F2 differs from it by a few EI/(EA L²), and the load stretches the beam by P/EA = (P L²/EI) EI/(EA L²)",
         );
 }
 
@@ -213,6 +213,6 @@ fn princeton_beam_in_both_planes() {
         .within(
             &from_ansys,
             6e-4,
-            "the shear that ANSYS has, 5e-4 of the deflection in the strong plane",
+            "the ANSYS beams shear: 5e-4 of the deflection in the strong plane",
         );
 }

@@ -58,10 +58,10 @@ fn the_car_axis_meets_the_published_digits() {
     for (got, published) in multipliers(&run).iter().zip(&PUBLISHED[8..]) {
         forces.see(got - published);
     }
-    const OTHERS: &str = "another independent integration differs from the published values by 4e-13 m in place and up to \
+    const OTHERS: &str = "another independent integration differs from the published values by 4e-13 m in position and up to \
         6e-10 elsewhere; the scheme's error at this step is smaller";
     Rung::Published
-        .asks("Car axis: published places after 3 s [m]")
+        .asks("Car axis: published positions after 3 s [m]")
         .within(&places, 1e-12, OTHERS);
     Rung::Published
         .asks("Car axis: published rates after 3 s [m/s]")
@@ -85,7 +85,9 @@ fn errors(method: &[&str], steps: [f64; 3]) -> Vec<(f64, f64)> {
 #[test]
 fn methods_converge_to_the_car_axis() {
     Rung::OrderInTime
-        .asks("Car axis, Dormand and Prince: right end after 3 s against the published place [m]")
+        .asks(
+            "Car axis, Dormand and Prince: right end after 3 s against the published position [m]",
+        )
         .falls(
             "Step h [s]",
             &errors(&[], [4e-3, 2e-3, 1e-3]),
@@ -97,7 +99,7 @@ fn methods_converge_to_the_car_axis() {
         "integrator.newton_tolerance=1e-12",
     ];
     Rung::OrderInTime
-        .asks("Car axis, Bathe: right end after 3 s against the published place [m]")
+        .asks("Car axis, Bathe: right end after 3 s against the published position [m]")
         .falls(
             "Step h [s]",
             &errors(&bathe, [1e-3, 5e-4, 2.5e-4]),

@@ -63,7 +63,7 @@ fn the_slider_meets_its_guide_where_it_is_listed() {
         .within(
             &worst,
             1e-12,
-            "ten times the relative tolerance of the listed integration; the cubic between rows errs by less",
+            "ten times the relative tolerance of the reference integration; the cubic interpolation between rows has a smaller error",
         );
     // nothing turns the slider about its pin
     assert!(run.get("slider.theta").iter().all(|theta| *theta == 0.0));

@@ -151,7 +151,7 @@ fn a_collinear_pose_is_passed_and_counted() {
         .within(
             report.ledger.unwrap().numerical,
             1e-7,
-            "the integrator's own loss at this step; a kick out of the branch costs a hundred times more",
+            "the loss of the scheme at this step; leaving the branch costs a hundred times more",
         );
 }
 
@@ -194,8 +194,14 @@ fn the_closed_form_is_the_published_one() {
         }
     }
     Rung::Published
-        .asks("Four-bar windows: distance of the pendulum that they move like from the listed positions [m]")
-        .within(&worst, 1e-10, "rounding, 1e-16 in each of 1e6 steps, at 7 m/s");
+        .asks(
+            "Four-bar windows: equivalent pendulum in closed form against the listed positions [m]",
+        )
+        .within(
+            &worst,
+            1e-10,
+            "rounding, 1e-16 in each of 1e6 steps, at 7 m/s",
+        );
 }
 
 /// Twenty collinear poses, each of which takes N directions from the constraints.
@@ -226,10 +232,10 @@ fn an_accuracy_is_reached_through_singular_poses() {
         reach(10, method, 1e-4);
     }
     Rung::HardCases
-        .asks("2, 10 and 40 four-bar windows through singular poses, 1e-3 to 1e-8 m within 10 s: error achieved over error asked for")
+        .asks("2, 10 and 40 four-bar windows through singular poses, 1e-3 to 1e-8 m within 10 s: achieved error over requested accuracy")
         .within(
             &worst,
             3.0,
-            "the estimate is of leading order: at 1e-3 m the steps are a tenth of the time in which the bars fall",
+            "the estimate has the leading order only; at 1e-3 m the steps are a tenth of the time scale of the motion",
         );
 }

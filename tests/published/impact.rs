@@ -148,6 +148,6 @@ fn single_impacts_follow_the_table() {
         .asks("One impact, Hertz and Lankarani-Nikravesh: restitution, depth, instants and largest force against the table, relative error")
         .within(&worst,
             1e-6,
-            "the error of 1500 steps a unit of time, and that of the parabola for the force, whose first slope is infinite",
+            "the error of 1500 steps per unit of time, and of the parabola through the force, whose initial slope is infinite",
         );
 }

@@ -60,7 +60,7 @@ fn the_circle_closes_at_order_four() {
 fn the_moment_of_the_inextensible_beam_does_not_close_it() {
     let [x, y] = tip(64, TAU * BENDING);
     Rung::Published
-        .asks("Roll-up by the moment that closes the inextensible beam: distance left between tip and clamp over L")
+        .asks("Roll-up by the moment that closes the inextensible beam: distance between tip and clamp over L")
         .between(
             x.hypot(y),
             0.007..0.009,

@@ -73,16 +73,16 @@ fn the_cantilever_follows_the_listed_motion() {
         velocities.see(velocity);
         energies.see(energy);
     }
-    const DIGITS: &str = "a relative tolerance of the listed integration of 1e-10";
+    const DIGITS: &str = "relative tolerance of 1e-10 of the reference integration";
     Rung::Published
-        .asks("Ramped cantilever, n = 1 ... 8: listed places of the tip over 10 s [m]")
+        .asks("Ramped cantilever, n = 1 ... 8: listed positions of the tip over 10 s [m]")
         .within(&places, 1e-9, &format!("{DIGITS}, on 5 m"));
     Rung::Published
         .asks("Ramped cantilever, n = 1 ... 8: listed velocities of the tip over 10 s [m/s]")
         .within(
             &velocities,
             1e-7,
-            &format!("{DIGITS} on 5 m, which vibrations of 1000 rad/s turn into velocities"),
+            &format!("{DIGITS} on 5 m, times 1000 rad/s of the vibrations"),
         );
     Rung::Published
         .asks("Ramped cantilever, n = 1 ... 8: listed strain and kinetic energies over 10 s [J]")
@@ -103,13 +103,13 @@ fn the_scene_has_the_load_of_the_paper() {
         .within(
             &worst,
             5.0 / 384.0 * 0.02_f64.powi(4) * 250.0 * (0.5 * PI).powi(4),
-            "the bound of a cubic spline through points 0.02 s apart",
+            "error bound of a cubic spline through points 0.02 s apart",
         );
     Rung::Published
-        .asks("Scene of the ramped cantilever: listed places of the tip over 10 s [m]")
+        .asks("Scene of the ramped cantilever: listed positions of the tip over 10 s [m]")
         .within(
             errors(&run, 4)[0],
             3e-8,
-            "the bound above over 500 N is a share of 6e-9, of displacements of 5 m",
+            "the error bound of the load, relative to 500 N, is 6e-9; times a displacement of 5 m",
         );
 }

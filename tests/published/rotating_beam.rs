@@ -90,7 +90,7 @@ fn soft_pendulum_at_every_listed_mesh() {
         let errors = [error(2e-5), error(1e-5)];
         worst.see(errors[1].1);
         Rung::OrderInTime
-            .asks(format!("Soft pendulum, n = {n}: distance of the tip from the listed places over 1.1 s [m]"))
+            .asks(format!("Soft pendulum, n = {n}: distance of the tip from the listed positions over 1.1 s [m]"))
             .falls(
                 "Step h [s]",
                 &errors,
@@ -99,7 +99,7 @@ fn soft_pendulum_at_every_listed_mesh() {
             );
     }
     Rung::Published
-        .asks("Soft pendulum, n = 1 ... 8, h = 1e-5 s: distance of the tip from the listed places over 1.1 s [m]")
+        .asks("Soft pendulum, n = 1 ... 8, h = 1e-5 s: distance of the tip from the listed positions over 1.1 s [m]")
         .within(&worst, 1e-6, "the scheme's error at this step");
 }
 
@@ -123,7 +123,7 @@ fn stiff_pendulum_at_every_listed_mesh() {
         from_rigid.see((x - rigid[0]).hypot(y - rigid[1]));
     }
     Rung::Published
-        .asks("Stiff pendulum, n = 1 ... 4, h = 2e-5 s: distance of the tip from the listed places after 1 s [m]")
+        .asks("Stiff pendulum, n = 1 ... 4, h = 2e-5 s: distance of the tip from the listed positions after 1 s [m]")
         .within(&from_listed, 1e-6, "the scheme's error at this step");
     Rung::Published
         .asks("Stiff pendulum, n = 1 ... 4: distance of the tip from that of the rigid rod in closed form after 1 s [m]")
@@ -227,7 +227,7 @@ fn spin_up_bends_back_as_listed() {
         errors.as_flattened().iter().for_each(|e| worst.see(*e));
     }
     Rung::Published
-        .asks("Spin-up, n = 2 and 4, Dormand and Prince: listed displacement and turn of the tip over 12 s [m, rad]")
+        .asks("Spin-up, n = 2 and 4, Dormand and Prince: listed displacement and rotation of the tip over 12 s [m, rad]")
         .within(
             &worst,
             1e-9,
@@ -247,13 +247,15 @@ fn spin_up_bends_back_as_listed() {
         .map(|(h, errors)| (*h, farthest(errors)))
         .collect();
     Rung::OrderInTime
-        .asks("Spin-up, n = 8, Bathe: listed displacement and turn of the tip over 20 s [m, rad]")
+        .asks(
+            "Spin-up, n = 8, Bathe: listed displacement and rotation of the tip over 20 s [m, rad]",
+        )
         .falls("Step h [s]", &errors, 1.9..2.1, "order 2 of Bathe's scheme");
     let pairs = runs[1].as_flattened().iter().zip(runs[2].as_flattened());
     let extrapolated = Worst::new();
     pairs.for_each(|(coarse, fine)| extrapolated.see((4.0 * fine - coarse) / 3.0));
     Rung::Published
-        .asks("Spin-up, n = 8: listed displacement and turn of the tip over 20 s, extrapolated from h = 1e-3 and 5e-4 s [m, rad]")
+        .asks("Spin-up, n = 8: listed displacement and rotation of the tip over 20 s, extrapolated from h = 1e-3 and 5e-4 s [m, rad]")
         .within(
             &extrapolated,
             1e-8,

@@ -81,6 +81,6 @@ fn the_three_spring_model_follows_the_tables_step_by_step() {
         .asks("Three-spring model, Bathe's scheme and trapezoidal rule: all listed steps, relative error")
         .within(&worst,
             1e-10,
-            "rounding, absolute for numbers below 1; the stiff spring turns that of u into k eps = 1e-9 of a2, absolute below 100",
+            "rounding, absolute for numbers below 1; for a2 the rounding of u times the stiffness, k eps = 1e-9, absolute below 100",
         );
 }

@@ -56,16 +56,16 @@ fn bathe_converges_to_the_published_digits() {
         forces.see(lambda - LISTED[4]);
     }
     Rung::OrderInTime
-        .asks("Stiff spring pendulum: distance from the published place after 10 s [m]")
+        .asks("Stiff spring pendulum: distance from the published position after 10 s [m]")
         .falls(
             "Step h [s]",
             &errors,
             1.8..2.2,
-            "order 2 of Bathe's scheme; the reference itself is known to 7e-9, so no finer steps",
+            "order 2 of Bathe's scheme; the reference is known to 7e-9 only, so no finer steps",
         );
     Rung::Published
         .asks(
-            "Stiff spring pendulum, h = 2.5e-4 s: distance from the published place after 10 s [m]",
+            "Stiff spring pendulum, h = 2.5e-4 s: distance from the published position after 10 s [m]",
         )
         .within(errors[2].1, 1e-6, "the scheme's error at this step");
     Rung::Published

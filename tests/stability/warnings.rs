@@ -237,6 +237,6 @@ fn errors_are_estimated() {
         }
     }
     Rung::HardCases
-        .asks("Estimated error of a run with equal steps, five methods, three scenes: over the true error, or the other way round")
-        .within(&worst, 5.0, "it is a sum of local errors, which the motion may amplify or take back");
+        .asks("Estimated error of runs with equal steps, five methods, three scenes: larger of its ratios to the true error and back")
+        .within(&worst, 5.0, "the estimate is a sum of local errors, which the motion may amplify or reduce");
 }
