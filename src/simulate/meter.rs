@@ -322,7 +322,8 @@ impl Meter {
             acceleration_change_of: name(model, roughest).to_owned(),
             travel,
             lost: self.lost,
-            turnover: self.turnover + self.dissipated.max(0.0),
+            // a mechanism at rest moves by rounding
+            turnover: (self.turnover + self.dissipated.max(0.0)).max(f64::EPSILON * self.plain),
         }
     }
 }

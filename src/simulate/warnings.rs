@@ -140,6 +140,10 @@ impl Report {
     }
 
     fn error_warning(&self) -> Option<String> {
+        // the control of the step knows more of the errors: which of them the projection and the vibrations undo
+        if self.accuracy.is_some() {
+            return None;
+        }
         let integration = self.integration.as_ref()?;
         let (error, travel) = (integration.estimated_error, integration.travel);
         (error > OF_TRAVEL * travel).then(|| {
