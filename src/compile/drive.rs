@@ -9,7 +9,7 @@ use crate::motion;
 use crate::scene::{BodyKind, Drive, LinkModel, PointRef, Scene, SceneError};
 use crate::system::State;
 
-/// Largest distance of two prescribed points that a joint holds together \[m\]: the digits of typed positions.
+/// Largest distance of two prescribed points in one joint \[m\]: the digits of typed positions.
 const HELD_TOLERANCE: f64 = 1e-9;
 
 /// Compiles the ideal mechanism of a drive and checks that it can follow the path for the whole duration.
@@ -60,7 +60,7 @@ pub(super) fn ideal_mechanism(
     Ok(kinematics)
 }
 
-/// Follows the path over the whole duration, pose by pose, and sees that joints between known points stay closed.
+/// Follows the path over the whole duration, pose by pose, and checks that joints between known points stay closed.
 fn sweep(
     c: &Compiler,
     drive: &Drive,

@@ -1,4 +1,4 @@
-//! What joints and prescribed motions bring into the equations.
+//! Terms of joints and prescribed motions.
 
 use super::Compiler;
 use super::Role;
@@ -103,7 +103,7 @@ pub(super) fn joint_terms(
     })
 }
 
-/// The constraint of directions of a weld or of a guide that does not turn.
+/// The constraint of directions of a weld or a locked guide.
 fn couple(c: &Compiler, numbering: &Numbering, joint: &Joint, terms: &mut Terms) -> Option<usize> {
     let points = [joint.bearing, joint.journal];
     let (angle, slope) = match joint.model {
@@ -114,7 +114,7 @@ fn couple(c: &Compiler, numbering: &Numbering, joint: &Joint, terms: &mut Terms)
     let name = format!("joint {}", joint.name);
     let spins = points.map(|p| spin(numbering, p));
     let sides = points.map(|p| p.body);
-    // a slope is held relative to the other side, whichever side it is on
+    // a slope is held relative to the other side, on either side of the joint
     let held = match (slope, spins) {
         (SlopeClamp::Vector, [_, Spin::Slope { x }]) => Some((0, x, angle)),
         (SlopeClamp::Vector, [Spin::Slope { x }, _]) => Some((1, x, -angle)),
@@ -158,7 +158,7 @@ fn couple(c: &Compiler, numbering: &Numbering, joint: &Joint, terms: &mut Terms)
     })
 }
 
-/// Prescribed motions that are not rules of known coordinates.
+/// Prescribed motions that are constraints, not rules of known coordinates.
 pub(super) fn motion_terms(
     c: &Compiler,
     numbering: &Numbering,
@@ -220,7 +220,7 @@ pub(super) fn motion_terms(
     }
 }
 
-/// How the material at a point turns.
+/// The rotation of the body at a point.
 pub(super) fn spin(numbering: &Numbering, point: PointRef) -> Spin {
     match &numbering.bodies[point.body] {
         BodyCoordinates::Ground { .. } | BodyCoordinates::PointMass { .. } => Spin::Fixed,

@@ -32,7 +32,7 @@ pub(super) fn planar_inertia<const N: usize>(
     }
 }
 
-/// Left-side forces of the weight, where there is any.
+/// Weight as forces on the left side of the equations of motion, if there is gravity.
 pub(super) fn weight(parts: &[Inertia], coordinates: usize) -> Vec<(usize, f64)> {
     let mut forces = vec![0.0; coordinates];
     for part in parts {
@@ -50,7 +50,7 @@ pub(super) fn weight(parts: &[Inertia], coordinates: usize) -> Vec<(usize, f64)>
         .collect()
 }
 
-/// Sums the parts; in the ideal mechanism they are kept, but every unknown has unit mass.
+/// Sums the parts. In the ideal mechanism the parts are kept, but every unknown has unit mass in the sum.
 pub(super) fn mass(parts: Vec<Inertia>, numbering: &Numbering, mode: Mode) -> Mass {
     let mut rows: Vec<std::collections::BTreeMap<usize, f64>> =
         vec![Default::default(); numbering.coordinates];

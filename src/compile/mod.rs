@@ -1,4 +1,4 @@
-//! Scene -> model: shares nodes, eliminates known coordinates, leaves out what the scene does not call for.
+//! Scene -> model: shares nodes, eliminates known coordinates, and builds only the terms that the scene has.
 
 pub(crate) mod assembly;
 mod drive;
@@ -18,15 +18,15 @@ use crate::scene::{SketchPoint, Sketched};
 /// What determines the motion of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// Ground.
+    /// Nothing: it is the ground.
     Ground,
     /// The equations of motion.
     Free,
-    /// A path: that of a body of its own, or that of a drive (in the ideal mechanism).
+    /// A path: its own if it is a moving body, or that of a drive (in the ideal mechanism).
     Path,
-    /// The motion of this index, about a point of the ground.
+    /// The prescribed motion of this index, a rotation about a point of the ground.
     Turned(usize),
-    /// The ideal mechanism (in the real one).
+    /// The ideal mechanism (in the real mechanism).
     Driven,
 }
 
@@ -57,7 +57,7 @@ impl Compiler<'_> {
         self.roles[point.body] != Role::Free
     }
 
-    /// True of a point that is a node which joints can share: an end of a link, a point mass.
+    /// True for a point whose node joints can share: an end of a link, a point mass.
     pub fn is_node(&self, point: PointRef) -> bool {
         match self.scene.bodies[point.body].kind {
             BodyKind::Link(_) => point.point < 2,
@@ -66,7 +66,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// The points that an entry of the sketch places: both sides of a joint, or the point itself.
+    /// The points of an entry of the sketch: both sides of a joint, or the point itself.
     pub fn sketched_points(&self, sketch: &SketchPoint) -> Vec<PointRef> {
         match sketch.what {
             Sketched::Joint(j) => vec![self.scene.joints[j].bearing, self.scene.joints[j].journal],
@@ -74,7 +74,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// What an entry of the sketch places, as errors name it.
+    /// Name of an entry of the sketch in error messages.
     pub fn sketched_name(&self, sketch: &SketchPoint) -> String {
         match sketch.what {
             Sketched::Joint(j) => format!("joint {}", self.scene.joints[j].name),
@@ -82,13 +82,13 @@ impl Compiler<'_> {
         }
     }
 
-    /// Where the sketch draws a joint or a point.
+    /// Position of a joint or a point in the sketch.
     pub fn drawn(&self, what: Sketched) -> Option<[f64; 2]> {
         let mut sketch = self.scene.initial.sketch.iter();
         sketch.find(|s| s.what == what).map(|s| s.at)
     }
 
-    /// An error at a sketch that is too far from where the mechanism closes.
+    /// The error for a sketch that is too far from the closed mechanism.
     pub fn far_from_sketch(&self, sketch: &SketchPoint, at: [f64; 2]) -> SceneError {
         let message = format!(
             "{} closes at ({:.4}, {:.4}) m, far from its sketch: draw it closer to the branch you mean",
@@ -158,7 +158,7 @@ fn known_roles(scene: &Scene) -> Vec<Role> {
 /// Compiles a scene into the mechanism it describes.
 ///
 /// # Errors
-/// A mechanism that cannot close or be driven as asked, or whose constraints repeat each other.
+/// A mechanism that cannot close or follow its drives, or whose constraints depend on each other.
 pub fn compile(scene: &Scene) -> Result<Model, SceneError> {
     let mut roles = known_roles(scene);
     let kinematics = match scene.drives.as_slice() {

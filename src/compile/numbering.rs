@@ -1,4 +1,4 @@
-//! Numbers the coordinates: which link ends share a node, which are known, where every body's coordinates stand.
+//! Numbers the coordinates: which link ends share a node, which are known, and the indices of every body.
 
 use super::{Compiler, Mode, Role};
 use crate::marker::Marker;
@@ -32,10 +32,10 @@ pub(crate) struct Numbering {
     pub connections: Vec<Connection>,
 }
 
-/// Classes of link ends that share a node; an end is 2 body + end.
+/// Classes of link ends that share a node (union-find); the index of an end is 2 body + end.
 struct Nodes {
     parent: Vec<usize>,
-    /// The known point that a class is tied to.
+    /// The known point that a class is fixed to.
     anchor: Vec<Option<PointRef>>,
     /// First coordinate, once numbered.
     x: Vec<Option<usize>>,
@@ -87,7 +87,7 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
                 return Err(redundant("both of its points are already fixed"));
             }
             nodes.parent[b] = a;
-            // only the root of a class is tied
+            // only the root of a class is fixed
             nodes.anchor[a] = nodes.anchor[a].or(nodes.anchor[b].take());
             Connection::Eliminated
         } else if free_end(bearing) && c.is_known(journal)
@@ -305,7 +305,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// True for an anchored class whose known point is on a rigid body, so that its node must be computed.
+    /// True for a class fixed to a known point of a rigid body, whose node must be computed.
     fn needs_rider(&self, nodes: &Nodes, class: usize) -> bool {
         let Some(point) = nodes.anchor[class] else {
             return false;

@@ -1,4 +1,4 @@
-//! Which terms make up the force of an eliminated joint and the torque of an actuated one.
+//! The terms whose sum is the force of an eliminated joint or the torque of an actuated one.
 
 use super::terms::{Own, OwnTerm};
 use super::{Compiler, Role};
@@ -20,7 +20,7 @@ fn place(model: &Model, point: PointRef) -> Option<(usize, usize)> {
     }
 }
 
-/// Attachment points of a body: the two ends of a link; one, standing for all, of a rigid body.
+/// Attachment points of a body: the two ends of a link, or one point that represents all points of a rigid body.
 fn attachments(model: &Model, body: usize) -> Vec<PointRef> {
     match model.bodies()[body].coordinates {
         BodyCoordinates::Ground { .. } => vec![],
@@ -31,7 +31,7 @@ fn attachments(model: &Model, body: usize) -> Vec<PointRef> {
     }
 }
 
-/// The attachment point that stands for a point.
+/// The attachment point that represents a point.
 fn attachment(model: &Model, point: PointRef) -> PointRef {
     match model.bodies()[point.body].coordinates {
         BodyCoordinates::Rigid { .. } => PointRef {
@@ -42,8 +42,8 @@ fn attachment(model: &Model, point: PointRef) -> PointRef {
     }
 }
 
-/// The shares of a term in the coordinates x .. x + width, in runs of consecutive ones. A body may stand twice in a term,
-/// as the point and as the direction of one side, and the direction of a rigid body is its theta alone.
+/// The shares of a term in the coordinates x .. x + width, one for each group of consecutive coordinates. A body may occur
+/// twice in a term, with a point and with its direction; the direction of a rigid body is theta alone.
 fn runs(
     source: Source,
     coordinates: &[usize],
@@ -139,8 +139,8 @@ fn shares_of(c: &Compiler, model: &Model, own: &[Own], point: PointRef) -> Vec<S
     shares
 }
 
-/// What hangs on `from` when joint `cut` is taken away: over eliminated joints and through driven bodies. `None` where
-/// the ground hangs on it.
+/// The points connected to `from` without joint `cut`, through eliminated joints and driven bodies. `None` if the ground is
+/// connected to it.
 fn hanging(
     c: &Compiler,
     model: &Model,
@@ -241,7 +241,7 @@ pub(super) fn joint(
     Ok((kind, None))
 }
 
-/// Forces on all known coordinates that can move: those of driven bodies, and the nodes that ride on them.
+/// Forces on all known coordinates that can move: those of driven bodies, and the nodes fixed to them.
 pub(super) fn driven_forces(c: &Compiler, model: &Model, own: &[Own]) -> Vec<DrivenForce> {
     let mut resting: Vec<usize> = model.fixed.iter().map(|&(x, _)| x).collect();
     if let Some(kinematics) = &model.kinematics {

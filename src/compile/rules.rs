@@ -1,4 +1,4 @@
-//! What moves as a known function of time.
+//! Coordinates that are known functions of time.
 
 use super::numbering::Numbering;
 use super::{Compiler, Role};
@@ -6,7 +6,7 @@ use crate::model::{BodyCoordinates, Rule};
 use crate::motion;
 use crate::scene::{BodyKind, MotionKind};
 
-/// What moves as a function of time: bodies on paths, bodies that turn about a point of the ground.
+/// The rules: bodies on paths, bodies that turn about a point of the ground.
 pub(super) fn rules(c: &Compiler, numbering: &Numbering) -> Vec<Rule> {
     let mut rules = Vec::new();
     for (b, body) in c.scene.bodies.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Builds the lists of a model: masses, elements, constraints, forces, joints, each with its place in the equations.
+//! Builds the lists of a model: masses, elements, constraints, forces, joints, each with its slots in the equations.
 
 use super::joints::{joint_terms, motion_terms};
 use super::mass::{mass, planar_inertia, weight};
@@ -26,11 +26,11 @@ struct Row {
     names: Vec<String>,
     /// Bodies of its two sides.
     sides: [usize; 2],
-    /// What the user wrote it with.
+    /// Its place in the scene file.
     span: Span,
 }
 
-/// Terms before they have slots: what they are, on which coordinates.
+/// Terms before they have slots: kind and coordinates.
 #[derive(Default)]
 pub(super) struct Terms {
     pub inertia: Vec<Inertia>,
@@ -76,7 +76,7 @@ impl Terms {
     }
 }
 
-/// What a joint brings into the equations, by index in the list of its kind.
+/// Terms of a joint, by index in the list of their kind.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Own {
     pub force: OwnTerm,
@@ -303,7 +303,7 @@ fn points(c: &Compiler, coordinates: &BodyCoordinates, body: usize) -> Vec<Point
     (0..count).map(place).collect()
 }
 
-/// First coordinate of what the drive prescribes for body `b`.
+/// First coordinate of body `b` in the ideal mechanism that the drive follows.
 fn prescribed(c: &Compiler, model: &Model, b: usize) -> Option<usize> {
     let kinematics = model.kinematics.as_ref()?;
     if !c.scene.drives.iter().any(|d| d.body == b) {
@@ -427,7 +427,7 @@ impl Compiler<'_> {
     }
 }
 
-/// Cliques of a pattern, and what each unknown is eliminated after.
+/// Cliques of a pattern, and the unknowns after which each unknown is eliminated.
 struct Pattern {
     unknowns: usize,
     cliques: Vec<Vec<usize>>,

@@ -8,9 +8,9 @@ use crate::model::{BodyCoordinates, Model, Placed};
 use crate::scene::{Analysis, BodyKind, BodyState, ForceKind, JointModel, Scene, SceneError};
 use crate::system::State;
 
-/// Largest distance by which a start may miss a constraint \[m\] or a rate \[m/s\]: the digits of a typed position.
+/// Largest violation of a constraint \[m\] or of its rate \[m/s\] at the start: the digits of a typed position.
 const START_TOLERANCE: f64 = 1e-9;
-/// What a pose that is off may have been taken for.
+/// Help for a pose that does not fit: its meaning.
 pub(crate) const CENTRE: &str = "`x` and `y` locate the centre of mass, the midpoint of a straight link; `theta` is the direction from `start` to `end`";
 
 /// Position and velocity of a body: of a rigid body (x, y, theta), of a link its `start` and its direction.
@@ -41,7 +41,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// Sets a node; false where it is known or written already and differs.
+    /// Sets a node; false if it is already known or written and differs.
     fn node(&mut self, x: usize, position: Vec2, velocity: Vec2) -> bool {
         if x >= self.unknowns || self.written[x] {
             let here = [self.state.q[x], self.state.q[x + 1]];
@@ -140,7 +140,7 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
     Ok(state)
 }
 
-/// Sees that a start satisfies the constraints and their rates.
+/// Checks that a start satisfies the constraints and their rates.
 fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneError> {
     let worst = |of: fn(&Placed, &State) -> f64| {
         let all = model.constraints.iter().map(|p| (of(p, state), p));
@@ -149,7 +149,7 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
     };
     let name = |p: &Placed| {
         let row = model.names[model.shape().unknowns + p.row].as_str();
-        // what is measured is all rows together, so that none of them is named
+        // the violation is measured over all rows together, so no single row can be named
         match p.rows {
             1 => row,
             _ => row.split(" (").next().unwrap_or(row),
@@ -255,7 +255,7 @@ fn body_length(kind: &BodyKind) -> f64 {
     }
 }
 
-/// Start of a body in the ideal mechanism, whose coordinates stand in `state` from `offset` on.
+/// Start of a body in the ideal mechanism, whose coordinates begin at `offset` in `state`.
 fn ideal_start(mechanism: &Model, b: usize, state: &State, offset: usize) -> Option<Start> {
     let at = |x: usize| {
         let x = x + offset;
@@ -290,7 +290,7 @@ fn ideal_start(mechanism: &Model, b: usize, state: &State, offset: usize) -> Opt
     }
 }
 
-/// Writes the coordinates of body `b`, undeformed; false where it does not meet a known or written node.
+/// Writes the coordinates of body `b`, undeformed; false if a node differs from one already known or written.
 fn place(model: &Model, b: usize, length: f64, start: &Start, writer: &mut Writer) -> bool {
     let [x0, y0, theta] = start.position;
     let [vx, vy, omega] = start.velocity;

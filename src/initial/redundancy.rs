@@ -1,11 +1,11 @@
-//! Constraints that repeat others: found at the start, kept out of the equations, named.
+//! Redundant constraints: found at the start, left out of the equations, reported by name.
 
 use crate::compile::assembly::{closing_step, row};
 use crate::math::dense::{Added, Equations};
 use crate::model::Model;
 use crate::system::State;
 
-/// How far the mechanism is moved to tell a singular start from a redundant constraint, in units of its coordinates.
+/// Distance to the second pose that distinguishes a singular start from a redundant constraint, in units of the coordinates.
 const EXCURSION: f64 = 1e-2;
 /// Steps of Newton's method that close it again.
 const CLOSING: usize = 12;
@@ -25,31 +25,31 @@ fn dependent(model: &Model, state: &State) -> (Vec<(usize, usize)>, Equations) {
     (found, equations)
 }
 
-/// What the constraints of a start are.
+/// Dependent constraints of a start.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Redundancy {
-    /// Rows that repeat others wherever the mechanism is, as (constraint, row of it); often none.
+    /// Rows that depend on others in every pose, as (constraint, row of it); often none.
     Rows(Vec<(usize, usize)>),
-    /// The start is a singular pose: the row of this name depends on others there, and nowhere else.
+    /// The start is a singular pose: the row of this name depends on others in this pose only.
     SingularStart(String),
 }
 
 /// Finds rows that depend on others at the start and in a pose near it.
 ///
-/// A redundant bar of a parallelogram repeats the others all along the motion; a constraint of a mechanism in a dead
-/// centre does so in that pose only.
+/// The row of a redundant bar of a parallelogram depends on the others in every pose; a row of a mechanism at a dead centre
+/// does so in that pose only.
 pub(crate) fn find(model: &Model, start: &State) -> Redundancy {
     let (here, equations) = dependent(model, start);
     if here.is_empty() {
         return Redundancy::Rows(here);
     }
     let n = model.shape().unknowns;
-    // any direction will do that no constraint forbids and that no symmetry of a mechanism shares
+    // any direction that the constraints permit and that shares no symmetry with a mechanism
     let direction: Vec<f64> = (0..n).map(|i| (1.0 + 2.4 * i as f64).sin()).collect();
     let free = equations.free_part(&direction);
     let size = free.iter().map(|x| x * x).sum::<f64>().sqrt();
     if size <= 1e-9 * (n as f64).sqrt() {
-        // nothing can move: what depends on others here does so for good
+        // no motion is possible: rows that depend on others here always do
         return Redundancy::Rows(here);
     }
     let mut moved = start.clone();

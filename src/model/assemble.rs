@@ -39,7 +39,7 @@ impl Model {
         }
     }
 
-    /// As [`Model::constraints`], and the tangent with it.
+    /// As [`Model::constraints`]; also adds to the tangent.
     #[inline]
     fn linearised_constraints(
         &self,
@@ -104,7 +104,7 @@ impl Model {
         }
     }
 
-    /// Adds the same to r, and what they put into the tangent to k.
+    /// Adds the same to r, and their tangents to k.
     #[inline]
     fn linearised_forces(
         &self,
@@ -192,14 +192,14 @@ impl Model {
         }
     }
 
-    /// Counts turns: sets the angle memory.
+    /// Sets the angle memory, by which full turns are counted.
     pub(crate) fn remember_angles(&self, at: &mut State) {
         for acting in &self.forces {
             acting.term.remember(at);
         }
     }
 
-    /// Sets the known nodes that ride on known bodies.
+    /// Sets the known nodes that are fixed to known bodies.
     pub(crate) fn ride(&self, to: &mut State) {
         for rider in &self.riders {
             let arm = rider.marker.arm(&to.q);
@@ -357,7 +357,7 @@ impl System for Model {
             let rate = ClearanceJoint::rate(&g);
             let open = at.z[contact] == 0.0;
             if open && (g.delta >= -tolerance && rate > 0.0 || g.delta > tolerance) {
-                // a journal that starts inside the bearing's wall has no impact velocity: the law's floor stands in
+                // a contact that starts penetrated has no impact velocity: the floor of the law replaces it
                 at.z[contact] = rate.max(f64::MIN_POSITIVE);
                 onset(contact, rate, g.delta);
                 onsets += 1;

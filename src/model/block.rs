@@ -1,4 +1,4 @@
-//! Where a term's local vectors and matrices go in the global ones.
+//! Maps the local vectors and matrices of a term to the global ones.
 
 use crate::math::lu::Symbolic;
 
@@ -82,7 +82,7 @@ impl Border {
         }
     }
 
-    /// A place that nothing reads.
+    /// Slots that are never read.
     pub fn nowhere(columns: usize, symbolic: &Symbolic) -> Border {
         Border {
             column: vec![symbolic.unread(); columns],
@@ -90,7 +90,7 @@ impl Border {
         }
     }
 
-    /// Adds the gradient to both halves of the border.
+    /// Adds the gradient to Phi_q and to Phi_q^T.
     #[inline]
     pub fn add(&self, gradient: &[f64], k: &mut [f64]) {
         for ((&c, &r), g) in self.column.iter().zip(&self.row).zip(gradient) {

@@ -1,4 +1,4 @@
-//! What a model lets one measure: poses, strains, energies, joint forces, drive torques.
+//! Measured quantities of a model: poses, strains, energies, joint forces, drive torques.
 
 use super::{Actuator, BodyCoordinates, JointKind, Model};
 use crate::force::ClearanceJoint;
@@ -41,8 +41,8 @@ impl Energies {
         self.kinetic + self.axial + self.bending + self.contact + self.gravity + self.springs
     }
 
-    /// Stored energies and what has been dissipated less the work done \[J\]: constant, but for the error of the integration;
-    /// and the sum of their magnitudes, to which its rounding is relative. `at` is the state of these energies.
+    /// Stored plus dissipated energy minus the work done \[J\], which is constant up to the error of the integration; and the sum
+    /// of the magnitudes of the three, to which its rounding is relative. `at` is the state of these energies.
     pub fn balance(&self, at: &State) -> (f64, f64) {
         let (stored, gone) = (self.total(), at.dissipated());
         let work = at.integrals[Integral::Work as usize];
@@ -224,8 +224,8 @@ impl Model {
         })
     }
 
-    /// Angle (known to a full turn) and speed of the second side of a joint relative to the first, where a motion prescribes
-    /// them by a constraint.
+    /// Angle (up to full turns) and speed of the second side of a joint relative to the first, if a motion prescribes them by a
+    /// constraint.
     pub fn turned(&self, index: usize, at: &State) -> [f64; 2] {
         self.joints[index]
             .turned
@@ -243,7 +243,7 @@ impl Model {
             .map_or([0.0; 2], |slide| slide.travel(at))
     }
 
-    /// Names of the named forces and what they can be asked for.
+    /// Names of the forces of the scene and of their measured quantities.
     pub fn named_forces(
         &self,
     ) -> impl Iterator<Item = (&str, &'static [(&'static str, &'static str)])> {
@@ -251,7 +251,7 @@ impl Model {
         forces.map(|(name, i)| (name.as_str(), self.forces[*i].term.quantities()))
     }
 
-    /// What named force `index` is asked for.
+    /// Measured quantities of the force `index` of the scene.
     pub fn named_force(&self, index: usize, at: &State) -> [f64; 3] {
         self.forces[self.named_forces[index].1].term.measure(at)
     }
@@ -298,7 +298,7 @@ impl Model {
         Some((g.delta, rate, at.z[contact] > 0.0))
     }
 
-    /// Angle (known to a full turn), speed and torque of an actuated joint.
+    /// Angle (up to full turns), speed and torque of an actuated joint.
     pub fn actuator(&self, actuator: &Actuator, at: &State, work: &mut Work) -> [f64; 3] {
         let [bearing, journal] = actuator.bodies.map(|b| self.pose(b, at));
         let centre = actuator.centre.position(&at.q, actuator.centre.arm(&at.q));
@@ -346,15 +346,15 @@ impl Model {
         worst
     }
 
-    /// The unknown that is the multiplier of an angle in its second zero, half a turn off, if there is one. A slope that is
-    /// pressed through zero length gets there without a jump.
+    /// The multiplier, as an index of an unknown, of a prescribed angle that is in its second zero, half a turn off, if there is
+    /// one. A slope that is compressed through zero length gets there continuously.
     pub fn half_turned(&self, at: &State) -> Option<usize> {
         let turned = self.constraints.iter().find(|c| c.term.half_turn(at));
         turned.map(|c| self.shape.unknowns + c.row)
     }
 
-    /// The unknown angle of a rigid body that differs by more than half a turn between two states, if there is one: joints
-    /// see an angle but for whole turns, so that nothing else stops a step from making them up.
+    /// The unknown angle of a rigid body that differs by more than half a turn between two states, if there is one. Joints
+    /// determine angles only up to full turns, so without this check a step could add one.
     pub fn wound(&self, from: &State, to: &State) -> Option<usize> {
         self.bodies.iter().find_map(|body| match body.coordinates {
             BodyCoordinates::Rigid { x } => {
@@ -366,8 +366,8 @@ impl Model {
         })
     }
 
-    /// The constraint left out as a repetition of others that is open by the most, as the unknown that would be its multiplier
-    /// and the distance \[m or rad\].
+    /// The redundant constraint left out with the largest violation: the index of its multiplier among the unknowns, and the
+    /// violation \[m or rad\].
     pub fn widest_left_out(&self, at: &State) -> Option<(usize, f64)> {
         let left_out = self.constraints.iter().filter(|c| c.kept.contains(&0.0));
         let open = left_out.flat_map(|c| {

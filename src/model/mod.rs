@@ -1,4 +1,4 @@
-//! A compiled mechanism: immutable lists of what the scene calls for, and nothing else.
+//! A compiled mechanism: immutable lists of the terms that the scene has.
 
 mod assemble;
 mod block;
@@ -32,7 +32,7 @@ pub struct Model {
     pub(crate) elements: Vec<Element>,
     pub(crate) constraints: Vec<Placed>,
     pub(crate) forces: Vec<Acting>,
-    /// How often each effect is evaluated with the residual, but for contacts, which may be open.
+    /// Evaluations of each effect in one residual; contacts are counted separately, because they may be open.
     pub(crate) counts: Vec<(Effect, u64)>,
     /// Forces with a name of their own, as indices into the forces.
     pub(crate) named_forces: Vec<(String, usize)>,
@@ -42,12 +42,12 @@ pub struct Model {
     pub(crate) weight: Vec<(usize, f64)>,
     /// Known coordinates that never change, with their values.
     pub(crate) fixed: Vec<(usize, f64)>,
-    /// What is known as a function of time.
+    /// Coordinates known as functions of time.
     pub(crate) rules: Vec<Rule>,
     pub(crate) kinematics: Option<Kinematics>,
     /// Forces on known coordinates that move.
     pub(crate) driven: Vec<DrivenForce>,
-    /// Known nodes that ride on a known rigid body.
+    /// Known nodes that are fixed to a known rigid body.
     pub(crate) riders: Vec<Rider>,
     /// Bodies of the scene, in its order.
     pub(crate) bodies: Vec<BodyPlace>,
@@ -128,7 +128,7 @@ pub(crate) enum Rule {
         /// The angle as a coordinate, of a body that has it.
         theta: Option<usize>,
         angle: Function,
-        /// -1 where the body is the one that the angle is measured from.
+        /// -1 if the angle is measured from this body.
         sign: f64,
     },
 }
@@ -195,12 +195,12 @@ pub(crate) struct Placed {
     pub level_border: Vec<Border>,
     /// The body that each local coordinate stands for.
     pub owners: Vec<usize>,
-    /// 0 for a row that repeats others and is left out of the equations, else 1.
+    /// 0 for a redundant row that is left out of the equations, otherwise 1.
     pub kept: [f64; ROWS],
 }
 
 impl Placed {
-    /// Takes row `d` out of the equations: in its place stands lambda = 0.
+    /// Removes row `d` from the equations and replaces it by lambda = 0.
     fn drop_row(&mut self, d: usize, symbolic: [&Symbolic; 2], unknowns: usize, mass: &mut Mass) {
         let m = unknowns + self.row + d;
         self.kept[d] = 0.0;
@@ -259,7 +259,7 @@ pub(crate) struct Mass {
     pub tangent: Vec<f64>,
     /// The same in the layout of the acceleration level.
     pub level: Vec<f64>,
-    /// (unknown row, known column, mass): what the acceleration of known coordinates asks of unknown ones.
+    /// (unknown row, known column, mass): inertia forces on unknown coordinates from accelerations of known ones.
     pub known: Vec<(usize, usize, f64)>,
 }
 
@@ -281,7 +281,7 @@ pub(crate) struct Inertia {
     pub field: Vec<f64>,
 }
 
-/// Where a body of the scene lives among the coordinates.
+/// A body of the scene and its coordinates.
 #[derive(Debug, Clone)]
 pub struct BodyPlace {
     /// The name the user wrote.
@@ -290,7 +290,7 @@ pub struct BodyPlace {
     pub coordinates: BodyCoordinates,
     /// Its coordinates in the ideal mechanism that the drive follows, for the driven body.
     pub prescribed: Option<usize>,
-    /// Its named points, where it moves.
+    /// Its named points, if it moves.
     pub points: Vec<PointPlace>,
 }
 
@@ -343,14 +343,14 @@ pub enum BodyCoordinates {
     },
 }
 
-/// Where a joint of the scene lives.
+/// A joint of the scene and its terms.
 #[derive(Debug)]
 pub struct JointPlace {
     /// The name the user wrote.
     pub name: String,
-    /// How its force is found.
+    /// How its force is computed.
     pub kind: JointKind,
-    /// Present when a drive actuates it and it moves a body.
+    /// Present if a drive actuates the joint and the joint moves a body.
     pub actuator: Option<Actuator>,
     /// Constraint of directions that carries its couple: index into the constraints.
     pub couple: Option<usize>,
@@ -369,7 +369,7 @@ pub enum JointKind {
     Loose(usize),
     /// Contact with friction: index into the frictional joints.
     Frictional(usize),
-    /// Shared or known coordinates: the force is a sum over what hangs on one side.
+    /// By shared or known coordinates: the force is a sum over the terms on one side.
     Eliminated(Reaction),
 }
 
@@ -426,7 +426,7 @@ impl Model {
         &self.joints
     }
 
-    /// Takes rows, as (constraint, row of it), out of the equations.
+    /// Removes rows, as (constraint, row of it), from the equations.
     pub(crate) fn drop_rows(&mut self, rows: &[(usize, usize)]) {
         for &(i, d) in rows {
             let symbolic = [&self.symbolic, &self.level_symbolic];
@@ -434,7 +434,7 @@ impl Model {
         }
     }
 
-    /// Takes the masses out of a tangent; what stands for dropped rows stays.
+    /// Subtracts the masses from a tangent; the entries of dropped rows remain.
     pub(crate) fn remove_mass(&self, k: &mut [f64]) {
         for (k, m) in k.iter_mut().zip(&self.mass.tangent) {
             *k -= m;
@@ -447,8 +447,8 @@ impl Model {
         }
     }
 
-    /// Adds s Phi_q^T Phi_q to a tangent and s Phi_q^T Phi to the residual, s the largest entry on its diagonal, and
-    /// multiplies the borders by s. Returns s.
+    /// Adds s Phi_q^T Phi_q to a tangent and s Phi_q^T Phi to the residual, where s is the largest entry on the diagonal of the
+    /// tangent, and multiplies the constraint rows and columns by s. Returns s.
     pub(crate) fn stiffen(&self, at: &State, r: &mut [f64], k: &mut [f64]) -> f64 {
         let diagonal = (0..self.shape.unknowns).map(|i| k[self.symbolic.slot(i, i) as usize].abs());
         let s = diagonal.fold(f64::MIN_POSITIVE, f64::max);
@@ -497,7 +497,7 @@ impl Model {
         self.forces.iter().any(|f| spring(f.term.effect()))
     }
 
-    /// Names of the rows that are left out because they repeat others.
+    /// Names of the redundant rows that are left out.
     pub fn redundant(&self) -> Vec<String> {
         let rows = self.constraints.iter().flat_map(|p| {
             let dropped = (0..p.rows).filter(|&d| p.kept[d] == 0.0);

@@ -1,7 +1,7 @@
-//! Forces on coordinates that no multiplier belongs to: what the bodies on one side ask of a point.
+//! Forces that are not multipliers: reactions of joints that share or eliminate coordinates, and forces of drives.
 //!
-//! M a + f + Phi_q^T lambda of a group of terms is the force that the rest of the world must exert on it. Summed over
-//! the terms of one side of a joint it is the joint's force; over all terms at a driven coordinate it is the drive's.
+//! M a + f + Phi_q^T lambda of a group of terms is the external force on this group. Summed over the terms on one side of a
+//! joint it is the force of the joint; summed over all terms at a driven coordinate it is the force of the drive.
 
 use super::{ConstraintTerm, Effect, Model};
 use crate::force::WIDTH;
@@ -12,11 +12,11 @@ use crate::system::{State, Work};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Share {
     pub(crate) source: Source,
-    /// Local index of the first of them.
+    /// Local index of the first coordinate.
     pub(crate) local: usize,
-    /// Its place among the coordinates of the point: 0 and 1 for x and y, 2 for theta of a rigid body.
+    /// Its index among the coordinates of the point: 0 for x, 1 for y, 2 for theta of a rigid body.
     pub(crate) place: usize,
-    /// How many they are.
+    /// Number of coordinates.
     pub(crate) count: usize,
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct DrivenForce {
 }
 
 impl Model {
-    /// Adds what `share` asks for.
+    /// Adds the force of `share`.
     fn add_share(&self, share: Share, at: &State, work: &mut Work, out: &mut [f64; 3]) {
         let out = &mut out[share.place..share.place + share.count];
         let mut add = |local: &[f64]| {

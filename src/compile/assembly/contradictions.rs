@@ -14,7 +14,7 @@ fn given<'a>(c: &Compiler<'a>, body: usize) -> Option<&'a BodyState> {
     c.scene.initial.bodies.iter().find(|s| s.body == body)
 }
 
-/// Sees that neither the sketch nor a joint contradicts a given pose or what moves as prescribed.
+/// Checks that neither the sketch nor a joint contradicts a given pose or a prescribed motion.
 pub(super) fn check_given(
     c: &Compiler,
     model: &Model,
@@ -66,7 +66,7 @@ pub(super) fn check_given(
     Ok(())
 }
 
-/// An error for a link whose ends given poses hold at another distance than its length, if there are such poses.
+/// An error for a link if given poses fix its ends at a distance other than its length.
 fn wrong_length(c: &Compiler, placed: &Placed, state: &State) -> Result<(), SceneError> {
     let own = placed.owners[0];
     let body = &c.scene.bodies[own];
@@ -104,7 +104,7 @@ fn wrong_length(c: &Compiler, placed: &Placed, state: &State) -> Result<(), Scen
     Err(error.with_help(CENTRE))
 }
 
-/// An error for a joint or a drive that a given pose leaves open, if there is such a pose.
+/// An error for a joint or a drive that a given pose violates, if there is one.
 fn misfit(c: &Compiler, placed: &Placed, name: &str, open: f64) -> Result<(), SceneError> {
     let mut poses = c.scene.initial.bodies.iter();
     let Some(pose) = poses.find(|s| placed.owners.contains(&s.body)) else {
@@ -130,7 +130,7 @@ fn misfit(c: &Compiler, placed: &Placed, name: &str, open: f64) -> Result<(), Sc
     Err(error.with_help(CENTRE))
 }
 
-/// The given pose without which the mechanism closes as sketched, if there is one, as an error that names it, and the sketch.
+/// An error that names a given pose and the sketch, if the mechanism closes as sketched without this pose.
 pub(super) fn blame(
     c: &Compiler,
     model: &Model,

@@ -1,4 +1,4 @@
-//! The guess that assembly starts from: given poses, sketched joints, and what hangs on them.
+//! Initial guess of the assembly: given poses, sketched joints, and the bodies connected to them.
 
 use super::super::sketch::fit;
 use super::super::{Compiler, Role};
@@ -7,7 +7,7 @@ use crate::model::{BodyCoordinates, Model};
 use crate::scene::{BodyKind, JointModel, MotionKind, PointRef, SceneError, Sketched};
 use crate::system::State;
 
-/// Which bodies have a place, and where their points are.
+/// The bodies that have been placed, and their coordinates.
 struct Placed<'a> {
     c: &'a Compiler<'a>,
     mechanism: &'a Model,
@@ -23,7 +23,7 @@ impl Placed<'_> {
         self.mechanism.position(&marker, state)
     }
 
-    /// Where a point is, as far as a placed partner, the sketch or a drive tells.
+    /// Position of a point, if a placed body joined to it, the sketch or a drive gives it.
     fn known(&self, point: PointRef, state: &State) -> Option<[f64; 2]> {
         if self.done[point.body] {
             return Some(self.position(point, state));
@@ -56,7 +56,7 @@ impl Placed<'_> {
         driven
     }
 
-    /// Where a point is that a joint brings to a placed body, or that is drawn as a joint.
+    /// Position of a point that a joint connects to a placed body, or whose joint is sketched.
     fn met(&self, point: PointRef, state: &State) -> Option<[f64; 2]> {
         let mut joints = self.c.scene.joints.iter().enumerate();
         let prismatic =
@@ -73,7 +73,7 @@ impl Placed<'_> {
         })
     }
 
-    /// Places body `b` where two of its points, or the only one it has, are known.
+    /// Places body `b` if two of its points are known, or its only one.
     fn place(&mut self, b: usize, state: &mut State) {
         let known = |local: usize, at: [f64; 2]| {
             self.known(
@@ -120,8 +120,8 @@ impl Placed<'_> {
         }
     }
 
-    /// Places a rigid body of which one point is known, at the angle that its joints with placed bodies suggest: that of a
-    /// weld, a locked guide or a drive, or that of a slot towards its pin. False for a body that cannot be placed so.
+    /// Places a rigid body with one known point at the angle that follows from its joints with placed bodies: from a weld, a
+    /// locked guide or a drive, or from the direction of a slot towards its pin. False if there is no such joint.
     fn place_at_point(&mut self, b: usize, state: &mut State) -> bool {
         let (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid), false) = (
             &self.mechanism.bodies()[b].coordinates,
@@ -190,7 +190,7 @@ impl Placed<'_> {
             })
     }
 
-    /// Puts both ends of a link where they are unknown and no given pose holds them.
+    /// Sets those ends of a link that are unknown and not fixed by a given pose.
     fn write_link(&self, ends: [usize; 2], length: f64, pose: [f64; 3], state: &mut State) {
         let n = self.mechanism.shape().unknowns;
         let way = [length * pose[2].cos(), length * pose[2].sin()];
@@ -215,7 +215,7 @@ pub(super) fn coordinates(mechanism: &Model, body: usize) -> Vec<usize> {
     all.into_iter().filter(|&i| i < n).collect()
 }
 
-/// Poses from the given states, the sketch, and what hangs together; returns the coordinates of given poses.
+/// Places all bodies from the given states, the sketch and the joints; returns the coordinates of given poses.
 pub(super) fn guess(
     c: &Compiler,
     mechanism: &Model,
@@ -256,7 +256,7 @@ pub(super) fn guess(
             }
         }
         let stuck = placed.done.iter().filter(|d| **d).count() == before;
-        // one body at a time is drawn by a single point, so that its neighbours may follow it exactly
+        // only one body at a time is placed by a single point, so that its neighbours can be placed exactly
         if stuck && !(0..c.scene.bodies.len()).any(|b| placed.place_at_point(b, state)) {
             break;
         }

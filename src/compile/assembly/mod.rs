@@ -1,8 +1,8 @@
-//! Assembly of a mechanism that no inverse kinematics closes: positions from a sketch, velocities from a few of them.
+//! Assembly of a mechanism without inverse kinematics: positions from a sketch, velocities from a few given ones.
 //!
-//! Everything is done on the ideal rigid mechanism. Positions: Newton's method with the step of least norm, from a guess
-//! that the sketch and the given poses make. Velocities: those of least kinetic energy that satisfy the constraints and
-//! what the scene gives.
+//! Both are computed for the ideal rigid mechanism. Positions: Newton's method with steps of least norm, from a guess by
+//! the sketch and the given poses. Velocities: those of least kinetic energy that satisfy the constraints and the given
+//! velocities.
 
 mod contradictions;
 mod guess;
@@ -21,13 +21,13 @@ use guess::guess;
 use plot::number;
 use velocities::velocities;
 
-/// Largest opening of an assembled constraint \[m\]: far above rounding, far below anything measurable.
+/// Largest violation of an assembled constraint \[m\]: far above rounding, far below anything measurable.
 const CLOSED: f64 = 1e-12;
 /// Steps of Newton's method.
 const ITERATIONS: usize = 80;
-/// A sketched joint may end this part of its smaller body away from where it was drawn.
+/// Largest distance between a joint and its sketch, relative to the smaller body.
 const SKETCH: f64 = 0.25;
-/// Largest difference of velocities that agree: the digits of typed numbers \[m/s, rad/s\].
+/// Largest difference between velocities that count as equal \[m/s, rad/s\]: the digits of typed numbers.
 const AGREEING: f64 = 1e-9;
 
 /// The ideal mechanism of a scene and its state at t = 0.
@@ -39,7 +39,7 @@ pub(crate) struct Assembly {
 /// Assembles the ideal mechanism of a scene.
 ///
 /// # Errors
-/// A body that nothing places, a mechanism that cannot close, velocities that contradict or repeat each other.
+/// A body without a place, a mechanism that cannot close, velocities that contradict or repeat each other.
 pub(crate) fn assemble(scene: &Scene) -> Result<Assembly, SceneError> {
     let c = Compiler {
         scene,
@@ -65,7 +65,7 @@ pub(crate) fn assemble(scene: &Scene) -> Result<Assembly, SceneError> {
     Ok(Assembly { mechanism, state })
 }
 
-/// The gradient of one constraint row by the unknown coordinates.
+/// The gradient of one constraint row with respect to the unknown coordinates.
 pub(crate) fn row(model: &Model, state: &State, constraint: usize, d: usize) -> Vec<f64> {
     let n = model.shape().unknowns;
     let placed = &model.constraints[constraint];
@@ -101,14 +101,15 @@ pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> f
         .fold(0.0, |m, x| if x.abs() <= m { m } else { x.abs() })
 }
 
-/// The constraint that is open most, and by how much.
+/// The constraint with the largest violation, and the violation.
 fn widest(model: &Model, state: &State) -> Option<(f64, usize)> {
     let opening = model.constraints.iter().map(|p| norm(p.term.value(state)));
     let widest = opening.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
     widest.map(|(i, open)| (open, i))
 }
 
-/// Moves all coordinates that are not held until every constraint is closed; the one that stays open most, if any does.
+/// Moves all coordinates that are not fixed until every constraint is satisfied; returns the one with the largest violation if
+/// that fails.
 fn close(model: &Model, state: &mut State, held: &[bool]) -> Option<(f64, usize)> {
     for _ in 0..ITERATIONS {
         let open = widest(model, state).map_or(0.0, |(x, _)| x);
@@ -119,7 +120,7 @@ fn close(model: &Model, state: &mut State, held: &[bool]) -> Option<(f64, usize)
     widest(model, state).filter(|(open, _)| open.is_nan() || *open > CLOSED)
 }
 
-/// Sees that no direction was closed the wrong way round.
+/// Checks that no prescribed angle was closed half a turn off.
 fn check_turns(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneError> {
     for (placed, name) in model.constraints.iter().zip(names(model)) {
         if placed.term.half_turn(state) {
@@ -133,7 +134,7 @@ fn check_turns(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneEr
     Ok(())
 }
 
-/// How far a constraint is open, or its rate is off with `per` = "/s".
+/// The violation of a constraint in words, or that of its rate with `per` = "/s".
 pub(crate) fn opening(effect: Effect, value: f64, per: &str) -> String {
     match effect {
         Effect::Direction => plot::si(value, &format!("rad{per}")),
@@ -141,8 +142,8 @@ pub(crate) fn opening(effect: Effect, value: f64, per: &str) -> String {
     }
 }
 
-/// Names the body that is larger than all others together, if there is one and neither a guide nor a given pose explains the
-/// opening, or else the constraint that stays open.
+/// The error of a mechanism that does not close. It names the body that is larger than all others together, if there is one and
+/// neither a guide nor a given pose explains the violation; otherwise the constraint that is violated.
 fn cannot_close(
     c: &Compiler,
     model: &Model,
@@ -180,7 +181,7 @@ fn cannot_close(
     )
 }
 
-/// Largest distance of two points of a body that joints use.
+/// Largest distance between two points of a body that joints use.
 fn size(c: &Compiler, b: usize) -> f64 {
     let points = match &c.scene.bodies[b].kind {
         BodyKind::Link(link) => return link.length,
@@ -219,7 +220,7 @@ fn position(c: &Compiler, model: &Model, state: &State, point: PointRef) -> [f64
     model.position(&marker, state)
 }
 
-/// True of the guide's point of a prismatic joint, which is not where the joint is.
+/// True for the guide's point of a prismatic joint, which is not the position of the joint.
 fn is_guide(c: &Compiler, drawn: &SketchPoint, point: PointRef) -> bool {
     let Sketched::Joint(j) = drawn.what else {
         return false;
@@ -228,7 +229,7 @@ fn is_guide(c: &Compiler, drawn: &SketchPoint, point: PointRef) -> bool {
     matches!(joint.model, JointModel::Prismatic { .. }) && joint.bearing == point
 }
 
-/// How far from its sketch a joint or point may end \[m\].
+/// Largest permitted distance of a joint or point from its sketch \[m\].
 fn reach(c: &Compiler, drawn: &SketchPoint) -> f64 {
     let size = |p: PointRef| match &c.scene.bodies[p.body].kind {
         BodyKind::Link(link) => link.length,
@@ -248,7 +249,7 @@ fn reach(c: &Compiler, drawn: &SketchPoint) -> f64 {
     SKETCH * sizes.fold(f64::INFINITY, f64::min)
 }
 
-/// Sees that sketched joints and points ended near where they were drawn.
+/// Checks that sketched joints and points are near their sketch.
 fn check_sketch(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneError> {
     for drawn in &c.scene.initial.sketch {
         for point in c.sketched_points(drawn) {

@@ -1,4 +1,4 @@
-//! Velocities at the start, from a few of them.
+//! Velocities at the start, from a few given ones.
 
 use super::super::{Compiler, Role};
 use super::{AGREEING, opening, row};
@@ -89,8 +89,8 @@ fn contradiction(c: &Compiler, given: &BodyState, component: usize, off: f64) ->
     c.scene.error(given.span, message, "this velocity")
 }
 
-/// A velocity of a body as a row over the unknown ones, and the part that known coordinates have in it. `None` for a
-/// point mass's angular velocity.
+/// A velocity of a body as a linear function of the unknown velocities, and the contribution of known ones. `None` for the
+/// angular velocity of a point mass.
 fn velocity_row(
     mechanism: &Model,
     state: &State,
@@ -120,7 +120,7 @@ fn velocity_row(
     Some((row, known))
 }
 
-/// Mass matrix over the unknowns, and the momentum that known velocities give them.
+/// Mass matrix of the unknowns, and the momentum from known velocities.
 fn mass(mechanism: &Model, state: &State) -> (Mat<f64>, Vec<f64>) {
     let n = mechanism.shape().unknowns;
     let (mut m, mut momentum) = (Mat::zeros(n, n), vec![0.0; n]);
