@@ -1,7 +1,8 @@
-//! Elastodynamics of planar mechanisms whose links bend and whose joints have play.
+//! Elastodynamics of planar mechanisms with flexible links and joint clearance.
 //!
 //! A scene describes a mechanism; [`simulate::Simulation`] compiles and runs it; an [`simulate::Observer`] receives rows of
-//! named channels as they come. The 3-RRR mechanism with rigid links and loose joints, for its first twelve milliseconds:
+//! named channels as they come. This example runs the 3-RRR mechanism with rigid links and joint clearance for twelve
+//! milliseconds:
 //!
 //! ```
 //! use looselink::scene::Scene;
@@ -31,7 +32,7 @@
 //! ```
 //!
 //! [`simulate::Recording`] is an observer that keeps everything in memory. EQUATIONS.md maps the equations of the paper
-//! to functions, ARCHITECTURE.md the mechanics to folders.
+//! to functions; ARCHITECTURE.md maps the mechanics to folders.
 #![forbid(unsafe_code)]
 
 pub mod ablation;

@@ -1,22 +1,22 @@
 //! Equilibrium: f(q) + Phi_q^T lambda = 0, Phi = 0, everything at rest.
 //!
-//! Without inertia the stiffness K of the coordinates may be singular until the constraints are taken in: a beam that is
-//! held in its direction only can turn. K + s Phi_q^T Phi_q is not, and has the same solution with s Phi_q^T Phi added to
-//! the residual, for any s > 0; s is the largest stiffness on the diagonal. With s Phi = 0 for Phi = 0 and lambda/s for
-//! lambda all entries of the matrix are of one size.
+//! Without inertia the stiffness K may be singular although the mechanism is held by its constraints: a beam with a
+//! prescribed direction is an example. K + s Phi_q^T Phi_q is regular and, with s Phi_q^T Phi added to the residual, has the
+//! same solution for any s > 0; s is the largest stiffness on the diagonal. The constraints are written as s Phi = 0 and the
+//! multipliers as lambda/s, so that all entries of the matrix are of similar size.
 
 use crate::math::lu::DenseLu;
 use crate::model::Model;
 use crate::newton::{Counters, Failure};
 use crate::system::{State, System, Weights, Work};
 
-/// Newton iterations of one load step; one that converges at all needs fewer.
+/// Largest number of Newton iterations of a load step; one that converges needs fewer.
 const MAX_ITERATIONS: usize = 40;
-/// An update below this part of the largest coordinate is followed by a last one, whose error is its square.
+/// An update below this part of the largest coordinate is followed by one more, whose error is the square of it.
 const LAST_UPDATE: f64 = 1e-8;
-/// An update that stays below this part of the largest coordinate, but does not shrink, is rounding.
+/// An update below this part of the largest coordinate that no longer decreases is rounding.
 const ROUNDING: f64 = 1e-12;
-/// The way from the undeformed start to equilibrium is halved this many times at most.
+/// The load path from the undeformed start to the equilibrium is halved at most this many times.
 const HALVINGS: i32 = 20;
 
 /// Solver memory: allocated once, used for every load step.
@@ -26,7 +26,7 @@ pub struct Statics {
     phi: Vec<f64>,
     k: Vec<f64>,
     b: Vec<f64>,
-    /// Residual that is taken off: zero but on the way to an equilibrium start.
+    /// Residual that is subtracted: zero except on the load path to an equilibrium start.
     offset: Vec<f64>,
     /// Work done so far.
     pub counters: Counters,

@@ -1,13 +1,11 @@
-//! The waist of the program: physics on one side, time integration on the other.
-//!
-//! One equation governs everything,
+//! The interface between physics and time integration. The equations of motion are
 //!
 //! ```text
-//! M a + f(t, q, v; z) + Phi_q^T lambda = 0        Phi(q) = 0
+//! M a + f(t, q, v; z) + Phi_q^T lambda = 0        Phi(t, q) = 0
 //! ```
 //!
-//! q the coordinates (unknown ones first, known ones after them), v and a their rates, lambda the multipliers, z the
-//! contact memory, which changes only between accepted steps.
+//! with the coordinates q (unknown ones first, then known ones), their first and second derivatives v and a, the multipliers
+//! lambda, and the contact memory z, which changes only between accepted steps.
 
 use crate::kinematics::Series;
 use crate::math::lu::Symbolic;
@@ -27,7 +25,7 @@ pub struct Shape {
     pub angles: usize,
 }
 
-/// Quantities integrated over time beside the motion.
+/// Quantities integrated over time along with the motion.
 pub const INTEGRALS: usize = 5;
 
 /// Names of the integrated quantities, all in joules: work of drives and applied forces, then what is dissipated in
@@ -53,7 +51,7 @@ pub struct State {
     pub t: f64,
     /// Coordinates: unknown, then known.
     pub q: Vec<f64>,
-    /// What rounding has taken off the unknown coordinates; q + `q_low` is what a stepper carries on.
+    /// Rounding errors of the unknown coordinates; a stepper continues from q + `q_low`.
     pub q_low: Vec<f64>,
     /// Velocities.
     pub v: Vec<f64>,
@@ -111,7 +109,7 @@ impl State {
     }
 }
 
-/// Derivatives of (q, v) by the unknown of a stage, the acceleration; that of a is 1.
+/// Derivatives of q and v with respect to the unknown of a stage, the acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
     /// dq/da \[s2\].
@@ -144,7 +142,7 @@ pub struct Inner {
     pub(crate) series: Series,
 }
 
-/// A motion of the known coordinates that does not exist.
+/// The prescribed motion cannot be followed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{message} at t = {t} s")]
 pub struct PrescribeError {
@@ -154,7 +152,7 @@ pub struct PrescribeError {
     pub t: f64,
 }
 
-/// What time integration knows of the physics.
+/// The physics, as seen by time integration.
 ///
 /// `r` and `phi` are overwritten. `r` has a row for every coordinate; the rows of known coordinates hold the force
 /// that must act on them. The tangent is the matrix of the stage equations in (a, lambda),
@@ -179,7 +177,7 @@ pub trait System {
         to: &mut State,
         work: &mut Work,
     ) -> Result<(), PrescribeError>;
-    /// The rows of M x that belong to unknown coordinates, x without known ones.
+    /// The rows of M x of the unknown coordinates, with x zero on the known ones.
     fn momentum(&self, x: &[f64], out: &mut [f64]);
     /// r = M a + f + Phi_q^T lambda and phi = Phi.
     fn residual(&self, at: &State, r: &mut [f64], phi: &mut [f64], work: &mut Work);
@@ -197,9 +195,9 @@ pub trait System {
     fn level(&self, at: &State, phi: &mut [f64], k: &mut [f64]);
     /// The residual of the unknown coordinates without their accelerations and without multipliers, in the first rows of r.
     fn free_residual(&self, at: &State, r: &mut [f64], work: &mut Work);
-    /// Phi_q v.
+    /// d(Phi)/dt = Phi_q v + Phi_t.
     fn constraint_velocity(&self, at: &State, out: &mut [f64]);
-    /// Phi_q a + d(Phi_q)/dt v.
+    /// d2(Phi)/dt2, with the accelerations in `at`.
     fn constraint_acceleration(&self, at: &State, out: &mut [f64]);
     /// Penetration delta of every contact \[m\] and its rate \[m/s\].
     fn gaps(&self, at: &State, delta: &mut [f64], rate: &mut [f64]);

@@ -1,4 +1,4 @@
-//! Inverse kinematics of the ideal rigid mechanism: the driven body follows its path, every other body follows it.
+//! Inverse kinematics of the ideal rigid mechanism: the driven body follows its path, which determines all other bodies.
 //!
 //! The mechanism is compiled like any other, rigid and with ideal joints, the driven body known. Its constraints then
 //! determine all coordinates: Newton on Phi(q) = 0, and linear solves of Phi_q v = 0 and Phi_q a = gamma give exact rates.
@@ -14,7 +14,7 @@ use crate::model::Model;
 use crate::system::{Inner, PrescribeError, State, System};
 use plot::number;
 
-/// An update below this leaves, by the quadratic convergence of Newton's method, an error far below rounding.
+/// After an update below this the error is far below rounding, by the quadratic convergence of Newton's method.
 const LAST_UPDATE: f64 = 1e-9;
 /// An update below this leaves the factors as good as they would be anew.
 const SAME_POSE: f64 = 1e-15;
@@ -30,7 +30,7 @@ pub struct Kinematics {
     pub(crate) start: Vec<f64>,
     /// Its coordinates that are not fixed.
     pub(crate) moving: Vec<usize>,
-    /// The time in which the path shows all its poses \[s\].
+    /// The time in which the path passes through all its poses \[s\].
     pub(crate) period: f64,
     /// End of the motion \[s\].
     pub(crate) duration: f64,

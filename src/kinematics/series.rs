@@ -1,10 +1,10 @@
 //! The motion of the ideal mechanism over a span of time as Chebyshev series.
 //!
-//! Inverse kinematics is asked for at every stage of every step, far more often than a smooth path has digits to tell: on a
-//! span that is short against its bends, q, v and a at the nodes of a Chebyshev polynomial give them everywhere, each by a
-//! series of its own, as exactly as solving for them (Trefethen 2013, Approximation Theory and Approximation Practice,
-//! chapters 3 and 8). A span is taken only if its last coefficients are rounding; else it is halved, and where steps are
-//! too long for any span, at kinks of the path or near singular poses, every time is solved for by itself.
+//! Inverse kinematics is evaluated at every stage of every step, far more often than a smooth path requires. On a short span
+//! of a smooth path the values of q, v and a at the nodes of a Chebyshev polynomial determine them everywhere to rounding,
+//! each by its own series (Trefethen 2013, Approximation Theory and Approximation Practice, chapters 3 and 8). A span is
+//! accepted only if its last coefficients are rounding; otherwise it is halved. Where no span is long enough for several
+//! steps, at kinks of the path or near singular poses, the kinematics is solved at every time.
 
 use super::Kinematics;
 use crate::system::{Inner, State};
