@@ -39,7 +39,7 @@ fn accuracy(control: &AccuracyReport) -> String {
     let most = control.rejected_by.iter().max_by_key(|(_, count)| **count);
     if let Some((name, count)) = most {
         line += &format!(
-            "; rejected for their estimated error: {}, {count} of them because of {name}",
+            "; steps rejected for their estimated error: {} ({count} of them for {name})",
             control.rejected_steps
         );
     }
