@@ -1,7 +1,7 @@
 //! The runs behind Figs. 5 to 9 and the reproduction report.
 
 use crate::kinematics::Geometry;
-use crate::runs::{Pace, Plan, Recording, run_all};
+use crate::runs::{Pace, Plan, Recording, each};
 use looselink::scene::{BodyKind, LinkModel};
 use miette::{Result, miette};
 
@@ -35,6 +35,11 @@ pub const ROWS_A_PERIOD: u32 = 100;
 /// First instant looked at \[s\].
 pub const FROM: f64 = 1.0;
 
+/// Three cycles of a case with controlled steps.
+pub fn controlled(case: u32, interval: f64) -> Plan {
+    Plan::new(case, Pace::Controlled, interval, DURATION)
+}
+
 /// All recordings; their numbers are those of the table of runs.
 pub struct Campaign {
     /// How they were made.
@@ -64,23 +69,16 @@ impl Campaign {
     /// The first run that fails.
     pub fn run(settings: Settings) -> Result<Campaign> {
         let s = &settings;
-        let plan = |case, pace, interval, duration| Plan {
-            case,
-            pace,
-            interval,
-            duration,
-            overrides: Vec::new(),
-        };
         let short = |case, step: f64| {
             let interval = s.interval.max(step);
-            plan(case, Pace::bathe(step), interval, DURATION)
+            Plan::new(case, Pace::bathe(step), interval, DURATION)
         };
         let geometry = Geometry::of(&short(3, s.fine).scene()?)?;
         let modulus = youngs_modulus(&short(2, s.fine))?;
         let period = 1.0 / geometry.frequency;
         let periods = f64::from(s.periods + s.skipped) * period;
         let rows = period / f64::from(ROWS_A_PERIOD);
-        let long = |case, pace| plan(case, pace, rows, periods);
+        let long = |case, pace| Plan::new(case, pace, rows, periods);
         let passive = "materials.passive.youngs_modulus";
         let plans = [
             short(1, s.coarse),
@@ -96,7 +94,8 @@ impl Campaign {
         ];
         // the longest first, so that no core is left with one of them at the end
         let backwards: Vec<Plan> = plans.iter().rev().cloned().collect();
-        let done: Result<Vec<Recording>> = run_all(&backwards).into_iter().rev().collect();
+        let done = each(&backwards, Plan::run).into_iter().rev();
+        let done: Result<Vec<Recording>> = done.collect();
         let mut done = done?;
         for (run, number) in done.iter_mut().zip(1..) {
             run.number = number;

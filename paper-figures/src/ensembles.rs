@@ -1,15 +1,14 @@
 //! Runs that no single realisation decides: ensembles of starts, Lyapunov exponents, meshes, other methods.
 
-use crate::campaign::{DURATION, FROM};
+use crate::campaign::{DURATION, FROM, controlled};
 use crate::interval::STARTS;
 use crate::kinematics::Geometry;
 use crate::measures::Measures;
 use crate::record::{Ensemble, Member, Record, Single};
-use crate::runs::{Pace, Plan, Recording, run_all};
+use crate::runs::{Pace, Plan, Recording, each};
 use crate::signal::{rms, smooth};
 use crate::{exponents, methods};
 use miette::Result;
-use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
@@ -35,7 +34,7 @@ pub const RETARDATIONS: [f64; 2] = [1e-6, 1e-5];
 /// # Errors
 /// The first run that fails.
 pub fn run() -> Result<Record> {
-    let geometry = Geometry::of(&plan(3).scene()?)?;
+    let geometry = Geometry::of(&controlled(3, INTERVAL).scene()?)?;
     let work = methods::work()?;
     let long = methods::long(&geometry);
     let singles = singles(&geometry)?;
@@ -51,33 +50,24 @@ pub fn run() -> Result<Record> {
     })
 }
 
-fn plan(case: u32) -> Plan {
-    Plan {
-        case,
-        pace: Pace::Controlled,
-        interval: INTERVAL,
-        duration: DURATION,
-        overrides: Vec::new(),
-    }
-}
-
 /// The ensembles, their runs not yet made.
 fn list(g: &Geometry) -> Vec<Ensemble> {
-    let mut wanted: Vec<(u32, f64, String)> = Vec::new();
-    for moved in [MOVED].into_iter().chain(MOVED_OTHERWISE) {
-        wanted.extend([3, 4].map(|case| (case, moved, String::new())));
-    }
+    let sizes = [MOVED].into_iter().chain(MOVED_OTHERWISE);
+    let sizes = sizes.flat_map(|moved| [3, 4].map(|case| (case, moved, String::new())));
+    let mut wanted: Vec<(u32, f64, String)> = sizes.clone().collect();
     let half = format!("contacts.pin.clearance={:e}", 0.5 * g.clearance);
     wanted.push((3, MOVED, half));
     wanted.extend(MESHES[1..].iter().map(|n| (4, MOVED, mesh(*n).join(" "))));
+    let wanted = wanted.into_iter().map(|e| (e, 0));
     let letters = 'A'..;
     wanted
-        .into_iter()
+        .chain(sizes.map(|e| (e, STARTS)))
         .zip(letters)
-        .map(|((case, moved, changed), letter)| Ensemble {
+        .map(|(((case, moved, changed), first), letter)| Ensemble {
             name: letter.to_string(),
             case,
             moved,
+            first,
             changed,
             how: Pace::Controlled.label(),
             members: Vec::new(),
@@ -89,11 +79,13 @@ fn mesh(elements: usize) -> [String; 3] {
     [1, 2, 3].map(|i| format!("bodies.link{i}.elements={elements}"))
 }
 
-/// The start of case 3 or 4 with the platform moved by `moved` \[m\], in one of [`STARTS`] directions.
+/// The start of case 3 or 4 with the platform moved by `moved` \[m\], in one of [`STARTS`] directions; the next [`STARTS`]
+/// lie between those.
 ///
 /// The velocity is that of the ideal mechanism, which the scene has without this override.
 pub fn moved(g: &Geometry, moved: f64, start: usize) -> String {
-    let (sin, cos) = (TAU * start as f64 / STARTS as f64).sin_cos();
+    let direction = (start % STARTS) as f64 + 0.5 * (start / STARTS) as f64;
+    let (sin, cos) = (TAU * direction / STARTS as f64).sin_cos();
     let [x, y, theta] = g.pose(0.0);
     let speed = TAU * g.frequency * g.radius;
     format!(
@@ -135,35 +127,38 @@ fn fill(ensembles: &mut [Ensemble], geometry: &Geometry) -> Result<()> {
         .rev()
         .flat_map(|e| (0..STARTS).map(move |k| (e, k)))
         .collect();
-    let done: Result<Vec<Done>> = jobs
-        .par_iter()
-        .with_max_len(1)
-        .map(|&(e, k)| {
-            let ensemble = &ensembles[e];
-            let mut plan = plan(ensemble.case);
-            plan.overrides.push(moved(geometry, ensemble.moved, k));
-            let changed = ensemble.changed.split_whitespace();
-            plan.overrides.extend(changed.map(String::from));
-            let recording = plan.run()?;
-            // a changed clearance changes the bound
-            Ok(Done::of(&Geometry::of(&recording.scene)?, &recording))
-        })
-        .collect();
-    let mut done = done?;
-    let flexible = slow_error(&plan(2).run()?);
-    // case 3 is the first ensemble and case 4 the second, and jobs run backwards
-    let at = |e: usize, k: usize| (ensembles.len() - 1 - e) * STARTS + k;
-    for k in 0..STARTS {
-        let (loose, both) = (&done[at(0, k)].slow_error, &done[at(1, k)].slow_error);
-        let rest: Vec<f64> = (0..both.len())
-            .map(|i| both[i] - flexible[i] - loose[i])
+    let run = |&(e, k): &(usize, usize)| {
+        let ensemble = &ensembles[e];
+        let mut plan = controlled(ensemble.case, INTERVAL);
+        let start = moved(geometry, ensemble.moved, ensemble.first + k);
+        plan.overrides.push(start);
+        let changed = ensemble.changed.split_whitespace();
+        plan.overrides.extend(changed.map(String::from));
+        let recording = plan.run()?;
+        // a changed clearance changes the bound
+        Ok(Done::of(&Geometry::of(&recording.scene)?, &recording))
+    };
+    let done = each(&jobs, run)
+        .into_iter()
+        .collect::<Result<Vec<Done>>>()?;
+    let mut made: Vec<Vec<Done>> = ensembles.iter().map(|_| Vec::new()).collect();
+    for ((e, _), done) in jobs.iter().zip(done) {
+        made[*e].push(done);
+    }
+    let flexible = slow_error(&controlled(2, INTERVAL).run()?);
+    // case 3 is the first ensemble and case 4 the second
+    let (loose, both) = made.split_at_mut(1);
+    for (loose, both) in loose[0].iter().zip(&mut both[0]) {
+        let slow = &both.slow_error;
+        let rest: Vec<f64> = (0..slow.len())
+            .map(|i| slow[i] - flexible[i] - loose.slow_error[i])
             .collect();
-        let share = rms(&rest) / rms(both);
-        let measures = &mut done[at(1, k)].member.measures;
+        let share = rms(&rest) / rms(slow);
+        let measures = &mut both.member.measures;
         measures.0.insert("not_composed".into(), share);
     }
-    for ((e, _), done) in jobs.iter().zip(done) {
-        ensembles[*e].members.push(done.member);
+    for (ensemble, made) in ensembles.iter_mut().zip(made) {
+        ensemble.members = made.into_iter().map(|done| done.member).collect();
     }
     Ok(())
 }
@@ -173,14 +168,14 @@ fn singles(g: &Geometry) -> Result<Vec<Single>> {
     let mut wanted: Vec<(String, Plan)> = MESHES
         .iter()
         .map(|n| {
-            let mut plan = plan(2);
+            let mut plan = controlled(2, INTERVAL);
             plan.overrides.extend(mesh(*n));
             (format!("{n} elements a link"), plan)
         })
         .collect();
     wanted.push(("quasi-static start".into(), spun_up(g)));
     for time in RETARDATIONS {
-        let mut plan = plan(2);
+        let mut plan = controlled(2, INTERVAL);
         let damped = [1, 2, 3].map(|i| format!("bodies.link{i}.kelvin_voigt={time:e}"));
         plan.overrides.extend(damped);
         wanted.push((damped_name(time), plan));
@@ -188,7 +183,7 @@ fn singles(g: &Geometry) -> Result<Vec<Single>> {
     let plans: Vec<Plan> = wanted.iter().map(|(_, plan)| plan.clone()).collect();
     wanted
         .into_iter()
-        .zip(run_all(&plans))
+        .zip(each(&plans, Plan::run))
         .map(|((name, plan), recording)| {
             let recording = recording?;
             Ok(Single {
@@ -228,7 +223,7 @@ fn spun_up(g: &Geometry) -> Plan {
             g.radius * sin
         );
     }
-    let mut plan = plan(2);
+    let mut plan = controlled(2, INTERVAL);
     let path = format!("drives.input.path={{ type = \"table\", rows = [{rows}] }}");
     plan.overrides.push(path);
     let (sin, cos) = angle(0.0).sin_cos();
@@ -245,15 +240,15 @@ fn spun_up(g: &Geometry) -> Plan {
 mod tests {
     use super::*;
     use miette::miette;
+    use std::collections::HashSet;
 
     #[test]
     fn starts_of_an_ensemble_differ() -> Result<()> {
-        let geometry = Geometry::of(&plan(3).scene()?)?;
+        let geometry = Geometry::of(&controlled(3, INTERVAL).scene()?)?;
         for size in [MOVED].into_iter().chain(MOVED_OTHERWISE) {
-            let mut starts: Vec<String> = (0..STARTS).map(|k| moved(&geometry, size, k)).collect();
-            starts.sort();
-            starts.dedup();
-            if starts.len() != STARTS {
+            let all = (0..2 * STARTS).map(|k| moved(&geometry, size, k));
+            let starts: HashSet<String> = all.collect();
+            if starts.len() != 2 * STARTS {
                 return Err(miette!("{size:e} m is lost in rounding"));
             }
         }
@@ -262,7 +257,7 @@ mod tests {
 
     #[test]
     fn spun_up_path_ends_on_the_printed_one() -> Result<()> {
-        let geometry = Geometry::of(&plan(3).scene()?)?;
+        let geometry = Geometry::of(&controlled(3, INTERVAL).scene()?)?;
         let path = spun_up(&geometry).overrides[0].clone();
         let row = path.split("[1.0, ").nth(1).unwrap_or_default();
         let x: f64 = row

@@ -2,15 +2,22 @@
 
 use crate::ensembles::{MESHES, RETARDATIONS, damped_name};
 use crate::exponents::{DURATION as EXPONENT_DURATION, KEPT_INTERVAL, LEFT_OUT};
-use crate::interval::{Interval, STARTS};
+use crate::figures::case_color;
+use crate::interval::{Interval, OF_THREE, STARTS};
 use crate::measures::Measures;
 use crate::methods::HORIZON;
 use crate::record::{BOTH, Ensemble, Exponents, Record, Single};
 use crate::runs::words;
-use crate::warned::Source;
+use crate::shuffles::{PAIRS, SHUFFLES, Test};
+use crate::warned::{Source, told};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 use plot::{digits, percent, si};
 use std::fmt::Write;
+
+/// Probability below which a difference counts as more than chance.
+const LEVEL: f64 = 0.05;
+/// Distance of runs that have parted: the printed clearance \[m\].
+const PARTED: f64 = 2e-5;
 
 /// A measure, its words and how it is written.
 struct Shown {
@@ -45,9 +52,8 @@ const fn shown(name: &'static str, words: &'static str, show: fn(f64) -> String)
 }
 
 /// The ensembles of a case that differ by the size of the displacement alone, by that size.
-fn sizes(record: &Record, case: u32) -> Vec<&Ensemble> {
-    let all = record.ensembles.iter().filter(|e| e.case == case);
-    let mut all: Vec<&Ensemble> = all.filter(|e| e.changed.is_empty()).collect();
+fn sizes(record: &Record, case: u32, first: usize) -> Vec<&Ensemble> {
+    let mut all = record.sizes(case, first);
     all.sort_by(|a, b| a.moved.total_cmp(&b.moved));
     all
 }
@@ -71,6 +77,22 @@ pub fn figures(record: &Record) -> Vec<(&'static str, Figure)> {
     ]
 }
 
+/// Begins the list of scenes of a caption.
+const SCENES: &str = "Scenes in scenes/3rrr:";
+/// The method of the ensembles.
+const CONTROLLED: &str = "trapezoidal rule, requested accuracy 1 µm and 100 nJ over 10 ms";
+
+/// The steps of the exponents.
+fn steps(record: &Record) -> String {
+    let mut steps: Vec<String> = Vec::new();
+    for e in &record.exponents {
+        let step = e.how.rsplit(", ").next().unwrap_or_default();
+        steps.push(format!("case {}: {step}", e.case));
+    }
+    steps.dedup();
+    steps.join("; ")
+}
+
 /// How many runs warn of something; the page says of what.
 fn warned(sources: usize, of: usize) -> String {
     match sources {
@@ -89,7 +111,7 @@ fn warned_members<'a>(ensembles: impl Iterator<Item = &'a Ensemble>) -> (usize, 
 fn starts_figure(record: &Record) -> Figure {
     let colors = [palette::BLUE, palette::VERMILION, palette::GREEN];
     let panel = |case: u32, letter: &str| {
-        let ensembles = sizes(record, case);
+        let ensembles = sizes(record, case, 0);
         let mut marks = Vec::new();
         for (i, (ensemble, color)) in ensembles.iter().zip(colors).enumerate() {
             let offset = 0.22 * (i as f64 - 1.0);
@@ -106,7 +128,10 @@ fn starts_figure(record: &Record) -> Figure {
             let label = format!("starts moved by {:e} m", ensemble.moved);
             marks.push(Mark::points(&label, color, &x, &y, 7));
         }
-        let names = SHOWN.iter().map(|s| s.words.replace('\\', "")).collect();
+        let names = SHOWN
+            .iter()
+            .map(|s| s.words.replace('\\', "").replace("e_x", "eₓ"))
+            .collect();
         Panel {
             title: format!("{letter}) Case {case}"),
             note: String::new(),
@@ -115,22 +140,14 @@ fn starts_figure(record: &Record) -> Figure {
             marks,
         }
     };
-    let (warns, of) = warned_members([3, 4].iter().flat_map(|c| sizes(record, *c)));
+    let (warns, of) = warned_members([3, 4].iter().flat_map(|c| sizes(record, *c, 0)));
     Figure {
         rows: vec![vec![panel(3, "a")], vec![panel(4, "b")]],
         caption: format!(
             "Ensembles of {STARTS} runs each, whose starts are moved by three sizes of a displacement: means with 95 % \
-             intervals, over the mean of the middle size. {}",
+             intervals, over the mean of the middle size. {SCENES} case3.toml and case4.toml; {CONTROLLED}; cycles 2 and 3. {}",
             warned(warns, of)
         ),
-    }
-}
-
-fn case_color(case: u32) -> Color {
-    match case {
-        2 => palette::GREEN,
-        3 => palette::BLUE,
-        _ => palette::VERMILION,
     }
 }
 
@@ -158,8 +175,10 @@ fn exponents_figure(record: &Record) -> Figure {
     Figure {
         rows: vec![vec![panel]],
         caption: format!(
-            "Benettin's method: a neighbouring motion is brought back to the distance d₀ every millisecond. Trapezoidal rule \
-             with equal steps. Thin lines: the smaller d₀. {}",
+            "Benettin's method: a neighbouring motion is brought back to the distance d₀ every millisecond. {SCENES} \
+             case2.toml to case4.toml; trapezoidal rule with equal steps ({}). Each line is the mean of {STARTS} starts. Thin \
+             lines: the smaller d₀. {}",
+            steps(record),
             warned(warns, runs.count())
         ),
     }
@@ -237,7 +256,8 @@ fn meshes_figure(record: &Record) -> Figure {
             ],
         ],
         caption: format!(
-            "Cases 2 and 4 with finer meshes, over cycles 2 and 3. {}",
+            "Cases 2 and 4 with finer meshes, over cycles 2 and 3. {SCENES} case2.toml and case4.toml; {CONTROLLED}. Case 2: one \
+             run; case 4: {STARTS} runs. {}",
             warned(warns + alone, of + singles.len())
         ),
     }
@@ -287,6 +307,7 @@ fn methods_figure(record: &Record) -> Figure {
         rows: vec![vec![panel(2, "a"), panel(4, "b")]],
         caption: format!(
             "Error of explicit (Dormand-Prince, velocity Verlet) and implicit methods against counted work, over the first {}. \
+             {SCENES} case2.toml and case4.toml; equal steps from 100 µs to 0.2 µs. \
              An implicit evaluation includes the tangent. Runs that stop have no dot. {}",
             si(HORIZON, "s"),
             warned(warns, record.work.len())
@@ -296,14 +317,6 @@ fn methods_figure(record: &Record) -> Figure {
 
 fn mesh_name(elements: usize) -> String {
     format!("{elements} elements a link")
-}
-
-fn told(warnings: &[String]) -> String {
-    if warnings.is_empty() {
-        "none".into()
-    } else {
-        warnings.join("; ").replace('|', "\\|")
-    }
 }
 
 /// The page.
@@ -316,8 +329,8 @@ pub fn page(record: &Record) -> String {
          of the platform alone, which the scene's `initial.bodies` moves by a tiny distance, each time in another of {STARTS} \
          directions. \"Mean ± half width\" is a mean with its 95 % interval (Student's t). Quantities are taken over the last \
          two of three cycles.\n\n\
-         Runs of ensembles use the trapezoidal rule with steps that keep its errors within 10 ms below 1 µm and 100 nJ: the \
-         cheapest way found to an energy ledger that closes to a few per cent of what the contacts dissipate. Tables call it \
+         Runs of ensembles use the trapezoidal rule with a requested accuracy of 1 µm and 100 nJ over 10 ms: the cheapest \
+         way found to an energy ledger that closes to a few per cent of the contact dissipation. Tables call it \
          \"controlled\". \"Energy lost\" \
          is what the integrator alone lost (negative: gained), over that dissipation; in case 2, where nothing dissipates, \
          over the largest elastic energy.\n\n",
@@ -340,10 +353,10 @@ fn ensembles_section(record: &Record) -> String {
          | ensemble | case | starts moved by | changed | energy lost | warnings |\n|---|---|---|---|---|---|\n",
     );
     for e in &record.ensembles {
-        let changed = if e.changed.is_empty() {
-            "–".into()
-        } else {
-            format!("`{}`", e.changed)
+        let changed = match (e.changed.as_str(), e.first) {
+            ("", 0) => "–".into(),
+            ("", _) => "directions between those of the first".into(),
+            (changed, _) => format!("`{changed}`"),
         };
         let Source { warnings, .. } = e.source();
         let _ = writeln!(
@@ -359,39 +372,142 @@ fn ensembles_section(record: &Record) -> String {
     text + "\n"
 }
 
-fn starts_section(record: &Record) -> String {
-    let (mut differ, mut compared) = (Vec::new(), 0);
-    let mut tables = String::new();
-    for case in [3, 4] {
-        let ensembles = sizes(record, case);
-        let _ = write!(tables, "| case {case} |");
-        for e in &ensembles {
-            let _ = write!(tables, " {:e} m (ensemble {}) |", e.moved, e.name);
+/// Three ensembles of a case that differ by the size of the displacement alone, and the test whether their means do.
+struct Sizes<'a> {
+    ensembles: Vec<&'a Ensemble>,
+    test: Test,
+}
+
+impl Sizes<'_> {
+    fn of(record: &Record, case: u32, first: usize) -> Sizes<'_> {
+        let ensembles = sizes(record, case, first);
+        let values = |s: &Shown| ensembles.iter().flat_map(|e| e.values(s.name)).collect();
+        let quantities: Vec<Vec<f64>> = SHOWN.iter().map(values).collect();
+        Sizes {
+            test: Test::of(&quantities),
+            ensembles,
         }
-        tables += "\n|---|---|---|---|\n";
-        for s in &SHOWN {
-            let means: Vec<Interval> = ensembles.iter().map(|e| e.mean(s.name)).collect();
-            for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-                compared += 1;
-                if means[i].differs(&means[j]) {
-                    let (one, other) = (&ensembles[i].name, &ensembles[j].name);
-                    differ.push(format!("{} ({one}, {other})", s.words));
-                }
-            }
-            let cells: Vec<String> = means.iter().map(|m| m.told(s.show)).collect();
-            let _ = writeln!(tables, "| {} | {} |", s.words, cells.join(" | "));
-        }
-        tables.push('\n');
     }
+
+    fn names(&self) -> String {
+        let names: Vec<&str> = self.ensembles.iter().map(|e| e.name.as_str()).collect();
+        names.join(", ")
+    }
+
+    /// The row of the table of tests.
+    fn row(&self, case: u32) -> String {
+        let Test { differing, .. } = self.test;
+        let (quantity, pair) = self.test.largest();
+        let (i, j) = PAIRS[pair];
+        format!(
+            "| {case} | {} | {differing} | {} | {} | {}: {} (ensembles {}, {}) | {} |\n",
+            self.names(),
+            digits(self.test.by_chance),
+            p_value(self.test.p_differing),
+            SHOWN[quantity].words,
+            digits(self.test.apart[quantity][pair]),
+            self.ensembles[i].name,
+            self.ensembles[j].name,
+            p_value(self.test.p[quantity][pair])
+        )
+    }
+
+    /// The means of all quantities.
+    fn table(&self, case: u32) -> String {
+        let mut table = format!("| case {case} |");
+        for e in &self.ensembles {
+            let _ = write!(table, " {:e} m (ensemble {}) |", e.moved, e.name);
+        }
+        table += " p |\n|---|---|---|---|---|\n";
+        for (i, s) in SHOWN.iter().enumerate() {
+            let means = self.ensembles.iter().map(|e| e.mean(s.name).told(s.show));
+            let cells: Vec<String> = means.collect();
+            let p = p_value(self.test.least(i));
+            let _ = writeln!(table, "| {} | {} | {p} |", s.words, cells.join(" | "));
+        }
+        table + "\n"
+    }
+}
+
+/// What the tests of two sets of ensembles say of a case.
+fn outcome(case: u32, sets: &[Sizes; 2]) -> String {
+    let shown = |p: [f64; 2]| p.into_iter().all(|p| p < LEVEL);
+    let whole = sets.each_ref().map(|s| s.test.p_differing);
+    let single = |q: &usize| shown(sets.each_ref().map(|s| s.test.least(*q)));
+    let found: Vec<&str> = (0..SHOWN.len())
+        .filter(single)
+        .map(|q| SHOWN[q].words)
+        .collect();
+    let mut text = format!("Case {case}: ");
+    text += match shown(whole) {
+        true => "**the number of differing means is above chance in both sets.**",
+        false => "the number of differing means is not above chance in both sets.",
+    };
+    text += match found.is_empty() {
+        true => " No single quantity differs in both sets.",
+        false => " **These quantities differ in both sets:** ",
+    };
+    text += &found.join("; ");
+    for (q, s) in SHOWN.iter().enumerate() {
+        let least = sets.each_ref().map(|set| set.test.least(q));
+        if least.iter().any(|p| *p < LEVEL) && !shown(least) {
+            let [first, second] = least.map(p_value);
+            let _ = write!(
+                text,
+                " \"{}\" differs in one set alone (p = {first} in the first, {second} in the second) and is taken for chance.",
+                s.words
+            );
+        }
+    }
+    text
+}
+
+/// A p-value, of which the least is 1e-4.
+fn p_value(p: f64) -> String {
+    format!("{p:.4}")
+}
+
+/// When the smallest displacement has grown to the clearance, at the largest Lyapunov exponent of a case \[s\].
+fn parting(record: &Record, case: u32) -> f64 {
+    let rates = record.exponents(case).map(|e| e.mean().mean);
+    let least = rates.fold(f64::INFINITY, f64::min);
+    let moved = sizes(record, case, 0)[0].moved;
+    (PARTED / moved).ln() / least
+}
+
+fn starts_section(record: &Record) -> String {
+    let mut tests = String::new();
+    let (mut tables, mut outcomes) = (String::new(), String::new());
+    for case in [3, 4] {
+        let sets = [0, STARTS].map(|first| Sizes::of(record, case, first));
+        for set in &sets {
+            tests += &set.row(case);
+            tables += &set.table(case);
+        }
+        let _ = writeln!(outcomes, "* {}", outcome(case, &sets));
+    }
+    let parted = [3, 4].map(|case| si(parting(record, case), "s"));
     format!(
         "## The size of the displacement\n\n\
          ![Means of ensembles whose starts are moved by three sizes](figures/ensembles-starts.png)\n\n\
-         Does it matter whether the starts differ by 1e-14, 1e-12 or 1e-10 m? If not, two means of one quantity differ at \
-         the 95 % level in one of twenty pairs. Of {compared} pairs {} do, where chance makes {} on average; quantities of \
-         one run depend on each other, so that this number scatters more than that of independent pairs. They are: {}.\n\n{tables}",
-        differ.len(),
-        digits(0.05 * f64::from(compared)),
-        differ.join("; ")
+         Does it matter whether the starts differ by 1e-14, 1e-12 or 1e-10 m? If it does not, the size is a label without \
+         meaning, and any other assignment of the {OF_THREE} runs of a case to the sizes is as likely as the actual one. A \
+         permutation test compares the actual one with {SHUFFLES} random ones. Each run keeps all its quantities, so the test \
+         is right although these depend on each other. It has two statistics: the number of pairs of means, out of {}, that \
+         differ at the 95 % level (Student's t), and the largest difference of two means over its standard error. p is the \
+         share of assignments whose statistic is at least the actual one. The p of a single quantity is corrected for all \
+         quantities and pairs of the case: it refers to the largest difference of any of them.\n\n\
+         Among several tests, p < {LEVEL} occurs by chance. The six ensembles are therefore made twice; in the second set the \
+         starts lie in directions between those of the first. A difference made by the size would be there in both sets, and \
+         it counts as found where p < {LEVEL} in both.\n\n\
+         | case | ensembles | pairs that differ | mean of the random assignments | p | largest difference, in standard errors | p |\n\
+         |---|---|---|---|---|---|---|\n{tests}\n{outcomes}\n\
+         Could the runs of the smallest displacement still be alike? At the exponents below it grows to the clearance within \
+         {} in case 3 and {} in case 4. Quantities are taken after the first second.\n\n\
+         In the following tables, p is the least of the three pairs.\n\n{tables}",
+        SHOWN.len() * PAIRS.len(),
+        parted[0],
+        parted[1]
     )
 }
 
@@ -552,4 +668,31 @@ fn long_section(record: &Record) -> String {
         );
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::{file, load};
+    use miette::{IntoDiagnostic, Result, miette};
+
+    #[test]
+    fn the_page_is_what_the_record_gives() -> Result<()> {
+        let path = file("ensembles.json").with_file_name("../ENSEMBLES.md");
+        let stored = std::fs::read_to_string(path).into_diagnostic()?;
+        // without the note on the state of the record
+        let parts = stored.split_once("<!-- record: ensembles -->\n");
+        let parts = parts
+            .and_then(|(before, rest)| Some((before, rest.split_once("<!-- /record -->\n")?.1)));
+        let (before, after) =
+            parts.ok_or_else(|| miette!("no place for the state of the record"))?;
+        let stored = format!("{before}{}{after}", records::place("ensembles"));
+        let record: Record = load("ensembles.json")?;
+        let same = stored == page(&record);
+        assert!(
+            same,
+            "`cargo run --release -p paper-figures -- ensembles --page` brings the page up to date"
+        );
+        Ok(())
+    }
 }

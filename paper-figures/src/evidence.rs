@@ -9,6 +9,7 @@ use crate::statement::{Basis, Statement};
 use crate::warned::Source;
 
 /// The runs of the main job, what they measure, and the records of `ensembles`.
+#[derive(Clone)]
 pub struct Evidence<'a> {
     /// The runs of the figures.
     pub c: &'a Campaign,
@@ -40,6 +41,17 @@ impl<'a> Evidence<'a> {
             flexible: measure(&c.flexible),
             flexible_coarse: measure(&c.flexible_coarse),
         }
+    }
+
+    /// The same with the ensembles of one size of the displacement alone, and that size \[m\].
+    pub fn of_each_size(&self) -> Vec<(Evidence<'a>, f64)> {
+        let pairs = self.e.sizes(3, 0).into_iter().zip(self.e.sizes(4, 0));
+        let alone = |(loose, both): (&Ensemble, &Ensemble)| Evidence {
+            loose: loose.clone(),
+            both: both.clone(),
+            ..self.clone()
+        };
+        pairs.map(|pair| (alone(pair), pair.0.moved)).collect()
     }
 
     /// The ensembles of case 3 together.

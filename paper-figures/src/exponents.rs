@@ -15,11 +15,10 @@ use crate::ensembles::{MOVED, moved};
 use crate::interval::STARTS;
 use crate::kinematics::Geometry;
 use crate::record::Exponents;
-use crate::runs::{Pace, Plan};
+use crate::runs::{Pace, Plan, each};
 use looselink::simulate::Simulation;
 use looselink::system::State;
 use miette::{IntoDiagnostic, Result};
-use rayon::prelude::*;
 
 /// Time between two returns to d0 \[s\].
 const RETURN: f64 = 1e-3;
@@ -54,12 +53,11 @@ pub fn run(g: &Geometry) -> Result<Vec<Exponents>> {
         .flat_map(|&(case, pace, distances)| distances.map(|distance| (case, pace, distance)))
         .flat_map(|(case, pace, distance)| (0..STARTS).map(move |k| (case, pace, distance, k)))
         .collect();
-    let done: Result<Vec<Growth>> = jobs
-        .par_iter()
-        .with_max_len(1)
-        .map(|&(case, pace, distance, k)| growth(g, case, pace, distance, k))
-        .collect();
-    let done = done?;
+    let run =
+        |&(case, pace, distance, k): &(u32, Pace, f64, usize)| growth(g, case, pace, distance, k);
+    let done = each(&jobs, run)
+        .into_iter()
+        .collect::<Result<Vec<Growth>>>()?;
     let groups = jobs.chunks(STARTS).zip(done.chunks(STARTS));
     Ok(groups.map(|(jobs, done)| together(jobs[0], done)).collect())
 }
@@ -90,13 +88,7 @@ fn together((case, pace, distance, _): (u32, Pace, f64, usize), done: &[Growth])
 }
 
 fn growth(g: &Geometry, case: u32, pace: Pace, distance: f64, k: usize) -> Result<Growth> {
-    let mut plan = Plan {
-        case,
-        pace,
-        interval: RETURN,
-        duration: DURATION,
-        overrides: Vec::new(),
-    };
+    let mut plan = Plan::new(case, pace, RETURN, DURATION);
     // the starts of an ensemble; case 2 has no loose joint that would let the platform start elsewhere
     if case > 2 {
         plan.overrides.push(moved(g, MOVED, k));

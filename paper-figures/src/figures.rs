@@ -6,7 +6,7 @@ use crate::runs::Recording;
 use crate::{fig05, fig06, fig07, fig08, fig09};
 use miette::Result;
 use plot::si;
-use plot::{Axis, Figure, save};
+use plot::{Axis, Color, Figure, palette, save};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -30,6 +30,15 @@ pub fn save_all(figures: &[(&str, Figure)], folder: &Path) -> Result<()> {
     figures
         .par_iter()
         .try_for_each(|(name, figure)| save(figure, folder, name))
+}
+
+/// Color of a case where several are in one picture.
+pub fn case_color(case: u32) -> Color {
+    match case {
+        2 => palette::GREEN,
+        3 => palette::BLUE,
+        _ => palette::VERMILION,
+    }
 }
 
 /// The axis of the last two cycles.
@@ -64,9 +73,17 @@ pub fn caption(text: &str, made_with: &[&Recording]) -> String {
     } else {
         warned.join(" ")
     };
+    let mut intervals: Vec<f64> = made_with.iter().map(|r| r.plan.interval).collect();
+    intervals.sort_by(f64::total_cmp);
+    intervals.dedup();
+    let rows: Vec<String> = intervals.iter().map(|i| si(*i, "s")).collect();
+    let chaotic = match made_with.iter().any(|r| r.plan.case > 2) {
+        true => " Cases 3 and 4 are chaotic: each curve is one run of many, and decides nothing.",
+        false => "",
+    };
     format!(
-        "{text} Scenes: {}. Bathe's method with the step h, unless the legend says otherwise; rows every {}. {warned}",
+        "{text} Scenes: {}. Bathe's method with the step h, unless the legend says otherwise; rows every {}.{chaotic} {warned}",
         scenes.join(", "),
-        si(made_with[0].plan.interval, "s")
+        rows.join(" or "),
     )
 }

@@ -109,10 +109,21 @@ impl Interval {
         self.within(f64::NEG_INFINITY, limit)
     }
 
+    /// The difference of two means of [`STARTS`] values each, over its standard error.
+    pub fn apart(&self, other: &Interval) -> f64 {
+        let error = self.half.hypot(other.half) / STUDENT;
+        (self.mean - other.mean).abs() / error
+    }
+
+    /// By how much two single values, whose scatter is known from [`OF_THREE`], differ at the most with a probability of
+    /// 95 %, over the mean. Student's t, as of normally distributed values.
+    pub fn two_apart(&self) -> f64 {
+        self.half * (2.0 * OF_THREE as f64).sqrt() / self.mean.abs()
+    }
+
     /// Whether two means of [`STARTS`] values each differ at the 95 % level.
     pub fn differs(&self, other: &Interval) -> bool {
-        let error = self.half.hypot(other.half) / STUDENT;
-        (self.mean - other.mean).abs() > STUDENT_OF_TWO * error
+        self.apart(other) > STUDENT_OF_TWO
     }
 
     /// Mean and interval, each number written by `show`.

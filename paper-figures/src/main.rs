@@ -22,6 +22,7 @@ mod runs;
 mod scans;
 mod scans_list;
 mod scans_page;
+mod shuffles;
 mod signal;
 mod statement;
 mod statements_acceleration;
@@ -39,6 +40,7 @@ use evidence::Evidence;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use numbers::Numbers;
 use plot::Figure;
+use record::Record;
 use records::Run;
 use std::fs;
 use std::path::Path;
@@ -57,7 +59,11 @@ struct Arguments {
 enum Command {
     /// Makes the ensembles of starts, the Lyapunov exponents and the comparisons of meshes and methods, and writes
     /// their record, ENSEMBLES.md and its pictures.
-    Ensembles,
+    Ensembles {
+        /// Makes no run, and writes ENSEMBLES.md and its pictures from the record that is there.
+        #[arg(long)]
+        page: bool,
+    },
     /// Scans one parameter at a time around the printed and assumed values, and writes SCANS.md and its pictures.
     Scans,
 }
@@ -65,7 +71,11 @@ enum Command {
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
     match arguments.command {
-        Some(Command::Ensembles) => gather(),
+        Some(Command::Ensembles { page: true }) => {
+            show(&record::load(ENSEMBLES)?)?;
+            records::write_notes(&records::root())
+        }
+        Some(Command::Ensembles { page: false }) => gather(),
         Some(Command::Scans) => scan(),
         None => reproduce(arguments.settings),
     }
@@ -96,13 +106,18 @@ fn gather() -> Result<()> {
     let record = ensembles::run()?;
     record::save(&record, ENSEMBLES)?;
     record::save(&timings, TIMINGS)?;
-    let figures = ensembles_page::figures(&record);
-    write(&figures, "ENSEMBLES.md", &ensembles_page::page(&record))?;
+    show(&record)?;
     run.finish()
+}
+
+fn show(record: &Record) -> Result<()> {
+    let figures = ensembles_page::figures(record);
+    write(&figures, "ENSEMBLES.md", &ensembles_page::page(record))
 }
 
 fn scan() -> Result<()> {
     let run = Run::begin("scans")?;
+    let record = record::load(ENSEMBLES)?;
     let mut numbers = Numbers::default();
     let scans = scans::run()?;
     let names: Vec<String> = scans.iter().map(|s| format!("scans-{}", s.slug)).collect();
@@ -111,7 +126,7 @@ fn scan() -> Result<()> {
         .map(String::as_str)
         .zip(scans.iter().map(scans_page::figure))
         .collect();
-    let page = scans_page::page(&scans, &mut numbers);
+    let page = scans_page::page(&scans, &record, &mut numbers);
     write(&figures, "SCANS.md", &page)?;
     numbers.save(&record::file("scans.json"))?;
     run.finish()

@@ -5,10 +5,9 @@ use crate::interval::STARTS;
 use crate::kinematics::Geometry;
 use crate::measures::deviation;
 use crate::record::{Long, Work};
-use crate::runs::{Pace, Plan, Recording};
+use crate::runs::{Pace, Plan, Recording, causes, each};
 use crate::signal::{peak, rms};
 use miette::Result;
-use rayon::prelude::*;
 
 /// Methods that are compared, the implicit ones first.
 const METHODS: [&str; 6] = [
@@ -44,23 +43,12 @@ pub fn explicit(method: &str) -> bool {
 }
 
 fn plan(case: u32, method: &'static str, step: f64, interval: f64, duration: f64) -> Plan {
-    let plan = Plan {
-        case,
-        pace: Pace::Steps(method, step),
-        interval,
-        duration,
-        overrides: Vec::new(),
-    };
+    let plan = Plan::new(case, Pace::Steps(method, step), interval, duration);
     if method == "generalized_alpha" || method == "hht" {
         plan.with("integrator.spectral_radius", RADIUS)
     } else {
         plan
     }
-}
-
-fn chain(error: &miette::Report) -> String {
-    let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
-    causes.join(": ")
 }
 
 /// Error and counted work of every method over a ladder of steps, in cases 2 and 4.
@@ -90,7 +78,7 @@ pub fn work() -> Result<Vec<Work>> {
                 warnings: Vec::new(),
             };
             match plan(case, method, step, ROWS, HORIZON).run() {
-                Err(error) => work.warnings.push(format!("stopped: {}", chain(&error))),
+                Err(error) => work.warnings.push(format!("stopped: {}", causes(&error))),
                 Ok(done) => {
                     let pairs = done.column("error.x").iter().zip(reference);
                     let apart: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
@@ -101,7 +89,7 @@ pub fn work() -> Result<Vec<Work>> {
             }
             work
         };
-        all.extend(jobs.par_iter().with_max_len(1).map(run).collect::<Vec<_>>());
+        all.extend(each(&jobs, run));
     }
     Ok(all)
 }
@@ -128,7 +116,7 @@ pub fn long(g: &Geometry) -> Vec<Long> {
             plan.overrides.push(moved(g, MOVED, k));
         }
         match plan.run() {
-            Err(error) => (None, vec![format!("stopped: {}", chain(&error))]),
+            Err(error) => (None, vec![format!("stopped: {}", causes(&error))]),
             Ok(done) => {
                 let cycle = |last: f64| {
                     let end = last / g.frequency;
@@ -138,7 +126,7 @@ pub fn long(g: &Geometry) -> Vec<Long> {
             }
         }
     };
-    let done: Vec<(Option<f64>, Vec<String>)> = jobs.par_iter().with_max_len(1).map(run).collect();
+    let done: Vec<(Option<f64>, Vec<String>)> = each(&jobs, run);
     let of = |i: usize| jobs.iter().zip(&done).filter(move |((j, _), _)| *j == i);
     let long = |(i, &(method, case, step, cycles, _)): (usize, &(_, u32, f64, f64, usize))| Long {
         case,

@@ -40,6 +40,9 @@ pub struct Ensemble {
     pub case: u32,
     /// The displacement \[m\].
     pub moved: f64,
+    /// The first of its directions: 0, or as many as an ensemble has where the ensemble repeats another in directions
+    /// between.
+    pub first: usize,
     /// What else is changed in the scene; empty for nothing.
     pub changed: String,
     /// Method and step.
@@ -173,10 +176,15 @@ impl Record {
         found.unwrap_or_else(|| panic!("no ensemble {name}"))
     }
 
+    /// The ensembles of a case that differ by the size of the displacement alone, in the directions from `first` on.
+    pub fn sizes(&self, case: u32, first: usize) -> Vec<&Ensemble> {
+        let wanted = |e: &&Ensemble| e.case == case && e.first == first && e.changed.is_empty();
+        self.ensembles.iter().filter(wanted).collect()
+    }
+
     /// The ensembles of a case that differ by the size of the displacement alone, as one.
     pub fn together(&self, case: u32) -> Ensemble {
-        let all = self.ensembles.iter().filter(|e| e.case == case);
-        let all: Vec<&Ensemble> = all.filter(|e| e.changed.is_empty()).collect();
+        let all = self.sizes(case, 0);
         let names: Vec<&str> = all.iter().map(|e| e.name.as_str()).collect();
         Ensemble {
             name: names.join(", "),

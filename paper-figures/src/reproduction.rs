@@ -38,12 +38,7 @@ const CONFLICTS: [(&str, &str, &str); 3] = [
 
 /// The page.
 pub fn page(e: &Evidence, numbers: &mut Numbers) -> String {
-    let mut statements = statements_introduction::statements(e);
-    statements.extend(statements_model::statements(e));
-    statements.extend(statements_setup::statements(e));
-    statements.extend(statements_error::statements(e));
-    statements.extend(statements_acceleration::statements(e));
-    statements.extend(statements_contact::statements(e));
+    let statements = statements(e);
     let mut page = format!(
         "# Reproduction of Zhang & Zhang 2017\n\n{}\n\
          `cargo run --release -p paper-figures` writes this page. The scenes have the printed parameters, and assumed values, \
@@ -88,12 +83,52 @@ pub fn page(e: &Evidence, numbers: &mut Numbers) -> String {
     }
     page += "\n## Statement by statement\n\n";
     page.extend((1..).zip(&statements).map(|(i, s)| s.paragraph(i)));
+    page += &sizes_alone(e, &statements);
     page += "## Two arguments that need no simulation\n\n";
     page += &bound_argument(e, numbers);
     page += &stiffness_argument(e.c, numbers);
     page += &runs_table(e, numbers);
     keep(e, numbers);
     page
+}
+
+fn statements(e: &Evidence) -> Vec<Statement> {
+    let mut statements = statements_introduction::statements(e);
+    statements.extend(statements_model::statements(e));
+    statements.extend(statements_setup::statements(e));
+    statements.extend(statements_error::statements(e));
+    statements.extend(statements_acceleration::statements(e));
+    statements.extend(statements_contact::statements(e));
+    statements
+}
+
+/// Which verdicts would be others if cases 3 and 4 were judged by the runs of one size of the displacement alone.
+fn sizes_alone(e: &Evidence, together: &[Statement]) -> String {
+    let mut text = format!(
+        "## One size of the displacement alone\n\n\
+         The verdicts on cases 3 and 4 rest on three sizes of the displacement together. Verdicts that the {STARTS} runs of \
+         one size alone would change:\n\n"
+    );
+    for (e, moved) in e.of_each_size() {
+        let alone = statements(&e);
+        let pairs = (1..).zip(together.iter().zip(&alone));
+        let changed: Vec<String> = pairs
+            .filter(|(_, (all, one))| all.verdict != one.verdict)
+            .map(|(i, (all, one))| {
+                format!(
+                    "statement {i} from \"{}\" to \"{}\"",
+                    all.verdict(),
+                    one.verdict()
+                )
+            })
+            .collect();
+        let changed = match changed.is_empty() {
+            true => "none".into(),
+            false => changed.join("; "),
+        };
+        let _ = writeln!(text, "* {moved:e} m: {changed}.");
+    }
+    text + "\n"
 }
 
 /// How many statements came out how, in words.

@@ -113,6 +113,17 @@ pub fn workspace() -> PathBuf {
 }
 
 impl Plan {
+    /// A case as its scene has it.
+    pub fn new(case: u32, pace: Pace, interval: f64, duration: f64) -> Plan {
+        Plan {
+            case,
+            pace,
+            interval,
+            duration,
+            overrides: Vec::new(),
+        }
+    }
+
     /// Path of the scene relative to the workspace.
     pub fn scene_name(&self) -> String {
         format!("scenes/3rrr/case{}.toml", self.case)
@@ -182,9 +193,16 @@ impl Plan {
     }
 }
 
-/// Runs all plans, one a core, and returns the results in their order.
-pub fn run_all(plans: &[Plan]) -> Vec<Result<Recording>> {
-    plans.par_iter().with_max_len(1).map(Plan::run).collect()
+/// Does all jobs, one a core, and returns the results in their order. Jobs share nothing, so the number of cores changes
+/// no result.
+pub fn each<J: Sync, T: Send>(jobs: &[J], run: impl Fn(&J) -> T + Send + Sync) -> Vec<T> {
+    jobs.par_iter().with_max_len(1).map(run).collect()
+}
+
+/// What an error says, with its causes.
+pub fn causes(error: &miette::Report) -> String {
+    let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
+    causes.join(": ")
 }
 
 impl Recording {
@@ -216,5 +234,36 @@ impl Recording {
     pub fn between(&self, name: &str, from: f64, to: f64) -> (&[f64], &[f64]) {
         let rows = self.rows(from, to);
         (&self.t[rows.clone()], &self.column(name)[rows])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn number_of_threads_changes_no_bit() -> Result<()> {
+        // both chaotic cases over their first impacts, of which the least difference would grow
+        let plan = |case| Plan::new(case, Pace::Controlled, 1e-4, 0.02);
+        let plans = [3, 4, 3, 4].map(plan);
+        let made = |threads: usize| -> Result<Vec<Vec<u64>>> {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let done = pool
+                .build()
+                .into_diagnostic()?
+                .install(|| each(&plans, Plan::run));
+            let bits = |done: Result<Recording>| {
+                let done = done?;
+                let numbers = done.onsets.iter().chain(done.column("B1.force"));
+                let numbers = numbers.chain(done.column("error.x"));
+                Ok(numbers.map(|v| v.to_bits()).collect())
+            };
+            done.into_iter().map(bits).collect()
+        };
+        let (one, three) = (made(1)?, made(3)?);
+        assert_eq!(one, three);
+        // the runs are no trivial ones, and they are in their order
+        assert!(one[0] != one[1] && one[0] == one[2] && one[1] == one[3]);
+        Ok(())
     }
 }

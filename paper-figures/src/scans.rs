@@ -1,14 +1,13 @@
 //! Makes the parameter scans and reads off the numbers that are compared.
 
-use crate::campaign::{DURATION, FROM};
+use crate::campaign::{DURATION, FROM, controlled};
 use crate::kinematics::Geometry;
-use crate::measures::energy_lost;
-use crate::runs::{Plan, Recording};
-use crate::scans_list::{all, baseline};
+use crate::measures::{deviation, energy_lost};
+use crate::runs::{Plan, Recording, causes, each};
+use crate::scans_list::{INTERVAL, all};
 use crate::signal::{fraction, mean, peak, rms};
 use miette::Result;
 use plot::Axis;
-use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::HashMap;
 
@@ -66,18 +65,12 @@ impl Values {
     fn of(recording: &Recording) -> Result<Values> {
         let geometry = Geometry::of(&recording.scene)?;
         let between = |name: &str| recording.between(name, FROM, DURATION);
-        let (t, a) = between("platform.ax");
-        let deviation: Vec<f64> = t
-            .iter()
-            .zip(a)
-            .map(|(&t, a)| a - geometry.acceleration_x(t))
-            .collect();
         let (error, force) = (between("error.x").1, between("B1.force").1);
         Ok(Values {
             error_peak: peak(error),
             error_rms: rms(error),
-            acceleration_peak: peak(a),
-            deviation_rms: rms(&deviation),
+            acceleration_peak: peak(between("platform.ax").1),
+            deviation_rms: rms(&deviation(&geometry, recording, FROM, DURATION)),
             force_peak: peak(force),
             force_mean: mean(force),
             contact: (recording.plan.case >= 3)
@@ -93,7 +86,7 @@ impl Values {
 /// # Errors
 /// When the baseline scene cannot be read; runs that fail are kept with their message.
 pub fn run() -> Result<Vec<Scan>> {
-    let geometry = Geometry::of(&baseline(3).scene()?)?;
+    let geometry = Geometry::of(&controlled(3, INTERVAL).scene()?)?;
     let mut scans = all(&geometry);
     let mut unique: HashMap<String, Plan> = HashMap::new();
     for entry in scans.iter().flat_map(|s| &s.entries) {
@@ -104,11 +97,8 @@ pub fn run() -> Result<Vec<Scan>> {
     let mut plans: Vec<(String, Plan)> = unique.into_iter().collect();
     // the longest first, so that no core is left with one of them at the end
     plans.sort_by_key(|(key, plan)| (Reverse(plan.effort()), key.clone()));
-    let outcomes: HashMap<String, Result<Values, String>> = plans
-        .into_par_iter()
-        .with_max_len(1)
-        .map(|(key, plan)| (key, measure(&plan)))
-        .collect();
+    let run = |(key, plan): &(String, Plan)| (key.clone(), measure(plan));
+    let outcomes: HashMap<_, _> = each(&plans, run).into_iter().collect();
     for entry in scans.iter_mut().flat_map(|s| &mut s.entries) {
         entry.outcome = outcomes[&key(&entry.plan)].clone();
     }
@@ -116,16 +106,9 @@ pub fn run() -> Result<Vec<Scan>> {
 }
 
 fn measure(plan: &Plan) -> Result<Values, String> {
-    let chain = |error: miette::Report| {
-        error
-            .chain()
-            .map(ToString::to_string)
-            .collect::<Vec<_>>()
-            .join(": ")
-    };
     plan.run()
         .and_then(|recording| Values::of(&recording))
-        .map_err(chain)
+        .map_err(|error| causes(&error))
 }
 
 fn key(plan: &Plan) -> String {

@@ -1,6 +1,6 @@
 //! The list of parameter scans, one at a time around the printed and assumed values.
 
-use crate::campaign::DURATION;
+use crate::campaign::controlled;
 use crate::kinematics::Geometry;
 use crate::runs::{Pace, Plan};
 use crate::scans::{Entry, Scan};
@@ -10,18 +10,7 @@ use plot::{digits, si};
 /// Thickness of the moving platform in Table 1 \[m\].
 const THICKNESS: f64 = 0.01;
 /// Time between recorded rows, a whole multiple of every step scanned \[s\].
-const INTERVAL: f64 = 2e-5;
-
-/// A case as its scene has it.
-pub fn baseline(case: u32) -> Plan {
-    Plan {
-        case,
-        pace: Pace::Controlled,
-        interval: INTERVAL,
-        duration: DURATION,
-        overrides: Vec::new(),
-    }
-}
+pub const INTERVAL: f64 = 2e-5;
 
 /// An entry for every value and case; `change` gives the overrides of a value. The
 /// value `base` is overridden too, so that its label is right whatever the scene says.
@@ -40,7 +29,7 @@ fn entries(
                 baseline: *value == base,
                 plan: Plan {
                     overrides: change(*value),
-                    ..baseline(case)
+                    ..controlled(case, INTERVAL)
                 },
                 outcome: Err("not run".into()),
             });
@@ -181,7 +170,7 @@ fn steps() -> Vec<Entry> {
         baseline: false,
         plan: Plan {
             pace: Pace::bathe(h),
-            ..baseline(case)
+            ..controlled(case, INTERVAL)
         },
         outcome: Err("not run".into()),
     };

@@ -2,10 +2,15 @@
 
 use crate::campaign::{DURATION, FROM};
 use crate::fig05::CLAIMED;
+use crate::figures::case_color;
+use crate::interval::OF_THREE;
 use crate::numbers::Numbers;
+use crate::record::Record;
 use crate::scans::{Entry, Scan, Values};
+use crate::warned::told;
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 use plot::{digits, percent, si};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// What a panel shows: title, axis, main and secondary value.
@@ -73,6 +78,7 @@ pub fn figure(scan: &Scan) -> Figure {
             let _ = write!(caption, " {}: {}.", entry.at, entry.label);
         }
     }
+    caption += &made_with(scan);
     let warned = scan.entries.iter().filter(|e| warns(e)).count();
     if warned > 0 {
         let _ = write!(
@@ -101,6 +107,41 @@ fn how(scan: &Scan) -> String {
     }
 }
 
+/// The scenes, and what a single run of a chaotic case is worth.
+fn made_with(scan: &Scan) -> String {
+    let scenes: BTreeSet<String> = scan.entries.iter().map(|e| e.plan.scene_name()).collect();
+    let scenes: Vec<String> = scenes.into_iter().collect();
+    format!(
+        " Scenes: {}. Each dot of the chaotic cases 3 and 4 is one run.",
+        scenes.join(", ")
+    )
+}
+
+/// How far one run of a chaotic case scatters, from the ensembles of the record.
+fn scatter(record: &Record) -> String {
+    let mut text = format!(
+        "No verdict of the reproduction rests on these single runs. By how much they scatter at the printed and assumed values \
+         is known from the ensembles, {OF_THREE} runs a case that differ in the start by at most 1e-10 m. Two runs of the same \
+         scene differ by less than these limits with a probability of 95 % (Student's t); a smaller difference between two \
+         rows says nothing about the parameter. Elsewhere the scatter may be another.\n\n\
+         | | largest \\|e_x\\| | rms e_x | rms a | peak F | B1 in contact |\n|---|---|---|---|---|---|\n"
+    );
+    for case in [3, 4] {
+        let ensemble = record.together(case);
+        let limit = |name: &str| percent(ensemble.mean(name).two_apart());
+        let names = [
+            "error_peak",
+            "error_rms",
+            "deviation_rms",
+            "force_peak",
+            "contact_b1",
+        ];
+        let cells = names.map(limit).join(" | ");
+        let _ = writeln!(text, "| case {case}, of the mean | {cells} |");
+    }
+    text + "\n"
+}
+
 fn panel(scan: &Scan, quantity: &Quantity, letter: &str) -> Panel {
     let mut marks = Vec::new();
     for case in [2, 3, 4] {
@@ -115,17 +156,17 @@ fn panel(scan: &Scan, quantity: &Quantity, letter: &str) -> Panel {
             marks.push(line(
                 scan,
                 &format!("Case {case}"),
-                color(case),
+                case_color(case),
                 &x,
                 &y,
                 2 * size(case) / 3,
             ));
-            marks.push(Mark::points("", color(case), &x, &y, size(case) + 2));
+            marks.push(Mark::points("", case_color(case), &x, &y, size(case) + 2));
         }
         let (x, y) = of(quantity.second);
         if !x.is_empty() {
-            marks.push(line(scan, "", color(case), &x, &y, size(case) / 3));
-            marks.push(Mark::points("", color(case), &x, &y, size(case) - 2));
+            marks.push(line(scan, "", case_color(case), &x, &y, size(case) / 3));
+            marks.push(Mark::points("", case_color(case), &x, &y, size(case) - 2));
         }
     }
     let mut y = Axis::new(quantity.label, quantity.unit, quantity.factor);
@@ -152,14 +193,6 @@ fn line(scan: &Scan, label: &str, color: Color, x: &[f64], y: &[f64], width: u32
     Mark::curve(label, color, &x[..joined], &y[..joined]).width(width)
 }
 
-fn color(case: u32) -> Color {
-    match case {
-        2 => palette::GREEN,
-        3 => palette::BLUE,
-        _ => palette::VERMILION,
-    }
-}
-
 /// Marks of case 3 are larger, so that they show where those of case 4 lie on them.
 fn size(case: u32) -> u32 {
     if case == 3 { 9 } else { 6 }
@@ -170,7 +203,7 @@ fn warns(entry: &Entry) -> bool {
 }
 
 /// The page.
-pub fn page(scans: &[Scan], numbers: &mut Numbers) -> String {
+pub fn page(scans: &[Scan], record: &Record, numbers: &mut Numbers) -> String {
     let mut page = format!(
         "# Parameter scans\n\n{}\n\
          `cargo run --release -p paper-figures -- scans` writes this page. One parameter at a time is varied about its printed \
@@ -186,6 +219,7 @@ pub fn page(scans: &[Scan], numbers: &mut Numbers) -> String {
          paper gives for Fig. 5.\n\n",
         records::place("scans"),
     );
+    page += &scatter(record);
     for scan in scans {
         let _ = write!(
             page,
@@ -222,11 +256,7 @@ pub fn page(scans: &[Scan], numbers: &mut Numbers) -> String {
 
 fn cells(v: &Values) -> String {
     let contact = v.contact.map_or("–".into(), percent);
-    let warnings = if v.warnings.is_empty() {
-        "none".into()
-    } else {
-        v.warnings.join("; ")
-    };
+    let warnings = told(&v.warnings);
     format!(
         " {} | {} | {} | {} | {} | {} | {contact} | {} | {warnings} |",
         si(v.error_peak, "m"),
@@ -287,23 +317,17 @@ fn near_claim(scan: &Scan) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::runs::{Pace, Plan};
+    use crate::campaign::controlled;
+    use crate::record;
 
     #[test]
-    fn a_failed_run_is_shown_with_its_message() {
-        let plan = Plan {
-            case: 3,
-            pace: Pace::Controlled,
-            interval: 1e-5,
-            duration: 3.0,
-            overrides: Vec::new(),
-        };
+    fn a_failed_run_is_shown_with_its_message() -> miette::Result<()> {
         let outcome = Err("no convergence | t = 0.1 s".into());
         let entries = vec![Entry {
             label: "1".into(),
             at: 1.0,
             baseline: false,
-            plan,
+            plan: controlled(3, 1e-5),
             outcome,
         }];
         let scan = Scan {
@@ -312,9 +336,9 @@ mod tests {
             axis: Axis::new("x", "", 1.0),
             entries,
         };
-        let mut numbers = Numbers::default();
+        let (record, mut numbers) = (record::load("ensembles.json")?, Numbers::default());
         assert!(
-            page(std::slice::from_ref(&scan), &mut numbers)
+            page(std::slice::from_ref(&scan), &record, &mut numbers)
                 .contains("failed: no convergence \\| t = 0.1 s")
         );
         assert!(
@@ -322,5 +346,6 @@ mod tests {
                 .caption
                 .contains("Failed runs, which have no dot: 1 of 1")
         );
+        Ok(())
     }
 }

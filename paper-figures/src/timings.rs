@@ -21,13 +21,7 @@ const CALLS: usize = 20_000;
 /// When the run fails.
 pub fn run() -> Result<Timings> {
     let (l, ea, ei) = LINK;
-    let plan = Plan {
-        case: 2,
-        pace: Pace::bathe(1e-5),
-        interval: 1e-3,
-        duration: 0.05,
-        overrides: Vec::new(),
-    };
+    let plan = Plan::new(2, Pace::bathe(1e-5), 1e-3, 0.05);
     let mut step = f64::INFINITY;
     let mut evaluations_a_step = 0.0;
     for _ in 0..TIMES {

@@ -68,6 +68,15 @@ fn range<'a>(numbers: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
+/// Warnings in a cell of a table.
+pub fn told(warnings: &[String]) -> String {
+    if warnings.is_empty() {
+        "none".into()
+    } else {
+        warnings.join("; ").replace('|', "\\|")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
