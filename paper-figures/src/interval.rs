@@ -151,6 +151,14 @@ mod tests {
     }
 
     #[test]
+    fn single_values_differ_by_less_than_their_limit_with_95_percent() {
+        // s^2 = n (n + 1) / 12 = 196, so t s sqrt(2) = 2.01174 * 14 * sqrt(2)
+        let values: Vec<f64> = (0..OF_THREE).map(|i| i as f64).collect();
+        let limit = Interval::of(&values).two_apart() * 23.5;
+        assert!((limit - 2.011_740_514 * 14.0 * 2.0_f64.sqrt()).abs() < 1e-9);
+    }
+
+    #[test]
     fn means_differ_when_they_are_two_standard_errors_apart() {
         let at = |mean| Interval {
             mean,
