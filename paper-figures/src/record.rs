@@ -135,7 +135,7 @@ impl Long {
         match self.growth.as_slice() {
             [one] if runs == 1 => digits(*one),
             all if all.len() == STARTS => Interval::of(all).told(digits),
-            _ => format!("{} of {runs} runs stop", self.stopped),
+            _ => format!("stopped runs: {} of {runs}", self.stopped),
         }
     }
 
