@@ -1,12 +1,15 @@
 //! Runs every study in `studies/`, adds the second implementation with IDA as a rival, takes the paper's case 4 apart effect
 //! by effect, and writes ACCURACY.md.
 
+mod amplification;
 mod effects;
+mod guarantee;
+mod guarantee_page;
 mod ida;
 mod page;
 mod timings;
 
-use clap::Parser;
+use clap::{Parser, Subcommand};
 use looselink::ablation::figure as figure_of_effects;
 use looselink::machine::machine;
 use looselink::precision::{Effort, Outcome, Study, Survey, figure, run};
@@ -22,6 +25,25 @@ struct Arguments {
     /// Timed runs of every point, after one that is not timed.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Runs every dynamic scene with every method and seven accuracies and writes accuracy/GUARANTEE.md; an interrupted
+    /// campaign goes on where it stopped.
+    Guarantee {
+        /// Scenes such as `pendulum,3rrr/case4`, instead of all.
+        #[arg(long, value_delimiter = ',')]
+        only: Vec<String>,
+        /// Threads.
+        #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: u16,
+        /// Writes the page from the record and runs nothing.
+        #[arg(long, conflicts_with_all = ["only", "jobs"])]
+        page: bool,
+    },
 }
 
 /// A study and what came of it.
@@ -49,6 +71,29 @@ const LONG: (&[f64], usize) = (&[1e-6], 1);
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
+    match arguments.command {
+        Some(Command::Guarantee { only, jobs, page }) => guarantee(&only, jobs.into(), page),
+        None => studied(arguments.repeats),
+    }
+}
+
+/// The measured guarantee.
+fn guarantee(only: &[String], threads: usize, page: bool) -> Result<()> {
+    if page {
+        guarantee_page::write(&guarantee::read()?.1)?;
+        return records::write_notes(&records::root());
+    }
+    let campaign = Run::begin("guarantee")?;
+    let (entries, all) = guarantee::run(only, threads)?;
+    guarantee_page::write(&entries)?;
+    match all {
+        true => campaign.finish(),
+        false => records::write_notes(&records::root()),
+    }
+}
+
+/// The studies of precision against time.
+fn studied(repeats: u16) -> Result<()> {
     let campaign = Run::begin("accuracy")?;
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
@@ -60,7 +105,7 @@ fn main() -> Result<()> {
         let name = path.file_stem().unwrap_or_default();
         let name = name.to_string_lossy().into_owned();
         let study = Study::load(&path).map_err(|e| miette!("{e}"))?;
-        let repeats = arguments.repeats.into();
+        let repeats = repeats.into();
         let effort = Effort {
             repeats,
             smoke: false,

@@ -93,7 +93,8 @@ fn asked(made: &[Made]) -> String {
             &format!(
                 "The table shows the achieved error over the requested accuracy. Of {} runs with a requested accuracy {} reach \
                  it, and {} stay within three times of it. The largest ratio is {} ({name}, {}). Runs whose error is below twice the \
-                 uncertainty of the reference are left out.\n",
+                 uncertainty of the reference are left out. [accuracy/GUARANTEE.md](accuracy/GUARANTEE.md) has the same for \
+                 every dynamic scene.\n",
                 rows.len(),
                 within(1.0),
                 within(3.0),

@@ -1,0 +1,560 @@
+//! The page of the measured guarantee, from the record alone.
+
+use crate::guarantee::{
+    ACCURACIES, AMPLIFIES, Asked, End, Entry, GIVEN_UP, GOAL, LOOSE_HORIZON, METHODS,
+    REFERENCE_STEPS, ROWS, STEPS,
+};
+use miette::{IntoDiagnostic, Result, WrapErr};
+use plot::{Axis, Figure, Mark, Panel, digits, palette, percent, si};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// Share of the runs that are to reach their accuracy, and the largest ratio of any of them.
+const SHARE: f64 = 0.95;
+const LARGEST: f64 = 3.0;
+/// Steps of a looser accuracy over those of a tighter one.
+const MORE_STEPS: f64 = 1.1;
+/// Rows of the table of the largest ratios.
+const LISTED: usize = 20;
+
+/// A run that is judged.
+struct Judged<'a> {
+    entry: &'a Entry,
+    run: &'a Asked,
+    ratio: f64,
+}
+
+impl Judged<'_> {
+    /// The ratio over the amplification of the motion.
+    fn divided(&self) -> f64 {
+        self.ratio / self.entry.facts.amplification.unwrap_or(1.0).max(1.0)
+    }
+}
+
+/// Counts of some runs.
+#[derive(Debug, Default, PartialEq)]
+struct Tally {
+    runs: usize,
+    within: usize,
+    largest: f64,
+    /// Scene with the largest ratio.
+    scene: String,
+}
+
+impl Tally {
+    fn of<'a>(ratios: impl Iterator<Item = (f64, &'a str)>) -> Tally {
+        let mut tally = Tally::default();
+        for (ratio, scene) in ratios {
+            tally.runs += 1;
+            tally.within += usize::from(ratio <= 1.0);
+            if ratio.is_nan() || ratio > tally.largest {
+                (tally.largest, tally.scene) = (ratio, scene.to_owned());
+            }
+        }
+        tally
+    }
+
+    fn told(&self) -> String {
+        if self.runs == 0 {
+            return "no run was judged".to_owned();
+        }
+        let share = percent(self.within as f64 / self.runs as f64);
+        let Tally {
+            runs,
+            within,
+            largest,
+            scene,
+        } = self;
+        let kept = *within as f64 >= SHARE * *runs as f64 && *largest <= LARGEST;
+        format!(
+            "{within} of {runs} ({share}) have a ratio of at most 1; the largest ratio is {} ({scene}). This is {} the \
+             guarantee",
+            digits(*largest),
+            if kept { "within" } else { "**not within**" }
+        )
+    }
+
+    fn cell(&self) -> String {
+        match self.runs {
+            0 => "–".to_owned(),
+            runs => format!(
+                "{} of {runs}; {} ({})",
+                self.within,
+                digits(self.largest),
+                self.scene
+            ),
+        }
+    }
+}
+
+fn judged(entries: &[Entry]) -> Vec<Judged<'_>> {
+    let runs = entries
+        .iter()
+        .flat_map(|entry| entry.runs.iter().map(move |run| (entry, run)));
+    runs.filter_map(|(entry, run)| {
+        Some(Judged {
+            entry,
+            run,
+            ratio: entry.ratio(run)?,
+        })
+    })
+    .collect()
+}
+
+/// Pairs of runs of which the looser accuracy takes more steps: the two, and the factor.
+fn dearer(entry: &Entry) -> Vec<(f64, f64, f64)> {
+    let complete: Vec<&Asked> = entry
+        .runs
+        .iter()
+        .filter(|r| matches!(r.end, End::Complete(_)))
+        .collect();
+    let pairs = complete.windows(2).map(|pair| {
+        let factor = pair[0].steps as f64 / pair[1].steps as f64;
+        (pair[0].position, pair[1].position, factor)
+    });
+    pairs.filter(|(.., factor)| *factor > MORE_STEPS).collect()
+}
+
+/// Messages that differ in their numbers alone, as one: how many runs have it, and the first of them with its run.
+fn kinds<'a>(messages: impl Iterator<Item = (&'a str, String)>) -> Vec<(usize, String, String)> {
+    let mut found: BTreeMap<String, (usize, String, String)> = BTreeMap::new();
+    for (message, run) in messages {
+        let bare = |word: &str| {
+            word.trim_end_matches([',', ':', ';', ')'])
+                .parse::<f64>()
+                .is_err()
+        };
+        let words: Vec<&str> = message.split(' ').filter(|word| bare(word)).collect();
+        let kind = found
+            .entry(words.join(" "))
+            .or_insert((0, message.to_owned(), run));
+        kind.0 += 1;
+    }
+    found.into_values().collect()
+}
+
+fn method(entry: &Entry) -> String {
+    entry.method.replace('_', " ")
+}
+
+fn run(entry: &Entry, asked: &Asked) -> String {
+    format!(
+        "{}, {}, {}",
+        entry.scene,
+        method(entry),
+        si(asked.position, "m")
+    )
+}
+
+fn list<'a>(messages: impl Iterator<Item = (&'a str, String)>, nothing: &str) -> String {
+    let kinds = kinds(messages);
+    let lines = kinds.iter().map(|(count, message, run)| match count {
+        1 => format!("* {run}: {message}\n"),
+        _ => format!("* {count} runs, such as {run}: {message}\n"),
+    });
+    let text: String = lines.collect();
+    if text.is_empty() {
+        format!("{nothing}\n")
+    } else {
+        text
+    }
+}
+
+/// A table with a row a method and a column an accuracy.
+fn table(rows: impl Fn(&str, f64) -> String) -> String {
+    let mut out = String::from("| method |");
+    ACCURACIES
+        .iter()
+        .for_each(|p| out += &format!(" {} |", si(*p, "m")));
+    out += &format!("\n|---|{}\n", "---|".repeat(ACCURACIES.len()));
+    for (name, _) in METHODS {
+        let cells = ACCURACIES.map(|p| rows(name, p)).join(" | ");
+        out += &format!("| {} | {cells} |\n", name.replace('_', " "));
+    }
+    out
+}
+
+fn tallied<'a>(
+    all: &[&Judged<'a>],
+    of: fn(&Judged<'a>) -> f64,
+    method: &str,
+    position: f64,
+) -> Tally {
+    let runs = all
+        .iter()
+        .filter(|j| j.entry.method == method && j.run.position == position);
+    Tally::of(runs.map(|j| (of(j), j.entry.scene.as_str())))
+}
+
+/// What the page says.
+fn page(entries: &[Entry]) -> Result<String> {
+    let all = judged(entries);
+    let (loud, calm): (Vec<&Judged>, Vec<&Judged>) =
+        all.iter().partition(|j| j.entry.facts.amplifies());
+    let tally = |runs: &[&Judged], of: fn(&Judged) -> f64| {
+        Tally::of(runs.iter().map(|j| (of(j), j.entry.scene.as_str())))
+    };
+    let mut scenes: Vec<&Entry> = entries.iter().collect();
+    scenes.dedup_by_key(|entry| &entry.scene);
+    let mut out = format!(
+        "# Is the accuracy reached that was asked for?\n\n{}\n\
+         Each of the {} dynamic scenes in [scenes](../scenes) was run with every method and `--accuracy position=P,horizon=H` \
+         for P from 1 mm to 1 nm. The ratio of a run is the error achieved over P. Written by `cargo run --release -p accuracy -- \
+         guarantee`; every number is in [guarantee.jsonl](guarantee.jsonl).\n\n\
+         ## The guarantee\n\n\
+         `accuracy` bounds the errors that the steps commit: within a horizon they add up to at most P. **The guarantee is that \
+         {} of the runs have a ratio of at most 1, and that no ratio is above {LARGEST}.**\n\n\
+         * Motions that do not amplify errors (amplification below {AMPLIFIES}): {}.\n\
+         * Motions that amplify errors, ratio divided by the amplification: {}.\n\
+         * The same motions, ratio as it is: {}. What a chaotic motion makes of an error that a step has committed is beyond any \
+         control of steps.\n\n",
+        records::place("guarantee"),
+        scenes.len(),
+        percent(SHARE),
+        tally(&calm, |j| j.ratio).told(),
+        tally(&loud, |j| j.divided()).told(),
+        tally(&loud, |j| j.ratio).told(),
+    );
+    out += &format!(
+        "![Error achieved over accuracy asked for](figures/guarantee.png)\n\n\
+         ## What is measured\n\n\
+         * **Horizon H**: {} where a joint has clearance, else the duration of the scene. Runs end at the horizon.\n\
+         * **Error**: the largest difference from a reference of every recorded coordinate x, y in {ROWS} rows.\n\
+         * **Reference**: Dormand and Prince's method with P = 10⁻¹¹ m, or tighter where the motion amplifies errors, or as \
+         tight as {REFERENCE_STEPS} steps allow. Its floor is its distance from a run ten times looser, and at least its own P. \
+         A run counts where the floor is at most a tenth of its P.\n\
+         * **Amplification**: a neighbouring motion starts with velocities changed by dv, which would carry it H·max|dv| away in \
+         free flight. The amplification is the largest distance of positions over that. It is the larger one of two directions. \
+         A motion that comes too far away is brought back (Benettin et al. 1980).\n\
+         * A run of more than {STEPS} steps is given up and not judged. After {GIVEN_UP} of them in a row a method is not asked \
+         for still tighter accuracies of that scene.\n\n",
+        si(LOOSE_HORIZON, "s"),
+    );
+    out += "## Motions that do not amplify errors\n\nRuns with a ratio of at most 1; the largest ratio (its scene).\n\n";
+    out += &table(|m, p| tallied(&calm, |j| j.ratio, m, p).cell());
+    out += "\n## Motions that amplify errors\n\nThe same with ratios divided by the amplification.\n\n";
+    out += &table(|m, p| tallied(&loud, Judged::divided, m, p).cell());
+    out += "\nThe same with the ratios as they are.\n\n";
+    out += &table(|m, p| tallied(&loud, |j| j.ratio, m, p).cell());
+    out += &advice(entries);
+    out += &largest(&all);
+    out += &steps(entries);
+    out += &not_judged(entries);
+    out += &warnings(entries);
+    out += &every(entries);
+    Ok(out)
+}
+
+/// How P is chosen for a motion that amplifies errors.
+fn advice(entries: &[Entry]) -> String {
+    let mut out = format!(
+        "\n## How to choose P for a motion that amplifies errors\n\n\
+         Divide the error that you can bear by the amplification. The table does so for {}, with Dormand and Prince's method. \
+         For a scene of your own, run it with P and P/10. The largest difference of positions between the two, over P, is about \
+         its amplification, as long as that difference is far below the clearances.\n\n\
+         | scene | amplification | asked: P | error achieved | error over {} | floor of the reference | steps |\n\
+         |---|---|---|---|---|---|---|\n",
+        si(GOAL, "m"),
+        si(GOAL, "m"),
+    );
+    for entry in entries {
+        let (Some(asked), Some(amplification)) = (&entry.advised, entry.facts.amplification) else {
+            continue;
+        };
+        let [_, floor] = entry.facts.reference.unwrap_or([f64::NAN; 2]);
+        let (error, ratio) = match &asked.end {
+            End::Complete(Some(error)) if floor <= 0.1 * GOAL => {
+                (si(*error, "m"), digits(error / GOAL))
+            }
+            End::Complete(_) => ("no reference good enough".to_owned(), "–".to_owned()),
+            other => (ending(other), "–".to_owned()),
+        };
+        out += &format!(
+            "| {} | {} | {} | {error} | {ratio} | {} | {} |\n",
+            entry.scene,
+            digits(amplification),
+            si(asked.position, "m"),
+            si(floor, "m"),
+            asked.steps,
+        );
+    }
+    out
+}
+
+fn ending(end: &End) -> String {
+    match end {
+        End::Complete(_) => "no reference".to_owned(),
+        End::Stopped(_) => "stopped".to_owned(),
+        End::TooLong => format!("> {STEPS} steps"),
+        End::Skipped => "not asked".to_owned(),
+    }
+}
+
+fn largest(all: &[Judged]) -> String {
+    let mut sorted: Vec<&Judged> = all.iter().collect();
+    sorted.sort_by(|a, b| b.ratio.total_cmp(&a.ratio));
+    let mut out = String::from(
+        "\n## The largest ratios\n\n| ratio | amplification | ratio / amplification | scene | method | P | steps | warnings of the \
+         run |\n|---|---|---|---|---|---|---|---|\n",
+    );
+    for one in sorted.into_iter().take(LISTED) {
+        let warnings = match one.run.warnings.as_slice() {
+            [] => "none".to_owned(),
+            some => some.join("; "),
+        };
+        out += &format!(
+            "| {} | {} | {} | {} | {} | {} | {} | {warnings} |\n",
+            digits(one.ratio),
+            amplification(one.entry),
+            digits(one.divided()),
+            one.entry.scene,
+            method(one.entry),
+            si(one.run.position, "m"),
+            one.run.steps,
+        );
+    }
+    out
+}
+
+fn amplification(entry: &Entry) -> String {
+    entry
+        .facts
+        .amplification
+        .map_or("not measured".to_owned(), digits)
+}
+
+fn steps(entries: &[Entry]) -> String {
+    let mut out = String::new();
+    let (mut pairs, mut count) = (0, 0);
+    for entry in entries {
+        let complete = entry
+            .runs
+            .iter()
+            .filter(|r| matches!(r.end, End::Complete(_)))
+            .count();
+        pairs += complete.saturating_sub(1);
+        for (looser, tighter, factor) in dearer(entry) {
+            count += 1;
+            let _ = writeln!(
+                out,
+                "* {}, {}: {} takes {} times the steps of {}",
+                entry.scene,
+                method(entry),
+                si(looser, "m"),
+                digits(factor),
+                si(tighter, "m")
+            );
+        }
+    }
+    format!(
+        "\n## Does a looser accuracy cost less?\n\nOf {pairs} pairs of accuracies next to each other, the looser one takes more \
+         than {MORE_STEPS} times the steps of the tighter one in {count}.\n\n{out}"
+    )
+}
+
+fn not_judged(entries: &[Entry]) -> String {
+    let runs = || {
+        entries
+            .iter()
+            .flat_map(|entry| entry.runs.iter().map(move |r| (entry, r)))
+    };
+    let count = |wanted: fn(&Entry, &Asked) -> bool| runs().filter(|(e, r)| wanted(e, r)).count();
+    let stopped = runs().filter_map(|(e, r)| match &r.end {
+        End::Stopped(message) => Some((message.as_str(), run(e, r))),
+        _ => None,
+    });
+    let refused = entries.iter().filter_map(|e| {
+        let message = e.refused.as_deref()?.lines().next()?;
+        Some((message, format!("{}, {}", e.scene, method(e))))
+    });
+    let mut out = format!(
+        "\n## Runs that are not judged\n\n\
+         * {} runs came to the end and have no reference that is good enough.\n\
+         * {} runs were given up after {STEPS} steps, and {} were not asked for after them.\n\
+         * {} runs stopped with an error (exit status 3 of the program).\n\nThe errors:\n\n",
+        count(|e, r| matches!(r.end, End::Complete(_)) && e.ratio(r).is_none()),
+        count(|_, r| r.end == End::TooLong),
+        count(|_, r| r.end == End::Skipped),
+        count(|_, r| matches!(r.end, End::Stopped(_))),
+    );
+    out += &list(stopped, "No run stopped.");
+    out += "\nScenes that a method does not take:\n\n";
+    out + &list(refused, "Every method takes every scene.")
+}
+
+fn warnings(entries: &[Entry]) -> String {
+    let runs = entries
+        .iter()
+        .flat_map(|e| e.runs.iter().chain(&e.advised).map(move |r| (e, r)));
+    let all = runs.flat_map(|(e, r)| r.warnings.iter().map(move |w| (w.as_str(), run(e, r))));
+    format!(
+        "\n## What the runs warn of\n\n{}",
+        list(all, "No run warns.")
+    )
+}
+
+/// Every ratio.
+fn every(entries: &[Entry]) -> String {
+    let mut out = String::from(
+        "\n## Every run\n\nError achieved over accuracy asked for. In brackets: the floor of the reference is above a tenth of the \
+         accuracy, so that the ratio is not judged.\n\n| scene | H | floor | amplification | method |",
+    );
+    ACCURACIES
+        .iter()
+        .for_each(|p| out += &format!(" {} |", si(*p, "m")));
+    out += &format!(
+        "\n|---|---|---|---|---|{}\n",
+        "---|".repeat(ACCURACIES.len())
+    );
+    for entry in entries.iter().filter(|e| e.refused.is_none()) {
+        let cells = entry.runs.iter().map(|r| match (&r.end, entry.ratio(r)) {
+            (_, Some(ratio)) => digits(ratio),
+            (End::Complete(Some(error)), None) => format!("({})", digits(error / r.position)),
+            (end, _) => ending(end),
+        });
+        let cells: Vec<String> = cells.collect();
+        let floor = entry
+            .facts
+            .reference
+            .map_or("none".to_owned(), |[_, floor]| si(floor, "m"));
+        out += &format!(
+            "| {} | {} | {floor} | {} | {} | {} |\n",
+            entry.scene,
+            si(entry.facts.horizon, "s"),
+            amplification(entry),
+            method(entry),
+            cells.join(" | ")
+        );
+    }
+    out
+}
+
+/// One panel a method.
+fn figure(entries: &[Entry]) -> Figure {
+    let all = judged(entries);
+    let panels = METHODS.iter().map(|(name, _)| {
+        let dots = |color, amplifies: bool| {
+            let runs = all
+                .iter()
+                .filter(|j| j.entry.method == *name && j.entry.facts.amplifies() == amplifies);
+            let (x, y): (Vec<f64>, Vec<f64>) = runs.map(|j| (j.run.position, j.ratio)).unzip();
+            Mark::points("", color, &x, &y, 5)
+        };
+        Panel {
+            title: name.replace('_', " "),
+            note: String::new(),
+            x: Axis::new("accuracy asked for", "m", 1.0)
+                .log()
+                .over(3e-10, 3e-3),
+            y: Axis::new("error achieved / asked for", "", 1.0)
+                .log()
+                .over(1e-6, 1e4),
+            marks: vec![
+                Mark::level("", palette::BLACK, 1.0),
+                dots(palette::BLUE, false),
+                dots(palette::VERMILION, true),
+            ],
+        }
+    });
+    let caption = format!(
+        "Error achieved over accuracy asked for, a dot a run of a dynamic scene. Blue: the motion amplifies errors less than \
+         {AMPLIFIES} times; red: more. Dashed: ratio 1. Ratios below 10⁻⁶ are not shown."
+    );
+    Figure::grid(panels.collect(), 4, caption)
+}
+
+/// Writes figure and page.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write(entries: &[Entry]) -> Result<()> {
+    let folder = records::root().join("accuracy");
+    plot::save(&figure(entries), &folder.join("figures"), "guarantee")?;
+    let path = folder.join("GUARANTEE.md");
+    std::fs::write(&path, page(entries)?)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot write {}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::guarantee::Facts;
+
+    fn entry(amplification: f64, floor: f64, runs: Vec<(f64, End, u64)>) -> Entry {
+        let run = |(position, end, steps)| Asked {
+            position,
+            end,
+            steps,
+            warnings: Vec::new(),
+        };
+        Entry {
+            scene: "s".to_owned(),
+            method: "bathe".to_owned(),
+            facts: Facts {
+                horizon: 1.0,
+                reference: Some([1e-11, floor]),
+                amplification: Some(amplification),
+            },
+            refused: None,
+            runs: runs.into_iter().map(run).collect(),
+            advised: None,
+        }
+    }
+
+    #[test]
+    fn runs_are_judged_where_the_reference_is_good_enough_and_failures_are_counted_as_such() {
+        let runs = vec![
+            (1e-3, End::Complete(Some(5e-4)), 120),
+            (1e-4, End::Complete(Some(4e-4)), 100),
+            (1e-5, End::Stopped("at t = 1 s".to_owned()), 50),
+            (1e-6, End::TooLong, 9),
+            (1e-9, End::Complete(Some(1e-9)), 400),
+        ];
+        let one = [entry(1.0, 1e-8, runs)];
+        let all = judged(&one);
+        let tally = Tally::of(all.iter().map(|j| (j.ratio, "s")));
+        assert_eq!((tally.runs, tally.within), (2, 1));
+        assert!(
+            (tally.largest - 4.0).abs() < 1e-12,
+            "4e-4 over 1e-4, but for rounding"
+        );
+        assert!(tally.told().contains("not within"));
+        assert_eq!(dearer(&one[0]).len(), 1, "1e-3 takes more steps than 1e-4");
+        let text = not_judged(&one);
+        assert!(text.contains("1 runs came to the end and have no reference"));
+        assert!(text.contains("1 runs stopped") && text.contains("at t = 1 s"));
+    }
+
+    #[test]
+    fn an_error_that_is_no_number_is_the_largest_and_not_within() {
+        let tally = Tally::of([(0.5, "a"), (f64::NAN, "b"), (0.7, "c")].into_iter());
+        assert_eq!(
+            (tally.runs, tally.within, tally.scene.as_str()),
+            (3, 2, "b")
+        );
+    }
+
+    #[test]
+    fn ratios_of_motions_that_amplify_are_divided() {
+        let one = [entry(
+            50.0,
+            1e-12,
+            vec![(1e-6, End::Complete(Some(1e-5)), 1)],
+        )];
+        let all = judged(&one);
+        assert!(
+            (all[0].divided() - 0.2).abs() < 1e-12,
+            "1e-5/1e-6/50, but for rounding"
+        );
+        assert!(one[0].facts.amplifies());
+    }
+
+    #[test]
+    fn messages_that_differ_in_numbers_are_one() {
+        let messages = ["lost 1e-3 J", "lost 2e-3 J", "gained 1 J"];
+        let kinds = kinds(messages.into_iter().zip(["a", "b", "c"].map(String::from)));
+        let counts: Vec<usize> = kinds.iter().map(|(count, ..)| *count).collect();
+        assert_eq!(counts, [1, 2]);
+    }
+}
