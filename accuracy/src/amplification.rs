@@ -14,7 +14,7 @@ use looselink::system::State;
 /// Neighbouring motions of a scene without and with loose joints, every other one displaced in position. Each has another
 /// direction; the first leaves the motion at the start, the others later, up to half of the horizon: an impact may take away
 /// what came before it.
-const NEIGHBOURS: [usize; 2] = [2, 16];
+pub const NEIGHBOURS: [usize; 2] = [2, 16];
 /// Displacement over the accuracy of both motions: far above what their steps add to it.
 const DISPLACED: f64 = 100.0;
 /// Part of a displacement below which what the joints leave of it is rounding.

@@ -136,27 +136,19 @@ pub fn path() -> PathBuf {
     records::root().join("accuracy/guarantee.jsonl")
 }
 
-/// What the record holds, and the digests of the sources that it was made from.
+/// What the record holds, and the digests of the sources that it was made from. A line that an interruption has cut off ends it.
 ///
 /// # Errors
-/// A line that is none of a record.
+/// A record that cannot be read, or begins otherwise.
 pub fn read() -> Result<(Digests, Vec<Entry>)> {
-    let path = path();
+    let path = path().display().to_string();
     let text = fs::read_to_string(&path).into_diagnostic();
-    let text = text.wrap_err_with(|| format!("cannot read {}", path.display()))?;
+    let text = text.wrap_err_with(|| format!("cannot read {path}"))?;
     let mut lines = text.lines();
-    let read = || -> serde_json::Result<_> {
-        let digests = serde_json::from_str(lines.next().unwrap_or_default())?;
-        Ok((
-            digests,
-            lines
-                .map(serde_json::from_str)
-                .collect::<serde_json::Result<_>>()?,
-        ))
-    };
-    read()
-        .into_diagnostic()
-        .wrap_err_with(|| path.display().to_string())
+    let digests = serde_json::from_str(lines.next().unwrap_or_default());
+    let digests = digests.into_diagnostic().wrap_err(path)?;
+    let entries = lines.map_while(|line| serde_json::from_str(line).ok());
+    Ok((digests, entries.collect()))
 }
 
 fn write(digests: &Digests, entries: &[Entry]) -> Result<()> {
@@ -209,6 +201,10 @@ pub fn run(only: &[String], threads: usize) -> Result<(Vec<Entry>, bool)> {
         Ok((then, entries)) if then == digests => entries,
         _ => Vec::new(),
     };
+    eprintln!(
+        "{} lines of the record are of the present sources",
+        entries.len()
+    );
     write(&digests, &entries)?;
     // the methods one after the other: so many scenes are measured at once
     let mut jobs: Vec<Job> = Vec::new();
@@ -347,7 +343,7 @@ impl Mechanism {
         let mut given_up = 0;
         for position in ACCURACIES {
             let run = match given_up {
-                GIVEN_UP => skipped(position),
+                GIVEN_UP => not_made(position, End::Skipped),
                 _ => self.asked(method, position, exact)?,
             };
             match run.end {
@@ -365,7 +361,10 @@ impl Mechanism {
     }
 
     fn asked(&self, method: (&str, &[&str]), position: f64, exact: &[Vec<f64>]) -> Result<Asked> {
-        let mut simulation = simulation(&self.scene(method, position)?)?;
+        let mut simulation = match Simulation::new(&self.scene(method, position)?) {
+            Ok(simulation) => simulation,
+            Err(error) => return Ok(not_made(position, End::Stopped(error.to_string()))),
+        };
         let (ended, rows) = observe(&mut simulation, STEPS);
         let report = simulation.report();
         Ok(Asked {
@@ -415,11 +414,10 @@ impl Mechanism {
     }
 }
 
-/// A run that is not made.
-fn skipped(position: f64) -> Asked {
+fn not_made(position: f64, end: End) -> Asked {
     Asked {
         position,
-        end: End::Skipped,
+        end,
         steps: 0,
         warnings: Vec::new(),
     }

@@ -1,5 +1,6 @@
 //! The page of the measured guarantee, from the record alone.
 
+use crate::amplification::NEIGHBOURS;
 use crate::guarantee::{
     ACCURACIES, AMPLIFIES, Asked, End, Entry, GIVEN_UP, GOAL, LOOSE_HORIZON, METHODS,
     REFERENCE_STEPS, ROWS, STEPS,
@@ -215,17 +216,25 @@ fn page(entries: &[Entry]) -> Result<String> {
         tally(&loud, |j| j.divided()).told(),
         tally(&loud, |j| j.ratio).told(),
     );
+    let missing = scenes.len() * METHODS.len() - entries.len();
+    if missing > 0 {
+        out += &format!(
+            "**The record is not complete: {missing} pairs of a scene and a method are missing.**\n\n"
+        );
+    }
+    let [others, loose] = NEIGHBOURS;
     out += &format!(
         "![Error achieved over accuracy asked for](figures/guarantee.png)\n\n\
          ## What is measured\n\n\
          * **Horizon H**: {} where a joint has clearance, else the duration of the scene. Runs end at the horizon.\n\
          * **Error**: the largest difference from a reference of every recorded coordinate x, y in {ROWS} rows.\n\
-         * **Reference**: Dormand and Prince's method with P = 10⁻¹¹ m, or tighter where the motion amplifies errors, or as \
-         tight as {REFERENCE_STEPS} steps allow. Its floor is its distance from a run ten times looser, and at least its own P. \
-         A run counts where the floor is at most a tenth of its P.\n\
-         * **Amplification**: a neighbouring motion starts with velocities changed by dv, which would carry it H·max|dv| away in \
-         free flight. The amplification is the largest distance of positions over that. It is the larger one of two directions. \
-         A motion that comes too far away is brought back (Benettin et al. 1980).\n\
+         * **Reference**: Dormand and Prince's method, P tightened tenfold from 10 nm until the floor is 10 pm, a run takes more \
+         than {REFERENCE_STEPS} steps, or it refuses. The floor is the distance of the last two runs, and at least the P of the \
+         last. A run counts where the floor is at most a tenth of its P.\n\
+         * **Amplification**: an error of a step is one of velocity, dv, which in free flight carries the mechanism d = H·max|dv| \
+         away, or one of position, d = max|dq|. Neighbouring motions leave the motion with one or the other. The amplification \
+         is the largest distance of positions later on, over d: the largest of {loose} motions where a joint has clearance, of \
+         {others} elsewhere. A motion that comes too far away is brought back (Benettin et al. 1980).\n\
          * A run of more than {STEPS} steps is given up and not judged. After {GIVEN_UP} of them in a row a method is not asked \
          for still tighter accuracies of that scene.\n\n",
         si(LOOSE_HORIZON, "s"),
@@ -371,7 +380,7 @@ fn not_judged(entries: &[Entry]) -> String {
         "\n## Runs that are not judged\n\n\
          * {} runs came to the end and have no reference that is good enough.\n\
          * {} runs were given up after {STEPS} steps, and {} were not asked for after them.\n\
-         * {} runs stopped with an error (exit status 3 of the program).\n\nThe errors:\n\n",
+         * {} runs stopped with an error: exit status 3 of the program, or 2 before the first step.\n\nThe errors:\n\n",
         count(|e, r| matches!(r.end, End::Complete(_)) && e.ratio(r).is_none()),
         count(|_, r| r.end == End::TooLong),
         count(|_, r| r.end == End::Skipped),
