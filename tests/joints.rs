@@ -158,7 +158,7 @@ fn friction_balances_and_dissipates() {
     let g = joint.joint.geometry(&q, &v);
     let (_, tangential) = joint.forces(&q, &v, 0.5).expect("the surfaces touch");
     Rung::Balance
-        .asks("Do the forces of a loose joint with friction keep no moment but T δ? Relative to the force")
+        .asks("Is T δ the only moment of the forces of a loose joint with friction? Relative to the force")
         .within(
             (moment - tangential.value * g.delta) / scale,
             1e-14,
@@ -178,7 +178,7 @@ fn friction_balances_and_dissipates() {
         .expect("the surfaces touch");
     let expected = normal.value * ClearanceJoint::rate(&g) + joint.dissipation(&q, &v, 0.5);
     Rung::Balance
-        .asks("Is the power of a loose joint with friction what it stores and dissipates? Relative error")
+        .asks("Is the power of a loose joint with friction the sum of the rates of stored and dissipated energy? Relative error")
         .within((power - expected) / power.abs().max(scale), 1e-14, "a few roundings");
 }
 

@@ -132,7 +132,7 @@ fn every_scheme_has_its_order_in_everything() {
                     "Step h [s]",
                     &[error(coarse), error(coarse / 2.0), error(coarse / 4.0)],
                     order - 0.1..order + 0.1 * order.max(2.0),
-                    "the order of the scheme; against Dormand and Prince's at a step where it is right to 1e-14",
+                    "the order of the scheme; against Dormand and Prince's method at a step where its error is 1e-14",
                 );
         }
     }
@@ -181,7 +181,7 @@ fn the_order_survives_changing_steps() {
                 "Mean step h [s]",
                 &[error(coarse), error(coarse / 2.0), error(coarse / 4.0)],
                 order - 0.2..order + 0.1 * order.max(2.0),
-                "the order of the scheme; against Dormand and Prince's at a step where it is right to 1e-14",
+                "the order of the scheme; against Dormand and Prince's method at a step where its error is 1e-14",
             );
     }
 }
@@ -245,7 +245,7 @@ fn local_errors_are_estimated() {
         };
         Rung::OrderInTime
             .asks(format!(
-                "Bathe's scheme, γ = {gamma:.3}, spectral radius {spectral_radius}: what the estimate of the local error misses of it"
+                "Bathe's scheme, γ = {gamma:.3}, spectral radius {spectral_radius}: local error less its estimate"
             ))
             .falls(
                 "Step h [s]",
@@ -266,7 +266,7 @@ fn local_errors_are_estimated() {
             "Step h [s]",
             &[size(0.2), size(0.1), size(0.05)],
             4.8..5.3,
-            "the solution of order 4 is off by h⁵",
+            "the error of the solution of order 4 is of h⁵",
         );
     // the first of two steps, which looks ahead, and the second, which looks back
     let missed = |method: Method, h: f64, share: f64| {
@@ -312,7 +312,7 @@ fn local_errors_are_estimated() {
         let first = [0.01, 0.005, 0.0025].map(|h| missed(method, h, 1.0)[0]);
         Rung::OrderInTime
             .asks(format!(
-                "{} at the start: what the estimate of the local error misses of it",
+                "{} at the start: local error less its estimate",
                 method.name()
             ))
             .falls(
@@ -325,7 +325,7 @@ fn local_errors_are_estimated() {
             let missed = |h| missed(method, h, share)[1];
             Rung::OrderInTime
                 .asks(format!(
-                    "{} after a step {share} times as long: what the estimate of the local error misses of it",
+                    "{} after a step {share} times as long: local error less its estimate",
                     method.name()
                 ))
                 .falls(
@@ -487,7 +487,7 @@ fn bathe_loses_energy_of_linear_systems_from_the_first_step_as_the_spectral_form
     }
     Rung::Balance
         .asks("Does the same check fail for ten other schemes, TR-BDF2, generalised-α and backward Euler among them? Inverse of the least error")
-        .within(&mistaken, 1e-3, "an error a thousand times what rounding may do is no rounding");
+        .within(&mistaken, 1e-3, "an error a thousand times the bound on rounding is not rounding");
 }
 
 /// The trapezoidal rule keeps the energy of a linear undamped system at any step.
@@ -565,5 +565,5 @@ fn stages_are_integrated_and_told() {
     }
     Rung::Identities
         .asks("Are powers integrated over the stages exactly up to the degree of the scheme's quadrature?")
-        .within(&worst, 4e-15, "rounding of an integral that begins at five");
+        .within(&worst, 4e-15, "rounding of an integral that starts at 5");
 }

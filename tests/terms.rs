@@ -613,7 +613,7 @@ fn forces_agree_with_their_differences() {
         .asks("Do the tangents of springs, loads and damping by positions and velocities agree with differences?")
         .within(&tangents, 3e-8, reason);
     Rung::Balance
-        .asks("Is the power of springs, loads and damping what is stored, put in and dissipated?")
+        .asks("Is the power of springs, loads and damping the sum of the rates of stored, supplied and dissipated energy?")
         .within(&balances, 3e-8, reason);
 }
 
@@ -738,6 +738,6 @@ fn forces_tell_what_they_do() {
         assert_eq!((force.energy(&s), force.measure(&s)), (0.0, [0.0; 3]));
     }
     Rung::Identities
-        .asks("Are the forces, lengths, angles and rates that springs and loads report those of their definitions?")
+        .asks("Do springs and loads report forces, lengths, angles and rates that follow their definitions?")
         .within(&worst, 1e-14, "rounding of numbers near one");
 }
