@@ -75,8 +75,13 @@ pub enum RunError {
     /// Even the shortest step is too long for the accuracy of the scene.
     #[error(
         "the accuracy of {accuracy} cannot be reached at t = {t} s: the estimated error of {name} is too large even with a step of \
-         {} s",
-        short(step)
+         {} s{}",
+        short(step),
+        if *in_singular_pose {
+            ", in a singular pose, near which rounding moves the mechanism"
+        } else {
+            ""
+        }
     )]
     Accuracy {
         /// Coordinate with the largest error, or the energy balance.
@@ -87,6 +92,8 @@ pub enum RunError {
         step: f64,
         /// The accuracy asked for.
         accuracy: Accuracy,
+        /// True where the step had to pass a singular pose.
+        in_singular_pose: bool,
     },
     /// The accuracy takes more steps than a run may take.
     #[error(
@@ -191,6 +198,8 @@ pub struct Simulation {
     newton: Newton,
     /// True while steps end in a singular pose whatever their length.
     stays_in_singular_pose: bool,
+    /// True of a step that met a singular pose and was given another length.
+    passes_singular_pose: bool,
     statics: Option<Statics>,
     work: Work,
     state: State,
@@ -274,6 +283,7 @@ impl Simulation {
             locates: scene.integrator.locate_onsets && shape.contacts > 0,
             newton,
             stays_in_singular_pose: false,
+            passes_singular_pose: false,
             statics,
             work,
             meter: Meter::new(scene, &model, &state),
@@ -365,10 +375,12 @@ impl Simulation {
             let goal = self.pacer.goal(self.state.t, target);
             let (mut clamps, mut reached) = self.try_step(goal)?;
             if matches!(self.pacer, Pacer::Controller(_)) {
+                self.passes_singular_pose = false;
                 (clamps, reached) = self.pass_singular_pose((clamps, reached), target)?;
             }
             self.estimate_error();
             if let Pacer::Controller(controller) = &mut self.pacer {
+                controller.expect(self.passes_singular_pose);
                 match controller.judge(
                     &self.model,
                     &mut self.work,
@@ -463,6 +475,7 @@ impl Simulation {
             self.stays_in_singular_pose = meets;
             return Ok(step);
         }
+        self.passes_singular_pose = true;
         let (t, (_, reached)) = (self.state.t, step);
         let longer = (1..=PASSAGES).map(|k| (reached - t) * PASSAGE_RATIO.powi(k));
         let shorter = (1..=PASSAGES).map(|k| (reached - t) * PASSAGE_RATIO.powi(-k));
@@ -631,6 +644,7 @@ impl Simulation {
             t: self.state.t,
             step: self.trial.t - self.state.t,
             accuracy,
+            in_singular_pose: self.passes_singular_pose,
         }
     }
 

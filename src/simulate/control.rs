@@ -20,7 +20,7 @@
 //!
 //! A step with r > 1 is repeated, unless its error is a small part of the allowance that earlier steps have not used. Near a
 //! singular pose rounding is divided by the distance from the pose. It does not fall with the step, so shorter steps would
-//! only accumulate more of it.
+//! only accumulate more of it. The step that passes the pose may use all of that allowance.
 //!
 //! The energy balance needs no estimate: its change in a step is the error of that step. If the scene asks for an accuracy e of
 //! the energy, the changes of a horizon may add up to e: r = |change| H/(h e), and the larger r counts. Every step may change
@@ -54,6 +54,9 @@ const BALANCE_ROUNDING: f64 = 32.0 * f64::EPSILON;
 const LEAST_SHARE: f64 = 1e-5;
 /// Largest part of the unused allowance of earlier steps that one step may use.
 const LARGEST_DRAW: f64 = 1e-3;
+/// After so many rejections in a row no step is expected to be accepted: with changes of 0.2 to 0.9, far more than it takes
+/// from the longest step to the shortest.
+const MOST_REJECTIONS: u32 = 200;
 /// Steps below this part of the duration are refused: they approach the rounding of t.
 const LEAST_PART: f64 = 1e4 * f64::EPSILON;
 
@@ -74,8 +77,10 @@ pub(super) struct Controller {
     last: f64,
     /// Part of the accuracy that earlier steps have not used.
     unused: f64,
-    /// True after a rejection, when the step must not grow.
-    rejected: bool,
+    /// Rejections since the last accepted step; after one the step must not grow.
+    rejected: u32,
+    /// True of a step that passes a singular pose.
+    passes_singular_pose: bool,
     /// Length of the first step after the last onset of each contact.
     first_steps: Vec<f64>,
     /// Contacts that closed at the end of the last step.
@@ -154,7 +159,8 @@ impl Controller {
             next: longest,
             last: 1.0,
             unused: 0.0,
-            rejected: false,
+            rejected: 0,
+            passes_singular_pose: false,
             first_steps: vec![f64::INFINITY; shape.contacts],
             closing: Vec::with_capacity(shape.contacts),
             rejections: vec![0; shape.unknowns + 1],
@@ -166,6 +172,11 @@ impl Controller {
     /// No step is longer \[s\].
     pub fn longest(&self) -> f64 {
         self.longest
+    }
+
+    /// Whether the next step to judge passes a singular pose.
+    pub fn expect(&mut self, passes_singular_pose: bool) {
+        self.passes_singular_pose = passes_singular_pose;
     }
 
     /// The end of the step from t; a step never ends just short of the target.
@@ -240,22 +251,32 @@ impl Controller {
         let h = to.t - from.t;
         let (r, worst) = self.ratio(model, work, from, to, error);
         let share = h / self.accuracy.horizon;
-        let draws = r > 1.0 && r * share <= LARGEST_DRAW * self.unused;
+        let largest_draw = if self.passes_singular_pose {
+            1.0
+        } else {
+            LARGEST_DRAW
+        };
+        let draws = r > 1.0 && r * share <= largest_draw * self.unused;
         let order = self.estimate.order_of_ratio();
         if r.is_nan() || (r > 1.0 && !draws) {
             self.rejections[worst] += 1;
-            self.rejected = true;
+            self.rejected += 1;
             // an r that is not finite counts as far too large
             let change = (SAFETY * r.powf(-1.0 / order)).max(SMALLEST_CHANGE);
             self.next = h * change.min(SAFETY);
-            return match self.next < self.shortest {
+            let stuck = self.next < self.shortest || self.rejected >= MOST_REJECTIONS;
+            return match stuck {
                 true => Verdict::Stuck(worst),
                 false => Verdict::Repeat,
             };
         }
         let r = r.max(LEAST_RATIO);
         let change = SAFETY * r.powf(-0.7 / order) * self.last.powf(0.4 / order);
-        let greatest = if self.rejected { 1.0 } else { GREATEST_CHANGE };
+        let greatest = if self.rejected > 0 {
+            1.0
+        } else {
+            GREATEST_CHANGE
+        };
         let least = if draws { 1.0 } else { SMALLEST_CHANGE };
         let proposed = h * change.clamp(least, greatest);
         self.unused = (self.unused + (1.0 - r) * share).clamp(0.0, 1.0);
@@ -271,7 +292,7 @@ impl Controller {
             self.last = r;
         }
         self.taken = [self.taken[0].min(h), self.taken[1].max(h)];
-        self.rejected = false;
+        self.rejected = 0;
         for (sums, error) in self.sums.iter_mut().zip(&error.v) {
             sums.add(*error);
         }
