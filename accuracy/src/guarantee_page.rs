@@ -116,16 +116,15 @@ fn dearer(entry: &Entry) -> Vec<(f64, f64, f64)> {
     pairs.filter(|(.., factor)| *factor > MORE_STEPS).collect()
 }
 
-/// Messages that differ in their numbers alone, as one: how many runs have it, and the first of them with its run.
+/// Messages that differ in numbers and coordinates alone, as one: how many runs have it, and the first of them with its run.
 fn kinds<'a>(messages: impl Iterator<Item = (&'a str, String)>) -> Vec<(usize, String, String)> {
     let mut found: BTreeMap<String, (usize, String, String)> = BTreeMap::new();
     for (message, run) in messages {
-        let bare = |word: &str| {
-            word.trim_end_matches([',', ':', ';', ')'])
-                .parse::<f64>()
-                .is_err()
+        let common = |word: &&str| {
+            let word = word.trim_end_matches([',', ':', ';', ')', '.']);
+            word.parse::<f64>().is_err() && !word.contains('.')
         };
-        let words: Vec<&str> = message.split(' ').filter(|word| bare(word)).collect();
+        let words: Vec<&str> = message.split(' ').filter(common).collect();
         let kind = found
             .entry(words.join(" "))
             .or_insert((0, message.to_owned(), run));
@@ -134,15 +133,11 @@ fn kinds<'a>(messages: impl Iterator<Item = (&'a str, String)>) -> Vec<(usize, S
     found.into_values().collect()
 }
 
-fn method(entry: &Entry) -> String {
-    entry.method.replace('_', " ")
-}
-
 fn run(entry: &Entry, asked: &Asked) -> String {
     format!(
         "{}, {}, {}",
         entry.scene,
-        method(entry),
+        entry.method,
         si(asked.position, "m")
     )
 }
@@ -170,7 +165,7 @@ fn table(rows: impl Fn(&str, f64) -> String) -> String {
     out += &format!("\n|---|{}\n", "---|".repeat(ACCURACIES.len()));
     for (name, _) in METHODS {
         let cells = ACCURACIES.map(|p| rows(name, p)).join(" | ");
-        out += &format!("| {} | {cells} |\n", name.replace('_', " "));
+        out += &format!("| {} | {cells} |\n", name);
     }
     out
 }
@@ -317,7 +312,7 @@ fn largest(all: &[Judged]) -> String {
             amplification(one.entry),
             digits(one.divided()),
             one.entry.scene,
-            method(one.entry),
+            one.entry.method,
             si(one.run.position, "m"),
             one.run.steps,
         );
@@ -348,7 +343,7 @@ fn steps(entries: &[Entry]) -> String {
                 out,
                 "* {}, {}: {} takes {} times the steps of {}",
                 entry.scene,
-                method(entry),
+                entry.method,
                 si(looser, "m"),
                 digits(factor),
                 si(tighter, "m")
@@ -374,13 +369,13 @@ fn not_judged(entries: &[Entry]) -> String {
     });
     let refused = entries.iter().filter_map(|e| {
         let message = e.refused.as_deref()?.lines().next()?;
-        Some((message, format!("{}, {}", e.scene, method(e))))
+        Some((message, format!("{}, {}", e.scene, e.method)))
     });
     let mut out = format!(
         "\n## Runs that are not judged\n\n\
-         * {} runs came to the end and have no reference that is good enough.\n\
-         * {} runs were given up after {STEPS} steps, and {} were not asked for after them.\n\
-         * {} runs stopped with an error: exit status 3 of the program, or 2 before the first step.\n\nThe errors:\n\n",
+         * At the end, without a reference that is good enough: {}.\n\
+         * Given up after {STEPS} steps: {}; not asked for after them: {}.\n\
+         * Stopped with an error (exit status 3 of the program, or 2 before the first step): {}.\n\nThe errors:\n\n",
         count(|e, r| matches!(r.end, End::Complete(_)) && e.ratio(r).is_none()),
         count(|_, r| r.end == End::TooLong),
         count(|_, r| r.end == End::Skipped),
@@ -431,7 +426,7 @@ fn every(entries: &[Entry]) -> String {
             entry.scene,
             si(entry.facts.horizon, "s"),
             amplification(entry),
-            method(entry),
+            entry.method,
             cells.join(" | ")
         );
     }
@@ -450,14 +445,14 @@ fn figure(entries: &[Entry]) -> Figure {
             Mark::points("", color, &x, &y, 5)
         };
         Panel {
-            title: name.replace('_', " "),
+            title: (*name).to_owned(),
             note: String::new(),
             x: Axis::new("accuracy asked for", "m", 1.0)
                 .log()
                 .over(3e-10, 3e-3),
             y: Axis::new("error achieved / asked for", "", 1.0)
                 .log()
-                .over(1e-6, 1e4),
+                .over(1e-6, 1e5),
             marks: vec![
                 Mark::level("", palette::BLACK, 1.0),
                 dots(palette::BLUE, false),
@@ -531,8 +526,8 @@ mod tests {
         assert!(tally.told().contains("not within"));
         assert_eq!(dearer(&one[0]).len(), 1, "1e-3 takes more steps than 1e-4");
         let text = not_judged(&one);
-        assert!(text.contains("1 runs came to the end and have no reference"));
-        assert!(text.contains("1 runs stopped") && text.contains("at t = 1 s"));
+        assert!(text.contains("reference that is good enough: 1."));
+        assert!(text.contains("first step): 1.") && text.contains("at t = 1 s"));
     }
 
     #[test]
@@ -561,7 +556,7 @@ mod tests {
 
     #[test]
     fn messages_that_differ_in_numbers_are_one() {
-        let messages = ["lost 1e-3 J", "lost 2e-3 J", "gained 1 J"];
+        let messages = ["lost 1e-3 J of a.x", "lost 2e-3 J of b.y", "gained 1 J"];
         let kinds = kinds(messages.into_iter().zip(["a", "b", "c"].map(String::from)));
         let counts: Vec<usize> = kinds.iter().map(|(count, ..)| *count).collect();
         assert_eq!(counts, [1, 2]);
