@@ -6,7 +6,7 @@
 //! more than [`BROUGHT_BACK`] d is brought back to d along the line between the two, and the factors are multiplied
 //! (Benettin et al. 1980, DOI 10.1007/BF02128236).
 
-use crate::guarantee::{ROWS, loose, simulation};
+use crate::guarantee::{ROWS, Rows, loose, simulation};
 use looselink::scene::Scene;
 use looselink::simulate::{RunError, Simulation};
 use looselink::system::State;
@@ -17,17 +17,19 @@ use looselink::system::State;
 pub const NEIGHBOURS: [usize; 2] = [2, 16];
 /// Displacement over the accuracy of both motions: far above what their steps add to it.
 const DISPLACED: f64 = 100.0;
+/// Steps of a displaced motion, over those of a reference, that are too many.
+const MORE_STEPS: u64 = 4;
 /// Part of a displacement below which what the joints leave of it is rounding.
 const LEAST: f64 = 1e-6;
 /// Distance at which a motion is brought back, over the displacement.
 const BROUGHT_BACK: f64 = 10.0;
 
-/// The largest amplification of any neighbouring motion, and 0 where drives leave nothing to displace; none where a motion
+/// The largest amplification of any neighbouring motion; `steps` are those of a reference. It is 0 where drives leave nothing to displace; none where a motion
 /// does not come to the end.
 ///
 /// # Errors
 /// A scene that cannot start.
-pub fn amplification(scene: &Scene, position: f64) -> miette::Result<Option<f64>> {
+pub fn amplification(scene: &Scene, position: f64, steps: u64) -> miette::Result<Option<f64>> {
     let motion = simulation(scene)?;
     let count = NEIGHBOURS[usize::from(loose(scene))];
     let mut neighbours = Vec::new();
@@ -42,7 +44,7 @@ pub fn amplification(scene: &Scene, position: f64) -> miette::Result<Option<f64>
             of_position: k % 2 == 1,
         });
     }
-    Ok(largest(scene, motion, neighbours, DISPLACED * position).ok())
+    Ok(largest(scene, motion, neighbours, DISPLACED * position, steps).ok())
 }
 
 fn largest(
@@ -50,14 +52,16 @@ fn largest(
     mut motion: Simulation,
     mut neighbours: Vec<Neighbour>,
     displacement: f64,
+    steps: u64,
 ) -> Result<f64, RunError> {
     let horizon = scene.simulation.duration;
+    let mut watch = Rows::limited(MORE_STEPS * steps * (1 + neighbours.len() as u64));
     let mut largest = 0.0_f64;
     for row in 0..=ROWS {
         let t = horizon * row as f64 / ROWS as f64;
-        motion.advance_to(t, &mut ())?;
+        motion.advance_to(t, &mut watch)?;
         for neighbour in &mut neighbours {
-            neighbour.simulation.advance_to(t, &mut ())?;
+            neighbour.simulation.advance_to(t, &mut watch)?;
             if row == neighbour.leaves {
                 neighbour.leave(&motion, displacement / horizon)?;
                 let left = horizon * neighbour.distance(|i| neighbour.faster(&motion, i));

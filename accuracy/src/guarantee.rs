@@ -34,15 +34,16 @@ pub const LOOSE_HORIZON: f64 = 0.01;
 /// Recorded rows of a run.
 pub const ROWS: usize = 50;
 /// Steps after which a run is given up.
-pub const STEPS: u64 = 100_000;
+pub const STEPS: u64 = 300_000;
 /// So many accuracies in a row that take more steps end the list of a method.
 pub const GIVEN_UP: usize = 2;
 /// Steps that a reference may take.
 pub const REFERENCE_STEPS: u64 = 2_000_000;
 /// Accuracies of references \[m\].
 const REFERENCES: [f64; 7] = [1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14];
-/// A reference this good is good enough for every accuracy asked for \[m\].
-const GOOD: f64 = 1e-11;
+/// A floor this low is a tenth of the tightest accuracy \[m\]. Where no joint is loose no tighter run is made: near a
+/// singular pose rounding is magnified (`n-four-bar`), and such a run tries its steps without end.
+pub const GOOD: f64 = 1e-10;
 /// Accuracy of neighbouring motions where joints are loose \[m\].
 const CLOSE: f64 = 1e-12;
 /// From this amplification on a motion counts as one that amplifies errors.
@@ -76,7 +77,8 @@ pub struct Facts {
     pub horizon: f64,
     /// Accuracy of the reference, and its floor \[m\]; none where no two runs came to the end.
     pub reference: Option<[f64; 2]>,
-    /// Amplification of the motion; 0 where the drives leave nothing to displace, none where it could not be measured.
+    /// Amplification of the motion; 0 where the drives leave nothing to displace. None without a reference, and where
+    /// displaced motions take far more steps: near a singular pose they may have no way on.
     pub amplification: Option<f64>,
 }
 
@@ -270,9 +272,17 @@ fn work(jobs: &[Job], threads: usize) -> Result<Vec<Entry>> {
 }
 
 /// Keeps the rows, and stops after so many steps.
-struct Rows {
+pub struct Rows {
     rows: Table,
     left: u64,
+}
+
+impl Rows {
+    /// Stops after so many steps.
+    pub fn limited(left: u64) -> Rows {
+        let rows = Vec::new();
+        Rows { rows, left }
+    }
 }
 
 impl Observer for Rows {
@@ -382,7 +392,7 @@ impl Mechanism {
     /// The reference, its floor and the amplification; no rows where there is no reference.
     fn measure(&self) -> Result<(Facts, Table)> {
         let mut best: Option<(f64, Table)> = None;
-        let mut floor = None;
+        let (mut floor, mut steps) = (None, 0);
         for position in REFERENCES {
             let mut simulation = simulation(&self.scene(METHODS[0], position)?)?;
             let (Ok(()), rows) = observe(&mut simulation, REFERENCE_STEPS) else {
@@ -390,8 +400,10 @@ impl Mechanism {
             };
             let apart = best.as_ref().map(|(_, looser)| distance(&rows, looser));
             floor = apart.map(|apart| kept(apart.max(position)));
+            steps = steps.max(simulation.report().steps);
             best = Some((position, rows));
-            if floor.is_some_and(|floor| floor <= 1.001 * GOOD) {
+            let tightest = !loose(&self.scene) && position <= GOOD;
+            if tightest || floor.is_some_and(|floor| floor <= 1.001 * GOOD) {
                 break;
             }
         }
@@ -409,7 +421,7 @@ impl Mechanism {
             true => CLOSE.max(position),
             false => REFERENCES[0],
         };
-        facts.amplification = amplification(&self.scene(METHODS[0], pace)?, pace)?.map(kept);
+        facts.amplification = amplification(&self.scene(METHODS[0], pace)?, pace, steps)?.map(kept);
         Ok((facts, rows))
     }
 }
@@ -439,10 +451,7 @@ pub fn simulation(scene: &Scene) -> Result<Simulation> {
 
 /// Runs to the end; the rows of the positions.
 fn observe(simulation: &mut Simulation, steps: u64) -> (std::result::Result<(), RunError>, Table) {
-    let mut watch = Rows {
-        rows: Vec::new(),
-        left: steps,
-    };
+    let mut watch = Rows::limited(steps);
     let ended = simulation.run(&mut watch);
     let channels = simulation.channels().iter();
     let position: Vec<bool> = channels

@@ -2,7 +2,7 @@
 
 use crate::amplification::NEIGHBOURS;
 use crate::guarantee::{
-    ACCURACIES, AMPLIFIES, Asked, End, Entry, GIVEN_UP, GOAL, LOOSE_HORIZON, METHODS,
+    ACCURACIES, AMPLIFIES, Asked, End, Entry, GIVEN_UP, GOAL, GOOD, LOOSE_HORIZON, METHODS,
     REFERENCE_STEPS, ROWS, STEPS,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -223,16 +223,19 @@ fn page(entries: &[Entry]) -> Result<String> {
          ## What is measured\n\n\
          * **Horizon H**: {} where a joint has clearance, else the duration of the scene. Runs end at the horizon.\n\
          * **Error**: the largest difference from a reference of every recorded coordinate x, y in {ROWS} rows.\n\
-         * **Reference**: Dormand and Prince's method, P tightened tenfold from 10 nm until the floor is 10 pm, a run takes more \
+         * **Reference**: Dormand and Prince's method, P tightened tenfold from 10 nm until the floor is {}, a run takes more \
          than {REFERENCE_STEPS} steps, or it refuses. The floor is the distance of the last two runs, and at least the P of the \
          last. A run counts where the floor is at most a tenth of its P.\n\
          * **Amplification**: an error of a step is one of velocity, dv, which in free flight carries the mechanism d = H·max|dv| \
          away, or one of position, d = max|dq|. Neighbouring motions leave the motion with one or the other. The amplification \
          is the largest distance of positions later on, over d: the largest of {loose} motions where a joint has clearance, of \
-         {others} elsewhere. A motion that comes too far away is brought back (Benettin et al. 1980).\n\
+         {others} elsewhere. A motion that comes too far away is brought back (Benettin et al. 1980). It is \
+         not measured without a reference, nor where displaced motions get stuck near a singular pose; these count as motions that do not \
+         amplify.\n\
          * A run of more than {STEPS} steps is given up and not judged. After {GIVEN_UP} of them in a row a method is not asked \
          for still tighter accuracies of that scene.\n\n",
         si(LOOSE_HORIZON, "s"),
+        si(GOOD, "m"),
     );
     out += "## Motions that do not amplify errors\n\nRuns with a ratio of at most 1; the largest ratio (its scene).\n\n";
     out += &table(|m, p| tallied(&calm, |j| j.ratio, m, p).cell());
