@@ -362,6 +362,42 @@ fn an_accuracy_that_takes_too_many_steps_is_refused() {
     assert!(matches!(begun, RunError::Interrupted { .. }), "{begun}");
 }
 
+/// A position looser than the play of a joint would let stiff links shake contacts open and closed, which takes more steps
+/// than a tight accuracy does.
+#[test]
+fn an_accuracy_looser_than_the_clearance_takes_no_more_steps() {
+    let steps = |position: f64| {
+        let pace = format!("accuracy={{ position = {position:e}, horizon = 0.01 }}");
+        let settings = settings(0.01, 5e-4, "dormand_prince", &pace);
+        let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+        let mut simulation =
+            Simulation::new(&load("3rrr/case4-4elements.toml", &settings)).unwrap();
+        simulation.run(&mut ()).unwrap();
+        simulation.report().steps
+    };
+    let half_the_clearance = steps(1e-5);
+    assert_eq!(steps(1e-3), half_the_clearance);
+    assert_ne!(steps(1e-6), half_the_clearance);
+}
+
+/// Near a singular pose rounding may exceed an accuracy in steps of any length. A run that no step takes further ends.
+#[test]
+fn rejections_in_a_singular_pose_come_to_an_end() {
+    let settings = [
+        "simulation.duration=2.0",
+        "integrator.method=trapezoidal",
+        "integrator.accuracy={ position = 1e-8, horizon = 10.0 }",
+    ];
+    let mut simulation = Simulation::new(&load("n-four-bar.toml", &settings)).unwrap();
+    match simulation.run(&mut ()) {
+        Ok(()) => {}
+        Err(error @ RunError::Accuracy { .. }) => {
+            assert!(error.to_string().contains("in a singular pose"), "{error}");
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
 /// An explicit method at its limit of stability shakes a stiff blade by less than the accuracy allows. That is more energy
 /// than the slow start has supplied, and no reason to stop the run.
 #[test]

@@ -22,6 +22,9 @@
 //! singular pose rounding is divided by the distance from the pose. It does not fall with the step, so shorter steps would
 //! only accumulate more of it. The step that passes the pose may use all of that allowance.
 //!
+//! In a mechanism with clearance p is at most half the smallest clearance: a looser position would not tell contact from free
+//! flight.
+//!
 //! The energy balance needs no estimate: its change in a step is the error of that step. If the scene asks for an accuracy e of
 //! the energy, the changes of a horizon may add up to e: r = |change| H/(h e), and the larger r counts. Every step may change
 //! the balance by 1e-5 e, however short it is: below that, rounding of positions in stiff contacts would count as an error.
@@ -36,12 +39,15 @@
 use super::meter::lengths;
 use crate::model::Model;
 use crate::newton::Response;
-use crate::scene::{Accuracy, Scene};
+use crate::scene::{Accuracy, JointModel, Scene};
 use crate::stepper::{Estimate, LocalError};
 use crate::system::{State, Work};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+/// Largest useful accuracy, over the smallest clearance: steps that follow a looser one do not tell contact from free flight,
+/// and take more of them.
+const OF_CLEARANCE: f64 = 0.5;
 const SAFETY: f64 = 0.9;
 /// Smallest and largest ratio of a step to the previous one.
 const SMALLEST_CHANGE: f64 = 0.2;
@@ -64,6 +70,8 @@ const LEAST_PART: f64 = 1e4 * f64::EPSILON;
 #[derive(Debug)]
 pub(super) struct Controller {
     accuracy: Accuracy,
+    /// The accuracy of positions that the steps follow \[m\].
+    position: f64,
     estimate: Estimate,
     /// Metres per unit of each unknown.
     lengths: Vec<f64>,
@@ -142,13 +150,26 @@ pub(super) enum Verdict {
     Stuck(usize),
 }
 
+/// The smallest clearance of a joint \[m\]; infinite without one.
+fn smallest_clearance(scene: &Scene) -> f64 {
+    let clearances = scene.joints.iter().filter_map(|joint| match &joint.model {
+        JointModel::Clearance(contact) => Some(contact.clearance),
+        _ => None,
+    });
+    clearances.fold(f64::INFINITY, f64::min)
+}
+
 impl Controller {
     /// For a stepper that has an estimate.
     pub fn new(scene: &Scene, model: &Model, accuracy: Accuracy, estimate: Estimate) -> Controller {
         let shape = model.shape();
+        let position = accuracy
+            .position
+            .min(OF_CLEARANCE * smallest_clearance(scene));
         let longest = scene.output.interval.min(accuracy.horizon);
         Controller {
             accuracy,
+            position,
             estimate,
             lengths: lengths(scene, model),
             response: model
@@ -202,9 +223,7 @@ impl Controller {
         error: &LocalError,
     ) -> (f64, usize) {
         let Accuracy {
-            position,
-            energy,
-            horizon,
+            energy, horizon, ..
         } = self.accuracy;
         let h = to.t - from.t;
         let steps = horizon / h;
@@ -225,7 +244,7 @@ impl Controller {
                 largest = (error, i);
             }
         }
-        let of_position = largest.0 / position;
+        let of_position = largest.0 / self.position;
         if let Some(energy) = energy {
             let [(before, _), (after, size)] = [from, to].map(|s| model.energies(s).balance(s));
             let change = ((after - before).abs() - BALANCE_ROUNDING * size).max(0.0);
