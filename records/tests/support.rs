@@ -7,7 +7,9 @@ use tempfile::TempDir;
 use walkdir::{DirEntry, WalkDir};
 
 /// Endings of what is copied.
-const COPIED: [&str; 8] = ["rs", "toml", "cpp", "hpp", "h", "csv", "md", "json"];
+const COPIED: [&str; 9] = [
+    "rs", "toml", "cpp", "hpp", "h", "csv", "md", "json", "jsonl",
+];
 
 pub struct Copy(TempDir);
 
