@@ -24,8 +24,8 @@ const LEAST: f64 = 1e-6;
 /// Distance at which a motion is brought back, over the displacement.
 const BROUGHT_BACK: f64 = 10.0;
 
-/// The largest amplification of any neighbouring motion; `steps` are those of a reference. It is 0 where drives leave nothing to displace; none where a motion
-/// does not come to the end.
+/// The largest amplification of any neighbouring motion; `steps` are those of a reference. It is 0 where drives leave nothing
+/// to displace; none where a motion does not come to the end.
 ///
 /// # Errors
 /// A scene that cannot start.

@@ -41,8 +41,8 @@ pub const GIVEN_UP: usize = 2;
 pub const REFERENCE_STEPS: u64 = 2_000_000;
 /// Accuracies of references \[m\].
 const REFERENCES: [f64; 7] = [1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14];
-/// A floor this low is a tenth of the tightest accuracy \[m\]. Where no joint is loose no tighter run is made: near a
-/// singular pose rounding is magnified (`n-four-bar`), and such a run tries its steps without end.
+/// A floor this low is a tenth of the tightest accuracy \[m\]. Where no joint is loose no tighter run is made: none is needed,
+/// and near a singular pose rounding is magnified (`n-four-bar`), so that it would be refused.
 pub const GOOD: f64 = 1e-10;
 /// Accuracy of neighbouring motions where joints are loose \[m\].
 const CLOSE: f64 = 1e-12;

@@ -212,11 +212,11 @@ fn page(entries: &[Entry]) -> Result<String> {
     let mut scenes: Vec<&Entry> = entries.iter().collect();
     scenes.dedup_by_key(|entry| &entry.scene);
     let planned = scenes.len() * METHODS.len() * ACCURACIES.len();
-    let with_error = |entry: &&Entry| {
-        let runs = entry.runs.iter();
-        runs.filter(|run| entry.ratio(run).is_some()).count()
-    };
-    let complete: usize = entries.iter().map(|entry| with_error(&entry)).sum();
+    let with_ratio = entries.iter().map(|entry| {
+        let ratios = entry.runs.iter().filter_map(|run| entry.ratio(run));
+        ratios.count()
+    });
+    let set_aside = with_ratio.sum::<usize>() - all.len();
     let prescribed = scenes.iter().filter(|entry| is_prescribed(entry)).count();
     let mut out = format!(
         "# Is the accuracy reached that was asked for?\n\n{}\n\
@@ -243,7 +243,7 @@ fn page(entries: &[Entry]) -> Result<String> {
         METHODS.len(),
         ACCURACIES.len(),
         all.len(),
-        complete - all.len(),
+        set_aside,
     );
     let missing = scenes.len() * METHODS.len() - entries.len();
     if missing > 0 {
