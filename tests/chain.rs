@@ -8,6 +8,8 @@ use looselink::system::{PrescribeError, Shape, State, System, Weights, Work};
 pub struct Chain {
     pub masses: Vec<f64>,
     pub springs: Vec<f64>,
+    /// States after this time cannot be prescribed.
+    pub prescribed_until: f64,
     symbolic: Symbolic,
     level_symbolic: Symbolic,
 }
@@ -22,6 +24,7 @@ impl Chain {
         Chain {
             masses,
             springs,
+            prescribed_until: f64::INFINITY,
             symbolic: Symbolic::analyse(n, &cliques, &vec![vec![]; n]),
             level_symbolic: Symbolic::analyse(n, &[], &vec![vec![]; n]),
         }
@@ -57,8 +60,14 @@ impl System for Chain {
             inner: None,
         }
     }
-    fn prescribe(&self, _: &State, _: &mut State, _: &mut Work) -> Result<(), PrescribeError> {
-        Ok(())
+    fn prescribe(&self, _: &State, to: &mut State, _: &mut Work) -> Result<(), PrescribeError> {
+        match to.t > self.prescribed_until {
+            true => Err(PrescribeError {
+                message: "the motion ends".to_owned(),
+                t: to.t,
+            }),
+            false => Ok(()),
+        }
     }
     fn momentum(&self, x: &[f64], out: &mut [f64]) {
         for ((out, m), x) in out.iter_mut().zip(&self.masses).zip(x) {

@@ -6,6 +6,8 @@ mod contact;
 mod differencing;
 mod joints;
 mod link;
+mod look_ahead;
+mod rounding;
 #[path = "published/spectra.rs"]
 mod spectra;
 mod steppers;
