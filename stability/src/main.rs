@@ -1,5 +1,6 @@
 //! Makes the maps and the checks of hard cases and writes STABILITY.md.
 
+mod alarms;
 mod soak;
 
 use clap::{Parser, Subcommand};
@@ -32,6 +33,11 @@ enum Command {
     Long,
     /// Runs many random scenes and writes the tally to stability/records/soak.json.
     Soak(soak::Arguments),
+    /// Runs every dynamic scene with every method, six steps and twelve intervals of rows, and judges what is stopped as unstable.
+    Alarms {
+        /// Paths below `scenes/`, without the ending, such as hard/chatter; all when there are none.
+        scenes: Vec<String>,
+    },
     /// Prints one scene of a soak.
     Scene {
         /// The seed of the soak.
@@ -47,6 +53,7 @@ fn main() -> Result<()> {
         None => write_page(),
         Some(Command::Map { name }) => show_map(&name),
         Some(Command::Long) => long(),
+        Some(Command::Alarms { scenes }) => alarms::alarms(&root()?, &scenes),
         Some(Command::Soak(arguments)) => soak::soak(&arguments),
         Some(Command::Scene { seed, index }) => {
             print!("{}", scene(seed, index).text);
