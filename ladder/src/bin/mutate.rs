@@ -92,6 +92,8 @@ fn main() -> Result<()> {
     let mut command = Command::new("cargo");
     command.arg("mutants").current_dir(&root).args(kernels());
     command.args(["--profile", "mutants"]);
+    // each job builds in a folder of its own: jobs that wait for a shared one count as timeouts
+    command.env_remove("CARGO_TARGET_DIR");
     command.args(["--jobs", &arguments.jobs.to_string()]);
     command.arg("--output").arg(&output);
     for name in &drawn {
