@@ -70,13 +70,15 @@ fn largest(
                 } else {
                     0.0
                 };
-            } else if neighbour.displacement == 0.0 {
-            } else if neighbour.of_position && row == neighbour.leaves + 1 {
+            } else if neighbour.displacement > 0.0
+                && neighbour.of_position
+                && row == neighbour.leaves + 1
+            {
                 // what a row makes of a velocity is a displacement that the joints allow
                 let way = neighbour.distance(|i| neighbour.apart(&motion, i));
                 neighbour.displacement = displacement;
                 neighbour.bring_back(&motion, [displacement / way, 0.0])?;
-            } else {
+            } else if neighbour.displacement > 0.0 {
                 largest = largest.max(neighbour.grown(&motion)?);
             }
         }
