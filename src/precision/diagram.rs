@@ -189,7 +189,7 @@ fn against_pace(outcome: &Outcome, asked: bool) -> Panel {
     }
     let (title, label, unit) = match asked {
         true => (
-            "Error of position against the requested accuracy",
+            "Error of position against the accuracy",
             "Requested accuracy",
             "m",
         ),
