@@ -212,8 +212,16 @@ fn an_accuracy_replaces_the_step() {
     );
     let output = inspect(&[SCENE, "--accuracy", "1e-9"]);
     expect(&output, 2, "missing key `horizon` in integrator.accuracy");
-    let output = inspect(&[SCENE, "--accuracy", "1e-9 m"]);
-    expect(&output, 2, "--set:1:");
+    for (typed, message) in [
+        ("1e-9 m", "`1e-9 m` lacks a key"),
+        ("position=1nm", "`1nm` is not a number"),
+        ("position=0,001", "`001` lacks a key"),
+        ("positon=1e-6", "unknown key `positon`"),
+    ] {
+        let output = inspect(&[SCENE, "--accuracy", typed]);
+        expect(&output, 2, message);
+        expect(&output, 2, "for example `position=1e-9,horizon=0.01`");
+    }
 }
 
 fn warnings(value: &serde_json::Value) -> Vec<String> {
@@ -412,6 +420,30 @@ fn usage_errors() {
 }
 
 #[test]
+fn every_field_of_a_summary_is_documented() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let accuracy = "position=1e-8,horizon=0.02";
+    expect(&run(&out, &["--accuracy", accuracy]), 0, "");
+    let page = fs::read_to_string("docs/scene.md").unwrap();
+    let table = page.split("`summary.json` has the fields below").nth(1);
+    let table = table.unwrap().split("\n\n").nth(1).unwrap();
+    let summary = summary(&out);
+    for field in summary.as_object().unwrap().keys() {
+        let parts = summary[field]
+            .as_object()
+            .filter(|_| field == "integration");
+        let parts = parts.map_or(vec![field.clone()], |parts| {
+            let whole = |part: &String| format!("integration.{}", part.trim_end_matches("_of"));
+            parts.keys().map(whole).collect()
+        });
+        for name in parts {
+            assert!(table.contains(&format!("`{name}`")), "{name}");
+        }
+    }
+}
+
+#[test]
 fn check_and_inspect() {
     let output = looselink(&["check", SCENE]);
     expect(&output, 0, "");
@@ -421,6 +453,16 @@ fn check_and_inspect() {
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(text.contains("unknown coordinates   3\n"), "{text}");
     assert!(text.contains("0.9132"), "{text}");
+    assert!(text.contains("stiffness K = "), "{text}");
+    let output = looselink(&["inspect", "scenes/slider-crank/both.toml"]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    // density times area times length: 7800 kg/m^3, 5 mm by 44.87 mm, 120 mm
+    for line in [
+        "rod                 0.21 kg, centre of mass at x = 0.11 m",
+        "slider              0.14 kg",
+    ] {
+        assert!(text.contains(line), "{text}");
+    }
     let output = looselink(&["inspect", SCENE, "--json"]);
     expect(&output, 0, "");
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();

@@ -49,6 +49,12 @@ impl Failure {
         let (code, message) = match error {
             RunError::Interrupted { .. } => (INTERRUPTED, error.to_string()),
             RunError::Output(_) => (SYSTEM, error.to_string()),
+            RunError::Unaffordable { .. } => (
+                CANNOT_GO_ON,
+                format!(
+                    "the run stops at its first step: {error}; another method may take fewer steps"
+                ),
+            ),
             _ => (CANNOT_GO_ON, format!("the run cannot go on: {error}")),
         };
         Failure {

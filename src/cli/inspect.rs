@@ -3,9 +3,9 @@
 use super::failure::Failure;
 use super::{SceneArguments, print};
 use clap::Args;
-use looselink::scene::{Analysis, Pace, Scene};
+use looselink::scene::{Analysis, BodyKind, JointModel, Pace, Scene};
 use looselink::simulate::{Inspection, Simulation};
-use plot::exact;
+use plot::{exact, number};
 use std::fmt::Write;
 
 #[derive(Debug, Args)]
@@ -72,6 +72,12 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
     ] {
         line(&mut out, &format!("  {name:<22}{value}"));
     }
+    list(
+        &mut out,
+        "Masses and poses at the start",
+        &bodies(scene, simulation),
+    );
+    list(&mut out, "Joints with clearance", &clearances(scene));
     list(&mut out, "Assumptions and notes", &inspection.assumptions);
     list(&mut out, "Unknown coordinates", &inspection.coordinates);
     list(&mut out, "Constraints", &inspection.constraints);
@@ -81,6 +87,48 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
         .map(|c| format!("{} [{}]", c.name, c.unit));
     list(&mut out, "Channels", &channels.collect::<Vec<_>>());
     out
+}
+
+/// Mass and pose of every body that moves, and the total mass.
+fn bodies(scene: &Scene, simulation: &Simulation) -> Vec<String> {
+    let mut total = 0.0;
+    let mut lines = Vec::new();
+    for (index, body) in scene.bodies.iter().enumerate() {
+        let mass = match &body.kind {
+            BodyKind::Ground { .. } => continue,
+            BodyKind::Link(link) => link.density * link.area * link.length,
+            BodyKind::Rigid(rigid) => rigid.mass,
+            BodyKind::PointMass { mass } => *mass,
+            BodyKind::Moving { .. } => 0.0,
+        };
+        total += mass;
+        let [x, y, theta] = simulation.model().pose(index, simulation.state()).position;
+        let [mass, x, y, degrees] = [mass, x, y, theta.to_degrees()].map(|value| number(value, 4));
+        lines.push(format!(
+            "{:<20}{mass} kg, centre of mass at x = {x} m, y = {y} m, turned by {degrees} degrees",
+            body.name
+        ));
+    }
+    lines.push(format!("{:<20}{} kg", "all bodies", number(total, 4)));
+    lines
+}
+
+/// Stiffness and clearance of every contact.
+fn clearances(scene: &Scene) -> Vec<String> {
+    let mut lines = Vec::new();
+    for joint in &scene.joints {
+        if let JointModel::Clearance(contact) = &joint.model {
+            lines.push(format!(
+                "{:<20}clearance {} m, bearing radius {} m, stiffness K = {} N/m^{}",
+                joint.name,
+                exact(contact.clearance),
+                exact(contact.bearing_radius),
+                number(contact.stiffness, 4),
+                exact(contact.exponent)
+            ));
+        }
+    }
+    lines
 }
 
 fn list(out: &mut String, title: &str, entries: &[String]) {

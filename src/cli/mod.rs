@@ -63,21 +63,44 @@ struct SceneArguments {
     overrides: Vec<String>,
     /// Choose the steps by their estimated error: the allowed error of positions \[m\] and of the energy balance \[J\], and the
     /// time \[s\] over which errors may accumulate, for example `position=1e-9,horizon=0.01`; a number alone is the position.
-    #[arg(long, value_name = "position=M[,energy=J][,horizon=S]")]
+    #[arg(long, value_name = "position=M[,energy=J][,horizon=S]", value_parser = accuracy)]
     accuracy: Option<String>,
+}
+
+/// Checks the keys and numbers of an accuracy. A number alone is the position.
+fn accuracy(text: &str) -> Result<String, String> {
+    const EXAMPLE: &str = "for example `position=1e-9,horizon=0.01`";
+    let alone = text.parse::<f64>().is_ok();
+    let text = if alone {
+        format!("position={text}")
+    } else {
+        text.to_owned()
+    };
+    for part in text.split(',') {
+        let Some((key, number)) = part.split_once('=') else {
+            return Err(format!(
+                "`{part}` lacks a key; commas separate the keys, numbers have a decimal point: {EXAMPLE}"
+            ));
+        };
+        if !["position", "energy", "horizon"].contains(&key.trim()) {
+            return Err(format!(
+                "unknown key `{key}`; the keys are `position` [m], `energy` [J] and `horizon` [s]: {EXAMPLE}"
+            ));
+        }
+        if number.trim().parse::<f64>().is_err() {
+            return Err(format!(
+                "`{number}` is not a number; units are not written, all are SI units: {EXAMPLE}"
+            ));
+        }
+    }
+    Ok(text)
 }
 
 impl SceneArguments {
     fn load(&self) -> Result<(Scene, Simulation), SceneError> {
         let mut overrides = self.overrides.clone();
-        overrides.extend(self.accuracy.as_ref().map(|accuracy| {
-            let key = if accuracy.contains('=') {
-                ""
-            } else {
-                "position="
-            };
-            format!("integrator.accuracy={{ {key}{accuracy} }}")
-        }));
+        let accuracy = self.accuracy.as_ref();
+        overrides.extend(accuracy.map(|a| format!("integrator.accuracy={{ {a} }}")));
         let scene = Scene::load(&self.scene, &overrides)?;
         let simulation = Simulation::new(&scene)?;
         Ok((scene, simulation))
