@@ -38,7 +38,7 @@ use crate::scene::{Accuracy, Analysis, Method, Pace, Scene, SceneError};
 use crate::statics::Statics;
 use crate::stepper::{LocalError, StepError, Stepper, look_ahead, stepper};
 use crate::system::{PrescribeError, State, System, Work};
-use control::{Controller, Verdict};
+use control::{Candidate, Controller, Verdict};
 use pace::Pacer;
 use stall::{Stall, Stalled};
 
@@ -380,15 +380,14 @@ impl Simulation {
             }
             self.estimate_error();
             if let Pacer::Controller(controller) = &mut self.pacer {
-                controller.expect(self.passes_singular_pose);
-                match controller.judge(
-                    &self.model,
-                    &mut self.work,
-                    &self.state,
-                    &self.trial,
-                    &self.local_error,
+                let step = Candidate {
+                    from: &self.state,
+                    to: &self.trial,
+                    error: &self.local_error,
                     goal,
-                ) {
+                    passes_singular_pose: self.passes_singular_pose,
+                };
+                match controller.judge(&self.model, &mut self.work, &step) {
                     Verdict::Keep if self.counters.steps == 0 => self.foresee()?,
                     Verdict::Keep => {}
                     Verdict::Repeat => continue,
@@ -582,10 +581,8 @@ impl Simulation {
         {
             return Err(self.failed(failure.into(), 0.0));
         }
-        // with an accuracy a gain is an error that was allowed, and a step that is too long is taken again
         if self.scene.simulation.analysis == Analysis::Dynamic
             && let Err(gain) = meter.row(model, output)
-            && matches!(self.pacer, Pacer::Grid(_))
         {
             return Err(self.unstable(gain));
         }

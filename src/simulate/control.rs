@@ -87,8 +87,6 @@ pub(super) struct Controller {
     unused: f64,
     /// Rejections since the last accepted step; after one the step must not grow.
     rejected: u32,
-    /// True of a step that passes a singular pose.
-    passes_singular_pose: bool,
     /// Length of the first step after the last onset of each contact.
     first_steps: Vec<f64>,
     /// Contacts that closed at the end of the last step.
@@ -140,6 +138,16 @@ pub struct AccuracyReport {
     pub rejected_by: BTreeMap<String, u64>,
 }
 
+/// A step to judge, before it is cut where a contact changes.
+pub(super) struct Candidate<'a> {
+    pub from: &'a State,
+    pub to: &'a State,
+    pub error: &'a LocalError,
+    /// Where it was meant to end \[s\].
+    pub goal: f64,
+    pub passes_singular_pose: bool,
+}
+
 /// Verdict on a step.
 pub(super) enum Verdict {
     /// It is kept.
@@ -181,7 +189,6 @@ impl Controller {
             last: 1.0,
             unused: 0.0,
             rejected: 0,
-            passes_singular_pose: false,
             first_steps: vec![f64::INFINITY; shape.contacts],
             closing: Vec::with_capacity(shape.contacts),
             rejections: vec![0; shape.unknowns + 1],
@@ -193,11 +200,6 @@ impl Controller {
     /// No step is longer \[s\].
     pub fn longest(&self) -> f64 {
         self.longest
-    }
-
-    /// Whether the next step to judge passes a singular pose.
-    pub fn expect(&mut self, passes_singular_pose: bool) {
-        self.passes_singular_pose = passes_singular_pose;
     }
 
     /// The end of the step from t; a step never ends just short of the target.
@@ -214,14 +216,10 @@ impl Controller {
     }
 
     /// r, and the index of the unknown with the largest error, or the number of unknowns for the energy balance.
-    fn ratio(
-        &mut self,
-        model: &Model,
-        work: &mut Work,
-        from: &State,
-        to: &State,
-        error: &LocalError,
-    ) -> (f64, usize) {
+    fn ratio(&mut self, model: &Model, work: &mut Work, step: &Candidate) -> (f64, usize) {
+        let Candidate {
+            from, to, error, ..
+        } = *step;
         let Accuracy {
             energy, horizon, ..
         } = self.accuracy;
@@ -257,20 +255,12 @@ impl Controller {
         (of_position, largest.1)
     }
 
-    /// Accepts or rejects a step, before it is cut where a contact changes.
-    pub fn judge(
-        &mut self,
-        model: &Model,
-        work: &mut Work,
-        from: &State,
-        to: &State,
-        error: &LocalError,
-        goal: f64,
-    ) -> Verdict {
-        let h = to.t - from.t;
-        let (r, worst) = self.ratio(model, work, from, to, error);
+    /// Accepts or rejects a step.
+    pub fn judge(&mut self, model: &Model, work: &mut Work, step: &Candidate) -> Verdict {
+        let h = step.to.t - step.from.t;
+        let (r, worst) = self.ratio(model, work, step);
         let share = h / self.accuracy.horizon;
-        let largest_draw = if self.passes_singular_pose {
+        let largest_draw = if step.passes_singular_pose {
             1.0
         } else {
             LARGEST_DRAW
@@ -303,7 +293,7 @@ impl Controller {
             self.first_steps[contact] = proposed;
         }
         // a step shortened by a recorded row is no basis for the next one
-        let shortened = to.t == goal && h < (1.0 - 1e-9) * self.next;
+        let shortened = step.to.t == step.goal && h < (1.0 - 1e-9) * self.next;
         if shortened {
             self.next = self.next.max(proposed);
         } else {
@@ -312,7 +302,7 @@ impl Controller {
         }
         self.taken = [self.taken[0].min(h), self.taken[1].max(h)];
         self.rejected = 0;
-        for (sums, error) in self.sums.iter_mut().zip(&error.v) {
+        for (sums, error) in self.sums.iter_mut().zip(&step.error.v) {
             sums.add(*error);
         }
         Verdict::Keep

@@ -21,7 +21,7 @@
 //! the largest acceleration whose changes move points by more than rounding.
 
 use crate::model::{BodyCoordinates, Model};
-use crate::scene::{BodyKind, Scene};
+use crate::scene::{BodyKind, Pace, Scene};
 use crate::stepper::LocalError;
 use crate::system::{Integral, State};
 use serde::Serialize;
@@ -33,7 +33,7 @@ const SLOPE_WAY: f64 = 4.0 / 27.0;
 const LEAST_SHARE: f64 = 0.1;
 /// nor do those whose changes h^2 da are below this part of the largest range of motion, which are rounding.
 const SHAKEN: f64 = 1e-9;
-/// A run is stopped when the integrator has gained this many times the larger of the energy supplied and [`plain_motion`].
+/// A run with equal steps is stopped when the integrator has gained this many times the larger of the energy supplied and [`plain_motion`].
 const UNSTABLE: f64 = 10.0;
 
 /// What was measured of the integrator.
@@ -66,6 +66,8 @@ pub(super) struct Meter {
     turnover: f64,
     dissipated: f64,
     initial: Option<Initial>,
+    /// [`UNSTABLE`]; infinite with an accuracy, where a gain is an error that was allowed.
+    unstable: f64,
     /// Largest energy supplied so far: that at the start plus the work of drives, loads and weight.
     supplied: f64,
     /// See [`plain_motion`].
@@ -222,6 +224,10 @@ impl Meter {
             turnover: 0.0,
             dissipated: 0.0,
             initial: None,
+            unstable: match scene.integrator.pace {
+                Pace::Step(_) => UNSTABLE,
+                Pace::Accuracy(_) => f64::INFINITY,
+            },
             supplied: 0.0,
             plain: plain_motion(scene, model, start),
             elapsed: 0.0,
@@ -269,7 +275,7 @@ impl Meter {
         let weight = (energies.gravity - initial.gravity).abs();
         self.supplied = self.supplied.max(initial.turnover + work + weight);
         let supplied = self.supplied;
-        let bound = UNSTABLE * supplied.max(self.plain) + f64::EPSILON.sqrt() * size;
+        let bound = self.unstable * supplied.max(self.plain) + f64::EPSILON.sqrt() * size;
         match -lost > bound || !lost.is_finite() {
             true => Err(Gain {
                 gained: -lost,
