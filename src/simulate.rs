@@ -20,8 +20,8 @@ pub use crate::record::Channel;
 pub use closures::Chatter;
 use closures::Closures;
 pub use control::AccuracyReport;
-pub use impacts::Impact;
 use impacts::Impacts;
+pub use impacts::{Impact, Overrun};
 pub use meter::Integration;
 use meter::{Gain, Meter};
 pub use observer::{Contact, Control, End, Notice, Observer, Onset, Progress};
@@ -75,7 +75,7 @@ pub enum RunError {
     /// Even the shortest step is too long for the accuracy of the scene.
     #[error(
         "the accuracy of {accuracy} cannot be reached at t = {t} s: the estimated error of {name} is too large even with a step of \
-         {} s{}",
+         {} s{}; a larger `position`, a shorter `horizon` or a method of higher order may help",
         short(step),
         if *in_singular_pose {
             ", in a singular pose, near which rounding moves the mechanism"
@@ -262,7 +262,7 @@ impl Simulation {
                 })?;
         }
         model.powers(&mut state, &mut work);
-        let mut impacts = Impacts::new(shape.contacts);
+        let mut impacts = Impacts::new(scene, &model);
         for &(contact, velocity, delta) in &started {
             impacts.begin(&model, contact, [delta, velocity], &state);
         }

@@ -31,7 +31,7 @@ fn a_look_ahead_extrapolates_by_the_length_of_the_step() {
     let [to, ahead] = ahead(&chain);
     let h = TIMES[1] - TIMES[0];
     assert_eq!(ahead.t, to.t + h);
-    let mut k_q = vec![0.0; 2];
+    let mut k_q = [0.0; 2];
     for i in 0..2 {
         assert_eq!(ahead.q[i], to.q[i] + h * to.v[i] + 0.5 * h * h * to.a[i]);
         assert_eq!(ahead.v[i], to.v[i] + h * to.a[i]);

@@ -5,7 +5,7 @@
 //! [`REFERENCE_STEPS`]; its floor is its distance from a run ten times looser, and not below the accuracy it was asked for.
 
 use crate::amplification::amplification;
-use looselink::scene::{Analysis, JointModel, Scene};
+use looselink::scene::{Analysis, Scene};
 use looselink::simulate::{Control, Observer, Progress, RunError, Simulation};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use records::Digests;
@@ -437,8 +437,7 @@ fn not_made(position: f64, end: End) -> Asked {
 
 /// True where a joint has clearance.
 pub fn loose(scene: &Scene) -> bool {
-    let mut joints = scene.joints.iter();
-    joints.any(|joint| matches!(joint.model, JointModel::Clearance(_)))
+    scene.smallest_clearance().is_some()
 }
 
 /// The scene, ready to run.

@@ -11,16 +11,19 @@ pub struct Settings {
     /// Fine step (s): cases 2, 3 and 4.
     #[arg(long, default_value_t = 1.25e-6)]
     pub fine: f64,
-    /// Coarse step (s): case 2 again, and case 1.
-    #[arg(long, default_value_t = 1e-4)]
+    /// Coarse step (s): case 2 again, and case 1. With 100 us the integrator changes the energy of case 2 by up to 18 % of the
+    /// elastic energy, with 40 us by less than 5 %.
+    #[arg(long, default_value_t = 4e-5)]
     pub coarse: f64,
     /// Time between recorded rows of the fine runs (s).
     #[arg(long, default_value_t = 1e-5)]
     pub interval: f64,
-    /// Step of the finer of the two many-period runs of case 2, and of the run with stiffer links (s); the coarser has twice
-    /// the step.
+    /// Step of the finer of the two many-period runs of case 2 (s); the coarser has twice the step.
     #[arg(long, default_value_t = 2e-5)]
     pub section_step: f64,
+    /// Step of the run of case 2 with stiffer links (s).
+    #[arg(long, default_value_t = 5e-6)]
+    pub stiffer_step: f64,
     /// Periods of the stroboscopic sections, after those that are left out.
     #[arg(long, default_value_t = 32)]
     pub periods: u32,
@@ -57,8 +60,8 @@ pub struct Campaign {
     pub loose: Recording,
     /// Case 4, fine.
     pub both: Recording,
-    /// Case 2 with ten times the Young's modulus. It needs a finer step than `coarse`, with which the integrator gains nine
-    /// times the largest elastic energy.
+    /// Case 2 with ten times the Young's modulus. With 100 us the integrator gains up to nine times the largest elastic
+    /// energy, with 20 us it changes it by up to 24 %, with 5 us by 1.6 %.
     pub stiffer: Recording,
     /// Many periods: case 2 with twice the step, then cases 2, 3 and 4.
     pub sections: [Recording; 4],
@@ -88,7 +91,7 @@ impl Campaign {
             short(2, s.coarse),
             short(3, s.fine),
             short(4, s.fine),
-            short(2, s.section_step).with(passive, format!("{:e}", 10.0 * modulus)),
+            short(2, s.stiffer_step).with(passive, format!("{:e}", 10.0 * modulus)),
             long(2, Pace::bathe(2.0 * s.section_step)),
             long(2, Pace::bathe(s.section_step)),
             long(3, Pace::Controlled),

@@ -166,12 +166,15 @@ pub fn deviation(g: &Geometry, recording: &Recording, from: f64, to: f64) -> Vec
     pairs.map(|(&t, a)| a - g.acceleration_x(t)).collect()
 }
 
-/// Energy that the integrator lost (positive) or gained, over that dissipated in contacts; where nothing dissipates, over
-/// the largest elastic energy of the links.
+/// Largest energy that the integrator has lost (positive) or gained by any row, over that dissipated in contacts; where
+/// nothing dissipates, over the largest elastic energy of the links.
 pub fn energy_lost(recording: &Recording) -> f64 {
-    let Some(ledger) = &recording.report.ledger else {
+    let report = &recording.report;
+    let (Some(ledger), Some(integration)) = (&report.ledger, &report.integration) else {
         return f64::NAN;
     };
+    let [least, greatest] = integration.lost;
+    let lost = if -least > greatest { least } else { greatest };
     let of = if recording.plan.case >= 3 {
         ledger.contact_dissipated
     } else {
@@ -179,7 +182,7 @@ pub fn energy_lost(recording: &Recording) -> f64 {
         let bending = recording.column("energy.bending");
         axial.zip(bending).map(|(a, b)| a + b).fold(0.0, f64::max)
     };
-    ledger.numerical / of
+    lost / of
 }
 
 /// The bound of the error along x over the last two cycles \[m\]: sum_i |J^-1|_{xi} s_i, where the slack s_i of a

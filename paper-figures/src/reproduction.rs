@@ -270,7 +270,7 @@ fn stiffness_argument(c: &Campaign, numbers: &mut Numbers) -> String {
 
 fn runs_table(e: &Evidence, numbers: &mut Numbers) -> String {
     let mut table = String::from(
-        "## The runs\n\n\"Energy lost\" is the energy lost by the integrator (negative: gained), over the contact \
+        "## The runs\n\n\"Energy lost\" is the largest energy that the integrator has lost (negative: gained) by any row, over the contact \
          dissipation or, in case 2, over the largest elastic energy.\n\n\
          | run | scene | changed | duration | method | steps | Newton iterations | onsets | energy lost | warnings |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",

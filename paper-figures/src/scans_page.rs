@@ -213,8 +213,8 @@ pub fn page(scans: &[Scan], record: &Record, numbers: &mut Numbers) -> String {
          Cases 3 and 4 are chaotic, and each value comes from one run. A difference between rows is significant only where \
          it exceeds the spread of an ensemble; [ENSEMBLES.md](ENSEMBLES.md) has those spreads.\n\n\
          e_x is the displacement error and a the acceleration of the platform along x; rms a is the rms deviation of a from \
-         the ideal acceleration; F is the force in B1. \"Energy lost\" is the energy lost by the integrator (negative: \
-         gained), over the contact dissipation or, in case 2, over the largest elastic energy; a dash where nothing is \
+         the ideal acceleration; F is the force in B1. \"Energy lost\" is the largest energy that the integrator has \
+         lost (negative: gained) by any row, over the contact dissipation or, in case 2, over the largest elastic energy; a dash where nothing is \
          dissipated. The last column has the warnings of the run. The dashed lines of the pictures are the ±0.2 mm that the \
          paper gives for Fig. 5.\n\n",
         records::place("scans"),

@@ -13,7 +13,7 @@ mod panel;
 mod text;
 mod ticks;
 
-pub use number::{digits, exact, number, percent, si};
+pub use number::{digits, exact, number, percent, share, si};
 pub use output::{render, save};
 pub use ticks::superscript;
 

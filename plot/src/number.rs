@@ -60,6 +60,14 @@ pub fn number(value: f64, digits: usize) -> String {
     without_zeros(&format!("{value:.decimals$}")).to_owned()
 }
 
+/// A part of something in words: a percentage up to the whole, a multiple beyond it.
+pub fn share(part: f64, of: &str) -> String {
+    match part {
+        part if part <= 1.0 => format!("{} % of {of}", number(100.0 * part, 3)),
+        part => format!("{} times {of}", number(part, 2)),
+    }
+}
+
 /// A value with all the digits that it takes to read it back, such as `10`, `0.001` or `1.25e-6`.
 pub fn exact(value: f64) -> String {
     let text = format!("{:?}", value + 0.0);

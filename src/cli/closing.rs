@@ -2,7 +2,7 @@
 
 use looselink::record::Ledger;
 use looselink::simulate::{AccuracyReport, Report};
-use plot::number;
+use plot::{number, share};
 
 /// Impacts that are shown; summary.json lists more.
 const SHOWN: usize = 3;
@@ -58,8 +58,8 @@ fn energy(ledger: &Ledger) -> String {
         return format!("energy: {changed} J {verb} by the integrator");
     }
     format!(
-        "energy: {} J dissipated, {changed} J {verb} by the integrator ({:.1} %)",
+        "energy: {} J dissipated, {changed} J {verb} by the integrator ({})",
         number(dissipated, 4),
-        100.0 * numerical / dissipated
+        share(numerical / dissipated, "the dissipated energy")
     )
 }

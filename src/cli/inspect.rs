@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::{SceneArguments, print};
 use clap::Args;
-use looselink::scene::{Analysis, BodyKind, JointModel, Pace, Scene};
+use looselink::scene::{Analysis, Pace, Scene};
 use looselink::simulate::{Inspection, Simulation};
 use plot::{exact, number};
 use std::fmt::Write;
@@ -89,17 +89,13 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
     out
 }
 
-/// Mass and pose of every body that moves, and the total mass.
+/// Mass and pose of every body that has a mass, and the total mass.
 fn bodies(scene: &Scene, simulation: &Simulation) -> Vec<String> {
     let mut total = 0.0;
     let mut lines = Vec::new();
     for (index, body) in scene.bodies.iter().enumerate() {
-        let mass = match &body.kind {
-            BodyKind::Ground { .. } => continue,
-            BodyKind::Link(link) => link.density * link.area * link.length,
-            BodyKind::Rigid(rigid) => rigid.mass,
-            BodyKind::PointMass { mass } => *mass,
-            BodyKind::Moving { .. } => 0.0,
+        let Some(mass) = body.kind.mass() else {
+            continue;
         };
         total += mass;
         let [x, y, theta] = simulation.model().pose(index, simulation.state()).position;
@@ -117,7 +113,7 @@ fn bodies(scene: &Scene, simulation: &Simulation) -> Vec<String> {
 fn clearances(scene: &Scene) -> Vec<String> {
     let mut lines = Vec::new();
     for joint in &scene.joints {
-        if let JointModel::Clearance(contact) = &joint.model {
+        if let Some(contact) = joint.contact() {
             lines.push(format!(
                 "{:<20}clearance {} m, bearing radius {} m, stiffness K = {} N/m^{}",
                 joint.name,

@@ -96,7 +96,27 @@ impl Compiler<'_> {
             at[0],
             at[1]
         );
-        self.scene.error(sketch.span, message, "the sketch")
+        let error = self.scene.error(sketch.span, message, "the sketch");
+        error.with_help(format!("or check the lengths{}", self.longest()))
+    }
+
+    /// The longest link, for advice; a length in another unit stands out.
+    pub fn longest(&self) -> String {
+        let links = self
+            .scene
+            .bodies
+            .iter()
+            .filter_map(|body| match &body.kind {
+                BodyKind::Link(link) => Some((&body.name, link.length)),
+                _ => None,
+            });
+        let longest = links.max_by(|a, b| a.1.total_cmp(&b.1));
+        longest.map_or(String::new(), |(name, length)| {
+            format!(
+                " (the longest is that of {name}, {} m)",
+                plot::exact(length)
+            )
+        })
     }
 
     /// An error at joint `joint`.

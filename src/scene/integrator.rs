@@ -115,9 +115,10 @@ fn optimal_gamma(radius: f64) -> f64 {
 }
 
 fn required_radius(table: &Fields, least: f64) -> Result<f64, SceneError> {
-    let purpose =
-        "the spectral radius at infinite frequency: 1 damps nothing, the least value damps most";
-    spectral_radius(&table.required("spectral_radius", purpose)?, least)
+    let purpose = format!(
+        "the spectral radius at infinite frequency, from {least}, which damps most, to 1, which damps nothing"
+    );
+    spectral_radius(&table.required("spectral_radius", &purpose)?, least)
 }
 
 fn spectral_radius(field: &Field, least: f64) -> Result<f64, SceneError> {

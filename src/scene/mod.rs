@@ -261,6 +261,18 @@ pub enum BodyKind {
     },
 }
 
+impl BodyKind {
+    /// Its mass \[kg\]; of the ground and of a moving body none.
+    pub fn mass(&self) -> Option<f64> {
+        match self {
+            BodyKind::Link(link) => Some(link.density * link.area * link.length),
+            BodyKind::Rigid(rigid) => Some(rigid.mass),
+            BodyKind::PointMass { mass } => Some(*mass),
+            BodyKind::Ground { .. } | BodyKind::Moving { .. } => None,
+        }
+    }
+}
+
 /// A named point.
 #[derive(Debug, Clone)]
 pub struct Point {
@@ -375,6 +387,22 @@ pub struct Joint {
     pub journal: PointRef,
     /// What it allows.
     pub model: JointModel,
+}
+
+impl Joint {
+    /// Geometry and laws of its contact, where it has clearance.
+    pub fn contact(&self) -> Option<&Contact> {
+        match &self.model {
+            JointModel::Clearance(contact) => Some(contact),
+            _ => None,
+        }
+    }
+}
+
+/// The smallest clearance of some joints \[m\]; none where no joint has clearance.
+pub(crate) fn smallest_clearance<'a>(joints: impl Iterator<Item = &'a Joint>) -> Option<f64> {
+    let contacts = joints.filter_map(Joint::contact);
+    contacts.map(|contact| contact.clearance).reduce(f64::min)
 }
 
 /// How a joint connects its two points.
@@ -733,6 +761,11 @@ impl Scene {
     ) -> SceneError {
         let error = self.error(first.0, message, first.1);
         error.against(&self.sources, second.0, second.1.into())
+    }
+
+    /// The smallest clearance of its joints \[m\]; none where no joint has clearance.
+    pub fn smallest_clearance(&self) -> Option<f64> {
+        smallest_clearance(self.joints.iter())
     }
 
     /// Index of the body with this name.

@@ -4,7 +4,7 @@ use super::document::{Node, document};
 use super::error::{SceneError, Sources, Span, nearest};
 use super::field::Field;
 use super::fields::Fields;
-use super::{Analysis, JointModel, bodies, forces, integrator, joints, motion, overrides};
+use super::{Analysis, bodies, forces, integrator, joints, motion, overrides, smallest_clearance};
 use super::{Assumption, ChannelPattern, Integrator, Output, Scene, Simulation};
 use std::fs::File;
 use std::io::{self, Read};
@@ -89,11 +89,8 @@ pub(super) fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Scen
     let simulation = simulation(&root)?;
     let bodies = bodies::read(&root, simulation.duration)?;
     let joints = joints::read(&root, &bodies)?;
-    let clearance = joints.values().filter_map(|joint| match &joint.model {
-        JointModel::Clearance(contact) => Some(contact.clearance),
-        _ => None,
-    });
-    let integrator = integrator::read(&root, &simulation, clearance.reduce(f64::min))?;
+    let clearance = smallest_clearance(joints.values());
+    let integrator = integrator::read(&root, &simulation, clearance)?;
     let output = output(&root, &simulation, &integrator)?;
     let drives = motion::drives(&root, &bodies, &joints, simulation.duration)?;
     let forces = forces::read(&root, &bodies, &joints, simulation.duration)?;

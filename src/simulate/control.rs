@@ -39,7 +39,7 @@
 use super::meter::lengths;
 use crate::model::Model;
 use crate::newton::Response;
-use crate::scene::{Accuracy, JointModel, Scene};
+use crate::scene::{Accuracy, Scene};
 use crate::stepper::{Estimate, LocalError};
 use crate::system::{State, Work};
 use serde::Serialize;
@@ -158,22 +158,13 @@ pub(super) enum Verdict {
     Stuck(usize),
 }
 
-/// The smallest clearance of a joint \[m\]; infinite without one.
-fn smallest_clearance(scene: &Scene) -> f64 {
-    let clearances = scene.joints.iter().filter_map(|joint| match &joint.model {
-        JointModel::Clearance(contact) => Some(contact.clearance),
-        _ => None,
-    });
-    clearances.fold(f64::INFINITY, f64::min)
-}
-
 impl Controller {
     /// For a stepper that has an estimate.
     pub fn new(scene: &Scene, model: &Model, accuracy: Accuracy, estimate: Estimate) -> Controller {
         let shape = model.shape();
         let position = accuracy
             .position
-            .min(OF_CLEARANCE * smallest_clearance(scene));
+            .min(OF_CLEARANCE * scene.smallest_clearance().unwrap_or(f64::INFINITY));
         let longest = scene.output.interval.min(accuracy.horizon);
         Controller {
             accuracy,

@@ -3,8 +3,10 @@
 use super::observer::{Contact, End, Observer, Onset};
 use super::top::top;
 use crate::model::Model;
+use crate::scene::Scene;
 use crate::system::State;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::io;
 
 /// Contacts that the summary lists.
@@ -56,6 +58,17 @@ pub(super) struct Impacts {
     closed: Vec<Option<Course>>,
     /// The first contacts of the run.
     listed: Vec<Course>,
+    /// Radius of the bearing of each contact, and the largest penetration so far \[m\].
+    depths: Vec<[f64; 2]>,
+}
+
+/// A journal that has gone deeper into its bearing than the radius of the bearing: no contact law holds there.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Overrun {
+    /// Largest penetration \[m\].
+    pub penetration: f64,
+    /// Radius of the bearing \[m\].
+    pub bearing_radius: f64,
 }
 
 /// A contact from its onset on.
@@ -96,10 +109,17 @@ impl Course {
 
 impl Impacts {
     /// Allocates all memory, so that the step loop does not.
-    pub fn new(contacts: usize) -> Impacts {
+    pub fn new(scene: &Scene, model: &Model) -> Impacts {
+        let contacts = 0..model.shape().contacts;
+        let radius = |contact| {
+            let joint = model.contact_joint(contact);
+            let contact = joint.and_then(|joint| scene.joints[joint].contact());
+            contact.map_or(f64::INFINITY, |contact| contact.bearing_radius)
+        };
         Impacts {
-            closed: vec![None; contacts],
+            closed: vec![None; contacts.len()],
             listed: Vec::with_capacity(LISTED),
+            depths: contacts.map(|contact| [radius(contact), 0.0]).collect(),
         }
     }
 
@@ -144,7 +164,7 @@ impl Impacts {
         at: &State,
         observer: &mut dyn Observer,
     ) -> io::Result<()> {
-        for slot in &mut self.closed {
+        for (slot, [_, deepest]) in self.closed.iter_mut().zip(&mut self.depths) {
             let Some(course) = slot else { continue };
             let Some((delta, rate, closed)) = model.penetration(course.joint, at) else {
                 continue;
@@ -152,6 +172,7 @@ impl Impacts {
             let [before, rate_before] = course.before;
             let top = top(h, [before, delta], [rate_before, rate]).map_or(delta, |(_, top)| top);
             course.deepest = course.deepest.max(delta).max(top);
+            *deepest = deepest.max(course.deepest);
             course.before = [delta, rate];
             course.end = (!closed).then_some(End {
                 t: at.t,
@@ -175,6 +196,22 @@ impl Impacts {
     pub fn finish(&self, model: &Model, observer: &mut dyn Observer) -> io::Result<()> {
         let mut closed = self.closed.iter().flatten();
         closed.try_for_each(|course| observer.contact(&course.contact(model)))
+    }
+
+    /// Joints that were overrun.
+    pub fn overrun(&self, model: &Model) -> BTreeMap<String, Overrun> {
+        let depths = self.depths.iter().enumerate();
+        let beyond =
+            depths.filter(|(_, [bearing_radius, penetration])| penetration > bearing_radius);
+        let named = beyond.filter_map(|(contact, &[bearing_radius, penetration])| {
+            let joint = model.contact_joint(contact)?;
+            let overrun = Overrun {
+                penetration,
+                bearing_radius,
+            };
+            Some((model.joints()[joint].name.clone(), overrun))
+        });
+        named.collect()
     }
 
     /// The first contacts of the run.

@@ -66,6 +66,8 @@ pub(super) struct Meter {
     turnover: f64,
     dissipated: f64,
     initial: Option<Initial>,
+    /// Largest magnitude of the work of drives and loads so far, over all steps: rows may miss it.
+    work: f64,
     /// [`UNSTABLE`]; infinite with an accuracy, where a gain is an error that was allowed.
     unstable: f64,
     /// Largest energy supplied so far: that at the start plus the work of drives, loads and weight.
@@ -186,17 +188,11 @@ fn plain_motion(scene: &Scene, model: &Model, start: &State) -> f64 {
     places.for_each(|(_, q)| extent.see(*q, 0.0));
     let (mut mass, mut size) = (0.0, extent.width());
     for body in &scene.bodies {
-        mass += match &body.kind {
-            BodyKind::Link(link) => {
-                size = size.max(link.length);
-                link.density * link.area * link.length
-            }
-            BodyKind::Rigid(rigid) => {
-                size = size.max((rigid.inertia / rigid.mass).sqrt());
-                rigid.mass
-            }
-            BodyKind::PointMass { mass } => *mass,
-            BodyKind::Ground { .. } | BodyKind::Moving { .. } => 0.0,
+        mass += body.kind.mass().unwrap_or(0.0);
+        size = match &body.kind {
+            BodyKind::Link(link) => size.max(link.length),
+            BodyKind::Rigid(rigid) => size.max((rigid.inertia / rigid.mass).sqrt()),
+            _ => size,
         };
     }
     0.5 * mass * (size / scene.simulation.duration).powi(2)
@@ -224,6 +220,7 @@ impl Meter {
             turnover: 0.0,
             dissipated: 0.0,
             initial: None,
+            work: 0.0,
             unstable: match scene.integrator.pace {
                 Pace::Step(_) => UNSTABLE,
                 Pace::Accuracy(_) => f64::INFINITY,
@@ -238,6 +235,7 @@ impl Meter {
     pub fn step(&mut self, from: &State, to: &State, error: &LocalError) {
         let h = to.t - from.t;
         self.elapsed = to.t;
+        self.work = self.work.max(to.integrals[Integral::Work as usize].abs());
         let accelerations = from.a.iter().zip(&to.a);
         let errors = error.q.iter().zip(&error.v);
         for ((sums, (q, v)), (a, a_1)) in self.sums.iter_mut().zip(errors).zip(accelerations) {
@@ -271,9 +269,8 @@ impl Meter {
         self.lost = [self.lost[0].min(lost), self.lost[1].max(lost)];
         self.turnover = self.turnover.max(turnover);
         self.dissipated = at.dissipated();
-        let work = at.integrals[Integral::Work as usize].abs();
         let weight = (energies.gravity - initial.gravity).abs();
-        self.supplied = self.supplied.max(initial.turnover + work + weight);
+        self.supplied = self.supplied.max(initial.turnover + self.work + weight);
         let supplied = self.supplied;
         let bound = self.unstable * supplied.max(self.plain) + f64::EPSILON.sqrt() * size;
         match -lost > bound || !lost.is_finite() {

@@ -1,11 +1,11 @@
 //! The report of a run, and the inspection of a scene before it runs.
 
 use super::pace::Pacer;
-use super::{AccuracyReport, Chatter, Impact, Integration, Simulation};
+use super::{AccuracyReport, Chatter, Impact, Integration, Overrun, Simulation};
 use crate::contact::normal_law;
 use crate::model::BodyCoordinates;
 use crate::record::Ledger;
-use crate::scene::{Analysis, BodyState, JointModel, Scene};
+use crate::scene::{Analysis, BodyState, Scene};
 use crate::system::System;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -102,6 +102,9 @@ pub struct Report {
     pub impacts: Vec<Impact>,
     /// Onsets and losses kept although the gap could not be brought within the tolerance.
     pub unlocated_changes: u64,
+    /// Joints whose journal has gone deeper into its bearing than the radius of the bearing.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub overrun: BTreeMap<String, Overrun>,
     /// Stages of accepted steps at which a contact force was clamped at zero.
     pub clamps: u64,
     /// Contacts that were lost again.
@@ -154,7 +157,7 @@ fn notes(scene: &Scene) -> Vec<String> {
         .map(|a| format!("{} = {}: {}", a.path, a.value, a.reason))
         .collect();
     for joint in &scene.joints {
-        if let JointModel::Clearance(contact) = &joint.model {
+        if let Some(contact) = joint.contact() {
             let law = normal_law(contact);
             notes.push(format!(
                 "joint {}: {} with a restitution of {} gives {:.4} in a free impact",
@@ -253,6 +256,7 @@ impl Simulation {
             onsets: self.counters.onsets,
             impacts: self.impacts.listed(&self.model),
             unlocated_changes: self.counters.unlocated,
+            overrun: self.impacts.overrun(&self.model),
             clamps: self.counters.clamps,
             ended_contacts: self.closures.ended,
             brief_contacts: self.closures.brief,

@@ -1,7 +1,7 @@
 //! What a user should know of a run before the numbers are used.
 
 use super::Report;
-use plot::number;
+use plot::{number, share};
 
 /// Warn of energy lost or gained by the integrator beyond this part of the energy dissipated ...
 const OF_DISSIPATED: f64 = 0.05;
@@ -13,14 +13,6 @@ const UNRESOLVED: f64 = 1.0;
 const CRUSHED: f64 = -0.4;
 /// Warn of an estimated error beyond this part of the largest range of motion.
 const OF_TRAVEL: f64 = 0.01;
-
-/// A fraction in words.
-fn share(part: f64, of: &str) -> String {
-    match part {
-        part if part < 10.0 => format!("{:.1} % of {of}", 100.0 * part),
-        part => format!("{part:.0} times {of}"),
-    }
-}
 
 /// Warnings of several runs as a part of a page in Markdown; empty where no run warns.
 pub(crate) fn warning_list(warnings: &[String]) -> String {
@@ -55,6 +47,14 @@ impl Report {
         }
         warnings.extend(self.redundant.iter().map(|name| {
             format!("{name} is redundant: the constraint forces in its loop are not unique")
+        }));
+        warnings.extend(self.overrun.iter().map(|(joint, overrun)| {
+            format!(
+                "the journal of {joint} goes {} m deep into a bearing of radius {} m, where no contact law holds: check the \
+                 units of its stiffness and of Young's modulus",
+                number(overrun.penetration, 2),
+                number(overrun.bearing_radius, 2)
+            )
         }));
         let crushed = self.strain.iter().filter(|(_, strain)| **strain < CRUSHED);
         warnings.extend(crushed.map(|(name, strain)| {
@@ -103,19 +103,19 @@ impl Report {
         let [least, greatest] = integration.lost;
         let most = if -least > greatest { least } else { greatest };
         let changed = most.abs();
+        let key = match self.accuracy {
+            Some(_) => "integrator.accuracy",
+            None => "integrator.step",
+        };
         if changed > OF_TURNOVER * integration.turnover {
             return Some(format!(
-                "the integrator {} {} J, {}",
+                "the integrator {} up to {} J, {}: reduce {key}",
                 verb(most),
                 number(changed, 2),
                 share(changed / integration.turnover, "the energy of the motion")
             ));
         }
         let (dissipated, numerical) = (ledger.dissipated(), ledger.numerical.abs());
-        let key = match self.accuracy {
-            Some(_) => "integrator.accuracy",
-            None => "integrator.step",
-        };
         (dissipated > 0.0 && numerical > OF_DISSIPATED * dissipated).then(|| {
             format!(
                 "the integrator {} {} J, {}: reduce {key}",
@@ -131,10 +131,10 @@ impl Report {
         let change = integration.acceleration_change;
         (change > UNRESOLVED).then(|| {
             format!(
-                "the acceleration of {} changes by {:.0} % (rms) from one step to the next: the steps do not resolve a \
-                 vibration, so accelerations and forces are unreliable",
+                "the acceleration of {} changes by {} times its own size (rms) from one step to the next: the steps do not \
+                 resolve a vibration, so accelerations and forces are unreliable",
                 integration.acceleration_change_of,
-                100.0 * change
+                number(change, 2)
             )
         })
     }

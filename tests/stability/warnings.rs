@@ -27,6 +27,23 @@ fn a_run_that_can_be_trusted_has_no_warnings() {
     }
 }
 
+/// A modulus in GPa where the scene expects Pa: the contact is too soft to stop the slider.
+#[test]
+fn a_journal_that_passes_through_its_bearing_is_reported() {
+    let soft = [
+        "materials.steel.youngs_modulus=207",
+        "simulation.duration=0.02",
+    ];
+    let (_, report) = end("slider-crank/loose.toml", &soft);
+    let overrun = report.overrun["slider_pin"];
+    assert_eq!(overrun.bearing_radius, 0.01);
+    assert!(overrun.penetration > overrun.bearing_radius);
+    let words = "deep into a bearing of radius 0.01 m";
+    assert!(warned(&report, words), "{:?}", report.warnings());
+    let (_, sound) = end("slider-crank/loose.toml", &soft[1..]);
+    assert!(sound.overrun.is_empty(), "{:?}", sound.warnings());
+}
+
 /// The truss rings at 1.8e4 rad/s; the trapezoidal rule with 1/50 of a turn a step makes that grow.
 #[test]
 fn an_unstable_method_is_stopped_by_name() {

@@ -176,9 +176,10 @@ fn cannot_close(
     let error = c
         .scene
         .error(c.scene.initial.span, message, "from this start");
-    error.with_help(
-        "check the lengths and the given poses, and that the sketch draws a mechanism that is closed",
-    )
+    error.with_help(format!(
+        "check the given poses, the lengths{}, and that the sketch draws a mechanism that is closed",
+        c.longest()
+    ))
 }
 
 /// Largest distance between two points of a body that joints use.
