@@ -182,6 +182,44 @@ fn friction_balances_and_dissipates() {
         .within((power - expected) / power.abs().max(scale), 1e-14, "a few roundings");
 }
 
+/// A residual without a tangent takes a shorter way to the same force.
+#[test]
+fn the_force_alone_is_that_of_the_tangent() {
+    let (q, v) = coordinates();
+    let w = Weights { q: 1.0, v: 1.0 };
+    let law = Ambrosio {
+        coefficient: 0.3,
+        v0: 0.01,
+        v1: 3.0,
+    };
+    let same = |name: &str, alone: [f64; 8], with_tangent: [f64; 8], normal: f64| {
+        for (a, b) in alone.iter().zip(with_tangent) {
+            // one quotient and one product each, and arms shorter than 1
+            assert!((a - b).abs() <= 4.0 * f64::EPSILON * normal, "{name}");
+        }
+    };
+    for (name, bearing, journal) in [
+        ("node in body", NODE, BODY),
+        ("body in node", BODY, NODE),
+        ("body in body", BODY, OTHER),
+    ] {
+        let (mut alone, mut with_tangent, mut k) = ([0.0; 8], [0.0; 8], [[0.0; 8]; 8]);
+        let smooth = joint(bearing, journal);
+        let normal = smooth.force(&q, &v, 0.5, &mut alone);
+        let same_normal = smooth.force_and_tangent(&q, &v, 0.5, w, &mut with_tangent, &mut k);
+        let normal = normal.expect("the surfaces touch").value;
+        assert_eq!(normal, same_normal.expect("the surfaces touch").value);
+        same(name, alone, with_tangent, normal);
+
+        let spins = [Spin::Angle { theta: 6 }, Spin::Angle { theta: 9 }];
+        let rough = FrictionalJoint::new(smooth, law, Slip::Material, 0.2, spins);
+        let (mut alone, mut with_tangent) = ([0.0; 8], [0.0; 8]);
+        rough.force(&q, &v, 0.5, &mut alone);
+        rough.force_and_tangent(&q, &v, 0.5, w, &mut with_tangent, &mut k);
+        same(name, alone, with_tangent, normal);
+    }
+}
+
 #[test]
 fn no_normal_is_asked_for_at_the_centre() {
     let joint = joint(NODE, BODY);

@@ -671,6 +671,25 @@ fn torsion_springs_count_turns() {
     assert!((spring.energy(&s) - last * last).abs() < 1e-12);
 }
 
+/// At the start the angle is within half a turn of the rest angle, however many turns that has.
+#[test]
+fn torsion_springs_start_near_their_rest_angle() {
+    let two_turns = 4.0 * std::f64::consts::PI;
+    let spring = TorsionSpring {
+        first: Spin::Fixed,
+        second: Spin::Slope { x: 8 },
+        stiffness: 2.0,
+        damping: 0.0,
+        rest_angle: two_turns,
+        memory: 0,
+    };
+    let mut s = state(1, 0.0);
+    (s.q[8], s.q[9]) = (0.1_f64.cos(), 0.1_f64.sin());
+    spring.begin(&mut s);
+    // rounding of 12.6
+    assert!((spring.measure(&s)[1] - two_turns - 0.1).abs() < 1e-14);
+}
+
 /// What belongs to the first side of a constraint or force: the joint forces of eliminated joints are summed by it.
 #[test]
 fn sides_are_split_behind_the_first() {

@@ -347,8 +347,8 @@ pub fn page(record: &Record) -> String {
          Runs of ensembles use the trapezoidal rule with a requested accuracy of 1 µm and 100 nJ over 10 ms: the cheapest \
          way found to an energy ledger that closes to a few per cent of the contact dissipation. Tables call it \
          \"controlled\". \"Energy lost\" \
-         is what the integrator alone lost (negative: gained), over that dissipation; in case 2, where nothing dissipates, \
-         over the largest elastic energy.\n\n",
+         is the largest energy that the integrator has lost (negative: gained) by any row, over that dissipation; in case 2, \
+         where nothing dissipates, over the largest elastic energy.\n\n",
         records::place("ensembles"),
     );
     page += &ensembles_section(record);
