@@ -3,11 +3,15 @@
 use looselink::math::lu::Symbolic;
 use looselink::system::{PrescribeError, Shape, State, System, Weights, Work};
 
-/// Masses and springs in series between walls: m_i a_i + (K q)_i = 0, undamped.
+/// Masses and springs in series between walls: m_i a_i + d v_i + (K q)_i = 0.
 #[derive(Debug)]
 pub struct Chain {
     pub masses: Vec<f64>,
     pub springs: Vec<f64>,
+    /// d, of a damper between every mass and the ground.
+    pub damping: f64,
+    /// Numbers that a state remembers of contacts, which exert no force.
+    pub contacts: usize,
     /// States after this time cannot be prescribed.
     pub prescribed_until: f64,
     symbolic: Symbolic,
@@ -24,6 +28,8 @@ impl Chain {
         Chain {
             masses,
             springs,
+            damping: 0.0,
+            contacts: 0,
             prescribed_until: f64::INFINITY,
             symbolic: Symbolic::analyse(n, &cliques, &vec![vec![]; n]),
             level_symbolic: Symbolic::analyse(n, &[], &vec![vec![]; n]),
@@ -44,7 +50,7 @@ impl System for Chain {
             unknowns: n,
             coordinates: n,
             multipliers: 0,
-            contacts: 0,
+            contacts: self.contacts,
             angles: 0,
         }
     }
@@ -78,7 +84,7 @@ impl System for Chain {
         for i in 0..self.masses.len() {
             let pull = self.springs[i] * self.stretch(i, &at.q)
                 - self.springs[i + 1] * self.stretch(i + 1, &at.q);
-            r[i] = self.masses[i] * at.a[i] + pull;
+            r[i] = self.masses[i] * at.a[i] + self.damping * at.v[i] + pull;
         }
     }
     fn linearise(
@@ -94,7 +100,7 @@ impl System for Chain {
         k.fill(0.0);
         for i in 0..self.masses.len() {
             k[self.symbolic.slot(i, i) as usize] =
-                self.masses[i] + w.q * (self.springs[i] + self.springs[i + 1]);
+                self.masses[i] + w.v * self.damping + w.q * (self.springs[i] + self.springs[i + 1]);
             if i + 1 < self.masses.len() {
                 k[self.symbolic.slot(i, i + 1) as usize] = -w.q * self.springs[i + 1];
                 k[self.symbolic.slot(i + 1, i) as usize] = -w.q * self.springs[i + 1];
