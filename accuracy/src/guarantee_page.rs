@@ -218,6 +218,7 @@ fn page(entries: &[Entry]) -> Result<String> {
     });
     let set_aside = with_ratio.sum::<usize>() - all.len();
     let prescribed = scenes.iter().filter(|entry| is_prescribed(entry)).count();
+    let not_taken = entries.iter().filter(|e| e.refused.is_some()).count() * ACCURACIES.len();
     let mut out = format!(
         "# Is the accuracy reached that was asked for?\n\n{}\n\
          Each of the {} dynamic scenes in [scenes](../scenes) is run with every method that takes it and \
@@ -232,7 +233,8 @@ fn page(entries: &[Entry]) -> Result<String> {
          * The same motions, ratio as it is: {}. No control of steps can undo what a chaotic motion makes of an error.\n\n\
          {} runs were planned: {} methods, {} accuracies. {} of them are judged above. {} more belong to {prescribed} scenes whose \
          motion is prescribed, or repeat the steps of a tighter accuracy, because the clearance or the interval of the rows limits \
-         them. The others took too many steps, had no reference that is good enough, or stopped; they are at the end.\n\n",
+         them. {not_taken} are of scenes that a method does not take. The others took too many steps, had no reference that is \
+         good enough, or stopped; they are at the end.\n\n",
         records::place("guarantee"),
         scenes.len(),
         percent(SHARE),
@@ -260,10 +262,11 @@ fn page(entries: &[Entry]) -> Result<String> {
          * **Reference**: Dormand and Prince's method, P tightened tenfold from 10 nm until the floor is {}, a run takes more \
          than {REFERENCE_STEPS} steps, or it refuses. The floor is the distance of the last two runs, and at least the P of the \
          last. A run counts where the floor is at most a tenth of its P.\n\
-         * **Amplification**: the start is displaced by a small velocity dv or position dq, and the largest later distance of \
-         positions is divided by H·max|dv| or by max|dq|. Free flight has 1, a motion that is prescribed altogether 0. The largest \
-         of {loose} displacements counts where a joint has clearance, of {others} elsewhere. A motion that comes too far away is \
-         brought back (Benettin et al. 1980).\n\
+         * **Amplification**: how many times a tiny disturbance of the start grows within H. A second run starts with slightly \
+         different velocities (by dv) or positions (by dq). The amplification is the largest later distance between the positions \
+         of the two runs, over H·max|dv| or over max|dq|. In free flight it is 1; where the whole motion is prescribed it is 0. \
+         The largest of {loose} disturbances counts where a joint has clearance, of {others} elsewhere. When the distance is no \
+         longer tiny, the second run is moved back towards the first and the factor is kept (Benettin et al. 1980).\n\
          * Points that are not recorded, instants between the rows and times after the first horizon are not tested. A fault \
          that is common to a run and its reference is not seen here; [REPORT.md](../verify/REPORT.md) compares with another \
          implementation.\n\
@@ -291,9 +294,10 @@ fn page(entries: &[Entry]) -> Result<String> {
 fn advice(entries: &[Entry]) -> String {
     let mut out = format!(
         "\n## How to choose P for a motion that amplifies errors\n\n\
-         Divide the error that you can bear by the amplification. The table does so for {}, with Dormand and Prince's method. \
-         For a scene of your own, run it with P and P/10: the largest difference of positions between the two is about the error \
-         of the first, as long as it is far below the clearances.\n\n\
+         Run your scene with P and with P/10. The largest difference of positions between the two runs is about the error of the \
+         first, as long as it is far below the clearances. Reduce P until this difference is small enough.\n\n\
+         An error over the amplification is a safe P, and often a much smaller one than necessary. The table has P for an error of \
+         {}, with Dormand and Prince's method.\n\n\
          | scene | amplification | asked: P | error achieved | error over {} | floor of the reference | steps |\n\
          |---|---|---|---|---|---|---|\n",
         si(GOAL, "m"),
@@ -410,10 +414,6 @@ fn not_judged(entries: &[Entry]) -> String {
         End::Stopped(message) => Some((message.as_str(), run(e, r))),
         _ => None,
     });
-    let refused = entries.iter().filter_map(|e| {
-        let message = e.refused.as_deref()?.lines().next()?;
-        Some((message, format!("{}, {}", e.scene, e.method)))
-    });
     let mut out = format!(
         "\n## Runs that are not judged\n\n\
          * At the end, without a reference that is good enough: {}.\n\
@@ -425,8 +425,24 @@ fn not_judged(entries: &[Entry]) -> String {
         count(|_, r| matches!(r.end, End::Stopped(_))),
     );
     out += &list(stopped, "No run stopped.");
+    // what follows a semicolon names the constraint, the part before it the reason
+    let reason = |message: &str| message.split(';').next().unwrap_or_default().to_owned();
+    let mut refused: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for entry in entries {
+        if let Some(message) = &entry.refused {
+            let scenes = refused.entry(reason(message)).or_default();
+            scenes.push(&entry.scene);
+        }
+    }
     out += "\nScenes that a method does not take:\n\n";
-    out + &list(refused, "Every method takes every scene.")
+    for (reason, scenes) in refused {
+        out += &format!(
+            "* {reason}, {} scenes: {}\n",
+            scenes.len(),
+            scenes.join(", ")
+        );
+    }
+    out
 }
 
 fn warnings(entries: &[Entry]) -> String {

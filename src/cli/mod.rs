@@ -61,8 +61,8 @@ struct SceneArguments {
     /// Replace a field of the scene, for example `integrator.step=1e-6`; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
-    /// Choose the steps by their estimated error: the allowed error of positions \[m\] and of the energy balance \[J\], and the
-    /// time \[s\] over which errors may accumulate, for example `position=1e-9,horizon=0.01`; a number alone is the position.
+    /// Choose the steps by their estimated error: the allowed error of positions (m) and of the energy balance (J), and the
+    /// time (s) over which errors may accumulate, for example `position=1e-9,horizon=0.01`; a number alone is the position.
     #[arg(long, value_name = "position=M[,energy=J][,horizon=S]", value_parser = accuracy)]
     accuracy: Option<String>,
 }
