@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 # Tests may be added, not lost: raise this number with them.
-fewest_tests=389
+fewest_tests=394
 
 install_libraries() {
     local packages=(g++ libeigen3-dev libsundials-dev)
