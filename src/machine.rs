@@ -122,6 +122,8 @@ mod tests {
         let timing = Timing::of(vec![9.0, 1.0, 2.0]);
         assert_eq!((timing.median, timing.least), (2.0, 1.0));
         assert_eq!(timing.seconds, [9.0, 1.0, 2.0]);
+        let counted = timing.with_instructions(&[Some(70), None, Some(50)]);
+        assert_eq!((counted.median, counted.instructions), (2.0, Some(50)));
         assert_eq!(median(&[3.0]), 3.0);
         assert_eq!(median(&[9.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(&[4.0, 1.0, 9.0, 2.0]), 3.0);

@@ -47,18 +47,11 @@ impl Statics {
         }
     }
 
-    /// Equilibrium at the known coordinates and loads of `s`, from the q and lambda in it; `gravity` is the part of the
-    /// weight that acts.
+    /// Equilibrium at the known coordinates and loads of `s`, from the q and lambda in it.
     ///
     /// # Errors
     /// See [`Failure`]; updates are told in units of coordinates. `s` is then undefined.
-    pub fn solve(
-        &mut self,
-        model: &Model,
-        s: &mut State,
-        gravity: f64,
-        work: &mut Work,
-    ) -> Result<(), Failure> {
+    pub fn solve(&mut self, model: &Model, s: &mut State, work: &mut Work) -> Result<(), Failure> {
         let n = model.shape().unknowns;
         s.v.fill(0.0);
         s.a.fill(0.0);
@@ -66,7 +59,7 @@ impl Statics {
         let (mut last, mut worst, mut finishing) = (f64::INFINITY, 0, false);
         for _ in 0..MAX_ITERATIONS {
             self.counters.newton_iterations += 1;
-            let scale = self.evaluate(model, s, gravity, work);
+            let scale = self.evaluate(model, s, work);
             for i in 0..n {
                 self.b[i] = self.offset[i] - self.r[i];
             }
@@ -103,13 +96,10 @@ impl Statics {
     }
 
     /// Residual and tangent without inertia, stiffened where constraints act; returns the scale of the multipliers.
-    fn evaluate(&mut self, model: &Model, s: &State, gravity: f64, work: &mut Work) -> f64 {
+    fn evaluate(&mut self, model: &Model, s: &State, work: &mut Work) -> f64 {
         let w = Weights { q: 1.0, v: 0.0 };
         model.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
         model.remove_mass(&mut self.k);
-        for &(i, weight) in &model.weight {
-            self.r[i] -= (1.0 - gravity) * weight;
-        }
         model.stiffen(s, &mut self.r, &mut self.k)
     }
 
@@ -140,7 +130,7 @@ impl Statics {
         s.v.fill(0.0);
         s.a.fill(0.0);
         s.lambda.fill(0.0);
-        self.evaluate(model, s, 1.0, work);
+        self.evaluate(model, s, work);
         let first: Vec<f64> = self.r[..n].to_vec();
         let (mut part, mut step) = (0.0_f64, 1.0_f64);
         let mut reached = s.clone();
@@ -149,7 +139,7 @@ impl Statics {
             for (o, r) in self.offset.iter_mut().zip(&first) {
                 *o = (1.0 - next) * r;
             }
-            match self.solve(model, s, 1.0, work) {
+            match self.solve(model, s, work) {
                 Ok(()) => {
                     part = next;
                     step *= 2.0;

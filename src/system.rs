@@ -49,6 +49,8 @@ pub enum Integral {
 pub struct State {
     /// Time \[s\].
     pub t: f64,
+    /// The part of the weight that acts: 1 in a motion, growing to 1 in a static analysis.
+    pub weight: f64,
     /// Coordinates: unknown, then known.
     pub q: Vec<f64>,
     /// Rounding errors of the unknown coordinates; a stepper continues from q + `q_low`.
@@ -74,6 +76,7 @@ impl State {
     pub fn zeros(shape: Shape) -> State {
         State {
             t: 0.0,
+            weight: 1.0,
             q: vec![0.0; shape.coordinates],
             q_low: vec![0.0; shape.unknowns],
             v: vec![0.0; shape.coordinates],
@@ -97,6 +100,7 @@ impl State {
     /// Copies everything from `other` without allocating.
     pub fn copy_from(&mut self, other: &State) {
         self.t = other.t;
+        self.weight = other.weight;
         self.q.copy_from_slice(&other.q);
         self.q_low.copy_from_slice(&other.q_low);
         self.v.copy_from_slice(&other.v);

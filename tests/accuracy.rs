@@ -2,8 +2,10 @@
 
 use crate::support::{Recording, load, run, run_scene};
 use ladder::{Rung, Worst};
+use looselink::newton::Response;
 use looselink::scene::Scene;
 use looselink::simulate::{Control, Observer, Progress, RunError, Simulation};
+use looselink::system::System;
 
 /// A scene, its duration, the time between rows, the step of the reference, channels of position.
 const SCENES: [(&str, f64, f64, f64, &[&str]); 5] = [
@@ -488,4 +490,76 @@ fn every_method_follows_an_accuracy() {
     Rung::OrderInTime
         .asks("Generalised-alpha, HHT, velocity Verlet and backward Euler: achieved error over requested accuracy")
         .within(&worst, 1.0, "the requested accuracy is reached");
+}
+
+/// A point mass on springs: an error of velocity e moves it by (w^2 + 1/H^2)^(-1/2) e within the horizon H, which the sum over
+/// times tau finds between 1.0 and 1.5 times min(H, 1/w) e.
+#[test]
+fn the_response_to_an_error_of_velocity_is_that_of_its_vibration() {
+    const HORIZON: f64 = 0.5;
+    for stiffness in [1e-9_f64, 1e-4, 0.04, 1.0, 3e2, 1e5, 3e8] {
+        let text = format!(
+            r#"
+format = 1
+title = "a mass on springs"
+simulation = {{ duration = 1.0 }}
+integrator = {{ method = "trapezoidal", step = 1e-3, newton_tolerance = 1e-10 }}
+output = {{ interval = 0.1, channels = ["bob.x"] }}
+bodies.ground = {{ type = "ground", points.left = [-1.0, 0.0] }}
+bodies.bob = {{ type = "point_mass", mass = 4.0 }}
+forces.spring = {{ type = "spring_damper", from = "ground.left", to = "bob.center", stiffness = {stiffness:?}, damping = 0.0, rest_length = 1.0 }}
+initial.bodies.bob = {{ x = 0.0, y = 0.0 }}
+"#
+        );
+        let scene = Scene::parse("mass", &text, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let simulation = Simulation::new(&scene).unwrap();
+        let model = simulation.model();
+        let mut work = model.work();
+        let mut response = Response::new(model, HORIZON);
+        response.keep_up(model, simulation.state(), 1e-9, &mut work);
+        let moved = response.displacement(model, 1e-9, &[0.01, 0.0])[0];
+        let bound = 0.01 * HORIZON.min((4.0 / stiffness).sqrt());
+        let ratio = moved / bound;
+        assert!((1.0..1.5).contains(&ratio), "{stiffness} N/m: {ratio}");
+        // vibrations that a longer step does not resolve do not count, whatever shorter steps came before
+        let mut coarse = Response::new(model, HORIZON);
+        coarse.keep_up(model, simulation.state(), 0.02, &mut work);
+        let coarsely = coarse.displacement(model, 0.02, &[0.01, 0.0])[0];
+        assert_eq!(
+            response.displacement(model, 0.02, &[0.01, 0.0])[0],
+            coarsely
+        );
+    }
+}
+
+/// The error of a vibration of amplitude A and angular frequency w is w^3 h^2 A/12 times the time for the trapezoidal rule, in
+/// position and, through the velocity, once more. The horizon allows position P/H a time. The number of steps that follows is
+/// far below that of a motion that would drift with its errors of velocity.
+#[test]
+fn errors_of_velocity_in_a_vibration_do_not_count_as_drift() {
+    const W: f64 = 1000.0;
+    const A: f64 = 0.01;
+    let (horizon, position) = (1.0, 1e-3);
+    let text = format!(
+        r#"
+format = 1
+title = "a fast vibration"
+simulation = {{ duration = 0.1 }}
+integrator = {{ method = "trapezoidal", accuracy = {{ position = {position:?}, horizon = {horizon:?} }}, newton_tolerance = 1e-10 }}
+output = {{ interval = 0.01, channels = ["bob.x"] }}
+bodies.ground = {{ type = "ground", points.left = [-1.0, 0.0] }}
+bodies.bob = {{ type = "point_mass", mass = 1.0 }}
+forces.spring = {{ type = "spring_damper", from = "ground.left", to = "bob.center", stiffness = {:?}, damping = 0.0, rest_length = 1.0 }}
+initial.bodies.bob = {{ x = {A:?}, y = 0.0 }}
+"#,
+        W * W
+    );
+    let scene = Scene::parse("vibration", &text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let mut simulation = Simulation::new(&scene).unwrap();
+    simulation.run(&mut ()).unwrap();
+    let steps = simulation.report().steps as f64;
+    let expected = 0.1 / (12.0 * position / (horizon * W.powi(3) * A)).sqrt();
+    // as drift the errors of velocity would weigh w H = 1000 times as much, and take 30 times the steps
+    let ratio = steps / expected;
+    assert!((0.3..5.0).contains(&ratio), "{steps} steps, not {expected}");
 }

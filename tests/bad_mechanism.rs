@@ -169,6 +169,25 @@ initial = {{}}
         "the path pulls joint O apart, by ",
         r#"{ type = "revolute", bearing = "ground.O", journal = "arm.pivot", model = "ideal" }"#,
     );
+    // a body that nothing holds has no pose in the ideal mechanism
+    let free = still.replace(
+        "joints.O",
+        "bodies.free = { type = \"rigid_body\", mass = 1.0, inertia = 0.1 }\njoints.O",
+    );
+    let error = fault(&free, &[]);
+    let message = "does not determine the pose of the ideal mechanism, which has 3 unknown coordinates and 0 constraints";
+    assert!(error.to_string().contains(message), "{error}");
+    assert!(rendered(&error).contains("some bodies stay free to move"));
+    // it comes back before the end
+    let away_and_back = arm(
+        r#"{ type = "table", rows = [[0.0, 0.3, 0.0, 0.0], [0.5, 0.4, 0.0, 0.0], [1.0, 0.3, 0.0, 0.0]] }"#,
+    );
+    check(
+        &fault(&away_and_back, &[]),
+        "table",
+        "the path pulls joint O apart, by ",
+        r#"{ type = "revolute", bearing = "ground.O", journal = "arm.pivot", model = "ideal" }"#,
+    );
 }
 
 /// A journal may start pressed into its bearing, but not outside it.
@@ -185,4 +204,56 @@ fn a_journal_outside_its_bearing() {
     let pressed = ["initial.bodies.journal.x=2.01e-5".to_owned()];
     let scene = Scene::parse("scene.toml", text, &pressed).unwrap();
     assert!(Simulation::new(&scene).is_ok());
+}
+
+/// A joint between the ground and a moving body holds nothing, and nothing keeps it closed.
+#[test]
+fn a_joint_between_prescribed_bodies() {
+    let text = r#"
+format = 1
+title = "two prescribed bodies"
+simulation = { duration = 0.1 }
+integrator = { method = "bathe", step = 1e-3, newton_tolerance = 1e-9 }
+output = { interval = 1e-2, channels = ["*"] }
+bodies.ground = { type = "ground", points.C = [0.1, 0.3] }
+bodies.cart = { type = "moving", path = { type = "line", from = [0.2, 0.0, 0.0], to = [0.3, 0.0, 0.0], duration = 1.0 }, points.o = [0.0, 0.0] }
+bodies.bob = { type = "point_mass", mass = 1.0 }
+joints.K = { type = "revolute", bearing = "ground.C", journal = "cart.o", model = "ideal" }
+initial.bodies.bob = { x = 0.0, y = 0.0 }
+"#;
+    check(
+        &fault(text, &[]),
+        "joint",
+        "joint K is redundant: the motion of both of its bodies is prescribed",
+        r#"{ type = "revolute", bearing = "ground.C", journal = "cart.o", model = "ideal" }"#,
+    );
+}
+
+/// The tool comes too close to the pivot in the middle of its line; at both ends it is within reach.
+#[test]
+fn a_line_that_leaves_the_reach_on_the_way() {
+    let text = r#"
+format = 1
+title = "an arm and a rod"
+simulation = { duration = 0.2 }
+integrator = { method = "bathe", step = 1e-3, newton_tolerance = 1e-11 }
+output = { interval = 0.1, channels = ["*"] }
+materials.steel = { density = 7800.0 }
+sections.bar = { width = 0.01, height = 0.01 }
+bodies.ground = { type = "ground", points.O = [0.0, 0.0] }
+bodies.arm = { type = "link", model = "rigid", length = 0.3, section = "bar", material = "steel" }
+bodies.rod = { type = "link", model = "rigid", length = 0.1, section = "bar", material = "steel" }
+bodies.tool = { type = "rigid_body", mass = 1.0, inertia = 0.1, points.tip = [0.0, 0.0] }
+joints.O = { type = "revolute", bearing = "ground.O", journal = "arm.start", model = "ideal" }
+joints.P = { type = "revolute", bearing = "arm.end", journal = "rod.start", model = "ideal" }
+joints.Q = { type = "revolute", bearing = "rod.end", journal = "tool.tip", model = "ideal" }
+drives.input = { type = "inverse_kinematics", joints = ["O"], body = "tool", path = { type = "line", from = [0.1, -0.3, 0.0], to = [0.1, 0.3, 0.0], duration = 0.2 } }
+initial.sketch = { P = [0.2, -0.25] }
+"#;
+    check(
+        &fault(text, &[]),
+        "line",
+        "cannot close: |O Q| = ",
+        r#"{ type = "line", from = [0.1, -0.3, 0.0], to = [0.1, 0.3, 0.0], duration = 0.2 }"#,
+    );
 }

@@ -556,6 +556,10 @@ fn an_ablation_on_standard_output() {
     assert!(!told.is_empty(), "contacts of 2 ms in long steps");
     assert_eq!(shown, told);
     assert_eq!(json["ablation"]["body"]["name"], "coupler");
+    let table = ablate(&["--quiet", "--body", "coupler"]).stdout;
+    let table = String::from_utf8_lossy(&table);
+    assert!(table.contains("coupler from its path in the rigid ideal mechanism"));
+    assert!(table.contains("µm"), "errors have SI prefixes: {table}");
     assert_eq!(json["timing"]["variants"][0]["runs"], 1);
     expect(
         &ablate(&["--body", "cuopler"]),
@@ -604,6 +608,25 @@ fn a_run_that_cannot_go_on_keeps_what_it_has() {
 #[cfg(unix)]
 mod unix {
     use super::*;
+
+    /// What cannot be printed is an error of the system; a reader that has gone away is none.
+    #[test]
+    fn standard_output_may_be_full_or_closed() {
+        let program = assert_cmd::cargo::cargo_bin("looselink");
+        let inspect = |target: &str| {
+            let line = format!("\"$0\" inspect {SCENE} {target}");
+            let mut shell = Command::new("bash");
+            shell.args(["-o", "pipefail", "-c", &line]).arg(&program);
+            shell.output().unwrap()
+        };
+        expect(
+            &inspect("> /dev/full"),
+            1,
+            "cannot write to standard output",
+        );
+        expect(&inspect("| true"), 0, "");
+    }
+
     use std::io::Read;
     use std::process::{Command, Stdio};
     use std::time::{Duration, Instant};

@@ -110,4 +110,7 @@ fn deep_nesting_is_refused_not_followed() {
     ] {
         assert!(!rendered(&fault(&text, &[])).is_empty());
     }
+    let nested = format!("a = {}1{}", "[".repeat(40), "]".repeat(40));
+    let message = fault(&nested, &[]).to_string();
+    assert_eq!(message, "this is nested too deeply for a scene");
 }

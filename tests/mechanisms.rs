@@ -574,10 +574,10 @@ bodies.bar = { x = 0.4975020826390129, y = 0.04991670832341408, theta = 0.1 }
         );
 }
 
-/// The angle of a torsional spring is counted from the turn of its rest angle: at rest beyond half a turn it has no torque.
-#[test]
-fn a_torsion_spring_starts_in_the_turn_of_its_rest_angle() {
-    let text = head(0.01, 1e-4, 0.01, [0.0, 0.0], r#""twist.*""#)
+/// A bar on a torsional spring of 3 N m/rad, up to the damping of the spring.
+fn twisted_bar(channels: &str) -> String {
+    let channels = format!(r#""twist.*"{channels}"#);
+    head(0.01, 1e-4, 0.01, [0.0, 0.0], &channels)
         + r#"
 [bodies.bar]
 type = "link"
@@ -594,7 +594,14 @@ model = "ideal"
 type = "torsion_spring"
 joint = "O"
 stiffness = 3.0
-damping = 0.0
+"#
+}
+
+/// The angle of a torsional spring is counted from the turn of its rest angle: at rest beyond half a turn it has no torque.
+#[test]
+fn a_torsion_spring_starts_in_the_turn_of_its_rest_angle() {
+    let text = twisted_bar("")
+        + r#"damping = 0.0
 rest_angle = 10.0
 [initial]
 bodies.bar = { x = -0.4195357645382262, y = -0.2720105554446849, theta = 10.0 }
@@ -607,4 +614,87 @@ bodies.bar = { x = -0.4195357645382262, y = -0.2720105554446849, theta = 10.0 }
             "{torque} {angle}"
         );
     }
+}
+
+/// Its channel is the torque on the journal's body, counter-clockwise positive: the one that accelerates the bar.
+#[test]
+fn the_torque_of_a_torsion_spring_is_that_on_the_journal() {
+    let text = twisted_bar(r#", "bar.alpha""#)
+        + r#"damping = 0.1
+rest_angle = 0.3
+[initial]
+bodies.bar = { x = 0.5, y = 0.0, theta = 0.0, vx = 0.0, vy = 1.0, omega = 2.0 }
+"#;
+    let (run, _) = run(&text);
+    let [torque, alpha] = ["twist.torque", "bar.alpha"].map(|name| run.get(name)[0]);
+    // 3.0 N m/rad times 0.3 rad, less 0.1 N m s/rad times 2 rad/s
+    assert!((torque - 0.7).abs() < 1e-14, "{torque}");
+    let last = run.get("twist.torque").len() - 1;
+    let [later, slower] = ["twist.torque", "bar.alpha"].map(|name| run.get(name)[last]);
+    assert!(alpha > 0.0 && (torque / alpha - later / slower).abs() < 1e-9 * torque / alpha);
+}
+
+/// Under a part s of the load a lever on a torsion spring stands where k phi = s (tau - m g l cos phi): its weight and the
+/// torque grow together, the spring acts in full, and the pin carries s m g.
+#[test]
+fn weight_and_loads_of_a_static_analysis_grow_in_proportion() {
+    let text = r#"
+format = 1
+title = "a lever under its weight"
+[simulation]
+analysis = "static"
+duration = 2.0
+gravity = [0.0, -9.81]
+[integrator]
+method = "bathe"
+step = 0.05
+newton_tolerance = 1e-10
+[output]
+interval = 0.25
+channels = ["lever.theta", "O.fy"]
+[bodies.ground]
+type = "ground"
+points.O = [0.0, 0.0]
+[materials.heavy]
+density = 2000.0
+[sections.bar]
+width = 0.1
+height = 0.01
+[bodies.lever]
+type = "link"
+model = "rigid"
+length = 1.0
+section = "bar"
+material = "heavy"
+[joints.O]
+type = "revolute"
+bearing = "ground.O"
+journal = "lever.start"
+model = "ideal"
+[forces.twist]
+type = "torsion_spring"
+joint = "O"
+stiffness = 20.0
+damping = 0.0
+rest_angle = 0.0
+[forces.motor]
+type = "torque"
+point = "lever.start"
+value = 3.0
+[initial]
+bodies.lever = { x = 0.5, y = 0.0, theta = 0.0 }
+"#;
+    let (run, _) = run(text);
+    let left = Worst::new();
+    let [t, theta, force] = ["t", "lever.theta", "O.fy"].map(|name| run.get(name));
+    for (k, phi) in theta.iter().enumerate() {
+        let part = 0.5 * t[k];
+        left.see(20.0 * phi - part * (3.0 - 2.0 * 9.81 * 0.5 * phi.cos()));
+        left.see(force[k] - part * 2.0 * 9.81);
+    }
+    assert_eq!(t.len(), 9);
+    let reason = "N m and N, rounding of an equilibrium with torques of 10 N m and forces of 20 N";
+    Rung::Identities
+        .asks("Do the weight and the loads of a static analysis grow in proportion?")
+        .within(&left, 1e-12, reason);
 }

@@ -65,6 +65,9 @@ fn studies_of_statistics_work() {
             let (measures, work) = run.result.as_ref().unwrap_or_else(|e| panic!("{e}"));
             // 20 ms of impacts, each run a sample of its own
             assert!(measures.deviation(exact) < 0.5, "{name}: {measures:?}");
+            let envelope = measures.envelope.iter().map(|x| x * x).sum::<f64>().sqrt();
+            assert!(measures.rms > 0.0 && measures.rms <= envelope, "{name}");
+            assert_eq!(measures.loss(), measures.numerical / measures.dissipated);
             assert!(measures.loss().is_finite() && work.steps > 100);
         }
         assert!(survey.table(study.duration).lines().count() > study.curves.len() + 3);

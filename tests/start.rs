@@ -1,7 +1,7 @@
 //! Where a motion starts: what the poses, velocities and angles of `[initial]` mean.
 
 use crate::bad_input::rendered;
-use crate::support::{Recording, run_scene};
+use crate::support::{Recording, load, run_scene};
 use ladder::{Rung, Worst};
 use looselink::scene::{Scene, SceneError};
 use looselink::simulate::Simulation;
@@ -389,4 +389,69 @@ drives.draw = { type = "inverse_kinematics", joints = ["shoulder", "elbow", "wri
             .starts_with("point lower.start closes at (0.1750, 0.24"),
         "{error}"
     );
+}
+
+/// A motion that starts at rest because nothing else is said does so with a note; in a static analysis all is at rest.
+#[test]
+fn a_start_at_rest_that_is_not_asked_for_is_noted() {
+    let noted = |scene: &str| {
+        let simulation = Simulation::new(&load(scene, &[])).unwrap();
+        let notes = simulation.inspect().assumptions;
+        notes.iter().any(|note| note.contains("starts at rest"))
+    };
+    assert!(noted("spin-up.toml"));
+    assert!(!noted("cantilever-static.toml"));
+    assert!(!noted("bouncing-journal.toml"));
+}
+
+/// One point and the angle of a weld, of a drive or of a guide place a link.
+#[test]
+fn a_link_starts_where_one_point_and_an_angle_put_it() {
+    let bodies = r#"
+bodies.ground = { type = "ground", points.A = [0.1, 0.2] }
+bodies.arm = { type = "link", model = "MODEL", length = 0.3, section = "bar", material = "steel" }
+initial = {}
+"#;
+    let held = [
+        r#"joints.w = { type = "weld", first = "ground.A", second = "arm.start", angle = 0.4 }"#,
+        r#"joints.w = { type = "weld", first = "arm.start", second = "ground.A", angle = -0.4 }"#,
+        r#"
+joints.p = { type = "revolute", bearing = "ground.A", journal = "arm.start", model = "ideal" }
+drives.turn = { type = "angle", joint = "p", angle = 0.4 }"#,
+    ];
+    for model in [r#""rigid""#, r#""flexible", elements = 2"#] {
+        for joints in held {
+            let link = bodies.replace(r#""MODEL""#, model);
+            let run = run(&format!("{link}{joints}\n"));
+            let [theta, x, y] = ["arm.theta", "arm.x", "arm.y"].map(|name| run.get(name)[0]);
+            let (sine, cosine) = 0.4_f64.sin_cos();
+            let expected = [0.4, 0.1 + 0.15 * cosine, 0.2 + 0.15 * sine];
+            for (found, expected) in [theta, x, y].into_iter().zip(expected) {
+                assert!(
+                    (found - expected).abs() < 1e-14,
+                    "{joints}: {found} {expected}"
+                );
+            }
+        }
+    }
+}
+
+/// The work of the static solver that finds the equilibrium is counted with that of the motion.
+#[test]
+fn an_equilibrium_start_and_its_motion_are_counted_together() {
+    let settings = [
+        "simulation.duration=2e-3",
+        "output.interval=1e-3",
+        "integrator.step=1e-3",
+    ];
+    let counted = |start: &str| {
+        let all = [&settings[..], &[start]].concat();
+        let mut simulation = Simulation::new(&load("cantilever-dynamic.toml", &all)).unwrap();
+        simulation.run(&mut ()).unwrap();
+        let report = simulation.report();
+        assert!(report.newton_iterations > report.stages, "{report:?}");
+        report.stages
+    };
+    let still = counted("initial.equilibrium=true");
+    assert!(still > counted("initial.equilibrium=false"));
 }

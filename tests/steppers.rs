@@ -2,9 +2,9 @@
 
 use crate::chain::Chain;
 use ladder::{Rung, Worst};
-use looselink::newton::Newton;
+use looselink::newton::{Counters, Newton};
 use looselink::scene::Method;
-use looselink::stepper::{LocalError, Stepper, look_ahead, stepper};
+use looselink::stepper::{Estimate, LocalError, Stepper, look_ahead, stepper};
 use looselink::system::{State, System};
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 use proptest::prelude::*;
@@ -639,4 +639,40 @@ fn stages_are_integrated_and_told() {
     Rung::Identities
         .asks("Are powers integrated over the stages exactly up to the degree of the scheme's quadrature?")
         .within(&worst, 4e-15, "rounding of an integral that starts at 5");
+}
+
+/// An estimate of order p falls with the power p of the step. Its share of an accuracy grows with the step: with the step itself
+/// where the errors of the steps add up, with its root where they are those of a solution that is not continued.
+#[test]
+fn the_ratio_of_an_error_to_its_share_loses_an_order_or_half_of_one() {
+    let estimate = |order: f64, is_error: bool| Estimate {
+        order,
+        is_error,
+        implicit: false,
+    };
+    assert_eq!(estimate(3.0, true).order_of_ratio(), 2.0);
+    assert_eq!(estimate(5.0, false).order_of_ratio(), 4.5);
+}
+
+/// Counts of the static solver and of the motion add up, each to its own kind.
+#[test]
+fn counts_add_up() {
+    let counters = |first: u64| Counters {
+        stages: first,
+        newton_iterations: first + 1,
+        factorisations: first + 2,
+        fallbacks: first + 3,
+        stagnations: first + 4,
+        singular_poses: first + 5,
+    };
+    let sum = counters(10).with(&counters(20));
+    let expected = Counters {
+        stages: 30,
+        newton_iterations: 32,
+        factorisations: 34,
+        fallbacks: 36,
+        stagnations: 38,
+        singular_poses: 40,
+    };
+    assert_eq!(sum, expected);
 }

@@ -2,6 +2,7 @@
 
 use crate::support::{all_scenes, load};
 use ladder::{Rung, Worst};
+use looselink::model::Effect;
 use looselink::newton::Newton;
 use looselink::scene::{Analysis, Body, BodyKind, LinkModel, Scene};
 use looselink::simulate::Simulation;
@@ -191,4 +192,72 @@ fn accepted_states_are_consistent() {
             1.0,
             "rounding of velocities near 1 m/s and of accelerations up to 1e3 m/s²",
         );
+}
+
+/// Constraints are opened by moving one coordinate at a time: the widest open one is named, with its distance.
+#[test]
+fn the_widest_open_constraint_is_named() {
+    let scene = load(
+        "3rrr/case1.toml",
+        &["simulation.duration=1e-3", "output.interval=1e-3"],
+    );
+    let (simulation, accepted) = state(&scene);
+    let model = simulation.model();
+    let shape = model.shape();
+    let mut phi = vec![0.0; shape.multipliers];
+    let mut k = vec![0.0; model.level_symbolic().len()];
+    // "joint C1 (x)" is a row of joint C1
+    let constraint = |row: &str| row.split(" (").next().unwrap().to_owned();
+    for i in 0..shape.unknowns {
+        let mut at = accepted.clone();
+        at.q[i] += 1e-3 * (1.0 + i as f64);
+        model.level(&at, &mut phi, &mut k);
+        let mut open = std::collections::BTreeMap::<String, f64>::new();
+        for (row, value) in phi.iter().enumerate() {
+            let distance = open
+                .entry(constraint(&model.unknown_name(shape.unknowns + row)))
+                .or_default();
+            *distance = distance.hypot(*value);
+        }
+        let widest = open.iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
+        let (distance, _, name) = model.worst_constraint(&at).unwrap();
+        assert_eq!((&constraint(&name), &distance), widest, "{i}");
+    }
+}
+
+/// Every effect is counted as often as a residual evaluates it; contacts count while they are closed.
+#[test]
+fn evaluations_of_effects_are_counted() {
+    let scene = load("3rrr/case4-friction.toml", &[]);
+    let simulation = Simulation::new(&scene).unwrap();
+    let model = simulation.model();
+    let shape = model.shape();
+    let mut work = model.work();
+    let (mut r, mut phi) = (vec![0.0; shape.coordinates], vec![0.0; shape.multipliers]);
+    for _ in 0..2 {
+        model.residual(simulation.state(), &mut r, &mut phi, &mut work);
+    }
+    let counted = Effect::ALL.map(|(effect, name)| (name, work.tally[effect as usize]));
+    let counted: Vec<_> = counted
+        .into_iter()
+        .filter(|(_, count)| *count > 0)
+        .collect();
+    // three links of one element; the journals start at the centres of their bearings
+    assert_eq!(counted, [("ancf_elastic_force", 6)]);
+    let scene = load("3rrr/case1.toml", &["simulation.gravity=[0.0, -9.81]"]);
+    let simulation = Simulation::new(&scene).unwrap();
+    let model = simulation.model();
+    let mut work = model.work();
+    let shape = model.shape();
+    let (mut r, mut phi) = (vec![0.0; shape.coordinates], vec![0.0; shape.multipliers]);
+    model.residual(simulation.state(), &mut r, &mut phi, &mut work);
+    let of = |effect: Effect| work.tally[effect as usize];
+    assert_eq!(
+        (
+            of(Effect::Length),
+            of(Effect::Coincidence),
+            of(Effect::Gravity)
+        ),
+        (3, 3, 1)
+    );
 }

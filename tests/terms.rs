@@ -741,7 +741,8 @@ fn forces_tell_what_they_do() {
     let coil = by_name("torsion spring, ground and body");
     let angle = s.q[5];
     let speed = s.v[5];
-    let torque = 2.0 * (angle + 0.2) + 0.4 * speed;
+    // on the second body, the journal's: against the angle
+    let torque = -2.0 * (angle + 0.2) - 0.4 * speed;
     compare(
         &told(&*coil),
         &[("torque", torque), ("angle", angle), ("speed", speed)],
@@ -759,4 +760,39 @@ fn forces_tell_what_they_do() {
     Rung::Identities
         .asks("Do springs and loads report forces, lengths, angles and rates that follow their definitions?")
         .within(&worst, 1e-14, "rounding of numbers near one");
+}
+
+/// The ground does not turn, so its directions depend on no coordinate.
+#[test]
+fn a_fixed_direction_has_no_columns() {
+    let turning = Spin::Angle { theta: 0 }.columns(&[0.3]);
+    assert_eq!((turning.len(), turning.is_empty()), (1, false));
+    let fixed = Spin::Fixed.columns(&[0.3]);
+    assert_eq!((fixed.len(), fixed.is_empty()), (0, true));
+}
+
+/// Where the ends of a spring without rest length meet, the rate of its length is how fast they part.
+#[test]
+fn ends_of_a_spring_that_meet_part_at_their_relative_velocity() {
+    let shape = Shape {
+        unknowns: 4,
+        coordinates: 4,
+        multipliers: 0,
+        contacts: 0,
+        angles: 0,
+    };
+    let spring = SpringDamper {
+        from: Marker::Node { x: 0 },
+        to: Marker::Node { x: 2 },
+        stiffness: 10.0,
+        damping: 0.0,
+        rest_length: 0.0,
+    };
+    let mut at = State::zeros(shape);
+    at.v = vec![0.1, 0.0, 0.4, 0.4];
+    assert_eq!(spring.measure(&at), [0.0, 0.0, 0.5]);
+    // along the line, once there is one
+    at.q[2] = 1e-3;
+    let [_, length, rate] = spring.measure(&at);
+    assert!((length - 1e-3).abs() < 1e-18 && (rate - 0.3).abs() < 1e-15);
 }

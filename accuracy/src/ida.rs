@@ -50,7 +50,7 @@ pub fn points(
 
 /// A first run, which is recorded, and the times of those after it.
 fn repeated(plan: &Plan, relative: f64, repeats: usize) -> Result<(Trajectory, Timing)> {
-    let run = || plan.cpp(&tolerances(relative, 1e-3 * relative, 0.1 * relative));
+    let run = || plan.cpp(&tolerances(relative));
     let first = run()?;
     let seconds = (0..repeats).map(|_| Ok(run()?.seconds));
     let seconds: Vec<f64> = seconds.collect::<Result<_>>()?;
@@ -58,9 +58,7 @@ fn repeated(plan: &Plan, relative: f64, repeats: usize) -> Result<(Trajectory, T
 }
 
 fn work(run: &Trajectory) -> Work {
-    let verify::trajectory::Work::Cpp(counts) = &run.work else {
-        unreachable!("the second implementation ran");
-    };
+    let counts = &run.counts;
     let count = |n: i64| u64::try_from(n).unwrap_or(0);
     Work {
         steps: count(counts.steps),

@@ -11,6 +11,7 @@
 pub mod answer;
 pub mod compare;
 pub mod constants;
+pub mod faults;
 pub mod figures;
 pub mod mutants;
 pub mod page;

@@ -42,7 +42,7 @@ fn main() -> Result<ExitCode> {
         &answers,
         &pictures,
         &constants::Record::load()?,
-        &Record::read()?,
+        &Record::read_all()?,
         &reasons()?,
     )?;
     fs::write(&path, text).into_diagnostic()?;

@@ -1,17 +1,96 @@
-//! What mutation testing found: the record that `mutate` writes, and the reasons why survivors live.
+//! What mutation testing found: the record that `mutate` writes, and why no test detects each survivor.
 
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
+use std::ops::AddAssign;
 use std::path::{Path, PathBuf};
+
+/// What mutants are drawn from.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub enum Scope {
+    /// The folders of the formulas.
+    Kernels,
+    /// All of the solver, with its command line.
+    Solver,
+}
+
+impl Scope {
+    /// All of them.
+    pub const ALL: [Scope; 2] = [Scope::Kernels, Scope::Solver];
+
+    /// Name of the record.
+    pub fn name(self) -> &'static str {
+        match self {
+            Scope::Kernels => "mutation",
+            Scope::Solver => "mutation-solver",
+        }
+    }
+
+    /// File of the record.
+    pub fn path(self) -> PathBuf {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+        folder.join(format!("{}.json", self.name()))
+    }
+
+    /// How many mutants are drawn.
+    pub fn count(self) -> usize {
+        match self {
+            Scope::Kernels => 500,
+            Scope::Solver => 250,
+        }
+    }
+
+    /// Title of the section with the record.
+    pub fn title(self) -> &'static str {
+        match self {
+            Scope::Kernels => "Mutants of the kernels",
+            Scope::Solver => "Mutants of the whole solver",
+        }
+    }
+
+    /// Where its mutants are and which tests run.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Scope::Kernels => {
+                "in the kernels (`src/link`, `src/contact`, `src/constraint`, `src/force`, `src/stepper`), with the tests of \
+                 [tests/kernels.rs](tests/kernels.rs)"
+            }
+            Scope::Solver => {
+                "in all of `src`, the command line included, with all tests of the package `looselink`"
+            }
+        }
+    }
+
+    /// Arguments that choose the files.
+    pub fn files(self) -> impl Iterator<Item = String> {
+        let folders: &[&str] = match self {
+            Scope::Kernels => &["link/", "contact/", "constraint/", "force/", "stepper/"],
+            Scope::Solver => &[""],
+        };
+        let files = folders
+            .iter()
+            .map(|folder| format!("--file=src/{folder}**"));
+        ["--package=looselink".to_owned()].into_iter().chain(files)
+    }
+
+    /// Arguments that choose the tests.
+    pub fn tests(self) -> impl Iterator<Item = &'static str> {
+        match self {
+            Scope::Kernels => Some("--test=kernels"),
+            Scope::Solver => None,
+        }
+        .into_iter()
+    }
+}
 
 /// A mutation run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// Seed of the draw.
     pub seed: u64,
-    /// Mutants there are.
+    /// Number of mutants from which those of this record were drawn.
     pub possible: usize,
     /// Version of cargo-mutants.
     pub tool: String,
@@ -34,6 +113,15 @@ pub struct Counts {
     pub unviable: usize,
 }
 
+impl AddAssign for Counts {
+    fn add_assign(&mut self, more: Counts) {
+        self.caught += more.caught;
+        self.timeout += more.timeout;
+        self.survived += more.survived;
+        self.unviable += more.unviable;
+    }
+}
+
 impl Counts {
     /// Mutants that compiled.
     pub fn viable(self) -> usize {
@@ -41,45 +129,56 @@ impl Counts {
     }
 }
 
-/// The files of the record and of the reasons.
-pub fn paths() -> [PathBuf; 2] {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    ["mutants.json", "survivors.toml"].map(|f| folder.join(f))
-}
-
 impl Record {
     /// The record of the last run.
     ///
     /// # Errors
     /// A file that cannot be read.
-    pub fn read() -> Result<Record> {
-        let [path, _] = paths();
+    pub fn read(scope: Scope) -> Result<Record> {
+        let path = scope.path();
         let text = fs::read_to_string(&path)
             .into_diagnostic()
             .wrap_err_with(|| format!("cannot read {}", path.display()))?;
         serde_json::from_str(&text).into_diagnostic()
     }
 
-    /// All files together.
-    pub fn total(&self) -> Counts {
-        let add = |a: Counts, b: &Counts| Counts {
-            caught: a.caught + b.caught,
-            timeout: a.timeout + b.timeout,
-            survived: a.survived + b.survived,
-            unviable: a.unviable + b.unviable,
-        };
-        self.files.values().fold(Counts::default(), add)
+    /// The records of all scopes.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn read_all() -> Result<Vec<(Scope, Record)>> {
+        let record = |scope: Scope| Ok((scope, Record::read(scope)?));
+        Scope::ALL.into_iter().map(record).collect()
     }
 
-    /// This record with its survivors tried again, as `again` tells.
-    pub fn revised(mut self, again: Record) -> Record {
+    /// Counts by the folder or file below `src`.
+    pub fn folders(&self) -> BTreeMap<String, Counts> {
+        let mut folders = BTreeMap::new();
+        for (file, counts) in &self.files {
+            let folder: Vec<&str> = file.split('/').take(2).collect();
+            *folders.entry(folder.join("/")).or_default() += *counts;
+        }
+        folders
+    }
+
+    /// All files together.
+    pub fn total(&self) -> Counts {
+        let mut total = Counts::default();
+        self.files.values().for_each(|counts| total += *counts);
+        total
+    }
+
+    /// This record after the survivors `tried` were tested again, with `again` as the result.
+    pub fn revised(mut self, tried: &[String], again: Record) -> Record {
         for (file, fresh) in &again.files {
             let counts = self.files.entry(file.clone()).or_default();
             counts.caught += fresh.caught;
             counts.timeout += fresh.timeout;
-            counts.survived = fresh.survived;
+            counts.survived -= fresh.caught + fresh.timeout;
         }
-        self.survivors = again.survivors;
+        self.survivors.retain(|name| !tried.contains(name));
+        self.survivors.extend(again.survivors);
+        self.survivors.sort();
         self
     }
 
@@ -90,12 +189,12 @@ impl Record {
     }
 }
 
-/// Why each survivor lives, by its name.
+/// Why no test detects each survivor, by its name.
 ///
 /// # Errors
 /// A file that cannot be read.
 pub fn reasons() -> Result<BTreeMap<String, String>> {
-    let [_, path] = paths();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("survivors.toml");
     let text = fs::read_to_string(&path)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", path.display()))?;
@@ -122,8 +221,10 @@ mod tests {
                 survivors: survivors.iter().map(|s| (*s).to_owned()).collect(),
             }
         };
-        let revised = record(5, 3, &["x", "y", "z"]).revised(record(2, 1, &["y"]));
-        assert_eq!(revised, record(7, 1, &["y"]));
-        assert_eq!(revised.caught(), 7.0 / 8.0);
+        // z has a reason and is not tried again
+        let tried = ["x", "y"].map(str::to_owned);
+        let revised = record(5, 3, &["x", "y", "z"]).revised(&tried, record(1, 1, &["y"]));
+        assert_eq!(revised, record(6, 2, &["y", "z"]));
+        assert_eq!(revised.caught(), 6.0 / 8.0);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::answer::short;
 use crate::compare::{cell, link};
-use crate::mutants::Record;
+use crate::mutants::{Counts, Record, Scope};
 use crate::{Answer, Rung, constants};
 use miette::{Result, miette};
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ pub fn page(
     answers: &[Answer],
     pictures: &[Rung],
     constants: &constants::Record,
-    mutants: &Record,
+    mutants: &[(Scope, Record)],
     reasons: &BTreeMap<String, String>,
 ) -> Result<String> {
     let mut page = String::new();
@@ -128,27 +128,52 @@ fn numbers(page: &mut String, record: &constants::Record) {
     put(page, String::new());
 }
 
-fn mutation(page: &mut String, mutants: &Record, reasons: &BTreeMap<String, String>) -> Result<()> {
-    let total = mutants.total();
+fn mutation(
+    page: &mut String,
+    records: &[(Scope, Record)],
+    reasons: &BTreeMap<String, String>,
+) -> Result<()> {
     put(
         page,
         format!(
-            "## Mutation testing\n\n{}\n\
-             [{}](https://mutants.rs) changes one operator, sign or return value at a time in the kernels (`src/link`, \
-             `src/contact`, `src/constraint`, `src/force`, `src/stepper`), and the tests of [tests/kernels.rs](tests/kernels.rs) \
-             run. Of {} possible mutants {} were drawn with seed {}; {} of them compile, and **{} of those are caught**. \
-             `cargo run --release -p ladder --bin mutate` repeats this; it needs `cargo install cargo-mutants`.\n\n\
-             | file | drawn | do not compile | caught | time out | survive |\n|---|---|---|---|---|---|",
-            records::place("mutation"),
-            mutants.tool,
-            mutants.possible,
-            total.viable() + total.unviable,
-            mutants.seed,
-            total.viable(),
-            plot::percent((1e3 * mutants.caught()).floor() / 1e3),
+            "## Mutation testing\n\n\
+             [{}](https://mutants.rs) changes one operator, sign or return value at a time, and the tests run. \
+             `cargo run --release -p ladder --bin mutate kernels` and `... mutate solver` repeat this; they need \
+             `cargo install cargo-mutants cargo-nextest`.\n",
+            records[0].1.tool
         ),
     );
-    let mut line = |name: &str, c: &crate::mutants::Counts| {
+    for (scope, record) in records {
+        mutants(page, *scope, record, reasons)?;
+    }
+    Ok(())
+}
+
+fn mutants(
+    page: &mut String,
+    scope: Scope,
+    record: &Record,
+    reasons: &BTreeMap<String, String>,
+) -> Result<()> {
+    let total = record.total();
+    put(
+        page,
+        format!(
+            "### {}\n\n{}\n\
+             Mutants {}. Of {} possible ones {} were drawn with seed {}; {} of them compile, and **{} of those are \
+             caught**.\n\n\
+             | folder | drawn | do not compile | caught | time out | survive |\n|---|---|---|---|---|---|",
+            scope.title(),
+            records::place(scope.name()),
+            scope.describe(),
+            record.possible,
+            total.viable() + total.unviable,
+            record.seed,
+            total.viable(),
+            plot::percent((1e3 * record.caught()).floor() / 1e3),
+        ),
+    );
+    let mut line = |name: &str, c: &Counts| {
         let numbers = [
             c.viable() + c.unviable,
             c.unviable,
@@ -159,20 +184,21 @@ fn mutation(page: &mut String, mutants: &Record, reasons: &BTreeMap<String, Stri
         let numbers = numbers.map(|n| n.to_string()).join(" | ");
         put(page, format!("| {name} | {numbers} |"));
     };
-    for (file, counts) in &mutants.files {
-        line(&format!("`{file}`"), counts);
+    for (folder, counts) in record.folders() {
+        line(&format!("`{folder}`"), &counts);
     }
     line("all", &total);
     put(
         page,
         "\nSurviving mutants:\n\n| mutant | why no test fails |\n|---|---|".into(),
     );
-    for survivor in &mutants.survivors {
+    for survivor in &record.survivors {
         let reason = reasons
             .get(survivor)
             .ok_or_else(|| miette!("ladder/survivors.toml has no reason for {survivor}"))?;
         put(page, format!("| `{}` | {} |", cell(survivor), cell(reason)));
     }
+    put(page, String::new());
     Ok(())
 }
 
@@ -185,7 +211,6 @@ mod tests {
     use super::*;
     use crate::Allowed;
     use crate::compare::stale;
-    use crate::mutants::Counts;
 
     fn answer(question: &str, number: f64) -> Answer {
         Answer {
@@ -226,7 +251,7 @@ mod tests {
             &rows,
             &[],
             &constants::Record::load().unwrap(),
-            &record(),
+            &[(Scope::Kernels, record())],
             &reasons,
         )
         .unwrap();
@@ -241,7 +266,7 @@ mod tests {
                 &[answer("one?", 0.1)],
                 &[],
                 &constants::Record::load().unwrap(),
-                &record(),
+                &[(Scope::Kernels, record())],
                 &BTreeMap::new()
             )
             .is_err()

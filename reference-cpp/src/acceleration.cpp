@@ -10,17 +10,16 @@ void Acceleration::linearise(double t, const VectorXd &q) {
     system_.reduce_mass(phi_q_, w_, s_);
     if (system_.constraints() == 0) return;
     factor_.compute(s_);
-    if (!factor_.independent())
-        throw Failure(LS_BAD_INPUT,
-                      "the constraints are not independent: " + system_.row_name(factor_.dependent_row(s_)) +
-                          " follows from those before it or contradicts them",
-                      t);
+    if (factor_.independent()) return;
+    const std::vector<int> rows = ConstraintFactor::dependent_rows(s_);
+    throw Failure(LS_BAD_INPUT, "singular pose: row " + (rows.empty() ? "a constraint" : system_.row_name(rows.front())) +
+                                    " depends linearly on the rows before it", t);
 }
 
-void Acceleration::solve(double t, const VectorXd &q, const VectorXd &v, const VectorXd &z, bool refine) {
+void Acceleration::solve(double t, const VectorXd &q, const VectorXd &v, const Memory &memory, bool refine) {
     linearise(t, q);
-    system_.force(inputs.functions, q, v, z, f_);
-    a = -(system_.inverse_mass() * f_);
+    system_.force(inputs, q, v, memory, f_);
+    a = -system_.divided_by_mass(f_);
     lambda.setZero(system_.constraints());
     if (system_.constraints() == 0) return;
     system_.convective(inputs, q, v, gamma_);
@@ -42,7 +41,7 @@ void Acceleration::require_small(const VectorXd &violation, double limit, const 
     if (!(size <= limit))
         throw Failure(LS_BAD_INPUT,
                       std::string("the ") + what + " violate the constraints: " +
-                          system_.row_name(static_cast<int>(worst)) + ", by " + std::to_string(size),
+                          system_.row_name(static_cast<int>(worst)) + ", by " + text_of(size),
                       t);
 }
 

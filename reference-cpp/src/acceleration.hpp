@@ -14,7 +14,7 @@ public:
     explicit Acceleration(const System &system);
 
     // refine: one step of iterative refinement
-    void solve(double t, const VectorXd &q, const VectorXd &v, const VectorXd &z, bool refine);
+    void solve(double t, const VectorXd &q, const VectorXd &v, const Memory &memory, bool refine);
     // Moves q to Phi = 0 and v to Phi_q v + Phi_t = 0 along M^-1 Phi_q^T; refuses larger violations than `limit`.
     void project(double t, VectorXd &q, VectorXd &v, double limit);
     // Power of the constraints that prescribe a motion, after `solve`.

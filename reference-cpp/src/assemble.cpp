@@ -1,31 +1,45 @@
-// Forces, constraint rows and their derivatives, summed over the mechanism.
+// Forces, rows and their derivatives, summed over the mechanism.
 #include "damping.hpp"
-#include "failure.hpp"
 #include "system.hpp"
+
+namespace {
+
+Vec<double> applied(const Load &load, const Inputs &inputs) {
+    return {inputs.given[load.x].value, inputs.given[load.y].value};
+}
+
+void add_block(const ElementMatrix &block, int offset, Entries &entries) {
+    for (int i = 0; i < 8; ++i)
+        for (int j = 0; j < 8; ++j) entries.emplace_back(offset + i, offset + j, block(i, j));
+}
+
+} // namespace
 
 // Calls visit(bearing, journal, law) for everything that acts between two points.
 template <class Visit>
-void System::visit_pairs(const std::vector<Prescribed> &functions, const VectorXd &z, Visit visit) const {
+void System::visit_pairs(const Inputs &inputs, const Memory &memory, Visit visit) const {
     for (int k : loose_) {
-        if (z[k] <= 0.0) continue;
+        const double impact_velocity = memory.impact_velocity[k];
+        if (impact_velocity <= 0.0) continue;
         const Joint &j = joints_[k];
-        const ContactLaw &contact = law(k);
-        const double impact_velocity = z[k];
         visit(j.bearing, j.journal, [&](auto qi, auto vi, auto qj, auto vj) {
-            return loose_forces(contact, impact_velocity, j.bearing, j.journal, qi, vi, qj, vj);
+            return loose_forces(*j.law, impact_velocity, j.bearing, j.journal, qi, vi, qj, vj);
         });
     }
     for (const Spring &s : springs_)
         visit(s.from, s.to, [&s](auto qi, auto vi, auto qj, auto vj) { return spring_forces(s, qi, vi, qj, vj); });
-    for (const TorsionSpring &s : torsion_springs_)
-        visit(s.bearing, s.journal, [&s](auto qi, auto vi, auto qj, auto vj) { return spring_forces(s, qi, vi, qj, vj); });
-    for (const Load &l : loads_) {
-        const Vec<double> applied{functions[l.x].value, functions[l.y].value};
-        visit(l.reaction, l.point, [&](auto qi, auto, auto qj, auto) { return load_forces(l, applied, qi, qj); });
+    for (std::size_t i = 0; i < torsion_springs_.size(); ++i) {
+        const TorsionSpring &s = torsion_springs_[i];
+        const double near = memory.turn[static_cast<int>(i)];
+        visit(s.bearing, s.journal,
+              [&s, near](auto qi, auto vi, auto qj, auto vj) { return spring_forces(s, near, qi, vi, qj, vj); });
     }
+    for (const Load &l : loads_)
+        visit(l.reaction, l.point,
+              [&](auto qi, auto, auto qj, auto) { return load_forces(l, applied(l, inputs), qi, qj); });
 }
 
-void System::force(const std::vector<Prescribed> &functions, const VectorXd &q, const VectorXd &v, const VectorXd &z,
+void System::force(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory,
                    VectorXd &f) const {
     f.setZero(n_);
     for (const Body &b : bodies_)
@@ -36,40 +50,34 @@ void System::force(const std::vector<Prescribed> &functions, const VectorXd &q, 
                 f.segment<8>(o) += damping_force(b.element, b.strain_damping, q.data() + o, v.data() + o);
         }
     f.noalias() += mass_damping_ * v;
-    f -= weight_;
-    visit_pairs(functions, z, [&](const Attachment &bearing, const Attachment &journal, const auto &law) {
+    f -= inputs.weight * weight_;
+    visit_pairs(inputs, memory, [&](const Attachment &bearing, const Attachment &journal, const auto &law) {
         subtract_forces(bearing, journal, law, q, v, f);
     });
 }
 
-void System::force_derivatives(const std::vector<Prescribed> &functions, const VectorXd &q, const VectorXd &v,
-                               const VectorXd &z, MatrixXd &by_q, MatrixXd &by_v) const {
-    by_q.setZero(n_, n_);
-    by_v = mass_damping_;
+void System::force_derivatives(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory,
+                               Entries &by_q, Entries &by_v) const {
     ElementMatrix damping_by_q, damping_by_v;
     for (const Body &b : bodies_)
         for (int e = 0; e < b.elements; ++e) {
             const int o = b.offset + 4 * e;
-            by_q.block<8, 8>(o, o) += element_tangent(b.element, q.data() + o);
+            add_block(element_tangent(b.element, q.data() + o), o, by_q);
             if (b.strain_damping == 0.0) continue;
             damping_derivatives(b.element, b.strain_damping, q.data() + o, v.data() + o, damping_by_q, damping_by_v);
-            by_q.block<8, 8>(o, o) += damping_by_q;
-            by_v.block<8, 8>(o, o) += damping_by_v;
+            add_block(damping_by_q, o, by_q);
+            add_block(damping_by_v, o, by_v);
         }
-    visit_pairs(functions, z, [&](const Attachment &bearing, const Attachment &journal, const auto &law) {
+    for (int column = 0; column < n_; ++column)
+        for (SparseMatrix::InnerIterator entry(mass_damping_, column); entry; ++entry)
+            by_v.emplace_back(static_cast<int>(entry.row()), column, entry.value());
+    visit_pairs(inputs, memory, [&](const Attachment &bearing, const Attachment &journal, const auto &law) {
         subtract_derivatives(bearing, journal, law, q, v, by_q, by_v);
     });
 }
 
 Prescribed System::prescription(const Constraint &c, const Inputs &inputs) const {
-    if (c.leg >= 0) return inputs.cranks[c.leg];
-    return c.function >= 0 ? inputs.functions[c.function] : Prescribed{};
-}
-
-std::vector<Prescribed> System::functions(double t) const {
-    std::vector<Prescribed> values;
-    for (const TimeFunction &f : functions_) values.push_back(evaluate(f, t));
-    return values;
+    return c.timed() ? inputs.given[c.given] : Prescribed{};
 }
 
 void System::constraint_rows(const Inputs &inputs, const VectorXd &q, VectorXd &phi, MatrixXd &phi_q,
@@ -95,7 +103,7 @@ void System::reduce_mass(const MatrixXd &phi_q, MatrixXd &w, MatrixXd &s) const 
     for (int k = 0; k < m; ++k) {
         const Constraint &c = constraints_[k];
         for (int i = 0; i < c.size; ++i)
-            for (Eigen::SparseMatrix<double>::InnerIterator entry(inverse_mass_, c.index[i]); entry; ++entry)
+            for (SparseMatrix::InnerIterator entry(inverse_mass_, c.index[i]); entry; ++entry)
                 w(entry.row(), k) += entry.value() * phi_q(k, c.index[i]);
     }
     for (int k = 0; k < m; ++k)
@@ -118,8 +126,7 @@ void System::convective(const Inputs &inputs, const VectorXd &q, const VectorXd 
 }
 
 void System::constraint_derivatives(const Inputs &inputs, const VectorXd &q, const VectorXd &v,
-                                    const VectorXd &lambda, MatrixXd &stiffness, MatrixXd &rate_by_q) const {
-    rate_by_q.setZero(constraints(), n_);
+                                    const VectorXd &lambda, Entries &stiffness, Entries &rate_by_q) const {
     ConstraintHessian h;
     for (int k = 0; k < constraints(); ++k) {
         const Constraint &c = constraints_[k];
@@ -129,16 +136,16 @@ void System::constraint_derivatives(const Inputs &inputs, const VectorXd &q, con
         for (int i = 0; i < c.size; ++i) {
             double rate = c.timed() ? h(i, c.size) * given.rate : 0.0;
             for (int j = 0; j < c.size; ++j) {
-                stiffness(c.index[i], c.index[j]) += lambda[k] * h(i, j);
+                stiffness.emplace_back(c.index[i], c.index[j], lambda[k] * h(i, j));
                 rate += h(i, j) * v[c.index[j]];
             }
-            rate_by_q(k, c.index[i]) = rate;
+            rate_by_q.emplace_back(k, c.index[i], rate);
         }
     }
 }
 
-void System::check_angles(const Inputs &inputs, const VectorXd &q, double t) const {
+void System::check_angles(const Inputs &inputs, const VectorXd &q) const {
     for (int k = 0; k < constraints(); ++k)
-        if (!right_way_round(constraints_[k], q, given(constraints_[k], inputs)))
-            throw Failure(LS_BAD_INPUT, row_names_[k] + ": the start is half a turn from the angle it must have", t);
+        if (!right_way_round(constraints_[k], q, prescription(constraints_[k], inputs).value))
+            refuse(row_sources_[k], row_names_[k] + ": the start is half a turn from the angle it must have");
 }

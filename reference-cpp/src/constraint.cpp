@@ -15,8 +15,6 @@ Vec<T> held_direction(const Constraint &c, const T *u, const T &given) {
 
 template <class T>
 T row(const Constraint &c, const T *u, const T &given) {
-    using std::cos;
-    using std::sin;
     const T *w = u + c.bearing.size; // coordinates of the journal
     switch (c.kind) {
     case Constraint::length: { // eq. 2 divided by 2 l
@@ -35,12 +33,10 @@ T row(const Constraint &c, const T *u, const T &given) {
         const Vec<T> gap = direction(c.journal, w) - held_direction(c, u, given);
         return c.axis == 0 ? gap.x : gap.y;
     }
-    case Constraint::place: {
+    default: {
         const Vec<T> r = position(c.journal, w);
-        return c.normal.x * r.x + c.normal.y * r.y - given;
+        return (c.axis == 0 ? r.x : r.y) - given;
     }
-    default: // sin(theta - phi), theta the angle of B - A
-        return cross(Vec<T>{cos(given), sin(given)}, chord(u)) * (c.sense / c.link_length);
     }
 }
 
@@ -88,15 +84,7 @@ Constraint of_kind(Constraint::Kind kind) {
     Constraint c{};
     c.kind = kind;
     c.bearing = c.journal = ground_attachment();
-    c.leg = c.function = -1;
-    return c;
-}
-
-Constraint of_link(const Body &link, Constraint::Kind kind) {
-    Constraint c = of_kind(kind);
-    c.size = 4;
-    c.link_length = link.length;
-    for (int i = 0; i < 4; ++i) c.index[i] = link.offset + i;
+    c.given = -1;
     return c;
 }
 
@@ -124,13 +112,19 @@ std::array<double, constraint_size> gathered(const Constraint &c, const Eigen::V
 
 } // namespace
 
-Constraint length_constraint(const Body &link) { return of_link(link, Constraint::length); }
+Constraint length_constraint(const Body &link) {
+    Constraint c = of_kind(Constraint::length);
+    c.size = 4;
+    c.link_length = link.length;
+    for (int i = 0; i < 4; ++i) c.index[i] = link.offset + i;
+    return c;
+}
 
-Constraint coordinate_constraint(const Body &moving_body, int coordinate, int function) {
+Constraint coordinate_constraint(const Body &body, int coordinate, int given) {
     Constraint c = of_kind(Constraint::coordinate);
     c.size = 1;
-    c.index[0] = moving_body.offset + coordinate;
-    c.function = function;
+    c.index[0] = body.offset + coordinate;
+    c.given = given;
     c.linear = true;
     return c;
 }
@@ -145,7 +139,7 @@ Constraint coincide_constraint(const Attachment &bearing, const Attachment &jour
 Constraint slide_constraint(const Attachment &bearing, const Attachment &journal, double direction) {
     Constraint c = of_points(bearing, journal, Constraint::slide);
     c.angle = direction;
-    c.linear = bearing.kind == LS_GROUND && !journal.is_frame();
+    c.linear = bearing.kind == BodyKind::ground && !journal.is_frame();
     return c;
 }
 
@@ -155,9 +149,9 @@ Constraint align_constraint(const Attachment &bearing, const Attachment &journal
     return c;
 }
 
-Constraint turn_constraint(const Attachment &bearing, const Attachment &journal, int function) {
+Constraint turn_constraint(const Attachment &bearing, const Attachment &journal, int given) {
     Constraint c = of_points(bearing, journal, Constraint::align);
-    c.function = function;
+    c.given = given;
     return c;
 }
 
@@ -169,17 +163,10 @@ Constraint slope_constraint(const Attachment &bearing, const Attachment &journal
     return c;
 }
 
-Constraint drive_constraint(const Body &crank, bool from_start, int leg) {
-    Constraint c = of_link(crank, Constraint::drive);
-    c.leg = leg;
-    c.sense = from_start ? 1.0 : -1.0;
-    return c;
-}
-
-Constraint place_constraint(const Attachment &point, Vec<double> normal, int function) {
+Constraint place_constraint(const Attachment &point, int axis, int given) {
     Constraint c = of_points(ground_attachment(), point, Constraint::place);
-    c.normal = normal;
-    c.function = function;
+    c.axis = axis;
+    c.given = given;
     c.linear = !point.is_frame();
     return c;
 }
@@ -216,10 +203,5 @@ double by_rotation(const Constraint &c, const Eigen::VectorXd &q, double given) 
 }
 
 bool right_way_round(const Constraint &c, const Eigen::VectorXd &q, double given) {
-    const auto u = gathered(c, q);
-    switch (c.kind) {
-    case Constraint::align: return by_rotation(c, q, given) > 0.0;
-    case Constraint::drive: return c.sense * dot(Vec<double>{std::cos(given), std::sin(given)}, chord(u.data())) > 0.0;
-    default: return true;
-    }
+    return c.kind != Constraint::align || by_rotation(c, q, given) > 0.0;
 }

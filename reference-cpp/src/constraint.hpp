@@ -12,38 +12,33 @@ constexpr int constraint_size = 2 * attachment_size;
 struct Constraint {
     enum Kind {
         length,     // of a rigid link
-        coordinate, // of a moving body
+        coordinate, // prescribed, of a body
         coincide,   // two points, one component
         slide,      // the journal on a line of the bearing's body
         align,      // angle of d_2 relative to d_1
         slope,      // d_2 relative to d_1 in full, one component
-        drive,      // angle of the crank of a leg
-        place       // n . r of the journal
+        place       // one component of the journal's position
     } kind;
     std::array<int, constraint_size> index; // the coordinates it depends on, in the order of `row`
     int size;
-    double link_length;          // length, drive
+    double link_length;          // length
     Attachment bearing, journal; // coincide, slide, align, slope; place: the journal only
-    int axis;                    // coincide, slope: 0 x, 1 y
+    int axis;                    // coincide, slope, place: 0 x, 1 y
     double angle;                // slide, slope, align that is not prescribed: R turns by it
-    Vec<double> normal;          // place
-    int leg;                     // drive: the one that prescribes the angle, else -1
-    int function;                // prescribes the angle or the coordinate, else -1
-    double sense;                // drive: +1 if A is the start of the crank, -1 if its end
+    int given;                   // index in Inputs::given of the angle or coordinate prescribed, else -1
     bool linear;                 // in its coordinates
 
-    bool timed() const { return leg >= 0 || function >= 0; }
+    bool timed() const { return given >= 0; }
 };
 
 Constraint length_constraint(const Body &link);
-Constraint coordinate_constraint(const Body &moving_body, int coordinate, int function);
+Constraint coordinate_constraint(const Body &body, int coordinate, int given);
 Constraint coincide_constraint(const Attachment &bearing, const Attachment &journal, int axis);
 Constraint slide_constraint(const Attachment &bearing, const Attachment &journal, double direction);
 Constraint align_constraint(const Attachment &bearing, const Attachment &journal, double angle);
-Constraint turn_constraint(const Attachment &bearing, const Attachment &journal, int function); // align, prescribed
+Constraint turn_constraint(const Attachment &bearing, const Attachment &journal, int given); // align, prescribed
 Constraint slope_constraint(const Attachment &bearing, const Attachment &journal, double angle, int axis);
-Constraint drive_constraint(const Body &crank, bool from_start, int leg);
-Constraint place_constraint(const Attachment &point, Vec<double> normal, int function);
+Constraint place_constraint(const Attachment &point, int axis, int given);
 
 // What a solver needs of a row beyond Phi itself.
 struct ConstraintRow {

@@ -21,21 +21,21 @@ void ConstraintFactor::compute(const Eigen::MatrixXd &s) {
 }
 
 // Cholesky's method without pivoting.
-int ConstraintFactor::dependent_row(const Eigen::MatrixXd &s) {
+std::vector<int> ConstraintFactor::dependent_rows(const Eigen::MatrixXd &s) {
     const Eigen::VectorXd scale = unit_scale(s);
     Eigen::MatrixXd rest = scale.asDiagonal() * s * scale.asDiagonal();
     constexpr double generous = 1e3 * rounding; // this order of elimination is less accurate
-    int least = 0;
-    double least_pivot = rest(0, 0);
+    std::vector<int> rows;
     for (int k = 0; k < rest.rows(); ++k) {
         const double pivot = rest(k, k);
-        if (!(pivot > generous)) return k;
-        if (pivot < least_pivot) {
-            least_pivot = pivot;
-            least = k;
+        if (!(pivot > generous)) {
+            rows.push_back(k);
+            rest.row(k).setZero();
+            rest.col(k).setZero();
+            continue;
         }
         const Eigen::VectorXd column = rest.col(k);
         rest.noalias() -= column * column.transpose() / pivot;
     }
-    return least;
+    return rows;
 }

@@ -2,13 +2,14 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <vector>
 
 class ConstraintFactor {
 public:
     void compute(const Eigen::MatrixXd &s);
     bool independent() const { return independent_; }
-    // Of rows that are not independent, the first that follows from those before it.
-    static int dependent_row(const Eigen::MatrixXd &s);
+    // The rows that follow from those before them.
+    static std::vector<int> dependent_rows(const Eigen::MatrixXd &s);
 
     Eigen::VectorXd solve(const Eigen::VectorXd &b) const {
         return scale_.cwiseProduct(factor_.solve(scale_.cwiseProduct(b)));

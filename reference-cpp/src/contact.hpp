@@ -1,23 +1,21 @@
 // Force laws of a loose joint: eqs. 24-26.
 #pragma once
 
-#include <string>
+#include <cmath>
 
 #include "dual.hpp"
-#include "reference.h"
 
 struct ContactLaw {
-    double bearing_radius, journal_radius, clearance;
+    double bearing_radius, clearance;
     double stiffness; // K
     double exponent;  // n
     double damping;   // chi
     double impact_velocity_floor;
-    double friction_coefficient, friction_v0, friction_v1;
     bool friction, material_slip;
-};
+    double friction_coefficient, friction_v0, friction_v1;
 
-// Checks the description (name: how to call it in an error) and derives K and chi.
-ContactLaw make_contact_law(const ls_contact &contact, const std::string &name);
+    double journal_radius() const { return bearing_radius - clearance; }
+};
 
 // 1 + chi delta_rate / impact_velocity: the law would pull where it is negative
 template <class T>

@@ -1,73 +1,95 @@
 #include "function.hpp"
 
+#include <algorithm>
 #include <cmath>
-
-#include "dual.hpp"
-#include "failure.hpp"
 
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-// c0 before `start`, c1 after `start + duration`, `shape` of the part of the duration that has passed between.
-template <class Shape>
-Jet transition(const TimeFunction &f, const Jet &t, Shape shape) {
-    const double c0 = f.c[0], c1 = f.c[1], start = f.c[2], duration = f.c[3];
-    if (value_of(t) <= start) return Jet(c0);
-    if (value_of(t) >= start + duration) return Jet(c1);
-    return c0 + (c1 - c0) * shape((t - start) / duration);
+template <class... Cases>
+struct Overloaded : Cases... {
+    using Cases::operator()...;
+};
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
+
+// `from` before the start, `to` after the end, `shape` of the part of the duration that has passed between.
+template <class Step, class Shape>
+Jet transition(const Step &f, const Jet &t, Shape shape) {
+    if (value_of(t) <= f.start) return Jet(f.from);
+    if (value_of(t) >= f.start + f.duration) return Jet(f.to);
+    return f.from + (f.to - f.from) * shape((t - f.start) / f.duration);
 }
 
-Jet at(const TimeFunction &f, const Jet &t) {
-    const std::array<double, 6> &c = f.c;
-    switch (f.kind) {
-    case LS_POLYNOMIAL: {
-        Jet sum(c[5]);
-        for (int i = 4; i >= 0; --i) sum = sum * t + c[i];
-        return sum;
-    }
-    case LS_HARMONIC: return c[0] + c[1] * sin(2.0 * pi * c[2] * t + c[3]);
-    case LS_RAMP: return transition(f, t, [](const Jet &u) { return u; });
-    case LS_SMOOTH_STEP:
-        return transition(f, t, [](const Jet &u) { return u * u * u * (10.0 + u * (6.0 * u - 15.0)); });
-    default: { // spin-up: the rate rises as c1 (u - sin(2 pi u) / 2 pi), u = t / T
-        const double period = c[2];
-        if (value_of(t) >= period) return c[0] + c[1] * (t - 0.5 * period);
-        const double k = 2.0 * pi / period;
-        return c[0] + c[1] / period * (0.5 * t * t + (cos(k * t) - 1.0) * (1.0 / (k * k)));
-    }
-    }
+// Beyond the ends the outer cubics go on: IDA steps past the time asked for.
+Jet interpolate(const Spline &s, const Jet &t) {
+    const auto next = std::upper_bound(s.t.begin() + 1, s.t.end() - 1, value_of(t));
+    const std::size_t j = static_cast<std::size_t>(next - s.t.begin()), i = j - 1;
+    const double h = s.t[j] - s.t[i];
+    const Jet a = (s.t[j] - t) / h, b = (t - s.t[i]) / h;
+    return a * s.y[i] + b * s.y[j] +
+           ((a * a * a - a) * s.curvature[i] + (b * b * b - b) * s.curvature[j]) * (h * h / 6.0);
 }
 
 } // namespace
 
-TimeFunction make_function(const ls_function &d, const std::string &name) {
-    TimeFunction f{};
-    switch (d.kind) {
-    case LS_POLYNOMIAL:
-    case LS_HARMONIC: break;
-    case LS_RAMP:
-    case LS_SMOOTH_STEP: require(d.c[3] > 0.0, name + ": the duration c3 must be positive"); break;
-    case LS_SPIN_UP: require(d.c[2] > 0.0, name + ": the duration c2 must be positive"); break;
-    default: throw Failure(LS_BAD_INPUT, name + ": unknown kind");
+// The curvatures c of the knots solve a tridiagonal system, by elimination and substitution. At the ends they vanish.
+Spline natural_spline(std::vector<double> t, std::vector<double> y) {
+    const std::size_t n = t.size();
+    std::vector<double> c(n, 0.0), diagonal(n, 1.0), upper(n, 0.0);
+    for (std::size_t i = 1; i + 1 < n; ++i) {
+        const double before = t[i] - t[i - 1], after = t[i + 1] - t[i];
+        const double bend = 6.0 * ((y[i + 1] - y[i]) / after - (y[i] - y[i - 1]) / before);
+        const double factor = i > 1 ? before / diagonal[i - 1] : 0.0;
+        diagonal[i] = 2.0 * (before + after) - factor * upper[i - 1];
+        upper[i] = after;
+        c[i] = bend - factor * c[i - 1];
     }
-    f.kind = static_cast<ls_function_kind>(d.kind);
-    for (int i = 0; i < 6; ++i) {
-        require(std::isfinite(d.c[i]), name + ": c" + std::to_string(i) + " is not finite");
-        f.c[i] = d.c[i];
-    }
-    return f;
+    for (std::size_t i = n - 1; i-- > 1;) c[i] = (c[i] - upper[i] * c[i + 1]) / diagonal[i];
+    return {std::move(t), std::move(y), std::move(c)};
 }
 
-Prescribed evaluate(const TimeFunction &f, double t) {
-    const Jet x = at(f, jet(t, 1.0, 0.0));
+Jet at(const TimeFunction &function, const Jet &t) {
+    return std::visit(
+        Overloaded{
+            [](const Constant &f) { return Jet(f.value); },
+            [&](const Polynomial &f) {
+                Jet sum(0.0);
+                for (auto c = f.coefficients.rbegin(); c != f.coefficients.rend(); ++c) sum = sum * t + *c;
+                return sum;
+            },
+            [&](const Harmonic &f) { return f.mean + f.amplitude * sin(2.0 * pi * f.frequency * t + f.phase); },
+            [&](const Ramp &f) { return transition(f, t, [](const Jet &u) { return u; }); },
+            [&](const SmoothStep &f) {
+                return transition(f, t, [](const Jet &u) { return u * u * u * (10.0 + u * (6.0 * u - 15.0)); });
+            },
+            [&](const SpinUp &f) {
+                if (value_of(t) >= f.duration) return f.start + f.speed * (t - 0.5 * f.duration);
+                const double k = 2.0 * pi / f.duration;
+                return f.start + f.speed / f.duration * (0.5 * t * t + (cos(k * t) - 1.0) * (1.0 / (k * k)));
+            },
+            [&](const Spline &f) { return interpolate(f, t); },
+        },
+        function);
+}
+
+Prescribed evaluate(const TimeFunction &function, double t) {
+    const Jet x = at(function, jet(t, 1.0, 0.0));
     return {value_of(x), rate_of(x), acceleration_of(x)};
 }
 
-void add_breaks(const TimeFunction &f, std::vector<double> &times) {
-    if (f.kind == LS_RAMP || f.kind == LS_SMOOTH_STEP) {
-        times.push_back(f.c[2]);
-        times.push_back(f.c[2] + f.c[3]);
-    }
-    if (f.kind == LS_SPIN_UP) times.push_back(f.c[2]);
+void add_breaks(const TimeFunction &function, std::vector<double> &times) {
+    auto transition_ends = [&](const auto &f) {
+        times.push_back(f.start);
+        times.push_back(f.start + f.duration);
+    };
+    std::visit(Overloaded{
+                   [](const auto &) {},
+                   [&](const Ramp &f) { transition_ends(f); },
+                   [&](const SmoothStep &f) { transition_ends(f); },
+                   [&](const SpinUp &f) { times.push_back(f.duration); },
+                   [&](const Spline &f) { times.insert(times.end(), f.t.begin(), f.t.end()); },
+               },
+               function);
 }

@@ -2,25 +2,46 @@
 #pragma once
 
 #include <array>
-#include <string>
+#include <variant>
 #include <vector>
 
-#include "reference.h"
+#include "dual.hpp"
 
 // A quantity given at one instant, with its derivatives by time.
 struct Prescribed {
     double value = 0.0, rate = 0.0, acceleration = 0.0;
 };
 
-struct TimeFunction {
-    ls_function_kind kind;
-    std::array<double, 6> c;
+struct Constant {
+    double value;
 };
+struct Polynomial {
+    std::vector<double> coefficients; // of 1, t, t^2, ...
+};
+struct Harmonic {
+    double mean, amplitude, frequency, phase; // mean + amplitude sin(2 pi frequency t + phase)
+};
+struct Ramp {
+    double from, to, start, duration;
+};
+struct SmoothStep {
+    double from, to, start, duration; // 10 u^3 - 15 u^4 + 6 u^5 of the way
+};
+struct SpinUp {
+    double start, speed, duration; // the rate rises from 0 to the speed as u - sin(2 pi u) / 2 pi
+};
+struct Spline { // natural cubic
+    std::vector<double> t, y, curvature;
+};
+Spline natural_spline(std::vector<double> t, std::vector<double> y);
 
-// Checks the description; name: how to call it in an error.
-TimeFunction make_function(const ls_function &function, const std::string &name);
+using TimeFunction = std::variant<Constant, Polynomial, Harmonic, Ramp, SmoothStep, SpinUp, Spline>;
 
+Jet at(const TimeFunction &function, const Jet &t);
 Prescribed evaluate(const TimeFunction &function, double t);
 
 // Adds the instants at which some derivative jumps: an integrator of high order should not step across them.
 void add_breaks(const TimeFunction &function, std::vector<double> &times);
+
+// x, y and theta of a path.
+using Path = std::array<TimeFunction, 3>;

@@ -5,50 +5,71 @@
 #include <new>
 #include <optional>
 
-#include "contact.hpp"
-#include "element.hpp"
-#include "failure.hpp"
 #include "reference.h"
 #include "run.hpp"
+#include "static_run.hpp"
 #include "sundials.hpp"
-#include "system.hpp"
 
-struct ls_system {
-    System system;
+struct ls_scene {
+    explicit ls_scene(Model m) : model(std::move(m)), channels(model), angles(starting_angles(model)) {
+        selected = channels.selected(model.scene.patterns, model.scene.patterns_source);
+        memory = model.system.memory();
+        memory.turn = spring_turns(model.system, angles);
+        energy = model.system.energies(model.q, model.v, memory).total();
+    }
+    ls_scene(const ls_scene &) = delete;
+    ls_scene &operator=(const ls_scene &) = delete;
+
+    const Model model;
+    const Channels channels;
+    const Angles angles;
+    std::vector<std::size_t> selected;
+    Memory memory; // at the start
+    double energy = 0.0;
 };
 
 struct ls_run {
-    Run run;
+    std::unique_ptr<Run> dynamic; // one of the two
+    std::unique_ptr<StaticRun> equilibria;
     std::optional<Failure> dead;
+
+    const Snapshot &snapshot() const { return dynamic ? dynamic->snapshot() : equilibria->snapshot(); }
+    const Channels &channels() const { return dynamic ? dynamic->channels() : equilibria->channels(); }
+    void advance(double t) { dynamic ? dynamic->advance(t) : equilibria->advance(t); }
 };
 
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-void fill(ls_error *error, int code, int flag, double time, const char *message) {
+void fill(ls_error *error, const Failure &failure) {
     if (!error) return;
-    error->code = code;
-    error->flag = flag;
-    error->time = time;
-    std::snprintf(error->message, sizeof error->message, "%s", message);
+    error->code = failure.code;
+    error->flag = failure.flag;
+    error->line = failure.source.line;
+    error->column = failure.source.column;
+    error->time = failure.time;
+    std::snprintf(error->field, sizeof error->field, "%s", failure.source.field.c_str());
+    std::snprintf(error->message, sizeof error->message, "%s", failure.what());
 }
 
 template <class Work>
 std::int32_t guarded(ls_error *error, Work work) noexcept {
-    fill(error, LS_OK, 0, 0.0, "");
+    if (error) *error = ls_error{};
     try {
-        work();
-        return LS_OK;
-    } catch (const Failure &e) {
-        fill(error, e.code, e.flag, e.time, e.what());
-        return e.code;
-    } catch (const std::bad_alloc &) {
-        fill(error, LS_INTERNAL, 0, 0.0, "out of memory");
-    } catch (const std::exception &e) {
-        fill(error, LS_INTERNAL, 0, 0.0, e.what());
-    } catch (...) {
-        fill(error, LS_INTERNAL, 0, 0.0, "unknown exception");
+        try {
+            work();
+            return LS_OK;
+        } catch (const Failure &e) {
+            fill(error, e);
+            return e.code;
+        } catch (const std::bad_alloc &) {
+            fill(error, Failure(LS_INTERNAL, "out of memory"));
+        } catch (const std::exception &e) {
+            fill(error, Failure(LS_INTERNAL, e.what()));
+        }
+    } catch (...) { // no memory for the message
+        if (error) error->code = LS_INTERNAL;
     }
     return LS_INTERNAL;
 }
@@ -59,7 +80,7 @@ P &need(P *pointer, const char *name) {
     return *pointer;
 }
 
-VectorXd input(const double *x, int size, const char *name) {
+VectorXd input(const double *x, Eigen::Index size, const char *name) {
     if (size > 0) need(x, name);
     VectorXd copy = Eigen::Map<const VectorXd>(x, size);
     if (!copy.allFinite()) throw Failure(LS_NOT_FINITE, std::string(name) + " is not finite");
@@ -74,179 +95,192 @@ void output(const MatrixXd &x, double *target, const char *name) {
     if (x.size() > 0) Eigen::Map<RowMajor>(&need(target, name), x.rows(), x.cols()) = x;
 }
 
-void require_positive(double x, const char *name) {
-    require(std::isfinite(x) && x > 0.0, std::string(name) + " must be positive");
+void output(const Entries &entries, int size, double *target, const char *name) {
+    Eigen::Map<RowMajor> matrix(&need(target, name), size, size);
+    matrix.setZero();
+    for (const auto &entry : entries) matrix(entry.row(), entry.col()) += entry.value();
+}
+
+// A state given by the caller.
+struct GivenState {
+    double t;
+    VectorXd q, v;
+    Memory memory;
+
+    GivenState(const ls_scene &scene, double time, const double *qs, const double *vs, const double *z)
+        : t(time), q(input(qs, scene.model.system.coordinates(), "q")),
+          v(input(vs, scene.model.system.coordinates(), "v")), memory(scene.model.system.memory()) {
+        require(std::isfinite(t), "t is not finite");
+        memory.impact_velocity = input(z, memory.impact_velocity.size(), "z");
+    }
+};
+
+ls_run *new_run(const ls_scene *scene, double t, const double *q, const double *v, bool from_start,
+                const ls_tolerances *tolerances, ls_error *error) noexcept {
+    ls_run *result = nullptr;
+    guarded(error, [&] {
+        const Model &model = need(scene, "scene").model;
+        auto run = std::make_unique<ls_run>();
+        if (model.scene.is_static) {
+            require(from_start, "a static analysis can only begin at the start of its scene");
+            run->equilibria = std::make_unique<StaticRun>(model);
+        } else {
+            const int n = model.system.coordinates();
+            require(std::isfinite(t), "t is not finite");
+            run->dynamic = std::make_unique<Run>(model, t, from_start ? model.q : input(q, n, "q"),
+                                                 from_start ? model.v : input(v, n, "v"), need(tolerances, "tolerances"));
+        }
+        result = run.release();
+    });
+    return result;
 }
 
 } // namespace
 
-const char *ls_sundials_version(void) {
-    try {
-        return ida::linked_version();
-    } catch (...) {
-        return "unknown";
+ls_scene *ls_scene_read(const char *text, const char *const *overrides, std::size_t count, ls_error *error) {
+    ls_scene *scene = nullptr;
+    guarded(error, [&] {
+        std::vector<std::string> assignments;
+        if (count > 0) need(overrides, "overrides");
+        for (std::size_t i = 0; i < count; ++i) assignments.emplace_back(&need(overrides[i], "an override"));
+        scene = new ls_scene(make_model(read_scene(&need(text, "text"), assignments)));
+    });
+    return scene;
+}
+
+void ls_scene_free(ls_scene *scene) { delete scene; }
+
+void ls_scene_describe(const ls_scene *scene, ls_description *description) {
+    if (!scene || !description) return;
+    const Scene &s = scene->model.scene;
+    *description = {s.title.c_str(), s.is_static ? 1 : 0, 0, s.duration, s.interval, scene->energy};
+}
+
+std::size_t ls_scene_count(const ls_scene *scene, std::int32_t list) {
+    if (!scene) return 0;
+    const System &system = scene->model.system;
+    switch (list) {
+    case LS_COORDINATE: return static_cast<std::size_t>(system.coordinates());
+    case LS_CONSTRAINT: return static_cast<std::size_t>(system.constraints());
+    case LS_JOINT: return system.joints().size();
+    case LS_CHANNEL: return scene->channels.names().size();
+    case LS_SELECTED: return scene->selected.size();
+    case LS_REDUNDANT: return scene->model.redundant.size();
+    default: return 0;
     }
 }
 
-std::int32_t ls_element_mass(double mass, double length, double *matrix, ls_error *error) {
+const char *ls_scene_name(const ls_scene *scene, std::int32_t list, std::size_t index) {
+    if (index >= ls_scene_count(scene, list)) return nullptr;
+    const System &system = scene->model.system;
+    switch (list) {
+    case LS_COORDINATE: return system.coordinate_name(static_cast<int>(index)).c_str();
+    case LS_CONSTRAINT: return system.row_name(static_cast<int>(index)).c_str();
+    case LS_JOINT: return system.joints()[index].name.c_str();
+    case LS_CHANNEL: return scene->channels.names()[index].c_str();
+    case LS_SELECTED: return scene->channels.names()[scene->selected[index]].c_str();
+    default: return scene->model.redundant[index].c_str();
+    }
+}
+
+std::size_t ls_scene_selected(const ls_scene *scene, std::size_t index) {
+    return scene && index < scene->selected.size() ? scene->selected[index] : 0;
+}
+
+std::int32_t ls_scene_start(const ls_scene *scene, double *q, double *v, ls_error *error) {
     return guarded(error, [&] {
-        require_positive(mass, "mass");
-        require_positive(length, "length");
-        output(MatrixXd(element_mass(mass, length)), matrix, "matrix");
+        const Model &model = need(scene, "scene").model;
+        output(model.q, q, "q");
+        output(model.v, v, "v");
     });
 }
 
-std::int32_t ls_element_elastic(double axial_stiffness, double bending_stiffness, double length, const double *q,
-                                double *energy, double *force, double *tangent, ls_error *error) {
-    return guarded(error, [&] {
-        require(std::isfinite(axial_stiffness) && axial_stiffness >= 0.0, "axial_stiffness must not be negative");
-        require(std::isfinite(bending_stiffness) && bending_stiffness >= 0.0, "bending_stiffness must not be negative");
-        require_positive(length, "length");
-        const CableElement element{axial_stiffness, bending_stiffness, length};
-        const VectorXd u = input(q, 8, "q");
-        if (energy) {
-            const ElasticEnergy e = element_energy(element, u.data());
-            energy[0] = e.axial;
-            energy[1] = e.bending;
-        }
-        if (force) output(VectorXd(element_force(element, u.data())), force, "force");
-        if (tangent) output(MatrixXd(element_tangent(element, u.data())), tangent, "tangent");
-    });
+std::int32_t ls_scene_mass(const ls_scene *scene, double *mass, ls_error *error) {
+    return guarded(error, [&] { output(MatrixXd(need(scene, "scene").model.system.mass()), mass, "mass"); });
 }
 
-std::int32_t ls_contact_stiffness(const ls_contact *contact, double *stiffness, ls_error *error) {
+std::int32_t ls_scene_force(const ls_scene *scene, double t, const double *q, const double *v, const double *z,
+                            double *force, double *by_q, double *by_v, ls_error *error) {
     return guarded(error, [&] {
-        need(stiffness, "stiffness") = make_contact_law(need(contact, "contact"), "contact").stiffness;
-    });
-}
-
-std::int32_t ls_contact_normal(const ls_contact *contact, double delta, double rate, double impact_velocity,
-                               double *force, double *by_delta, double *by_rate, std::int32_t *clamped,
-                               ls_error *error) {
-    return guarded(error, [&] {
-        const ContactLaw law = make_contact_law(need(contact, "contact"), "contact");
-        require(std::isfinite(delta) && std::isfinite(rate), "delta and rate must be finite");
-        require_positive(impact_velocity, "impact_velocity");
-        Dual<double, 2> d(delta), r(rate), f;
-        d.slope[0] = 1.0;
-        r.slope[1] = 1.0;
-        if (delta > 0.0) f = normal_force(law, d, r, impact_velocity);
-        if (force) *force = f.value;
-        if (by_delta) *by_delta = f.slope[0];
-        if (by_rate) *by_rate = f.slope[1];
-        if (clamped) *clamped = delta > 0.0 && bracket(law, rate, impact_velocity) < 0.0;
-    });
-}
-
-std::int32_t ls_contact_friction(const ls_contact *contact, double slip, double normal, double *force, double *by_slip,
-                                 double *by_normal, ls_error *error) {
-    return guarded(error, [&] {
-        const ContactLaw law = make_contact_law(need(contact, "contact"), "contact");
-        require(std::isfinite(slip) && std::isfinite(normal), "slip and normal must be finite");
-        Dual<double, 2> s(slip), n(normal), f;
-        s.slope[0] = 1.0;
-        n.slope[1] = 1.0;
-        if (law.friction) f = -friction_resistance(law, s, n);
-        if (force) *force = f.value;
-        if (by_slip) *by_slip = f.slope[0];
-        if (by_normal) *by_normal = f.slope[1];
-    });
-}
-
-ls_system *ls_system_new(const ls_mechanism *mechanism, ls_error *error) {
-    std::unique_ptr<ls_system> system;
-    guarded(error, [&] { system.reset(new ls_system{System(need(mechanism, "mechanism"))}); });
-    return system.release();
-}
-
-void ls_system_free(ls_system *system) { delete system; }
-
-std::int32_t ls_system_coordinates(const ls_system *s) { return s ? s->system.coordinates() : 0; }
-std::int32_t ls_system_constraints(const ls_system *s) { return s ? s->system.constraints() : 0; }
-
-std::int32_t ls_system_cranks(const ls_system *system, double t, double *angles, ls_error *error) {
-    return guarded(error, [&] {
-        double *out = angles;
-        for (const Prescribed &c : need(system, "system").system.crank_angles(t)) {
-            need(angles, "angles");
-            *out++ = c.value;
-            *out++ = c.rate;
-            *out++ = c.acceleration;
-        }
-    });
-}
-
-std::int32_t ls_system_start(const ls_system *system, double t, double *q, double *v, ls_error *error) {
-    return guarded(error, [&] {
-        VectorXd qs, vs;
-        need(system, "system").system.start(t, qs, vs);
-        output(qs, q, "q");
-        output(vs, v, "v");
-    });
-}
-
-std::int32_t ls_system_mass(const ls_system *system, const double *q, double *mass, ls_error *error) {
-    return guarded(error, [&] {
-        const System &s = need(system, "system").system;
-        input(q, s.coordinates(), "q"); // M does not depend on it, but a caller's mistake should not pass
-        output(s.mass(), mass, "mass");
-    });
-}
-
-std::int32_t ls_system_force(const ls_system *system, double t, const double *q, const double *v, const double *z,
-                             double *force, double *by_q, double *by_v, ls_error *error) {
-    return guarded(error, [&] {
-        const System &s = need(system, "system").system;
-        const VectorXd qs = input(q, s.coordinates(), "q"), vs = input(v, s.coordinates(), "v"),
-                       zs = input(z, s.joints(), "z");
-        require(std::isfinite(t), "t is not finite");
-        const std::vector<Prescribed> functions = s.functions(t);
+        const GivenState state(need(scene, "scene"), t, q, v, z);
+        const System &system = scene->model.system;
+        const Inputs inputs = system.inputs(t);
         VectorXd f;
-        s.force(functions, qs, vs, zs, f);
+        system.force(inputs, state.q, state.v, state.memory, f);
         output(f, force, "force");
         if (!by_q && !by_v) return;
-        MatrixXd k, c;
-        s.force_derivatives(functions, qs, vs, zs, k, c);
-        if (by_q) output(k, by_q, "by_q");
-        if (by_v) output(c, by_v, "by_v");
+        Entries k, c;
+        system.force_derivatives(inputs, state.q, state.v, state.memory, k, c);
+        if (by_q) output(k, system.coordinates(), by_q, "by_q");
+        if (by_v) output(c, system.coordinates(), by_v, "by_v");
     });
 }
 
-std::int32_t ls_system_constraint_rows(const ls_system *system, double t, const double *q, double *phi, double *phi_q,
-                                       double *phi_t, ls_error *error) {
+std::int32_t ls_scene_constraint_rows(const ls_scene *scene, double t, const double *q, double *phi, double *phi_q,
+                                      double *phi_t, ls_error *error) {
     return guarded(error, [&] {
-        const System &s = need(system, "system").system;
+        const System &system = need(scene, "scene").model.system;
         require(std::isfinite(t), "t is not finite");
         VectorXd values, by_t;
         MatrixXd by_q;
-        s.constraint_rows(s.inputs(t), input(q, s.coordinates(), "q"), values, by_q, by_t);
+        system.constraint_rows(system.inputs(t), input(q, system.coordinates(), "q"), values, by_q, by_t);
         output(values, phi, "phi");
         output(by_q, phi_q, "phi_q");
         output(by_t, phi_t, "phi_t");
     });
 }
 
-ls_run *ls_run_new(const ls_system *system, double t, const double *q, const double *v, const ls_tolerances *tolerances,
-                   ls_error *error) {
-    std::unique_ptr<ls_run> run;
-    guarded(error, [&] {
-        const System &s = need(system, "system").system;
-        run.reset(new ls_run{Run(s, t, input(q, s.coordinates(), "q"), input(v, s.coordinates(), "v"),
-                                 need(tolerances, "tolerances")),
-                             std::nullopt});
+std::int32_t ls_scene_acceleration(const ls_scene *scene, double t, const double *q, const double *v, const double *z,
+                                   double *a, double *lambda, ls_error *error) {
+    return guarded(error, [&] {
+        const GivenState state(need(scene, "scene"), t, q, v, z);
+        Acceleration level(scene->model.system);
+        level.solve(t, state.q, state.v, state.memory, true);
+        output(level.a, a, "a");
+        output(level.lambda, lambda, "lambda");
     });
-    return run.release();
+}
+
+std::int32_t ls_scene_channels(const ls_scene *scene, double t, const double *q, const double *v, const double *z,
+                               double *values, ls_error *error) {
+    return guarded(error, [&] {
+        const GivenState state(need(scene, "scene"), t, q, v, z);
+        const System &system = scene->model.system;
+        Snapshot s;
+        s.t = t;
+        s.q = state.q;
+        s.v = state.v;
+        s.angles = continued(system, scene->angles, s.q);
+        s.memory = {state.memory.impact_velocity, spring_turns(system, s.angles)};
+        s.initial_energy = scene->energy;
+        Acceleration level(system);
+        level.solve(t, s.q, s.v, s.memory, true);
+        s.a = level.a;
+        s.lambda = level.lambda;
+        s.inputs = level.inputs;
+        scene->channels.evaluate(s, &need(values, "values"));
+    });
+}
+
+ls_run *ls_run_new(const ls_scene *scene, const ls_tolerances *tolerances, ls_error *error) {
+    return new_run(scene, 0.0, nullptr, nullptr, true, tolerances, error);
+}
+
+ls_run *ls_run_from(const ls_scene *scene, double t, const double *q, const double *v, const ls_tolerances *tolerances,
+                    ls_error *error) {
+    return new_run(scene, t, q, v, false, tolerances, error);
 }
 
 void ls_run_free(ls_run *run) { delete run; }
 
-std::int32_t ls_run_advance(ls_run *run, double t, ls_row *row, ls_error *error) {
+std::int32_t ls_run_advance(ls_run *run, double t, double *values, ls_error *error) {
     return guarded(error, [&] {
         ls_run &r = need(run, "run");
-        ls_row &target = need(row, "row");
+        double *target = &need(values, "values");
         if (r.dead) throw *r.dead;
         try {
-            r.run.advance(t, target);
+            r.advance(t);
+            r.channels().evaluate(r.snapshot(), target);
         } catch (const Failure &e) {
             r.dead = e;
             throw;
@@ -257,17 +291,38 @@ std::int32_t ls_run_advance(ls_run *run, double t, ls_row *row, ls_error *error)
     });
 }
 
-std::int64_t ls_run_event_count(const ls_run *run) {
-    return run ? static_cast<std::int64_t>(run->run.events().size()) : 0;
+std::int32_t ls_run_state(const ls_run *run, double *q, double *v, double *a, double *lambda, double *z,
+                          ls_error *error) {
+    return guarded(error, [&] {
+        const Snapshot &s = need(run, "run").snapshot();
+        auto put = [](const VectorXd &x, double *target) {
+            if (target) std::copy(x.data(), x.data() + x.size(), target);
+        };
+        put(s.q, q);
+        put(s.v, v);
+        put(s.a, a);
+        put(s.lambda, lambda);
+        put(s.memory.impact_velocity, z);
+    });
 }
 
-std::int32_t ls_run_event(const ls_run *run, std::int64_t index, ls_event *event) {
-    if (!run || !event || index < 0 || index >= ls_run_event_count(run)) return LS_BAD_INPUT;
-    *event = run->run.events()[static_cast<std::size_t>(index)];
+std::size_t ls_run_event_count(const ls_run *run) { return run && run->dynamic ? run->dynamic->events().size() : 0; }
+
+std::int32_t ls_run_event(const ls_run *run, std::size_t index, ls_event *event) {
+    if (!event || index >= ls_run_event_count(run)) return LS_BAD_INPUT;
+    *event = run->dynamic->events()[index];
     return LS_OK;
 }
 
 void ls_run_statistics(const ls_run *run, ls_statistics *statistics) {
     if (!run || !statistics) return;
-    *statistics = run->run.statistics();
+    *statistics = run->dynamic ? run->dynamic->statistics() : ls_statistics{run->equilibria->steps(), 0, 0, 0, 0, 0, 0};
+}
+
+const char *ls_sundials_version(void) {
+    try {
+        return ida::linked_version();
+    } catch (...) {
+        return "unknown";
+    }
 }

@@ -41,11 +41,11 @@ LooseForces<T> loose_forces(const ContactLaw &law, double z, const Attachment &b
         const T sliding = dot(e_dot, t);
         if (law.material_slip) {
             // slip of the surfaces; the couples are conjugate to the spins in it
-            const T slip = sliding + law.journal_radius * spin(journal, qj, vj) -
+            const T slip = sliding + law.journal_radius() * spin(journal, qj, vj) -
                            law.bearing_radius * spin(bearing, qi, vi);
             const T resistance = friction_resistance(law, slip, out.normal);
             out.on_journal = out.on_journal - resistance * t;
-            add_couple(journal, qj, -law.journal_radius * resistance, out.journal);
+            add_couple(journal, qj, -law.journal_radius() * resistance, out.journal);
             add_couple(bearing, qi, law.bearing_radius * resistance, out.bearing);
             out.friction_power = -resistance * slip;
         } else {

@@ -1,5 +1,49 @@
 #include "newton.hpp"
 
+namespace {
+
+void add_to(MatrixXd &matrix, const Entries &entries, double factor) {
+    for (const auto &entry : entries) matrix(entry.row(), entry.col()) += factor * entry.value();
+}
+
+} // namespace
+
+SparseMatrix newton_matrix(const System &system, double c, const Inputs &inputs, const VectorXd &q, const VectorXd &v,
+                           const Memory &memory, const VectorXd &lambda) {
+    const int n = system.coordinates(), m = system.constraints(), size = 2 * (n + m);
+    Entries stiffness, damping, rate, all;
+    system.force_derivatives(inputs, q, v, memory, stiffness, damping);
+    system.constraint_derivatives(inputs, q, v, lambda, stiffness, rate);
+    for (int column = 0; column < n; ++column)
+        for (SparseMatrix::InnerIterator entry(system.mass(), column); entry; ++entry) {
+            const int row = static_cast<int>(entry.row());
+            all.emplace_back(row, column, c * entry.value());
+            all.emplace_back(row, n + column, -entry.value());
+            all.emplace_back(n + row, n + column, c * entry.value());
+        }
+    for (const auto &entry : stiffness) all.emplace_back(n + entry.row(), entry.col(), entry.value());
+    for (const auto &entry : damping) all.emplace_back(n + entry.row(), n + entry.col(), entry.value());
+    for (const auto &entry : rate) all.emplace_back(2 * n + m + entry.row(), entry.col(), entry.value());
+
+    VectorXd phi, phi_t;
+    MatrixXd phi_q;
+    system.constraint_rows(inputs, q, phi, phi_q, phi_t);
+    for (int k = 0; k < m; ++k) {
+        const Constraint &row = system.constraint(k);
+        for (int i = 0; i < row.size; ++i) {
+            const int coordinate = row.index[i];
+            const double entry = phi_q(k, coordinate);
+            all.emplace_back(coordinate, 2 * n + m + k, entry); // Phi_q^T mu
+            all.emplace_back(n + coordinate, 2 * n + k, entry); // Phi_q^T lambda
+            all.emplace_back(2 * n + k, coordinate, entry);
+            all.emplace_back(2 * n + m + k, n + coordinate, entry);
+        }
+    }
+    SparseMatrix matrix(size, size);
+    matrix.setFromTriplets(all.begin(), all.end());
+    return matrix;
+}
+
 // With W = M^-1 Phi_q^T, dv = c dq + W dmu - M^-1 b1 from the first row and nu = dlambda + c dmu the rest becomes
 //
 //     [ c^2 M + c C + K   Phi_q^T ] [ dq ]   [ b2 + c b1 + C (M^-1 b1 - W dmu) ]
@@ -16,19 +60,27 @@
 // what the first row leaves open, s = dv - c dq, is b4 - c b3 of the rows that prescribe them: it is added to dv wherever
 // that occurs. Their rows of r1 hold no more than mu, and give it at the end.
 
-NewtonMatrix::NewtonMatrix(const System &system) : system_(system) {}
+DenseNewton::DenseNewton(const System &system) : system_(system) {}
 
-void NewtonMatrix::assemble(double c, const Inputs &inputs, const VectorXd &q, const VectorXd &v,
-                            const VectorXd &z, const VectorXd &lambda) {
+void DenseNewton::assemble(double c, const Inputs &inputs, const VectorXd &q, const VectorXd &v,
+                            const Memory &memory, const VectorXd &lambda) {
     const int n = system_.coordinates(), m = system_.constraints();
     c_ = c;
-    system_.force_derivatives(inputs.functions, q, v, z, by_q_, by_v_);
-    damped_ = (by_v_.array() != 0.0).any();
+    Entries stiffness, damping, rate;
+    system_.force_derivatives(inputs, q, v, memory, stiffness, damping);
     system_.constraint_rows(inputs, q, phi_, phi_q_, phi_t_);
-    system_.constraint_derivatives(inputs, q, v, lambda, by_q_, rate_by_q_);
+    system_.constraint_derivatives(inputs, q, v, lambda, stiffness, rate);
+    by_v_.setZero(n, n);
+    rate_by_q_.setZero(m, n);
+    add_to(by_v_, damping, 1.0);
+    add_to(rate_by_q_, rate, 1.0);
+    damped_ = (by_v_.array() != 0.0).any();
 
     kkt_.setZero(n + m, n + m);
-    kkt_.topLeftCorner(n, n) = system_.mass() + by_q_ / (c * c);
+    add_to(kkt_, stiffness, 1.0 / (c * c));
+    for (int column = 0; column < n; ++column)
+        for (SparseMatrix::InnerIterator entry(system_.mass(), column); entry; ++entry)
+            kkt_(entry.row(), column) += entry.value();
     if (damped_) kkt_.topLeftCorner(n, n) += by_v_ / c;
     kkt_.topRightCorner(n, m) = phi_q_.transpose();
     kkt_.bottomLeftCorner(m, n) = phi_q_;
@@ -39,10 +91,10 @@ void NewtonMatrix::assemble(double c, const Inputs &inputs, const VectorXd &q, c
     projection_.compute(s_);
 }
 
-void NewtonMatrix::solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd> x) const {
+void DenseNewton::solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd> x) const {
     const int n = system_.coordinates(), m = system_.constraints();
     const auto b1 = b.segment(0, n), b2 = b.segment(n, n), b3 = b.segment(2 * n, m), b4 = b.segment(2 * n + m, m);
-    const VectorXd m_b1 = system_.inverse_mass() * b1;
+    const VectorXd m_b1 = system_.divided_by_mass(b1);
 
     VectorXd known = -m_b1; // dv - c dq as far as it does not depend on dmu
     for (const auto &p : system_.prescribed()) known[p.coordinate] = b4[p.row] - c_ * b3[p.row];

@@ -9,12 +9,17 @@
 #include "constraint_factor.hpp"
 #include "system.hpp"
 
-class NewtonMatrix {
+// The matrix of all unknowns in the order (q, v, lambda, mu), without d(Phi_q^T mu)/dq.
+SparseMatrix newton_matrix(const System &system, double c, const Inputs &inputs, const VectorXd &q, const VectorXd &v,
+                           const Memory &memory, const VectorXd &lambda);
+
+// The same system by elimination, see newton.cpp.
+class DenseNewton {
 public:
-    explicit NewtonMatrix(const System &system);
+    explicit DenseNewton(const System &system);
 
     void assemble(double c, const Inputs &inputs, const VectorXd &q, const VectorXd &v,
-                  const VectorXd &z, const VectorXd &lambda);
+                  const Memory &memory, const VectorXd &lambda);
     // x = J^-1 b, both ordered (q, v, lambda, mu)
     void solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd> x) const;
 
@@ -23,7 +28,7 @@ private:
     double c_ = 0.0;
     bool damped_ = false; // df/dv is not zero
     VectorXd phi_, phi_t_;
-    MatrixXd by_q_, by_v_, phi_q_, rate_by_q_, kkt_, w_, s_;
+    MatrixXd by_v_, phi_q_, rate_by_q_, kkt_, w_, s_;
     Eigen::PartialPivLU<MatrixXd> lu_;
     ConstraintFactor projection_;
 };

@@ -1,6 +1,16 @@
 // What is reported of a state: gaps, energies, powers, reactions.
+#include <algorithm>
+
 #include "damping.hpp"
 #include "system.hpp"
+
+void Powers::add(double weight, const Powers &p) {
+    work += weight * p.work;
+    contact_dissipated += weight * p.contact_dissipated;
+    clamp += weight * p.clamp;
+    friction_dissipated += weight * p.friction_dissipated;
+    damping_dissipated += weight * p.damping_dissipated;
+}
 
 Gap System::gap(int k, const double *q, const double *v) const {
     const Joint &j = joints_[k];
@@ -10,15 +20,15 @@ Gap System::gap(int k, const double *q, const double *v) const {
             velocity(j.journal, qj, vj) - velocity(j.bearing, qi, vi), law(k).clearance};
 }
 
-LooseForces<double> System::loose(int k, const VectorXd &q, const VectorXd &v, double z) const {
+LooseForces<double> System::loose(int k, const VectorXd &q, const VectorXd &v, const Memory &memory) const {
     const Joint &j = joints_[k];
-    return loose_forces<double>(law(k), z, j.bearing, j.journal, q.data() + j.bearing.offset,
+    return loose_forces<double>(law(k), memory.impact_velocity[k], j.bearing, j.journal, q.data() + j.bearing.offset,
                                 v.data() + j.bearing.offset, q.data() + j.journal.offset, v.data() + j.journal.offset);
 }
 
-Energies System::energies(const VectorXd &q, const VectorXd &v, const VectorXd &z) const {
+Energies System::energies(const VectorXd &q, const VectorXd &v, const Memory &memory) const {
     Energies sum;
-    sum.kinetic = 0.5 * v.dot(sparse_mass_ * v);
+    sum.kinetic = 0.5 * v.dot(mass_ * v);
     for (const Body &b : bodies_)
         for (int e = 0; e < b.elements; ++e) {
             const ElasticEnergy u = element_energy(b.element, q.data() + b.offset + 4 * e);
@@ -26,27 +36,27 @@ Energies System::energies(const VectorXd &q, const VectorXd &v, const VectorXd &
             sum.bending += u.bending;
         }
     for (int k : loose_) {
-        const LooseForces<double> l = loose(k, q, v, z[k]);
+        const LooseForces<double> l = loose(k, q, v, memory);
         sum.contact += l.elastic_normal * l.delta / (law(k).exponent + 1.0);
     }
     sum.gravity = -weight_.dot(q);
     for (const Spring &s : springs_) sum.springs += energy(s, q);
-    for (const TorsionSpring &s : torsion_springs_) sum.springs += energy(s, q);
+    for (std::size_t i = 0; i < torsion_springs_.size(); ++i)
+        sum.springs += energy(torsion_springs_[i], memory.turn[static_cast<int>(i)], q);
     return sum;
 }
 
-Powers System::powers(const std::vector<Prescribed> &functions, const VectorXd &q, const VectorXd &v,
-                      const VectorXd &z) const {
+Powers System::powers(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory) const {
     Powers p;
     for (const Load &l : loads_) {
-        const Vec<double> applied{functions[l.x].value, functions[l.y].value};
+        const Vec<double> applied{inputs.given[l.x].value, inputs.given[l.y].value};
         const PairForces<double> forces =
             load_forces(l, applied, q.data() + l.reaction.offset, q.data() + l.point.offset);
         p.work += power(l.reaction, l.point, forces, v);
     }
     for (int k : loose_) {
-        if (z[k] <= 0.0) continue;
-        const LooseForces<double> l = loose(k, q, v, z[k]);
+        if (memory.impact_velocity[k] <= 0.0) continue;
+        const LooseForces<double> l = loose(k, q, v, memory);
         const double lost = (l.normal - l.elastic_normal) * l.rate;
         p.contact_dissipated += lost;
         if (l.clamped) p.clamp += lost;
@@ -65,7 +75,9 @@ Powers System::powers(const std::vector<Prescribed> &functions, const VectorXd &
     return p;
 }
 
-bool System::prescribes_motion() const { return !legs_.empty() || !motions_.empty() || !prescribed_.empty(); }
+bool System::prescribes_motion() const {
+    return std::any_of(constraints_.begin(), constraints_.end(), [](const Constraint &c) { return c.timed(); });
+}
 
 bool System::has_power() const {
     if (prescribes_motion() || !loads_.empty() || mass_damping_.nonZeros() > 0) return true;
@@ -79,23 +91,21 @@ bool System::has_power() const {
 }
 
 // -Phi_q^T lambda on the coordinates of the journal, as a force on its point.
-Vec<double> System::joint_force(int k, const VectorXd &q, const VectorXd &v, const VectorXd &z,
+Vec<double> System::joint_force(int k, const VectorXd &q, const VectorXd &v, const Memory &memory,
                                 const VectorXd &lambda) const {
     const Joint &j = joints_[k];
-    if (j.contact >= 0) return loose(k, q, v, z[k]).on_journal;
-    if (j.kind == LS_PRISMATIC) return -lambda[j.constraint] * by_journal(constraints_[j.constraint], q);
-    return {lambda[j.constraint], lambda[j.constraint + 1]};
+    if (j.law) return loose(k, q, v, memory).on_journal;
+    auto multiplier = [&](int row) { return row < 0 ? 0.0 : lambda[row]; };
+    if (j.kind != JointKind::prismatic) return {multiplier(j.rows[0]), multiplier(j.rows[1])};
+    if (j.rows[0] < 0) return {0.0, 0.0};
+    return -lambda[j.rows[0]] * by_journal(constraints_[j.rows[0]], q);
 }
 
-double System::joint_couple(int k, const VectorXd &q, const VectorXd &lambda) const {
+double System::joint_couple(int k, const Inputs &inputs, const VectorXd &q, const VectorXd &lambda) const {
     const Joint &j = joints_[k];
     double couple = 0.0;
-    for (int row = j.holding; row < j.holding + j.held; ++row) couple -= lambda[row] * by_rotation(constraints_[row], q, 0.0);
+    for (int row : {j.holds[0], j.holds[1], j.drive})
+        if (row >= 0)
+            couple -= lambda[row] * by_rotation(constraints_[row], q, prescription(constraints_[row], inputs).value);
     return couple;
-}
-
-double System::motion_force(int motion, const Inputs &inputs, const VectorXd &q, const VectorXd &lambda) const {
-    const int row = motions_[motion];
-    const Constraint &c = constraints_[row];
-    return c.kind == Constraint::align ? -lambda[row] * by_rotation(c, q, given(c, inputs)) : -lambda[row];
 }

@@ -39,7 +39,7 @@ void subtract_forces(const Attachment &bearing, const Attachment &journal, const
 
 template <class Law>
 void subtract_derivatives(const Attachment &bearing, const Attachment &journal, const Law &law, const Eigen::VectorXd &q,
-                          const Eigen::VectorXd &v, Eigen::MatrixXd &by_q, Eigen::MatrixXd &by_v) {
+                          const Eigen::VectorXd &v, Entries &by_q, Entries &by_v) {
     // independent variables: q of the bearing, q of the journal, then v likewise
     using D = Dual<double, 4 * attachment_size>;
     D qs[2][attachment_size], vs[2][attachment_size];
@@ -60,7 +60,8 @@ void subtract_derivatives(const Attachment &bearing, const Attachment &journal, 
             for (int c = 0; c < 2; ++c)
                 for (int m = 0; m < side[c]->size; ++m) {
                     const int variable = attachment_size * c + m;
-                    by_q(side[r]->offset + i, side[c]->offset + m) -= forces[r][i].slope[variable];
-                    by_v(side[r]->offset + i, side[c]->offset + m) -= forces[r][i].slope[2 * attachment_size + variable];
+                    const int row = side[r]->offset + i, column = side[c]->offset + m;
+                    by_q.emplace_back(row, column, -forces[r][i].slope[variable]);
+                    by_v.emplace_back(row, column, -forces[r][i].slope[2 * attachment_size + variable]);
                 }
 }

@@ -1,78 +1,105 @@
-// The constraint rows of the mechanism, in the order of the header, and what errors call them.
+// The constraint rows of the mechanism and their names, in the order of the header.
+#include <algorithm>
 #include <cmath>
 
-#include "failure.hpp"
-#include "names.hpp"
 #include "system.hpp"
 
-namespace {
-
-const char *kind_name(ls_joint_kind kind) {
-    return kind == LS_REVOLUTE ? " (revolute)" : kind == LS_PRISMATIC ? " (prismatic)" : " (weld)";
-}
-
-} // namespace
-
-void System::add_row(const Constraint &row, const std::string &name) {
+int System::add_row(const Constraint &row, const std::string &name, const Source &source) {
     constraints_.push_back(row);
+    row_sources_.push_back(source);
     row_names_.push_back(name);
+    return constraints() - 1;
 }
 
-void System::add_constraints(const ls_mechanism &m) {
+void System::add_constraints(const Scene &scene) {
+    const char *axes[3] = {".x", ".y", ".theta"};
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const Body &b = bodies_[i];
-        const std::string name = named("body", static_cast<int>(i));
-        if (b.kind == LS_RIGID_LINK) add_row(length_constraint(b), name + " (rigid link), length");
-        if (b.kind != LS_MOVING_BODY) continue;
-        const char *coordinates[3] = {" (moving body), x", " (moving body), y", " (moving body), theta"};
+        if (b.kind == BodyKind::rigid_link) add_row(length_constraint(b), b.name + ".length", scene.bodies[i].source);
+        if (!scene.bodies[i].path) continue;
         for (int k = 0; k < 3; ++k) {
-            prescribed_.push_back({b.offset + k, constraints()});
-            add_row(coordinate_constraint(b, k, b.function + k), name + coordinates[k]);
+            const int given = add_function((*scene.bodies[i].path)[k]);
+            const int row = add_row(coordinate_constraint(b, k, given), b.name + axes[k], scene.bodies[i].source);
+            if (b.kind == BodyKind::moving) prescribed_.push_back({b.offset + k, row});
         }
     }
-    for (int i = 0; i < joints(); ++i)
-        if (joints_[i].contact < 0) add_joint_rows(joints_[i], m.joints[i], i);
-    first_drive_ = constraints();
-    for (int i = 0; i < legs(); ++i)
-        add_row(drive_constraint(bodies_[legs_[i].crank], legs_[i].crank_from_start, i), named("leg", i));
-    for (int i = 0; i < m.n_motions; ++i) add_motion_row(m.motions[i], i);
+    for (std::size_t i = 0; i < joints_.size(); ++i)
+        if (!joints_[i].law) add_joint_rows(joints_[i], scene.joints[i]);
+    for (const AngleDrive &drive : scene.angle_drives) {
+        Joint &joint = joints_[drive.joint];
+        joint.drive = add_row(turn_constraint(joint.bearing, joint.journal, add_function(drive.angle)),
+                              drive.name + ".angle", drive.source);
+        joint.driven = true;
+    }
+    for (const PointDrive &drive : scene.point_drives) {
+        const Attachment point = attachment(drive.point);
+        if (drive.x) add_row(place_constraint(point, 0, add_function(*drive.x)), drive.name + ".x", drive.source);
+        if (drive.y) add_row(place_constraint(point, 1, add_function(*drive.y)), drive.name + ".y", drive.source);
+    }
+    if (!driven_angles_) return;
+    int given = static_cast<int>(functions_.size());
+    for (int j : scene.inverse_kinematics->joints) {
+        Joint &joint = joints_[j];
+        joint.drive = add_row(turn_constraint(joint.bearing, joint.journal, given++),
+                              scene.inverse_kinematics->name + "." + joint.name, scene.inverse_kinematics->source);
+        joint.driven = true;
+    }
 }
 
-void System::add_joint_rows(Joint &joint, const ls_joint &j, int number) {
-    const std::string name = named("joint", number) + kind_name(joint.kind);
-    joint.constraint = constraints();
-    if (joint.kind == LS_PRISMATIC) {
-        add_row(slide_constraint(joint.bearing, joint.journal, j.direction), name + ", line");
+void System::add_joint_rows(Joint &joint, const JointDescription &d) {
+    if (joint.kind == JointKind::prismatic) {
+        joint.rows[0] =
+            add_row(slide_constraint(joint.bearing, joint.journal, d.direction), joint.name + ".line", d.source);
     } else {
         for (int axis : {0, 1})
-            add_row(coincide_constraint(joint.bearing, joint.journal, axis), name + (axis == 0 ? ", x" : ", y"));
+            joint.rows[axis] = add_row(coincide_constraint(joint.bearing, joint.journal, axis),
+                                       joint.name + (axis == 0 ? ".x" : ".y"), d.source);
     }
-    joint.holding = constraints();
-    if (j.hold_slope) {
+    const bool bends = joint.bearing.kind == BodyKind::flexible_link || joint.journal.kind == BodyKind::flexible_link;
+    if (d.slope_vector && bends) {
         for (int axis : {0, 1})
-            add_row(slope_constraint(joint.bearing, joint.journal, j.angle, axis),
-                    name + (axis == 0 ? ", slope x" : ", slope y"));
-    } else if (joint.kind == LS_WELD || j.hold_rotation) {
-        add_row(align_constraint(joint.bearing, joint.journal, j.angle), name + ", rotation");
+            joint.holds[axis] = add_row(slope_constraint(joint.bearing, joint.journal, d.angle, axis),
+                                        joint.name + (axis == 0 ? ".slope_x" : ".slope_y"), d.source);
+    } else if (d.holds_angle()) {
+        joint.holds[0] =
+            add_row(align_constraint(joint.bearing, joint.journal, d.angle), joint.name + ".rotation", d.source);
     }
-    joint.held = constraints() - joint.holding;
 }
 
-void System::add_motion_row(const ls_motion &m, int number) {
-    const std::string name = named("motion", number);
-    require(m.kind == LS_ANGLE || m.kind == LS_COORDINATE, name + ": unknown kind");
-    const int function = use_smooth_function(m.function, name);
-    motions_.push_back(constraints());
-    auto moves = [](const Attachment &a) { return a.size > 0 && a.kind != LS_MOVING_BODY; };
-    if (m.kind == LS_ANGLE) {
-        const Joint &j = turning_joint(m.joint, name);
-        require(moves(j.bearing) || moves(j.journal), name + ": the motion of both sides is prescribed already");
-        add_row(turn_constraint(j.bearing, j.journal, function), name + " (angle)");
-        return;
+void System::leave_out(const std::vector<int> &rows) {
+    std::vector<int> moved(constraints_.size());
+    std::vector<Constraint> kept;
+    std::vector<std::string> names;
+    std::vector<Source> sources;
+    for (int k = 0; k < constraints(); ++k) {
+        const bool out = std::find(rows.begin(), rows.end(), k) != rows.end();
+        moved[k] = out ? -1 : static_cast<int>(kept.size());
+        if (out) {
+            left_out_.push_back({constraints_[k], row_names_[k], row_sources_[k]});
+            continue;
+        }
+        kept.push_back(constraints_[k]);
+        names.push_back(row_names_[k]);
+        sources.push_back(row_sources_[k]);
     }
-    constexpr double rounding = 1e-9;
-    const Attachment point = attachment(m.point, name);
-    require(moves(point), name + ": the point is fixed or its motion prescribed already");
-    require(std::abs(std::hypot(m.nx, m.ny) - 1.0) <= rounding, name + ": n is not a unit vector");
-    add_row(place_constraint(point, {m.nx, m.ny}, function), name + " (coordinate)");
+    constraints_ = std::move(kept);
+    row_names_ = std::move(names);
+    row_sources_ = std::move(sources);
+    auto move = [&](int &row) { row = row < 0 ? -1 : moved[row]; };
+    for (Joint &joint : joints_) {
+        for (int axis : {0, 1}) {
+            move(joint.rows[axis]);
+            move(joint.holds[axis]);
+        }
+        move(joint.drive);
+    }
+    for (PrescribedCoordinate &p : prescribed_) move(p.row);
+}
+
+void System::check_left_out(const Inputs &inputs, const VectorXd &q, double t) const {
+    constexpr double limit = 1e-4; // generous: between two steps rows hold to the tolerance of the run only
+    for (const LeftOut &c : left_out_)
+        if (const double open = evaluate(c.row, q, prescription(c.row, inputs).value).value; std::abs(open) > limit)
+            refuse(c.source, c.name + " contradicts the other constraints: it repeats them at the start, but is open by " +
+                                 text_of(open) + " at t = " + text_of(t));
 }

@@ -4,19 +4,23 @@
 #include <optional>
 
 #include "acceleration.hpp"
+#include "channels.hpp"
 #include "failure.hpp"
 #include "newton.hpp"
 #include "sundials.hpp"
-#include "system.hpp"
 
 // Integrals of System::powers.
 using Ledger = Powers;
 
 class Run {
 public:
-    Run(const System &system, double t, const VectorXd &q, const VectorXd &v, const ls_tolerances &tolerances);
+    Run(const Model &model, double t, const VectorXd &q, const VectorXd &v, const ls_tolerances &tolerances);
+    Run(const Run &) = delete;
+    Run &operator=(const Run &) = delete;
 
-    void advance(double t, ls_row &row);
+    void advance(double t);
+    const Snapshot &snapshot() const { return snapshot_; } // where `advance` has come to
+    const Channels &channels() const { return channels_; }
     const std::vector<ls_event> &events() const { return events_; }
     ls_statistics statistics() const;
 
@@ -39,6 +43,9 @@ private:
 
     void check(int flag);
     void set_up(const ls_tolerances &tolerances);
+    void set_up_dense();
+    void set_up_sparse();
+    void fill_sparse(const SparseMatrix &matrix);
     const Inputs &inputs(double t);
 
     void step();
@@ -53,24 +60,29 @@ private:
     double bisect(double from, double to, Function f, int joint);
     Watch watch(int joint, const double *y) const;
     Watch interpolated(int joint, double t);
-    bool closed(int joint) const { return z_[joint] > 0.0; }
+    bool closed(int joint) const { return memory_.impact_velocity[joint] > 0.0; }
     void watch_clamps();
     void watch_depth();
 
     void state_at(double t, VectorXd &q, VectorXd &v);
     Ledger integral(double to);
     std::vector<double> kinks(double to);
-    void describe(double t, ls_row &row);
+    void describe(double t);
     void collect_statistics();
 
-    System system_;
+    Model model_;
+    const System &system_;
+    Channels channels_;
     ls_tolerances tolerances_;
     int n_, m_;
 
     // the last interval IDA has covered without a restart inside; t_ is reached, a restart may be pending there
     double before_, t_;
     double target_;                   // the time asked for
-    VectorXd q_, v_, z_;              // z: impact velocities, 0 while open
+    VectorXd q_, v_;
+    Memory memory_;
+    Angles angles_;                   // at t_
+    double initial_energy_;
     Ledger ledger_before_, ledger_;
     std::vector<Watch> watch_before_; // by loose joint, at before_
     std::vector<char> clamped_;       // by loose joint
@@ -81,15 +93,14 @@ private:
     ls_statistics statistics_{};
 
     Acceleration acceleration_;
-    NewtonMatrix newton_;
+    DenseNewton newton_;
     std::optional<Failure> failure_;  // in a callback
     double inputs_time_;
     Inputs inputs_;
     VectorXd qs_, vs_, f_, phi_, phi_t_; // work arrays
     MatrixXd phi_q_;
 
-    // arrays a row points to
-    VectorXd row_q_, row_v_, joint_force_, joint_couple_, penetration_, torque_, motion_force_;
+    Snapshot snapshot_;
 
     // released from the last to the first: IDA before what it uses
     ida::ErrorText errors_;

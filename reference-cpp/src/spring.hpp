@@ -5,15 +5,16 @@
 #include "pair.hpp"
 
 struct Spring {
+    std::string name;
     Attachment from, to;
     double stiffness, damping, rest_length;
-    int number; // names it in an error
 
     // Without rest length and damping the force is linear in the vector between the points, which may then vanish.
     bool is_linear() const { return rest_length == 0.0 && damping == 0.0; }
 };
 
 struct TorsionSpring {
+    std::string name;
     Attachment bearing, journal;
     double stiffness, damping, rest_angle;
 };
@@ -33,7 +34,7 @@ SpringState<T> state_of(const Spring &s, const T *qi, const T *vi, const T *qj, 
     if (s.is_linear()) return x;
     const T square = dot(x.e, x.e);
     if (!(value_of(square) > 0.0))
-        throw Failure(LS_NOT_FINITE, "spring " + std::to_string(s.number) + ": its points meet, its force has no direction");
+        throw Failure(LS_NOT_FINITE, s.name + ": its ends meet, its force has no direction");
     x.length = sqrt(square);
     x.n = (1.0 / x.length) * x.e;
     x.rate = dot(x.n, velocity(s.to, qj, vj) - velocity(s.from, qi, vi));
@@ -65,31 +66,43 @@ inline double loss(const Spring &s, const Eigen::VectorXd &q, const Eigen::Vecto
     return s.damping * x.rate * x.rate;
 }
 
-// phi - phi_0 within half a turn: the angle from R(phi_0) d_1 to d_2.
+// phi - phi_0 within half a turn of `near`: the angle from R(phi_0 + near) d_1 to d_2 tells what is missing.
 template <class T>
-T deviation(const TorsionSpring &s, const T *qi, const T *qj) {
+T deviation(const TorsionSpring &s, double near, const T *qi, const T *qj) {
     using std::atan2;
-    const Vec<T> rest = rotated(direction(s.bearing, qi), T(s.rest_angle)), d = direction(s.journal, qj);
-    return atan2(cross(rest, d), dot(rest, d));
+    const Vec<T> there = rotated(direction(s.bearing, qi), T(s.rest_angle + near)), d = direction(s.journal, qj);
+    return near + atan2(cross(there, d), dot(there, d));
 }
 
 template <class T>
-PairForces<T> spring_forces(const TorsionSpring &s, const T *qi, const T *vi, const T *qj, const T *vj) {
-    const T torque = s.stiffness * deviation(s, qi, qj) +
-                     s.damping * (spin(s.journal, qj, vj) - spin(s.bearing, qi, vi));
+T rate(const TorsionSpring &s, const T *qi, const T *vi, const T *qj, const T *vj) {
+    return spin(s.journal, qj, vj) - spin(s.bearing, qi, vi);
+}
+
+template <class T>
+PairForces<T> spring_forces(const TorsionSpring &s, double near, const T *qi, const T *vi, const T *qj, const T *vj) {
+    const T torque = s.stiffness * deviation(s, near, qi, qj) + s.damping * rate(s, qi, vi, qj, vj);
     PairForces<T> out;
     add_couple(s.bearing, qi, torque, out.bearing);
     add_couple(s.journal, qj, -torque, out.journal);
     return out;
 }
 
-inline double energy(const TorsionSpring &s, const Eigen::VectorXd &q) {
-    const double angle = deviation(s, q.data() + s.bearing.offset, q.data() + s.journal.offset);
+inline double deviation(const TorsionSpring &s, double near, const Eigen::VectorXd &q) {
+    return deviation(s, near, q.data() + s.bearing.offset, q.data() + s.journal.offset);
+}
+
+inline double rate(const TorsionSpring &s, const Eigen::VectorXd &q, const Eigen::VectorXd &v) {
+    return rate(s, q.data() + s.bearing.offset, v.data() + s.bearing.offset, q.data() + s.journal.offset,
+                v.data() + s.journal.offset);
+}
+
+inline double energy(const TorsionSpring &s, double near, const Eigen::VectorXd &q) {
+    const double angle = deviation(s, near, q);
     return 0.5 * s.stiffness * angle * angle;
 }
 
 inline double loss(const TorsionSpring &s, const Eigen::VectorXd &q, const Eigen::VectorXd &v) {
-    const double rate = spin(s.journal, q.data() + s.journal.offset, v.data() + s.journal.offset) -
-                        spin(s.bearing, q.data() + s.bearing.offset, v.data() + s.bearing.offset);
-    return s.damping * rate * rate;
+    const double speed = rate(s, q, v);
+    return s.damping * speed * speed;
 }

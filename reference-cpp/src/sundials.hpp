@@ -14,6 +14,8 @@
 #include <sundials/sundials_matrix.h>
 #include <sundials/sundials_types.h>
 #include <sundials/sundials_version.h>
+#include <sunlinsol/sunlinsol_klu.h>
+#include <sunmatrix/sunmatrix_sparse.h>
 
 namespace ida {
 
@@ -90,8 +92,18 @@ private:
 
 struct Delete {
     void operator()(N_Vector v) const { N_VDestroy(v); }
-    void operator()(SUNLinearSolver s) const { SUNLinSolFreeEmpty(s); }
-    void operator()(SUNMatrix m) const { SUNMatFreeEmpty(m); }
+    void operator()(SUNLinearSolver s) const {
+        if (s->ops->free)
+            SUNLinSolFree(s);
+        else
+            SUNLinSolFreeEmpty(s);
+    }
+    void operator()(SUNMatrix m) const {
+        if (m->ops->destroy)
+            SUNMatDestroy(m);
+        else
+            SUNMatFreeEmpty(m);
+    }
 };
 template <class Handle>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Delete>;

@@ -1,72 +1,94 @@
-// The assembled mechanism: M a + f(t, q, v; z) + Phi_q^T lambda = 0, Phi(t, q) = 0 (eqs. 17, 18).
+// The assembled mechanism: M a + f(t, q, v; memory) + Phi_q^T lambda = 0, Phi(t, q) = 0 (eqs. 17, 18).
 #pragma once
 
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "bodies.hpp"
 #include "constraint.hpp"
-#include "contact.hpp"
-#include "drive.hpp"
-#include "function.hpp"
+#include "driven_angles.hpp"
 #include "load.hpp"
 #include "loose_joint.hpp"
+#include "scene.hpp"
 #include "spring.hpp"
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using SparseMatrix = Eigen::SparseMatrix<double>;
 
 struct Joint {
-    Attachment bearing, journal;
-    ls_joint_kind kind = LS_REVOLUTE;
-    int contact = -1;    // index of its law, -1 for an ideal joint
-    int constraint = -1; // ideal joint: index of the first of its rows
-    int holding = 0;     // first of the rows that hold rotation or slope, and their number
-    int held = 0;
+    std::string name;
+    JointKind kind;
+    Attachment bearing, journal;      // also of the guide and the slider, and of the two sides of a weld
+    std::optional<ContactLaw> law;    // with clearance
+    std::array<int, 2> rows{-1, -1};  // that hold the points; prismatic: the first. -1: none, or left out
+    std::array<int, 2> holds{-1, -1}; // that hold rotation or slope
+    int drive = -1;                   // that prescribes the angle
+    double direction = 0.0;           // prismatic: of the line
+    bool holds_angle = false, driven = false;
 };
 
 struct Gap {
     Vec<double> e, e_dot;
-    double delta() const { return std::sqrt(dot(e, e)) - clearance; }
-    double rate() const { return dot(e, e_dot) / std::sqrt(dot(e, e)); } // needs e != 0
     double clearance;
+    double size() const { return std::sqrt(dot(e, e)); }
+    double delta() const { return size() - clearance; }
+    // of the eccentricity; where it is zero, the speed at which it grows
+    double rate() const { return size() > 0.0 ? dot(e, e_dot) / size() : std::sqrt(dot(e_dot, e_dot)); }
 };
 
 // All that depends on time alone.
 struct Inputs {
-    std::vector<Prescribed> cranks;    // one a leg
-    std::vector<Prescribed> functions; // as in the description
+    std::vector<Prescribed> given; // the functions of time in use, then the angles of the inverse kinematics
+    double weight = 1.0;           // part of the weight that acts; below 1 only in a static analysis
+};
+
+// What the forces remember.
+struct Memory {
+    VectorXd impact_velocity; // by joint: of eq. 24 while its contact is closed, else 0
+    VectorXd turn;            // by torsion spring: an angle phi - phi_0 within half a turn of the present one
 };
 
 struct Energies {
     double kinetic = 0.0, axial = 0.0, bending = 0.0, contact = 0.0, gravity = 0.0, springs = 0.0;
+    double total() const { return kinetic + axial + bending + contact + gravity + springs; }
 };
 
 // Powers whose integrals are in the ledger of EQUATIONS.md.
 struct Powers {
     double work = 0.0, contact_dissipated = 0.0, clamp = 0.0, friction_dissipated = 0.0, damping_dissipated = 0.0;
+    void add(double weight, const Powers &p);
 };
 
 class System {
 public:
-    explicit System(const ls_mechanism &mechanism);
+    // Without driven angles a scene with inverse kinematics leaves its actuated joints free.
+    explicit System(const Scene &scene, std::shared_ptr<const DrivenAngles> driven_angles = {});
 
     int coordinates() const { return n_; }
     int constraints() const { return static_cast<int>(constraints_.size()); }
-    int joints() const { return static_cast<int>(joints_.size()); }
-    int legs() const { return static_cast<int>(legs_.size()); }
-    int motions() const { return static_cast<int>(motions_.size()); }
+    const std::vector<Body> &bodies() const { return bodies_; }
+    const std::vector<Joint> &joints() const { return joints_; }
+    const std::vector<Spring> &springs() const { return springs_; }
+    const std::vector<TorsionSpring> &torsion_springs() const { return torsion_springs_; }
+    const std::vector<Load> &loads() const { return loads_; }
     const std::vector<int> &loose_joints() const { return loose_; }
-    const ContactLaw &law(int joint) const { return laws_[joints_[joint].contact]; }
-    // What a constraint row belongs to.
+    const ContactLaw &law(int joint) const { return *joints_[joint].law; }
     const std::string &row_name(int row) const { return row_names_[row]; }
+    const Source &row_source(int row) const { return row_sources_[row]; } // body, joint or drive it belongs to
+    const std::string &coordinate_name(int i) const { return coordinate_names_[i]; }
+    Attachment attachment(const PointReference &point) const { return make_attachment(bodies_[point.body], point.at); }
+    // Removes constraint rows that repeat others; their multipliers count as zero.
+    void leave_out(const std::vector<int> &rows);
+    // Throws where a row that has been left out does not hold: then it does not repeat the others.
+    void check_left_out(const Inputs &inputs, const VectorXd &q, double t) const;
 
-    const MatrixXd &mass() const { return mass_; }
-    const Eigen::SparseMatrix<double> &sparse_mass() const { return sparse_mass_; }
-    // M^-1 on the coordinates that are not prescribed, zero on the others: block diagonal by bodies
-    const Eigen::SparseMatrix<double> &inverse_mass() const { return inverse_mass_; }
+    const SparseMatrix &mass() const { return mass_; }
+    // M^-1 x on the coordinates that have a mass, zero on the others
+    VectorXd divided_by_mass(const VectorXd &x) const;
     // Coordinates of moving bodies, each with the row that prescribes it. They have no mass.
     struct PrescribedCoordinate {
         int coordinate, row;
@@ -77,89 +99,83 @@ public:
     // Instants at which a function in use has a kink in some derivative, in order.
     const std::vector<double> &breaks() const { return breaks_; }
 
-    std::vector<Prescribed> crank_angles(double t) const;
-    std::vector<Prescribed> functions(double t) const;
-    Inputs inputs(double t) const { return {crank_angles(t), functions(t)}; }
-    void start(double t, VectorXd &q, VectorXd &v) const;
+    Inputs inputs(double t) const;
+    Memory memory() const; // all contacts open, torsion springs within half a turn of their rest
 
-    void force(const std::vector<Prescribed> &functions, const VectorXd &q, const VectorXd &v, const VectorXd &z,
-               VectorXd &f) const;
-    // df/dq and df/dv; overwritten
-    void force_derivatives(const std::vector<Prescribed> &functions, const VectorXd &q, const VectorXd &v,
-                           const VectorXd &z, MatrixXd &by_q, MatrixXd &by_v) const;
+    void force(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory, VectorXd &f) const;
+    // df/dq and df/dv, appended; entries of the same place add up
+    void force_derivatives(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory,
+                           Entries &by_q, Entries &by_v) const;
 
     void constraint_rows(const Inputs &inputs, const VectorXd &q, VectorXd &phi, MatrixXd &phi_q, VectorXd &phi_t) const;
-    // W = M^-1 Phi_q^T and S = Phi_q W, by the few coordinates each row depends on, with inverse_mass(). S has a one on the
-    // diagonal for the rows of prescribed coordinates: they stand apart.
+    // The coordinates that a row depends on are the first `size` of `index`.
+    const Constraint &constraint(int row) const { return constraints_[row]; }
+    // W = M^-1 Phi_q^T and S = Phi_q W, by the few coordinates each row depends on, with M^-1 as above. S has a one on
+    // the diagonal for the rows of prescribed coordinates: they stand apart.
     void reduce_mass(const MatrixXd &phi_q, MatrixXd &w, MatrixXd &s) const;
     // gamma: d2Phi/dt2 = Phi_q a + gamma
     void convective(const Inputs &inputs, const VectorXd &q, const VectorXd &v, VectorXd &gamma) const;
-    // Adds d(Phi_q^T lambda)/dq to the first, writes d(Phi_q v + Phi_t)/dq into the second.
+    // Appends d(Phi_q^T lambda)/dq to the first and d(Phi_q v + Phi_t)/dq to the second.
     void constraint_derivatives(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const VectorXd &lambda,
-                                MatrixXd &stiffness, MatrixXd &rate_by_q) const;
+                                Entries &stiffness, Entries &rate_by_q) const;
     // Throws where an angle is half a turn from the one prescribed, which Phi does not see.
-    void check_angles(const Inputs &inputs, const VectorXd &q, double t) const;
+    void check_angles(const Inputs &inputs, const VectorXd &q) const;
 
     Gap gap(int joint, const double *q, const double *v) const;
-    LooseForces<double> loose(int joint, const VectorXd &q, const VectorXd &v, double z) const;
+    LooseForces<double> loose(int joint, const VectorXd &q, const VectorXd &v, const Memory &memory) const;
 
-    Energies energies(const VectorXd &q, const VectorXd &v, const VectorXd &z) const;
+    Energies energies(const VectorXd &q, const VectorXd &v, const Memory &memory) const;
     // Without the power of constraints that prescribe a motion, which is lambda . Phi_t.
-    Powers powers(const std::vector<Prescribed> &functions, const VectorXd &q, const VectorXd &v, const VectorXd &z) const;
+    Powers powers(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory) const;
     bool prescribes_motion() const; // some row depends on time
-    bool follows_functions() const { return !motions_.empty() || !prescribed_.empty() || !loads_.empty(); }
-    bool has_power() const;         // powers() may differ from zero even if no contact is closed
-    Vec<double> joint_force(int joint, const VectorXd &q, const VectorXd &v, const VectorXd &z,
+    bool has_loads() const { return !loads_.empty(); }
+    bool has_power() const; // powers() may differ from zero even if no contact is closed
+    // Of the first side on the second.
+    Vec<double> joint_force(int joint, const VectorXd &q, const VectorXd &v, const Memory &memory,
                             const VectorXd &lambda) const;
-    double joint_couple(int joint, const VectorXd &q, const VectorXd &lambda) const;
-    double motion_force(int motion, const Inputs &inputs, const VectorXd &q, const VectorXd &lambda) const;
-    double torque(int leg, const VectorXd &lambda) const { return -lambda[first_drive_ + leg]; }
+    double joint_couple(int joint, const Inputs &inputs, const VectorXd &q, const VectorXd &lambda) const;
 
 private:
-    void add_bodies(const ls_mechanism &mechanism);
-    void add_joint(const ls_joint &joint, int number);
-    void add_leg(const ls_leg &leg, int number, const ls_mechanism &mechanism);
-    void add_springs(const ls_mechanism &mechanism);
-    void add_load(const ls_load &load, int number);
-    void add_constraints(const ls_mechanism &mechanism);
-    void add_joint_rows(Joint &joint, const ls_joint &description, int number);
-    void add_motion_row(const ls_motion &motion, int number);
-    void add_row(const Constraint &row, const std::string &name);
-    void complete_mass(double gravity_x, double gravity_y);
-    void find_undriven();
-
-    const Body &body(int index, const std::string &name) const;
-    Attachment attachment(const ls_point &point, const std::string &name) const;
-    Attachment directed_attachment(const ls_point &point, const std::string &name) const;
-    int use_function(int index, const std::string &name);
-    int use_smooth_function(int index, const std::string &name);
-    const Joint &turning_joint(int index, const std::string &name) const;
+    void add_bodies(const Scene &scene);
+    void add_joints(const Scene &scene);
+    void add_forces(const Scene &scene);
+    void add_constraints(const Scene &scene);
+    void add_joint_rows(Joint &joint, const JointDescription &description);
+    int add_row(const Constraint &row, const std::string &name, const Source &source);
+    int add_function(const TimeFunction &function, bool grows = false);
+    void complete_mass(const Scene &scene);
 
     template <class Visit>
-    void visit_pairs(const std::vector<Prescribed> &functions, const VectorXd &z, Visit visit) const;
-    double given(const Constraint &c, const Inputs &inputs) const { return prescription(c, inputs).value; }
+    void visit_pairs(const Inputs &inputs, const Memory &memory, Visit visit) const;
     Prescribed prescription(const Constraint &c, const Inputs &inputs) const;
 
     std::vector<Body> bodies_;
     std::vector<Joint> joints_;
-    std::vector<ContactLaw> laws_;
-    std::vector<Leg> legs_;
     std::vector<TimeFunction> functions_;
+    std::vector<bool> grows_; // by function: in proportion to t, in a static analysis
+    std::shared_ptr<const DrivenAngles> driven_angles_;
     std::vector<Spring> springs_;
     std::vector<TorsionSpring> torsion_springs_;
     std::vector<Load> loads_;
-    std::vector<int> motions_; // their rows
     std::vector<Constraint> constraints_;
-    std::vector<std::string> row_names_;
+    struct LeftOut {
+        Constraint row;
+        std::string name;
+        Source source;
+    };
+    std::vector<LeftOut> left_out_;
+    std::vector<std::string> row_names_, coordinate_names_;
+    std::vector<Source> row_sources_;
     std::vector<PrescribedCoordinate> prescribed_;
     std::vector<double> breaks_;
     std::vector<int> loose_;
-    Path path_{};
-    int n_ = 0, first_drive_ = 0;
-    std::string undriven_; // why `start` is impossible; empty if it is possible
-    MatrixXd mass_;
-    Eigen::SparseMatrix<double> sparse_mass_, inverse_mass_;
-    Eigen::SparseMatrix<double> mass_damping_; // alpha M of each body
-    VectorXd weight_;                          // the force of gravity, M g
+    int n_ = 0;
+    double full_load_ = 0.0; // static analysis: t of the full load
+    SparseMatrix mass_, mass_damping_; // mass_damping_: alpha M of each body
+    // of M with ones for the coordinates without mass; a copy of the system shares it
+    std::shared_ptr<const Eigen::SimplicialLDLT<SparseMatrix>> mass_factor_;
+    VectorXd has_mass_;        // by coordinate, 1 or 0
+    SparseMatrix inverse_mass_; // its columns of the coordinates that constraints depend on
+    VectorXd weight_;          // the force of gravity, M g
     VectorXd levers_;
 };

@@ -57,6 +57,24 @@ impl Compiler<'_> {
         self.roles[point.body] != Role::Free
     }
 
+    /// True for a joint between bodies of known motion that this motion keeps closed: the one about which a drive turns a body,
+    /// and those that inverse kinematics checks along the path.
+    pub fn may_stay_closed(&self, joint: usize) -> bool {
+        let sides = &self.scene.joints[joint];
+        let mut roles = [sides.bearing, sides.journal]
+            .map(|p| self.roles[p.body])
+            .into_iter();
+        let turned = |m: usize| match self.scene.motions[m].kind {
+            MotionKind::Angle { joint: about, .. } => about == joint,
+            MotionKind::Point { .. } => false,
+        };
+        self.mode == Mode::Ideal
+            || roles.any(|role| match role {
+                Role::Turned(m) => turned(m),
+                role => role == Role::Driven,
+            })
+    }
+
     /// True for a point whose node joints can share: an end of a link, a point mass.
     pub fn is_node(&self, point: PointRef) -> bool {
         match self.scene.bodies[point.body].kind {

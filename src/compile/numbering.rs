@@ -75,6 +75,9 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
         } else if matches!(joint.model, JointModel::Prismatic { .. }) {
             Connection::Constraint
         } else if c.is_known(bearing) && c.is_known(journal) {
+            if !c.may_stay_closed(j) {
+                return Err(redundant("the motion of both of its bodies is prescribed"));
+            }
             Connection::Eliminated
         } else if free_end(bearing) && free_end(journal) {
             let (a, b) = (nodes.find(end_of(bearing)), nodes.find(end_of(journal)));

@@ -2,7 +2,7 @@
 
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
 use crate::marker::{Marker, Spin};
-use crate::math::plane::{Vec2, cross, dot, perp, rotate, scale, sub};
+use crate::math::plane::{Vec2, cross, dot, norm, perp, rotate, scale, sub};
 use crate::system::State;
 
 /// Phi = u x e with e = r_slider - r_guide and the unit direction u of the line, one row: the distance of the slider from
@@ -148,6 +148,12 @@ impl Slide {
         let rate = |m: &Marker| m.velocity(&at.v, m.arm(&at.q));
         let u_dot = self.turned(self.spin.vector_rate(&at.q, &at.v));
         let e_dot = sub(rate(&self.slider), rate(&self.guide));
-        [dot(u, e), dot(u, e_dot) + dot(u_dot, e)]
+        // the slope of a flexible guide is longer than 1 where the link is stretched
+        let (size, along) = (norm(u), dot(u, e));
+        let stretching = dot(u, u_dot) / (size * size);
+        [
+            along / size,
+            (dot(u, e_dot) + dot(u_dot, e) - along * stretching) / size,
+        ]
     }
 }

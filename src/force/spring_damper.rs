@@ -154,6 +154,11 @@ impl Force for SpringDamper {
 
     fn measure(&self, at: &State) -> [f64; 3] {
         let line = self.line(at);
-        [self.pull(&line), line.length, line.rate]
+        // ends that meet part at the magnitude of their relative velocity, in whatever direction
+        let rate = match line.length {
+            0.0 => norm(line.e_dot),
+            _ => line.rate,
+        };
+        [self.pull(&line), line.length, rate]
     }
 }

@@ -124,7 +124,9 @@ impl Force for TorsionSpring {
         &[("torque", "N m"), ("angle", "rad"), ("speed", "rad/s")]
     }
 
+    /// The torque on the second body, the angle and its rate.
     fn measure(&self, at: &State) -> [f64; 3] {
-        self.state(at)
+        let [torque, angle, rate] = self.state(at);
+        [-torque, angle, rate]
     }
 }

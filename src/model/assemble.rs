@@ -17,12 +17,12 @@ fn gather8(coordinates: &[usize], q: &[f64]) -> [f64; 8] {
 impl Model {
     /// r = M a + weight.
     #[inline]
-    fn inertia(&self, a: &[f64], r: &mut [f64]) {
+    fn inertia(&self, at: &State, r: &mut [f64]) {
         for (i, r) in r.iter_mut().enumerate() {
-            *r = self.mass.row(i).map(|(&j, m)| m * a[j]).sum();
+            *r = self.mass.row(i).map(|(&j, m)| m * at.a[j]).sum();
         }
         for &(i, weight) in &self.weight {
-            r[i] += weight;
+            r[i] += at.weight * weight;
         }
     }
 
@@ -274,7 +274,7 @@ impl System for Model {
 
     fn residual(&self, at: &State, r: &mut [f64], phi: &mut [f64], work: &mut Work) {
         self.count(work);
-        self.inertia(&at.a, r);
+        self.inertia(at, r);
         self.constraints(at, r, phi);
         self.forces(at, r, work);
     }
@@ -290,7 +290,7 @@ impl System for Model {
     ) {
         self.count(work);
         k.copy_from_slice(&self.mass.tangent);
-        self.inertia(&at.a, r);
+        self.inertia(at, r);
         self.linearised_constraints(at, w, r, phi, k);
         self.linearised_forces(at, w, r, k, work);
     }
@@ -314,7 +314,7 @@ impl System for Model {
             r[i] += m * at.a[j];
         }
         for &(i, weight) in &self.weight {
-            r[i] += weight;
+            r[i] += at.weight * weight;
         }
         self.forces(at, r, work);
     }

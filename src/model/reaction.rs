@@ -65,7 +65,7 @@ impl Model {
                     *o += values
                         .iter()
                         .zip(columns)
-                        .map(|(m, (&j, g))| m * (at.a[j] - g))
+                        .map(|(m, (&j, g))| m * (at.a[j] - at.weight * g))
                         .sum::<f64>();
                 }
             }

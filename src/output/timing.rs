@@ -82,7 +82,13 @@ fn date(seconds: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Stopwatch, date};
+    use super::{Stopwatch, date, machine};
+
+    #[test]
+    fn a_machine_has_a_processor_and_a_system() {
+        let machine = machine();
+        assert!(machine.contains(std::env::consts::OS) && machine.contains(" threads, "));
+    }
 
     /// Work of some milliseconds at most takes a processor time between nothing and a hundredth of a second, again and again:
     /// a clock that ticks every 10 ms says nothing most of the time.

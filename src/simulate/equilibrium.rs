@@ -172,11 +172,12 @@ impl Simulation {
         } = self;
         trial.copy_from(state);
         trial.t = t;
+        trial.weight = t / scene.simulation.duration;
         model.prescribe(state, trial, work)?;
         let statics = statics
             .as_mut()
             .expect("a static scene has a static solver");
-        statics.solve(model, trial, t / scene.simulation.duration, work)?;
+        statics.solve(model, trial, work)?;
         check_turns(model, state, trial)
     }
 }

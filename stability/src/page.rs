@@ -14,7 +14,7 @@ pub fn page(made: &[Made], checks: &[Vec<Check>], records: &Records, minutes: f6
     let mut out = format!(
         "# Hard cases\n\n{}\n\
          This page takes each method to its limits and classifies every run. `cargo run --release -p stability` writes it in \
-         {:.0} minutes. A run ends in one of these ways:\n\n\
+         {:.0} min. A run ends in one of these ways:\n\n\
          | outcome | meaning |\n|---|---|\n\
          | accurate | the error is within the tolerance of the map in every compared row |\n\
          | coarse | the error is larger but bounded; if it is large (see below), the report warns |\n\

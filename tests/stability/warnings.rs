@@ -62,6 +62,39 @@ fn an_unstable_method_is_stopped_by_name() {
     assert!(report.error.is_some_and(|e| e.contains("unstable")));
 }
 
+/// A gain is measured against a plain motion through the mechanism where nothing is supplied: the lighter the mechanism, the
+/// less it takes to stop a run, in proportion.
+#[test]
+fn a_runaway_from_rest_is_stopped_at_an_energy_of_its_size() {
+    // a spring that is stretched by rounding, and steps beyond the limit of stability, with twice the energy in each
+    let gained = [1e-9, 1e-3, 1e3].map(|mass| {
+        let text = format!(
+            r#"
+format = 1
+title = "a runaway"
+simulation = {{ duration = 1e5 }}
+integrator = {{ method = "velocity_verlet", step = 2.03 }}
+output = {{ interval = 2.03, channels = ["bob.x"] }}
+bodies.ground = {{ type = "ground", points.left = [-1.0, 0.0] }}
+bodies.bob = {{ type = "point_mass", mass = {mass:?} }}
+forces.spring = {{ type = "spring_damper", from = "ground.left", to = "bob.center", stiffness = {mass:?}, damping = 0.0, rest_length = 2.0 }}
+initial.bodies.bob = {{ x = {}, y = 0.0 }}
+"#,
+            1.0 + 1e-12
+        );
+        let scene = Scene::parse("runaway", &text, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let ended = Simulation::new(&scene).unwrap().run(&mut ());
+        let Err(RunError::Unstable { gained, .. }) = ended else {
+            panic!("{ended:?}");
+        };
+        gained / mass
+    });
+    // 10 times m/2 (size/duration)^2 with a size of about 1 m, and at most the growth of a step beyond
+    for gained in gained {
+        assert!((4e-10..4e-9).contains(&gained), "{gained:e} J/kg");
+    }
+}
+
 /// The first steps of a motion that begins at rest have errors as large as the energy there is: no sign of instability.
 #[test]
 fn a_smooth_start_from_rest_is_not_stopped() {
@@ -109,6 +142,34 @@ fn a_run_that_comes_to_a_halt_says_where() {
         "{cause}"
     );
     assert!(report.rejected_steps > 1000 && !report.rejected_by.is_empty());
+}
+
+/// An oscillation of n steps a period changes its acceleration from step to step by 2 sin(pi/n) of its size, rms.
+#[test]
+fn the_change_of_an_acceleration_is_that_of_its_vibration() {
+    for n in [8.0, 20.0, 100.0] {
+        let step = 2.0 * std::f64::consts::PI / n;
+        let text = format!(
+            r#"
+format = 1
+title = "an oscillation"
+simulation = {{ duration = 200.0 }}
+integrator = {{ method = "dormand_prince", step = {step:?} }}
+output = {{ interval = {step:?}, channels = ["bob.x"] }}
+bodies.ground = {{ type = "ground", points.left = [-1.0, 0.0] }}
+bodies.bob = {{ type = "point_mass", mass = 2.0 }}
+forces.spring = {{ type = "spring_damper", from = "ground.left", to = "bob.center", stiffness = 2.0, damping = 0.0, rest_length = 1.0 }}
+initial.bodies.bob = {{ x = 0.1, y = 0.0 }}
+"#
+        );
+        let scene = Scene::parse("oscillation", &text, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let mut simulation = Simulation::new(&scene).unwrap();
+        simulation.run(&mut ()).unwrap();
+        let measured = simulation.report().integration.unwrap().acceleration_change;
+        let expected = 2.0 * (std::f64::consts::PI / n).sin();
+        // the run ends within a period, of more than thirty
+        assert!((measured / expected - 1.0).abs() < 0.03, "{n}: {measured}");
+    }
 }
 
 /// The second mass follows the first; the trapezoidal rule leaves vibrations in its acceleration.
@@ -256,4 +317,50 @@ fn errors_are_estimated() {
     Rung::HardCases
         .asks("Estimated error of runs with equal steps, five methods, three scenes: larger of its ratios to the true error and back")
         .within(&worst, 5.0, "the estimate is a sum of local errors, which the motion may amplify or reduce");
+}
+
+/// docs/scene.md gives the thresholds: a run just below them has no warning, one just above them has one.
+#[test]
+fn warnings_begin_at_their_thresholds() {
+    let (_, sound) = run(
+        "pendulum.toml",
+        &["simulation.duration=0.5", "output.interval=0.01"],
+    );
+    let warnings = |change: &dyn Fn(&mut Report)| {
+        let mut report = sound.clone();
+        change(&mut report);
+        report.warnings()
+    };
+    type Change = dyn Fn(&mut Report, f64);
+    fn of(report: &mut Report) -> &mut Integration {
+        report.integration.as_mut().unwrap()
+    }
+    let cases: [(&str, &Change); 6] = [
+        ("the energy of the motion", &|r, part| {
+            of(r).lost[1] = part * 0.01 * of(r).turnover;
+        }),
+        ("the energy of the motion", &|r, part| {
+            of(r).lost[0] = -part * 0.01 * of(r).turnover;
+        }),
+        ("the dissipated energy", &|r, part| {
+            let ledger = r.ledger.as_mut().unwrap();
+            ledger.damping_dissipated = 1e-4;
+            ledger.numerical = part * 0.05 * ledger.dissipated();
+        }),
+        ("the largest range of motion", &|r, part| {
+            of(r).estimated_error = part * 0.01 * of(r).travel;
+        }),
+        ("do not resolve a vibration", &|r, part| {
+            of(r).acceleration_change = part;
+        }),
+        ("compressed to a Green strain", &|r, part| {
+            r.strain.insert("link".to_owned(), -0.4 * part);
+        }),
+    ];
+    for (words, change) in cases {
+        let below = warnings(&|r: &mut Report| change(r, 0.99));
+        assert!(below.is_empty(), "{words}: {below:?}");
+        let above = warnings(&|r: &mut Report| change(r, 1.01));
+        assert!(above.len() == 1 && above[0].contains(words), "{above:?}");
+    }
 }

@@ -6,7 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Environment variables that name places.
-pub const VARIABLES: [&str; 2] = ["EIGEN_INCLUDE_DIR", "SUNDIALS_DIR"];
+pub const VARIABLES: [&str; 4] = [
+    "EIGEN_INCLUDE_DIR",
+    "SUNDIALS_DIR",
+    "TOMLPLUSPLUS_INCLUDE_DIR",
+    "SUITESPARSE_INCLUDE_DIR",
+];
 
 const PREFIXES: [&str; 4] = ["/usr", "/usr/local", "/opt/homebrew", "/opt/local"];
 
@@ -30,13 +35,15 @@ impl fmt::Display for Missing {
         write!(
             f,
             "{}\n\n\
-             verify compares Looselink with a C++ program that needs Eigen 3.3 or newer and SUNDIALS 6 or 7.\n\
-             Debian, Ubuntu:  apt-get install g++ libeigen3-dev libsundials-dev\n\
-             Fedora:          dnf install gcc-c++ eigen3-devel sundials-devel\n\
-             macOS:           brew install eigen sundials\n\
+             verify compares Looselink with a C++ program that needs Eigen 3.3 or newer, SUNDIALS 6 or 7 with KLU, and\n\
+             toml++ 3.\n\
+             Debian, Ubuntu:  apt-get install g++ libeigen3-dev libsundials-dev libsuitesparse-dev libtomlplusplus-dev\n\
+             Fedora:          dnf install gcc-c++ eigen3-devel sundials-devel suitesparse-devel tomlplusplus-devel\n\
+             macOS:           brew install eigen sundials suite-sparse tomlplusplus\n\
              Elsewhere:       EIGEN_INCLUDE_DIR is the folder that contains Eigen/Core, SUNDIALS_DIR the one that\n\
-             \x20                contains include/ida/ida.h and lib/\n\
-             The other packages of this workspace need neither.",
+             \x20                contains include/ida/ida.h and lib/, TOMLPLUSPLUS_INCLUDE_DIR the one that contains\n\
+             \x20                toml++/toml.h, SUITESPARSE_INCLUDE_DIR the one that contains klu.h\n\
+             The other packages of this workspace need none of these.",
             self.0
         )
     }
@@ -46,16 +53,37 @@ impl Libraries {
     /// Libraries to link, in an order that a linker of archives accepts.
     pub fn names(&self) -> &'static [&'static str] {
         if self.sundials >= 7 {
-            &["sundials_ida", "sundials_nvecserial", "sundials_core"]
+            &[
+                "sundials_ida",
+                "sundials_sunlinsolklu",
+                "sundials_sunmatrixsparse",
+                "sundials_nvecserial",
+                "sundials_core",
+                "klu",
+            ]
         } else {
-            &["sundials_ida", "sundials_nvecserial"]
+            &[
+                "sundials_ida",
+                "sundials_sunlinsolklu",
+                "sundials_sunmatrixsparse",
+                "sundials_nvecserial",
+                "sundials_generic",
+                "klu",
+            ]
         }
     }
 }
 
-/// Finds both libraries.
+/// Finds all libraries.
 pub fn libraries() -> Result<Libraries, Missing> {
-    let eigen = eigen()?;
+    let eigen = header("EIGEN_INCLUDE_DIR", "Eigen/Core", "eigen3", "Eigen")?;
+    let toml = header("TOMLPLUSPLUS_INCLUDE_DIR", "toml++/toml.h", "", "toml++")?;
+    let klu = header(
+        "SUITESPARSE_INCLUDE_DIR",
+        "klu.h",
+        "suitesparse",
+        "SuiteSparse's KLU",
+    )?;
     let version = eigen_version(&eigen);
     let (prefix, include) = sundials()?;
     let config = include.join("sundials/sundials_config.h");
@@ -66,7 +94,7 @@ pub fn libraries() -> Result<Libraries, Missing> {
             prefix.display()
         )));
     }
-    let mut includes = vec![eigen, include];
+    let mut includes = vec![eigen, include, toml, klu];
     includes.extend(mpi(&config));
     Ok(Libraries {
         includes,
@@ -76,14 +104,14 @@ pub fn libraries() -> Result<Libraries, Missing> {
     })
 }
 
-fn eigen() -> Result<PathBuf, Missing> {
-    let given = env::var_os("EIGEN_INCLUDE_DIR").map(PathBuf::from);
-    let usual = PREFIXES
-        .iter()
-        .map(|p| Path::new(p).join("include/eigen3"))
-        .chain(PREFIXES.iter().map(|p| Path::new(p).join("include")));
-    let places = given.map_or_else(|| usual.collect(), |place| vec![place]);
-    find(places, "Eigen/Core", "Eigen")
+/// The folder that contains a header: the one that a variable names, or a usual one, or `below` in a usual one.
+fn header(variable: &str, file: &str, below: &str, library: &str) -> Result<PathBuf, Missing> {
+    let usual = PREFIXES.iter().map(|p| Path::new(p).join("include"));
+    let places = match env::var_os(variable) {
+        Some(place) => vec![PathBuf::from(place)],
+        None => usual.flat_map(|p| [p.join(below), p]).collect(),
+    };
+    find(places, file, library)
 }
 
 /// Prefix and folder of headers.

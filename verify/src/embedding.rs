@@ -3,51 +3,105 @@
 //! Every full coordinate is a copy of one of Looselink's, q_full = B q with one 1 a row of B. Then M = B^T M_full B, and
 //! forces are B^T f_full: what the reference computes body by body is summed where Looselink shares a node.
 
-use crate::channels::{coordinates, places};
-use crate::description::Description;
+use crate::reference::Scene;
 use looselink::model::{BodyCoordinates, Model};
 
-/// The matrix B as a list: the coordinate of Looselink that each full coordinate copies.
+/// Both sides' numbering of one scene, matched through names.
 #[derive(Debug)]
 pub struct Embedding {
+    /// The matrix B as a list: the coordinate of Looselink that each full coordinate copies.
     source: Vec<usize>,
     /// Coordinates of Looselink.
     count: usize,
+    /// For each multiplier of Looselink the row of the reference, unless it is redundant.
+    pub rows: Vec<Option<usize>>,
+    /// For each contact of Looselink the joint of the reference.
+    contacts: Vec<usize>,
+    joints: usize,
+}
+
+/// Looselink's index of the coordinate that the reference calls `name`.
+fn coordinate(model: &Model, name: &str) -> Option<usize> {
+    let mut parts = name.split('.');
+    let (body, part, last) = (parts.next()?, parts.next()?, parts.next());
+    let body = model.bodies().iter().find(|b| b.name == body)?;
+    let place = |quantity: &str| ["x", "y", "theta"].iter().position(|q| *q == quantity);
+    Some(match &body.coordinates {
+        BodyCoordinates::Ground { .. } => return None,
+        BodyCoordinates::Rigid { x } | BodyCoordinates::PointMass { x } => x + place(part)?,
+        BodyCoordinates::RigidLink { ends } => ends[usize::from(part == "end")] + place(last?)?,
+        BodyCoordinates::FlexibleLink { nodes, slopes, .. } => {
+            let node: usize = part.strip_prefix("node")?.parse().ok()?;
+            match last?.strip_prefix("slope_") {
+                Some(quantity) => slopes.get(node)? + place(quantity)?,
+                None => nodes.get(node)? + place(last?)?,
+            }
+        }
+    })
+}
+
+/// What the reference calls the row that Looselink calls `name`.
+fn row_name(name: &str) -> String {
+    if let Some(link) = name.strip_prefix("length of ") {
+        return format!("{link}.length");
+    }
+    let name = name.strip_prefix("joint ").or(name.strip_prefix("drive "));
+    let (owner, part) = name.and_then(|n| n.split_once(" (")).unwrap_or_default();
+    format!("{owner}.{}", part.trim_end_matches(')').replace(' ', "_"))
 }
 
 impl Embedding {
-    /// The copies of a scene's coordinates, matched body by body through the names.
-    ///
-    /// # Panics
-    /// When the two sides do not have the same bodies.
-    pub fn new(description: &Description, model: &Model, count: usize) -> Embedding {
-        let bodies = &description.mechanism.bodies;
-        let mut source = Vec::new();
-        for ((name, body), place) in description.bodies.iter().zip(bodies).zip(places(bodies)) {
-            assert_eq!(source.len(), place, "bodies stand one behind the other");
-            let found = model.bodies().iter().find(|b| b.name == *name);
-            let found = found.unwrap_or_else(|| panic!("Looselink has no body {name}"));
-            match &found.coordinates {
-                BodyCoordinates::Ground { .. } => {}
-                BodyCoordinates::Rigid { x } => source.extend(*x..x + 3),
-                BodyCoordinates::PointMass { x } => source.extend(*x..x + 2),
-                BodyCoordinates::RigidLink { ends } => {
-                    source.extend(ends.iter().flat_map(|&x| [x, x + 1]));
-                }
-                BodyCoordinates::FlexibleLink { nodes, slopes, .. } => {
-                    let pairs = nodes.iter().zip(slopes);
-                    source.extend(pairs.flat_map(|(&x, &s)| [x, x + 1, s, s + 1]));
-                }
-            }
-            let size = coordinates(body);
-            assert_eq!(source.len(), place + size, "{name} has {size} coordinates");
+    /// The way between the coordinates, rows and contacts of a scene.
+    pub fn new(reference: &Scene, model: &Model) -> Embedding {
+        let source = reference.coordinates.iter().map(|name| {
+            coordinate(model, name).unwrap_or_else(|| panic!("Looselink has no coordinate {name}"))
+        });
+        let place = |name: &str| {
+            let of = |kind: &str| {
+                let name = row_name(name).replace(".angle", kind);
+                reference.rows.iter().position(|row| *row == name)
+            };
+            // a held angle is called the rotation of its joint, the angle of its drive
+            of(".angle").or_else(|| of(".rotation"))
+        };
+        let redundant = model.redundant();
+        let row = |name: &String| {
+            let place = place(name);
+            let known = place.is_some() != redundant.contains(name);
+            assert!(known, "one side leaves {name} out");
+            place
+        };
+        let contact = |c| {
+            let name = &model.joints()[model.contact_joint(c)?].name;
+            reference.joints.iter().position(|joint| joint == name)
+        };
+        let contacts = (0..model.shape().contacts).map(contact);
+        Embedding {
+            source: source.collect(),
+            count: model.shape().coordinates,
+            rows: model.unknown_names()[model.shape().unknowns..]
+                .iter()
+                .map(row)
+                .collect(),
+            contacts: contacts
+                .collect::<Option<_>>()
+                .expect("joints of both sides"),
+            joints: reference.joints.len(),
         }
-        Embedding { source, count }
     }
 
     /// B x.
     pub fn spread(&self, x: &[f64]) -> Vec<f64> {
         self.source.iter().map(|&i| x[i]).collect()
+    }
+
+    /// The contact memory of the reference.
+    pub fn memory(&self, z: &[f64]) -> Vec<f64> {
+        let mut memory = vec![0.0; self.joints];
+        for (&joint, z) in self.contacts.iter().zip(z) {
+            memory[joint] = *z;
+        }
+        memory
     }
 
     /// B^T f.
@@ -57,18 +111,6 @@ impl Embedding {
             sum[i] += f;
         }
         sum
-    }
-
-    /// The same with zeros where no coordinate has a copy.
-    pub fn keep(&self, mut x: Vec<f64>) -> Vec<f64> {
-        let mut copied = vec![false; self.count];
-        self.source.iter().for_each(|&i| copied[i] = true);
-        for (x, copied) in x.iter_mut().zip(copied) {
-            if !copied {
-                *x = 0.0;
-            }
-        }
-        x
     }
 
     /// B^T K B, row by row.
@@ -82,12 +124,10 @@ impl Embedding {
         sum
     }
 
-    /// Sets the coordinates below `end` that have a copy; copies of one coordinate agree on the manifold.
-    pub fn take(&self, full: &[f64], x: &mut [f64], end: usize) {
+    /// Sets the coordinates that have a copy; copies of one coordinate agree on the manifold.
+    pub fn take(&self, full: &[f64], x: &mut [f64]) {
         for (&i, value) in self.source.iter().zip(full) {
-            if i < end {
-                x[i] = *value;
-            }
+            x[i] = *value;
         }
     }
 }

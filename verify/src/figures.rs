@@ -1,11 +1,9 @@
 //! The pictures of the report.
 
-use crate::compare::cost::Curves;
-use crate::compare::flexible::{Convergence, QUANTITIES, elements};
+use crate::compare::flexible::{Convergence, QUANTITIES};
 use crate::trajectory::{Plan, Trajectory, tolerances};
 use miette::Result;
 use plot::{Axis, Figure, Mark, Panel, palette, si};
-use rayon::prelude::*;
 
 /// A channel with its label, unit and the factor from SI.
 const SHOWN: [(&str, &str, &str, f64); 3] = [
@@ -25,29 +23,18 @@ pub struct Overlay {
 }
 
 /// Runs a scene for its picture.
-///
-/// # Errors
-/// A run that fails.
 pub fn overlay(plan: Plan, steps: [f64; 2], relative: f64) -> Result<Overlay> {
-    let tolerances = tolerances(relative, 1e-3 * relative, 0.1 * relative);
-    let (cpp, rust) = rayon::join(
-        || plan.cpp(&tolerances),
-        || {
-            let runs = steps.par_iter().with_max_len(1).map(|&h| plan.rust(h));
-            runs.collect::<Result<Vec<_>>>()
-        },
-    );
+    let tolerances = tolerances(relative);
+    let (cpp, rust) = rayon::join(|| plan.cpp(&tolerances), || steps.map(|h| plan.rust(h)));
+    let ([coarse, fine], cpp) = (rust, cpp?);
+    let rust = [coarse?, fine?];
     Ok(Overlay {
-        rust: rust?.try_into().expect("one run for each of two steps"),
-        cpp: cpp?,
         plan,
         steps,
         relative,
+        rust,
+        cpp,
     })
-}
-
-fn time_axis(plan: &Plan) -> Axis {
-    Axis::new("Time t", "ms", 1e3).over(0.0, plan.duration)
 }
 
 impl Overlay {
@@ -76,16 +63,11 @@ impl Overlay {
 
     fn both(&self, name: &str, label: &str, unit: &'static str, factor: f64) -> Panel {
         let (cpp, rust) = (&self.cpp, &self.rust[1]);
-        Panel {
-            title: label.into(),
-            note: String::new(),
-            x: time_axis(&self.plan),
-            y: Axis::new(label, unit, factor),
-            marks: vec![
-                Mark::series("IDA", palette::VERMILION, &cpp.t, cpp.get(name)).width(7),
-                Mark::series("Looselink", palette::BLUE, &rust.t, rust.get(name)).width(2),
-            ],
-        }
+        let marks = vec![
+            Mark::series("IDA", palette::VERMILION, cpp.get("t"), cpp.get(name)).width(7),
+            Mark::series("Looselink", palette::BLUE, rust.get("t"), rust.get(name)).width(2),
+        ];
+        self.panel(label.into(), Axis::new(label, unit, factor), marks)
     }
 
     fn difference(&self, name: &str, label: &str, unit: &'static str, factor: f64) -> Panel {
@@ -93,17 +75,25 @@ impl Overlay {
             let pairs = run.get(name).iter().zip(self.cpp.get(name));
             let difference: Vec<f64> = pairs.map(|(r, c)| (r - c).abs()).collect();
             let label = format!("h = {}", si(step, "s"));
-            Mark::series(&label, color, &run.t, &difference).width(2)
+            Mark::series(&label, color, run.get("t"), &difference).width(2)
         };
+        let marks = vec![
+            series(&self.rust[0], self.steps[0], palette::GREEN),
+            series(&self.rust[1], self.steps[1], palette::BLUE),
+        ];
+        let y = Axis::new("Difference", unit, factor).log();
+        self.panel(format!("{label}: difference"), y, marks)
+    }
+
+    fn panel(&self, title: String, y: Axis, marks: Vec<Mark>) -> Panel {
+        let x = Axis::new("Time t", "ms", 1e3).over(0.0, self.plan.duration);
+        let note = String::new();
         Panel {
-            title: format!("{label}: difference"),
-            note: String::new(),
-            x: time_axis(&self.plan),
-            y: Axis::new("Difference", unit, factor).log(),
-            marks: vec![
-                series(&self.rust[0], self.steps[0], palette::GREEN),
-                series(&self.rust[1], self.steps[1], palette::BLUE),
-            ],
+            title,
+            note,
+            x,
+            y,
+            marks,
         }
     }
 }
@@ -113,33 +103,21 @@ pub fn convergence(runs: &[Convergence]) -> Figure {
     let panel = |run: &Convergence| {
         let h = &run.steps;
         let mut marks = Vec::new();
-        let colors = [
-            palette::BLUE,
-            palette::VERMILION,
-            palette::GREEN,
-            palette::GREY,
-        ];
-        for (q, ((name, _, relative), color)) in QUANTITIES.iter().zip(colors).enumerate() {
-            // positions in units of the largest deviation, so that all fit on one axis
-            let size = run.sizes[q];
-            let scaled: Vec<f64> = run.differences[q].iter().map(|d| d / size).collect();
-            let label = if *relative {
-                (*name).to_owned()
-            } else {
-                "platform position".to_owned()
-            };
-            marks.push(Mark::curve(&label, color, h, &scaled));
+        #[rustfmt::skip]
+        let colors = [palette::BLUE, palette::VERMILION, palette::GREEN, palette::GREY];
+        for (((name, ..), curve), color) in QUANTITIES.iter().zip(&run.curves).zip(colors) {
+            // in units of the largest value, so that all fit on one axis
+            let scaled: Vec<f64> = curve.by_step.iter().map(|d| d / curve.size).collect();
+            let name = name.trim_end_matches(" [m]");
+            marks.push(Mark::curve(name, color, h, &scaled));
             marks.push(Mark::points("", color, h, &scaled, 7));
         }
-        let top = run.differences[0][0] / run.sizes[0];
-        let slope: Vec<f64> = h
-            .iter()
-            .map(|h_i| 0.3 * top * (h_i / h[0]).powi(2))
-            .collect();
+        let top = run.curves[0].by_step[0] / run.curves[0].size;
+        let slope = h.iter().map(|h_i| 0.3 * top * (h_i / h[0]).powi(2));
+        let slope: Vec<f64> = slope.collect();
         marks.push(Mark::curve("slope 2", palette::BLACK, h, &slope));
-        let elements = format!("{} per link", elements(run.elements));
         Panel {
-            title: elements,
+            title: run.name(),
             note: String::new(),
             x: Axis::new("Step h", "µs", 1e6).log(),
             y: Axis::new("Difference from IDA over the largest value", "", 1.0).log(),
@@ -151,37 +129,6 @@ pub fn convergence(runs: &[Convergence]) -> Figure {
         caption: "Case 2 over 0.1 s: largest difference between Looselink (Bathe's scheme) and IDA at its tightest tolerance, \
                   over the largest value of the quantity (of the platform's position: over its largest deviation from the \
                   ideal path)."
-            .into(),
-    }
-}
-
-/// Achieved error against processor time.
-pub fn cost(all: &[Curves]) -> Figure {
-    let panel = |curves: &Curves| {
-        let curve = |label: &str, color, points: &[crate::compare::cost::Point]| {
-            let x: Vec<f64> = points.iter().map(|p| p.error).collect();
-            let y: Vec<f64> = points.iter().map(|p| p.seconds).collect();
-            [
-                Mark::curve(label, color, &x, &y),
-                Mark::points("", color, &x, &y, 7),
-            ]
-        };
-        let mut marks = Vec::new();
-        marks.extend(curve("Looselink, Bathe", palette::BLUE, &curves.rust));
-        marks.extend(curve("reference, IDA", palette::VERMILION, &curves.cpp));
-        Panel {
-            title: curves.plan.name(),
-            note: format!("first {}", si(curves.plan.duration, "s")),
-            x: Axis::new("Largest error of the platform", "m", 1.0).log(),
-            y: Axis::new("Processor time", "s", 1.0).log(),
-            marks,
-        }
-    };
-    Figure {
-        rows: vec![all.iter().map(panel).collect()],
-        caption: "Processor time against achieved error, one core, the shortest of three runs; the error of each program is its difference from the \
-                  finest run of the other. Looselink with fixed steps from 4 µs to 62.5 ns, IDA with relative tolerances from \
-                  1e-6 to 1e-12. A curve turns vertical where it reaches the error of that finest run."
             .into(),
     }
 }

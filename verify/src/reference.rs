@@ -1,295 +1,305 @@
-//! The reference implementation as a Rust library: owned values, typed errors.
+//! The reference implementation as a Rust library: owned values, typed errors. The only file that calls C.
 
-use crate::ffi::{self, ErrorRecord};
-pub use ffi::{
-    Body, Contact, Elastic, Function, Joint, Leg, Load, Mechanism, Motion, Path, Point, Row,
-    Spring, Statistics, Tolerances, TorsionSpring,
-};
-
-/// Kinds of `ls_body`.
-pub mod body_kind {
-    pub const GROUND: i32 = 0;
-    pub const RIGID_LINK: i32 = 1;
-    pub const FLEXIBLE_LINK: i32 = 2;
-    pub const RIGID_BODY: i32 = 3;
-    pub const POINT_MASS: i32 = 4;
-    pub const MOVING_BODY: i32 = 5;
-}
-
-/// Kinds of `ls_joint`.
-pub mod joint_kind {
-    pub const REVOLUTE: i32 = 0;
-    pub const PRISMATIC: i32 = 1;
-    pub const WELD: i32 = 2;
-}
-
-/// Kinds of `ls_function`.
-pub mod function_kind {
-    pub const POLYNOMIAL: i32 = 0;
-    pub const HARMONIC: i32 = 1;
-    pub const RAMP: i32 = 2;
-    pub const SMOOTH_STEP: i32 = 3;
-    pub const SPIN_UP: i32 = 4;
-}
-
-/// Kinds of `ls_load`.
-pub mod load_kind {
-    pub const DEAD_FORCE: i32 = 0;
-    pub const FOLLOWER_FORCE: i32 = 1;
-    pub const TORQUE: i32 = 2;
-}
-
-/// Kinds of `ls_motion`.
-pub mod motion_kind {
-    pub const ANGLE: i32 = 0;
-    pub const COORDINATE: i32 = 1;
-}
+use crate::ffi::{self, *};
+pub use crate::ffi::{Event, Statistics, Tolerances};
+use std::ffi::{CStr, CString, c_char, c_int};
+use std::ptr::{NonNull, null_mut};
 
 /// What the reference implementation reports when it cannot go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Error {
-    /// The description makes no sense.
-    #[error("the reference refuses the mechanism: {0}")]
-    BadInput(String),
-    /// The path leaves what the legs can reach.
-    #[error("the reference cannot follow the path: {message} at t = {t} s")]
-    Unreachable {
-        /// Names the leg.
-        message: String,
-        /// When \[s\].
-        t: f64,
-    },
-    /// The integrator failed.
-    #[error("IDA fails with flag {flag} at t = {t} s: {message}")]
-    Ida {
-        /// IDA's return value.
-        flag: i32,
-        /// IDA's own message.
-        message: String,
-        /// When \[s\].
-        t: f64,
-    },
-    /// A value is not finite.
-    #[error("the reference meets a value that is not finite: {message} at t = {t} s")]
-    NotFinite {
-        /// Names the value.
-        message: String,
-        /// When \[s\].
-        t: f64,
-    },
-    /// Anything else.
-    #[error("the reference fails: {0}")]
-    Internal(String),
+#[error("the reference: {message}{}", self.place())]
+pub struct Error {
+    /// What it is about, as in the header.
+    pub code: i32,
+    /// Path of the key, empty where the failure has no place in the scene.
+    pub field: String,
+    /// Line in the scene, 0 for an override.
+    pub line: i32,
+    /// IDA's return value.
+    pub flag: i32,
+    /// When \[s\].
+    pub t: f64,
+    /// What is wrong; IDA's own words where it fails.
+    pub message: String,
 }
 
-impl From<Box<ErrorRecord>> for Error {
-    fn from(record: Box<ErrorRecord>) -> Error {
-        let (message, t) = (record.message(), record.time);
-        match record.code {
-            1 => Error::BadInput(message),
-            2 => Error::Unreachable { message, t },
-            3 => Error::Ida {
-                flag: record.flag,
-                message,
-                t,
-            },
-            4 => Error::NotFinite { message, t },
-            _ => Error::Internal(message),
+impl Error {
+    /// Where and when, as far as the failure has a place.
+    fn place(&self) -> String {
+        let Error { field, line, t, .. } = self;
+        match (field.as_str(), *t > 0.0) {
+            ("", false) => String::new(),
+            ("", true) => format!(", at t = {t} s"),
+            _ if *line == 0 => format!(", in `{field}`"),
+            _ => format!(", in `{field}`, line {line}"),
         }
     }
 }
 
+fn text(bytes: &[c_char]) -> String {
+    let bytes = bytes.iter().take_while(|&&c| c != 0).map(|&c| c as u8);
+    String::from_utf8_lossy(&bytes.collect::<Vec<u8>>()).into_owned()
+}
+
+impl From<&ffi::Error> for Error {
+    fn from(error: &ffi::Error) -> Error {
+        Error {
+            code: error.code,
+            field: text(&error.field),
+            line: error.line,
+            flag: error.flag,
+            t: error.time,
+            message: text(&error.message),
+        }
+    }
+}
+
+/// Calls a function that fills an error record.
+fn call<T>(
+    work: impl FnOnce(*mut ffi::Error) -> T,
+    good: impl FnOnce(&T) -> bool,
+) -> Result<T, Error> {
+    let mut error = ffi::Error {
+        code: 0,
+        flag: 0,
+        line: 0,
+        column: 0,
+        time: 0.0,
+        field: [0; 128],
+        message: [0; 640],
+    };
+    let result = work(&mut error);
+    good(&result)
+        .then_some(result)
+        .ok_or_else(|| (&error).into())
+}
+
+/// Calls a function that fills vectors of these lengths.
+fn filled<const N: usize>(
+    lengths: [usize; N],
+    work: impl FnOnce([*mut f64; N], *mut ffi::Error) -> c_int,
+) -> Result<[Vec<f64>; N], Error> {
+    let mut vectors = lengths.map(|length| vec![0.0; length]);
+    let pointers = vectors.each_mut().map(Vec::as_mut_ptr);
+    call(|error| work(pointers, error), |code| *code == 0)?;
+    Ok(vectors)
+}
+
+/// A text of the library.
+///
+/// # Safety
+/// `text` is null or zero-terminated.
+unsafe fn owned(text: *const c_char) -> Option<String> {
+    // SAFETY: see above
+    (!text.is_null()).then(|| {
+        unsafe { CStr::from_ptr(text) }
+            .to_string_lossy()
+            .into_owned()
+    })
+}
+
 /// Versions of the libraries the reference stands on.
 pub fn versions() -> String {
-    format!(
-        "Eigen {}, SUNDIALS {}",
-        env!("EIGEN_VERSION"),
-        ffi::sundials_version()
-    )
+    // SAFETY: the text is a constant of the library
+    let sundials = unsafe { owned(ls_sundials_version()) }.unwrap_or_default();
+    format!("Eigen {}, SUNDIALS {sundials}", env!("EIGEN_VERSION"))
 }
 
-/// Mass matrix of an element of this mass \[kg\] and length \[m\], row by row.
-///
-/// # Errors
-/// See [`Error`].
-pub fn element_mass(mass: f64, length: f64) -> Result<[f64; 64], Error> {
-    Ok(ffi::element_mass(mass, length)?)
-}
-
-/// Elastic energy, force and tangent of an element; `stiffness` is EA \[N\] and EI \[N m2\].
-///
-/// # Errors
-/// See [`Error`].
-pub fn element_elastic(stiffness: [f64; 2], length: f64, q: &[f64; 8]) -> Result<Elastic, Error> {
-    Ok(ffi::element_elastic(stiffness, length, q)?)
-}
-
-/// K of a contact \[N/m^n\].
-///
-/// # Errors
-/// See [`Error`].
-pub fn contact_stiffness(contact: &Contact) -> Result<f64, Error> {
-    Ok(ffi::contact_stiffness(contact)?)
-}
-
-/// Normal force with its derivatives by penetration and rate, and whether it is clamped.
-///
-/// # Errors
-/// See [`Error`].
-pub fn contact_normal(
-    contact: &Contact,
-    delta: f64,
-    rate: f64,
-    impact_velocity: f64,
-) -> Result<([f64; 3], bool), Error> {
-    Ok(ffi::contact_normal(contact, delta, rate, impact_velocity)?)
-}
-
-/// Friction force along the direction of slip with its derivatives by slip and normal force.
-///
-/// # Errors
-/// See [`Error`].
-pub fn contact_friction(contact: &Contact, slip: f64, normal: f64) -> Result<[f64; 3], Error> {
-    Ok(ffi::contact_friction(contact, slip, normal)?)
-}
-
-/// An assembled mechanism; matrices are row by row.
+/// A scene as the reference reads and assembles it; matrices are row by row.
 #[derive(Debug)]
-pub struct System(ffi::System);
-
-/// f, df/dq and df/dv.
-#[derive(Debug)]
-pub struct Force {
-    pub value: Vec<f64>,
-    pub by_q: Vec<f64>,
-    pub by_v: Vec<f64>,
+pub struct Scene {
+    handle: NonNull<ffi::Scene>,
+    /// Names of the coordinates.
+    pub coordinates: Vec<String>,
+    /// Names of the constraint rows.
+    pub rows: Vec<String>,
+    /// Names of the joints.
+    pub joints: Vec<String>,
+    /// Names of the channels, `t` first.
+    pub channels: Vec<String>,
+    /// True for a static analysis.
+    pub is_static: bool,
 }
 
-/// Phi, Phi_q and Phi_t.
-#[derive(Debug)]
-pub struct ConstraintRows {
-    pub phi: Vec<f64>,
-    pub phi_q: Vec<f64>,
-    pub phi_t: Vec<f64>,
+// SAFETY: the library has no globals, and no function changes a scene
+unsafe impl Send for Scene {}
+// SAFETY: likewise
+unsafe impl Sync for Scene {}
+
+impl Drop for Scene {
+    fn drop(&mut self) {
+        // SAFETY: the handle is freed once
+        unsafe { ls_scene_free(self.handle.as_ptr()) }
+    }
 }
 
-impl System {
-    /// Assembles a mechanism.
-    ///
-    /// # Errors
-    /// See [`Error`].
-    pub fn new(mechanism: &Mechanism) -> Result<System, Error> {
-        Ok(System(ffi::System::new(mechanism)?))
+/// A state at which equations are compared; z is the impact velocity of every joint, 0 where open or ideal.
+#[derive(Debug, Clone, Copy)]
+pub struct At<'a> {
+    pub t: f64,
+    pub q: &'a [f64],
+    pub v: &'a [f64],
+    pub z: &'a [f64],
+}
+
+impl Scene {
+    /// Reads the text of a scene with overrides `path=value`, and assembles its start.
+    pub fn read(text: &str, overrides: &[String]) -> Result<Scene, Error> {
+        let c_text = |s: &str| CString::new(s).expect("scenes have no zero bytes");
+        let (text, overrides) = (c_text(text), overrides.iter().map(|o| c_text(o)));
+        let overrides: Vec<CString> = overrides.collect();
+        let pointers: Vec<*const c_char> = overrides.iter().map(|o| o.as_ptr()).collect();
+        let handle = call(
+            // SAFETY: texts are zero-terminated and live through the call
+            |e| unsafe { ls_scene_read(text.as_ptr(), pointers.as_ptr(), pointers.len(), e) },
+            |handle| !handle.is_null(),
+        )?;
+        let mut description = Description {
+            title: null_mut(),
+            is_static: 0,
+            reserved: 0,
+            duration: 0.0,
+            interval: 0.0,
+            initial_energy: 0.0,
+        };
+        // SAFETY: the handle is of a scene; the description is filled
+        unsafe { ls_scene_describe(handle, &mut description) }
+        let names = |list: i32| -> Vec<String> {
+            // SAFETY: the handle is of a scene; a name is null only beyond the end
+            let name = |i| unsafe { owned(ls_scene_name(handle, list, i)) };
+            (0..).map_while(name).collect()
+        };
+        Ok(Scene {
+            coordinates: names(0),
+            rows: names(1),
+            joints: names(2),
+            channels: names(3),
+            is_static: description.is_static != 0,
+            handle: NonNull::new(handle).expect("checked above"),
+        })
     }
 
-    /// Coordinates: every body has its own.
-    pub fn coordinates(&self) -> usize {
-        self.0.n
+    /// Number of coordinates, after a check that a state has as many.
+    fn size(&self, at: At) -> usize {
+        let (n, lengths) = (self.coordinates.len(), [at.q.len(), at.v.len(), at.z.len()]);
+        assert_eq!(lengths, [n, n, self.joints.len()], "a state of this scene");
+        n
     }
 
-    /// Constraints: every length, ideal joint and crank.
-    pub fn constraints(&self) -> usize {
-        self.0.m
-    }
-
-    /// Angle \[rad\], rate and acceleration of every crank.
-    ///
-    /// # Errors
-    /// See [`Error`].
-    pub fn cranks(&self, t: f64) -> Result<Vec<[f64; 3]>, Error> {
-        Ok(self.0.cranks(t)?)
-    }
-
-    /// Positions and velocities of the ideal mechanism.
-    ///
-    /// # Errors
-    /// See [`Error`].
-    pub fn start(&self, t: f64) -> Result<(Vec<f64>, Vec<f64>), Error> {
-        Ok(self.0.start(t)?)
+    /// q and v at t = 0.
+    pub fn start(&self) -> Result<[Vec<f64>; 2], Error> {
+        // SAFETY: a number for every coordinate
+        filled([self.coordinates.len(); 2], |[q, v], e| unsafe {
+            ls_scene_start(self.handle.as_ptr(), q, v, e)
+        })
     }
 
     /// M.
-    ///
-    /// # Errors
-    /// See [`Error`].
-    pub fn mass(&self, q: &[f64]) -> Result<Vec<f64>, Error> {
-        Ok(self.0.mass(q)?)
+    pub fn mass(&self) -> Result<Vec<f64>, Error> {
+        // SAFETY: the matrix is n x n
+        let [mass] = filled([self.coordinates.len().pow(2)], |[mass], e| unsafe {
+            ls_scene_mass(self.handle.as_ptr(), mass, e)
+        })?;
+        Ok(mass)
     }
 
-    /// f with its derivatives; `z` is the impact velocity of every joint, 0 where open or ideal.
-    ///
-    /// # Errors
-    /// See [`Error`].
-    pub fn force(&self, t: f64, q: &[f64], v: &[f64], z: &[f64]) -> Result<Force, Error> {
-        let [value, by_q, by_v] = self.0.force(t, q, v, z)?;
-        Ok(Force { value, by_q, by_v })
+    /// f, df/dq and df/dv.
+    pub fn force(&self, at: At) -> Result<[Vec<f64>; 3], Error> {
+        let (n, scene) = (self.size(at), self.handle.as_ptr());
+        let (q, v, z) = (at.q.as_ptr(), at.v.as_ptr(), at.z.as_ptr());
+        // SAFETY: the state fits the scene; a vector and two matrices of n
+        filled([n, n * n, n * n], |[f, by_q, by_v], e| unsafe {
+            ls_scene_force(scene, at.t, q, v, z, f, by_q, by_v, e)
+        })
     }
 
-    /// Constraints with their derivatives.
-    ///
-    /// # Errors
-    /// See [`Error`].
-    pub fn constraint_rows(&self, t: f64, q: &[f64]) -> Result<ConstraintRows, Error> {
-        let [phi, phi_q, phi_t] = self.0.constraint_rows(t, q)?;
-        Ok(ConstraintRows { phi, phi_q, phi_t })
+    /// Phi, Phi_q and Phi_t.
+    pub fn constraint_rows(&self, t: f64, q: &[f64]) -> Result<[Vec<f64>; 3], Error> {
+        let (n, m) = (self.coordinates.len(), self.rows.len());
+        assert_eq!(q.len(), n, "a state of this scene");
+        // SAFETY: q fits the scene; vectors of m, a matrix of m x n
+        filled([m, m * n, m], |[phi, phi_q, phi_t], e| unsafe {
+            ls_scene_constraint_rows(self.handle.as_ptr(), t, q.as_ptr(), phi, phi_q, phi_t, e)
+        })
     }
 
-    /// Starts a run at (t, q, v) with all contacts open.
-    ///
-    /// # Errors
-    /// See [`Error`].
-    pub fn run(&self, t: f64, q: &[f64], v: &[f64], tolerances: &Tolerances) -> Result<Run, Error> {
-        Ok(Run(ffi::Run::new(&self.0, t, q, v, tolerances)?))
+    /// a and lambda of the equations of motion.
+    pub fn acceleration(&self, at: At) -> Result<[Vec<f64>; 2], Error> {
+        let (n, scene) = (self.size(at), self.handle.as_ptr());
+        let (q, v, z) = (at.q.as_ptr(), at.v.as_ptr(), at.z.as_ptr());
+        // SAFETY: the state fits the scene; n and m numbers
+        filled([n, self.rows.len()], |[a, lambda], e| unsafe {
+            ls_scene_acceleration(scene, at.t, q, v, z, a, lambda, e)
+        })
+    }
+
+    /// All channels, in the order of their names.
+    pub fn values(&self, at: At) -> Result<Vec<f64>, Error> {
+        let (_, scene) = (self.size(at), self.handle.as_ptr());
+        let (q, v, z) = (at.q.as_ptr(), at.v.as_ptr(), at.z.as_ptr());
+        // SAFETY: the state fits the scene; a number for every channel
+        let [values] = filled([self.channels.len()], |[values], e| unsafe {
+            ls_scene_channels(scene, at.t, q, v, z, values, e)
+        })?;
+        Ok(values)
+    }
+
+    /// Begins a run at the start of the scene.
+    pub fn run(&self, tolerances: &Tolerances) -> Result<Run<'_>, Error> {
+        let handle = call(
+            // SAFETY: the run keeps its own copy of the scene
+            |e| unsafe { ls_run_new(self.handle.as_ptr(), tolerances, e) },
+            |handle| !handle.is_null(),
+        )?;
+        Ok(Run {
+            scene: self,
+            handle: NonNull::new(handle).expect("checked above"),
+        })
     }
 }
 
-/// A contact that closes or opens.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Event {
-    /// When \[s\].
-    pub t: f64,
-    /// Index of the joint.
-    pub joint: usize,
-    /// True for an onset.
-    pub onset: bool,
-    /// Rate of the penetration \[m/s\].
-    pub velocity: f64,
-    /// Journal less bearing \[m\].
-    pub eccentricity: [f64; 2],
-    /// Of a loss the largest penetration since the onset \[m\].
-    pub deepest: f64,
-}
-
-/// A run of IDA under way.
+/// A run under way, of IDA or of a static analysis.
 #[derive(Debug)]
-pub struct Run(ffi::Run);
+pub struct Run<'a> {
+    scene: &'a Scene,
+    handle: NonNull<ffi::Run>,
+}
 
-impl Run {
-    /// Integrates to `t` and describes the state there.
-    ///
-    /// # Errors
-    /// See [`Error`]; after one the run is dead.
-    pub fn advance(&mut self, t: f64, row: &mut Row) -> Result<(), Error> {
-        Ok(self.0.advance(t, row)?)
+impl Drop for Run<'_> {
+    fn drop(&mut self) {
+        // SAFETY: the handle is freed once
+        unsafe { ls_run_free(self.handle.as_ptr()) }
+    }
+}
+
+impl Run<'_> {
+    /// Goes on to `t`; all channels there.
+    pub fn advance(&mut self, t: f64) -> Result<Vec<f64>, Error> {
+        // SAFETY: a number for every channel
+        let [values] = filled([self.scene.channels.len()], |[values], e| unsafe {
+            ls_run_advance(self.handle.as_ptr(), t, values, e)
+        })?;
+        Ok(values)
     }
 
     /// Events from the one with index `first` on.
     pub fn events(&self, first: usize) -> Vec<Event> {
-        let events = self.0.events(first).into_iter();
-        events
-            .map(|e| Event {
-                t: e.time,
-                joint: usize::try_from(e.joint).expect("indices are not negative"),
-                onset: e.onset != 0,
-                velocity: e.velocity,
-                eccentricity: [e.eccentricity_x, e.eccentricity_y],
-                deepest: e.deepest,
-            })
-            .collect()
+        // SAFETY: the handle is of a run
+        let count = unsafe { ls_run_event_count(self.handle.as_ptr()) };
+        let event = |i| {
+            let mut event = Event::default();
+            // SAFETY: the index is below the count
+            unsafe { ls_run_event(self.handle.as_ptr(), i, &mut event) };
+            event
+        };
+        (first..count).map(event).collect()
     }
 
     /// Counts so far.
     pub fn statistics(&self) -> Statistics {
-        self.0.statistics()
+        let mut statistics = Statistics::default();
+        // SAFETY: the handle is of a run
+        unsafe { ls_run_statistics(self.handle.as_ptr(), &mut statistics) };
+        statistics
     }
 }

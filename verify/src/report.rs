@@ -1,270 +1,157 @@
-//! The page: tables of agreements, pictures, costs, seeded faults, and what is not cross-checked.
+//! The page: what crosses the interface, tables of agreements, pictures, seeded faults, and what is not cross-checked.
 
 use crate::check::Agreement;
-use crate::compare::cost::{Curves, ERRORS, time_at};
-use crate::compare::statistics::{QUANTITIES, RELATIVE, STEPS, Spread};
-use crate::faults::{Fault, Outcome};
+use crate::crossing::{INPUTS, TOLERANCES, functions};
 use crate::reference;
-use plot::{digits, number, si};
-use std::fmt::Write;
+use ladder::faults::{Fault, Outcome};
+use plot::number;
+use std::fmt::{self, Write};
 
 /// Everything the page is made of.
 pub struct Report {
     /// Title of a table, a sentence about it, its rows.
     pub sections: Vec<(&'static str, String, Vec<Agreement>)>,
-    /// File name and title of the pictures of trajectories.
-    pub overlays: Vec<(&'static str, String)>,
-    pub spreads: Vec<Spread>,
-    pub costs: Vec<Curves>,
+    /// Seeded faults and variants, with what became of them.
     pub faults: Vec<(Fault, Outcome)>,
-    /// Channels of Looselink without a counterpart.
-    pub missing: Vec<String>,
 }
-
-/// What no row of the report confirms.
-const NOT_CHECKED: [(&str, &str); 10] = [
-    (
-        "Hertz's law",
-        "the reference has the laws of Lankarani-Nikravesh, Hunt-Crossley and Flores, whose limit without damping it is",
-    ),
-    (
-        "The floor of the impact velocity",
-        "all compared impacts are far above it",
-    ),
-    (
-        "Clamped contact forces in motion",
-        "clamping is compared in the law itself; none of the compared impacts reaches it",
-    ),
-    (
-        "Paths and functions of time from a table; inverse kinematics along paths other than a circle",
-        "the reference has the circle of eq. 27 for the inverse kinematics, and closed-form functions otherwise",
-    ),
-    (
-        "Redundant constraints, singular poses, full turns of torsional springs, equilibria",
-        "the reference refuses dependent constraints, counts no turns and has no static analysis; tests/published, \
-         tests/mechanisms.rs and tests/library.rs compare them with published and exact solutions",
-    ),
-    (
-        "The initial state of scenes without inverse kinematics",
-        "the reference takes it from Looselink, and checks that it satisfies its own constraints",
-    ),
-    (
-        "Angles of links, eccentricity vectors and their rates, lengths and forces of springs, applied loads",
-        "these channels have no counterpart (some are listed below); their effect on the motion is compared",
-    ),
-    (
-        "What both programs take from EQUATIONS.md",
-        "a misreading of the paper in it would be in both: sign conventions, the choice of the branch, values that the paper \
-         does not give",
-    ),
-    (
-        "The TOML syntax of the scene",
-        "both programs use the same TOML library",
-    ),
-    (
-        "The command line and the files that it writes",
-        "they have their own tests",
-    ),
-];
 
 impl Report {
     /// The page in Markdown.
-    pub fn page(&self) -> String {
+    pub fn page(&self) -> Result<String, fmt::Error> {
         let mut page = String::new();
-        self.head(&mut page);
+        self.head(&mut page)?;
+        crossing(&mut page)?;
         for (title, text, rows) in &self.sections {
-            table(&mut page, title, text, rows);
+            table(&mut page, title, text, rows)?;
         }
-        self.pictures(&mut page);
-        self.chaos(&mut page);
-        self.cost(&mut page);
-        self.seeded(&mut page);
-        self.unchecked(&mut page);
-        page
+        pictures(&mut page)?;
+        self.seeded(&mut page)?;
+        self.shared(&mut page)?;
+        page += include_str!("../page/not-checked.md");
+        Ok(page)
     }
 
-    fn head(&self, page: &mut String) {
-        let rows = self.sections.iter().flat_map(|s| &s.2);
-        let (mut all, mut held) = (0, 0);
-        for row in rows {
-            all += 1;
-            held += usize::from(row.holds());
-        }
-        put(
+    fn head(&self, page: &mut String) -> fmt::Result {
+        let rows = || self.sections.iter().flat_map(|s| &s.2);
+        let (all, held) = (rows().count(), rows().filter(|row| row.holds()).count());
+        let (place, versions) = (records::place("comparison"), reference::versions());
+        writeln!(
             page,
-            format!(
-                "# Looselink against a second implementation\n\n{}\n\
-                 [reference-cpp](../reference-cpp/README.md) is a C++ program, written from the paper and \
-                 [EQUATIONS.md](../EQUATIONS.md) with other methods: Gauss quadrature, automatic differentiation, constraint \
-                 equations for every ideal joint, a stabilised index-2 formulation, and IDA's variable-order BDF with root \
-                 finding. It shares the scene file with Looselink but no code of the mechanics. The last section lists what is \
-                 not cross-checked.\n\n\
-                 **{held} of {all} comparisons agree within their tolerance.** `cargo run --release -p verify` writes this \
-                 page; `cargo test -p verify` asserts the same rows. {}.\n",
-                records::place("comparison"),
-                reference::versions()
-            ),
-        );
+            "# Looselink against a second implementation\n\n{place}\n\
+             [reference-cpp](../reference-cpp/README.md) is a C++ program, written from the paper and \
+             [EQUATIONS.md](../EQUATIONS.md) with other methods: Gauss quadrature, automatic differentiation, constraint \
+             equations for every ideal joint, a stabilised index-2 formulation, and IDA's variable-order BDF with root \
+             finding. It reads the scene file itself and shares no code with Looselink. The last sections list what both take \
+             from the same page, and what is not cross-checked.\n\n\
+             **{held} of {all} comparisons agree within their tolerance.** `cargo run --release -p verify` writes this \
+             page; `cargo test -p verify` asserts the same rows. {versions}.\n",
+        )
     }
 
-    fn pictures(&self, page: &mut String) {
-        put(page, "## Pictures\n".into());
-        put(
+    fn seeded(&self, page: &mut String) -> fmt::Result {
+        let faults = || self.faults.iter().filter(|(f, _)| !f.is_variant());
+        writeln!(
             page,
-            "![Case 2: difference from IDA against the step](figures/convergence.png)\n".into(),
-        );
-        for (name, title) in &self.overlays {
-            put(page, format!("![{title}](figures/{name}.png)\n"));
+            "## Seeded faults\n\n{}\n\
+             `cargo run --release -p ladder --bin faults` makes {} mistakes, one at a time, and records which of the faster \
+             tests fail ([faults.toml](faults.toml) has the changed lines). The slower tests run only if no faster one \
+             fails.\n\n| in | mistake | caught by |\n|---|---|---|",
+            records::place("faults"),
+            faults().count()
+        )?;
+        for (fault, outcome) in faults() {
+            let language = ["Rust", "C++"][usize::from(fault.is_in_reference())];
+            let (file, name) = (&fault.file, &fault.name);
+            let (name, tests) = (cell(name), code(&outcome.caught_by));
+            writeln!(page, "| {language} `{file}` | {name} | {tests} |")?;
         }
+        writeln!(page)
     }
 
-    fn chaos(&self, page: &mut String) {
-        put(
-            page,
-            "## Statistics of chaotic motion\n\n\
-             Loose joints are chaotic: after some tens of milliseconds two runs have no impact in common, even two runs of the \
-             same program. The tables compare statistics of cycles 2 and 3 instead, at three steps of Looselink and three \
-             tolerances of IDA.\n"
-                .into(),
-        );
-        for spread in &self.spreads {
-            let steps = STEPS.map(|h| format!("h = {}", si(h, "s"))).join(" | ");
-            let tolerances = RELATIVE.map(|r| format!("IDA {r:.0e}")).join(" | ");
-            put(
+    fn shared(&self, page: &mut String) -> fmt::Result {
+        *page += include_str!("../page/shared.md");
+        for (variant, _) in self.faults.iter().filter(|(f, _)| f.is_variant()) {
+            writeln!(
                 page,
-                format!(
-                    "| case {} | {steps} | {tolerances} |\n|---|---|---|---|---|---|---|",
-                    spread.case
-                ),
-            );
-            for (i, (name, unit, ..)) in QUANTITIES.iter().enumerate() {
-                let both = spread.rust.iter().chain(&spread.cpp);
-                let cells: Vec<String> = both.map(|m| number(m.values[i], 4)).collect();
-                let name = name.replace('|', "\\|");
-                put(page, format!("| {name} [{unit}] | {} |", cells.join(" | ")));
-            }
-            let both = spread.rust.iter().chain(&spread.cpp);
-            let cells: Vec<String> = both.map(|m| digits(m.seconds)).collect();
-            put(
-                page,
-                format!(
-                    "| processor time of the whole run [s] | {} |",
-                    cells.join(" | ")
-                ),
-            );
-            put(page, String::new());
+                "| {} | {} |",
+                cell(&variant.name),
+                code(&variant.tests)
+            )?;
         }
-    }
-
-    fn cost(&self, page: &mut String) {
-        put(
-            page,
-            "## Cost at the same error\n\n\
-             ![Processor time against achieved error](figures/cost.png)\n\n\
-             Processor time of the integration on one core, interpolated on the curves of the picture; an empty cell lies \
-             outside a curve. Bathe's scheme is of order 2 and IDA of order up to 5, so the ratio falls as the error shrinks.\n\n\
-             | scene | error of the platform | Looselink | reference | reference / Looselink |\n|---|---|---|---|---|"
-                .into(),
-        );
-        for curves in &self.costs {
-            for error in ERRORS {
-                let (rust, cpp) = (time_at(&curves.rust, error), time_at(&curves.cpp, error));
-                if rust.is_none() && cpp.is_none() {
-                    continue;
-                }
-                let time = |t: Option<f64>| t.map_or(String::new(), |t| si(t, "s"));
-                let ratio = rust.zip(cpp).map_or(String::new(), |(r, c)| digits(c / r));
-                let scene = format!("{}, {}", curves.plan.name(), si(curves.plan.duration, "s"));
-                put(
-                    page,
-                    format!(
-                        "| {scene} | {} | {} | {} | {ratio} |",
-                        si(error, "m"),
-                        time(rust),
-                        time(cpp)
-                    ),
-                );
-            }
-        }
-        put(page, String::new());
-    }
-
-    fn seeded(&self, page: &mut String) {
-        put(
-            page,
-            format!(
-                "## Seeded faults\n\n{}\n\
-                 `cargo run --release -p verify --bin faults` makes {} mistakes, one at a time, and records the tests that \
-                 fail ([faults.toml](faults.toml) has the changed lines). Tests that take a minute run only when no quick test \
-                 fails.\n\n\
-                 | in | mistake | caught by |\n|---|---|---|",
-                records::place("faults"),
-                self.faults.len()
-            ),
-        );
-        for (fault, outcome) in &self.faults {
-            let side = if fault.is_in_reference() {
-                "C++"
-            } else {
-                "Rust"
-            };
-            let tests: Vec<String> = outcome.caught_by.iter().map(|t| format!("`{t}`")).collect();
-            put(
-                page,
-                format!(
-                    "| {side} `{}` | {} | {} |",
-                    fault.file,
-                    fault.name,
-                    tests.join(", ")
-                ),
-            );
-        }
-        put(page, String::new());
-    }
-
-    fn unchecked(&self, page: &mut String) {
-        put(page, "## What is not cross-checked\n".into());
-        for (what, why) in NOT_CHECKED {
-            put(page, format!("* {what}: {why}."));
-        }
-        let names: Vec<String> = self.missing.iter().map(|n| format!("`{n}`")).collect();
-        put(
-            page,
-            format!(
-                "\nChannels of case 4 with friction that have no counterpart in the reference: {}.",
-                names.join(", ")
-            ),
-        );
+        writeln!(page)
     }
 }
 
-fn put(page: &mut String, line: String) {
-    writeln!(page, "{line}").expect("a string can be written to");
-}
-
-fn table(page: &mut String, title: &str, text: &str, rows: &[Agreement]) {
-    put(
+fn pictures(page: &mut String) -> fmt::Result {
+    writeln!(
         page,
-        format!(
-            "## {title}\n\n{text}\n\n\
-             | | quantity | scene | Looselink | reference | difference | allowed | measure and reason |\n\
-             |---|---|---|---|---|---|---|---|"
-        ),
-    );
+        "## Pictures\n\n![Case 2: difference from IDA against the step](figures/convergence.png)\n"
+    )?;
+    let each = |case| {
+        writeln!(
+            page,
+            "![Case {case}: Looselink and IDA, and their difference](figures/case{case}.png)\n"
+        )
+    };
+    (2..=4).try_for_each(each)
+}
+
+/// The table of what goes into the reference and what comes out.
+fn crossing(page: &mut String) -> fmt::Result {
+    writeln!(
+        page,
+        "## What crosses the interface\n\n\
+         Everything that the functions of [reference.h](../reference-cpp/include/reference.h) take. A test asserts that there is \
+         nothing else. The only numbers among it that Looselink has computed are the states at which equations are compared.\n\n\
+         | in | | meaning |\n|---|---|---|"
+    )?;
+    for (kind, name, meaning) in INPUTS {
+        writeln!(page, "| `{name}` | `{kind}` | {meaning} |")?;
+    }
+    let fields = code(&TOLERANCES.map(String::from));
+    writeln!(
+        page,
+        "\nFields of the tolerances: {fields}.\n\n| function | results |\n|---|---|"
+    )?;
+    for function in functions() {
+        let results = function.results.into_iter().filter(|r| !r.is_empty());
+        let results: Vec<String> = results.collect();
+        if !results.is_empty() {
+            writeln!(page, "| `{}` | {} |", function.name, code(&results))?;
+        }
+    }
+    writeln!(page)
+}
+
+/// Text in a cell of a table.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
+/// Names in the style of code.
+fn code(names: &[String]) -> String {
+    let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    names.join(", ")
+}
+
+fn table(page: &mut String, title: &str, text: &str, rows: &[Agreement]) -> fmt::Result {
+    writeln!(
+        page,
+        "## {title}\n\n{text}\n\n\
+         | | quantity | scene | Looselink | reference | difference | allowed | measure and reason |\n\
+         |---|---|---|---|---|---|---|---|"
+    )?;
     for row in rows {
         let verdict = if row.holds() { "✓" } else { "✗" };
-        let cells = [
-            row.quantity.clone(),
-            row.scene.clone(),
-            // enough digits to see the agreement
-            number(row.rust, 10),
-            number(row.cpp, 10),
-            number(row.difference, 2),
-            number(row.tolerance, 1),
-            row.reason.clone(),
-        ];
-        let cells = cells.map(|cell| cell.replace('|', "\\|"));
-        put(page, format!("| {verdict} | {} |", cells.join(" | ")));
+        // enough digits to see the agreement
+        let [rust, cpp] = [row.rust, row.cpp].map(|x| number(x, 10));
+        let (difference, allowed) = (number(row.difference, 2), number(row.tolerance, 1));
+        let [quantity, scene, reason] =
+            [&row.quantity, &row.scene, &row.reason].map(|text| cell(text));
+        writeln!(
+            page,
+            "| {verdict} | {quantity} | {scene} | {rust} | {cpp} | {difference} | {allowed} | {reason} |"
+        )?;
     }
-    put(page, String::new());
+    writeln!(page)
 }

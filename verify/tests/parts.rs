@@ -1,21 +1,29 @@
-//! Elements, laws and assembled equations at random states.
+//! Starts, equilibria, and equations at random states.
 
+use looselink::scene::Analysis;
 use verify::check::assert_all;
-use verify::compare::{elements, equations, laws};
+use verify::compare::{equations, scenes};
 use verify::trajectory::Plan;
 
 #[test]
-fn elements_agree() {
-    assert_all("Cable element", &elements::agreements().unwrap());
+fn starts_of_all_scenes_agree() {
+    for plan in scenes::all().unwrap() {
+        let what = format!("Start of {}", plan.name());
+        assert_all(&what, &scenes::start(&plan).unwrap());
+    }
 }
 
 #[test]
-fn contact_and_friction_laws_agree() {
-    assert_all("Laws of contact and friction", &laws::agreements().unwrap());
+fn equilibria_agree() {
+    for plan in scenes::of(Analysis::Static).unwrap() {
+        let what = format!("Equilibria of {}", plan.name());
+        assert_all(&what, &scenes::equilibrium(&plan).unwrap());
+    }
 }
 
 fn equations_agree(choose: impl Fn(&Plan) -> bool) {
-    let plans: Vec<Plan> = equations::plans().into_iter().filter(choose).collect();
+    let plans = equations::plans().unwrap().into_iter().filter(choose);
+    let plans: Vec<Plan> = plans.collect();
     assert!(!plans.is_empty());
     for plan in plans {
         let what = format!("Assembled equations of {}", plan.name());
@@ -24,23 +32,11 @@ fn equations_agree(choose: impl Fn(&Plan) -> bool) {
 }
 
 #[test]
-fn equations_of_ideal_joints_agree() {
-    equations_agree(|p| p.scene == "3rrr/case1" || p.scene == "3rrr/case2");
-}
-
-#[test]
-fn equations_of_loose_joints_agree() {
-    equations_agree(|p| {
-        p.overrides.is_empty() && ["3rrr/case3", "3rrr/case4"].contains(&&*p.scene)
-    });
-}
-
-#[test]
-fn equations_with_friction_agree() {
-    equations_agree(|p| p.name().contains("friction"));
+fn equations_of_the_paper_cases_agree() {
+    equations_agree(|p| p.name().contains("case"));
 }
 
 #[test]
 fn equations_of_other_mechanisms_agree() {
-    equations_agree(|p| !p.scene.starts_with("3rrr/"));
+    equations_agree(|p| !p.name().contains("case"));
 }

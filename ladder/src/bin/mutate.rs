@@ -1,38 +1,51 @@
-//! Mutation testing of the kernels: draws mutants by a fixed seed, runs cargo-mutants on them, writes `mutants.json`.
+//! Mutation testing: draws mutants by a fixed seed and has cargo-mutants try them, each with the tests of its scope.
 //!
-//! It takes about half an hour on an idle machine. Survivors that better tests should catch are tried alone with `--again`.
+//! The draw is tried in parts. A run that was interrupted goes on with the first part that is not finished, as long as no
+//! source has changed. Survivors that better tests should catch are tried alone with `--again`.
 //! `cargo run --release -p ladder -- --from target/ladder` then brings the page up to date.
 
 use clap::Parser;
-use ladder::mutants::{Counts, Record, paths};
+use ladder::mutants::{Counts, Record, Scope, reasons};
+use ladder::seeded::{Copy, root};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
-use records::Run;
-use serde::Deserialize;
+use records::{Digests, Run, digests};
+use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// Folders of the kernels.
-const KERNELS: [&str; 5] = ["link", "contact", "constraint", "force", "stepper"];
+/// Mutants a part.
+const PART: usize = 25;
+/// Seconds after which tests of a mutant count as endless; all tests take some two minutes.
+const TIMEOUT: &str = "--timeout=400";
 
 #[derive(Parser)]
-#[command(about = "Draws mutants of the kernels and records which of them the tests notice")]
+#[command(about = "Draws mutants and records which of them the tests notice")]
 struct Arguments {
+    /// What the mutants are drawn from.
+    scope: Scope,
     /// Seed of the draw.
     #[arg(long, default_value_t = 4)]
     seed: u64,
-    /// How many mutants are drawn.
-    #[arg(long, default_value_t = 500)]
-    count: usize,
-    /// Tries only the survivors of the last record.
+    /// How many mutants are drawn; the scope has its own number.
+    #[arg(long)]
+    count: Option<usize>,
+    /// Tries only the survivors of the last record that have no reason in `survivors.toml`.
     #[arg(long)]
     again: bool,
-    /// Mutants under test at once.
-    #[arg(long, default_value_t = 1)]
-    jobs: usize,
+}
+
+/// What has a verdict so far.
+#[derive(Serialize, Deserialize)]
+struct Progress {
+    /// Of what the record depends on, when the draw was made.
+    sources: Digests,
+    drawn: Vec<String>,
+    done: usize,
+    record: Record,
 }
 
 /// `outcomes.json` of cargo-mutants, as far as it is read here.
@@ -66,68 +79,52 @@ enum Summary {
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let scope = arguments.scope;
     // what is only revised keeps the digests of the run that it revises
     let run = match arguments.again {
         true => None,
-        false => Some(Run::begin("mutation")?),
+        false => Some(Run::begin(scope.name())?),
     };
-    let all = list(&root)?;
-    let before = arguments.again.then(Record::read).transpose()?;
+    let copy = Copy::new("mutation")?;
+    let all = list(scope, &copy.tree())?;
+    let before = arguments.again.then(|| Record::read(scope)).transpose()?;
     let drawn = match &before {
-        Some(before) => before.survivors.clone(),
+        Some(before) => {
+            let reasons = reasons()?;
+            let mut survivors = before.survivors.clone();
+            survivors.retain(|name| !reasons.contains_key(name));
+            survivors
+        }
         None => {
             let mut drawn = all.clone();
             drawn.shuffle(&mut ChaCha8Rng::seed_from_u64(arguments.seed));
-            drawn.truncate(arguments.count);
+            drawn.truncate(arguments.count.unwrap_or(scope.count()));
             drawn
         }
     };
     if let Some(gone) = drawn.iter().find(|name| !all.contains(name)) {
         return Err(miette!("{gone} is of another version of the code"));
     }
-
-    let output = root.join("target/mutation");
-    fs::create_dir_all(&output).into_diagnostic()?;
-    let mut command = Command::new("cargo");
-    command.arg("mutants").current_dir(&root).args(kernels());
-    command.args(["--profile", "mutants"]);
-    // each job builds in a folder of its own: jobs that wait for a shared one count as timeouts
-    command.env_remove("CARGO_TARGET_DIR");
-    command.args(["--jobs", &arguments.jobs.to_string()]);
-    command.arg("--output").arg(&output);
-    for name in &drawn {
-        command
-            .arg("--re")
-            .arg(format!("^{}$", regex::escape(name)));
-    }
-    // for the build as well as for the run
-    command.arg("--cargo-arg=--test=kernels");
-    // its exit code says whether there are survivors; what became of each mutant stands in its file
-    command
-        .status()
-        .into_diagnostic()
-        .wrap_err("cargo-mutants cannot be started")?;
-    let path = output.join("mutants.out/outcomes.json");
-    let text = fs::read_to_string(&path)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot read {}", path.display()))?;
-    let outcomes: Outcomes = serde_json::from_str(&text).into_diagnostic()?;
-    let record = record(&arguments, all.len(), &drawn, outcomes)?;
-    let total = record.total();
-    if total.viable() + total.unviable != drawn.len() {
-        return Err(miette!(
-            "{} mutants were drawn, {total:?} have a verdict",
-            drawn.len()
-        ));
-    }
+    let fresh = Progress {
+        sources: digests(&root(), scope.name())?,
+        drawn,
+        done: 0,
+        record: Record {
+            seed: arguments.seed,
+            possible: all.len(),
+            tool: String::new(),
+            files: Default::default(),
+            survivors: Vec::new(),
+        },
+    };
+    let tried = fresh.drawn.clone();
+    let record = complete(scope, &copy, fresh)?;
     let record = match before {
-        Some(before) => before.revised(record),
+        Some(before) => before.revised(&tried, record),
         None => record,
     };
-    let [path, _] = paths();
     let text = serde_json::to_string_pretty(&record).into_diagnostic()?;
-    fs::write(&path, text + "\n").into_diagnostic()?;
+    fs::write(scope.path(), text + "\n").into_diagnostic()?;
     if let Some(run) = run {
         run.finish()?;
     }
@@ -136,20 +133,69 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Arguments that choose the kernels.
-fn kernels() -> Vec<String> {
-    let files = KERNELS.map(|kernel| format!("--file=src/{kernel}/**"));
-    ["--package=looselink".to_owned()]
-        .into_iter()
-        .chain(files)
-        .collect()
+/// Tries the mutants part by part, after those that an interrupted run has tried.
+fn complete(scope: Scope, copy: &Copy, fresh: Progress) -> Result<Record> {
+    let path = root().join(format!("target/{}-progress.json", scope.name()));
+    let kept = fs::read_to_string(&path).ok();
+    let kept = kept.and_then(|text| serde_json::from_str::<Progress>(&text).ok());
+    let same = |kept: &Progress| kept.sources == fresh.sources && kept.drawn == fresh.drawn;
+    let mut progress = kept.filter(same).unwrap_or(fresh);
+    while progress.done < progress.drawn.len() {
+        let end = progress.drawn.len().min(progress.done + PART);
+        let outcomes = test(scope, copy, &progress.drawn[progress.done..end])?;
+        count(
+            &mut progress.record,
+            &progress.drawn[progress.done..end],
+            outcomes,
+        )?;
+        progress.done = end;
+        let total = progress.record.total();
+        if total.viable() + total.unviable != end {
+            return Err(miette!(
+                "{end} mutants were tried, {total:?} have a verdict"
+            ));
+        }
+        let text = serde_json::to_string(&progress).into_diagnostic()?;
+        fs::write(&path, text).into_diagnostic()?;
+        println!("{end} of {}: {total:?}", progress.drawn.len());
+    }
+    fs::remove_file(&path).into_diagnostic()?;
+    Ok(progress.record)
 }
 
-/// Names of all mutants of the kernels.
-fn list(root: &Path) -> Result<Vec<String>> {
+/// Has cargo-mutants try these mutants in the copy.
+fn test(scope: Scope, copy: &Copy, drawn: &[String]) -> Result<Outcomes> {
+    let output = root().join("target/mutation");
     let mut command = Command::new("cargo");
-    command.args(["mutants", "--list"]).args(kernels());
-    let listed = command.current_dir(root).output().into_diagnostic()?;
+    command.arg("mutants").current_dir(copy.tree());
+    command.args(scope.files()).args(["--in-place", TIMEOUT]);
+    command.args(["--profile=mutants", "--test-tool=nextest"]);
+    command.env("NEXTEST_PROFILE", "mutants");
+    command.env("CARGO_TARGET_DIR", output.join("build"));
+    // what is caught is caught by fresh cases, and leaves none behind
+    command.env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "1");
+    command.arg("--output").arg(&output);
+    for name in drawn {
+        let exactly = format!("^{}$", regex::escape(name));
+        command.arg("--re").arg(exactly);
+    }
+    // for the build as well as for the run
+    let tests = scope.tests().map(|test| format!("--cargo-arg={test}"));
+    command.args(tests);
+    // its exit code says whether there are survivors; what became of each mutant stands in its file
+    let started = command.status().into_diagnostic();
+    started.wrap_err("cargo-mutants cannot be started")?;
+    let path = output.join("mutants.out/outcomes.json");
+    let text = fs::read_to_string(&path).into_diagnostic();
+    let text = text.wrap_err_with(|| format!("cannot read {}", path.display()))?;
+    serde_json::from_str(&text).into_diagnostic()
+}
+
+/// Names of all mutants of a scope.
+fn list(scope: Scope, tree: &Path) -> Result<Vec<String>> {
+    let mut command = Command::new("cargo");
+    command.args(["mutants", "--list"]).args(scope.files());
+    let listed = command.current_dir(tree).output().into_diagnostic()?;
     if !listed.status.success() {
         let message = String::from_utf8_lossy(&listed.stderr);
         return Err(miette!("cargo mutants fails: {message}"));
@@ -158,19 +204,9 @@ fn list(root: &Path) -> Result<Vec<String>> {
     Ok(text.lines().map(str::to_owned).collect())
 }
 
-fn record(
-    arguments: &Arguments,
-    possible: usize,
-    drawn: &[String],
-    outcomes: Outcomes,
-) -> Result<Record> {
-    let mut record = Record {
-        seed: arguments.seed,
-        possible,
-        tool: format!("cargo-mutants {}", outcomes.cargo_mutants_version),
-        files: Default::default(),
-        survivors: Vec::new(),
-    };
+/// Adds the verdicts on the mutants that were drawn.
+fn count(record: &mut Record, drawn: &[String], outcomes: Outcomes) -> Result<()> {
+    record.tool = format!("cargo-mutants {}", outcomes.cargo_mutants_version);
     for outcome in outcomes.outcomes {
         let Scenario::Mutant { name } = outcome.scenario else {
             continue;
@@ -195,5 +231,5 @@ fn record(
         }
     }
     record.survivors.sort();
-    Ok(record)
+    Ok(())
 }

@@ -120,28 +120,38 @@ impl Placed<'_> {
         }
     }
 
-    /// Places a rigid body with one known point at the angle that follows from its joints with placed bodies: from a weld, a
-    /// locked guide or a drive, or from the direction of a slot towards its pin. False if there is no such joint.
+    /// Places a body with one known point at the angle that follows from its joints with placed bodies: from a weld, a locked
+    /// guide or a drive, or from the direction of a slot towards its pin. False if there is no such joint.
     fn place_at_point(&mut self, b: usize, state: &mut State) -> bool {
-        let (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid), false) = (
-            &self.mechanism.bodies()[b].coordinates,
-            &self.c.scene.bodies[b].kind,
-            self.done[b],
-        ) else {
-            return false;
+        let points: Vec<[f64; 2]> = match &self.c.scene.bodies[b].kind {
+            _ if self.done[b] => return false,
+            BodyKind::Rigid(rigid) => rigid.points.iter().map(|p| p.at).collect(),
+            BodyKind::Link(link) => {
+                let places = (0..2 + link.points.len()).map(|i| link.share(i) * link.length);
+                places.map(|x| [x, 0.0]).collect()
+            }
+            _ => return false,
         };
-        let point = |point| PointRef { body: b, point };
-        let mut points = rigid.points.iter().enumerate();
-        let Some((local, at)) =
-            points.find_map(|(i, p)| Some((p.at, self.known(point(i), state)?)))
-        else {
+        let known = |point| self.known(PointRef { body: b, point }, state);
+        let mut known = points.iter().enumerate().map(|(i, p)| Some((p, known(i)?)));
+        let Some((local, at)) = known.find_map(|known| known) else {
             return false;
         };
         let Some(angle) = self.suggested_angle(b, at, state) else {
             return false;
         };
-        let arm = rotate(angle.cos(), angle.sin(), local);
-        state.q[*x..x + 3].copy_from_slice(&[at[0] - arm[0], at[1] - arm[1], angle]);
+        let arm = rotate(angle.cos(), angle.sin(), *local);
+        let pose = [at[0] - arm[0], at[1] - arm[1], angle];
+        match (
+            &self.mechanism.bodies()[b].coordinates,
+            &self.c.scene.bodies[b].kind,
+        ) {
+            (BodyCoordinates::Rigid { x }, _) => state.q[*x..x + 3].copy_from_slice(&pose),
+            (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
+                self.write_link(*ends, link.length, pose, state);
+            }
+            _ => return false,
+        }
         self.done[b] = true;
         true
     }

@@ -124,7 +124,7 @@ fn loads(scene: &Scene, rows: &Rows, row: usize, extent: f64) -> Loads {
             }
             ForceKind::TorsionSpring { joint, .. } => {
                 let joint = &scene.joints[*joint];
-                couples.push((joint.journal.body, joint.bearing.body, -of("torque")));
+                couples.push((joint.journal.body, joint.bearing.body, of("torque")));
             }
             ForceKind::Torque { point, .. } => {
                 couples.push((point.body, 0, of("torque")));

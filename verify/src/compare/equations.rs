@@ -1,48 +1,79 @@
-//! The assembled equations of a scene at random states near its manifold, term by term.
+//! The assembled equations of a scene at random states near its motion, term by term.
 
+use super::scenes;
 use crate::check::{Agreement, Worst, largest};
-use crate::description::Description;
 use crate::embedding::Embedding;
-use crate::reference::{Mechanism, System as Reference, body_kind, joint_kind};
+use crate::reference::{At, Scene as Reference};
 use crate::trajectory::Plan;
 use looselink::model::Model;
-use looselink::simulate::Simulation;
+use looselink::scene::{Analysis, BodyKind, JointModel, PointRef, Scene, SlopeClamp};
+use looselink::simulate::{Control, Observer, Progress, RunError, Simulation};
 use looselink::system::{State, System, Weights};
 use miette::{IntoDiagnostic, Result};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// States a scene is tried at.
-pub const STATES: usize = 100;
+pub const STATES: usize = 50;
 /// Relative to the largest entry of each part.
 const TOLERANCE: f64 = 1e-11;
 /// The same where the reference's rows are differenced over [`SPAN`]: 1e-10 of truncation and rounding, and a reserve.
 const DIFFERENCING: f64 = 1e-8;
-/// Span of central differences of the rows: coordinates in m, angles in rad, times over the duration that is looked at.
+/// 1e-15, the rounding of a coordinate, over that: forces of small strains are differences of coordinates.
+const COORDINATES: f64 = 1e-4;
+/// Span of central differences of the rows: coordinates in m, angles in rad.
 const SPAN: f64 = 1e-5;
 
-/// Scenes whose equations are compared: the four cases, more elements, both readings of the slip; every other element,
-/// a link welded into a frame with a body that hangs loosely, and mechanisms of the library.
-pub fn plans() -> Vec<Plan> {
-    let plan = |scene| Plan::new(scene, 1.0, 1e-3);
-    vec![
-        plan("3rrr/case1"),
-        plan("3rrr/case2"),
-        plan("3rrr/case2").with(
-            ", 4 elements in link 2",
-            &["bodies.link2.elements=4".to_owned()],
+/// Scenes whose equations are compared: all that move; an element of every stiffness; every law of contact and friction; the
+/// paper's cases with more elements, other paths and friction; and a scene with every other element.
+pub fn plans() -> Result<Vec<Plan>> {
+    let table =
+        "{type=\"table\",rows=[[0.0,0.1,0.0,0.0],[0.04,0.08,0.02,0.1],[0.1,0.05,0.01,0.0]]}";
+    let line = "{type=\"line\",from=[0.1,0.0,0.0],to=[0.0,0.05,0.2],duration=0.1}";
+    let spline = "{type=\"table\",rows=[[0.0,0.2],[0.2,0.25],[0.3,0.22],[0.5,0.2]]}";
+    let friction = "{law=\"ambrosio\",coefficient=0.3,v0=0.01,v1=0.1,slip=\"paper\"}";
+    let case = |scene| Plan::new(scene, 0.1, 1e-3);
+    let loose = |scene| Plan::new(scene, 0.02, 1e-3);
+    let link = Plan::new("../verify/scenes/link", 1e-3, 1e-4);
+    let journal = Plan::new("../verify/scenes/journal", 1e-4, 1e-5);
+    let everything = Plan::new("../verify/scenes/everything", 0.5, 1e-3);
+    let mut plans = vec![
+        case("3rrr/case2").with(", 4 elements in link 2", &["bodies.link2.elements=4"]),
+        case("3rrr/case1").with(", path from a table", &[&format!("drives.input.path={table}")]),
+        case("3rrr/case2").with(", straight path", &[&format!("drives.input.path={line}")]),
+        loose("3rrr/case3").with_friction(),
+        loose("3rrr/case4").with_friction(),
+        everything.clone().with(", y from a table", &[&format!("drives.push.y={spline}")]),
+        everything,
+        link.clone().with(", slender", &["sections.any.width=1e-5", "materials.any.youngs_modulus=2e11"]),
+        link.clone().with(", stout", &["sections.any.width=0.2", "bodies.link.length=0.03"]),
+        link,
+        journal.clone().with(", Hunt-Crossley", &["contacts.pin.law=\"hunt_crossley\""]),
+        journal.clone().with(", Flores", &["contacts.pin.law=\"flores\"", "contacts.pin.exponent=2.1"]),
+        journal.clone().with(
+            ", Hertz",
+            &["contacts.pin={law=\"hertz\",bearing_radius=0.01,clearance=2e-5,stiffness=1e9,exponent=1.5}"],
         ),
-        plan("3rrr/case3"),
-        plan("3rrr/case4"),
-        plan("3rrr/case4-friction"),
-        plan("3rrr/case3").with_friction(),
-        plan("3rrr/case4").with_friction(),
-        Plan::new("../verify/scenes/everything", 0.5, 1e-3),
-        Plan::new("frame-with-hanging-body", 0.3, 1e-3),
-        Plan::new("slider-crank/loose", 0.012, 1e-3),
-        Plan::new("four-bar-three-loose", 0.1, 1e-3),
-        plan("quick-return"),
-    ]
+        journal.clone().with(", friction of the paper", &[&format!("contacts.pin.friction={friction}")]),
+        journal.clone().with_friction(),
+        journal,
+    ];
+    for plan in scenes::of(Analysis::Dynamic)? {
+        if has_like_rows(&plan.scene(None)?) {
+            plans.push(plan);
+        }
+    }
+    Ok(plans)
+}
+
+/// False if a weld holds the slope vector of its first side: the two programs write its rows in different frames.
+pub fn has_like_rows(scene: &Scene) -> bool {
+    let is_link = |p: PointRef| matches!(scene.bodies[p.body].kind, BodyKind::Link(_));
+    !scene.joints.iter().any(|joint| {
+        let clamp = SlopeClamp::Vector;
+        let holds_vector = matches!(joint.model, JointModel::Weld { slope, .. } if slope == clamp);
+        holds_vector && is_link(joint.bearing) && !is_link(joint.journal)
+    })
 }
 
 /// Both sides of a scene and the way between their coordinates.
@@ -50,383 +81,273 @@ struct Pair {
     simulation: Simulation,
     reference: Reference,
     embedding: Embedding,
-    description: Description,
-    /// For each contact of Looselink the joint of the reference.
-    joints: Vec<usize>,
     /// How far coordinates are moved \[m, rad\].
     spread: f64,
-    /// Span of differences in time \[s\].
-    instant: f64,
 }
 
-/// Differences of each part of the equations.
+/// A part of the equations.
+#[derive(Clone, Copy)]
+enum Part {
+    Mass,
+    Open,
+    Closed,
+    Damping,
+    Stiffness,
+    Balance,
+    Value,
+    Gradient,
+    Velocity,
+    Acceleration,
+    Curvature,
+}
+
+const ROUNDING: &str = "relative to the largest entry; rounding";
+const STRAINS: &str =
+    "relative to the largest entry, or to what rounding of the coordinates does to it; rounding";
+/// For each part its name, the measure of the difference with the reason of what is allowed, and that.
+#[rustfmt::skip]
+const PARTS: [(&str, &str, f64); 11] = [
+    ("assembled mass matrix", ROUNDING, TOLERANCE),
+    ("assembled force, contacts open", STRAINS, TOLERANCE),
+    ("assembled force, contacts closed", STRAINS, TOLERANCE),
+    ("assembled df/dv", ROUNDING, TOLERANCE),
+    ("assembled df/dq", ROUNDING, TOLERANCE),
+    ("residual of Looselink's equations of motion with the accelerations and multipliers of the reference",
+     "relative to the inertia force, or to what rounding of the coordinates does to forces; rounding", TOLERANCE),
+    ("constraint values", "m; rounding of coordinates", TOLERANCE),
+    ("constraint gradients", ROUNDING, TOLERANCE),
+    ("constraint velocities, Φ_q v + Φ_t", "m/s; rounding", TOLERANCE),
+    ("constraint accelerations with the accelerations of the reference",
+     "relative to the largest acceleration, at least 1 m/s²; rounding", TOLERANCE),
+    ("geometric stiffness of the constraints, d(Φ_qᵀλ)/dq",
+     "relative to the largest entry; truncation and rounding of the reference's difference quotient", DIFFERENCING),
+];
+
+/// The largest difference of each part over all states.
 #[derive(Default)]
-struct Parts {
-    start: Worst,
-    mass: Worst,
-    force: Worst,
-    contact: Worst,
-    stiffness: Worst,
-    damping: Worst,
-    constraint: Worst,
-    gradient: Worst,
-    velocity: Worst,
-    convective: Worst,
-    curvature: Worst,
+struct Differences([Worst; PARTS.len()]);
+
+impl Differences {
+    fn of(&mut self, part: Part) -> &mut Worst {
+        &mut self.0[part as usize]
+    }
+}
+
+/// Ends a run at an instant.
+struct Until(f64);
+
+impl Observer for Until {
+    fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
+        Ok(())
+    }
+
+    fn step(&mut self, progress: &Progress) -> std::io::Result<Control> {
+        let goes_on = progress.t < self.0;
+        Ok(if goes_on {
+            Control::Continue
+        } else {
+            Control::Stop
+        })
+    }
 }
 
 /// The rows of a scene.
-///
-/// # Errors
-/// A scene that one of the sides refuses.
 pub fn agreements(plan: &Plan) -> Result<Vec<Agreement>> {
-    let pair = Pair::new(plan)?;
+    let mut pair = Pair::new(plan)?;
     let mut random = ChaCha8Rng::seed_from_u64(4);
-    let mut parts = Parts::default();
-    let mut last = pair.simulation.state().clone();
+    let mut differences = Differences::default();
     for k in 0..STATES {
         let t = plan.duration * k as f64 / STATES as f64;
-        let at = pair.state(t, &last, &mut random, &mut parts.start)?;
-        last.copy_from(&at);
-        pair.compare(t, &at, &mut parts)?;
+        match pair.simulation.run(&mut Until(t)) {
+            Ok(()) | Err(RunError::Interrupted { .. }) => {}
+            Err(error) => return Err(error).into_diagnostic(),
+        }
+        let at = pair.state(&mut random);
+        pair.compare_forces(&at, &mut differences)?;
+        pair.compare_constraints(&at, &mut differences)?;
     }
-    let name = plan.name();
-    let shape = pair.simulation.model().shape();
-    let row =
-        |worst: Worst, quantity: &str, reason: &str| worst.row(quantity, &name, TOLERANCE, reason);
-    let rounding = "of the largest entry; rounding";
-    let mut rows = Vec::new();
-    let mechanism = &pair.description.mechanism;
-    if !mechanism.legs.is_empty() {
-        rows.push(row(
-            parts.start,
-            "ideal poses and velocities",
-            "m and m/s; closed form against Newton's method",
-        ));
-    }
-    rows.push(row(parts.mass, "assembled mass matrix", rounding));
-    if shape.multipliers > 0 {
-        rows.extend([
-            row(
-                parts.constraint,
-                "constraint values",
-                "m; rounding of coordinates",
-            ),
-            row(parts.gradient, "constraint gradients", rounding),
-            row(
-                parts.velocity,
-                "constraint velocities, Φ_q v + Φ_t",
-                "m/s; rounding",
-            ),
-            Agreement {
-                tolerance: DIFFERENCING,
-                ..row(
-                    parts.convective,
-                    "convective acceleration of the constraints",
-                    "of 1 m/s² or the largest entry; truncation of the reference's difference quotient along the motion",
-                )
-            },
-            Agreement {
-                tolerance: DIFFERENCING,
-                ..row(
-                    parts.curvature,
-                    "curvature of the constraints, d(Φ_qᵀλ)/dq",
-                    "of the largest entry; truncation of the reference's difference quotient",
-                )
-            },
-        ]);
-    }
-    // with or without anything in them: a part that only one side has must not go unseen
-    rows.push(row(parts.force, "assembled force, contacts open", rounding));
-    rows.push(row(parts.damping, "assembled df/dv", rounding));
-    rows.push(row(
-        parts.stiffness,
-        "assembled df/dq",
-        "of the largest entry; relative rounding of the penetration, a small difference of coordinates",
-    ));
-    if shape.contacts > 0 {
-        rows.push(row(
-            parts.contact,
-            "assembled force, contacts closed",
-            "of the largest entry; relative rounding of the penetration, a small difference of coordinates",
-        ));
-    }
-    Ok(rows)
+    // without constraints and contacts some parts do not exist
+    let parts = PARTS
+        .iter()
+        .zip(differences.0)
+        .filter(|(_, worst)| worst.is_seen());
+    let row = |((quantity, reason, tolerance), worst): (&(&str, &str, f64), Worst)| {
+        worst.row(quantity, &plan.name(), *tolerance, reason)
+    };
+    Ok(parts.map(row).collect())
 }
 
 impl Pair {
     fn new(plan: &Plan) -> Result<Pair> {
-        let description = plan.description()?;
-        let reference = Reference::new(&description.mechanism).into_diagnostic()?;
-        let simulation = Simulation::new(&plan.scene(1e-5)?)?;
-        let model = simulation.model();
-        let embedding = Embedding::new(&description, model, model.shape().coordinates);
-        let contact_joint = |c| {
-            let j = model.contact_joint(c)?;
-            let name = &model.joints()[j].name;
-            description.joints.iter().position(|n| n == name)
-        };
-        let joints = (0..model.shape().contacts).map(contact_joint);
-        let joints = joints.collect::<Option<_>>();
+        let reference = plan.reference()?;
+        let scene = plan.scene(None)?;
+        let simulation = Simulation::new(&scene)?;
+        let embedding = Embedding::new(&reference, simulation.model());
         Ok(Pair {
-            joints: joints.expect("every contact belongs to a joint of both sides"),
-            spread: spread(&description.mechanism),
-            instant: SPAN * plan.duration,
-            description,
+            spread: spread(&scene),
             reference,
             embedding,
             simulation,
         })
     }
 
-    /// A pose moved at random, with random rates and contacts: where legs follow a path the ideal pose at time t, which
-    /// Newton's method finds from `last`, a state shortly before; elsewhere the assembled start with what is prescribed at t.
-    fn state(
-        &self,
-        t: f64,
-        last: &State,
-        random: &mut ChaCha8Rng,
-        start: &mut Worst,
-    ) -> Result<State> {
+    /// The state that the run has reached, moved at random, with random rates and contacts.
+    fn state(&self, random: &mut ChaCha8Rng) -> State {
         let model = self.simulation.model();
-        let shape = model.shape();
-        let mut known = last.clone();
-        known.t = t;
-        if self.description.mechanism.legs.is_empty() {
-            let assembled = self.simulation.state();
-            known.q.copy_from_slice(&assembled.q);
-            known.v.copy_from_slice(&assembled.v);
-            let prescribed = model.prescribe(assembled, &mut known, &mut model.work());
-            prescribed.into_diagnostic()?;
-        } else {
-            let (q, v) = self.reference.start(t).into_diagnostic()?;
-            self.embedding.take(&q, &mut known.q, shape.unknowns);
-            self.embedding.take(&v, &mut known.v, shape.unknowns);
-            let prescribed = model.prescribe(last, &mut known, &mut model.work());
-            prescribed.into_diagnostic()?;
-            for (rust, cpp) in [(&known.q, &q), (&known.v, &v)] {
-                start.see_scaled(&self.embedding.spread(rust), cpp, 1.0);
-            }
-        }
-        for i in 0..shape.unknowns {
-            known.q[i] += self.spread * random.random_range(-1.0..1.0);
+        let mut known = self.simulation.state().clone();
+        // links are compared from the smallest strains on
+        let spread = match model.shape().contacts {
+            0 => self.spread * 10_f64.powf(random.random_range(-8.0..0.0)),
+            _ => self.spread,
+        };
+        for i in 0..model.shape().unknowns {
+            known.q[i] += spread * random.random_range(-1.0..1.0);
             known.v[i] += 0.1 * random.random_range(-1.0..1.0);
         }
         for z in &mut known.z {
             *z = random.random_range(0.01..0.1);
         }
         known.lambda.fill(0.0);
-        Ok(known)
+        known.a.fill(0.0);
+        known
     }
 
-    /// The joint memory of the reference.
-    fn memory(&self, z: &[f64], joints: usize) -> Vec<f64> {
-        let mut memory = vec![0.0; joints];
-        for (&joint, z) in self.joints.iter().zip(z) {
-            memory[joint] = *z;
-        }
-        memory
-    }
+    /// M, f and its tangents, and the accelerations that the reference finds.
+    fn compare_forces(&self, at: &State, parts: &mut Differences) -> Result<()> {
+        let (model, embedding, t) = (self.simulation.model(), &self.embedding, at.t);
+        let (width, n) = (at.q.len(), model.shape().unknowns);
+        let (q, v) = (&embedding.spread(&at.q), &embedding.spread(&at.v));
+        let corner = |k: &[f64]| block(&embedding.congruence(k), width, n);
+        let mass = corner(&self.reference.mass().into_diagnostic()?);
+        let [_, _, rust_mass] = rust_matrices(model, at);
+        parts.of(Part::Mass).see_all(&rust_mass, &mass);
 
-    fn compare(&self, t: f64, at: &State, parts: &mut Parts) -> Result<()> {
-        let model = self.simulation.model();
-        let joints = model.joints().len();
-        let (q, v) = (self.embedding.spread(&at.q), self.embedding.spread(&at.v));
-        let mass = self.reference.mass(&q).into_diagnostic()?;
-        let mass = self.embedding.congruence(&mass);
-        parts.mass.see_all(&rust_mass(model, at), &mass);
-
-        let closed = self.memory(&at.z, joints);
-        // without the rows of coordinates that the reference has not: points of the ground, the ideal mechanism of a drive
-        let mine = |at: &State| {
-            let still = State {
-                a: vec![0.0; at.a.len()],
-                ..at.clone()
-            };
-            self.embedding.keep(residual(model, &still))
-        };
-        let mut open = at.clone();
-        open.z.fill(0.0);
-        let cpp = self.reference.force(t, &q, &v, &vec![0.0; joints]);
-        let cpp = self.embedding.gather(&cpp.into_diagnostic()?.value);
-        parts.force.see_all(&mine(&open), &cpp);
-        let cpp = self.reference.force(t, &q, &v, &closed);
-        let cpp = cpp.into_diagnostic()?;
-        parts
-            .contact
-            .see_all(&mine(at), &self.embedding.gather(&cpp.value));
-        let n = model.shape().unknowns;
-        let corner = |k: &[f64]| block(&self.embedding.congruence(k), at.q.len(), n);
-        let [stiffness, damping] = rust_tangents(model, at);
-        parts.stiffness.see_all(&stiffness, &corner(&cpp.by_q));
-        parts.damping.see_all(&damping, &corner(&cpp.by_v));
-        self.compare_constraints(t, at, &q, parts)
-    }
-
-    /// Looselink's constraint rows against those of the same length or joint.
-    fn compare_constraints(&self, t: f64, at: &State, q: &[f64], parts: &mut Parts) -> Result<()> {
-        let model = self.simulation.model();
-        let rows = self.reference.constraint_rows(t, q).into_diagnostic()?;
-        let (n, width) = (model.shape().unknowns, q.len());
-        let (phi, phi_q) = rust_constraints(model, at);
-        let v = self.embedding.spread(&at.v);
-        let mut rates = vec![0.0; phi.len()];
-        model.constraint_velocity(at, &mut rates);
-        for (row, place) in self.constraint_places().into_iter().enumerate() {
-            let place = place.expect("every constraint of Looselink is one of the reference");
-            let gradient = &rows.phi_q[place * width..(place + 1) * width];
-            let rate = gradient.iter().zip(&v).map(|(g, v)| g * v).sum::<f64>();
-            parts
-                .velocity
-                .see(rates[row], rate + rows.phi_t[place], 1.0);
-            let gradient = self.embedding.gather(gradient);
-            parts.constraint.see(phi[row], rows.phi[place], 1.0);
-            parts
-                .gradient
-                .see_all(&phi_q[row * n..(row + 1) * n], &gradient[..n]);
-        }
-        self.compare_second_derivatives(t, at, q, parts)
-    }
-
-    /// What the rows' second derivatives enter: accelerations at rest coordinates, and the tangent of Phi_q^T lambda.
-    fn compare_second_derivatives(
-        &self,
-        t: f64,
-        at: &State,
-        q: &[f64],
-        parts: &mut Parts,
-    ) -> Result<()> {
-        let model = self.simulation.model();
-        let (n, m) = (model.shape().unknowns, model.shape().multipliers);
-        if m == 0 {
-            return Ok(());
-        }
-        let width = q.len();
-        let places: Vec<usize> = self.constraint_places().into_iter().flatten().collect();
-        let rows = |direction: &[f64], by: f64| {
-            let q: Vec<f64> = q.iter().zip(direction).map(|(q, d)| q + by * d).collect();
-            self.reference.constraint_rows(t, &q).into_diagnostic()
-        };
-        let slope = |direction: &[f64]| -> Result<Vec<f64>> {
-            let (low, high) = (rows(direction, -SPAN)?, rows(direction, SPAN)?);
-            let pairs = high.phi_q.iter().zip(&low.phi_q);
-            Ok(pairs.map(|(h, l)| (h - l) / (2.0 * SPAN)).collect())
-        };
-
-        // of the rates Φ_q v + Φ_t along the motion
-        let v = self.embedding.spread(&at.v);
-        let rates = |by: f64| -> Result<Vec<f64>> {
-            let q: Vec<f64> = q.iter().zip(&v).map(|(q, v)| q + by * v).collect();
-            let rows = self
-                .reference
-                .constraint_rows(t + by, &q)
-                .into_diagnostic()?;
-            let along = rows.phi_q.chunks_exact(width).zip(&rows.phi_t);
-            let rate = |(g, drift): (&[f64], &f64)| {
-                drift + g.iter().zip(&v).map(|(g, v)| g * v).sum::<f64>()
-            };
-            Ok(along.map(rate).collect())
-        };
-        let (low, high) = (rates(-self.instant)?, rates(self.instant)?);
-        let mut convective = vec![0.0; m];
-        let still = State {
-            a: vec![0.0; at.a.len()],
+        let open = State {
+            z: vec![0.0; at.z.len()],
             ..at.clone()
         };
-        model.constraint_acceleration(&still, &mut convective);
-        let slopes = places
-            .iter()
-            .map(|&p| (high[p] - low[p]) / (2.0 * self.instant));
-        let slopes: Vec<f64> = slopes.collect();
-        let scale = largest(&slopes).max(1.0);
-        parts.convective.see_scaled(&convective, &slopes, scale);
+        let closed = (Part::Closed, at.clone());
+        let closed = Some(closed).filter(|_| !at.z.is_empty());
+        let mut rounding = 0.0;
+        for (part, mine) in closed.into_iter().chain([(Part::Open, open.clone())]) {
+            let z = &embedding.memory(&mine.z);
+            let [f, by_q, by_v] = self.reference.force(At { t, q, v, z }).into_diagnostic()?;
+            let (force, stiffness) = (&embedding.gather(&f)[..n], corner(&by_q));
+            rounding = COORDINATES * largest(&stiffness) * largest(q);
+            let scale = largest(force).max(rounding).max(f64::MIN_POSITIVE);
+            parts
+                .of(part)
+                .see_scaled(&residual(model, &mine)[..n], force, scale);
+            let [rust_stiffness, damping, _] = rust_matrices(model, &mine);
+            parts
+                .of(Part::Stiffness)
+                .see_all(&rust_stiffness, &stiffness);
+            parts.of(Part::Damping).see_all(&damping, &corner(&by_v));
+        }
 
-        let mut loaded = at.clone();
-        loaded.z.fill(0.0);
-        for (row, lambda) in loaded.lambda.iter_mut().enumerate() {
-            *lambda = 1.0 + row as f64;
+        let z = &embedding.memory(&open.z);
+        let [a, lambda] = self
+            .reference
+            .acceleration(At { t, q, v, z })
+            .into_diagnostic()?;
+        let mut solved = open;
+        let mut rates = vec![0.0; model.shape().multipliers];
+        model.constraint_acceleration(&solved, &mut rates);
+        let scale = largest(&rates).max(largest(&a)).max(1.0);
+        embedding.take(&a, &mut solved.a);
+        model.constraint_acceleration(&solved, &mut rates);
+        let zeros = vec![0.0; n.max(rates.len())];
+        parts
+            .of(Part::Acceleration)
+            .see_scaled(&rates, &zeros[..rates.len()], scale);
+        let inertia = largest(&residual(model, &solved)[..n]);
+        for (mine, row) in solved.lambda.iter_mut().zip(&embedding.rows) {
+            *mine = row.map_or(0.0, |row| lambda[row]);
         }
-        let unloaded = State {
-            lambda: vec![0.0; m],
-            ..loaded.clone()
-        };
-        let ([with, _], [without, _]) = (
-            rust_tangents(model, &loaded),
-            rust_tangents(model, &unloaded),
-        );
-        let rust: Vec<f64> = with.iter().zip(&without).map(|(w, o)| w - o).collect();
-        let mut cpp = vec![0.0; n * n];
-        for j in 0..n {
-            let mut unit = vec![0.0; at.q.len()];
-            unit[j] = 1.0;
-            let bent = slope(&self.embedding.spread(&unit))?;
-            let mut column = vec![0.0; width];
-            for (place, lambda) in places.iter().zip(&loaded.lambda) {
-                let gradient = &bent[place * width..(place + 1) * width];
-                for (sum, g) in column.iter_mut().zip(gradient) {
-                    *sum += lambda * g;
-                }
-            }
-            for (i, value) in self.embedding.gather(&column)[..n].iter().enumerate() {
-                cpp[i * n + j] = *value;
-            }
-        }
-        parts.curvature.see_all(&rust, &cpp);
+        let scale = inertia.max(rounding).max(f64::MIN_POSITIVE);
+        let balance = &residual(model, &solved)[..n];
+        parts
+            .of(Part::Balance)
+            .see_scaled(balance, &zeros[..n], scale);
         Ok(())
     }
 
-    /// For each multiplier of Looselink the row of the reference, through the names of links and joints.
-    fn constraint_places(&self) -> Vec<Option<usize>> {
-        let model = self.simulation.model();
-        let mut names = Vec::new();
-        let Description {
-            mechanism,
-            bodies,
-            joints,
-            motions,
-            ..
-        } = &self.description;
-        for (body, name) in mechanism.bodies.iter().zip(bodies) {
-            match body.kind {
-                body_kind::RIGID_LINK => names.push(format!("length of {name}")),
-                body_kind::MOVING_BODY => names.extend(["x", "y", "theta"].map(String::from)),
-                _ => {}
+    /// Looselink's constraint rows against those of the same name.
+    fn compare_constraints(&self, at: &State, parts: &mut Differences) -> Result<()> {
+        let (model, embedding) = (self.simulation.model(), &self.embedding);
+        let (q, v) = (&embedding.spread(&at.q), &embedding.spread(&at.v));
+        let rows = |q: &[f64]| self.reference.constraint_rows(at.t, q).into_diagnostic();
+        let (n, m, width) = (model.shape().unknowns, model.shape().multipliers, q.len());
+        let (phi, phi_q) = rust_constraints(model, at);
+        let mut rates = vec![0.0; m];
+        model.constraint_velocity(at, &mut rates);
+        let [cpp_phi, cpp_phi_q, cpp_phi_t] = rows(q)?;
+        let places = embedding.rows.iter().enumerate();
+        let places = places.filter_map(|(row, place)| Some((row, (*place)?)));
+        for (row, place) in places.clone() {
+            let gradient = &cpp_phi_q[place * width..(place + 1) * width];
+            let rate = gradient.iter().zip(v).map(|(g, v)| g * v).sum::<f64>();
+            parts
+                .of(Part::Velocity)
+                .see(rates[row], rate + cpp_phi_t[place], 1.0);
+            parts.of(Part::Value).see(phi[row], cpp_phi[place], 1.0);
+            let gradient = &embedding.gather(gradient)[..n];
+            parts
+                .of(Part::Gradient)
+                .see_all(&phi_q[row * n..(row + 1) * n], gradient);
+        }
+
+        let mut loaded = State {
+            z: vec![0.0; at.z.len()],
+            ..at.clone()
+        };
+        let [unloaded, ..] = rust_matrices(model, &loaded);
+        for (row, _) in places.clone() {
+            loaded.lambda[row] = 1.0 + row as f64;
+        }
+        let [rust, ..] = rust_matrices(model, &loaded);
+        let rust: Vec<f64> = rust.iter().zip(&unloaded).map(|(l, u)| l - u).collect();
+        let mut bent = vec![0.0; n * n];
+        for j in 0..n {
+            let mut unit = vec![0.0; at.q.len()];
+            unit[j] = SPAN;
+            let step = embedding.spread(&unit);
+            let moved = |sign: f64| {
+                let q: Vec<f64> = q.iter().zip(&step).map(|(q, d)| q + sign * d).collect();
+                rows(&q)
+            };
+            let ([_, low, _], [_, high, _]) = (moved(-1.0)?, moved(1.0)?);
+            let mut column = vec![0.0; width];
+            for (row, place) in places.clone() {
+                for (c, sum) in column.iter_mut().enumerate() {
+                    let entry = place * width + c;
+                    *sum += loaded.lambda[row] * (high[entry] - low[entry]);
+                }
+            }
+            for (i, value) in embedding.gather(&column)[..n].iter().enumerate() {
+                bent[i * n + j] = value / (2.0 * SPAN);
             }
         }
-        for (joint, name) in mechanism.joints.iter().zip(joints) {
-            let parts: &[&str] = match joint.kind {
-                joint_kind::PRISMATIC if joint.hold_rotation != 0 => &["line", "angle"],
-                joint_kind::PRISMATIC => &["line"],
-                joint_kind::WELD if joint.hold_slope != 0 => &["x", "y", "slope x", "slope y"],
-                joint_kind::WELD => &["x", "y", "angle"],
-                _ if joint.contact < 0 => &["x", "y"],
-                _ => &[],
-            };
-            names.extend(parts.iter().map(|part| format!("joint {name} ({part})")));
+        // rounding in the difference quotient of rows of size 1
+        let rounding = largest(&loaded.lambda) * 1e-15 / SPAN / DIFFERENCING;
+        if m > 0 {
+            let scale = largest(&bent).max(rounding);
+            parts.of(Part::Curvature).see_scaled(&rust, &bent, scale);
         }
-        names.extend(mechanism.legs.iter().map(|_| "leg".to_owned()));
-        names.extend(
-            motions
-                .iter()
-                .map(|[_, drive, part]| format!("drive {drive} ({part})")),
-        );
-        let multipliers = &model.unknown_names()[model.shape().unknowns..];
-        let place = |name: &String| names.iter().position(|n| n == name);
-        multipliers.iter().map(place).collect()
+        Ok(())
     }
 }
 
 /// Far enough that loose joints touch and directions change, not so far that forces of contacts dwarf all others.
-fn spread(mechanism: &Mechanism) -> f64 {
-    let clearances = mechanism.contacts.iter().map(|c| c.clearance);
-    let largest = clearances.fold(0.0, f64::max);
-    match (mechanism.legs.is_empty(), largest > 0.0) {
+fn spread(scene: &Scene) -> f64 {
+    match (scene.drives.is_empty(), scene.smallest_clearance()) {
         (false, _) => 2e-4,
-        (true, true) => 3.0 * largest,
-        (true, false) => 0.1,
+        (true, Some(clearance)) => 3.0 * clearance,
+        (true, None) => 0.1,
     }
 }
 
+/// The left side of the equations of motion.
 fn residual(model: &Model, at: &State) -> Vec<f64> {
     let shape = model.shape();
     let (mut r, mut phi) = (vec![0.0; shape.coordinates], vec![0.0; shape.multipliers]);
@@ -434,42 +355,30 @@ fn residual(model: &Model, at: &State) -> Vec<f64> {
     r
 }
 
-/// Columns of M by unit accelerations, with no force acting.
-fn rust_mass(model: &Model, at: &State) -> Vec<f64> {
-    let n = at.a.len();
-    let mut open = at.clone();
-    open.z.fill(0.0);
-    open.a.fill(0.0);
-    let still = residual(model, &open);
-    let mut mass = vec![0.0; n * n];
-    // so large that the forces, which cancel, are rounding beside it; a power of two, which divides without rounding
-    let large = f64::from(1 << 24);
-    for j in 0..n {
-        open.a[j] = large;
-        for (i, (moved, still)) in residual(model, &open).iter().zip(&still).enumerate() {
-            mass[i * n + j] = (moved - still) / large;
-        }
-        open.a[j] = 0.0;
-    }
-    mass
-}
-
-/// df/dq and df/dv over the unknowns: the stage matrix for a weight in one of them, less M.
-fn rust_tangents(model: &Model, at: &State) -> [Vec<f64>; 2] {
-    let matrix = |w: Weights| {
-        let shape = model.shape();
+/// df/dq, df/dv and M over the unknowns: the stage matrix for a weight in one of the tangents less M, which has none.
+fn rust_matrices(model: &Model, at: &State) -> [Vec<f64>; 3] {
+    let shape = model.shape();
+    let n = shape.unknowns;
+    let matrix = |q: f64, v: f64| -> Vec<f64> {
         let (mut r, mut phi) = (vec![0.0; shape.coordinates], vec![0.0; shape.multipliers]);
         let mut k = vec![0.0; model.symbolic().len()];
-        model.linearise(at, w, &mut r, &mut phi, &mut k, &mut model.work());
-        model.symbolic().to_dense(&k)
+        model.linearise(
+            at,
+            Weights { q, v },
+            &mut r,
+            &mut phi,
+            &mut k,
+            &mut model.work(),
+        );
+        let dense = model.symbolic().to_dense(&k);
+        (0..n * n).map(|e| dense[(e / n, e % n)]).collect()
     };
-    let mass = matrix(Weights { q: 0.0, v: 0.0 });
-    let n = model.shape().unknowns;
-    [Weights { q: 1.0, v: 0.0 }, Weights { q: 0.0, v: 1.0 }].map(|w| {
-        let k = matrix(w);
-        let entries = (0..n * n).map(|e| (e / n, e % n));
-        entries.map(|e| k[e] - mass[e]).collect()
-    })
+    let mass = matrix(0.0, 0.0);
+    let [stiffness, damping] = [(1.0, 0.0), (0.0, 1.0)].map(|(q, v)| {
+        let both = matrix(q, v).into_iter().zip(&mass);
+        both.map(|(k, m)| k - m).collect()
+    });
+    [stiffness, damping, mass]
 }
 
 /// Phi and Phi_q over the unknowns.

@@ -5,29 +5,31 @@ use crate::trajectory::{Plan, Trajectory, tolerances};
 use miette::Result;
 use rayon::prelude::*;
 
-/// Simulated time \[s\].
-const DURATION: f64 = 0.1;
-/// Time between rows \[s\].
-const INTERVAL: f64 = 1e-3;
+/// Simulated time and time between rows \[s\].
+const TIMES: [f64; 2] = [0.1, 1e-3];
+/// What thousands of steps make of the rounding of a position of some decimetres \[m\].
+const ROUNDING: f64 = 1e-13;
 /// How far an order may be from the 2 of Bathe's scheme.
 const ORDER_BAND: f64 = 0.2;
 
-/// What is compared: name, channels, and the size in whose units the difference is given.
-pub const QUANTITIES: [(&str, &[&str], bool); 4] = [
-    ("platform position [m]", &["error.x", "error.y"], false),
+/// What is compared: name, channels, the largest difference at the smallest step in units of the largest value (of the
+/// position in m), and what determines it.
+pub const QUANTITIES: [(&str, &[&str], f64, &str); 4] = [
+    ("platform position [m]", &["error.x", "error.y"], 1e-10, "m"),
     (
         "platform acceleration",
         &["platform.ax", "platform.ay"],
-        true,
+        1e-4,
+        "of the largest",
     ),
-    ("platform angular acceleration", &["platform.alpha"], true),
-    ("B1 force", &["B1.fx", "B1.fy"], true),
+    (
+        "platform angular acceleration",
+        &["platform.alpha"],
+        5e-4,
+        "of the largest; the rotation has the highest frequencies",
+    ),
+    ("B1 force", &["B1.fx", "B1.fy"], 1e-4, "of the largest"),
 ];
-
-/// Index of the position among them.
-const POSITION: usize = 0;
-/// Index of the angular acceleration.
-const TURNING: usize = 2;
 
 /// All runs with one number of elements.
 #[derive(Debug)]
@@ -40,15 +42,22 @@ pub struct Convergence {
     pub steps: Vec<f64>,
     /// The largest step that resolves the highest modes \[s\]: from here on the order of accelerations and forces is that
     /// of the scheme; positions hardly feel those modes.
-    pub resolving: f64,
-    /// For each quantity, the difference from the tightest run of IDA at each step.
-    pub differences: Vec<Vec<f64>>,
-    /// For each quantity, the two numbers that differ most at the smallest step.
-    pub finest: Vec<Worst>,
-    /// For each quantity, the difference of the two runs of IDA.
-    pub own: Vec<f64>,
-    /// For each quantity, its size.
-    pub sizes: Vec<f64>,
+    resolving: f64,
+    /// One for each quantity.
+    pub curves: Vec<Differences>,
+}
+
+/// A quantity over all runs.
+#[derive(Debug)]
+pub struct Differences {
+    /// Differences from the tightest run of IDA, one for each step.
+    pub by_step: Vec<f64>,
+    /// The two numbers that differ most at the smallest step.
+    finest: Worst,
+    /// Difference of the two runs of IDA: the error of the looser one.
+    pub own: f64,
+    /// Largest value.
+    pub size: f64,
 }
 
 /// Largest difference over the channels and rows.
@@ -60,139 +69,96 @@ fn distance(a: &Trajectory, b: &Trajectory, channels: &[&str]) -> Worst {
     worst
 }
 
-/// A number of elements, in words.
-pub fn elements(n: usize) -> String {
-    match n {
-        1 => "1 element".to_owned(),
-        n => format!("{n} elements"),
-    }
-}
-
 /// Runs both sides with 1 or 4 elements per link.
-///
-/// # Errors
-/// A run that fails.
 pub fn convergence(elements: usize) -> Result<Convergence> {
-    let overrides: Vec<String> = (1..=3)
-        .map(|link| format!("bodies.link{link}.elements={elements}"))
-        .collect();
-    let plan = Plan::new("3rrr/case2", DURATION, INTERVAL).with("", &overrides);
+    let mut plan = Plan::new("3rrr/case2", TIMES[0], TIMES[1]);
+    let links = (1..=3).map(|link| format!("bodies.link{link}.elements={elements}"));
+    plan.overrides = links.collect();
     // the highest mode of four elements is some eight times as fast, and costs IDA as many steps
-    let (count, resolving, relative) = match elements {
-        1 => (5, 1e-6, [1e-11, 1e-12]),
-        _ => (6, 1.25e-7, [1e-10, 1e-11]),
+    let (first, count, resolving, relative) = match elements {
+        1 => (2e-6, 5, 1e-6, [1e-11, 1e-12]),
+        _ => (1e-6, 6, 1.25e-7, [1e-10, 1e-11]),
     };
-    let first = if elements == 1 { 2e-6 } else { 1e-6 };
     let steps: Vec<f64> = (0..count).map(|k| first / f64::from(1 << k)).collect();
-    let ida = |relative: f64| plan.cpp(&tolerances(relative, 1e-3 * relative, 0.1 * relative));
+    let ida = |relative: &f64| plan.cpp(&tolerances(*relative));
     let (cpp, rust): (Result<Vec<_>>, Result<Vec<_>>) = rayon::join(
+        || relative.par_iter().with_max_len(1).map(ida).collect(),
         || {
-            relative
-                .par_iter()
-                .with_max_len(1)
-                .map(|&r| ida(r))
-                .collect()
-        },
-        || {
-            steps
-                .par_iter()
-                .with_max_len(1)
-                .map(|&h| plan.rust(h))
-                .collect()
+            let runs = steps.par_iter().with_max_len(1).map(|&h| plan.rust(h));
+            runs.collect()
         },
     );
     let (cpp, rust) = (cpp?, rust?);
-    let tight = &cpp[1];
-    let mut result = Convergence {
-        elements,
-        relative,
-        steps,
-        resolving,
-        differences: Vec::new(),
-        finest: Vec::new(),
-        own: Vec::new(),
-        sizes: Vec::new(),
-    };
-    for (_, channels, _) in QUANTITIES {
+    let curve = |(_, channels, ..): &(&str, &[&str], f64, &str)| {
         let each: Vec<Worst> = rust
             .iter()
-            .map(|run| distance(run, tight, channels))
+            .map(|r| distance(r, &cpp[1], channels))
             .collect();
-        result.finest.extend(each.last());
-        result
-            .differences
-            .push(each.iter().map(|w| w.difference).collect());
-        result
-            .own
-            .push(distance(&cpp[0], tight, channels).difference);
-        let size = channels.iter().map(|c| largest(tight.get(c)));
-        result.sizes.push(size.fold(0.0, f64::max));
-    }
-    Ok(result)
+        let sizes = channels.iter().map(|c| largest(cpp[1].get(c)));
+        Differences {
+            by_step: each.iter().map(|worst| worst.difference).collect(),
+            finest: each[each.len() - 1],
+            own: distance(&cpp[0], &cpp[1], channels).difference,
+            size: sizes.fold(0.0, f64::max),
+        }
+    };
+    Ok(Convergence {
+        elements,
+        relative,
+        curves: QUANTITIES.iter().map(curve).collect(),
+        steps,
+        resolving,
+    })
 }
 
 impl Convergence {
-    /// Orders between neighbouring steps that resolve the motion, while the difference stands above IDA's error: twice the
-    /// difference of its two runs, which is the error of the looser one; what is compared is the tighter.
-    pub fn orders(&self, quantity: usize) -> Vec<f64> {
-        let floor = 2.0 * self.own[quantity];
-        let first = if quantity == POSITION {
-            self.steps[0]
-        } else {
-            self.resolving
-        };
-        let steps = self.steps.windows(2);
-        let pairs = steps.zip(self.differences[quantity].windows(2));
-        pairs
-            .filter(|(h, d)| h[0] <= first * 1.001 && d[1] > floor)
-            .map(|(_, d)| (d[0] / d[1]).log2())
-            .collect()
+    /// How reports name it.
+    pub fn name(&self) -> String {
+        let plural = if self.elements == 1 { "" } else { "s" };
+        format!("{} element{plural} per link", self.elements)
     }
 
     /// The rows.
     pub fn agreements(&self) -> Vec<Agreement> {
-        let scene = format!("case2, {} per link, {DURATION} s", elements(self.elements));
+        let scene = format!("case2, {}, {} s", self.name(), TIMES[0]);
         let mut rows = Vec::new();
-        for (q, (name, _, relative)) in QUANTITIES.into_iter().enumerate() {
-            let orders = self.orders(q);
-            // without one there is nothing to show: a row that fails
-            let orders = if orders.is_empty() {
-                vec![f64::NAN]
+        for ((name, _, allowed, measure), curve) in QUANTITIES.into_iter().zip(&self.curves) {
+            let is_position = name.contains("position");
+            // steps that resolve the motion, while the difference stands above twice the error of the looser run of IDA
+            let first = if is_position {
+                self.steps[0]
             } else {
-                orders
+                self.resolving
             };
-            for order in orders {
-                rows.push(Agreement {
-                    quantity: format!("order of the difference in {name}"),
-                    scene: scene.clone(),
-                    rust: order,
-                    cpp: 2.0,
-                    difference: (order - 2.0).abs(),
-                    tolerance: ORDER_BAND,
-                    reason: "Bathe's scheme is of order 2".into(),
-                });
+            let floor = if is_position { ROUNDING } else { 0.0 };
+            let pairs = self.steps.iter().zip(curve.by_step.windows(2));
+            let above =
+                pairs.filter(|(h, d)| **h <= first * 1.001 && d[1] > 2.0 * curve.own + floor);
+            let mut orders: Vec<(f64, f64)> =
+                above.map(|(h, d)| (*h, (d[0] / d[1]).log2())).collect();
+            if orders.is_empty() {
+                // without one there is nothing to show: a row that fails
+                orders.push((first, f64::NAN));
             }
-            let finest = self.finest[q];
-            let (unit, tolerance, measure) = match (relative, q) {
-                (false, _) => (1.0, 1e-10, "m"),
-                (true, TURNING) => (
-                    self.sizes[q],
-                    5e-4,
-                    "of the largest; the rotation has the highest frequencies",
-                ),
-                (true, _) => (self.sizes[q], 1e-4, "of the largest"),
-            };
-            rows.push(Agreement {
-                quantity: format!(
-                    "{name}, h = {} s",
-                    plot::number(self.steps[self.steps.len() - 1], 3)
-                ),
+            rows.extend(orders.into_iter().map(|(h, order)| Agreement {
+                quantity: format!("order of the difference in {name}"),
                 scene: scene.clone(),
-                rust: finest.rust,
-                cpp: finest.cpp,
-                difference: finest.difference / unit,
-                tolerance,
-                reason: format!("{measure}; the error of Bathe's scheme at this step"),
+                rust: order,
+                cpp: 2.0,
+                difference: (order - 2.0).abs(),
+                tolerance: ORDER_BAND,
+                reason: format!("Bathe's scheme is of order 2; from h = {h:e} s to the half"),
+            }));
+            let step = plot::number(self.steps[self.steps.len() - 1], 3);
+            let unit = if is_position { 1.0 } else { curve.size };
+            rows.push(Agreement {
+                difference: curve.finest.difference / unit,
+                ..curve.finest.row(
+                    &format!("{name}, h = {step} s"),
+                    &scene,
+                    allowed,
+                    &format!("{measure}; the error of Bathe's scheme at this step"),
+                )
             });
         }
         rows

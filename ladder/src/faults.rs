@@ -1,12 +1,13 @@
-//! Seeded faults: deliberate mistakes, applied one at a time, that the comparison has to catch.
+//! Seeded faults: deliberate mistakes, applied one at a time, that the comparison has to catch. Variants: other forms of a
+//! convention that both sides share, which must not change the results.
 
-use ladder::seeded::root;
+use crate::seeded::root;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
 
-/// A mistake in one place.
+/// A mistake or a variant in one place.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Fault {
     /// What it does, in a few words.
@@ -17,6 +18,9 @@ pub struct Fault {
     pub find: String,
     /// What stands there instead.
     pub replace: String,
+    /// Of a variant the tests that must still pass; a mistake has to be caught by any.
+    #[serde(default)]
+    pub tests: Vec<String>,
 }
 
 /// What became of a fault.
@@ -28,27 +32,43 @@ pub struct Outcome {
     pub caught_by: Vec<String>,
 }
 
+/// `verify/faults.toml`
 #[derive(Deserialize)]
-struct List {
-    fault: Vec<Fault>,
+pub struct List {
+    /// Mistakes.
+    pub fault: Vec<Fault>,
+    /// Variants, in the reference.
+    pub variant: Vec<Fault>,
+}
+
+impl List {
+    /// Mistakes, then variants.
+    pub fn all(&self) -> impl Iterator<Item = &Fault> {
+        self.fault.iter().chain(&self.variant)
+    }
 }
 
 /// The list in `verify/faults.toml`.
-///
-/// # Errors
-/// A list that cannot be read.
-pub fn list() -> Result<Vec<Fault>> {
+pub fn list() -> Result<List> {
     let text = read(&root().join("verify/faults.toml"))?;
-    Ok(toml::from_str::<List>(&text).into_diagnostic()?.fault)
+    toml::from_str(&text).into_diagnostic()
 }
 
 /// What the last run of all faults left in `verify/faults.json`.
-///
-/// # Errors
-/// A file that cannot be read.
 pub fn outcomes() -> Result<Vec<Outcome>> {
     let text = read(&root().join("verify/faults.json"))?;
     serde_json::from_str(&text).into_diagnostic()
+}
+
+/// Every fault and variant with what became of it; an error where one was not run.
+pub fn judged() -> Result<Vec<(Fault, Outcome)>> {
+    let outcomes = outcomes()?;
+    let pair = |fault: &Fault| {
+        let outcome = outcomes.iter().find(|o| o.name == fault.name).cloned();
+        let outcome = outcome.ok_or_else(|| miette!("fault `{}` has not been run", fault.name))?;
+        Ok((fault.clone(), outcome))
+    };
+    list()?.all().map(pair).collect()
 }
 
 fn read(path: &Path) -> Result<String> {
@@ -57,15 +77,17 @@ fn read(path: &Path) -> Result<String> {
 }
 
 impl Fault {
+    /// True for what must not change the results.
+    pub fn is_variant(&self) -> bool {
+        !self.tests.is_empty()
+    }
+
     /// True for a mistake in the reference.
     pub fn is_in_reference(&self) -> bool {
         self.file.starts_with("reference-cpp/")
     }
 
     /// The text of the file below `tree` with the mistake in it.
-    ///
-    /// # Errors
-    /// When the place is not there exactly once.
     pub fn applied(&self, tree: &Path) -> Result<String> {
         let text = read(&tree.join(&self.file))?;
         match text.matches(&self.find).count() {

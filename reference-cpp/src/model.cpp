@@ -1,0 +1,102 @@
+#include "model.hpp"
+
+#include <cmath>
+
+#include "acceleration.hpp"
+#include "assembly.hpp"
+#include "ideal.hpp"
+#include "placing.hpp"
+#include "redundancy.hpp"
+#include "statics.hpp"
+
+namespace {
+
+bool can_have_state(const BodyDescription &body) {
+    return body.kind != BodyKind::ground && body.kind != BodyKind::moving;
+}
+
+bool needs_assembly(const Scene &scene) {
+    const Initial &initial = scene.initial;
+    if (!initial.joints.empty() || !initial.points.empty() || !initial.velocities.empty()) return true;
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+        if (can_have_state(scene.bodies[i]) && !initial.states[i]) return true;
+    return false;
+}
+
+// States as they are; of moving bodies those of their paths.
+Assembled exact_states(const Scene &scene) {
+    Assembled start;
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+        Frame pose, velocity;
+        if (const std::optional<State> &state = scene.initial.states[i]) {
+            pose = state->pose;
+            velocity = state->velocity.value_or(Frame{});
+        }
+        if (const std::optional<Path> &path = scene.bodies[i].path) {
+            const Prescribed x = evaluate((*path)[0], 0.0), y = evaluate((*path)[1], 0.0),
+                             theta = evaluate((*path)[2], 0.0);
+            pose = {x.value, y.value, theta.value};
+            velocity = {x.rate, y.rate, theta.rate};
+        }
+        start.poses.push_back(pose);
+        start.velocities.push_back(velocity);
+    }
+    return start;
+}
+
+// A start as it is given must fit the joints.
+void check_exact_start(const Scene &scene, const System &system, const VectorXd &q, const VectorXd &v) {
+    constexpr double limit = 1e-9; // m and m/s
+    const Inputs inputs = system.inputs(0.0);
+    VectorXd phi, phi_t;
+    MatrixXd phi_q;
+    system.constraint_rows(inputs, q, phi, phi_q, phi_t);
+    const VectorXd rate = phi_q * v + phi_t;
+    for (int k = 0; k < system.constraints(); ++k) {
+        if (std::abs(phi[k]) > limit)
+            refuse(system.row_source(k), "the given states violate " + system.row_name(k) + " by " + text_of(phi[k]));
+        if (std::abs(rate[k]) > limit)
+            refuse(system.row_source(k), "the given velocities violate " + system.row_name(k) + " by " + text_of(rate[k]));
+    }
+    system.check_angles(inputs, q);
+    for (int k : system.loose_joints())
+        if (system.gap(k, q.data(), v.data()).delta() > limit)
+            refuse(scene.joints[k].source, "the journal starts outside its bearing");
+}
+
+} // namespace
+
+Model make_model(Scene scene) {
+    const bool prescribed_pose = scene.inverse_kinematics.has_value(), assembled = needs_assembly(scene);
+    const Scene ideal = idealised(scene);
+    std::shared_ptr<const DrivenAngles> driven_angles;
+    Assembled start;
+    if (prescribed_pose) {
+        start = assemble(ideal, true);
+        driven_angles = make_driven_angles(ideal, start.poses);
+        for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+            if (const std::optional<State> &state = scene.initial.states[i]) {
+                start.poses[i] = state->pose;
+                start.velocities[i] = state->velocity.value_or(start.velocities[i]);
+            }
+    } else {
+        start = assembled ? assemble(ideal, false) : exact_states(scene);
+    }
+
+    System system(scene, std::move(driven_angles));
+    VectorXd q = VectorXd::Zero(system.coordinates()), v = q;
+    for (std::size_t i = 0; i < start.poses.size(); ++i)
+        put_body(system.bodies()[i], start.poses[i], start.velocities[i], q, v);
+    check_exact_start(scene, system, q, v);
+
+    const std::vector<int> redundant = redundant_rows(system, q);
+    std::vector<std::string> names;
+    for (int row : redundant) names.push_back(system.row_name(row));
+    system.leave_out(redundant);
+    if (scene.initial.equilibrium) {
+        Statics(system).relax(q);
+        v.setZero();
+        Acceleration(system).project(0.0, q, v, std::numeric_limits<double>::infinity());
+    }
+    return {std::move(scene), std::move(system), std::move(q), std::move(v), std::move(start.poses), std::move(names)};
+}

@@ -1,0 +1,14 @@
+// A scene with its equations and its start.
+#pragma once
+
+#include "system.hpp"
+
+struct Model {
+    Scene scene;
+    System system;
+    VectorXd q, v;                      // start
+    std::vector<Frame> poses;           // of the bodies at the start
+    std::vector<std::string> redundant; // rows left out
+};
+
+Model make_model(Scene scene);

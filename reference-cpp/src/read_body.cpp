@@ -1,0 +1,155 @@
+// Bodies and their points.
+#include <algorithm>
+
+#include "reader.hpp"
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+Vec<double> read_place(const Value &value) {
+    if (value.kind != Value::table) return as_pair(value);
+    Fields f(value);
+    const double radius = f.not_negative("radius"), angle = f.number("degrees") * (pi / 180.0);
+    f.finish();
+    return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+void read_points(Fields &f, BodyDescription &body) {
+    each_entry(f.find("points"), [&](const std::string &name, const Value &value) {
+        body.points.push_back({name, read_place(value)});
+    });
+}
+
+struct Plate {
+    double mass, inertia;
+};
+
+Plate read_plate(const Value &value, const Library &library) {
+    enum class Shape { triangle, disc, rectangle };
+    Fields f(value);
+    const Shape shape = f.choice<Shape>(
+        "shape", {{"equilateral_triangle", Shape::triangle}, {"disc", Shape::disc}, {"rectangle", Shape::rectangle}});
+    double area = 0.0, gyration = 0.0; // square of the radius of gyration
+    if (shape == Shape::triangle) { // side s = sqrt(3) R, inertia m s^2 / 12
+        const double r = f.positive("circumradius");
+        area = 0.75 * std::sqrt(3.0) * r * r;
+        gyration = 3.0 * r * r / 12.0;
+    } else if (shape == Shape::disc) {
+        const double r = f.positive("radius");
+        area = pi * r * r;
+        gyration = 0.5 * r * r;
+    } else {
+        const double a = f.positive("width"), b = f.positive("height");
+        area = a * b;
+        gyration = (a * a + b * b) / 12.0;
+    }
+    const double thickness = f.positive("thickness");
+    const double mass = named(library.materials, f.get("material"), "material").density * area * thickness;
+    f.finish();
+    return {mass, mass * gyration};
+}
+
+void read_rigid_body(Fields &f, const Library &library, BodyDescription &body) {
+    if (const Value *value = f.find("plate")) {
+        const Plate plate = read_plate(*value, library);
+        body.mass = f.has("mass") ? f.positive("mass") : plate.mass;
+        body.inertia = plate.inertia * (body.mass / plate.mass);
+        require(!f.has("inertia"), f.source("inertia"), "give either a plate or the inertia, not both");
+    } else {
+        body.mass = f.positive("mass");
+        body.inertia = f.positive("inertia");
+    }
+    const Vec<double> center = f.has("center_of_mass") ? f.pair("center_of_mass") : Vec<double>{0.0, 0.0};
+    read_points(f, body);
+    for (NamedPoint &point : body.points) point.at = point.at - center;
+}
+
+void read_link_points(Fields &f, BodyDescription &body) {
+    body.points = {{"start", {0.0, 0.0}}, {"end", {body.length, 0.0}}};
+    each_entry(f.find("points"), [&](const std::string &name, const Value &value) {
+        require(body.kind == BodyKind::flexible_link, value.source, "only a flexible link has points of its own");
+        require(name != "start" && name != "end", value.source, "every link has this point already");
+        const double x = as_number(value), element = body.length / body.elements, node = std::round(x / element);
+        constexpr double rounding = 1e-9;
+        require(node >= 0.0 && node <= body.elements && std::abs(x - node * element) <= rounding * body.length,
+                value.source, "is not at a node between elements, which are " + text_of(element) + " m long");
+        body.points.push_back({name, {x, 0.0}});
+    });
+}
+
+void read_link(Fields &f, const Library &library, BodyDescription &body) {
+    body.kind = f.choice<BodyKind>("model", {{"rigid", BodyKind::rigid_link}, {"flexible", BodyKind::flexible_link}});
+    body.length = f.positive("length");
+    const Section &section = named(library.sections, f.get("section"), "section");
+    const Material &material = named(library.materials, f.get("material"), "material");
+    const double area = section.width * section.height;
+    body.mass = material.density * area * body.length;
+    body.inertia = body.mass * body.length * body.length / 12.0;
+    constexpr int most_elements = 10000;
+    if (body.kind == BodyKind::flexible_link) {
+        require(material.youngs_modulus.has_value(), f.source("material"), "a flexible link needs its youngs_modulus");
+        body.elements = f.count("elements", 1, most_elements);
+        body.axial_stiffness = *material.youngs_modulus * area;
+        body.bending_stiffness = body.axial_stiffness * section.width * section.width / 12.0;
+        body.strain_damping = f.not_negative("kelvin_voigt", 0.0);
+        if (const Value *value = f.find("rayleigh")) {
+            Fields rayleigh(*value);
+            body.mass_damping = rayleigh.not_negative("mass");
+            body.strain_damping += rayleigh.not_negative("stiffness");
+            rayleigh.finish();
+        }
+    } else {
+        if (f.has("elements")) f.count("elements", 1, most_elements);
+        for (const char *key : {"kelvin_voigt", "rayleigh"})
+            require(!f.has(key), f.source(key), "only a flexible link has damping");
+    }
+    read_link_points(f, body);
+}
+
+} // namespace
+
+BodyDescription read_body(const std::string &name, const Value &value, const Library &library, double duration) {
+    enum class Type { ground, moving, rigid_body, point_mass, link };
+    Fields f(value);
+    BodyDescription body;
+    body.name = name;
+    body.source = value.source;
+    switch (f.choice<Type>("type", {{"ground", Type::ground},
+                                    {"moving", Type::moving},
+                                    {"rigid_body", Type::rigid_body},
+                                    {"point_mass", Type::point_mass},
+                                    {"link", Type::link}})) {
+    case Type::ground: read_points(f, body); break;
+    case Type::moving:
+        body.kind = BodyKind::moving;
+        body.path = read_path(f.get("path"), duration);
+        read_points(f, body);
+        break;
+    case Type::rigid_body:
+        body.kind = BodyKind::rigid_body;
+        read_rigid_body(f, library, body);
+        break;
+    case Type::point_mass:
+        body.kind = BodyKind::point_mass;
+        body.mass = f.positive("mass");
+        body.points = {{"center", {0.0, 0.0}}};
+        break;
+    case Type::link: read_link(f, library, body); break;
+    }
+    f.finish();
+    return body;
+}
+
+PointReference read_point(const Value &value, const Scene &scene, const Library &library) {
+    const std::string &text = as_text(value);
+    const std::size_t dot = text.find('.');
+    require(dot != std::string::npos, value.source, "a point is written \"body.point\"");
+    const auto body = library.bodies.find(text.substr(0, dot));
+    require(body != library.bodies.end(), value.source, "there is no body `" + text.substr(0, dot) + "`");
+    const std::string name = text.substr(dot + 1);
+    const std::vector<NamedPoint> &points = scene.bodies[body->second].points;
+    const auto point = std::find_if(points.begin(), points.end(), [&](const NamedPoint &p) { return p.name == name; });
+    require(point != points.end(), value.source, "the body `" + body->first + "` has no point `" + name + "`");
+    return {body->second, point->at};
+}

@@ -1,0 +1,146 @@
+//! Every scene of the project: both sides read it, start alike and have the same channels.
+
+use super::classes::{self, KINDS};
+use crate::check::{Agreement, Worst, largest};
+use crate::embedding::Embedding;
+use crate::reference::{At, Scene};
+use crate::trajectory::{Plan, tolerances};
+use ladder::seeded::root;
+use looselink::scene::Analysis;
+use looselink::simulate::Simulation;
+use miette::{IntoDiagnostic, Result, WrapErr};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::path::Path;
+
+/// Rows of a moving scene that are looked at.
+pub const ROWS: f64 = 20.0;
+/// Difference of a start, over its largest coordinate or velocity.
+const START: f64 = 1e-12;
+/// Difference of a channel at the start, over the largest of its kind.
+pub const CHANNELS: f64 = 1e-9;
+/// The measure of that difference.
+const REASON: &str = "relative to the largest value of its kind, or to 1e9 times what rounding of the state does to it";
+/// Rounding in some tens of operations with numbers of size 1.
+const ROUNDING: f64 = 1e-14;
+/// Random changes of that size that are tried.
+const MOVES: usize = 5;
+
+/// All scenes, as they are written, up to a time that costs little; one whose start has velocities of least energy; and one with
+/// every load of a static analysis.
+pub fn all() -> Result<Vec<Plan>> {
+    let mut plans = Vec::new();
+    let folder = root().join("scenes");
+    collect(&folder, &mut plans).wrap_err_with(|| format!("cannot list {}", folder.display()))?;
+    plans.sort_by(|a: &Plan, b| a.scene.cmp(&b.scene));
+    plans.push(Plan::new("../verify/scenes/hanging", 0.1, 5e-3));
+    plans.push(Plan::new("../verify/scenes/loads", 2.0, 0.2));
+    Ok(plans)
+}
+
+fn collect(folder: &Path, plans: &mut Vec<Plan>) -> Result<()> {
+    for entry in folder.read_dir().into_diagnostic()? {
+        let path = entry.into_diagnostic()?.path();
+        if path.is_dir() {
+            collect(&path, plans)?;
+        } else if path.extension().is_some_and(|e| e == "toml") {
+            let scene = looselink::scene::Scene::load(&path, &[])?;
+            let (duration, interval) = (scene.simulation.duration, scene.output.interval);
+            let horizon = match scene.simulation.analysis {
+                Analysis::Static => duration,
+                Analysis::Dynamic => duration.min(ROWS * interval),
+            };
+            let name = path.strip_prefix(root().join("scenes")).into_diagnostic()?;
+            let name = name.with_extension("").display().to_string();
+            plans.push(Plan::new(name, horizon, interval));
+        }
+    }
+    Ok(())
+}
+
+/// Those with an analysis of this kind.
+pub fn of(analysis: Analysis) -> Result<Vec<Plan>> {
+    let mut plans = Vec::new();
+    for plan in all()? {
+        if plan.scene(None)?.simulation.analysis == analysis {
+            plans.push(plan);
+        }
+    }
+    Ok(plans)
+}
+
+/// The starts of a scene.
+pub fn start(plan: &Plan) -> Result<Vec<Agreement>> {
+    let reference = plan.reference()?;
+    let simulation = Simulation::new(&plan.scene(None)?)?;
+    let embedding = Embedding::new(&reference, simulation.model());
+    let [q, v] = reference.start().into_diagnostic()?;
+    let state = simulation.state();
+    let mut rows = Vec::new();
+    for (what, rust, cpp, reason) in [
+        (
+            "coordinates of the start",
+            embedding.spread(&state.q),
+            &q,
+            "relative to the largest, at least 1 m or 1 rad; each side closes the mechanism to rounding",
+        ),
+        (
+            "velocities of the start",
+            embedding.spread(&state.v),
+            &v,
+            "relative to the largest, at least 1 m/s or 1 rad/s; rounding",
+        ),
+    ] {
+        let mut worst = Worst::default();
+        worst.see_scaled(&rust, cpp, largest(cpp).max(1.0));
+        rows.push(worst.row(what, &plan.name(), START, reason));
+    }
+    if !reference.is_static {
+        // the first row alone
+        let rust = plan.run(None, 0)?;
+        let cpp = plan.cpp_until(&tolerances(1e-6), 0)?;
+        let floors = rounding(&reference)?;
+        let channels = classes::agreements(floors, &plan.name(), &rust, &cpp, CHANNELS, REASON);
+        rows.extend(channels);
+    }
+    Ok(rows)
+}
+
+/// What a change of the start by some tens of units in the last place does to the channels of each kind, over [`CHANNELS`].
+pub fn rounding(reference: &Scene) -> Result<[f64; KINDS]> {
+    let z = vec![0.0; reference.joints.len()];
+    let start = reference.start().into_diagnostic()?;
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let mut values = |size: f64| {
+        let [q, v] = start.clone().map(|mut x| {
+            let size = size * largest(&x).max(1.0);
+            for x in &mut x {
+                *x += size * random.random_range(-1.0..1.0);
+            }
+            x
+        });
+        let (t, q, v, z) = (0.0, &q, &v, &z);
+        reference.values(At { t, q, v, z }).into_diagnostic()
+    };
+    let still = values(0.0)?;
+    let mut floors = [0.0_f64; KINDS];
+    for _ in 0..MOVES {
+        for ((name, moved), still) in reference.channels.iter().zip(values(ROUNDING)?).zip(&still) {
+            if let Some(kind) = classes::class(name) {
+                floors[kind] = floors[kind].max((moved - still).abs() / CHANNELS);
+            }
+        }
+    }
+    Ok(floors)
+}
+
+/// A static scene from its first load to the last.
+pub fn equilibrium(plan: &Plan) -> Result<Vec<Agreement>> {
+    let floors = rounding(&plan.reference()?)?;
+    let rust = plan.run(None, usize::MAX)?;
+    let cpp = plan.cpp(&tolerances(1e-10))?;
+    let name = plan.name();
+    Ok(classes::agreements(
+        floors, &name, &rust, &cpp, CHANNELS, REASON,
+    ))
+}
