@@ -35,23 +35,19 @@
 //! to functions; ARCHITECTURE.md maps the mechanics to folders.
 #![forbid(unsafe_code)]
 
-pub mod ablation;
 pub mod compile;
 pub mod constraint;
 pub mod contact;
 pub mod force;
 pub mod initial;
-pub mod instructions;
 pub mod kinematics;
 pub mod link;
-pub mod machine;
 pub mod marker;
 pub mod math;
 pub mod model;
 pub mod motion;
 pub mod newton;
 pub mod output;
-pub mod precision;
 pub mod record;
 pub mod scene;
 pub mod simulate;

@@ -27,7 +27,6 @@ use meter::{Gain, Meter};
 pub use observer::{Contact, Control, End, Notice, Observer, Onset, Progress};
 pub use recording::Recording;
 pub use report::{Extreme, Inspection, Report, Status};
-pub(crate) use warnings::warning_list;
 
 use crate::compile::compile;
 use crate::initial::{self, redundancy};
@@ -169,7 +168,7 @@ pub enum RunError {
 
 /// A number as messages print it.
 fn short(value: &f64) -> String {
-    plot::number(*value, 2)
+    numbers::number(*value, 2)
 }
 
 /// Counts of the loop, beside those of Newton's method.

@@ -1,7 +1,7 @@
 //! Every number on disk reads back to the bits that were recorded, through the writer of runs.
 
 use crate::support::load;
-use looselink::output::{Folder, Results};
+use looselink::output::{FILES, Folder, Results};
 use looselink::scene::Scene;
 use looselink::simulate::{Contact, Control, Observer, Onset, Progress, Recording, Simulation};
 use proptest::prelude::*;
@@ -10,8 +10,8 @@ use std::path::Path;
 
 fn begin(scene: &Scene, folder: &Path) -> (Simulation, Results) {
     let simulation = Simulation::new(scene).unwrap();
-    let folder = Folder::new(folder, false).unwrap();
-    let results = folder.begin(scene, simulation.channels()).unwrap();
+    let folder = Folder::new(folder, &FILES, false).unwrap();
+    let results = Results::begin(folder, scene, simulation.channels()).unwrap();
     (simulation, results)
 }
 

@@ -1,12 +1,10 @@
 //! All integration tests, in one binary.
 
-mod ablation;
 mod accuracy;
 mod bad_input;
 mod bad_mechanism;
 mod balance;
 mod bits;
-mod command_line;
 mod couples;
 mod documents;
 mod drift;
@@ -20,7 +18,6 @@ mod malformed;
 mod mechanisms;
 mod methods;
 mod overrides;
-mod precision;
 mod published;
 mod rrr;
 mod stability;

@@ -40,11 +40,11 @@ impl Recording {
     }
 }
 
-/// The file of a scene of the project.
+/// The file of a scene of the project, from tests of any of its packages.
 pub fn path(scene: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("scenes")
-        .join(scene)
+    let mut above = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    let top = above.find(|folder| folder.join("scenes").is_dir());
+    top.unwrap().join("scenes").join(scene)
 }
 
 /// The files of all scenes of the project, below the folder of scenes, in order.

@@ -1,9 +1,9 @@
 //! What every effect of a scene does and costs.
 
-use looselink::ablation::{Ablation, Effect, Observed, Outcome, Role, ablate};
 use looselink::scene::Scene;
 use miette::{Result, miette};
 use std::path::Path;
+use studies::ablation::{Ablation, Effect, Observed, Outcome, Role, ablate};
 
 /// Over one cycle of the platform.
 const DURATION: &str = "simulation.duration=1";
@@ -50,8 +50,8 @@ fn conclusion(ablation: &Ablation) -> Option<String> {
          cheapest variant, with {} times the processor time of the full scene. Variants with clearance are chaotic, so a small \
          difference between two of them is not the influence of an effect.",
         moves.0,
-        plot::digits(moves.1),
+        numbers::digits(moves.1),
         costs.0,
-        plot::digits(costs.2)
+        numbers::digits(costs.2)
     ))
 }

@@ -6,7 +6,8 @@ use crate::guarantee::{
     REFERENCE_STEPS, ROWS, STEPS,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
-use plot::{Axis, Figure, Mark, Panel, digits, palette, percent, si};
+use numbers::{digits, percent, si};
+use plot::{Axis, Figure, Mark, Panel, palette};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 

@@ -1,8 +1,8 @@
 //! The second implementation as a rival: full coordinates, stabilised index 2, IDA with located onsets.
 
-use looselink::precision::{Made, Pace, Study, StudyError, Timing, Work};
 use looselink::simulate::Notice;
 use miette::{Result, miette};
+use studies::precision::{Made, Pace, Study, StudyError, Timing, Work};
 use verify::trajectory::{Plan, Trajectory, tolerances};
 
 /// Name of its curve.

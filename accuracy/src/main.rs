@@ -10,14 +10,14 @@ mod page;
 mod timings;
 
 use clap::{Parser, Subcommand};
-use looselink::ablation::figure as figure_of_effects;
-use looselink::machine::machine;
-use looselink::precision::{Effort, Outcome, Study, Survey, figure, run};
 use looselink::simulate::Notice;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use records::Run;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use studies::ablation::figure as figure_of_effects;
+use studies::machine::machine;
+use studies::precision::{Effort, Outcome, Study, Survey, figure, run};
 
 /// Runs all studies of precision against time and writes ACCURACY.md.
 #[derive(Debug, Parser)]

@@ -1,10 +1,10 @@
 //! The page.
 
 use crate::{Made, Surveyed, effects};
-use looselink::ablation::Ablation;
-use looselink::machine::{Machine, median};
-use looselink::precision::{Outcome, Pace};
 use std::fmt::Write;
+use studies::ablation::Ablation;
+use studies::machine::{Machine, median};
+use studies::precision::{Outcome, Pace};
 
 /// Errors of position at which curves are compared \[m\].
 const LEVELS: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
@@ -36,7 +36,7 @@ pub fn page(
             one.study.title,
             one.study.title,
             one.name,
-            looselink::precision::table(&one.outcome),
+            studies::precision::table(&one.outcome),
             folded(&one.outcome.warnings())
         );
     }
@@ -98,8 +98,8 @@ fn asked(made: &[Made]) -> String {
                 rows.len(),
                 within(1.0),
                 within(3.0),
-                plot::digits(*ratio),
-                plot::si(*position, "m")
+                numbers::digits(*ratio),
+                numbers::si(*position, "m")
             ),
         );
     }
@@ -112,7 +112,7 @@ fn asked(made: &[Made]) -> String {
             names.push(name);
         }
     }
-    let heads: Vec<String> = asked.iter().map(|p| plot::si(*p, "m")).collect();
+    let heads: Vec<String> = asked.iter().map(|p| numbers::si(*p, "m")).collect();
     line(
         &mut out,
         &format!("| study, method | {} |", heads.join(" | ")),
@@ -121,7 +121,7 @@ fn asked(made: &[Made]) -> String {
     for name in names {
         let cells = asked.iter().map(|p| {
             let found = rows.iter().find(|r| r.0 == *p && r.2 == name);
-            found.map_or(String::new(), |r| plot::digits(r.1))
+            found.map_or(String::new(), |r| numbers::digits(r.1))
         });
         let cells: Vec<String> = cells.collect();
         line(&mut out, &format!("| {name} | {} |", cells.join(" | ")));
@@ -224,8 +224,8 @@ fn conclusions(made: &[Made], surveyed: &[Surveyed]) -> String {
         &mut out,
         &format!(
             "* Fastest method, counted over {cells} pairs of a study and an error between {} and {}: {}.",
-            plot::si(LEVELS[0], "m"),
-            plot::si(LEVELS[LEVELS.len() - 1], "m"),
+            numbers::si(LEVELS[0], "m"),
+            numbers::si(LEVELS[LEVELS.len() - 1], "m"),
             wins.join(", ")
         ),
     );
@@ -235,9 +235,9 @@ fn conclusions(made: &[Made], surveyed: &[Surveyed]) -> String {
             &format!(
                 "* The scheme of the paper, Bathe's with a fixed step, takes {} to {} times as long as the fastest method (median \
                  {}). In {} of the {cells} pairs it does not reach the error with the steps tried.",
-                plot::digits(least),
-                plot::digits(most),
-                plot::digits(median(&ratios)),
+                numbers::digits(least),
+                numbers::digits(most),
+                numbers::digits(median(&ratios)),
                 cells - ratios.len()
             ),
         );
@@ -247,7 +247,7 @@ fn conclusions(made: &[Made], surveyed: &[Surveyed]) -> String {
         .filter_map(|one| {
             let (_, explicit, _) = winner(one, level, is_explicit)?;
             let (_, implicit, _) = winner(one, level, |c| !is_explicit(c))?;
-            let ratio = plot::digits(explicit / implicit);
+            let ratio = numbers::digits(explicit / implicit);
             Some(format!("{ratio} ({})", one.name))
         })
         .collect();
@@ -256,7 +256,7 @@ fn conclusions(made: &[Made], surveyed: &[Surveyed]) -> String {
         &format!(
             "* Time of the fastest explicit method over that of the fastest implicit one, for an error of {}: {}. The stable \
              step of explicit methods shrinks with the element length: compare `case2` with `case2-4elements`.",
-            plot::si(level, "m"),
+            numbers::si(level, "m"),
             explicit.join(", ")
         ),
     );
@@ -287,15 +287,15 @@ fn long_runs(one: &Surveyed) -> String {
     });
     let mut good: Vec<_> = good.collect();
     good.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let told = |(run, time): &(&looselink::precision::Sampled, f64)| {
+    let told = |(run, time): &(&studies::precision::Sampled, f64)| {
         format!(
             "{} with {} ({} times real time)",
             run.curve,
             run.pace,
-            plot::digits(one.study.duration / time)
+            numbers::digits(one.study.duration / time)
         )
     };
-    let [deviation, contact, loss] = CONVERGED.map(plot::percent);
+    let [deviation, contact, loss] = CONVERGED.map(numbers::percent);
     let mut text = format!(
         "{} of {} runs count as converged: envelopes and rms within {deviation} of the reference, the share of contact within \
          {contact}, and an energy lost or gained by the integrator below {loss} of the contact dissipation.",
@@ -304,7 +304,7 @@ fn long_runs(one: &Surveyed) -> String {
     );
     if let Some(first) = good.first() {
         text += &format!(" The fastest of these is {}", told(first));
-        let controlled = |(run, _): &&(&looselink::precision::Sampled, f64)| {
+        let controlled = |(run, _): &&(&studies::precision::Sampled, f64)| {
             matches!(run.pace, Pace::Accuracy { .. })
         };
         text += &match good.iter().find(controlled) {
@@ -329,7 +329,7 @@ fn fastest(made: &[Made]) -> String {
          Values are interpolated between the runs of a curve and never extrapolated: where the coarsest run is already below the \
          error, its time counts. A dash: no method reached the error.\n\n",
     );
-    let heads: Vec<String> = LEVELS.iter().map(|e| plot::si(*e, "m")).collect();
+    let heads: Vec<String> = LEVELS.iter().map(|e| numbers::si(*e, "m")).collect();
     line(&mut out, &format!("| study | {} |", heads.join(" | ")));
     line(&mut out, &format!("|---|{}", "---|".repeat(LEVELS.len())));
     for one in of_methods(made) {
@@ -339,9 +339,9 @@ fn fastest(made: &[Made]) -> String {
             };
             let paper = time_at(&one.outcome, PAPER, *error);
             let paper = paper.map_or(String::new(), |(t, pace)| {
-                format!(" (Bathe, {pace}: {} times)", plot::digits(t / time))
+                format!(" (Bathe, {pace}: {} times)", numbers::digits(t / time))
             });
-            format!("{curve}, {pace}: {}{paper}", plot::si(time, "s"))
+            format!("{curve}, {pace}: {}{paper}", numbers::si(time, "s"))
         });
         let cells: Vec<String> = cells.collect();
         line(

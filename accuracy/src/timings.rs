@@ -1,12 +1,12 @@
 //! The raw times behind the page.
 
 use crate::{Made, Surveyed};
-use looselink::ablation::{self, Ablation};
-use looselink::machine::{Machine, machine};
-use looselink::precision::Time;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 use std::path::Path;
+use studies::ablation::{self, Ablation};
+use studies::machine::{Machine, machine};
+use studies::precision::Time;
 
 #[derive(Serialize)]
 struct Timings<'a> {

@@ -3,7 +3,7 @@
 
 use fuzz::{Pool, is_toml, mutate, show, studies};
 use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target};
-use looselink::precision::{Study, StudyError};
+use studies::precision::{Study, StudyError};
 use std::path::Path;
 use std::sync::LazyLock;
 

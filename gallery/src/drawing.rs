@@ -64,7 +64,7 @@ fn mechanism(run: &Run) -> Panel {
         let color = blend(EARLY, palette::BLUE, share);
         let label = match unit {
             "" => format!("{:.2}", t[row]),
-            unit => plot::si(t[row], unit),
+            unit => numbers::si(t[row], unit),
         };
         pose(run, row, color, &label, &mut marks);
     }

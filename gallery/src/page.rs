@@ -2,7 +2,7 @@
 
 use crate::runs::Run;
 use looselink::scene::Analysis;
-use plot::si;
+use numbers::si;
 
 /// The entry of a run.
 pub fn entry(run: &Run) -> String {

@@ -70,7 +70,7 @@ impl fmt::Display for Allowed {
 /// Plain for numbers of ordinary size, powers of ten for others.
 pub fn short(x: f64) -> String {
     if x == 0.0 || (1e-2..1e4).contains(&x.abs()) {
-        return plot::digits(x);
+        return numbers::digits(x);
     }
     format!("{x:.1e}").replace(".0e", "e")
 }

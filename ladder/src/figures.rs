@@ -57,7 +57,7 @@ fn panel(family: &[&Answer]) -> Option<Panel> {
     let mut marks: Vec<Mark> = [(low, palette::GREY), (high, palette::BLACK)]
         .map(|(order, color)| {
             let y: Vec<f64> = x.iter().map(|x| top * (x / start).powf(order)).collect();
-            Mark::curve(&format!("slope {}", plot::digits(order)), color, &x, &y)
+            Mark::curve(&format!("slope {}", numbers::digits(order)), color, &x, &y)
         })
         .into();
     let questions: Vec<&str> = family.iter().map(|a| a.question.as_str()).collect();
@@ -85,7 +85,7 @@ fn panel(family: &[&Answer]) -> Option<Panel> {
     let orders = family.iter().map(|a| a.number);
     let least = orders.clone().fold(f64::INFINITY, f64::min);
     let greatest = orders.fold(f64::NEG_INFINITY, f64::max);
-    let order = |x: f64| plot::digits((1e2 * x).round() / 1e2);
+    let order = |x: f64| numbers::digits((1e2 * x).round() / 1e2);
     let title = match (alone, order(least) == order(greatest)) {
         (false, false) => format!("Order {} … {}", order(least), order(greatest)),
         _ => format!("Order {}", order(least)),

@@ -114,7 +114,7 @@ fn numbers(page: &mut String, record: &constants::Record) {
              time, by {} of the largest number in its table, and runs the property tests of mass, tangent and decay. A change is \
              caught when a test fails.\n\n| table | file | numbers | caught |\n|---|---|---|---|",
             records::place("constants"),
-            plot::number(record.change, 1),
+            numbers::number(record.change, 1),
         ),
     );
     for table in record.numbers.chunk_by(|a, b| a.table == b.table) {
@@ -170,7 +170,7 @@ fn mutants(
             total.viable() + total.unviable,
             record.seed,
             total.viable(),
-            plot::percent((1e3 * record.caught()).floor() / 1e3),
+            numbers::percent((1e3 * record.caught()).floor() / 1e3),
         ),
     );
     let mut line = |name: &str, c: &Counts| {

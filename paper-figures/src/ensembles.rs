@@ -198,7 +198,7 @@ fn singles(g: &Geometry) -> Result<Vec<Single>> {
 
 /// The name of a run with structural damping.
 pub fn damped_name(time: f64) -> String {
-    format!("retardation time {}", plot::si(time, "s"))
+    format!("retardation time {}", numbers::si(time, "s"))
 }
 
 /// Case 2 from rest: the platform gets up to speed on the circle so smoothly that the links follow in their quasi-static

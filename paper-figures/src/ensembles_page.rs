@@ -10,8 +10,8 @@ use crate::record::{BOTH, Ensemble, Exponents, Record, Single};
 use crate::runs::words;
 use crate::shuffles::{PAIRS, SHUFFLES, Test};
 use crate::warned::{Source, told};
+use numbers::{digits, percent, si};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
-use plot::{digits, percent, si};
 use std::fmt::Write;
 
 /// Probability below which a difference counts as more than chance.

@@ -6,8 +6,8 @@ use crate::measures::bound;
 use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::peak;
+use numbers::{digits, si};
 use plot::{Axis, Figure, Mark, Panel, palette};
-use plot::{digits, si};
 
 /// The error the paper reads off its Figs. 5a and 5b \[m\].
 pub const CLAIMED: f64 = 2e-4;

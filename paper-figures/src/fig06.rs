@@ -6,7 +6,7 @@ use crate::measures::deviation;
 use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::{peak, rms};
-use plot::digits;
+use numbers::digits;
 use plot::{Axis, Figure, Mark, Panel, palette};
 
 /// Draws the figure.

@@ -5,7 +5,7 @@ use crate::figures::{caption, step_label, time_axis};
 use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::{mean, peak};
-use plot::si;
+use numbers::si;
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
 /// Draws the figure.

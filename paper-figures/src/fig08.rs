@@ -6,8 +6,8 @@ use crate::figures::{caption, step_label, time_axis};
 use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::fraction;
+use numbers::{percent, si};
 use plot::{Axis, Figure, Mark, Panel, palette};
-use plot::{percent, si};
 
 /// Draws the figure.
 pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {

@@ -6,7 +6,7 @@ use crate::figures::{caption, step_label};
 use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::signal::{mean, rms};
-use plot::digits;
+use numbers::digits;
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
 /// Draws the figure.

@@ -5,7 +5,7 @@ use crate::numbers::Numbers;
 use crate::runs::Recording;
 use crate::{fig05, fig06, fig07, fig08, fig09};
 use miette::Result;
-use plot::si;
+use numbers::si;
 use plot::{Axis, Color, Figure, palette, save};
 use rayon::prelude::*;
 use std::collections::BTreeSet;

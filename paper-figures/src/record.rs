@@ -5,7 +5,7 @@ use crate::measures::Measures;
 use crate::runs::words;
 use crate::warned::{Source, merged};
 use miette::{IntoDiagnostic, Result, WrapErr};
-use plot::{digits, si};
+use numbers::{digits, si};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs;

@@ -14,7 +14,7 @@ use crate::{
     statements_model, statements_setup,
 };
 use looselink::scene::{BodyKind, LinkModel};
-use plot::{digits, percent, si};
+use numbers::{digits, percent, si};
 use std::fmt::Write;
 
 /// Pairs of statements whose criteria exclude each other, and why.

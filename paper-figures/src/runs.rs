@@ -4,7 +4,7 @@ use crate::warned::Source;
 use looselink::scene::Scene;
 use looselink::simulate::{self, Report, Simulation};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use plot::si;
+use numbers::si;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;

@@ -4,8 +4,8 @@ use crate::campaign::controlled;
 use crate::kinematics::Geometry;
 use crate::runs::{Pace, Plan};
 use crate::scans::{Entry, Scan};
+use numbers::{digits, si};
 use plot::Axis;
-use plot::{digits, si};
 
 /// Thickness of the moving platform in Table 1 \[m\].
 const THICKNESS: f64 = 0.01;

@@ -8,8 +8,8 @@ use crate::numbers::Numbers;
 use crate::record::Record;
 use crate::scans::{Entry, Scan, Values};
 use crate::warned::told;
+use numbers::{digits, percent, si};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
-use plot::{digits, percent, si};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 

@@ -91,7 +91,7 @@ impl Statement {
             let _ = write!(
                 text,
                 " The paper's number is {} times as large.",
-                plot::digits(1.0 / factor)
+                numbers::digits(1.0 / factor)
             );
         }
         let _ = write!(text, "\n* Criterion: {}.\n* {}\n", self.criterion, self.why);

@@ -4,7 +4,7 @@ use crate::evidence::{Evidence, statement};
 use crate::interval::{Interval, Verdict};
 use crate::measures::{AFTER_ONSET, PEAKS};
 use crate::statement::Statement;
-use plot::{digits, percent, si};
+use numbers::{digits, percent, si};
 
 /// The statements.
 pub fn statements(e: &Evidence) -> Vec<Statement> {

@@ -9,7 +9,7 @@ use crate::measures::{PEAKS, SIMULTANEOUS};
 use crate::runs::Recording;
 use crate::statement::{Basis, Statement};
 use crate::warned::Source;
-use plot::{digits, percent, si};
+use numbers::{digits, percent, si};
 
 /// Cycles further apart than this fraction of their amplitude do not repeat.
 const REPEATS: f64 = 0.01;

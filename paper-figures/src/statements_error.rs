@@ -8,7 +8,7 @@ use crate::record::{BOTH, TIGHTER};
 use crate::runs::Recording;
 use crate::signal::{peak, smooth};
 use crate::statement::Statement;
-use plot::{digits, percent, si};
+use numbers::{digits, percent, si};
 
 /// The statements.
 pub fn statements(e: &Evidence) -> Vec<Statement> {

@@ -7,7 +7,7 @@ use crate::record::{Long, Work};
 use crate::runs::words;
 use crate::statement::Statement;
 use crate::warned::Source;
-use plot::{digits, percent, si};
+use numbers::{digits, percent, si};
 
 /// Errors at which work is compared, as parts of the largest error of the platform.
 const LEVELS: [f64; 2] = [1e-2, 1e-4];

@@ -7,7 +7,7 @@ use looselink::contact::normal_law;
 use looselink::link::{ElasticRoute, GaussCable, LiteralCable};
 use looselink::scene::{BodyKind, JointModel, LinkModel, Method};
 use looselink::simulate::Simulation;
-use plot::{digits, percent, si};
+use numbers::{digits, percent, si};
 
 /// The statements.
 pub fn statements(e: &Evidence) -> Vec<Statement> {

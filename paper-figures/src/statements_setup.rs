@@ -7,7 +7,7 @@ use crate::runs::Recording;
 use crate::signal::peak;
 use crate::statement::{Basis, Statement};
 use looselink::scene::{BodyKind, JointModel, Link, LinkModel, Scene};
-use plot::{digits, percent, si};
+use numbers::{digits, percent, si};
 
 /// Young's modulus of aluminium \[Pa\].
 const ALUMINIUM: f64 = 70e9;

@@ -90,7 +90,7 @@ fn sweep(
                         "drive {}: the path pulls joint {} apart, by {} at t = {} s",
                         drive.name,
                         joint.name,
-                        plot::si(distance, "m"),
+                        numbers::si(distance, "m"),
                         to.t
                     );
                     return Err(c.joint_error(j, message, "both of its points are prescribed"));

@@ -132,7 +132,7 @@ impl Compiler<'_> {
         longest.map_or(String::new(), |(name, length)| {
             format!(
                 " (the longest is that of {name}, {} m)",
-                plot::exact(length)
+                numbers::exact(length)
             )
         })
     }

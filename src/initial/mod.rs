@@ -111,8 +111,8 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
             let message = format!(
                 "the journal of joint {} starts outside its bearing: the penetration of {} exceeds the clearance of {}",
                 scene.joints[j].name,
-                plot::si(delta, "m"),
-                plot::si(contact.clearance, "m")
+                numbers::si(delta, "m"),
+                numbers::si(contact.clearance, "m")
             );
             return Err(scene.error(scene.joints[j].span, message, "this joint"));
         }

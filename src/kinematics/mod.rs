@@ -12,7 +12,7 @@ pub(crate) use series::Series;
 use crate::math::plane::{norm, sub};
 use crate::model::Model;
 use crate::system::{Inner, PrescribeError, State, System};
-use plot::number;
+use numbers::number;
 
 /// After an update below this the error is far below rounding, by the quadratic convergence of Newton's method.
 const LAST_UPDATE: f64 = 1e-9;

@@ -3,7 +3,7 @@
 //! It is linked, all of its files or none, into the folder `previous-result` before it is taken out of its place, and
 //! deleted when the new one is whole. Whatever ends the program, one of the two places holds a whole result.
 
-use super::naming;
+use super::folder::naming;
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};

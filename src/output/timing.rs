@@ -47,7 +47,7 @@ impl Stopwatch {
 }
 
 /// Processor, threads and system.
-pub(crate) fn machine() -> String {
+pub fn machine() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = info.lines().find(|line| line.starts_with("model name"));
     let model = model

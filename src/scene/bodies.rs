@@ -209,8 +209,8 @@ fn link_points(
         if !(node > 0.0 && node < elements as f64 && (place - node).abs() <= 1e-9 * node) {
             let requirement = format!(
                 "lie at a node between the ends: a multiple of {} m, less than {} m",
-                plot::exact(length / elements as f64),
-                plot::exact(length)
+                numbers::exact(length / elements as f64),
+                numbers::exact(length)
             );
             return Err(field.must(&requirement));
         }

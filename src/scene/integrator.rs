@@ -4,7 +4,7 @@ use super::error::SceneError;
 use super::field::Field;
 use super::fields::Fields;
 use super::{Accuracy, Analysis, Integrator, Method, Pace, Simulation};
-use plot::number;
+use numbers::number;
 
 /// More steps than this are a slip of the pen: a week of computing at 20 microseconds a step.
 const MOST_STEPS: f64 = 1e10;

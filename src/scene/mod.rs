@@ -21,7 +21,7 @@ mod text;
 
 pub use crate::motion::Function;
 pub use error::{SceneError, Span};
-pub(crate) use reader::read_file;
+pub use reader::read_file;
 
 use crate::math::plane::{Vec2, perp, scale, sub};
 use error::Sources;

@@ -16,7 +16,10 @@ const LARGEST_FILE: u64 = 8 << 20;
 const WHOLE: f64 = 1e-9;
 
 /// The bytes of a scene or a study; whatever the file is, their number is bounded.
-pub(crate) fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+///
+/// # Errors
+/// A file that cannot be read, or that is larger than 8 MiB.
+pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?
         .take(LARGEST_FILE + 1)

@@ -1,7 +1,7 @@
 //! What a user should know of a run before the numbers are used.
 
 use super::Report;
-use plot::{number, share};
+use numbers::{number, share};
 
 /// Warn of energy lost or gained by the integrator beyond this part of the energy dissipated ...
 const OF_DISSIPATED: f64 = 0.05;
@@ -13,15 +13,6 @@ const UNRESOLVED: f64 = 1.0;
 const CRUSHED: f64 = -0.4;
 /// Warn of an estimated error beyond this part of the largest range of motion.
 const OF_TRAVEL: f64 = 0.01;
-
-/// Warnings of several runs as a part of a page in Markdown; empty where no run warns.
-pub(crate) fn warning_list(warnings: &[String]) -> String {
-    let lines = warnings.iter().map(|warning| format!("* {warning}\n"));
-    match warnings.is_empty() {
-        true => String::new(),
-        false => format!("\nWarnings:\n\n{}", lines.collect::<String>()),
-    }
-}
 
 impl Report {
     /// One line for every reason why the results may be less accurate than they look.

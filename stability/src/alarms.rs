@@ -135,7 +135,7 @@ fn compare(run: f64, reference: f64) -> (Verdict, String) {
         true => Verdict::False,
         false => Verdict::True,
     };
-    (verdict, plot::number(run / reference, 2))
+    (verdict, numbers::number(run / reference, 2))
 }
 
 /// A scene with one method and step.
@@ -273,7 +273,7 @@ impl Case<'_> {
             let shown = self.own(stop.every as f64 * self.step).join(" --set ");
             reason += &format!("; shown by --set {shown}");
         }
-        let numbers = [stop.t, stop.gained, stop.supplied].map(|x| plot::number(x, 2));
+        let numbers = [stop.t, stop.gained, stop.supplied].map(|x| numbers::number(x, 2));
         Some(Alarm {
             stops: stops.len(),
             verdict,

@@ -337,8 +337,8 @@ impl Made {
                  stopped with an error. {}",
             map.title,
             map.scene.display(),
-            plot::si(map.duration, "s"),
-            plot::si(map.tolerance, self.unit_of_channels()),
+            numbers::si(map.duration, "s"),
+            numbers::si(map.tolerance, self.unit_of_channels()),
             map.remark
         );
         Figure::grid(panels.collect(), COLUMNS, caption)

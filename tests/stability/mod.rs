@@ -1,9 +1,5 @@
-//! Hard cases, random mechanisms, hostile input, killed processes: nothing may be wrong in silence, and nothing may be lost.
+//! Hostile input, random mechanisms that found a fault, warnings: nothing may be wrong in silence.
 
-mod cases;
 mod input;
-mod maps;
-mod process;
-mod random;
 mod regressions;
 mod warnings;

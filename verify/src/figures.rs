@@ -3,7 +3,8 @@
 use crate::compare::flexible::{Convergence, QUANTITIES};
 use crate::trajectory::{Plan, Trajectory, tolerances};
 use miette::Result;
-use plot::{Axis, Figure, Mark, Panel, palette, si};
+use numbers::si;
+use plot::{Axis, Figure, Mark, Panel, palette};
 
 /// A channel with its label, unit and the factor from SI.
 const SHOWN: [(&str, &str, &str, f64); 3] = [

@@ -139,7 +139,7 @@ fn own(path: &Path) -> Result<ExitCode> {
 fn show(title: &str, rows: Vec<Agreement>) -> Vec<Agreement> {
     println!("\n{title}\n  difference  allowed");
     for row in &rows {
-        let [difference, allowed] = [row.difference, row.tolerance].map(|x| plot::number(x, 2));
+        let [difference, allowed] = [row.difference, row.tolerance].map(|x| numbers::number(x, 2));
         let (mark, values) = match row.holds() {
             true => (' ', String::new()),
             false => ('!', format!(": {:e} and {:e}", row.rust, row.cpp)),

@@ -4,7 +4,7 @@ use crate::check::Agreement;
 use crate::crossing::{INPUTS, TOLERANCES, functions};
 use crate::reference;
 use ladder::faults::{Fault, Outcome};
-use plot::number;
+use numbers::number;
 use std::fmt::{self, Write};
 
 /// Everything the page is made of.

@@ -76,7 +76,7 @@ fn wrong_length(c: &Compiler, placed: &Placed, state: &State) -> Result<(), Scen
     // Phi = (d^2 - l^2)/(2 l)
     let phi = placed.term.value(state)[0];
     let distance = (link.length * (link.length + 2.0 * phi)).sqrt();
-    let [distance, length] = [distance, link.length].map(|x| plot::si(x, "m"));
+    let [distance, length] = [distance, link.length].map(|x| numbers::si(x, "m"));
     let neighbour = c.scene.joints.iter().find_map(|joint| {
         let bodies = [joint.bearing.body, joint.journal.body];
         let other = bodies.iter().find(|b| **b != own)?;

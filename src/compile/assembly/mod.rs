@@ -18,7 +18,7 @@ use crate::scene::{
 use crate::system::State;
 use contradictions::{blame, check_given};
 use guess::guess;
-use plot::number;
+use numbers::number;
 use velocities::velocities;
 
 /// Largest violation of an assembled constraint \[m\]: far above rounding, far below anything measurable.
@@ -137,8 +137,8 @@ fn check_turns(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneEr
 /// The violation of a constraint in words, or that of its rate with `per` = "/s".
 pub(crate) fn opening(effect: Effect, value: f64, per: &str) -> String {
     match effect {
-        Effect::Direction => plot::si(value, &format!("rad{per}")),
-        _ => plot::si(value, &format!("m{per}")),
+        Effect::Direction => numbers::si(value, &format!("rad{per}")),
+        _ => numbers::si(value, &format!("m{per}")),
     }
 }
 
@@ -159,7 +159,7 @@ fn cannot_close(
         let message = format!(
             "the mechanism cannot be assembled: {} is {} m long, more than all other bodies together ({} m)",
             body.name,
-            plot::exact(sizes[b]),
+            numbers::exact(sizes[b]),
             number(total - sizes[b], 4)
         );
         return c.scene.error(

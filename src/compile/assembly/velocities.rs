@@ -84,7 +84,7 @@ fn contradiction(c: &Compiler, given: &BodyState, component: usize, off: f64) ->
     let message = format!(
         "the given velocity of {} contradicts the joints and drives: {key} is off by {}",
         c.scene.bodies[given.body].name,
-        plot::si(off.abs(), unit)
+        numbers::si(off.abs(), unit)
     );
     c.scene.error(given.span, message, "this velocity")
 }

@@ -60,8 +60,8 @@ impl Check {
     pub fn bound(&self) -> String {
         match (self.least, self.greatest) {
             (1.0, 1.0) => "yes".to_owned(),
-            (f64::MIN, greatest) => format!("at most {}", plot::number(greatest, 4)),
-            (least, f64::MAX) => format!("at least {}", plot::number(least, 4)),
+            (f64::MIN, greatest) => format!("at most {}", numbers::number(greatest, 4)),
+            (least, f64::MAX) => format!("at least {}", numbers::number(least, 4)),
             (least, greatest) => format!("{least} to {greatest}"),
         }
     }
@@ -71,7 +71,7 @@ impl Check {
         match (self.least, self.greatest, self.value) {
             (1.0, 1.0, 1.0) => "yes".to_owned(),
             (1.0, 1.0, _) => "no".to_owned(),
-            (_, _, value) => plot::number(value, 4),
+            (_, _, value) => numbers::number(value, 4),
         }
     }
 }

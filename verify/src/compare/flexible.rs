@@ -149,7 +149,7 @@ impl Convergence {
                 tolerance: ORDER_BAND,
                 reason: format!("Bathe's scheme is of order 2; from h = {h:e} s to the half"),
             }));
-            let step = plot::number(self.steps[self.steps.len() - 1], 3);
+            let step = numbers::number(self.steps[self.steps.len() - 1], 3);
             let unit = if is_position { 1.0 } else { curve.size };
             rows.push(Agreement {
                 difference: curve.finest.difference / unit,

@@ -94,8 +94,8 @@ impl Series {
         }
         let how = format!(
             "h = {} s, IDA relative {}",
-            plot::number(self.step, 3),
-            plot::number(self.relative, 1)
+            numbers::number(self.step, 3),
+            numbers::number(self.relative, 1)
         );
         let relative = format!("relative; {how}");
         let [instants, others] = self.allowed;

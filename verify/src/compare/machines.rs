@@ -86,7 +86,7 @@ pub fn first_rows(plan: &Plan) -> Result<Vec<Agreement>> {
     let ([coarse_cpp, cpp], [coarse_rust, rust]) = (cpp, rust);
     let (cpp, rust) = (cpp?, rust?);
     let floors = scenes::rounding(&plan.reference()?)?;
-    let name = format!("{}, {} s", plan.name(), plot::number(plan.duration, 3));
+    let name = format!("{}, {} s", plan.name(), numbers::number(plan.duration, 3));
     let reason = "relative to the largest value of its kind; allowed: the differences of each program from its own run with ten times the tolerance";
     let compare = |a: &_, b: &_| classes::agreements(floors, &name, a, b, 0.0, reason);
     let own = compare(&coarse_rust?, &rust)

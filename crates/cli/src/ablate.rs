@@ -1,0 +1,74 @@
+//! `looselink ablate`
+
+use super::failure::Failure;
+use super::progress::show as tell;
+use super::{SceneArguments, print};
+use clap::Args;
+use looselink::output::Folder;
+use serde::Serialize;
+use std::path::PathBuf;
+use studies::ablation::{Ablation, FILES, Observed, Repeatable, Timing, ablate as measure};
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// The body whose displacement and acceleration are compared; by default the driven one, or else the last that moves.
+    #[arg(long, value_name = "NAME")]
+    body: Option<String>,
+    /// Timed runs of every variant, after one that is not timed; by default up to five within a second.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    runs: Option<u32>,
+    /// The folder that receives tables, numbers and a picture; it is created.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace an existing result; it is kept in `previous-result` inside the folder until the new one is complete.
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// Machine-readable output.
+    #[arg(long)]
+    json: bool,
+    /// Show no progress; warnings are still shown.
+    #[arg(long)]
+    quiet: bool,
+}
+
+#[derive(Serialize)]
+struct Both<'a> {
+    ablation: Repeatable<'a>,
+    timing: Timing,
+}
+
+/// Runs all variants of the scene; one that cannot be built is a row that says why.
+pub fn ablate(arguments: &Arguments) -> Result<(), Failure> {
+    let folder = arguments.out.as_ref();
+    let folder = folder
+        .map(|out| Folder::new(out, &FILES, arguments.force))
+        .transpose()?;
+    let (scene, _) = arguments.scene.load()?;
+    let body = Observed::choose(&scene, arguments.body.as_deref())
+        .map_err(|e| Failure::bad_input(e.to_string()))?;
+    folder.iter().try_for_each(Folder::prepare)?;
+    let runs = arguments.runs.map(|runs| runs as usize);
+    let ablation = measure(&scene, body, runs, &mut |notice| {
+        tell(notice, arguments.quiet)
+    });
+    // What was measured is shown also where it cannot be stored.
+    let stored = folder.map_or(Ok(()), |folder| ablation.write(&folder));
+    show(arguments, &ablation)?;
+    Ok(stored?)
+}
+
+fn show(arguments: &Arguments, ablation: &Ablation) -> Result<(), Failure> {
+    if !arguments.json {
+        return print(&ablation.text());
+    }
+    let both = Both {
+        ablation: ablation.repeatable(),
+        timing: ablation.timing(),
+    };
+    match serde_json::to_string_pretty(&both) {
+        Ok(json) => print(&format!("{json}\n")),
+        Err(e) => Err(Failure::system(e.to_string())),
+    }
+}

@@ -1,0 +1,65 @@
+//! The last lines of a run: what was counted, and what the integrator did to the energy.
+
+use looselink::record::Ledger;
+use looselink::simulate::{AccuracyReport, Report};
+use numbers::{number, share};
+
+/// Impacts that are shown; summary.json lists more.
+const SHOWN: usize = 3;
+
+/// Lines about a finished run, most of them absent when there is nothing to say; warnings are not among them.
+pub fn lines(report: &Report) -> Vec<String> {
+    let mut lines = Vec::new();
+    lines.extend(report.ledger.iter().map(energy));
+    lines.extend(report.accuracy.iter().map(accuracy));
+    let first = report.impacts.iter().take(SHOWN).enumerate();
+    lines.extend(first.map(|(k, impact)| {
+        format!(
+            "impact {}: {} at t = {:.9} s, velocity {} m/s, direction {:.4} degrees, penetration {} m",
+            k + 1,
+            impact.joint,
+            impact.t,
+            number(impact.impact_velocity, 7),
+            impact.angle.to_degrees(),
+            number(impact.deepest_penetration, 7)
+        )
+    }));
+    lines
+}
+
+/// What the steps were that an accuracy asked for.
+fn accuracy(control: &AccuracyReport) -> String {
+    let [shortest, longest] = control.steps;
+    let mut line = format!(
+        "accuracy: {} requested, steps from {} s to {} s",
+        control.asked,
+        number(shortest, 2),
+        number(longest, 2)
+    );
+    let most = control.rejected_by.iter().max_by_key(|(_, count)| **count);
+    if let Some((name, count)) = most {
+        line += &format!(
+            "; steps rejected for their estimated error: {} ({count} of them for {name})",
+            control.rejected_steps
+        );
+    }
+    line
+}
+
+/// What the integrator did to the energy.
+fn energy(ledger: &Ledger) -> String {
+    let (dissipated, numerical) = (ledger.dissipated(), ledger.numerical.abs());
+    let changed = number(numerical, 2);
+    let verb = match ledger.numerical < 0.0 {
+        true => "gained",
+        false => "lost",
+    };
+    if dissipated <= 0.0 {
+        return format!("energy: {changed} J {verb} by the integrator");
+    }
+    format!(
+        "energy: {} J dissipated, {changed} J {verb} by the integrator ({})",
+        number(dissipated, 4),
+        share(numerical / dissipated, "the dissipated energy")
+    )
+}

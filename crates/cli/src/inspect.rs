@@ -1,0 +1,142 @@
+//! `looselink inspect`
+
+use super::failure::Failure;
+use super::{SceneArguments, print};
+use clap::Args;
+use looselink::scene::{Analysis, Pace, Scene};
+use looselink::simulate::{Inspection, Simulation};
+use numbers::{exact, number};
+use std::fmt::Write;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Machine-readable output.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Shows the compiled scene on standard output.
+pub fn inspect(arguments: &Arguments) -> Result<(), Failure> {
+    let (scene, simulation) = arguments.scene.load()?;
+    let inspection = simulation.inspect();
+    if !arguments.json {
+        return print(&text(&scene, &simulation, &inspection));
+    }
+    match serde_json::to_string_pretty(&inspection) {
+        Ok(json) => print(&format!("{json}\n")),
+        Err(e) => Err(Failure::system(e.to_string())),
+    }
+}
+
+fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> String {
+    let mut out = format!("{}\n\n", scene.title);
+    let duration = scene.simulation.duration;
+    for (name, value) in [
+        ("bodies", scene.bodies.len().to_string()),
+        ("joints", scene.joints.len().to_string()),
+        ("unknown coordinates", inspection.unknowns.to_string()),
+        ("multipliers", inspection.multipliers.to_string()),
+        ("contacts", inspection.contacts.to_string()),
+        ("effects", inspection.effects.join(", ")),
+        (
+            "duration",
+            match (scene.integrator.pace, scene.simulation.analysis) {
+                (Pace::Step(step), Analysis::Dynamic) => format!(
+                    "{} s, about {:.0} steps of {} s",
+                    exact(duration),
+                    duration / step,
+                    exact(step)
+                ),
+                (Pace::Step(step), Analysis::Static) => format!(
+                    "load path to t = {} in about {:.0} steps",
+                    exact(duration),
+                    duration / step
+                ),
+                (Pace::Accuracy(accuracy), _) => {
+                    format!("{} s, with an accuracy of {accuracy}", exact(duration))
+                }
+            },
+        ),
+        (
+            "channels",
+            format!(
+                "{} every {} s",
+                simulation.channels().len(),
+                exact(scene.output.interval)
+            ),
+        ),
+        ("method", scene.integrator.method.name().to_owned()),
+        ("scene hash", scene.hash()),
+    ] {
+        line(&mut out, &format!("  {name:<22}{value}"));
+    }
+    list(
+        &mut out,
+        "Masses and poses at the start",
+        &bodies(scene, simulation),
+    );
+    list(&mut out, "Joints with clearance", &clearances(scene));
+    list(&mut out, "Assumptions and notes", &inspection.assumptions);
+    list(&mut out, "Unknown coordinates", &inspection.coordinates);
+    list(&mut out, "Constraints", &inspection.constraints);
+    let channels = simulation
+        .channels()
+        .iter()
+        .map(|c| format!("{} [{}]", c.name, c.unit));
+    list(&mut out, "Channels", &channels.collect::<Vec<_>>());
+    out
+}
+
+/// Mass and pose of every body that has a mass, and the total mass.
+fn bodies(scene: &Scene, simulation: &Simulation) -> Vec<String> {
+    let mut total = 0.0;
+    let mut lines = Vec::new();
+    for (index, body) in scene.bodies.iter().enumerate() {
+        let Some(mass) = body.kind.mass() else {
+            continue;
+        };
+        total += mass;
+        let [x, y, theta] = simulation.model().pose(index, simulation.state()).position;
+        let [mass, x, y, degrees] = [mass, x, y, theta.to_degrees()].map(|value| number(value, 4));
+        lines.push(format!(
+            "{:<20}{mass} kg, centre of mass at x = {x} m, y = {y} m, turned by {degrees} degrees",
+            body.name
+        ));
+    }
+    lines.push(format!("{:<20}{} kg", "all bodies", number(total, 4)));
+    lines
+}
+
+/// Stiffness and clearance of every contact.
+fn clearances(scene: &Scene) -> Vec<String> {
+    let mut lines = Vec::new();
+    for joint in &scene.joints {
+        if let Some(contact) = joint.contact() {
+            lines.push(format!(
+                "{:<20}clearance {} m, bearing radius {} m, stiffness K = {} N/m^{}",
+                joint.name,
+                exact(contact.clearance),
+                exact(contact.bearing_radius),
+                number(contact.stiffness, 4),
+                exact(contact.exponent)
+            ));
+        }
+    }
+    lines
+}
+
+fn list(out: &mut String, title: &str, entries: &[String]) {
+    if entries.is_empty() {
+        return;
+    }
+    line(out, &format!("\n{title}"));
+    entries
+        .iter()
+        .for_each(|entry| line(out, &format!("  {entry}")));
+}
+
+fn line(out: &mut String, text: &str) {
+    writeln!(out, "{text}").expect("a string takes any text");
+}

@@ -1,0 +1,138 @@
+//! The command line of Looselink: arguments, commands and exit codes.
+
+mod ablate;
+mod closing;
+mod failure;
+mod inspect;
+mod precision;
+mod progress;
+mod run;
+
+use clap::{Args, Parser, Subcommand};
+use failure::Failure;
+use looselink::scene::{Scene, SceneError};
+use looselink::simulate::Simulation;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Simulates planar mechanisms with flexible links and loose joints.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    after_help = "Exit codes: 0 done, 1 input or output failed, 2 bad input, 3 the run cannot go on, \
+    130 interrupted.\n\nExample:\n  looselink run scenes/3rrr/case4.toml --out out/case4"
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Simulate a scene and write its channels.
+    #[command(
+        after_help = "Example:\n  looselink run scenes/3rrr/case4.toml --out out/case4 --set integrator.step=5e-6"
+    )]
+    Run(run::Arguments),
+    /// Show the compiled scene without running it.
+    #[command(after_help = "Example:\n  looselink inspect scenes/3rrr/case4.toml --json")]
+    Inspect(inspect::Arguments),
+    /// Read a scene, assemble its mechanism and report the first error.
+    #[command(
+        after_help = "Example:\n  looselink check scenes/3rrr/case4.toml --set bodies.link1.elements=4"
+    )]
+    Check(SceneArguments),
+    /// Measure error against processor time for several methods and steps.
+    #[command(after_help = "Example:\n  looselink precision studies/case3.toml --out out/case3")]
+    Precision(precision::Arguments),
+    /// Measure the influence and cost of each effect: added to the rigid ideal mechanism, and removed from the full scene.
+    #[command(
+        after_help = "Example:\n  looselink ablate scenes/3rrr/case4.toml --set simulation.duration=0.05 --out out/ablation"
+    )]
+    Ablate(ablate::Arguments),
+}
+
+/// A scene and changes to it.
+#[derive(Debug, Args)]
+struct SceneArguments {
+    /// The scene file.
+    scene: PathBuf,
+    /// Replace a field of the scene, for example `integrator.step=1e-6`; may be repeated.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+    /// Choose the steps by their estimated error: the allowed error of positions (m) and of the energy balance (J), and the
+    /// time (s) over which errors may accumulate, for example `position=1e-9,horizon=0.01`; a number alone is the position.
+    #[arg(long, value_name = "position=M[,energy=J][,horizon=S]", value_parser = accuracy)]
+    accuracy: Option<String>,
+}
+
+/// Checks the keys and numbers of an accuracy. A number alone is the position.
+fn accuracy(text: &str) -> Result<String, String> {
+    const EXAMPLE: &str = "for example `position=1e-9,horizon=0.01`";
+    let alone = text.parse::<f64>().is_ok();
+    let text = if alone {
+        format!("position={text}")
+    } else {
+        text.to_owned()
+    };
+    for part in text.split(',') {
+        let Some((key, number)) = part.split_once('=') else {
+            return Err(format!(
+                "`{part}` lacks a key; commas separate the keys, numbers have a decimal point: {EXAMPLE}"
+            ));
+        };
+        if !["position", "energy", "horizon"].contains(&key.trim()) {
+            return Err(format!(
+                "unknown key `{key}`; the keys are `position` [m], `energy` [J] and `horizon` [s]: {EXAMPLE}"
+            ));
+        }
+        if number.trim().parse::<f64>().is_err() {
+            return Err(format!(
+                "`{number}` is not a number; units are not written, all are SI units: {EXAMPLE}"
+            ));
+        }
+    }
+    Ok(text)
+}
+
+impl SceneArguments {
+    fn load(&self) -> Result<(Scene, Simulation), SceneError> {
+        let mut overrides = self.overrides.clone();
+        let accuracy = self.accuracy.as_ref();
+        overrides.extend(accuracy.map(|a| format!("integrator.accuracy={{ {a} }}")));
+        let scene = Scene::load(&self.scene, &overrides)?;
+        let simulation = Simulation::new(&scene)?;
+        Ok((scene, simulation))
+    }
+}
+
+fn main() -> ExitCode {
+    let result = match &Arguments::parse().command {
+        Command::Run(arguments) => run::run(arguments),
+        Command::Inspect(arguments) => inspect::inspect(arguments),
+        Command::Check(arguments) => check(arguments),
+        Command::Precision(arguments) => precision::precision(arguments),
+        Command::Ablate(arguments) => ablate::ablate(arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.show(),
+    }
+}
+
+fn check(arguments: &SceneArguments) -> Result<(), Failure> {
+    let (scene, _) = arguments.load()?;
+    print(&format!("{}: no error found\n", scene.title))
+}
+
+/// Writes to standard output; a reader that has gone away is no fault.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::system(format!(
+            "cannot write to standard output: {e}"
+        ))),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,132 @@
+//! `looselink run`
+
+use super::SceneArguments;
+use super::closing;
+use super::failure::{Failure, INTERRUPTED};
+use super::progress::{Display, Pace, warn};
+use clap::Args;
+use looselink::output::{FILES, Folder, OutputError, Results, earlier_result};
+use looselink::simulate::{Contact, Control, Observer, Progress};
+use std::io;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// The folder that receives the results; it is created.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Replace an existing result; it is kept in `previous-result` inside the folder until the new one is complete.
+    #[arg(long)]
+    force: bool,
+    /// Show no progress; warnings are still shown.
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Rows reach the disk at least this often.
+const FLUSH: Duration = Duration::from_secs(1);
+
+/// Passes results on to the disk and to the user.
+struct Watch {
+    results: Results,
+    display: Display,
+    pace: Pace,
+    flushed: Instant,
+    stop: Arc<AtomicBool>,
+}
+
+impl Observer for Watch {
+    fn row(&mut self, values: &[f64]) -> io::Result<()> {
+        self.results.row(values)
+    }
+
+    fn contact(&mut self, contact: &Contact) -> io::Result<()> {
+        self.results.contact(contact)
+    }
+
+    fn step(&mut self, progress: &Progress) -> io::Result<Control> {
+        let tick = self.pace.tick();
+        if tick && self.flushed.elapsed() >= FLUSH {
+            self.results.flush()?;
+            self.flushed = Instant::now();
+        }
+        self.display.show(progress, tick);
+        Ok(if self.stop.load(Ordering::Relaxed) {
+            Control::Stop
+        } else {
+            Control::Continue
+        })
+    }
+}
+
+/// Simulates the scene; whatever ends the run, what was recorded up to there stands.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let stop = stop_on_interrupt()?;
+    let folder = Folder::new(&arguments.out, &FILES, arguments.force)?;
+    let (scene, mut simulation) = arguments.scene.load()?;
+    let started = Instant::now();
+    let not_stored = |error: OutputError| Failure::from(error).and(&earlier(arguments));
+    let results = Results::begin(folder, &scene, simulation.channels());
+    let mut watch = Watch {
+        results: results.map_err(not_stored)?,
+        display: Display::new(arguments.quiet),
+        pace: Pace::new(),
+        flushed: started,
+        stop,
+    };
+    let ended = simulation.run(&mut watch);
+    let report = simulation.report();
+    let out = arguments.out.display();
+    let stored = watch.results.finish(&report);
+    match ended {
+        Ok(()) => {
+            watch.display.finish("");
+            stored.map_err(not_stored)?;
+            let wall = started.elapsed().as_secs_f64();
+            watch.display.finish(&format!(
+                "{} steps in {wall:.2} s, results in `{out}`",
+                report.steps
+            ));
+            for line in closing::lines(&report) {
+                watch.display.finish(&line);
+            }
+            report.warnings().iter().for_each(|warning| warn(warning));
+            Ok(())
+        }
+        Err(error) => {
+            watch.display.finish("");
+            report.warnings().iter().for_each(|warning| warn(warning));
+            let kept = match stored {
+                Ok(()) => format!("; the results up to that time are in `{out}`"),
+                Err(second) => format!("; the result in `{out}` could not be completed: {second}"),
+            };
+            Err(Failure::run(&error).and(&kept).and(&earlier(arguments)))
+        }
+    }
+}
+
+/// Where a result is that the run was to replace.
+fn earlier(arguments: &Arguments) -> String {
+    let aside = earlier_result(&arguments.out).filter(|_| arguments.force);
+    aside.map_or(String::new(), |aside| {
+        format!("; the earlier result is in `{}`", aside.display())
+    })
+}
+
+/// The flag is raised by the first Ctrl-C; the second ends the program at once.
+fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let raised = stop.clone();
+    ctrlc::set_handler(move || {
+        if raised.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED.into());
+        }
+    })
+    .map_err(|e| Failure::system(format!("cannot watch for Ctrl-C: {e}")))?;
+    Ok(stop)
+}

@@ -1,0 +1,5 @@
+//! Tests of the command line.
+
+mod command_line;
+mod precision;
+mod process;

@@ -1,0 +1,147 @@
+//! Full disks and places where nobody can write.
+
+use super::{Bytes, EARLIER, arguments, check_killed, status};
+use crate::command_line::{TOP, expect, files, looselink, program, read};
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::os::unix::process::ExitStatusExt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// Runs under a limit of the size of files, in blocks of the shell; the signal that comes with it is left to kill, or not.
+fn limited(out: &Path, blocks: usize, dies: bool, more: &[&str]) -> Output {
+    let signal = if dies { "" } else { "trap '' XFSZ; " };
+    Command::new("sh")
+        .args([
+            "-c",
+            &format!("{signal}ulimit -c 0; ulimit -f {blocks}; exec \"$@\""),
+        ])
+        .arg("sh")
+        .arg(program().get_program())
+        .current_dir(TOP)
+        .args(arguments(out, more))
+        .output()
+        .unwrap()
+}
+
+/// No room for a file, at sizes that each of the files reaches first with one of the three lists of channels.
+#[test]
+fn a_full_disk_ends_a_run_with_the_name_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut hit = std::collections::BTreeSet::new();
+    let lots = ["simulation.duration=0.02"];
+    // two rows, of all channels before there are many contacts, or of one after many: the summary or the onsets are the
+    // longest file then
+    let all = [
+        "simulation.duration=4e-3",
+        "--set",
+        "output.interval=4e-3",
+        "--set",
+        "output.channels=[\"*\"]",
+    ];
+    let one = [
+        "simulation.duration=0.05",
+        "--set",
+        "output.interval=0.05",
+        "--set",
+        "output.channels=[\"error.x\"]",
+    ];
+    for (n, more) in [&lots[..], &all, &one].into_iter().enumerate() {
+        let out = folder.path().join(format!("whole-{n}"));
+        expect(&looselink(&arguments(&out, more)), 0, "");
+        let whole = Bytes::of(&out);
+        for blocks in (0..40).chain([80, 160, 320]) {
+            for dies in [false, true] {
+                let out = folder.path().join(format!("{n}-{blocks}-{dies}"));
+                let output = limited(&out, blocks, dies, more);
+                if output.status.success() {
+                    assert_eq!(Bytes::of(&out).repeatable(), whole.repeatable());
+                    continue;
+                }
+                check_killed(&out, &whole);
+                assert_ne!(status(&out).as_deref(), Some("complete"));
+                if dies {
+                    assert!(output.status.signal().is_some());
+                    continue;
+                }
+                expect(&output, 1, "cannot write `");
+                let stderr = String::from_utf8(output.stderr).unwrap();
+                let (_, path) = stderr.split_once("cannot write `").unwrap();
+                let name = Path::new(path.split('`').next().unwrap())
+                    .file_name()
+                    .unwrap();
+                hit.insert(name.to_str().unwrap().to_owned());
+                if blocks % 8 == 0 {
+                    expect(
+                        &looselink(&arguments(&out, &[more, &["--force"]].concat())),
+                        0,
+                        "",
+                    );
+                    assert_eq!(Bytes::of(&out).repeatable(), whole.repeatable());
+                }
+            }
+        }
+    }
+    let hit: Vec<_> = hit.iter().map(String::as_str).collect();
+    assert_eq!(
+        hit,
+        [
+            ".scene.toml.tmp",
+            ".summary.json.tmp",
+            "channels.csv",
+            "onsets.csv"
+        ]
+    );
+}
+
+/// Files that are written in one piece, each onto a full device.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_at_any_file_leaves_no_complete_summary() {
+    for file in ["summary.json", "scene.toml", "timing.json"] {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path();
+        let temporary = format!(".{file}.tmp");
+        symlink("/dev/full", out.join(&temporary)).unwrap();
+        expect(&looselink(&arguments(out, &[EARLIER])), 1, &temporary);
+        assert_ne!(status(out).as_deref(), Some("complete"), "{file}");
+        assert!(!out.join(temporary).exists());
+    }
+}
+
+/// Places where nobody can write, root neither; nothing comes into being.
+#[test]
+fn unwritable_places_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("file"), "mine").unwrap();
+    symlink(at("nowhere"), at("dangling")).unwrap();
+    symlink(at("loop"), at("loop")).unwrap();
+    let below = |path: &Path| -> PathBuf { path.join("below") };
+    for (out, code) in [
+        (at("file"), 2),
+        (at("dangling"), 2),
+        (at("loop"), 2),
+        (below(&at("file")), 1),
+        (below(&at("dangling")), 1),
+        (below(Path::new("/proc")), 1),
+        (PathBuf::from("/proc/self"), 1),
+    ] {
+        let name = out.to_str().unwrap();
+        for force in [&[][..], &["--force"]] {
+            let runs: [&[&str]; 3] = [
+                &["run", "scenes/pendulum.toml"],
+                &["precision", "studies/pendulum.toml", "--smoke"],
+                &["ablate", "scenes/pendulum.toml"],
+            ];
+            for run in runs {
+                let output = looselink(&[run, force, &["--out", name]].concat());
+                expect(&output, code, name);
+                // before the runs, which would tell of themselves
+                assert!(output.stderr.starts_with(b"error: "), "{run:?} {name}");
+            }
+        }
+    }
+    assert_eq!(files(folder.path()), ["dangling", "file", "loop"]);
+    assert_eq!(read(folder.path(), "file"), "mine");
+}

@@ -1,0 +1,192 @@
+//! Results in the way of new ones.
+
+use super::{
+    ASIDE, Bytes, EARLIER, FILES, Moment, NEW, Random, arguments, run_and_kill, start, status,
+    whole,
+};
+use crate::command_line::{TOP, expect, files, looselink, program, read, summary};
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+#[test]
+fn without_force_an_earlier_result_is_never_touched() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let (earlier, _) = whole(&out, EARLIER);
+    let mut random = Random(20);
+    for _ in 0..40 {
+        let time = Duration::from_millis(10).mul_f64(random.uniform());
+        run_and_kill(&out, &[NEW], Moment::After(time));
+        assert_eq!(files(&out), FILES);
+        assert_eq!(Bytes::of(&out), earlier);
+    }
+    // another scene's result is one as well
+    let other = [
+        "run",
+        "scenes/bouncing-journal.toml",
+        "--out",
+        out.to_str().unwrap(),
+    ];
+    expect(&looselink(&other), 2, "holds a result already");
+    assert_eq!(Bytes::of(&out), earlier);
+}
+
+/// A run that fails while it replaces a result says where that is; the next one that is complete deletes it.
+#[test]
+fn a_run_that_fails_names_the_earlier_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let journal = |more: &[&str]| {
+        let run = ["run", "scenes/bouncing-journal.toml", "--quiet", "--force"];
+        looselink(&[&run, more, &["--out", out.to_str().unwrap()]].concat())
+    };
+    expect(&journal(&[]), 0, "");
+    let earlier = Bytes::of(&out);
+    for _ in 0..2 {
+        let output = journal(&["--set", "bodies.journal.mass=1e-300"]);
+        expect(&output, 3, "the earlier result is in `");
+        expect(&output, 3, "out/previous-result`");
+        assert_eq!(summary(&out)["status"], "failed");
+        assert_eq!(Bytes::of(&out.join(ASIDE)), earlier);
+    }
+    expect(&journal(&[]), 0, "");
+    assert_eq!(files(&out), FILES);
+}
+
+/// Two runs do not write to one folder, not even on demand.
+#[test]
+fn a_running_result_is_not_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut first = start(&out, &["simulation.duration=3.0"]);
+    let limit = Instant::now() + Duration::from_secs(20);
+    while status(&out).is_none() {
+        assert!(Instant::now() < limit, "no summary after 20 s");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    expect(
+        &looselink(&arguments(&out, &[NEW, "--force"])),
+        2,
+        "another run is writing to `",
+    );
+    assert_eq!(status(&out).as_deref(), Some("incomplete"));
+    first.kill().unwrap();
+    first.wait().unwrap();
+    expect(&looselink(&arguments(&out, &[NEW, "--force"])), 0, "");
+    assert_eq!(status(&out).as_deref(), Some("complete"));
+}
+
+/// A study and an ablation are written at their end, in one piece: killed just then, they leave the earlier result whole.
+#[test]
+fn results_in_one_piece_are_replaced_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    let scene = Path::new(TOP).join("scenes/pendulum.toml");
+    let text = format!(
+        "title = 'brief'\nscene = {scene:?}\nduration = 0.02\ninterval = 0.01\nposition = ['points.rod.bob.x']\n\
+         reference = {{ set = [], steps = [2e-3, 1e-3] }}\ncurves = [{{ name = 'one', steps = [5e-3] }}]\n"
+    );
+    fs::write(&study, text).unwrap();
+    let study = study.to_str().unwrap();
+    let brief = [
+        "--set",
+        "simulation.duration=0.02",
+        "--set",
+        "output.interval=0.01",
+    ];
+    let ablate = [
+        &["ablate", "scenes/pendulum.toml", "--runs", "1"],
+        &brief[..],
+    ]
+    .concat();
+    let commands = [
+        ("precision", vec!["precision", study, "--repeats", "1"]),
+        ("ablation", ablate),
+    ];
+    let mut random = Random(30);
+    for (name, command) in commands {
+        let names = ["json", "md", "png", "svg"].map(|kind| format!("{name}.{kind}"));
+        let names = [&names[..], &["timing.json".to_owned()]].concat();
+        let is_earlier = |folder: &Path| {
+            let marked = |file: &String| fs::read(folder.join(file)).is_ok_and(|b| b == b"earlier");
+            names.iter().all(marked)
+        };
+        let mut stages = [0; 3];
+        for n in 0..16 {
+            let out = folder.path().join(format!("{name}-{n}"));
+            fs::create_dir(&out).unwrap();
+            names
+                .iter()
+                .for_each(|file| fs::write(out.join(file), "earlier").unwrap());
+            let forced = [
+                &command[..],
+                &["--force", "--quiet", "--out", out.to_str().unwrap()],
+            ]
+            .concat();
+            let mut child = program()
+                .args(&forced)
+                .stdout(Stdio::null())
+                .spawn()
+                .unwrap();
+            // it begins to write
+            let limit = Instant::now() + Duration::from_secs(60);
+            let begun = || {
+                [".previous-result.tmp", ASIDE]
+                    .iter()
+                    .any(|n| out.join(n).exists())
+            };
+            while !begun() && child.try_wait().unwrap().is_none() {
+                assert!(Instant::now() < limit, "nothing is written");
+                std::thread::sleep(Duration::from_micros(20));
+            }
+            std::thread::sleep(Duration::from_millis(4).mul_f64(random.uniform()));
+            child.kill().unwrap();
+            child.wait().unwrap();
+            let closed = fs::read(out.join(&names[0])).is_ok_and(|b| b != b"earlier");
+            let stage = match (is_earlier(&out), is_earlier(&out.join(ASIDE)), closed) {
+                (true, ..) => 0,
+                (_, true, false) => 1,
+                (.., true) => 2,
+                _ => panic!("{:?}", files(&out)),
+            };
+            stages[stage] += 1;
+            if stage == 2 || n % 8 == 0 {
+                expect(&looselink(&forced), 0, "");
+                assert_eq!(files(&out), names);
+                assert!(
+                    names
+                        .iter()
+                        .all(|f| fs::read(out.join(f)).unwrap() != b"earlier")
+                );
+            }
+        }
+        assert!(stages[1] > 0, "{name}: {stages:?}");
+    }
+}
+
+/// What stands in the place of a file of the result and is none is not replaced, and nothing beside it.
+#[test]
+fn what_is_no_file_is_not_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    fs::write(out.join("summary.json"), "{}").unwrap();
+    symlink("nowhere", out.join("channels.csv")).unwrap();
+    fs::create_dir(out.join("timing.json")).unwrap();
+    let before = files(out);
+    expect(
+        &looselink(&arguments(out, &[NEW])),
+        2,
+        "holds a result already",
+    );
+    let forced = arguments(out, &[NEW, "--force"]);
+    expect(&looselink(&forced), 2, "channels.csv` is not a file");
+    fs::remove_file(out.join("channels.csv")).unwrap();
+    expect(&looselink(&forced), 2, "timing.json` is not a file");
+    fs::remove_dir(out.join("timing.json")).unwrap();
+    assert_eq!(before, ["channels.csv", "summary.json", "timing.json"]);
+    assert_eq!(files(out), ["summary.json"]);
+    assert_eq!(read(out, "summary.json"), "{}");
+}

@@ -1,0 +1,291 @@
+//! Line figures and dot charts for print: a grid of panels with a caption, as SVG and as the PNG rasterised from the same SVG.
+//!
+//! The caller describes a [`Figure`] in data units; [`save`] lays it out, thins long series to what a pixel can
+//! show and writes both files. One drawing unit is one pixel of the PNG at 300 dpi.
+
+mod clip;
+mod decimate;
+mod label;
+mod layout;
+mod output;
+mod panel;
+mod text;
+mod ticks;
+
+pub use output::{render, save};
+
+/// An RGB colour.
+pub type Color = (u8, u8, u8);
+
+/// Okabe & Ito (2008): distinguishable with every common form of colour blindness.
+pub mod palette {
+    use super::Color;
+
+    /// First series.
+    pub const BLUE: Color = (0, 114, 178);
+    /// Second series.
+    pub const VERMILION: Color = (213, 94, 0);
+    /// Third series.
+    pub const GREEN: Color = (0, 158, 115);
+    /// Fourth series.
+    pub const PURPLE: Color = (204, 121, 167);
+    /// Fifth series.
+    pub const ORANGE: Color = (230, 159, 0);
+    /// Sixth series.
+    pub const SKY: Color = (86, 180, 233);
+    /// Seventh series (of Tol's palettes, as are those after it).
+    pub const INDIGO: Color = (51, 34, 136);
+    /// Eighth series.
+    pub const BROWN: Color = (136, 84, 40);
+    /// Ninth series.
+    pub const OLIVE: Color = (153, 153, 51);
+    /// Tenth series.
+    pub const WINE: Color = (136, 34, 85);
+    /// Eleventh series.
+    pub const TEAL: Color = (68, 170, 153);
+    /// Reference curves such as the ideal mechanism.
+    pub const GREY: Color = (130, 130, 130);
+    /// Bounds and reference lines.
+    pub const BLACK: Color = (30, 30, 30);
+}
+
+/// A figure: rows of panels and a caption below.
+pub struct Figure {
+    /// Rows from top to bottom; panels of a row share its width.
+    pub rows: Vec<Vec<Panel>>,
+    /// Text below the panels, wrapped to the width.
+    pub caption: String,
+}
+
+impl Figure {
+    /// Panels one after the other, so many beside each other.
+    pub fn grid(panels: Vec<Panel>, columns: usize, caption: String) -> Figure {
+        let (mut rows, mut left) = (Vec::new(), panels);
+        while !left.is_empty() {
+            let rest = left.split_off(left.len().min(columns));
+            rows.push(std::mem::replace(&mut left, rest));
+        }
+        Figure { rows, caption }
+    }
+}
+
+/// One pair of axes.
+pub struct Panel {
+    /// Title above the frame, such as `a) Case 2`.
+    pub title: String,
+    /// Remark below the title in small type; empty for none.
+    pub note: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// What is drawn, back to front.
+    pub marks: Vec<Mark>,
+}
+
+/// One axis: label, unit and range.
+#[derive(Clone)]
+pub struct Axis {
+    /// Quantity without the unit.
+    pub label: String,
+    /// Symbol of the unit the ticks are in, such as `µm`; empty for a pure number.
+    pub unit: &'static str,
+    /// Ticks are data (SI) times this.
+    pub factor: f64,
+    /// Linear or logarithmic.
+    pub scale: Scale,
+    /// Range in SI; from the data when absent.
+    pub range: Option<(f64, f64)>,
+    /// Where labels stand on a logarithmic axis, in SI; at powers of ten when empty.
+    pub labels: Vec<f64>,
+    /// On the horizontal axis of a panel: both axes are drawn to one scale, the shorter range is widened.
+    pub equal: bool,
+    /// On the vertical axis of a panel: what stands at 0, 1, ... from the top down; empty for an axis of numbers.
+    pub names: Vec<String>,
+}
+
+/// Spacing of an axis.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Equal differences.
+    Linear,
+    /// Equal ratios; values that are not positive are not drawn.
+    Log,
+}
+
+/// Something drawn inside a panel, in SI units.
+pub struct Mark {
+    /// Entry of the legend; empty for none.
+    pub label: String,
+    /// Colour.
+    pub color: Color,
+    /// Kind and data.
+    pub shape: Shape,
+}
+
+/// The kinds of mark.
+pub enum Shape {
+    /// y over an x that never decreases; thinned to the envelope of every pixel column. `width` in pixels.
+    Series {
+        /// Abscissae.
+        x: Vec<f64>,
+        /// Ordinates.
+        y: Vec<f64>,
+        /// Line width.
+        width: u32,
+    },
+    /// A curve in the plane; points closer than a quarter pixel to the last one kept are dropped.
+    Curve {
+        /// Abscissae.
+        x: Vec<f64>,
+        /// Ordinates.
+        y: Vec<f64>,
+        /// Line width.
+        width: u32,
+    },
+    /// Separate points with this `radius` in pixels.
+    Points {
+        /// Abscissae.
+        x: Vec<f64>,
+        /// Ordinates.
+        y: Vec<f64>,
+        /// Radius of a dot.
+        radius: u32,
+    },
+    /// A cross at one place.
+    Cross {
+        /// Abscissa and ordinate.
+        at: (f64, f64),
+    },
+    /// A horizontal dashed line over the width of the panel; it takes part in the automatic range.
+    Level {
+        /// Ordinate.
+        y: f64,
+    },
+}
+
+impl Axis {
+    /// A linear axis over the range of the data: ticks are data times `factor`, in `unit`.
+    pub fn new(label: &str, unit: &'static str, factor: f64) -> Axis {
+        Axis {
+            label: label.into(),
+            unit,
+            factor,
+            scale: Scale::Linear,
+            range: None,
+            labels: Vec::new(),
+            equal: false,
+            names: Vec::new(),
+        }
+    }
+
+    /// A vertical axis of names, the first at the top: marks stand at the ordinates 0, 1, ...
+    pub fn categories(names: Vec<String>) -> Axis {
+        Axis {
+            names,
+            ..Axis::new("", "", 1.0)
+        }
+    }
+
+    /// The same horizontal axis, to one scale with the vertical one; both linear, with the same factor.
+    pub fn equal(self) -> Axis {
+        Axis {
+            equal: true,
+            ..self
+        }
+    }
+
+    /// The same axis with logarithmic spacing.
+    pub fn log(self) -> Axis {
+        Axis {
+            scale: Scale::Log,
+            ..self
+        }
+    }
+
+    /// The same axis with logarithmic spacing and these labels alone, in SI units.
+    pub fn log_at(self, labels: Vec<f64>) -> Axis {
+        Axis {
+            labels,
+            ..self.log()
+        }
+    }
+
+    /// The same axis over a given range in SI units.
+    pub fn over(self, low: f64, high: f64) -> Axis {
+        Axis {
+            range: Some((low, high)),
+            ..self
+        }
+    }
+}
+
+impl Mark {
+    /// A line over a monotonic abscissa.
+    pub fn series(label: &str, color: Color, x: &[f64], y: &[f64]) -> Mark {
+        let shape = Shape::Series {
+            x: x.to_vec(),
+            y: y.to_vec(),
+            width: 3,
+        };
+        Mark {
+            label: label.into(),
+            color,
+            shape,
+        }
+    }
+
+    /// A curve in the plane.
+    pub fn curve(label: &str, color: Color, x: &[f64], y: &[f64]) -> Mark {
+        let shape = Shape::Curve {
+            x: x.to_vec(),
+            y: y.to_vec(),
+            width: 2,
+        };
+        Mark {
+            label: label.into(),
+            color,
+            shape,
+        }
+    }
+
+    /// Dots.
+    pub fn points(label: &str, color: Color, x: &[f64], y: &[f64], radius: u32) -> Mark {
+        let shape = Shape::Points {
+            x: x.to_vec(),
+            y: y.to_vec(),
+            radius,
+        };
+        Mark {
+            label: label.into(),
+            color,
+            shape,
+        }
+    }
+
+    /// A cross.
+    pub fn cross(label: &str, color: Color, at: (f64, f64)) -> Mark {
+        Mark {
+            label: label.into(),
+            color,
+            shape: Shape::Cross { at },
+        }
+    }
+
+    /// A dashed horizontal line.
+    pub fn level(label: &str, color: Color, y: f64) -> Mark {
+        Mark {
+            label: label.into(),
+            color,
+            shape: Shape::Level { y },
+        }
+    }
+
+    /// The same mark with another line width in pixels.
+    pub fn width(mut self, pixels: u32) -> Mark {
+        if let Shape::Series { width, .. } | Shape::Curve { width, .. } = &mut self.shape {
+            *width = pixels;
+        }
+        self
+    }
+}

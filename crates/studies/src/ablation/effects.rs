@@ -1,0 +1,219 @@
+//! What a scene may have beyond the rigid ideal mechanism, and the scene without it.
+//!
+//! Taking an effect out changes the data of the scene and sets no flag: what is left is what a user would have written who
+//! never heard of the effect, and compiles to the same model.
+
+use looselink::scene::{
+    BodyKind, Contact, ForceKind, JointModel, Link, LinkModel, MotionKind, NormalLawKind, PointRef,
+    Scene, SceneError, Sketched, Span,
+};
+use serde::{Serialize, Serializer};
+
+/// An effect that can be added to the rigid ideal mechanism and removed from the full scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effect {
+    /// Links that bend and stretch; without it they are rigid.
+    Flexibility,
+    /// More than one element in a flexible link; without it there is one.
+    Elements,
+    /// Structural damping of flexible links.
+    StructuralDamping,
+    /// Play in joints; without it they are ideal.
+    Clearance,
+    /// Damping of the normal contact law; without it the law is that of Hertz, of the same stiffness and exponent.
+    ContactDamping,
+    /// Friction in loose joints.
+    Friction,
+    /// Weight.
+    Gravity,
+}
+
+impl Effect {
+    /// All effects; each stands behind the one it needs.
+    pub const ALL: [Effect; 7] = [
+        Effect::Flexibility,
+        Effect::Elements,
+        Effect::StructuralDamping,
+        Effect::Clearance,
+        Effect::ContactDamping,
+        Effect::Friction,
+        Effect::Gravity,
+    ];
+
+    /// Its name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Effect::Flexibility => "flexibility",
+            Effect::Elements => "more elements",
+            Effect::StructuralDamping => "structural damping",
+            Effect::Clearance => "clearance",
+            Effect::ContactDamping => "contact damping",
+            Effect::Friction => "friction",
+            Effect::Gravity => "gravity",
+        }
+    }
+
+    /// The effect without which this one has nothing to act on.
+    pub fn needs(self) -> Option<Effect> {
+        match self {
+            Effect::Elements | Effect::StructuralDamping => Some(Effect::Flexibility),
+            Effect::ContactDamping | Effect::Friction => Some(Effect::Clearance),
+            Effect::Flexibility | Effect::Clearance | Effect::Gravity => None,
+        }
+    }
+
+    /// True of a scene that has the effect in one of its links or joints at least.
+    pub fn is_in(self, scene: &Scene) -> bool {
+        let a_link = |has: fn(&Link) -> bool| links(scene).any(|(_, link)| has(link));
+        let a_contact = |has: fn(&Contact) -> bool| {
+            scene.joints.iter().any(|joint| match &joint.model {
+                JointModel::Clearance(contact) => has(contact),
+                _ => false,
+            })
+        };
+        match self {
+            Effect::Flexibility => a_link(|link| link.model != LinkModel::Rigid),
+            Effect::Elements => a_link(has_inner_nodes),
+            Effect::StructuralDamping => a_link(|link| link.damping.is_some()),
+            Effect::Clearance => a_contact(|_| true),
+            Effect::ContactDamping => {
+                a_contact(|c| c.law != NormalLawKind::Hertz && c.restitution < 1.0)
+            }
+            Effect::Friction => a_contact(|contact| contact.friction.is_some()),
+            Effect::Gravity => scene.simulation.gravity.is_some_and(|g| g != [0.0; 2]),
+        }
+    }
+
+    /// The scene without the effect in any link or joint, and so without the effects that need it.
+    ///
+    /// # Errors
+    /// Something is fastened to an inner node of a link that would lose its inner nodes.
+    pub fn removed_from(self, scene: &Scene) -> Result<Scene, SceneError> {
+        let mut scene = scene.clone();
+        match self {
+            Effect::Flexibility => drop_inner_points(&mut scene, "a rigid link has none")?,
+            Effect::Elements => drop_inner_points(&mut scene, "one element has none")?,
+            _ => {}
+        }
+        for body in &mut scene.bodies {
+            let BodyKind::Link(link) = &mut body.kind else {
+                continue;
+            };
+            match (self, &mut link.model) {
+                (Effect::Flexibility, model) => {
+                    *model = LinkModel::Rigid;
+                    link.damping = None;
+                }
+                (Effect::Elements, LinkModel::Flexible { elements, .. }) => *elements = 1,
+                (Effect::StructuralDamping, _) => link.damping = None,
+                _ => {}
+            }
+        }
+        for joint in &mut scene.joints {
+            let JointModel::Clearance(contact) = &mut joint.model else {
+                continue;
+            };
+            match self {
+                Effect::Clearance => joint.model = JointModel::Ideal,
+                Effect::ContactDamping => {
+                    contact.law = NormalLawKind::Hertz;
+                    contact.restitution = 1.0;
+                }
+                Effect::Friction => contact.friction = None,
+                _ => {}
+            }
+        }
+        if self == Effect::Gravity {
+            scene.simulation.gravity = None;
+        }
+        Ok(scene)
+    }
+}
+
+impl Serialize for Effect {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+/// The effects that a scene has, in the order of [`Effect::ALL`].
+pub fn effects(scene: &Scene) -> Vec<Effect> {
+    let all = Effect::ALL.into_iter();
+    all.filter(|effect| effect.is_in(scene)).collect()
+}
+
+fn links(scene: &Scene) -> impl Iterator<Item = (usize, &Link)> {
+    let bodies = scene.bodies.iter().enumerate();
+    bodies.filter_map(|(b, body)| match &body.kind {
+        BodyKind::Link(link) => Some((b, link)),
+        _ => None,
+    })
+}
+
+fn has_inner_nodes(link: &Link) -> bool {
+    matches!(link.model, LinkModel::Flexible { elements, .. } if elements > 1)
+}
+
+/// Takes the inner points from all links, unless one of them carries something.
+fn drop_inner_points(scene: &mut Scene, why: &str) -> Result<(), SceneError> {
+    for (b, link) in links(scene) {
+        let inner = |point: &PointRef| point.body == b && point.point > 1;
+        let user = fastenings(scene).into_iter().find(|f| inner(&f.point));
+        if let Some(Fastening { name, span, point }) = user {
+            let message = format!(
+                "{name} uses the inner node {}.{}, but {why}",
+                scene.bodies[b].name,
+                link.points[point.point - 2].name
+            );
+            return Err(scene.error(span, message, "uses an inner node"));
+        }
+    }
+    for body in &mut scene.bodies {
+        if let BodyKind::Link(link) = &mut body.kind {
+            link.points.clear();
+        }
+    }
+    Ok(())
+}
+
+/// What is fastened to a point.
+struct Fastening {
+    name: String,
+    span: Span,
+    point: PointRef,
+}
+
+/// Everything that names a point of a body.
+fn fastenings(scene: &Scene) -> Vec<Fastening> {
+    let mut list = Vec::new();
+    let mut add = |name: String, span, point| list.push(Fastening { name, span, point });
+    for joint in &scene.joints {
+        for point in [joint.bearing, joint.journal] {
+            add(format!("joint {}", joint.name), joint.span, point);
+        }
+    }
+    for force in &scene.forces {
+        let points = match force.kind {
+            ForceKind::SpringDamper { from, to, .. } => vec![from, to],
+            ForceKind::TorsionSpring { .. } => vec![],
+            ForceKind::PointForce { point, .. } => vec![point],
+            ForceKind::Torque {
+                point, reaction, ..
+            } => std::iter::once(point).chain(reaction).collect(),
+        };
+        for point in points {
+            add(format!("force {}", force.name), force.span, point);
+        }
+    }
+    for motion in &scene.motions {
+        if let MotionKind::Point { point, .. } = motion.kind {
+            add(format!("drive {}", motion.name), motion.span, point);
+        }
+    }
+    for sketch in &scene.initial.sketch {
+        if let Sketched::Point(point) = sketch.what {
+            add("the sketch".into(), sketch.span, point);
+        }
+    }
+    list
+}

@@ -1,0 +1,43 @@
+//! An ablation on disk.
+//!
+//! | file | content |
+//! |---|---|
+//! | `ablation.json` | every variant: its effects, what it does, the differences, sizes and work |
+//! | `ablation.md` | the same as a page |
+//! | `timing.json` | processor time of every variant, and the machine |
+//! | `ablation.svg`, `ablation.png` | the picture, with processor time |
+//!
+//! The first two are the same bytes when the command is repeated. `ablation.json` comes last: without it there is no result.
+//! A result that is replaced stands in `previous-result` inside the folder until then.
+
+use super::Ablation;
+use super::picture::figure;
+use looselink::output::{Folder, OutputError, TIMING, json};
+use std::io;
+
+/// Names of the files.
+pub const FILES: [&str; 5] = [
+    "ablation.json",
+    "ablation.md",
+    TIMING,
+    "ablation.svg",
+    "ablation.png",
+];
+
+impl Ablation {
+    /// Writes all files, `ablation.json` last.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn write(&self, folder: &Folder) -> Result<(), OutputError> {
+        let [svg, png] =
+            plot::render(&figure(self)).map_err(|e| io::Error::other(e.to_string()))?;
+        folder.write(&[
+            json(&self.repeatable())?,
+            self.markdown().into_bytes(),
+            json(&self.timing())?,
+            svg,
+            png,
+        ])
+    }
+}

@@ -1,0 +1,359 @@
+//! What a variant does and what it costs.
+//!
+//! Physics is measured at the rows of the output interval and repeats to the last bit. Processor time does not: it is
+//! taken of runs that record nothing, as the median of several.
+
+use crate::machine::Timing;
+use cpu_time::ThreadTime;
+use looselink::scene::{BodyKind, ChannelPattern, Scene};
+use looselink::simulate::{Recording, Report, Simulation};
+use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
+
+/// Timed runs of a variant, unless the user says how many.
+const RUNS: usize = 5;
+/// No run is begun when those before it took this much processor time \[s\].
+const ENOUGH: f64 = 1.0;
+
+/// The body whose motion is compared.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Observed {
+    /// The name the user wrote.
+    pub name: String,
+    /// What its displacement error is taken from.
+    pub error_from: Origin,
+}
+
+/// What a displacement error is taken from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// The path that the drive prescribes for the body.
+    Prescribed,
+    /// The path of the same body in the rigid ideal mechanism.
+    Ideal,
+}
+
+impl Origin {
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Origin::Prescribed => "its prescribed path",
+            Origin::Ideal => "its path in the rigid ideal mechanism",
+        }
+    }
+}
+
+impl Serialize for Origin {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+/// A body that cannot be observed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum CannotObserve {
+    /// No body that moves has the name.
+    #[error("no body that moves is called `{name}`; there are {}", moving.join(", "))]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// Names of the bodies that move.
+        moving: Vec<String>,
+    },
+    /// The scene has the ground alone.
+    #[error("the scene has no body that moves")]
+    NothingMoves,
+}
+
+impl Observed {
+    /// The body of this name; without one the driven body, or else the last link or rigid body, or else the last body.
+    ///
+    /// # Errors
+    /// There is no such body, or it does not move.
+    pub fn choose(scene: &Scene, name: Option<&str>) -> Result<Observed, CannotObserve> {
+        let moves = |b: &usize| !matches!(scene.bodies[*b].kind, BodyKind::Ground { .. });
+        let extended = |b: &usize| {
+            let kind = &scene.bodies[*b].kind;
+            matches!(kind, BodyKind::Link(_) | BodyKind::Rigid(_))
+        };
+        let moving: Vec<usize> = (0..scene.bodies.len()).filter(moves).collect();
+        let driven = scene.drives.first().map(|drive| drive.body);
+        let body = match name {
+            Some(name) => {
+                let found = moving.iter().find(|b| scene.bodies[**b].name == name);
+                *found.ok_or_else(|| CannotObserve::Unknown {
+                    name: name.to_owned(),
+                    moving: moving
+                        .iter()
+                        .map(|b| scene.bodies[*b].name.clone())
+                        .collect(),
+                })?
+            }
+            None => driven
+                .or_else(|| moving.iter().copied().rfind(extended))
+                .or_else(|| moving.last().copied())
+                .ok_or(CannotObserve::NothingMoves)?,
+        };
+        Ok(Observed {
+            name: scene.bodies[body].name.clone(),
+            error_from: match driven == Some(body) {
+                true => Origin::Prescribed,
+                false => Origin::Ideal,
+            },
+        })
+    }
+}
+
+/// What a variant does, over the recorded rows; a quantity that the variant does not have is absent.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Physics {
+    /// Root mean square of the displacement error of the observed body \[m\].
+    pub rms_error: Option<f64>,
+    /// Largest displacement error of the observed body \[m\].
+    pub largest_error: Option<f64>,
+    /// Root mean square of the acceleration of the observed body \[m/s2\].
+    pub rms_acceleration: Option<f64>,
+    /// Largest acceleration of the observed body \[m/s2\].
+    pub peak_acceleration: Option<f64>,
+    /// Largest force in any joint \[N\].
+    pub peak_joint_force: Option<f64>,
+    /// Part of the rows in contact, mean over the loose joints.
+    pub contact_fraction: Option<f64>,
+}
+
+impl Physics {
+    /// What is measured, and its unit.
+    pub const QUANTITIES: [(&str, &str); 6] = [
+        ("rms error", "m"),
+        ("largest error", "m"),
+        ("rms acceleration", "m/s²"),
+        ("peak acceleration", "m/s²"),
+        ("peak joint force", "N"),
+        ("contact fraction", ""),
+    ];
+
+    /// The values in the order of [`Physics::QUANTITIES`].
+    pub fn values(&self) -> [Option<f64>; 6] {
+        [
+            self.rms_error,
+            self.largest_error,
+            self.rms_acceleration,
+            self.peak_acceleration,
+            self.peak_joint_force,
+            self.contact_fraction,
+        ]
+    }
+
+    /// The difference of every quantity that both have.
+    pub fn less(&self, other: &Physics) -> Physics {
+        let difference = |a: Option<f64>, b: Option<f64>| Some(a? - b?);
+        Physics {
+            rms_error: difference(self.rms_error, other.rms_error),
+            largest_error: difference(self.largest_error, other.largest_error),
+            rms_acceleration: difference(self.rms_acceleration, other.rms_acceleration),
+            peak_acceleration: difference(self.peak_acceleration, other.peak_acceleration),
+            peak_joint_force: difference(self.peak_joint_force, other.peak_joint_force),
+            contact_fraction: difference(self.contact_fraction, other.contact_fraction),
+        }
+    }
+}
+
+/// Sizes of a variant and the work of its run, which repeat.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// Unknown coordinates.
+    pub unknowns: usize,
+    /// Multipliers.
+    pub multipliers: usize,
+    /// Contact terms.
+    pub contacts: usize,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Evaluations of the terms of every kind.
+    pub evaluations: BTreeMap<String, u64>,
+}
+
+/// Processor time of a variant.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Cost {
+    /// Timed runs, after one that is not.
+    pub runs: usize,
+    /// Processor time of each of them, compilation left out \[s\].
+    pub seconds: Vec<f64>,
+    /// Their median; of a single run its time \[s\].
+    pub cpu_seconds: f64,
+    /// Processor time of a step \[µs\].
+    pub microseconds_a_step: f64,
+    /// Processor time of a simulated second \[s\].
+    pub cpu_seconds_a_simulated_second: f64,
+    /// Simulated time over processor time.
+    pub real_time_factor: f64,
+}
+
+/// Where a body is, row by row \[m\].
+pub(super) struct Path {
+    x: Vec<f64>,
+    y: Vec<f64>,
+}
+
+/// What the path of an undriven body is compared with.
+#[derive(Clone, Copy)]
+pub(super) enum Reference<'a> {
+    /// Itself: the run is that of the rigid ideal mechanism.
+    Itself,
+    /// The path in the rigid ideal mechanism.
+    Path(&'a Path),
+    /// Nothing: there is no rigid ideal mechanism.
+    Nothing,
+}
+
+/// A variant that has run.
+pub(super) struct Run {
+    pub rows: usize,
+    pub physics: Physics,
+    pub peak_joint: Option<String>,
+    pub counts: Counts,
+    pub warnings: Vec<String>,
+    pub path: Path,
+}
+
+/// Runs a scene and measures what it does.
+pub(super) fn run(scene: &Scene, body: &Observed, reference: Reference) -> Result<Run, String> {
+    let mut simulation = simulation(scene, &["*"])?;
+    let mut recording = Recording::new(&simulation);
+    let ended = simulation.run(&mut recording);
+    ended.map_err(|error| format!("cannot go on: {error}"))?;
+    let channel = |name: String| recording.get(&name).unwrap_or_default();
+    let of_body = |quantity: &str| channel(format!("{}.{quantity}", body.name));
+    let path = Path {
+        x: of_body("x").to_vec(),
+        y: of_body("y").to_vec(),
+    };
+    let from = |other: &Path| lengths(&less(&path.x, &other.x), &less(&path.y, &other.y));
+    let errors = match (body.error_from, reference) {
+        (Origin::Prescribed, _) => {
+            let [x, y] = ["error.x", "error.y"].map(|name| channel(name.to_owned()));
+            Some(lengths(x, y))
+        }
+        (Origin::Ideal, Reference::Itself) => Some(from(&path)),
+        (Origin::Ideal, Reference::Path(ideal)) => Some(from(ideal)),
+        (Origin::Ideal, Reference::Nothing) => None,
+    };
+    let accelerations = lengths(of_body("ax"), of_body("ay"));
+    let forces = scene.joints.iter().map(|joint| {
+        let force = largest(channel(format!("{}.force", joint.name)));
+        (joint, force)
+    });
+    let peak = forces.max_by(|(_, a), (_, b)| a.total_cmp(b));
+    let contacts = scene.joints.iter().filter_map(|joint| {
+        let contact = recording.get(&format!("{}.contact", joint.name))?;
+        Some(mean(contact))
+    });
+    let contacts: Vec<f64> = contacts.collect();
+    let report = simulation.report();
+    Ok(Run {
+        rows: recording.rows(),
+        physics: Physics {
+            rms_error: errors.as_deref().map(rms),
+            largest_error: errors.as_deref().map(largest),
+            rms_acceleration: Some(rms(&accelerations)),
+            peak_acceleration: Some(largest(&accelerations)),
+            peak_joint_force: peak.map(|(_, force)| force),
+            contact_fraction: (!contacts.is_empty()).then(|| mean(&contacts)),
+        },
+        peak_joint: peak
+            .filter(|(_, force)| *force > 0.0)
+            .map(|(joint, _)| joint.name.clone()),
+        warnings: report.warnings(),
+        counts: counts(&simulation, report),
+        path,
+    })
+}
+
+/// Times scenes that have run before, `runs` times or as often as seems worth it, and gives the processor times of each
+/// \[s\]. The scenes take turns, so that what disturbs the machine for a while disturbs all of them.
+///
+/// # Panics
+/// When a scene does not run to its end.
+pub(super) fn time(scenes: &[&Scene], runs: Option<usize>) -> Vec<Vec<f64>> {
+    let mut seconds: Vec<Vec<f64>> = vec![Vec::new(); scenes.len()];
+    let enough = |seconds: &[f64]| match runs {
+        Some(runs) => seconds.len() >= runs,
+        None => seconds.len() >= RUNS || seconds.iter().sum::<f64>() >= ENOUGH,
+    };
+    while seconds.iter().any(|s| !enough(s)) {
+        for (scene, seconds) in scenes.iter().zip(&mut seconds) {
+            if enough(seconds) {
+                continue;
+            }
+            let again = "a run that is repeated ends as before";
+            let mut simulation = simulation(scene, &[]).expect(again);
+            let started = ThreadTime::now();
+            simulation.run(&mut ()).expect(again);
+            seconds.push(started.elapsed().as_secs_f64());
+        }
+    }
+    seconds
+}
+
+impl Cost {
+    /// The cost of a run over `simulated` \[s\] in so many steps, from the processor times of several \[s\].
+    pub(super) fn new(seconds: Vec<f64>, steps: u64, simulated: f64) -> Cost {
+        let timing = Timing::of(seconds);
+        let cpu_seconds = timing.median;
+        Cost {
+            runs: timing.seconds.len(),
+            seconds: timing.seconds,
+            cpu_seconds,
+            microseconds_a_step: 1e6 * cpu_seconds / steps as f64,
+            cpu_seconds_a_simulated_second: cpu_seconds / simulated,
+            real_time_factor: simulated / cpu_seconds,
+        }
+    }
+}
+
+/// The scene with these channels, ready to run.
+fn simulation(scene: &Scene, channels: &[&str]) -> Result<Simulation, String> {
+    let mut scene = scene.clone();
+    let span = scene.initial.span;
+    let pattern = |pattern: &&str| ChannelPattern {
+        pattern: (*pattern).to_owned(),
+        span,
+    };
+    scene.output.channels = channels.iter().map(pattern).collect();
+    Simulation::new(&scene).map_err(|error| format!("not possible: {error}"))
+}
+
+fn counts(simulation: &Simulation, report: Report) -> Counts {
+    let shape = simulation.model().shape();
+    Counts {
+        unknowns: shape.unknowns,
+        multipliers: shape.multipliers,
+        contacts: shape.contacts,
+        steps: report.steps,
+        newton_iterations: report.newton_iterations,
+        evaluations: report.effects,
+    }
+}
+
+fn less(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+fn lengths(x: &[f64], y: &[f64]) -> Vec<f64> {
+    x.iter().zip(y).map(|(x, y)| x.hypot(*y)).collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn rms(values: &[f64]) -> f64 {
+    mean(&values.iter().map(|v| v * v).collect::<Vec<f64>>()).sqrt()
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
+}

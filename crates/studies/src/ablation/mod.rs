@@ -1,0 +1,161 @@
+//! What every effect of a scene does and costs: each added to the rigid ideal mechanism, each removed from the full scene.
+//!
+//! An effect is taken out of the data of the scene ([`Effect::removed_from`]), so that its absence is that of a scene which
+//! never named it: no term, no unknown, no evaluation.
+
+mod effects;
+mod files;
+mod measure;
+mod picture;
+mod report;
+mod table;
+mod variants;
+
+pub use effects::{Effect, effects};
+pub use files::FILES;
+pub use measure::{CannotObserve, Cost, Counts, Observed, Origin, Physics};
+pub use picture::figure;
+pub use report::{Repeatable, Timing};
+pub use variants::{Role, Variant, variants};
+
+use looselink::scene::Scene;
+use looselink::simulate::Notice;
+use measure::{Reference, Run, run, time};
+use serde::Serialize;
+
+/// A scene, effect by effect.
+#[derive(Debug, Clone)]
+pub struct Ablation {
+    header: Header,
+    /// The rigid ideal mechanism, what is added to it, the full scene, what is removed from it.
+    pub rows: Vec<Row>,
+}
+
+/// A variant and what came of it.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// The variant.
+    pub variant: Variant,
+    /// Its measurements, or why there are none.
+    pub outcome: Result<Outcome, String>,
+}
+
+/// Measurements of a variant that runs to its end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// What it does.
+    pub physics: Physics,
+    /// The joint with the largest force.
+    pub peak_joint: Option<String>,
+    /// Sizes and work.
+    pub counts: Counts,
+    /// What its run warns of.
+    pub warnings: Vec<String>,
+    /// Processor time.
+    pub cost: Cost,
+}
+
+/// What is common to all variants.
+#[derive(Debug, Clone, Serialize)]
+struct Header {
+    title: String,
+    scene_hash: String,
+    overrides: Vec<String>,
+    version: &'static str,
+    effects: Vec<Effect>,
+    body: Observed,
+    /// Simulated time \[s\].
+    duration: f64,
+    /// Time between rows \[s\].
+    interval: f64,
+    /// Rows that the quantities are taken from.
+    rows: usize,
+}
+
+/// Runs every variant of a scene and measures it; variants with the same effects share one measurement.
+///
+/// `runs` is the number of timed runs, chosen by their length when absent; `tell` hears of what is begun and of
+/// warnings.
+pub fn ablate(
+    scene: &Scene,
+    body: Observed,
+    runs: Option<usize>,
+    tell: &mut dyn FnMut(Notice),
+) -> Ablation {
+    let variants = variants(scene);
+    let mut distinct: Vec<(&Variant, Result<Run, String>)> = Vec::new();
+    for variant in &variants {
+        if distinct.iter().any(|(v, _)| v.effects == variant.effects) {
+            continue;
+        }
+        let name = variant.name();
+        tell(Notice::Begun(&name));
+        let reference = match (variant.role, distinct.first()) {
+            (Role::Ideal, _) => Reference::Itself,
+            (_, Some((_, Ok(ideal)))) => Reference::Path(&ideal.path),
+            _ => Reference::Nothing,
+        };
+        let measured = match &variant.scene {
+            Ok(scene) => run(scene, &body, reference),
+            Err(error) => Err(format!("not possible: {error}")),
+        };
+        for warning in measured.iter().flat_map(|run| &run.warnings) {
+            tell(Notice::Warned {
+                run: &name,
+                warning,
+            });
+        }
+        distinct.push((variant, measured));
+    }
+    tell(Notice::Begun("processor times"));
+    let ran = distinct.iter().filter(|(_, run)| run.is_ok());
+    let ran: Vec<&Scene> = ran.filter_map(|(v, _)| v.scene.as_ref().ok()).collect();
+    let mut seconds = time(&ran, runs).into_iter();
+    let mut rows_seen = 0;
+    let mut outcome = |run: Run| {
+        rows_seen = run.rows;
+        let seconds = seconds.next().unwrap_or_default();
+        Outcome {
+            cost: Cost::new(seconds, run.counts.steps, scene.simulation.duration),
+            physics: run.physics,
+            peak_joint: run.peak_joint,
+            counts: run.counts,
+            warnings: run.warnings,
+        }
+    };
+    let outcomes = distinct.into_iter();
+    let outcomes: Vec<(&Variant, Result<Outcome, String>)> = outcomes
+        .map(|(variant, run)| (variant, run.map(&mut outcome)))
+        .collect();
+    let rows = variants.iter().filter_map(|variant| {
+        let same = outcomes
+            .iter()
+            .find(|(v, _)| v.effects == variant.effects)?;
+        Some(Row {
+            variant: variant.clone(),
+            outcome: same.1.clone(),
+        })
+    });
+    Ablation {
+        rows: rows.collect(),
+        header: Header {
+            title: scene.title.clone(),
+            scene_hash: scene.hash(),
+            overrides: scene.overrides().map(str::to_owned).collect(),
+            version: env!("CARGO_PKG_VERSION"),
+            effects: effects(scene),
+            body,
+            duration: scene.simulation.duration,
+            interval: scene.output.interval,
+            rows: rows_seen,
+        },
+    }
+}
+
+impl Ablation {
+    /// The measurements of the variant with this role.
+    pub fn outcome(&self, role: Role) -> Option<&Outcome> {
+        let row = self.rows.iter().find(|row| row.variant.role == role)?;
+        row.outcome.as_ref().ok()
+    }
+}

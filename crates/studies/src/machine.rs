@@ -1,0 +1,131 @@
+//! Processor times of repeated runs: where they were measured, with what, and their middle.
+
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+use std::fmt;
+use std::path::Path;
+use std::process::Command;
+
+/// What a time depends on beside the program's own text.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Machine {
+    /// Processor, threads, system.
+    pub processor: String,
+    /// Compiler that this program was built with.
+    pub compiler: &'static str,
+    /// Commit of the source, `+` behind it where files differ from it; absent outside a repository.
+    pub commit: Option<String>,
+    /// SHA-256 of Cargo.lock, the first sixteen digits; absent where the file is.
+    pub lock: Option<String>,
+}
+
+impl fmt::Display for Machine {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [commit, lock] = [&self.commit, &self.lock].map(|x| x.as_deref().unwrap_or("unknown"));
+        let Machine {
+            processor,
+            compiler,
+            ..
+        } = self;
+        write!(
+            f,
+            "{processor}; {compiler}; commit {commit}, Cargo.lock {lock}"
+        )
+    }
+}
+
+/// This machine and this program.
+pub fn machine() -> Machine {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git")
+            .arg("-C")
+            .arg(root)
+            .args(arguments)
+            .output()
+            .ok()?;
+        let text = String::from_utf8(output.stdout).ok()?;
+        output.status.success().then(|| text.trim().to_owned())
+    };
+    let commit = git(&["rev-parse", "--short=12", "HEAD"]).map(|commit| {
+        let changed = git(&["status", "--porcelain", "--untracked-files=no"]);
+        let mark = if changed.is_some_and(|c| !c.is_empty()) {
+            "+"
+        } else {
+            ""
+        };
+        commit + mark
+    });
+    let lock = std::fs::read(root.join("Cargo.lock")).ok().map(|bytes| {
+        let digest = Sha256::digest(&bytes);
+        digest[..8]
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
+    });
+    Machine {
+        processor: looselink::output::machine(),
+        compiler: env!("LOOSELINK_COMPILER"),
+        commit,
+        lock,
+    }
+}
+
+/// Processor time of a run that was made several times \[s\].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Timing {
+    /// See [`median`]; of a single run its time.
+    pub median: f64,
+    /// Shortest.
+    pub least: f64,
+    /// Every time, in the order of the runs.
+    pub seconds: Vec<f64>,
+    /// Least number of instructions, where the machine counts them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instructions: Option<u64>,
+}
+
+impl Timing {
+    /// Of at least one measured time \[s\].
+    pub fn of(seconds: Vec<f64>) -> Timing {
+        Timing {
+            median: median(&seconds),
+            least: seconds.iter().copied().fold(f64::INFINITY, f64::min),
+            seconds,
+            instructions: None,
+        }
+    }
+
+    /// With the numbers of instructions of the same runs.
+    pub fn with_instructions(self, counts: &[Option<u64>]) -> Timing {
+        Timing {
+            instructions: counts.iter().flatten().min().copied(),
+            ..self
+        }
+    }
+}
+
+/// The value in the middle of at least one; of an even number of values the mean of the two in the middle.
+pub fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let n = sorted.len();
+    0.5 * (sorted[(n - 1) / 2] + sorted[n / 2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Timing, median};
+
+    #[test]
+    fn medians() {
+        let timing = Timing::of(vec![9.0, 1.0, 2.0]);
+        assert_eq!((timing.median, timing.least), (2.0, 1.0));
+        assert_eq!(timing.seconds, [9.0, 1.0, 2.0]);
+        let counted = timing.with_instructions(&[Some(70), None, Some(50)]);
+        assert_eq!((counted.median, counted.instructions), (2.0, Some(50)));
+        assert_eq!(median(&[3.0]), 3.0);
+        assert_eq!(median(&[9.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(&[4.0, 1.0, 9.0, 2.0]), 3.0);
+    }
+}

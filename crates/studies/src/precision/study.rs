@@ -1,0 +1,270 @@
+//! What a study file says.
+
+use looselink::scene::{BodyKind, LinkModel, Scene, SceneError, read_file};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Why a study cannot be made.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum StudyError {
+    /// A fault of the study file or of what it asks for.
+    #[error("{0}")]
+    Plain(String),
+    /// A fault of its scene.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+}
+
+impl StudyError {
+    pub(super) fn plain(message: String) -> StudyError {
+        StudyError::Plain(message)
+    }
+}
+
+/// A scene, a reference and the curves that are compared with it.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Study {
+    /// What is studied, in a line.
+    pub title: String,
+    /// The scene, a path beside the study file.
+    pub scene: PathBuf,
+    /// Overrides `path=value` of every run.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// Simulated time \[s\].
+    pub duration: f64,
+    /// Time between the rows that are compared \[s\].
+    pub interval: f64,
+    /// Channels whose largest difference is the error of position \[m\].
+    pub position: Vec<String>,
+    /// Channels whose largest difference is the error of acceleration \[m/s2\].
+    #[serde(default)]
+    pub acceleration: Vec<String>,
+    /// Channels of force whose difference, integrated over time, is the error of impulse \[N s\].
+    #[serde(default)]
+    pub force: Vec<String>,
+    /// What the curves are compared with.
+    pub reference: Reference,
+    /// Present where not the motion is compared, which chaos has taken apart, but its statistics.
+    pub statistics: Option<Statistics>,
+    /// Methods with their steps or accuracies.
+    pub curves: Vec<Curve>,
+}
+
+/// Statistics of the second part of a run.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Statistics {
+    /// Start of that part \[s\].
+    pub from: f64,
+    /// Channels that are 1 in contact and 0 out of it.
+    pub contact: Vec<String>,
+}
+
+/// Two runs of a method that none of the curves depends on: the difference between them is the floor.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reference {
+    /// Overrides that choose the method.
+    pub set: Vec<String>,
+    /// Elements of every flexible link; as in the scene unless given.
+    pub elements: Option<usize>,
+    /// Coarse and fine step \[s\].
+    pub steps: [f64; 2],
+}
+
+/// One curve.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Curve {
+    /// Its name in diagrams and tables.
+    pub name: String,
+    /// Overrides that choose the method, or change the mechanism.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// Elements of every flexible link; as in the scene unless given.
+    pub elements: Option<usize>,
+    /// Steps \[s\]; or
+    #[serde(default)]
+    pub steps: Vec<f64>,
+    /// accuracies \[m\]
+    #[serde(default)]
+    pub accuracies: Vec<f64>,
+    /// with, where given, this accuracy of the balance of energies \[J\] ...
+    pub energy: Option<f64>,
+    /// ... over this time \[s\]; the duration of the study unless given.
+    pub horizon: Option<f64>,
+}
+
+/// What the steps of a run follow.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Pace {
+    /// A step \[s\].
+    Step(f64),
+    /// An accuracy \[m\] over a horizon \[s\].
+    Accuracy {
+        /// Error allowed in positions.
+        position: f64,
+        /// Error allowed in the balance of energies \[J\].
+        #[serde(skip_serializing_if = "Option::is_none")]
+        energy: Option<f64>,
+        /// Time over which it may gather.
+        horizon: f64,
+    },
+    /// The relative tolerance of a program that is not ours.
+    Tolerance(f64),
+}
+
+impl fmt::Display for Pace {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Pace::Step(step) => write!(f, "step {}", numbers::si(*step, "s")),
+            Pace::Accuracy {
+                position, energy, ..
+            } => {
+                write!(f, "accuracy {}", numbers::si(*position, "m"))?;
+                energy.map_or(Ok(()), |e| write!(f, " and {}", numbers::si(e, "J")))
+            }
+            Pace::Tolerance(relative) => write!(f, "tolerance {relative:e}"),
+        }
+    }
+}
+
+impl Reference {
+    /// Coarse and fine.
+    pub fn paces(&self) -> [Pace; 2] {
+        self.steps.map(Pace::Step)
+    }
+}
+
+impl Curve {
+    /// Its points.
+    pub fn paces(&self) -> Vec<Pace> {
+        let steps = self.steps.iter().map(|h| Pace::Step(*h));
+        let horizon = self.horizon.unwrap_or(f64::NAN);
+        let accuracies = self.accuracies.iter().map(|position| Pace::Accuracy {
+            position: *position,
+            energy: self.energy,
+            horizon,
+        });
+        steps.chain(accuracies).collect()
+    }
+}
+
+impl Study {
+    /// Reads a study and checks what can be seen without its scene.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or a fault with its line.
+    pub fn load(path: &Path) -> Result<Study, StudyError> {
+        let unreadable = |cause: &dyn fmt::Display| {
+            StudyError::plain(format!("cannot read `{}`: {cause}", path.display()))
+        };
+        let bytes = read_file(path).map_err(|e| unreadable(&e))?;
+        let text = String::from_utf8(bytes).map_err(|e| unreadable(&e))?;
+        Study::parse(path, &text)
+    }
+
+    /// Reads a study from text; `path` stands for the file in errors, and the scene is looked for beside it.
+    ///
+    /// # Errors
+    /// The first fault found, with its line.
+    pub fn parse(path: &Path, text: &str) -> Result<Study, StudyError> {
+        let name = path.display();
+        let mut study: Study = toml::from_str(text)
+            .map_err(|e| StudyError::plain(format!("`{name}`: {}", e.to_string().trim_end())))?;
+        let fault = |message: String| Err(StudyError::plain(format!("`{name}`: {message}")));
+        for (key, value) in [("duration", study.duration), ("interval", study.interval)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return fault(format!("`{key}` must be greater than zero, not {value}"));
+            }
+        }
+        if study.position.is_empty() || study.curves.is_empty() {
+            return fault("a study needs at least one channel in `position` and one curve".into());
+        }
+        let [coarse, fine] = study.reference.steps;
+        if fine.partial_cmp(&coarse) != Some(std::cmp::Ordering::Less) {
+            return fault(format!(
+                "`reference.steps` must be a coarse and a fine step, not {coarse:e} and {fine:e}"
+            ));
+        }
+        for (i, curve) in study.curves.iter_mut().enumerate() {
+            if curve.steps.is_empty() == curve.accuracies.is_empty() {
+                return fault(format!(
+                    "`curves.{i}` ({}) needs either `steps` or `accuracies`",
+                    curve.name
+                ));
+            }
+            curve.horizon = curve.horizon.or(Some(study.duration));
+        }
+        if let Some(Statistics { from, contact }) = &study.statistics
+            && !(*from >= 0.0 && *from < study.duration && !contact.is_empty())
+        {
+            return fault(
+                "`statistics` needs a `from` within the duration and channels of `contact`".into(),
+            );
+        }
+        study.scene = path.with_file_name(&study.scene);
+        Ok(study)
+    }
+
+    /// True of a study whose curves are numbers of elements: it compares meshes, not methods.
+    pub fn compares_elements(&self) -> bool {
+        self.curves.iter().any(|curve| curve.elements.is_some())
+    }
+
+    /// The scene of a run.
+    ///
+    /// # Errors
+    /// A fault of the scene.
+    pub fn scene(
+        &self,
+        set: &[String],
+        elements: Option<usize>,
+        pace: Pace,
+    ) -> Result<Scene, SceneError> {
+        let contact = self.statistics.iter().flat_map(|s| s.contact.clone());
+        let energies = match self.statistics {
+            Some(_) => &["energy.numerical", "energy.contact_dissipated"][..],
+            None => &["energy.numerical"],
+        };
+        let channels: Vec<String> = [&self.position[..], &self.acceleration, &self.force]
+            .concat()
+            .into_iter()
+            .chain(contact)
+            .chain(energies.iter().map(|e| (*e).to_owned()))
+            .map(|c| format!("{c:?}"))
+            .collect();
+        let mut overrides = self.set.clone();
+        overrides.extend_from_slice(set);
+        if let Some(elements) = elements {
+            let scene = Scene::load(&self.scene, &overrides)?;
+            let links = scene.bodies.iter().filter(|body| match &body.kind {
+                BodyKind::Link(link) => matches!(link.model, LinkModel::Flexible { .. }),
+                _ => false,
+            });
+            overrides.extend(links.map(|link| format!("bodies.{}.elements={elements}", link.name)));
+        }
+        overrides.extend([
+            format!("simulation.duration={:?}", self.duration),
+            format!("output.interval={:?}", self.interval),
+            format!("output.channels=[{}]", channels.join(", ")),
+            match pace {
+                Pace::Step(step) => format!("integrator.step={step:?}"),
+                Pace::Accuracy {
+                    position,
+                    energy,
+                    horizon,
+                } => {
+                    let energy = energy.map_or(String::new(), |e| format!("energy = {e:?}, "));
+                    format!("integrator.accuracy={{ position = {position:?}, {energy}horizon = {horizon:?} }}")
+                }
+                Pace::Tolerance(_) => unreachable!("curves of a study have steps or accuracies"),
+            },
+        ]);
+        Scene::load(&self.scene, &overrides)
+    }
+}
