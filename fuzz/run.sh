@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Random input to the reader of scenes, the compiler and the reader of studies, so many seconds each, from the seeds and
-# from what earlier runs have kept in fuzz/corpus; writes stability/records/fuzz.json. Stable Rust will do: RUSTC_BOOTSTRAP
+# from what earlier runs have kept in fuzz/corpus; writes pages/stability/records/fuzz.json. Stable Rust will do: RUSTC_BOOTSTRAP
 # lets it instrument for coverage.
 #
 #   cargo install cargo-fuzz
@@ -14,9 +14,9 @@ cargo fuzz --version > /dev/null 2>&1 || {
     echo "cargo-fuzz is missing: cargo install cargo-fuzz" >&2
     exit 2
 }
-# what is fuzzed, for records/state
+# what is fuzzed, for pages/records/state
 digests=$(cargo run --quiet --release -p records -- --digests fuzz)
-mkdir -p fuzz/corpus fuzz/artifacts/{scene,mechanism,study} records/state
+mkdir -p fuzz/corpus fuzz/artifacts/{scene,mechanism,study} pages/records/state
 
 # seconds an input, MiB of memory, bytes of an input
 limits=(-timeout=5 -rss_limit_mb=1024 -max_len=16384)
@@ -54,7 +54,7 @@ fuzz scene "${seconds[0]}" && scene=$(record scene)
 fuzz mechanism "${seconds[1]}" && mechanism=$(record mechanism)
 fuzz study "${seconds[2]}" && study=$(record study)
 found=$(sed 's/.*/    "&"/' fuzz/found.txt | paste -sd, | sed 's/,    /,\n    /g')
-cat > stability/records/fuzz.json.tmp << END
+cat > pages/stability/records/fuzz.json.tmp << END
 {
   "command": "fuzz/run.sh ${seconds[*]}",
   "engine": "libFuzzer (cargo-fuzz), mutation by line and value and by byte",
@@ -70,7 +70,7 @@ $found
 }
 END
 # the earlier record stays until this one is whole
-mv stability/records/fuzz.json.tmp stability/records/fuzz.json
-echo "$digests" > records/state/fuzz.json
+mv pages/stability/records/fuzz.json.tmp pages/stability/records/fuzz.json
+echo "$digests" > pages/records/state/fuzz.json
 cargo run --quiet --release -p records
-cat stability/records/fuzz.json
+cat pages/stability/records/fuzz.json

@@ -1,12 +1,12 @@
 //! Writes verify/REPORT.md and its pictures.
 
 use clap::Parser;
-use ladder::seeded::root;
 use looselink::scene::{Analysis, Scene};
 use looselink::simulate::Simulation;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use plot::save;
 use records::Run;
+use records::root;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -1,7 +1,7 @@
 //! The list of seeded faults fits the code, and every one of them was caught.
 
 use ladder::faults::{judged, outcomes};
-use ladder::seeded::root;
+use records::root;
 
 /// The comparison is worth what it catches; fewer faults than these would say little.
 const FEWEST: usize = 50;

@@ -67,7 +67,10 @@ fn a_run_leaves_a_result() {
         ]
     );
 
-    assert_eq!(read(&out, "scene.toml"), fs::read_to_string(SCENE).unwrap());
+    assert_eq!(
+        read(&out, "scene.toml"),
+        fs::read_to_string(Path::new(TOP).join(SCENE)).unwrap()
+    );
     let summary = summary(&out);
     assert_eq!(summary["status"], "complete");
     assert_eq!(summary["overrides"][0], "simulation.duration=2e-3");
@@ -380,7 +383,7 @@ fn a_scene_may_be_run_again_from_its_result() {
 #[test]
 fn bad_input_is_shown_with_its_place() {
     let folder = tempfile::tempdir().unwrap();
-    let text = fs::read_to_string(SCENE).unwrap();
+    let text = fs::read_to_string(Path::new(TOP).join(SCENE)).unwrap();
     let scene = folder.path().join("typo.toml");
     fs::write(&scene, text.replacen("restitution =", "restitutoin =", 1)).unwrap();
     let scene = scene.to_str().unwrap();

@@ -5,12 +5,12 @@ use crate::check::{Agreement, Worst, largest};
 use crate::embedding::Embedding;
 use crate::reference::{At, Scene};
 use crate::trajectory::{Plan, tolerances};
-use ladder::seeded::root;
 use looselink::scene::Analysis;
 use looselink::simulate::Simulation;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use records::root;
 use std::path::Path;
 
 /// Rows of a moving scene that are looked at.

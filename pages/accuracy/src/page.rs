@@ -1,0 +1,392 @@
+//! The page.
+
+use crate::{Made, Surveyed, effects};
+use std::fmt::Write;
+use studies::ablation::Ablation;
+use studies::machine::{Machine, median};
+use studies::precision::{Outcome, Pace};
+
+/// Errors of position at which curves are compared \[m\].
+const LEVELS: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
+
+/// What ACCURACY.md says.
+pub fn page(
+    made: &[Made],
+    surveyed: &[Surveyed],
+    ablation: &Ablation,
+    machine: &Machine,
+    seconds: f64,
+) -> String {
+    let mut out = format!(
+        "# What accuracy costs\n\n{}\n\
+         Error against processor time for every method in every study of [studies](studies). `cargo run --release -p accuracy` \
+         writes this page in {:.0} min; `cargo run --release -- precision studies/case3.toml --out out/case3` runs one study \
+         ([docs/study.md](docs/study.md)). A processor time is the median over the number of runs in column `runs`, after one \
+         run that is not timed, on one core: {machine}. [pages/accuracy/timings.json](pages/accuracy/timings.json) has every single \
+         time.\n\n",
+        records::place("accuracy"),
+        (seconds / 60.0).ceil()
+    );
+    out += &conclusions(made, surveyed);
+    out += &asked(made);
+    out += &fastest(made);
+    for one in made {
+        out += &format!(
+            "## {}\n\n![{}](pages/accuracy/figures/{}.png)\n\n{}\n{}",
+            one.study.title,
+            one.study.title,
+            one.name,
+            studies::precision::table(&one.outcome),
+            folded(&one.outcome.warnings())
+        );
+    }
+    for one in surveyed {
+        out += &format!(
+            "## {}\n\n![{}](pages/accuracy/figures/{}.png)\n\n{}\n\n{}\n{}",
+            one.study.title,
+            one.study.title,
+            one.name,
+            long_runs(one),
+            one.survey.table(one.study.duration),
+            folded(&one.survey.warnings())
+        );
+    }
+    out += &effects::section(ablation);
+    out += &folded(&ablation.warnings());
+    out += &omissions(made);
+    out
+}
+
+fn line(out: &mut String, text: &str) {
+    writeln!(out, "{text}").expect("a string takes any text");
+}
+
+/// The warnings of the runs of a table, folded up: coarse runs have many.
+fn folded(warnings: &[String]) -> String {
+    if warnings.is_empty() {
+        return "No run has a warning.\n\n".to_owned();
+    }
+    let list: String = warnings.iter().map(|w| format!("* {w}\n")).collect();
+    let count = warnings.len();
+    format!("<details><summary>Warnings of these runs: {count}</summary>\n\n{list}\n</details>\n\n")
+}
+
+/// Error achieved over error asked for, over all studies.
+fn asked(made: &[Made]) -> String {
+    let mut rows: Vec<(f64, f64, String)> = Vec::new();
+    for one in made {
+        for run in &one.outcome.runs {
+            if let (Pace::Accuracy { position, .. }, Ok(measured)) = (run.pace, &run.result)
+                && measured.errors.position > 2.0 * one.outcome.floor.position
+            {
+                let name = format!("{}, {}", one.name, run.curve);
+                rows.push((position, measured.errors.position / position, name));
+            }
+        }
+    }
+    let within = |bound: f64| rows.iter().filter(|(_, ratio, _)| *ratio <= bound).count();
+    let worst = rows.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    let mut out = String::from("## Is the requested accuracy reached?\n\n");
+    if let Some((position, ratio, name)) = worst {
+        line(
+            &mut out,
+            &format!(
+                "The table shows the achieved error over the requested accuracy. Of {} runs with a requested accuracy {} reach \
+                 it, and {} stay within three times of it. The largest ratio is {} ({name}, {}). Runs whose error is below twice the \
+                 uncertainty of the reference are left out. [pages/accuracy/GUARANTEE.md](pages/accuracy/GUARANTEE.md) has the same for \
+                 every dynamic scene.\n",
+                rows.len(),
+                within(1.0),
+                within(3.0),
+                numbers::digits(*ratio),
+                numbers::si(*position, "m")
+            ),
+        );
+    }
+    let mut asked: Vec<f64> = rows.iter().map(|r| r.0).collect();
+    asked.sort_by(|a, b| b.total_cmp(a));
+    asked.dedup();
+    let mut names: Vec<&str> = Vec::new();
+    for (_, _, name) in &rows {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    let heads: Vec<String> = asked.iter().map(|p| numbers::si(*p, "m")).collect();
+    line(
+        &mut out,
+        &format!("| study, method | {} |", heads.join(" | ")),
+    );
+    line(&mut out, &format!("|---|{}", "---|".repeat(asked.len())));
+    for name in names {
+        let cells = asked.iter().map(|p| {
+            let found = rows.iter().find(|r| r.0 == *p && r.2 == name);
+            found.map_or(String::new(), |r| numbers::digits(r.1))
+        });
+        let cells: Vec<String> = cells.collect();
+        line(&mut out, &format!("| {name} | {} |", cells.join(" | ")));
+    }
+    out + "\n"
+}
+
+/// Least processor time at which a curve comes below an error, on the line between neighbours in the log-log plane, and the
+/// step or accuracy there.
+fn time_at(outcome: &Outcome, curve: &str, error: f64) -> Option<(f64, Pace)> {
+    let points: Vec<(f64, f64, Pace)> = outcome
+        .runs
+        .iter()
+        .zip(&outcome.timings)
+        .filter(|(run, _)| run.curve == curve)
+        .filter_map(|(run, timing)| {
+            let error = run.result.as_ref().ok()?.errors.position;
+            Some((error, timing.as_ref()?.median, run.pace))
+        })
+        .collect();
+    let reached = points.iter().filter(|p| p.0 <= error).map(|p| (p.1, p.2));
+    let crossed = points.windows(2).filter_map(|pair| {
+        let [(e0, t0, from), (e1, t1, to)] = [pair[0], pair[1]];
+        (e0 > error && e1 <= error).then(|| {
+            let share = (e0 / error).ln() / (e0 / e1).ln();
+            let between = |a: f64, b: f64| a * (b / a).powf(share);
+            (between(t0, t1), between_paces(from, to, between))
+        })
+    });
+    reached.chain(crossed).min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// The pace between two of a curve.
+fn between_paces(from: Pace, to: Pace, between: impl Fn(f64, f64) -> f64) -> Pace {
+    match (from, to) {
+        (Pace::Step(a), Pace::Step(b)) => Pace::Step(between(a, b)),
+        (
+            Pace::Accuracy { position: a, .. },
+            Pace::Accuracy {
+                position: b,
+                energy,
+                horizon,
+            },
+        ) => Pace::Accuracy {
+            position: between(a, b),
+            energy,
+            horizon,
+        },
+        (Pace::Tolerance(a), Pace::Tolerance(b)) => Pace::Tolerance(between(a, b)),
+        _ => to,
+    }
+}
+
+/// The curve of a study that comes below an error first, among those whose names are accepted.
+fn winner(one: &Made, error: f64, accept: impl Fn(&str) -> bool) -> Option<(&str, f64, Pace)> {
+    let curves = one.outcome.curves().into_iter().filter(|c| accept(c));
+    let times = curves.filter_map(|c| {
+        let (time, pace) = time_at(&one.outcome, c, error)?;
+        Some((c, time, pace))
+    });
+    times.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Studies that compare methods.
+fn of_methods(made: &[Made]) -> impl Iterator<Item = &Made> {
+    made.iter().filter(|one| !one.study.compares_elements())
+}
+
+/// The scheme of the paper.
+const PAPER: &str = "Bathe";
+
+fn is_explicit(curve: &str) -> bool {
+    curve.starts_with("Dormand-Prince") || curve.starts_with("velocity Verlet")
+}
+
+/// What the diagrams say, counted.
+fn conclusions(made: &[Made], surveyed: &[Surveyed]) -> String {
+    let mut wins: Vec<(&str, usize)> = Vec::new();
+    let (mut cells, mut ratios) = (0, Vec::new());
+    for one in of_methods(made) {
+        for error in LEVELS {
+            let Some((curve, time, _)) = winner(one, error, |_| true) else {
+                continue;
+            };
+            cells += 1;
+            match wins.iter_mut().find(|w| w.0 == curve) {
+                Some(win) => win.1 += 1,
+                None => wins.push((curve, 1)),
+            }
+            if let Some((paper, _)) = time_at(&one.outcome, PAPER, error) {
+                ratios.push(paper / time);
+            }
+        }
+    }
+    wins.sort_by_key(|w| std::cmp::Reverse(w.1));
+    let wins: Vec<String> = wins.iter().map(|(c, n)| format!("{c} {n}")).collect();
+    ratios.sort_by(f64::total_cmp);
+    let mut out = String::from("## In short\n\n");
+    line(
+        &mut out,
+        &format!(
+            "* Fastest method, counted over {cells} pairs of a study and an error between {} and {}: {}.",
+            numbers::si(LEVELS[0], "m"),
+            numbers::si(LEVELS[LEVELS.len() - 1], "m"),
+            wins.join(", ")
+        ),
+    );
+    if let [least, .., most] = ratios[..] {
+        line(
+            &mut out,
+            &format!(
+                "* The scheme of the paper, Bathe's with a fixed step, takes {} to {} times as long as the fastest method (median \
+                 {}). In {} of the {cells} pairs it does not reach the error with the steps tried.",
+                numbers::digits(least),
+                numbers::digits(most),
+                numbers::digits(median(&ratios)),
+                cells - ratios.len()
+            ),
+        );
+    }
+    let level = 1e-9;
+    let explicit: Vec<String> = of_methods(made)
+        .filter_map(|one| {
+            let (_, explicit, _) = winner(one, level, is_explicit)?;
+            let (_, implicit, _) = winner(one, level, |c| !is_explicit(c))?;
+            let ratio = numbers::digits(explicit / implicit);
+            Some(format!("{ratio} ({})", one.name))
+        })
+        .collect();
+    line(
+        &mut out,
+        &format!(
+            "* Time of the fastest explicit method over that of the fastest implicit one, for an error of {}: {}. The stable \
+             step of explicit methods shrinks with the element length: compare `case2` with `case2-4elements`.",
+            numbers::si(level, "m"),
+            explicit.join(", ")
+        ),
+    );
+    for one in surveyed {
+        line(
+            &mut out,
+            &format!("* {}: {}", one.study.title, long_runs(one)),
+        );
+    }
+    out + "\n"
+}
+
+/// Bounds within which the statistics of a long run count as converged: envelopes and rms, share of contact, energy lost over
+/// that dissipated in contact.
+const CONVERGED: [f64; 3] = [0.01, 0.03, 0.05];
+
+/// Which run is the fastest whose statistics are converged.
+fn long_runs(one: &Surveyed) -> String {
+    let [_, exact] = &one.survey.reference;
+    let runs = one.survey.runs.iter().zip(&one.survey.timings);
+    let good = runs.filter_map(|(run, timing)| {
+        let (measures, _) = run.result.as_ref().ok()?;
+        let [deviation, contact, loss] = CONVERGED;
+        let converged = measures.deviation(exact) < deviation
+            && (measures.contact - exact.contact).abs() < contact
+            && measures.loss().abs() < loss;
+        Some((run, timing.as_ref()?.median)).filter(|_| converged)
+    });
+    let mut good: Vec<_> = good.collect();
+    good.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let told = |(run, time): &(&studies::precision::Sampled, f64)| {
+        format!(
+            "{} with {} ({} times real time)",
+            run.curve,
+            run.pace,
+            numbers::digits(one.study.duration / time)
+        )
+    };
+    let [deviation, contact, loss] = CONVERGED.map(numbers::percent);
+    let mut text = format!(
+        "{} of {} runs count as converged: envelopes and rms within {deviation} of the reference, the share of contact within \
+         {contact}, and an energy lost or gained by the integrator below {loss} of the contact dissipation.",
+        good.len(),
+        one.survey.runs.len()
+    );
+    if let Some(first) = good.first() {
+        text += &format!(" The fastest of these is {}", told(first));
+        let controlled = |(run, _): &&(&studies::precision::Sampled, f64)| {
+            matches!(run.pace, Pace::Accuracy { .. })
+        };
+        text += &match good.iter().find(controlled) {
+            Some(other) if other.1 > first.1 => {
+                format!(
+                    "; the fastest with a requested accuracy is {}.",
+                    told(other)
+                )
+            }
+            _ => ".".to_owned(),
+        };
+    }
+    text
+}
+
+/// Which method for which scene and error.
+fn fastest(made: &[Made]) -> String {
+    let mut out = String::from(
+        "## Which method for which error?\n\n\
+         The fastest method for an error of position, with its step or accuracy and its processor time. In brackets: how many \
+         times as long the scheme of the paper takes, Bathe's with a fixed step; no brackets where it did not reach the error. \
+         Values are interpolated between the runs of a curve and never extrapolated: where the coarsest run is already below the \
+         error, its time counts. A dash: no method reached the error.\n\n",
+    );
+    let heads: Vec<String> = LEVELS.iter().map(|e| numbers::si(*e, "m")).collect();
+    line(&mut out, &format!("| study | {} |", heads.join(" | ")));
+    line(&mut out, &format!("|---|{}", "---|".repeat(LEVELS.len())));
+    for one in of_methods(made) {
+        let cells = LEVELS.iter().map(|error| {
+            let Some((curve, time, pace)) = winner(one, *error, |_| true) else {
+                return "–".to_owned();
+            };
+            let paper = time_at(&one.outcome, PAPER, *error);
+            let paper = paper.map_or(String::new(), |(t, pace)| {
+                format!(" (Bathe, {pace}: {} times)", numbers::digits(t / time))
+            });
+            format!("{curve}, {pace}: {}{paper}", numbers::si(time, "s"))
+        });
+        let cells: Vec<String> = cells.collect();
+        line(
+            &mut out,
+            &format!("| {} | {} |", one.name, cells.join(" | ")),
+        );
+    }
+    out + "\n"
+}
+
+/// What failed or was left out.
+fn omissions(made: &[Made]) -> String {
+    let mut out = String::from("## Omissions\n\n");
+    let mut none = true;
+    for one in made {
+        for run in &one.outcome.runs {
+            if let Err(error) = &run.result {
+                none = false;
+                let first = error.lines().next().unwrap_or_default();
+                line(
+                    &mut out,
+                    &format!(
+                        "* {}: {} with {} failed: {first}",
+                        one.name, run.curve, run.pace
+                    ),
+                );
+            }
+        }
+    }
+    if none {
+        line(&mut out, "* No run failed.");
+    }
+    let mut timings = made.iter().flat_map(|one| &one.outcome.timings).flatten();
+    let counts = match timings.all(|timing| timing.instructions.is_none()) {
+        true => " Instruction counts are missing: the machine has no counter.",
+        false => "",
+    };
+    line(
+        &mut out,
+        &format!(
+            "* Velocity Verlet runs only on scenes without constraints. Bathe's scheme with a requested accuracy was not run where \
+             a point would take more than some seconds.{counts}\n\
+             * Loose joints are chaotic: after the first impacts two runs diverge. Studies of errors end before that; the studies \
+             of two seconds compare statistics."
+        ),
+    );
+    out
+}
