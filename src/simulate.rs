@@ -234,8 +234,9 @@ impl Simulation {
     /// # Errors
     /// A mechanism that cannot close, be driven or start as the scene says.
     pub fn new(scene: &Scene) -> Result<Simulation, SceneError> {
-        let mut model = compile(scene)?;
-        let mut state = initial::start(scene, &model)?;
+        let compiled = compile(scene)?;
+        let mut state = initial::start(scene, &compiled)?;
+        let mut model = compiled.model;
         keep_independent(scene, &mut model, &state)?;
         refuse_constraints(scene, &model)?;
         let mut newton = Newton::new(&model, scene.integrator.newton_tolerance);

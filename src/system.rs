@@ -7,7 +7,6 @@
 //! with the coordinates q (unknown ones first, then known ones), their first and second derivatives v and a, the multipliers
 //! lambda, and the contact memory z, which changes only between accepted steps.
 
-use crate::kinematics::Series;
 use crate::math::lu::Symbolic;
 
 /// Sizes of a system.
@@ -127,23 +126,25 @@ pub struct Weights {
 pub struct Work {
     /// Evaluations of each effect.
     pub tally: Vec<u64>,
-    /// Memory of a system inside the system: the ideal mechanism that a drive follows.
-    pub inner: Option<Box<Inner>>,
+    /// Prescribed motions that need memory.
+    pub prescribed: Vec<Box<dyn Prescribed>>,
 }
 
-/// State and solver memory of an inner system.
-#[derive(Debug, Clone)]
-pub struct Inner {
-    /// Its state.
-    pub state: State,
-    /// Constraint values.
-    pub phi: Vec<f64>,
-    /// Matrix of the acceleration level.
-    pub k: Vec<f64>,
-    /// Right side, unknowns and multipliers.
-    pub b: Vec<f64>,
-    /// Its motion over a span of time.
-    pub(crate) series: Series,
+/// A prescribed motion that is found by solving, with its own memory.
+pub trait Prescribed: std::fmt::Debug + Send + Sync {
+    /// Sets the coordinates that it prescribes, and their rates, in `to` at time `to.t`; `from` is a nearby state.
+    ///
+    /// # Errors
+    /// When the motion cannot be followed.
+    fn follow(&mut self, from: &State, to: &mut State) -> Result<(), PrescribeError>;
+    /// The same motion with the same memory.
+    fn duplicate(&self) -> Box<dyn Prescribed>;
+}
+
+impl Clone for Box<dyn Prescribed> {
+    fn clone(&self) -> Self {
+        self.duplicate()
+    }
 }
 
 /// The prescribed motion cannot be followed.

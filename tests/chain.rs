@@ -63,7 +63,7 @@ impl System for Chain {
     fn work(&self) -> Work {
         Work {
             tally: vec![],
-            inner: None,
+            prescribed: Vec::new(),
         }
     }
     fn prescribe(&self, _: &State, to: &mut State, _: &mut Work) -> Result<(), PrescribeError> {

@@ -11,9 +11,11 @@ mod rules;
 mod sketch;
 mod terms;
 
+use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::scene::{BodyKind, JointModel, LinkModel, MotionKind, PointRef, Scene, SceneError};
 use crate::scene::{SketchPoint, Sketched};
+use std::sync::Arc;
 
 /// What determines the motion of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -193,11 +195,20 @@ fn known_roles(scene: &Scene) -> Vec<Role> {
     roles
 }
 
+/// A mechanism, and the ideal one that it follows if inverse kinematics drives it.
+#[derive(Debug)]
+pub struct Compiled {
+    /// The mechanism of the scene.
+    pub model: Model,
+    /// The ideal rigid mechanism.
+    pub kinematics: Option<Arc<Kinematics>>,
+}
+
 /// Compiles a scene into the mechanism it describes.
 ///
 /// # Errors
 /// A mechanism that cannot close or follow its drives, or whose constraints depend on each other.
-pub fn compile(scene: &Scene) -> Result<Model, SceneError> {
+pub fn compile(scene: &Scene) -> Result<Compiled, SceneError> {
     let mut roles = known_roles(scene);
     let kinematics = match scene.drives.as_slice() {
         [] => None,
@@ -217,5 +228,12 @@ pub fn compile(scene: &Scene) -> Result<Model, SceneError> {
         roles,
     };
     let numbering = numbering::number(&compiler, kinematics.as_ref().map(|k| &*k.mechanism))?;
-    terms::build(&compiler, numbering, kinematics)
+    let kinematics = kinematics.map(|kinematics| {
+        Arc::new(Kinematics {
+            offset: numbering.offset,
+            ..kinematics
+        })
+    });
+    let model = terms::build(&compiler, numbering, kinematics.as_ref())?;
+    Ok(Compiled { model, kinematics })
 }

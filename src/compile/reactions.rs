@@ -2,6 +2,7 @@
 
 use super::terms::{Own, OwnTerm};
 use super::{Compiler, Role};
+use crate::kinematics::Kinematics;
 use crate::model::{
     Actuator, BodyCoordinates, DrivenForce, JointKind, Model, Reaction, Share, Source,
 };
@@ -242,9 +243,14 @@ pub(super) fn joint(
 }
 
 /// Forces on all known coordinates that can move: those of driven bodies, and the nodes fixed to them.
-pub(super) fn driven_forces(c: &Compiler, model: &Model, own: &[Own]) -> Vec<DrivenForce> {
+pub(super) fn driven_forces(
+    c: &Compiler,
+    model: &Model,
+    kinematics: Option<&Kinematics>,
+    own: &[Own],
+) -> Vec<DrivenForce> {
     let mut resting: Vec<usize> = model.fixed.iter().map(|&(x, _)| x).collect();
-    if let Some(kinematics) = &model.kinematics {
+    if let Some(kinematics) = kinematics {
         let inner = kinematics.mechanism.fixed.iter();
         resting.extend(inner.map(|&(x, _)| x + kinematics.offset));
     }

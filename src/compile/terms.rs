@@ -17,6 +17,7 @@ use crate::model::{
 };
 use crate::scene::{BodyKind, Link, LinkModel, PointRef, SceneError, Span};
 use crate::system::Shape;
+use std::sync::Arc;
 
 /// A constraint before it has slots.
 struct Row {
@@ -102,7 +103,7 @@ pub(super) enum OwnTerm {
 pub(super) fn build(
     c: &Compiler,
     mut numbering: Numbering,
-    kinematics: Option<Kinematics>,
+    kinematics: Option<&Arc<Kinematics>>,
 ) -> Result<Model, SceneError> {
     let mut terms = Terms::default();
     for b in 0..c.scene.bodies.len() {
@@ -228,10 +229,7 @@ pub(super) fn build(
         weight,
         fixed: numbering.fixed.clone(),
         rules: rules(c, &numbering),
-        kinematics: kinematics.map(|k| Kinematics {
-            offset: numbering.offset,
-            ..k
-        }),
+        prescribed: kinematics.into_iter().map(Kinematics::motion).collect(),
         driven: Vec::new(),
         riders: numbering.riders,
         bodies: Vec::new(),
@@ -248,11 +246,11 @@ pub(super) fn build(
             name: body.name.clone(),
             points: points(c, &coordinates, b),
             coordinates,
-            prescribed: prescribed(c, &model, b),
+            prescribed: kinematics.and_then(|k| prescribed(c, k, b)),
         })
         .collect();
     if c.mode == Mode::Real {
-        model.driven = reactions::driven_forces(c, &model, &own);
+        model.driven = reactions::driven_forces(c, &model, kinematics.map(|k| &**k), &own);
         for (j, joint) in c.scene.joints.iter().enumerate() {
             let (kind, actuator) = reactions::joint(c, &model, &own, j)?;
             model.joints.push(JointPlace {
@@ -304,8 +302,7 @@ fn points(c: &Compiler, coordinates: &BodyCoordinates, body: usize) -> Vec<Point
 }
 
 /// First coordinate of body `b` in the ideal mechanism that the drive follows.
-fn prescribed(c: &Compiler, model: &Model, b: usize) -> Option<usize> {
-    let kinematics = model.kinematics.as_ref()?;
+fn prescribed(c: &Compiler, kinematics: &Kinematics, b: usize) -> Option<usize> {
     if !c.scene.drives.iter().any(|d| d.body == b) {
         return None;
     }

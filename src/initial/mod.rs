@@ -2,6 +2,7 @@
 
 pub(crate) mod redundancy;
 
+use crate::compile::Compiled;
 use crate::compile::assembly::{assemble, opening};
 use crate::math::plane::{Vec2, add, cross, dot, norm, perp, scale, sub};
 use crate::model::{BodyCoordinates, Model, Placed};
@@ -64,10 +65,11 @@ impl Writer<'_> {
 ///
 /// # Errors
 /// A body without a start, or a start that violates a constraint.
-pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
+pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
+    let Compiled { model, kinematics } = compiled;
     let mut state = model.blank_state();
     model.follow_rules(&mut state);
-    if let Some(kinematics) = &model.kinematics {
+    if let Some(kinematics) = kinematics {
         let mut inner = kinematics.work();
         inner.state.q.copy_from_slice(&kinematics.start);
         let solved = kinematics.solve(&mut inner, 20);
@@ -78,7 +80,7 @@ pub fn start(scene: &Scene, model: &Model) -> Result<State, SceneError> {
         state.a[here].copy_from_slice(&inner.state.a);
     }
     model.ride(&mut state);
-    let starts = starts(scene, model, &state)?;
+    let starts = starts(scene, compiled, &state)?;
 
     let unknowns = model.shape().unknowns;
     let mut writer = Writer {
@@ -190,7 +192,7 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
         names.join(", ")
     );
     let error = scene.error(first.span, message, "no velocity here");
-    Err(error.with_help(if model.kinematics.is_some() {
+    Err(error.with_help(if !model.prescribed.is_empty() {
         "give `vx`, `vy` and `omega` beside the pose"
     } else {
         "add a joint to `[initial.sketch]` or a velocity to `[initial.velocities]`, and the others are computed; or give `vx`, \
@@ -199,7 +201,12 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
 }
 
 /// The start of every body that moves freely.
-fn starts(scene: &Scene, model: &Model, state: &State) -> Result<Vec<Option<Start>>, SceneError> {
+fn starts(
+    scene: &Scene,
+    compiled: &Compiled,
+    state: &State,
+) -> Result<Vec<Option<Start>>, SceneError> {
+    let Compiled { model, kinematics } = compiled;
     let free: Vec<bool> = (0..scene.bodies.len()).map(|b| is_free(model, b)).collect();
     let given = |b: usize| scene.initial.bodies.iter().find(|s| s.body == b);
     for (b, body) in scene.bodies.iter().enumerate() {
@@ -211,7 +218,7 @@ fn starts(scene: &Scene, model: &Model, state: &State) -> Result<Vec<Option<Star
             return Err(scene.error(given.span, message, "remove this"));
         }
     }
-    if let (Some(kinematics), Some(given)) = (&model.kinematics, scene.initial.velocities.first()) {
+    if let (Some(kinematics), Some(given)) = (kinematics, scene.initial.velocities.first()) {
         let message = format!(
             "the velocity of {} cannot be given: with inverse kinematics all velocities are those of the ideal mechanism",
             kinematics.mechanism.bodies()[given.body].name
@@ -220,7 +227,7 @@ fn starts(scene: &Scene, model: &Model, state: &State) -> Result<Vec<Option<Star
     }
     let exact = |b: usize| given(b).map(|g| Start::given(g, &scene.bodies[b].kind));
     let incomplete = (0..scene.bodies.len()).any(|b| free[b] && given(b).is_none());
-    let assembled = model.kinematics.is_none()
+    let assembled = kinematics.is_none()
         && (incomplete || !scene.initial.sketch.is_empty() || !scene.initial.velocities.is_empty());
     if assembled {
         let assembly = assemble(scene)?;
@@ -230,7 +237,7 @@ fn starts(scene: &Scene, model: &Model, state: &State) -> Result<Vec<Option<Star
             .collect());
     }
     let ideal = |b: usize| {
-        let kinematics = model.kinematics.as_ref()?;
+        let kinematics = kinematics.as_ref()?;
         ideal_start(&kinematics.mechanism, b, state, kinematics.offset)
     };
     Ok((0..free.len())

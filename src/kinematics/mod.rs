@@ -7,12 +7,12 @@
 
 mod series;
 
-pub(crate) use series::Series;
-
 use crate::math::plane::{norm, sub};
 use crate::model::Model;
-use crate::system::{Inner, PrescribeError, State, System};
+use crate::system::{PrescribeError, Prescribed, State, System};
 use numbers::number;
+use series::Series;
+use std::sync::Arc;
 
 /// After an update below this the error is far below rounding, by the quadratic convergence of Newton's method.
 const LAST_UPDATE: f64 = 1e-9;
@@ -47,7 +47,47 @@ pub(crate) struct Dyad {
     pub links: [(String, f64); 2],
 }
 
+/// State and solver memory of the ideal mechanism.
+#[derive(Debug, Clone)]
+pub struct Inner {
+    /// Its state.
+    pub state: State,
+    /// Constraint values.
+    phi: Vec<f64>,
+    /// Matrix of the acceleration level.
+    k: Vec<f64>,
+    /// Right side, unknowns and multipliers.
+    b: Vec<f64>,
+    /// Its motion over a span of time.
+    series: Series,
+}
+
+/// The motion of the ideal mechanism, which the real one follows.
+#[derive(Debug, Clone)]
+struct Motion {
+    kinematics: Arc<Kinematics>,
+    inner: Inner,
+}
+
+impl Prescribed for Motion {
+    fn follow(&mut self, from: &State, to: &mut State) -> Result<(), PrescribeError> {
+        self.kinematics.prescribe(from, to, &mut self.inner)
+    }
+
+    fn duplicate(&self) -> Box<dyn Prescribed> {
+        Box::new(self.clone())
+    }
+}
+
 impl Kinematics {
+    /// The motion as one that a mechanism follows.
+    pub fn motion(self: &Arc<Self>) -> Box<dyn Prescribed> {
+        Box::new(Motion {
+            kinematics: self.clone(),
+            inner: self.work(),
+        })
+    }
+
     /// Work memory with a state whose fixed coordinates are set.
     pub fn work(&self) -> Inner {
         let shape = self.mechanism.shape();

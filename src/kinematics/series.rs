@@ -6,8 +6,8 @@
 //! accepted only if its last coefficients are rounding; otherwise it is halved. Where no span is long enough for several
 //! steps, at kinks of the path or near singular poses, the kinematics is solved at every time.
 
-use super::Kinematics;
-use crate::system::{Inner, State};
+use super::{Inner, Kinematics};
+use crate::system::State;
 use std::f64::consts::PI;
 
 /// Degree of the polynomials.
@@ -191,12 +191,12 @@ mod tests {
             &overrides.collect::<Vec<_>>(),
         )
         .unwrap();
-        let model = compile(&scene).unwrap();
-        let kinematics = model.kinematics.as_ref().unwrap();
+        let compiled = compile(&scene).unwrap();
+        let kinematics = compiled.kinematics.as_ref().unwrap();
         let [mut inner, mut other] = [kinematics.work(), kinematics.work()];
-        let mut from = initial::start(&scene, &model).unwrap();
+        let mut from = initial::start(&scene, &compiled).unwrap();
         let (mut to, mut solved) = (from.clone(), from.clone());
-        let n = model.shape().unknowns;
+        let n = compiled.model.shape().unknowns;
         let (mut differences, mut sizes, mut series) = ([0.0_f64; 3], [0.0_f64; 3], 0);
         for k in 1..=count {
             to.t = k as f64 * step;

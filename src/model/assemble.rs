@@ -235,10 +235,9 @@ impl System for Model {
     }
 
     fn work(&self) -> Work {
-        let inner = self.kinematics.as_ref().map(|k| Box::new(k.work()));
         Work {
             tally: [0; Effect::ALL.len()].to_vec(),
-            inner,
+            prescribed: self.prescribed.clone(),
         }
     }
 
@@ -253,13 +252,9 @@ impl System for Model {
         to.v[n..].copy_from_slice(&from.v[n..]);
         to.a[n..].copy_from_slice(&from.a[n..]);
         self.follow_rules(to);
-        if let Some(kinematics) = &self.kinematics {
+        for motion in &mut work.prescribed {
             work.tally[Effect::InverseKinematics as usize] += 1;
-            let inner = work
-                .inner
-                .as_mut()
-                .expect("a model with a drive has work memory for it");
-            kinematics.prescribe(from, to, inner)?;
+            motion.follow(from, to)?;
         }
         self.ride(to);
         Ok(())

@@ -12,13 +12,12 @@ pub use reaction::{Reaction, Share};
 
 use crate::constraint::{Coincide, Constraint, Curvature, Gradient, Length, ROWS, Slide};
 use crate::force::{ClearanceJoint, Force, FrictionalJoint};
-use crate::kinematics::Kinematics;
 use crate::link::AncfCable;
 use crate::marker::{Marker, Spin};
 use crate::math::lu::Symbolic;
 use crate::math::plane::Vec2;
 use crate::motion::{Function, Path};
-use crate::system::{Shape, State};
+use crate::system::{Prescribed, Shape, State};
 
 /// A mechanism ready to be integrated.
 #[derive(Debug)]
@@ -44,7 +43,8 @@ pub struct Model {
     pub(crate) fixed: Vec<(usize, f64)>,
     /// Coordinates known as functions of time.
     pub(crate) rules: Vec<Rule>,
-    pub(crate) kinematics: Option<Kinematics>,
+    /// Prescribed motions that need memory, before they start.
+    pub(crate) prescribed: Vec<Box<dyn Prescribed>>,
     /// Forces on known coordinates that move.
     pub(crate) driven: Vec<DrivenForce>,
     /// Known nodes that are fixed to a known rigid body.
@@ -399,7 +399,7 @@ impl Model {
             Effect::Contact => self.shape.contacts > 0,
             Effect::Friction => !self.frictional.is_empty(),
             Effect::Gravity => !self.weight.is_empty(),
-            Effect::InverseKinematics => self.kinematics.is_some(),
+            Effect::InverseKinematics => !self.prescribed.is_empty(),
             other => {
                 self.constraints.iter().any(|c| c.effect == other)
                     || self.forces.iter().any(|f| f.term.effect() == other)
