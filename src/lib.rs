@@ -38,6 +38,7 @@
 pub mod compile;
 pub mod constraint;
 pub mod contact;
+pub mod effect;
 pub mod force;
 pub mod initial;
 pub mod kinematics;

@@ -266,20 +266,23 @@ fn joint_value(
     work: &mut Work,
     cache: &mut Cache,
 ) -> f64 {
-    let clearance = || model.clearance(j, at).unwrap_or_default();
-    let rates = || model.eccentricity_rates(j, at).unwrap_or_default();
+    let contact = || model.gap(j, at).unwrap_or_default();
+    let gap = || contact().0;
     match quantity {
         JointQuantity::Fx => cache.force(model, j, at, work)[0],
         JointQuantity::Fy => cache.force(model, j, at, work)[1],
         JointQuantity::Force => crate::math::plane::norm(cache.force(model, j, at, work)),
-        JointQuantity::Ex => clearance().0[0],
-        JointQuantity::Ey => clearance().0[1],
-        JointQuantity::Eccentricity => crate::math::plane::norm(clearance().0),
-        JointQuantity::ExRate => rates().0[0],
-        JointQuantity::EyRate => rates().0[1],
-        JointQuantity::EccentricityRate => rates().1,
-        JointQuantity::Penetration => clearance().1,
-        JointQuantity::Contact => f64::from(u8::from(clearance().2)),
+        JointQuantity::Ex => gap().e[0],
+        JointQuantity::Ey => gap().e[1],
+        JointQuantity::Eccentricity => gap().eccentricity,
+        JointQuantity::ExRate => gap().e_dot[0],
+        JointQuantity::EyRate => gap().e_dot[1],
+        JointQuantity::EccentricityRate => contact().1,
+        JointQuantity::Penetration => gap().delta,
+        JointQuantity::Contact => {
+            let (gap, _, closed) = contact();
+            f64::from(u8::from(closed && gap.delta > 0.0))
+        }
         JointQuantity::Couple => model.joint_couple(j, at),
         JointQuantity::Angle => model.turned(j, at)[0],
         JointQuantity::Speed => model.turned(j, at)[1],

@@ -2,22 +2,33 @@
 
 use approx::assert_relative_eq;
 use ladder::{Rung, Worst};
-use looselink::contact::{
-    Ambrosio, Flores, Hertz, HuntCrossley, LAWS, LankaraniNikravesh, NormalLaw, normal_law,
-};
-use looselink::scene::{Contact, NormalLawKind};
+use looselink::contact::friction::{Ambrosio, FrictionLaw};
+use looselink::contact::normal::damped_power::{FLORES, HERTZ, HUNT_CROSSLEY, LANKARANI_NIKRAVESH};
+use looselink::contact::normal::{LAWS, NormalLaw, NormalLawKind, NormalParameters};
+use looselink::scene::Contact;
 use proptest::prelude::*;
 
 const K: f64 = 1.2e11;
 
+fn law(kind: &NormalLawKind, restitution: f64, impact_velocity_floor: f64) -> Box<dyn NormalLaw> {
+    (kind.build)(&NormalParameters {
+        stiffness: K,
+        exponent: 1.5,
+        restitution,
+        impact_velocity_floor,
+    })
+}
+
 fn laws(restitution: f64) -> Vec<Box<dyn NormalLaw>> {
-    let registered = LAWS
-        .iter()
-        .map(|(_, build)| build(K, 1.5, restitution, 1e-6));
-    let other_exponent = LAWS
-        .iter()
-        .map(|(_, build)| build(3e8, 1.2, restitution, 1e-6));
-    registered.chain(other_exponent).collect()
+    let other_exponent = NormalParameters {
+        stiffness: 3e8,
+        exponent: 1.2,
+        restitution,
+        impact_velocity_floor: 1e-6,
+    };
+    let registered = LAWS.iter().map(|kind| law(kind, restitution, 1e-6));
+    let others = LAWS.iter().map(|kind| (kind.build)(&other_exponent));
+    registered.chain(others).collect()
 }
 
 #[test]
@@ -76,7 +87,7 @@ proptest! {
 
 #[test]
 fn the_clamp_acts_and_is_flagged() {
-    let law = LankaraniNikravesh::new(K, 1.5, 0.3, 1e-6);
+    let law = law(&LANKARANI_NIKRAVESH, 0.3, 1e-6);
     assert!(!law.force(1e-6, -0.01, 0.01).clamped);
     let pulled = law.force(1e-6, -0.05, 0.01);
     assert!(pulled.clamped && pulled.value == 0.0 && pulled.elastic > 0.0);
@@ -84,14 +95,14 @@ fn the_clamp_acts_and_is_flagged() {
 
 #[test]
 fn a_grazing_onset_is_floored() {
-    let law = LankaraniNikravesh::new(K, 1.5, 0.9, 1e-4);
+    let law = law(&LANKARANI_NIKRAVESH, 0.9, 1e-4);
     let (grazing, floor) = (law.force(1e-6, 0.01, 1e-300), law.force(1e-6, 0.01, 1e-4));
     assert_eq!(grazing, floor);
 }
 
 #[test]
 fn hertz_is_the_limit_of_all() {
-    let hertz = Hertz::new(K, 1.5).force(1e-6, 0.01, 0.02).value;
+    let hertz = law(&HERTZ, 1.0, 1.0).force(1e-6, 0.01, 0.02).value;
     for law in laws(1.0).iter().take(4) {
         assert_relative_eq!(
             law.force(1e-6, 0.01, 0.02).value,
@@ -121,11 +132,8 @@ fn delivered_restitution_follows_the_exact_map() {
     ];
     let worst = Worst::new();
     for (typed, ln, hc, flores) in table {
-        let laws: [Box<dyn NormalLaw>; 3] = [
-            Box::new(LankaraniNikravesh::new(K, 1.5, typed, 1e-6)),
-            Box::new(HuntCrossley::new(K, 1.5, typed, 1e-6)),
-            Box::new(Flores::new(K, 1.5, typed, 1e-6)),
-        ];
+        let laws =
+            [&LANKARANI_NIKRAVESH, &HUNT_CROSSLEY, &FLORES].map(|kind| law(kind, typed, 1e-6));
         for (law, expected) in laws.iter().zip([ln, hc, flores]) {
             worst.see(law.delivered_restitution() / expected - 1.0);
         }
@@ -138,7 +146,7 @@ fn delivered_restitution_follows_the_exact_map() {
 /// The law that a contact of a scene names, with its numbers.
 #[test]
 fn laws_are_built_from_contacts() {
-    let contact = |law: NormalLawKind| Contact {
+    let contact = |law: &'static NormalLawKind| Contact {
         bearing_radius: 0.01,
         clearance: 2e-5,
         law,
@@ -151,17 +159,17 @@ fn laws_are_built_from_contacts() {
     let (delta, rate, impact) = (2e-6, 0.03, 0.05);
     let elastic = 3e9 * 2e-6_f64.powf(1.3);
     for (kind, name, chi) in [
-        (NormalLawKind::Hertz, "hertz", 0.0),
+        (&HERTZ, "hertz", 0.0),
         (
-            NormalLawKind::LankaraniNikravesh,
+            &LANKARANI_NIKRAVESH,
             "lankarani_nikravesh",
             0.75 * (1.0 - 0.36),
         ),
-        (NormalLawKind::HuntCrossley, "hunt_crossley", 1.5 * 0.4),
-        (NormalLawKind::Flores, "flores", 8.0 * 0.4 / 3.0),
+        (&HUNT_CROSSLEY, "hunt_crossley", 1.5 * 0.4),
+        (&FLORES, "flores", 8.0 * 0.4 / 3.0),
     ] {
-        let law = normal_law(&contact(kind));
-        assert_eq!(law.name(), name);
+        let law = contact(kind).normal_law();
+        assert_eq!(kind.name, name);
         let expected = elastic * (1.0 + chi * rate / impact);
         assert_relative_eq!(
             law.force(delta, rate, impact).value,
@@ -183,7 +191,7 @@ fn laws_are_built_from_contacts() {
 /// Where the bracket of the damped law is zero the force vanishes with its slope by the rate, and is not yet clamped.
 #[test]
 fn the_clamp_begins_where_the_law_would_pull() {
-    let law = LankaraniNikravesh::new(K, 1.5, 0.5, 1e-9);
+    let law = law(&LANKARANI_NIKRAVESH, 0.5, 1e-9);
     let chi = 0.75 * (1.0 - 0.25);
     // powers of two: the bracket is zero to the last bit
     let (impact, rate) = (0.5625, -1.0);

@@ -11,7 +11,17 @@ fn read(file: &str) -> String {
 
 #[test]
 fn files_named_in_documents_exist() {
-    let folders = ["src/", "tests/", "scenes/", "benches/", "paper-figures/"];
+    let folders = [
+        "src/",
+        "crates/",
+        "pages/",
+        "tests/",
+        "scenes/",
+        "benches/",
+        "paper-figures/",
+        "verify/",
+        "fuzz/",
+    ];
     let mut seen = 0;
     for document in ["README.md", "ARCHITECTURE.md", "EQUATIONS.md"] {
         let text = read(document);

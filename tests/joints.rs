@@ -2,10 +2,12 @@
 
 use crate::differencing;
 use ladder::{Rung, Worst};
-use looselink::contact::{Ambrosio, LankaraniNikravesh};
-use looselink::force::{ClearanceJoint, FrictionalJoint};
+use looselink::contact::friction::Ambrosio;
+use looselink::contact::geometry::CircleInCircle;
+use looselink::contact::normal::NormalParameters;
+use looselink::contact::normal::damped_power::LANKARANI_NIKRAVESH;
+use looselink::contact::{At, ContactPair, Rough, Slip, Smooth};
 use looselink::marker::{Marker, Spin};
-use looselink::scene::Slip;
 use looselink::system::Weights;
 
 /// Coordinates: a node and a second node, a body, another body, a slope. Sizes near one, so that differences resolve.
@@ -29,14 +31,27 @@ const OTHER: Marker = Marker::OnBody {
     s: [-0.03, 0.01],
 };
 
-fn joint(bearing: Marker, journal: Marker) -> ClearanceJoint {
-    let law = Box::new(LankaraniNikravesh::new(50.0, 1.5, 0.7, 1e-6));
-    ClearanceJoint {
-        bearing,
-        journal,
-        clearance: 0.03,
-        law,
+fn joint(bearing: Marker, journal: Marker) -> Smooth<CircleInCircle> {
+    let parameters = NormalParameters {
+        stiffness: 50.0,
+        exponent: 1.5,
+        restitution: 0.7,
+        impact_velocity_floor: 1e-6,
+    };
+    Smooth {
+        geometry: CircleInCircle {
+            bearing,
+            journal,
+            bearing_radius: 0.2,
+            clearance: 0.03,
+        },
+        law: (LANKARANI_NIKRAVESH.build)(&parameters),
     }
+}
+
+/// A closed contact.
+fn closed<'a>(q: &'a [f64], v: &'a [f64]) -> At<'a> {
+    At { q, v, z: 0.5 }
 }
 
 /// The local force and the tangents by q and by v of a term, gathered over all coordinates.
@@ -91,7 +106,7 @@ fn tangents_without_friction() {
     ] {
         let joint = joint(bearing, journal);
         check(name, &joint.coordinates(), &|q, v, w, f, k| {
-            joint.force_and_tangent(q, v, 0.5, w, f, k).is_some()
+            joint.force_and_tangent(closed(q, v), w, f, k)
         });
     }
 }
@@ -111,15 +126,10 @@ fn tangents_with_friction() {
     ];
     for slip in [Slip::Paper, Slip::Material] {
         for (name, spin) in spins {
-            let friction = FrictionalJoint::new(
-                joint(NODE, BODY),
-                law,
-                slip,
-                0.2,
-                [spin, Spin::Angle { theta: 6 }],
-            );
+            let spins = [spin, Spin::Angle { theta: 6 }];
+            let friction = Rough::new(joint(NODE, BODY), Box::new(law), slip, spins);
             let evaluate = |q: &[f64], v: &[f64], w, f: &mut [f64; 8], k: &mut [[f64; 8]; 8]| {
-                friction.force_and_tangent(q, v, 0.5, w, f, k).is_some()
+                friction.force_and_tangent(closed(q, v), w, f, k)
             };
             check(
                 &format!(
@@ -143,11 +153,10 @@ fn friction_balances_and_dissipates() {
         v1: 0.5,
     };
     let spins = [Spin::Angle { theta: 6 }, Spin::Angle { theta: 9 }];
-    let joint = FrictionalJoint::new(joint(BODY, OTHER), law, Slip::Material, 0.2, spins);
+    let joint = Rough::new(joint(BODY, OTHER), Box::new(law), Slip::Material, spins);
+    let at = closed(&q, &v);
     let mut f = [0.0; 8];
-    joint
-        .force(&q, &v, 0.5, &mut f)
-        .expect("the surfaces touch");
+    assert!(joint.force(at, &mut f), "the surfaces touch");
     let scale = f[0].abs() + f[1].abs();
     for i in 0..2 {
         // action and reaction: a few roundings
@@ -155,16 +164,16 @@ fn friction_balances_and_dissipates() {
     }
     // the two contact points are delta apart along n, so the pair of tangential forces keeps the moment T delta
     let moment = f[2] + f[5] + q[4] * f[1] - q[5] * f[0] + q[7] * f[4] - q[8] * f[3];
-    let g = joint.joint.geometry(&q, &v);
-    let (_, tangential) = joint.forces(&q, &v, 0.5).expect("the surfaces touch");
+    let gap = joint.gap(&q, &v);
+    let (normal, tangential) = joint.forces(at).expect("the surfaces touch");
     Rung::Balance
         .asks("Is T δ the only moment of the forces of a loose joint with friction? Relative to the force")
         .within(
-            (moment - tangential.value * g.delta) / scale,
+            (moment - tangential.value * gap.delta) / scale,
             1e-14,
             "a few roundings",
         );
-    assert!(joint.dissipation(&q, &v, 0.5) > 0.0);
+    assert!(joint.dissipation(at) > 0.0);
     // the work of the local force is what elastic and dissipated power add up to
     let power: f64 = joint
         .coordinates()
@@ -172,11 +181,7 @@ fn friction_balances_and_dissipates() {
         .zip(f)
         .map(|(&i, f)| f * v[i])
         .sum();
-    let normal = joint
-        .joint
-        .normal_force(&g, 0.5)
-        .expect("the surfaces touch");
-    let expected = normal.value * ClearanceJoint::rate(&g) + joint.dissipation(&q, &v, 0.5);
+    let expected = normal.value * joint.rate(&gap) + joint.dissipation(at);
     Rung::Balance
         .asks("Is the power of a loose joint with friction the sum of the rates of stored and dissipated energy? Relative error")
         .within((power - expected) / power.abs().max(scale), 1e-14, "a few roundings");
@@ -205,17 +210,18 @@ fn the_force_alone_is_that_of_the_tangent() {
     ] {
         let (mut alone, mut with_tangent, mut k) = ([0.0; 8], [0.0; 8], [[0.0; 8]; 8]);
         let smooth = joint(bearing, journal);
-        let normal = smooth.force(&q, &v, 0.5, &mut alone);
-        let same_normal = smooth.force_and_tangent(&q, &v, 0.5, w, &mut with_tangent, &mut k);
+        let at = closed(&q, &v);
+        let normal = smooth.normal_force(&smooth.gap(&q, &v), at.z);
         let normal = normal.expect("the surfaces touch").value;
-        assert_eq!(normal, same_normal.expect("the surfaces touch").value);
+        assert!(smooth.force(at, &mut alone));
+        assert!(smooth.force_and_tangent(at, w, &mut with_tangent, &mut k));
         same(name, alone, with_tangent, normal);
 
         let spins = [Spin::Angle { theta: 6 }, Spin::Angle { theta: 9 }];
-        let rough = FrictionalJoint::new(smooth, law, Slip::Material, 0.2, spins);
+        let rough = Rough::new(smooth, Box::new(law), Slip::Material, spins);
         let (mut alone, mut with_tangent) = ([0.0; 8], [0.0; 8]);
-        rough.force(&q, &v, 0.5, &mut alone);
-        rough.force_and_tangent(&q, &v, 0.5, w, &mut with_tangent, &mut k);
+        rough.force(at, &mut alone);
+        rough.force_and_tangent(at, w, &mut with_tangent, &mut k);
         same(name, alone, with_tangent, normal);
     }
 }
@@ -227,9 +233,9 @@ fn no_normal_is_asked_for_at_the_centre() {
     let arm = BODY.arm(&q);
     (q[4], q[5]) = (q[0] - arm[0], q[1] - arm[1]);
     let mut f = [0.0; 8];
-    assert!(joint.force(&q, &v, 0.5, &mut f).is_none());
+    assert!(!joint.force(closed(&q, &v), &mut f));
     assert_eq!(f, [0.0; 8]);
-    assert!(ClearanceJoint::rate(&joint.geometry(&q, &v)) > 0.0);
+    assert!(joint.rate(&joint.gap(&q, &v)) > 0.0);
 }
 
 /// Both slip velocities by their definitions (eqs. 22-23 as printed; the material's with the radii), the law on them, and
@@ -269,13 +275,14 @@ fn friction_follows_the_definitions_of_slip() {
         ),
     ] {
         assert!(velocity.abs() > law.v0, "the law must act");
-        let joint = FrictionalJoint::new(joint(BODY, OTHER), law, slip, bearing_radius, spins);
-        let (pressed, rubbed) = joint.forces(&q, &v, 0.5).expect("the surfaces touch");
+        let joint = Rough::new(joint(BODY, OTHER), Box::new(law), slip, spins);
+        let at = closed(&q, &v);
+        let (pressed, rubbed) = joint.forces(at).expect("the surfaces touch");
         let size = (velocity.abs() - law.v0) / (law.v1 - law.v0) * 0.3 * normal;
         let tangential = size * velocity.signum();
         worst.see(pressed.value / normal - 1.0);
         worst.see(rubbed.value / tangential - 1.0);
-        let force = joint.journal_force(&q, &v, 0.5);
+        let force = joint.reaction(at);
         worst.see((force[0] + normal * n[0] - tangential * n[1]) / normal);
         worst.see((force[1] + normal * n[1] + tangential * n[0]) / normal);
         // friction takes the power of the velocities that it acts on
@@ -283,7 +290,7 @@ fn friction_follows_the_definitions_of_slip() {
             Slip::Paper => tangential * sliding,
             Slip::Material => tangential * velocity,
         };
-        worst.see((joint.dissipation(&q, &v, 0.5) - taken) / taken);
+        worst.see((joint.dissipation(at) - taken) / taken);
     }
     Rung::Identities
         .asks("Do normal force, friction, force on the journal and power follow their definitions, for both slips? Relative error")

@@ -2,7 +2,7 @@
 
 use crate::support::{all_scenes, load};
 use ladder::{Rung, Worst};
-use looselink::model::Effect;
+use looselink::effect::Effect;
 use looselink::newton::Newton;
 use looselink::scene::{Analysis, Body, BodyKind, LinkModel, Scene};
 use looselink::simulate::Simulation;

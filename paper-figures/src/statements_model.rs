@@ -3,7 +3,6 @@
 use crate::evidence::{Evidence, statement};
 use crate::interval::Verdict;
 use crate::statement::{Basis, Statement};
-use looselink::contact::normal_law;
 use looselink::link::{ElasticRoute, GaussCable, LiteralCable};
 use looselink::scene::{BodyKind, JointModel, LinkModel, Method};
 use looselink::simulate::Simulation;
@@ -247,7 +246,7 @@ fn restitution(e: &Evidence) -> Statement {
             _ => None,
         });
     let (typed, delivered) = contact.map_or((f64::NAN, f64::NAN), |c| {
-        (c.restitution, normal_law(c).delivered_restitution())
+        (c.restitution, c.normal_law().delivered_restitution())
     });
     Statement {
         measured: format!(

@@ -5,10 +5,12 @@ use super::Role;
 use super::numbering::{Connection, Numbering};
 use super::terms::{Own, OwnTerm, Terms};
 use crate::constraint::{Align, ClampSlope, Coincide, Place, Slide};
-use crate::contact::{Ambrosio, normal_law};
-use crate::force::{ClearanceJoint, FrictionalJoint};
+use crate::contact::friction::Ambrosio;
+use crate::contact::geometry::CircleInCircle;
+use crate::contact::{Rough, Smooth};
+use crate::effect::Effect;
 use crate::marker::Spin;
-use crate::model::{BodyCoordinates, ConstraintTerm, Effect};
+use crate::model::{BodyCoordinates, ConstraintTerm};
 use crate::scene::{Function, Joint, JointModel, MotionKind, PointRef, SceneError, SlopeClamp};
 
 pub(super) fn joint_terms(
@@ -34,20 +36,17 @@ pub(super) fn joint_terms(
                 );
                 return Err(c.joint_error(j, message, "nothing here can move"));
             }
-            let law = normal_law(contact);
-            let term = ClearanceJoint {
-                bearing,
-                journal,
-                clearance: contact.clearance,
-                law,
+            let surface = Smooth {
+                geometry: CircleInCircle {
+                    bearing,
+                    journal,
+                    bearing_radius: contact.bearing_radius,
+                    clearance: contact.clearance,
+                },
+                law: contact.normal_law(),
             };
-            terms.contacts += 1;
-            match contact.friction {
-                None => {
-                    terms.loose.push(term);
-                    terms.loose_contacts.push(terms.contacts - 1);
-                    OwnTerm::Loose(terms.loose.len() - 1)
-                }
+            terms.contacts.push(match contact.friction {
+                None => Box::new(surface),
                 Some(f) => {
                     let law = Ambrosio {
                         coefficient: f.coefficient,
@@ -55,13 +54,10 @@ pub(super) fn joint_terms(
                         v1: f.v1,
                     };
                     let spins = points.map(|p| spin(numbering, p));
-                    let term =
-                        FrictionalJoint::new(term, law, f.slip, contact.bearing_radius, spins);
-                    terms.frictional.push(term);
-                    terms.frictional_contacts.push(terms.contacts - 1);
-                    OwnTerm::Frictional(terms.frictional.len() - 1)
+                    Box::new(Rough::new(surface, Box::new(law), f.slip, spins))
                 }
-            }
+            });
+            OwnTerm::Contact(terms.contacts.len() - 1)
         }
         (_, JointModel::Prismatic { direction, .. }) => {
             let slide = Slide {

@@ -120,21 +120,12 @@ fn shares_of(c: &Compiler, model: &Model, own: &[Own], point: PointRef) -> Vec<S
         shares.extend(runs(source, coordinates, x, width, |_| true));
     };
     for (joint, own) in c.scene.joints.iter().zip(own) {
-        let ends = [joint.bearing, joint.journal].map(|p| attachment(model, p));
-        let attached = ends.contains(&point);
         // the couple of a friction force on a rigid link acts on both ends
-        let on_body = ends.iter().any(|end| end.body == point.body);
-        match own.force {
-            OwnTerm::Loose(i) if attached => {
-                add(Source::Loose(i), &model.loose[i].block.coordinates);
-            }
-            OwnTerm::Frictional(i) if on_body => {
-                add(
-                    Source::Frictional(i),
-                    &model.frictional[i].block.coordinates,
-                );
-            }
-            _ => {}
+        let ends = [joint.bearing, joint.journal].map(|p| attachment(model, p));
+        if let OwnTerm::Contact(i) = own.force
+            && ends.iter().any(|end| end.body == point.body)
+        {
+            add(Source::Contact(i), &model.contacts[i].block.coordinates);
         }
     }
     shares
@@ -189,8 +180,7 @@ pub(super) fn joint(
 ) -> Result<(JointKind, Option<Actuator>), SceneError> {
     let kind = match own[j].force {
         OwnTerm::Constraint(i) => JointKind::Constraint(i),
-        OwnTerm::Loose(i) => JointKind::Loose(i),
-        OwnTerm::Frictional(i) => JointKind::Frictional(i),
+        OwnTerm::Contact(i) => JointKind::Contact(i),
         OwnTerm::Eliminated => {
             let joint = &c.scene.joints[j];
             let journal_side = hanging(c, model, own, j, joint.journal).map(|side| (side, 1.0));

@@ -6,13 +6,15 @@ use super::numbering::{Numbering, shifted};
 use super::rules::rules;
 use super::{Compiler, Mode, Role, loads, reactions};
 use crate::constraint::{Length, Slide};
-use crate::force::{ClearanceJoint, Force, FrictionalJoint};
+use crate::contact::ContactPair;
+use crate::effect::Effect;
+use crate::force::Force;
 use crate::kinematics::Kinematics;
 use crate::link::{AncfCable, ElasticRoute, natural_rigid};
 use crate::marker::Spin;
 use crate::math::lu::Symbolic;
 use crate::model::{
-    Acting, Block, BodyCoordinates, BodyPlace, Border, ConstraintTerm, Contacting, Effect, Element,
+    Acting, Block, BodyCoordinates, BodyPlace, Border, ConstraintTerm, Contacting, Element,
     Inertia, JointPlace, Mass, Model, Placed, PointPlace,
 };
 use crate::scene::{BodyKind, Link, LinkModel, PointRef, SceneError, Span};
@@ -40,12 +42,7 @@ pub(super) struct Terms {
     /// With the bodies of its two sides.
     pub forces: Vec<(Box<dyn Force>, [usize; 2])>,
     pub named_forces: Vec<(String, usize)>,
-    pub loose: Vec<ClearanceJoint>,
-    pub frictional: Vec<FrictionalJoint>,
-    /// Contact memory of each loose and each frictional joint.
-    pub loose_contacts: Vec<usize>,
-    pub frictional_contacts: Vec<usize>,
-    pub contacts: usize,
+    pub contacts: Vec<Box<dyn ContactPair>>,
     /// Angle memories.
     pub angles: usize,
 }
@@ -93,8 +90,7 @@ pub(super) struct Own {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum OwnTerm {
     Constraint(usize),
-    Loose(usize),
-    Frictional(usize),
+    Contact(usize),
     /// None: the joint shares or eliminates coordinates.
     Eliminated,
 }
@@ -185,32 +181,17 @@ pub(super) fn build(
         }
     });
     let forces = forces.collect();
-    let loose = terms
-        .loose
-        .into_iter()
-        .zip(terms.loose_contacts)
-        .map(|(term, contact)| Contacting {
-            block: place(term.coordinates()),
-            term,
-            contact,
-        })
-        .collect();
-    let frictional = terms
-        .frictional
-        .into_iter()
-        .zip(terms.frictional_contacts)
-        .map(|(term, contact)| Contacting {
-            block: place(term.coordinates()),
-            term,
-            contact,
-        })
-        .collect();
+    let contacts = terms.contacts.into_iter().map(|pair| Contacting {
+        block: place(pair.coordinates()),
+        pair,
+    });
+    let contacts: Vec<Contacting> = contacts.collect();
 
     let shape = Shape {
         unknowns: n,
         coordinates: numbering.coordinates,
         multipliers,
-        contacts: terms.contacts,
+        contacts: contacts.len(),
         angles: terms.angles,
     };
     let mut model = Model {
@@ -224,8 +205,7 @@ pub(super) fn build(
         forces,
         counts: Vec::new(),
         named_forces: terms.named_forces,
-        loose,
-        frictional,
+        contacts,
         weight,
         fixed: numbering.fixed.clone(),
         rules: rules(c, &numbering),
@@ -479,11 +459,8 @@ fn analyse(terms: &Terms, n: usize) -> Symbolic {
     for (force, _) in &terms.forces {
         pattern.add(&force.coordinates());
     }
-    for joint in &terms.loose {
-        pattern.add(&joint.coordinates());
-    }
-    for joint in &terms.frictional {
-        pattern.add(&joint.coordinates());
+    for pair in &terms.contacts {
+        pattern.add(&pair.coordinates());
     }
     pattern.analyse()
 }

@@ -1,10 +1,10 @@
 //! Kelvin-Voigt damping of a planar ANCF element: stresses proportional to strain rates.
 
 use super::{Force, LocalMatrix, WIDTH};
+use crate::effect::Effect;
 use crate::link::shape_derivatives;
 use crate::math::plane::{Vec2, cross, dot, perp};
 use crate::math::quadrature::GAUSS5;
-use crate::model::Effect;
 use crate::system::{INTEGRALS, Integral, State, Weights};
 
 /// The dissipation 1/2 int EA tau eps_dot^2 + EI tau kappa_dot^2 dx with eps = (r'.r' - 1)/2 and kappa = r' x r''.

@@ -1,7 +1,7 @@
 //! Damping proportional to mass, the first half of Rayleigh's.
 
 use super::{Force, LocalMatrix, WIDTH};
-use crate::model::Effect;
+use crate::effect::Effect;
 use crate::system::{INTEGRALS, Integral, State, Weights};
 
 /// f = alpha M v on the coordinates of one element or link; it resists rigid motion too.

@@ -1,24 +1,20 @@
 //! Forces between bodies and from outside, one kind a file.
 
-mod clearance_joint;
 mod element_damping;
-mod friction;
 mod mass_damping;
 mod point_force;
 mod spring_damper;
 mod torque;
 mod torsion_spring;
 
-pub use clearance_joint::{ClearanceJoint, Geometry};
 pub use element_damping::ElementDamping;
-pub use friction::FrictionalJoint;
 pub use mass_damping::MassDamping;
 pub use point_force::PointForce;
 pub use spring_damper::SpringDamper;
 pub use torque::Torque;
 pub use torsion_spring::TorsionSpring;
 
-use crate::model::Effect;
+use crate::effect::Effect;
 use crate::system::{INTEGRALS, State, Weights};
 
 /// Most coordinates that one force can depend on: an element, or a node and another node that fixes its spin, on both

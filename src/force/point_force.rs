@@ -1,9 +1,9 @@
 //! An applied force at a point, fixed in direction or turning with the body.
 
 use super::{Force, LocalMatrix, WIDTH};
+use crate::effect::Effect;
 use crate::marker::{Marker, Spin};
 use crate::math::plane::{Vec2, add, dot, perp, scale};
-use crate::model::Effect;
 use crate::motion::Function;
 use crate::system::{INTEGRALS, Integral, State, Weights};
 

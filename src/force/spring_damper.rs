@@ -1,9 +1,9 @@
 //! A spring and a damper between two points.
 
 use super::{Force, LocalMatrix, WIDTH};
+use crate::effect::Effect;
 use crate::marker::Marker;
 use crate::math::plane::{Vec2, dot, norm, scale, sub};
-use crate::model::Effect;
 use crate::system::{INTEGRALS, Integral, State, Weights};
 
 /// Pull N = k (L - L_0) + c L_dot along the line between two points, L their distance.

@@ -1,8 +1,8 @@
 //! An applied torque on one body, or between two.
 
 use super::{Force, LocalMatrix, WIDTH};
+use crate::effect::Effect;
 use crate::marker::Spin;
-use crate::model::Effect;
 use crate::motion::Function;
 use crate::system::{INTEGRALS, Integral, State, Weights};
 

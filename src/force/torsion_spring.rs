@@ -1,9 +1,9 @@
 //! A torsional spring and damper between two bodies.
 
 use super::{Force, LocalMatrix, WIDTH};
+use crate::effect::Effect;
 use crate::marker::{Spin, SpinDerivatives};
 use crate::math::plane::{cross, dot};
-use crate::model::Effect;
 use crate::system::{INTEGRALS, Integral, State, Weights};
 use std::f64::consts::TAU;
 

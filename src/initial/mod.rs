@@ -106,9 +106,7 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         let JointModel::Clearance(contact) = &scene.joints[j].model else {
             continue;
         };
-        let delta = model
-            .clearance(j, &state)
-            .map_or(0.0, |(_, delta, _)| delta);
+        let delta = model.gap(j, &state).map_or(0.0, |(gap, ..)| gap.delta);
         if delta > contact.clearance {
             let message = format!(
                 "the journal of joint {} starts outside its bearing: the penetration of {} exceeds the clearance of {}",

@@ -1,8 +1,10 @@
 //! The equations of a model: residual, tangent, rates, contact memory, powers.
 
-use super::{Effect, Model, Rule};
+use super::{Model, Rule};
 use crate::constraint::{self, Curvature, ROWS};
-use crate::force::{ClearanceJoint, WIDTH};
+use crate::contact;
+use crate::effect::Effect;
+use crate::force::WIDTH;
 use crate::link::ElasticRoute;
 use crate::math::lu::Symbolic;
 use crate::math::plane::{perp, rotate};
@@ -81,24 +83,17 @@ impl Model {
             acting.term.force(at, &mut f);
             acting.block.add_vector(&f, r);
         }
-        for c in &self.loose {
+        for (c, &z) in self.contacts.iter().zip(&at.z) {
             let mut f = [0.0; WIDTH];
-            if c.term
-                .force(&at.q, &at.v, at.z[c.contact], &mut f)
-                .is_some()
-            {
-                work.tally[Effect::Contact as usize] += 1;
-                c.block.add_vector(&f, r);
-            }
-        }
-        for c in &self.frictional {
-            let mut f = [0.0; WIDTH];
-            if c.term
-                .force(&at.q, &at.v, at.z[c.contact], &mut f)
-                .is_some()
-            {
-                work.tally[Effect::Contact as usize] += 1;
-                work.tally[Effect::Friction as usize] += 1;
+            if c.pair.force(
+                contact::At {
+                    q: &at.q,
+                    v: &at.v,
+                    z,
+                },
+                &mut f,
+            ) {
+                c.count(work);
                 c.block.add_vector(&f, r);
             }
         }
@@ -127,25 +122,15 @@ impl Model {
             acting.block.add_vector(&f, r);
             acting.block.add_matrix(&tangent, 1.0, k);
         }
-        for c in &self.loose {
+        for (c, &z) in self.contacts.iter().zip(&at.z) {
             let (mut f, mut tangent) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
-            if c.term
-                .force_and_tangent(&at.q, &at.v, at.z[c.contact], w, &mut f, &mut tangent)
-                .is_some()
-            {
-                work.tally[Effect::Contact as usize] += 1;
-                c.block.add_vector(&f, r);
-                c.block.add_matrix(&tangent, 1.0, k);
-            }
-        }
-        for c in &self.frictional {
-            let (mut f, mut tangent) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
-            if c.term
-                .force_and_tangent(&at.q, &at.v, at.z[c.contact], w, &mut f, &mut tangent)
-                .is_some()
-            {
-                work.tally[Effect::Contact as usize] += 1;
-                work.tally[Effect::Friction as usize] += 1;
+            let state = contact::At {
+                q: &at.q,
+                v: &at.v,
+                z,
+            };
+            if c.pair.force_and_tangent(state, w, &mut f, &mut tangent) {
+                c.count(work);
                 c.block.add_vector(&f, r);
                 c.block.add_matrix(&tangent, 1.0, k);
             }
@@ -212,12 +197,6 @@ impl Model {
                 to.a[rider.x + i] = acceleration[i];
             }
         }
-    }
-
-    /// The loose joints, with and without friction, as geometry and memory index.
-    fn clearances(&self) -> impl Iterator<Item = (&ClearanceJoint, usize)> {
-        let smooth = self.loose.iter().map(|c| (&c.term, c.contact));
-        smooth.chain(self.frictional.iter().map(|c| (&c.term.joint, c.contact)))
     }
 }
 
@@ -333,10 +312,9 @@ impl System for Model {
     }
 
     fn gaps(&self, at: &State, delta: &mut [f64], rate: &mut [f64]) {
-        for (joint, contact) in self.clearances() {
-            let g = joint.geometry(&at.q, &at.v);
-            delta[contact] = g.delta;
-            rate[contact] = ClearanceJoint::rate(&g);
+        for (i, c) in self.contacts.iter().enumerate() {
+            let gap = c.pair.gap(&at.q, &at.v);
+            (delta[i], rate[i]) = (gap.delta, c.pair.rate(&gap));
         }
     }
 
@@ -347,17 +325,17 @@ impl System for Model {
         onset: &mut dyn FnMut(usize, f64, f64),
     ) -> usize {
         let mut onsets = 0;
-        for (joint, contact) in self.clearances() {
-            let g = joint.geometry(&at.q, &at.v);
-            let rate = ClearanceJoint::rate(&g);
-            let open = at.z[contact] == 0.0;
-            if open && (g.delta >= -tolerance && rate > 0.0 || g.delta > tolerance) {
+        for (i, c) in self.contacts.iter().enumerate() {
+            let gap = c.pair.gap(&at.q, &at.v);
+            let (delta, rate) = (gap.delta, c.pair.rate(&gap));
+            let open = at.z[i] == 0.0;
+            if open && (delta >= -tolerance && rate > 0.0 || delta > tolerance) {
                 // a contact that starts penetrated has no impact velocity: the floor of the law replaces it
-                at.z[contact] = rate.max(f64::MIN_POSITIVE);
-                onset(contact, rate, g.delta);
+                at.z[i] = rate.max(f64::MIN_POSITIVE);
+                onset(i, rate, delta);
                 onsets += 1;
-            } else if !open && (g.delta < -tolerance || g.delta <= tolerance && rate <= 0.0) {
-                at.z[contact] = 0.0;
+            } else if !open && (delta < -tolerance || delta <= tolerance && rate <= 0.0) {
+                at.z[i] = 0.0;
             }
         }
         self.remember_angles(at);
@@ -368,21 +346,13 @@ impl System for Model {
         let mut powers = [0.0; INTEGRALS];
         let mut clamps = 0;
         powers[Integral::Work as usize] = self.drive_power(at, work) + self.drift_power(at);
-        for (joint, contact) in self.clearances() {
-            let g = joint.geometry(&at.q, &at.v);
-            if let Some(force) = joint.normal_force(&g, at.z[contact]) {
-                let rate = ClearanceJoint::rate(&g);
-                let loss = (force.value - force.elastic) * rate;
-                powers[Integral::ContactDissipated as usize] += loss;
-                if force.clamped {
-                    clamps += 1;
-                    powers[Integral::Clamp as usize] += loss;
-                }
-            }
-        }
-        for c in &self.frictional {
-            powers[Integral::FrictionDissipated as usize] +=
-                c.term.dissipation(&at.q, &at.v, at.z[c.contact]);
+        for (c, &z) in self.contacts.iter().zip(&at.z) {
+            let state = contact::At {
+                q: &at.q,
+                v: &at.v,
+                z,
+            };
+            clamps += usize::from(c.pair.powers(state, &mut powers));
         }
         for acting in &self.forces {
             acting.term.powers(at, &mut powers);

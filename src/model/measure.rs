@@ -1,7 +1,8 @@
 //! Measured quantities of a model: poses, strains, energies, joint forces, drive torques.
 
-use super::{Actuator, BodyCoordinates, JointKind, Model};
-use crate::force::ClearanceJoint;
+use super::{Actuator, BodyCoordinates, JointKind, JointPlace, Model};
+use crate::contact;
+use crate::contact::geometry::Gap;
 use crate::marker::Marker;
 use crate::math::plane::{Vec2, add, cross, dot, norm, scale, sub};
 use crate::system::{Integral, State, Work};
@@ -176,11 +177,8 @@ impl Model {
             energies.axial += axial;
             energies.bending += bending;
         }
-        for c in &self.loose {
-            energies.contact += closed_energy(&c.term, at, c.contact);
-        }
-        for c in &self.frictional {
-            energies.contact += closed_energy(&c.term.joint, at, c.contact);
+        for i in 0..self.contacts.len() {
+            energies.contact += self.contacts[i].pair.energy(contact_state(at, i));
         }
         for acting in &self.forces {
             energies.springs += acting.term.energy(at);
@@ -198,17 +196,7 @@ impl Model {
                 let c = &self.constraints[*i];
                 c.term.force(at, c.multipliers(at))
             }
-            JointKind::Loose(i) => {
-                let c = &self.loose[*i];
-                let g = c.term.geometry(&at.q, &at.v);
-                c.term
-                    .normal_force(&g, at.z[c.contact])
-                    .map_or([0.0; 2], |force| scale(-force.value / g.eccentricity, g.e))
-            }
-            JointKind::Frictional(i) => {
-                let c = &self.frictional[*i];
-                c.term.journal_force(&at.q, &at.v, at.z[c.contact])
-            }
+            JointKind::Contact(i) => self.contacts[*i].pair.reaction(contact_state(at, *i)),
             JointKind::Eliminated(reaction) => {
                 let force = self.reaction(reaction, at, work);
                 [force[0], force[1]]
@@ -258,44 +246,18 @@ impl Model {
 
     /// True for a joint with clearance.
     pub fn is_loose(&self, index: usize) -> bool {
-        matches!(
-            self.joints[index].kind,
-            JointKind::Loose(_) | JointKind::Frictional(_)
-        )
+        matches!(self.joints[index].kind, JointKind::Contact(_))
     }
 
-    /// Geometry and memory index of a loose joint.
-    fn loose_joint(&self, index: usize) -> Option<(&ClearanceJoint, usize)> {
-        match self.joints[index].kind {
-            JointKind::Loose(i) => Some((&self.loose[i].term, self.loose[i].contact)),
-            JointKind::Frictional(i) => {
-                let c = &self.frictional[i];
-                Some((&c.term.joint, c.contact))
-            }
-            JointKind::Constraint(_) | JointKind::Eliminated(_) => None,
-        }
-    }
-
-    /// Eccentricity vector, penetration and contact (closed and touching) of a loose joint.
-    pub fn clearance(&self, index: usize, at: &State) -> Option<(Vec2, f64, bool)> {
-        let (joint, contact) = self.loose_joint(index)?;
-        let g = joint.geometry(&at.q, &at.v);
-        Some((g.e, g.delta, at.z[contact] > 0.0 && g.delta > 0.0))
-    }
-
-    /// Rates of the eccentricity vector and of its length, which is also that of the penetration, of a loose joint \[m/s\].
-    pub fn eccentricity_rates(&self, index: usize, at: &State) -> Option<(Vec2, f64)> {
-        let (joint, _) = self.loose_joint(index)?;
-        let g = joint.geometry(&at.q, &at.v);
-        Some((g.e_dot, ClearanceJoint::rate(&g)))
-    }
-
-    /// Penetration of a loose joint, its rate, and whether the contact is closed.
-    pub fn penetration(&self, index: usize, at: &State) -> Option<(f64, f64, bool)> {
-        let (joint, contact) = self.loose_joint(index)?;
-        let g = joint.geometry(&at.q, &at.v);
-        let rate = ClearanceJoint::rate(&g);
-        Some((g.delta, rate, at.z[contact] > 0.0))
+    /// Where the surfaces of a joint with clearance are, the rate of its penetration \[m/s\], and whether the contact is closed.
+    pub fn gap(&self, index: usize, at: &State) -> Option<(Gap, f64, bool)> {
+        let JointKind::Contact(i) = self.joints[index].kind else {
+            return None;
+        };
+        let pair = &self.contacts[i].pair;
+        let gap = pair.gap(&at.q, &at.v);
+        let rate = pair.rate(&gap);
+        Some((gap, rate, at.z[i] > 0.0))
     }
 
     /// Angle (up to full turns), speed and torque of an actuated joint.
@@ -317,11 +279,8 @@ impl Model {
 
     /// Index of the joint that owns contact memory `contact`.
     pub fn contact_joint(&self, contact: usize) -> Option<usize> {
-        self.joints.iter().position(|joint| match joint.kind {
-            JointKind::Loose(i) => self.loose[i].contact == contact,
-            JointKind::Frictional(i) => self.frictional[i].contact == contact,
-            _ => false,
-        })
+        let owns = |joint: &JointPlace| matches!(joint.kind, JointKind::Contact(i) if i == contact);
+        self.joints.iter().position(owns)
     }
 
     /// Largest |Phi| \[m\], the joint or link it belongs to, and the largest |Phi_q v|.
@@ -384,12 +343,8 @@ impl Model {
     }
 }
 
-/// Potential of a contact that is closed.
-fn closed_energy(joint: &ClearanceJoint, at: &State, contact: usize) -> f64 {
-    let delta = joint.geometry(&at.q, &at.v).delta;
-    if at.z[contact] > 0.0 {
-        joint.law.energy(delta)
-    } else {
-        0.0
-    }
+/// Positions, velocities and memory of a contact.
+pub(super) fn contact_state(at: &State, contact: usize) -> contact::At<'_> {
+    let (q, v, z) = (&at.q, &at.v, at.z[contact]);
+    contact::At { q, v, z }
 }

@@ -11,13 +11,15 @@ pub(crate) use reaction::{DrivenForce, Source};
 pub use reaction::{Reaction, Share};
 
 use crate::constraint::{Coincide, Constraint, Curvature, Gradient, Length, ROWS, Slide};
-use crate::force::{ClearanceJoint, Force, FrictionalJoint};
+use crate::contact::ContactPair;
+use crate::effect::Effect;
+use crate::force::Force;
 use crate::link::AncfCable;
 use crate::marker::{Marker, Spin};
 use crate::math::lu::Symbolic;
 use crate::math::plane::Vec2;
 use crate::motion::{Function, Path};
-use crate::system::{Prescribed, Shape, State};
+use crate::system::{Prescribed, Shape, State, Work};
 
 /// A mechanism ready to be integrated.
 #[derive(Debug)]
@@ -35,8 +37,8 @@ pub struct Model {
     pub(crate) counts: Vec<(Effect, u64)>,
     /// Forces with a name of their own, as indices into the forces.
     pub(crate) named_forces: Vec<(String, usize)>,
-    pub(crate) loose: Vec<Contacting<ClearanceJoint>>,
-    pub(crate) frictional: Vec<Contacting<FrictionalJoint>>,
+    /// In the order of their memory.
+    pub(crate) contacts: Vec<Contacting>,
     /// Weight: (coordinate, force on the left side of the equations of motion) \[N\].
     pub(crate) weight: Vec<(usize, f64)>,
     /// Known coordinates that never change, with their values.
@@ -53,65 +55,6 @@ pub struct Model {
     pub(crate) bodies: Vec<BodyPlace>,
     /// Joints of the scene, in its order.
     pub(crate) joints: Vec<JointPlace>,
-}
-
-/// Indices into [`crate::system::Work::tally`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effect {
-    /// Elastic force of an ANCF element.
-    Elastic = 0,
-    /// Length of a rigid link.
-    Length = 1,
-    /// Ideal joint as a constraint.
-    Coincidence = 2,
-    /// Normal contact law.
-    Contact = 3,
-    /// Friction law.
-    Friction = 4,
-    /// Weight.
-    Gravity = 5,
-    /// Inverse kinematics of the ideal rigid mechanism.
-    InverseKinematics = 6,
-    /// Prescribed relative angle or held slope: welds, guides that do not turn, driven joints.
-    Direction = 7,
-    /// Point on a line.
-    Slide = 8,
-    /// Prescribed coordinate of a point.
-    Place = 9,
-    /// Translational spring-damper.
-    SpringDamper = 10,
-    /// Torsional spring-damper.
-    TorsionSpring = 11,
-    /// Applied force.
-    PointForce = 12,
-    /// Applied torque.
-    Torque = 13,
-    /// Kelvin-Voigt damping of an element.
-    ElementDamping = 14,
-    /// Damping proportional to mass.
-    MassDamping = 15,
-}
-
-impl Effect {
-    /// All effects, with their names in reports.
-    pub const ALL: [(Effect, &'static str); 16] = [
-        (Effect::Elastic, "ancf_elastic_force"),
-        (Effect::Length, "length_constraint"),
-        (Effect::Coincidence, "ideal_joint_constraint"),
-        (Effect::Contact, "contact_law"),
-        (Effect::Friction, "friction_law"),
-        (Effect::Gravity, "gravity"),
-        (Effect::InverseKinematics, "inverse_kinematics"),
-        (Effect::Direction, "direction_constraint"),
-        (Effect::Slide, "sliding_constraint"),
-        (Effect::Place, "prescribed_coordinate"),
-        (Effect::SpringDamper, "spring_damper"),
-        (Effect::TorsionSpring, "torsion_spring"),
-        (Effect::PointForce, "applied_force"),
-        (Effect::Torque, "applied_torque"),
-        (Effect::ElementDamping, "element_damping"),
-        (Effect::MassDamping, "mass_damping"),
-    ];
 }
 
 /// Known coordinates as a function of time.
@@ -231,13 +174,21 @@ pub(crate) struct Acting {
     pub owners: Vec<usize>,
 }
 
-/// A loose joint with its place in the equations.
+/// A contact with its place in the equations.
 #[derive(Debug)]
-pub(crate) struct Contacting<T> {
-    pub term: T,
-    /// Index of its memory.
-    pub contact: usize,
+pub(crate) struct Contacting {
+    pub pair: Box<dyn ContactPair>,
     pub block: Block,
+}
+
+impl Contacting {
+    /// Counts an evaluation of touching surfaces.
+    #[inline]
+    pub fn count(&self, work: &mut Work) {
+        for effect in self.pair.effects() {
+            work.tally[*effect as usize] += 1;
+        }
+    }
 }
 
 /// An ANCF element with its place in the equations.
@@ -365,10 +316,8 @@ pub struct JointPlace {
 pub enum JointKind {
     /// By constraint rows: index into the constraints.
     Constraint(usize),
-    /// Contact without friction: index into the loose joints.
-    Loose(usize),
-    /// Contact with friction: index into the frictional joints.
-    Frictional(usize),
+    /// By a contact: index into the contacts.
+    Contact(usize),
     /// By shared or known coordinates: the force is a sum over the terms on one side.
     Eliminated(Reaction),
 }
@@ -396,8 +345,10 @@ impl Model {
     pub fn effects(&self) -> Vec<(Effect, &'static str)> {
         let present = |effect: Effect| match effect {
             Effect::Elastic => !self.elements.is_empty(),
-            Effect::Contact => self.shape.contacts > 0,
-            Effect::Friction => !self.frictional.is_empty(),
+            Effect::Contact | Effect::Friction => {
+                let mut pairs = self.contacts.iter().map(|c| &c.pair);
+                pairs.any(|pair| pair.effects().contains(&effect))
+            }
             Effect::Gravity => !self.weight.is_empty(),
             Effect::InverseKinematics => !self.prescribed.is_empty(),
             other => {

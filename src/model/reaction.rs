@@ -3,7 +3,9 @@
 //! M a + f + Phi_q^T lambda of a group of terms is the external force on this group. Summed over the terms on one side of a
 //! joint it is the force of the joint; summed over all terms at a driven coordinate it is the force of the drive.
 
-use super::{ConstraintTerm, Effect, Model};
+use super::measure::contact_state;
+use super::{ConstraintTerm, Model};
+use crate::effect::Effect;
 use crate::force::WIDTH;
 use crate::link::ElasticRoute;
 use crate::system::{State, Work};
@@ -27,8 +29,7 @@ pub(crate) enum Source {
     Element(usize),
     Constraint(usize),
     Force(usize),
-    Loose(usize),
-    Frictional(usize),
+    Contact(usize),
 }
 
 /// A sum of shares, all on the same physical point, times a sign.
@@ -91,26 +92,11 @@ impl Model {
                 term.force(at, &mut f);
                 add(&f);
             }
-            Source::Loose(i) => {
-                let c = &self.loose[i];
+            Source::Contact(i) => {
+                let c = &self.contacts[i];
                 let mut f = [0.0; WIDTH];
-                if c.term
-                    .force(&at.q, &at.v, at.z[c.contact], &mut f)
-                    .is_some()
-                {
-                    work.tally[Effect::Contact as usize] += 1;
-                    add(&f);
-                }
-            }
-            Source::Frictional(i) => {
-                let c = &self.frictional[i];
-                let mut f = [0.0; WIDTH];
-                if c.term
-                    .force(&at.q, &at.v, at.z[c.contact], &mut f)
-                    .is_some()
-                {
-                    work.tally[Effect::Contact as usize] += 1;
-                    work.tally[Effect::Friction as usize] += 1;
+                if c.pair.force(contact_state(at, i), &mut f) {
+                    c.count(work);
                     add(&f);
                 }
             }

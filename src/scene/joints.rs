@@ -6,7 +6,9 @@ use super::error::SceneError;
 use super::field::Field;
 use super::fields::Fields;
 use super::names::{RESERVED, check_name, derived, named};
-use super::{Body, BodyKind, Contact, Friction, Joint, JointModel, NormalLawKind, PointRef, Slip};
+use super::{Body, BodyKind, Contact, Friction, Joint, JointModel, PointRef};
+use crate::contact::Slip;
+use crate::contact::normal::{LAWS, NormalLawKind};
 use indexmap::IndexMap;
 
 pub(super) fn read(root: &Fields, bodies: &Bodies) -> Result<IndexMap<String, Joint>, SceneError> {
@@ -216,12 +218,7 @@ fn contact(field: &Field, bodies: &Bodies) -> Result<Contact, SceneError> {
         "impact_velocity_floor",
         "friction",
     ])?;
-    let laws = [
-        ("lankarani_nikravesh", NormalLawKind::LankaraniNikravesh),
-        ("hertz", NormalLawKind::Hertz),
-        ("hunt_crossley", NormalLawKind::HuntCrossley),
-        ("flores", NormalLawKind::Flores),
-    ];
+    let laws = LAWS.map(|kind| (kind.name, kind));
     let law = table
         .required("law", "the normal contact law")?
         .choice(&laws)?;
@@ -294,13 +291,14 @@ fn stiffness(
     )
 }
 
-fn restitution(table: &Fields, law: NormalLawKind) -> Result<f64, SceneError> {
+fn restitution(table: &Fields, law: &NormalLawKind) -> Result<f64, SceneError> {
     let purpose = "the coefficient of restitution, in (0, 1]";
-    let field = match (law, table.optional("restitution")) {
-        (NormalLawKind::Hertz, None) => return Ok(1.0),
-        (NormalLawKind::Hertz, Some(field)) if field.number()? != 1.0 => {
+    let field = match (law.is_damped, table.optional("restitution")) {
+        (false, None) => return Ok(1.0),
+        (false, Some(field)) if field.number()? != 1.0 => {
             let message = format!(
-                "law \"hertz\" has no damping: it cannot deliver a restitution of {}",
+                "law \"{}\" has no damping: it cannot deliver a restitution of {}",
+                law.name,
                 field.written()
             );
             return Err(field
@@ -316,11 +314,11 @@ fn restitution(table: &Fields, law: NormalLawKind) -> Result<f64, SceneError> {
     }
 }
 
-fn floor(table: &Fields, law: NormalLawKind) -> Result<f64, SceneError> {
+fn floor(table: &Fields, law: &NormalLawKind) -> Result<f64, SceneError> {
     let purpose = "the smallest impact velocity the damping term divides by [m/s]";
-    match (law, table.optional("impact_velocity_floor")) {
-        // Hertz has no damping term; one keeps the quotient harmless.
-        (NormalLawKind::Hertz, None) => Ok(1.0),
+    match (law.is_damped, table.optional("impact_velocity_floor")) {
+        // there is no damping term; one keeps the quotient harmless
+        (false, None) => Ok(1.0),
         _ => table.required("impact_velocity_floor", purpose)?.positive(),
     }
 }

@@ -23,6 +23,8 @@ pub use crate::motion::Function;
 pub use error::{SceneError, Span};
 pub use reader::read_file;
 
+use crate::contact::Slip;
+use crate::contact::normal::{NormalLaw, NormalLawKind, NormalParameters};
 use crate::math::plane::{Vec2, perp, scale, sub};
 use error::Sources;
 use serde::Serialize;
@@ -445,7 +447,7 @@ pub struct Contact {
     /// Radial clearance c = R_i - R_j \[m\].
     pub clearance: f64,
     /// Normal law.
-    pub law: NormalLawKind,
+    pub law: &'static NormalLawKind,
     /// Contact stiffness K \[N/m^exponent\], typed or from eq. 25.
     pub stiffness: f64,
     /// Exponent n.
@@ -458,17 +460,16 @@ pub struct Contact {
     pub friction: Option<Friction>,
 }
 
-/// Names of the normal contact laws.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NormalLawKind {
-    /// No damping.
-    Hertz,
-    /// Eq. 24.
-    LankaraniNikravesh,
-    /// Hunt & Crossley 1975.
-    HuntCrossley,
-    /// Flores et al. 2011.
-    Flores,
+impl Contact {
+    /// The normal law with its parameters.
+    pub fn normal_law(&self) -> Box<dyn NormalLaw> {
+        (self.law.build)(&NormalParameters {
+            stiffness: self.stiffness,
+            exponent: self.exponent,
+            restitution: self.restitution,
+            impact_velocity_floor: self.impact_velocity_floor,
+        })
+    }
 }
 
 /// Friction of eq. 26.
@@ -482,15 +483,6 @@ pub struct Friction {
     pub v1: f64,
     /// Which slip velocity enters.
     pub slip: Slip,
-}
-
-/// The two readings of the slip velocity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Slip {
-    /// Eqs. 22-23 as printed: the contact points move with R_k dn/dt.
-    Paper,
-    /// The contact points move with the material of the two bodies.
-    Material,
 }
 
 /// `[drives.NAME]`: the joints follow the inverse kinematics of the ideal rigid mechanism while the body follows the path.

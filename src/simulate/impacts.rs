@@ -128,13 +128,13 @@ impl Impacts {
         let Some(joint) = model.contact_joint(contact) else {
             return;
         };
-        let ([x, y], ..) = model.clearance(joint, at).unwrap_or_default();
+        let (gap, ..) = model.gap(joint, at).unwrap_or_default();
         let mut course = Course {
             joint,
             t: at.t,
             impact_velocity: rate,
             delta,
-            angle: y.atan2(x),
+            angle: gap.e[1].atan2(gap.e[0]),
             deepest: delta,
             end: None,
             before: [delta, rate],
@@ -166,9 +166,10 @@ impl Impacts {
     ) -> io::Result<()> {
         for (slot, [_, deepest]) in self.closed.iter_mut().zip(&mut self.depths) {
             let Some(course) = slot else { continue };
-            let Some((delta, rate, closed)) = model.penetration(course.joint, at) else {
+            let Some((gap, rate, closed)) = model.gap(course.joint, at) else {
                 continue;
             };
+            let delta = gap.delta;
             let [before, rate_before] = course.before;
             let top = top(h, [before, delta], [rate_before, rate]).map_or(delta, |(_, top)| top);
             course.deepest = course.deepest.max(delta).max(top);

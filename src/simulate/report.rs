@@ -2,7 +2,6 @@
 
 use super::pace::Pacer;
 use super::{AccuracyReport, Chatter, Impact, Integration, Overrun, Simulation};
-use crate::contact::normal_law;
 use crate::model::BodyCoordinates;
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, Scene};
@@ -158,11 +157,11 @@ fn notes(scene: &Scene) -> Vec<String> {
         .collect();
     for joint in &scene.joints {
         if let Some(contact) = joint.contact() {
-            let law = normal_law(contact);
+            let law = contact.normal_law();
             notes.push(format!(
                 "joint {}: {} with a restitution of {} gives {:.4} in a free impact",
                 joint.name,
-                law.name(),
+                contact.law.name,
                 contact.restitution,
                 law.delivered_restitution()
             ));
@@ -218,7 +217,7 @@ impl Simulation {
             Some(statics) => self.newton.counters.with(&statics.counters),
             None => self.newton.counters,
         };
-        let tally = |effect: crate::model::Effect| self.work.tally[effect as usize];
+        let tally = |effect: crate::effect::Effect| self.work.tally[effect as usize];
         let dynamic = self.scene.simulation.analysis == Analysis::Dynamic;
         let bodies = self.model.bodies().iter().enumerate();
         let names = self.recorder.channels().iter().map(|c| c.name.clone());

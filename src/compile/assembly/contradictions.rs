@@ -3,9 +3,10 @@
 use super::super::{Compiler, Role};
 use super::guess::coordinates;
 use super::{CLOSED, check_sketch, close, is_guide, names, opening, position, reach};
+use crate::effect::Effect;
 use crate::initial::CENTRE;
 use crate::math::plane::{norm, sub};
-use crate::model::{Effect, Model, Placed};
+use crate::model::{Model, Placed};
 use crate::scene::{BodyKind, BodyState, SceneError, SketchPoint};
 use crate::system::State;
 

@@ -9,9 +9,10 @@ mod guess;
 mod velocities;
 
 use super::{Compiler, Mode, known_roles, numbering, terms};
+use crate::effect::Effect;
 use crate::math::dense::Equations;
 use crate::math::plane::{norm, sub};
-use crate::model::{Effect, Model};
+use crate::model::Model;
 use crate::scene::{
     BodyKind, Joint, JointModel, PointRef, Scene, SceneError, SketchPoint, Sketched,
 };

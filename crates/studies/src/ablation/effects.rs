@@ -3,9 +3,10 @@
 //! Taking an effect out changes the data of the scene and sets no flag: what is left is what a user would have written who
 //! never heard of the effect, and compiles to the same model.
 
+use looselink::contact::normal::damped_power::HERTZ;
 use looselink::scene::{
-    BodyKind, Contact, ForceKind, JointModel, Link, LinkModel, MotionKind, NormalLawKind, PointRef,
-    Scene, SceneError, Sketched, Span,
+    BodyKind, Contact, ForceKind, JointModel, Link, LinkModel, MotionKind, PointRef, Scene,
+    SceneError, Sketched, Span,
 };
 use serde::{Serialize, Serializer};
 
@@ -76,9 +77,7 @@ impl Effect {
             Effect::Elements => a_link(has_inner_nodes),
             Effect::StructuralDamping => a_link(|link| link.damping.is_some()),
             Effect::Clearance => a_contact(|_| true),
-            Effect::ContactDamping => {
-                a_contact(|c| c.law != NormalLawKind::Hertz && c.restitution < 1.0)
-            }
+            Effect::ContactDamping => a_contact(|c| c.law.is_damped && c.restitution < 1.0),
             Effect::Friction => a_contact(|contact| contact.friction.is_some()),
             Effect::Gravity => scene.simulation.gravity.is_some_and(|g| g != [0.0; 2]),
         }
@@ -116,7 +115,7 @@ impl Effect {
             match self {
                 Effect::Clearance => joint.model = JointModel::Ideal,
                 Effect::ContactDamping => {
-                    contact.law = NormalLawKind::Hertz;
+                    contact.law = &HERTZ;
                     contact.restitution = 1.0;
                 }
                 Effect::Friction => contact.friction = None,

@@ -10,7 +10,8 @@
 
 use super::newton_law::{at_rest, extent, flies, inertia, mass, stiffness};
 use super::outcome::{Breach, Outcome, Rows, Run, run};
-use looselink::scene::{BodyKind, ForceKind, JointModel, Method, Pace, Scene, Slip};
+use looselink::contact::Slip;
+use looselink::scene::{BodyKind, ForceKind, JointModel, Method, Pace, Scene};
 use std::time::Duration;
 
 /// Terms of the ledger are sums of a few dozen numbers each, which may cancel each other.

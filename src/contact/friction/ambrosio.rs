@@ -1,15 +1,6 @@
 //! Ambrosio's modified Coulomb friction (eq. 26).
 
-/// A tangential force with its slopes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TangentialForce {
-    /// Force against the slip \[N\], of the sign of the slip.
-    pub value: f64,
-    /// d(value)/d(slip) \[N s/m\].
-    pub by_slip: f64,
-    /// d(value)/d(normal force).
-    pub by_normal: f64,
-}
+use super::{FrictionLaw, TangentialForce};
 
 /// T = c_f d(|v_t|) F_n sign(v_t), d = 0 below v0, 1 above v1, linear between.
 ///
@@ -24,10 +15,8 @@ pub struct Ambrosio {
     pub v1: f64,
 }
 
-impl Ambrosio {
-    /// The force with its slopes.
-    #[inline]
-    pub fn force(&self, slip: f64, normal: f64) -> TangentialForce {
+impl FrictionLaw for Ambrosio {
+    fn force(&self, slip: f64, normal: f64) -> TangentialForce {
         let ramp = ((slip.abs() - self.v0) / (self.v1 - self.v0)).clamp(0.0, 1.0);
         let sliding = slip.abs() > self.v0 && slip.abs() < self.v1;
         let by_slip = if sliding {

@@ -1,28 +1,38 @@
-//! Loose joint with friction: eq. 26 acting against one of two slip velocities.
+//! A contact with friction, whose force acts against one of two slip velocities.
 //!
 //! * `paper`: eqs. 22-23 as printed. The contact points move with R_k dn/dt, so v_t = (e_dot . t) delta/|e|, and the force
 //!   acts on the centres, without couples.
 //! * `material`: the contact points move with the bodies, v_t = e_dot . t + omega_j R_j - omega_i R_i, and the force acts
 //!   at the contact point: couples -R_j T on the journal's body and R_i T on the bearing's.
 
-use super::clearance_joint::Touch;
-use super::{ClearanceJoint, Geometry, LocalMatrix, WIDTH};
-use crate::contact::ambrosio::TangentialForce;
-use crate::contact::{Ambrosio, NormalForce};
+use super::friction::{FrictionLaw, TangentialForce};
+use super::geometry::{Gap, Geometry, Touch};
+use super::normal::NormalForce;
+use super::{At, ContactPair, Smooth};
+use crate::effect::Effect;
+use crate::force::{LocalMatrix, WIDTH};
 use crate::marker::{Spin, SpinDerivatives};
-use crate::math::plane::{Vec2, add, dot, scale};
-use crate::scene::Slip;
-use crate::system::Weights;
+use crate::math::plane::{Vec2, add, scale};
+use crate::system::{INTEGRALS, Integral, Weights};
 
-/// A loose joint with friction.
+/// Which slip velocity friction acts against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Slip {
+    /// Eqs. 22 and 23 as printed.
+    Paper,
+    /// Velocity of the material at the point of contact.
+    Material,
+}
+
+/// A contact with friction.
 #[derive(Debug)]
-pub struct FrictionalJoint {
+pub struct Rough<G> {
     /// Geometry and normal law.
-    pub joint: ClearanceJoint,
+    pub surface: Smooth<G>,
     /// Tangential law.
-    pub law: Ambrosio,
+    pub law: Box<dyn FrictionLaw>,
     slip: Slip,
-    /// Radius times sign, spin, and local indices of the coordinates of the spin: bearing, journal; none for `paper`.
+    /// Radius times sign, spin, and local indices of the coordinates of the spin, of both sides; none for `paper`.
     rims: Vec<(f64, Spin, Vec<usize>)>,
     coordinates: Vec<usize>,
 }
@@ -39,27 +49,25 @@ struct SlipState {
 
 /// A touching contact: geometry, slip and both forces.
 struct Sliding {
-    g: Geometry,
+    gap: Gap,
     touch: Touch,
     slip: SlipState,
     normal: NormalForce,
     tangential: TangentialForce,
 }
 
-impl FrictionalJoint {
-    /// A joint whose bodies turn with the given spins; `bearing_radius` is R_i \[m\].
+impl<G: Geometry> Rough<G> {
+    /// A contact of bodies that turn with the given spins.
     pub fn new(
-        joint: ClearanceJoint,
-        law: Ambrosio,
+        surface: Smooth<G>,
+        law: Box<dyn FrictionLaw>,
         slip: Slip,
-        bearing_radius: f64,
         spins: [Spin; 2],
     ) -> Self {
-        let mut coordinates = joint.coordinates();
+        let mut coordinates = surface.geometry.coordinates();
         let mut rims = Vec::new();
         if slip == Slip::Material {
-            let radii = [-bearing_radius, bearing_radius - joint.clearance];
-            for (radius, spin) in radii.into_iter().zip(spins) {
+            for (radius, spin) in surface.geometry.radii().into_iter().zip(spins) {
                 let local = spin.coordinates().into_iter().map(|index| {
                     coordinates
                         .iter()
@@ -73,8 +81,8 @@ impl FrictionalJoint {
                 rims.push((radius, spin, local));
             }
         }
-        FrictionalJoint {
-            joint,
+        Rough {
+            surface,
             law,
             slip,
             rims,
@@ -82,12 +90,7 @@ impl FrictionalJoint {
         }
     }
 
-    /// The coordinates in local order.
-    pub fn coordinates(&self) -> Vec<usize> {
-        self.coordinates.clone()
-    }
-
-    fn slip_state(&self, q: &[f64], v: &[f64], g: &Geometry, touch: &Touch) -> SlipState {
+    fn slip_state(&self, q: &[f64], v: &[f64], gap: &Gap, touch: &Touch) -> SlipState {
         let mut s = SlipState {
             value: touch.slip,
             lever: touch.tangent,
@@ -97,10 +100,9 @@ impl FrictionalJoint {
         };
         match self.slip {
             Slip::Paper => {
-                let share = g.delta / g.eccentricity;
-                let growth = self.joint.clearance / (g.eccentricity * g.eccentricity);
+                let [share, growth] = self.surface.geometry.share(gap);
                 s.value = touch.slip * share;
-                for c in 0..self.joint.columns() {
+                for c in 0..self.surface.geometry.columns() {
                     s.by_v[c] *= share;
                     s.by_q[c] = share * touch.slip_q[c] + touch.slip * growth * touch.normal[c];
                 }
@@ -122,14 +124,14 @@ impl FrictionalJoint {
     }
 
     /// Everything about a touching contact; `None` where the surfaces are apart.
-    fn sliding(&self, q: &[f64], v: &[f64], impact_velocity: f64) -> Option<Sliding> {
-        let g = self.joint.geometry(q, v);
-        let normal = self.joint.normal_force(&g, impact_velocity)?;
-        let touch = self.joint.touch(v, &g);
-        let slip = self.slip_state(q, v, &g, &touch);
+    fn sliding(&self, at: At) -> Option<Sliding> {
+        let gap = self.surface.geometry.gap(at.q, at.v);
+        let normal = self.surface.normal_force(&gap, at.z)?;
+        let touch = self.surface.geometry.touch(at.v, &gap);
+        let slip = self.slip_state(at.q, at.v, &gap, &touch);
         let tangential = self.law.force(slip.value, normal.value);
         Some(Sliding {
-            g,
+            gap,
             touch,
             slip,
             normal,
@@ -138,93 +140,102 @@ impl FrictionalJoint {
     }
 
     /// Normal and tangential force of a touching contact.
-    pub fn forces(
-        &self,
-        q: &[f64],
-        v: &[f64],
-        impact_velocity: f64,
-    ) -> Option<(NormalForce, TangentialForce)> {
-        let s = self.sliding(q, v, impact_velocity)?;
-        Some((s.normal, s.tangential))
-    }
-
-    /// Force of the bearing on the journal \[N\].
-    pub fn journal_force(&self, q: &[f64], v: &[f64], impact_velocity: f64) -> Vec2 {
-        self.sliding(q, v, impact_velocity).map_or([0.0; 2], |s| {
-            let normal = scale(s.normal.value, s.touch.n);
-            scale(-1.0, add(normal, scale(s.tangential.value, s.touch.t)))
-        })
+    pub fn forces(&self, at: At) -> Option<(NormalForce, TangentialForce)> {
+        self.sliding(at).map(|s| (s.normal, s.tangential))
     }
 
     /// Power taken by friction \[W\]: the tangential force on the velocities it acts on.
-    pub fn dissipation(&self, q: &[f64], v: &[f64], impact_velocity: f64) -> f64 {
-        self.sliding(q, v, impact_velocity).map_or(0.0, |s| {
+    pub fn dissipation(&self, at: At) -> f64 {
+        self.sliding(at).map_or(0.0, |s| {
             let levers = self.coordinates.iter().zip(s.slip.lever);
-            s.tangential.value * levers.map(|(&i, l)| l * v[i]).sum::<f64>()
+            s.tangential.value * levers.map(|(&i, l)| l * at.v[i]).sum::<f64>()
         })
     }
+}
 
-    /// Adds the local force to `f`; returns the normal force where the surfaces touch.
-    pub fn force(
-        &self,
-        q: &[f64],
-        v: &[f64],
-        impact_velocity: f64,
-        f: &mut [f64; WIDTH],
-    ) -> Option<NormalForce> {
-        let s = self.sliding(q, v, impact_velocity)?;
-        self.add_force(&s, f);
-        Some(s.normal)
+impl<G: Geometry> ContactPair for Rough<G> {
+    fn coordinates(&self) -> Vec<usize> {
+        self.coordinates.clone()
     }
 
-    fn add_force(&self, s: &Sliding, f: &mut [f64; WIDTH]) {
-        self.joint.add_force(&s.touch, &s.normal, f);
-        for (f, lever) in f.iter_mut().zip(s.slip.lever) {
-            *f += s.tangential.value * lever;
+    fn effects(&self) -> &'static [Effect] {
+        &[Effect::Contact, Effect::Friction]
+    }
+
+    fn gap(&self, q: &[f64], v: &[f64]) -> Gap {
+        self.surface.geometry.gap(q, v)
+    }
+
+    fn rate(&self, gap: &Gap) -> f64 {
+        self.surface.geometry.rate(gap)
+    }
+
+    fn force(&self, at: At, f: &mut [f64; WIDTH]) -> bool {
+        let sliding = self.sliding(at);
+        if let Some(s) = &sliding {
+            self.surface.geometry.push(&s.gap, s.normal.value, f);
+            for (f, lever) in f.iter_mut().zip(s.slip.lever) {
+                *f += s.tangential.value * lever;
+            }
         }
+        sliding.is_some()
     }
 
-    /// Adds the local force to `f` and the tangent to `k`; returns the normal force where the surfaces touch.
-    pub fn force_and_tangent(
+    fn force_and_tangent(
         &self,
-        q: &[f64],
-        v: &[f64],
-        impact_velocity: f64,
+        at: At,
         w: Weights,
         f: &mut [f64; WIDTH],
         k: &mut LocalMatrix,
-    ) -> Option<NormalForce> {
-        let s = self.sliding(q, v, impact_velocity)?;
-        self.add_force(&s, f);
+    ) -> bool {
+        let Some(s) = self.sliding(at) else {
+            return false;
+        };
         let Sliding {
-            g,
+            gap,
             touch,
             slip,
             normal,
             tangential,
         } = s;
-        self.joint.add_tangent(&g, &touch, &normal, w, k);
-
-        let normal_gradient = self.joint.force_gradient(&touch, &normal, w);
-        let turning = w.q * tangential.value / g.eccentricity;
+        let normal_gradient = self.surface.gradient(&touch, &normal, w);
+        self.surface.press(&touch, &normal, &normal_gradient, f, k);
         for r in 0..self.coordinates.len() {
+            f[r] += tangential.value * slip.lever[r];
             for c in 0..self.coordinates.len() {
                 let slip_gradient = w.v * slip.by_v[c] + w.q * slip.by_q[c];
                 let gradient =
                     tangential.by_slip * slip_gradient + tangential.by_normal * normal_gradient[c];
-                k[r][c] += slip.lever[r] * gradient - turning * touch.normal[r] * touch.tangent[c];
+                k[r][c] += slip.lever[r] * gradient;
             }
         }
-        for (c, bend) in touch.bends.iter().flatten() {
-            k[*c][*c] += w.q * tangential.value * dot(touch.t, *bend);
-        }
+        let [normal, tangential] = [w.q * normal.value, w.q * tangential.value];
+        self.surface
+            .geometry
+            .curve(&gap, &touch, normal, tangential, k);
         for ((radius, _, local), d) in self.rims.iter().zip(slip.spins) {
             for (m, &r) in local.iter().enumerate() {
                 for (n, &c) in local.iter().enumerate() {
-                    k[r][c] += w.q * tangential.value * radius * d.b_q[m][n];
+                    k[r][c] += tangential * radius * d.b_q[m][n];
                 }
             }
         }
-        Some(normal)
+        true
+    }
+
+    fn reaction(&self, at: At) -> Vec2 {
+        self.sliding(at).map_or([0.0; 2], |s| {
+            let normal = scale(s.normal.value, s.touch.n);
+            scale(-1.0, add(normal, scale(s.tangential.value, s.touch.t)))
+        })
+    }
+
+    fn energy(&self, at: At) -> f64 {
+        self.surface.energy(at)
+    }
+
+    fn powers(&self, at: At, powers: &mut [f64; INTEGRALS]) -> bool {
+        powers[Integral::FrictionDissipated as usize] += self.dissipation(at);
+        self.surface.powers(at, powers)
     }
 }

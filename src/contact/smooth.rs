@@ -1,0 +1,134 @@
+//! A contact without friction.
+
+use super::geometry::{Gap, Geometry, Touch};
+use super::normal::{NormalForce, NormalLaw};
+use super::{At, ContactPair};
+use crate::effect::Effect;
+use crate::force::{LocalMatrix, WIDTH};
+use crate::math::plane::{Vec2, scale};
+use crate::system::{INTEGRALS, Integral, Weights};
+
+/// A geometry and a normal law.
+#[derive(Debug)]
+pub struct Smooth<G> {
+    /// The surfaces.
+    pub geometry: G,
+    /// Normal law.
+    pub law: Box<dyn NormalLaw>,
+}
+
+impl<G: Geometry> Smooth<G> {
+    /// The normal force of a closed contact; `None` where the surfaces are apart.
+    #[inline]
+    pub fn normal_force(&self, gap: &Gap, impact_velocity: f64) -> Option<NormalForce> {
+        let closed = impact_velocity > 0.0 && gap.delta > 0.0;
+        closed.then(|| {
+            let rate = self.geometry.rate(gap);
+            self.law.force(gap.delta, rate, impact_velocity)
+        })
+    }
+
+    /// Gradient of the normal force by the stage unknown.
+    #[inline]
+    pub(super) fn gradient(&self, touch: &Touch, force: &NormalForce, w: Weights) -> [f64; WIDTH] {
+        let mut gradient = [0.0; WIDTH];
+        let by_normal = w.q * force.by_delta + w.v * force.by_rate;
+        for c in 0..self.geometry.columns() {
+            gradient[c] = by_normal * touch.normal[c] + w.q * force.by_rate * touch.rate_q[c];
+        }
+        gradient
+    }
+
+    /// Adds the normal force to `f` and its gradient times its direction to `k`.
+    #[inline]
+    pub(super) fn press(
+        &self,
+        touch: &Touch,
+        force: &NormalForce,
+        gradient: &[f64; WIDTH],
+        f: &mut [f64; WIDTH],
+        k: &mut LocalMatrix,
+    ) {
+        let columns = self.geometry.columns();
+        for r in 0..columns {
+            f[r] += force.value * touch.normal[r];
+            for c in 0..columns {
+                k[r][c] += touch.normal[r] * gradient[c];
+            }
+        }
+    }
+}
+
+impl<G: Geometry> ContactPair for Smooth<G> {
+    fn coordinates(&self) -> Vec<usize> {
+        self.geometry.coordinates()
+    }
+
+    fn effects(&self) -> &'static [Effect] {
+        &[Effect::Contact]
+    }
+
+    fn gap(&self, q: &[f64], v: &[f64]) -> Gap {
+        self.geometry.gap(q, v)
+    }
+
+    fn rate(&self, gap: &Gap) -> f64 {
+        self.geometry.rate(gap)
+    }
+
+    fn force(&self, at: At, f: &mut [f64; WIDTH]) -> bool {
+        let gap = self.geometry.gap(at.q, at.v);
+        let force = self.normal_force(&gap, at.z);
+        if let Some(force) = &force {
+            self.geometry.push(&gap, force.value, f);
+        }
+        force.is_some()
+    }
+
+    fn force_and_tangent(
+        &self,
+        at: At,
+        w: Weights,
+        f: &mut [f64; WIDTH],
+        k: &mut LocalMatrix,
+    ) -> bool {
+        let gap = self.geometry.gap(at.q, at.v);
+        let Some(force) = self.normal_force(&gap, at.z) else {
+            return false;
+        };
+        let touch = self.geometry.touch(at.v, &gap);
+        let gradient = self.gradient(&touch, &force, w);
+        self.press(&touch, &force, &gradient, f, k);
+        self.geometry.curve(&gap, &touch, w.q * force.value, 0.0, k);
+        true
+    }
+
+    fn reaction(&self, at: At) -> Vec2 {
+        let gap = self.geometry.gap(at.q, at.v);
+        let force = self.normal_force(&gap, at.z);
+        force.map_or([0.0; 2], |force| {
+            scale(-1.0, self.geometry.along_normal(&gap, force.value))
+        })
+    }
+
+    fn energy(&self, at: At) -> f64 {
+        if at.z > 0.0 {
+            self.law.energy(self.geometry.gap(at.q, at.v).delta)
+        } else {
+            0.0
+        }
+    }
+
+    fn powers(&self, at: At, powers: &mut [f64; INTEGRALS]) -> bool {
+        let gap = self.geometry.gap(at.q, at.v);
+        let Some(force) = self.normal_force(&gap, at.z) else {
+            return false;
+        };
+        let loss = (force.value - force.elastic) * self.geometry.rate(&gap);
+        powers[Integral::ContactDissipated as usize] += loss;
+        if force.clamped {
+            powers[Integral::Clamp as usize] += loss;
+        }
+        force.clamped
+    }
+}
