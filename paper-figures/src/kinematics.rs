@@ -10,8 +10,10 @@
 //! By the triangle inequality | ||C_i - B_i|| - l2 | <= |e_B| + |e_C| for rigid links, hence
 //! |e_x| <= sum_i |J^-1|_{xi} (|e_B| + |e_C|)_i to first order in the eccentricities e.
 
-use looselink::scene::{BodyKind, JointModel, Path2, PointRef, Scene, Sketched};
+use looselink::motion::Circle;
+use looselink::scene::{BodyKind, JointModel, PointRef, Scene, Sketched};
 use miette::{Result, miette};
+use std::any::Any;
 use std::f64::consts::TAU;
 
 /// A point or vector in the plane \[m\].
@@ -51,14 +53,11 @@ impl Geometry {
             .drives
             .first()
             .ok_or_else(|| miette!("the scene has no drive"))?;
-        let Path2::Circle {
-            center: [0.0, 0.0],
-            radius,
-            frequency,
-            phase: 0.0,
-            theta: 0.0,
-        } = drive.path
-        else {
+        let path: &dyn Any = &*drive.path;
+        let circle = path.downcast_ref::<Circle>().filter(|circle| {
+            circle.center == [0.0, 0.0] && circle.phase == 0.0 && circle.theta == 0.0
+        });
+        let Some(&Circle { radius, rate, .. }) = circle else {
             return Err(miette!(
                 "the path is not a circle about the origin that starts on the x axis"
             ));
@@ -85,7 +84,7 @@ impl Geometry {
             link,
             elbow,
             radius,
-            frequency,
+            frequency: rate / TAU,
             clearance,
         })
     }

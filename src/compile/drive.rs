@@ -1,11 +1,10 @@
 //! The drive: compiles the ideal rigid mechanism, closes it at the start, and follows its path to the end.
 
 use super::sketch::{close, marker};
-use super::{Compiler, Mode, Role, numbering, terms};
+use super::{Compiler, Mode, Role, build, numbering};
 use crate::kinematics::{Dyad, Kinematics};
 use crate::math::plane::{norm, sub};
 use crate::model::{BodyCoordinates, Model};
-use crate::motion;
 use crate::scene::{BodyKind, Drive, LinkModel, PointRef, Scene, SceneError};
 use crate::system::State;
 
@@ -26,7 +25,7 @@ pub(super) fn ideal_mechanism(
         roles,
     };
     let numbering = numbering::number(&compiler, None)?;
-    let mechanism = terms::build(&compiler, numbering, None)?;
+    let mechanism = build::build(&compiler, numbering, None)?;
     let shape = mechanism.shape();
     if shape.unknowns != shape.multipliers {
         let body = &scene.bodies[drive.body].name;
@@ -51,7 +50,7 @@ pub(super) fn ideal_mechanism(
         dyads,
         start: Vec::new(),
         moving,
-        period: motion::path(&drive.path).sweep(scene.simulation.duration).0,
+        period: drive.path.sweep(scene.simulation.duration).0,
         duration: scene.simulation.duration,
     };
     let start = close(&compiler, drive, &kinematics)?;
@@ -70,7 +69,7 @@ fn sweep(
     let mechanism = &*kinematics.mechanism;
     let mut inner = kinematics.work();
     let (mut from, mut to) = (start.clone(), start.clone());
-    let (horizon, poses) = motion::path(&drive.path).sweep(c.scene.simulation.duration);
+    let (horizon, poses) = drive.path.sweep(c.scene.simulation.duration);
     for k in 0..=poses {
         to.t = horizon * k as f64 / poses as f64;
         kinematics

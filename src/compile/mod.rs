@@ -1,6 +1,7 @@
 //! Scene -> model: shares nodes, eliminates known coordinates, and builds only the terms that the scene has.
 
 pub(crate) mod assembly;
+mod build;
 mod drive;
 mod joints;
 mod loads;
@@ -234,6 +235,6 @@ pub fn compile(scene: &Scene) -> Result<Compiled, SceneError> {
             ..kinematics
         })
     });
-    let model = terms::build(&compiler, numbering, kinematics.as_ref())?;
+    let model = build::build(&compiler, numbering, kinematics.as_ref())?;
     Ok(Compiled { model, kinematics })
 }

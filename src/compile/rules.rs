@@ -3,7 +3,6 @@
 use super::numbering::Numbering;
 use super::{Compiler, Role};
 use crate::model::{BodyCoordinates, Rule};
-use crate::motion;
 use crate::scene::{BodyKind, MotionKind};
 
 /// The rules: bodies on paths, bodies that turn about a point of the ground.
@@ -19,7 +18,7 @@ pub(super) fn rules(c: &Compiler, numbering: &Numbering) -> Vec<Rule> {
         if let (Some(path), BodyCoordinates::Rigid { x }) = (path, coordinates) {
             rules.push(Rule::Path {
                 x: *x,
-                path: motion::path(path),
+                path: path.clone(),
             });
         }
         if let Role::Turned(motion) = c.roles[b] {

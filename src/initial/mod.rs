@@ -3,7 +3,7 @@
 pub(crate) mod redundancy;
 
 use crate::compile::Compiled;
-use crate::compile::assembly::{assemble, opening};
+use crate::compile::assembly::{CENTRE, assemble, opening};
 use crate::math::plane::{Vec2, add, cross, dot, norm, perp, scale, sub};
 use crate::model::{BodyCoordinates, Model, Placed};
 use crate::scene::{Analysis, BodyKind, BodyState, ForceKind, JointModel, Scene, SceneError};
@@ -11,8 +11,6 @@ use crate::system::State;
 
 /// Largest violation of a constraint \[m\] or of its rate \[m/s\] at the start: the digits of a typed position.
 const START_TOLERANCE: f64 = 1e-9;
-/// Help for a pose that does not fit: its meaning.
-pub(crate) const CENTRE: &str = "`x` and `y` locate the centre of mass, the midpoint of a straight link; `theta` is the direction from `start` to `end`";
 
 /// Position and velocity of a body: of a rigid body (x, y, theta), of a link its `start` and its direction.
 #[derive(Debug, Clone, Copy)]

@@ -20,6 +20,7 @@ use crate::math::lu::Symbolic;
 use crate::math::plane::Vec2;
 use crate::motion::{Function, Path};
 use crate::system::{Prescribed, Shape, State, Work};
+use std::sync::Arc;
 
 /// A mechanism ready to be integrated.
 #[derive(Debug)]
@@ -61,7 +62,7 @@ pub struct Model {
 #[derive(Debug)]
 pub(crate) enum Rule {
     /// (x, y, theta) from index `x` follow a path.
-    Path { x: usize, path: Box<dyn Path> },
+    Path { x: usize, path: Arc<dyn Path> },
     /// A rigid body turns about a fixed node.
     Turn {
         /// First coordinate of the fixed node.

@@ -6,10 +6,11 @@ mod function;
 mod line;
 mod table;
 
+pub use circle::Circle;
+pub use coordinates::Coordinates;
 pub use function::Function;
-pub(crate) use table::Table;
-
-use crate::scene::Path2;
+pub use line::Line;
+pub use table::Table;
 
 /// Position, velocity and acceleration of (x, y, theta).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -22,8 +23,8 @@ pub struct Motion {
     pub acceleration: [f64; 3],
 }
 
-/// A path as a function of time.
-pub trait Path: std::fmt::Debug + Send + Sync {
+/// A path as a function of time. It can be downcast to its kind.
+pub trait Path: std::any::Any + std::fmt::Debug + Send + Sync {
     /// The motion at time t \[s\].
     fn at(&self, t: f64) -> Motion;
     /// How to see all poses of the first `duration` seconds: the time after which none is new, and a number of poses
@@ -34,82 +35,55 @@ pub trait Path: std::fmt::Debug + Send + Sync {
 /// Poses tried on one revolution, one line, or one row of a table at least.
 const POSES: usize = 720;
 
-/// The path that a scene names.
-pub fn path(spec: &Path2) -> Box<dyn Path> {
-    match spec {
-        Path2::Circle {
-            center,
-            radius,
-            frequency,
-            phase,
-            theta,
-        } => Box::new(circle::Circle {
-            center: *center,
-            radius: *radius,
-            rate: 2.0 * std::f64::consts::PI * frequency,
-            phase: *phase,
-            theta: *theta,
-        }),
-        Path2::Line { from, to, duration } => Box::new(line::Line {
-            from: *from,
-            to: *to,
-            duration: *duration,
-        }),
-        Path2::Coordinates { functions } => Box::new(coordinates::Coordinates {
-            functions: functions.clone(),
-        }),
-        Path2::Table { rows } => Box::new(Table::new(
-            rows.iter().map(|r| r[0]).collect(),
-            rows.iter().map(|r| [r[1], r[2], r[3]]).collect(),
-        )),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const ROWS: [[f64; 4]; 4] = [
+        [0.0, 0.0, 1.0, 0.0],
+        [0.5, 0.3, 0.2, 0.1],
+        [1.2, 0.1, -0.4, 0.5],
+        [2.0, 0.8, 0.0, 0.2],
+    ];
+
+    fn spline(rows: &[[f64; 4]]) -> Table<3> {
+        let times = rows.iter().map(|r| r[0]).collect();
+        Table::new(times, rows.iter().map(|r| [r[1], r[2], r[3]]).collect())
+    }
+
     #[test]
     fn rates_are_the_derivatives() {
-        let paths = [
-            Path2::Circle {
+        let paths: [Box<dyn Path>; 4] = [
+            Box::new(Circle {
                 center: [0.1, -0.2],
                 radius: 0.3,
-                frequency: -1.5,
+                rate: -9.4,
                 phase: 0.4,
                 theta: 0.2,
-            },
-            Path2::Line {
+            }),
+            Box::new(Line {
                 from: [0.0, 0.1, 0.0],
                 to: [1.0, -0.5, 0.7],
                 duration: 2.0,
-            },
-            Path2::Coordinates {
+            }),
+            Box::new(Coordinates {
                 functions: [
                     Function::Polynomial(vec![0.2, 0.1, 0.7]),
                     Function::Polynomial(vec![0.1, -0.4, 0.2, 0.3]),
                     Function::Constant(0.4),
                 ],
-            },
-            Path2::Table {
-                rows: vec![
-                    [0.0, 0.0, 1.0, 0.0],
-                    [0.5, 0.3, 0.2, 0.1],
-                    [1.2, 0.1, -0.4, 0.5],
-                    [2.0, 0.8, 0.0, 0.2],
-                ],
-            },
+            }),
+            Box::new(spline(&ROWS)),
         ];
-        for spec in &paths {
-            let path = path(spec);
+        for path in &paths {
             for t in [0.1, 0.61, 1.3, 1.83] {
                 let (low, mid, high) = (path.at(t - 1e-6), path.at(t), path.at(t + 1e-6));
                 for i in 0..3 {
                     let v = (high.position[i] - low.position[i]) / 2e-6;
                     let a = (high.velocity[i] - low.velocity[i]) / 2e-6;
                     // central differences: rounding 1e-16/1e-6 times rates up to 30
-                    assert!((v - mid.velocity[i]).abs() < 1e-8, "{spec:?}");
-                    assert!((a - mid.acceleration[i]).abs() < 1e-7, "{spec:?}");
+                    assert!((v - mid.velocity[i]).abs() < 1e-8, "{path:?}");
+                    assert!((a - mid.acceleration[i]).abs() < 1e-7, "{path:?}");
                     assert!(i == 2 || mid.acceleration[i] != 0.0, "nothing was tested");
                 }
             }
@@ -118,14 +92,8 @@ mod tests {
 
     #[test]
     fn a_table_passes_through_its_rows() {
-        let rows = vec![
-            [0.0, 0.0, 1.0, 0.0],
-            [0.5, 0.3, 0.2, 0.1],
-            [1.2, 0.1, -0.4, 0.5],
-            [2.0, 0.8, 0.0, 0.2],
-        ];
-        let path = path(&Path2::Table { rows: rows.clone() });
-        for row in rows {
+        let path = spline(&ROWS);
+        for row in ROWS {
             for i in 0..3 {
                 // interpolation is exact but for rounding
                 assert!((path.at(row[0]).position[i] - row[i + 1]).abs() < 1e-15);

@@ -1,6 +1,6 @@
 //! A table that is written row by row.
 
-use super::folder::naming;
+use super::earlier::naming;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;

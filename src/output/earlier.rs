@@ -3,7 +3,6 @@
 //! It is linked, all of its files or none, into the folder `previous-result` before it is taken out of its place, and
 //! deleted when the new one is whole. Whatever ends the program, one of the two places holds a whole result.
 
-use super::folder::naming;
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -67,4 +66,12 @@ fn remove(path: &Path) -> io::Result<()> {
         Err(e) if e.kind() != ErrorKind::NotFound => Err(naming(path, e)),
         _ => Ok(()),
     }
+}
+
+/// An error of the system that says which file it is about.
+pub(super) fn naming(path: &Path, error: io::Error) -> io::Error {
+    io::Error::new(
+        error.kind(),
+        format!("cannot write `{}`: {error}", path.display()),
+    )
 }

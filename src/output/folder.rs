@@ -1,6 +1,6 @@
 //! A folder for files that belong together: a result that is whole or not there.
 
-use super::earlier;
+use super::earlier::{self, naming};
 use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -165,12 +165,4 @@ pub fn json(value: &impl Serialize) -> Result<Vec<u8>, OutputError> {
     let mut bytes = serde_json::to_vec_pretty(value).map_err(io::Error::from)?;
     bytes.push(b'\n');
     Ok(bytes)
-}
-
-/// An error of the system that says which file it is about.
-pub(super) fn naming(path: &Path, error: io::Error) -> io::Error {
-    io::Error::new(
-        error.kind(),
-        format!("cannot write `{}`: {error}", path.display()),
-    )
 }

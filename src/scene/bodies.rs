@@ -5,7 +5,8 @@ use super::field::Field;
 use super::fields::Fields;
 use super::materials::{Material, Section, lacks, material, section};
 use super::names::{RESERVED, check_name, derived, named};
-use super::{Body, BodyKind, Damping, Link, LinkModel, LinkPoint, Point, RigidBody, motion};
+use super::paths::path;
+use super::{Body, BodyKind, Damping, Link, LinkModel, LinkPoint, Point, RigidBody};
 use indexmap::IndexMap;
 use std::f64::consts::PI;
 
@@ -127,9 +128,9 @@ fn body(
         }
         Type::Moving => {
             table.only(&["type", "path", "points"])?;
-            let path = table.required("path", "the path of its reference point and its angle")?;
+            let field = table.required("path", "the path of its reference point and its angle")?;
             Ok(BodyKind::Moving {
-                path: motion::path(&path, duration)?,
+                path: path(&field, duration)?,
                 points: points(&table)?,
             })
         }

@@ -2,7 +2,6 @@
 
 use super::document::{Node, Value};
 use super::error::{SceneError, Sources, Span, did_you_mean};
-use super::fields::Fields;
 use indexmap::IndexMap;
 
 /// A value being read.
@@ -34,7 +33,7 @@ impl<'a> Field<'a> {
         SceneError::new(self.sources, self.key, message.into(), label.into())
     }
 
-    fn wrong_type(&self, wanted: &str) -> SceneError {
+    pub(super) fn wrong_type(&self, wanted: &str) -> SceneError {
         let kind = self.node.value.kind();
         self.fault(
             format!("`{}` must be {wanted}, not {kind}", self.path),
@@ -207,20 +206,6 @@ impl<'a> Field<'a> {
     /// True of a table.
     pub(super) fn is_table(&self) -> bool {
         matches!(self.node.value, Value::Table(_))
-    }
-
-    /// The fields of a table.
-    pub(super) fn fields(&self) -> Result<Fields<'a>, SceneError> {
-        let Value::Table(table) = &self.node.value else {
-            return Err(self.wrong_type("a table"));
-        };
-        Ok(Fields {
-            sources: self.sources,
-            path: self.path.clone(),
-            span: self.node.span,
-            table,
-            known: &[],
-        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Access to a table: keys that must or may be there, and no others.
 
-use super::document::{Node, Table};
+use super::document::{Node, Table, Value};
 use super::error::{SceneError, Sources, Span, did_you_mean, nearest};
 use super::field::Field;
 
@@ -117,5 +117,21 @@ impl<'a> Fields<'a> {
             key,
             node,
         }
+    }
+}
+
+impl<'a> Field<'a> {
+    /// The fields of a table.
+    pub(super) fn fields(&self) -> Result<Fields<'a>, SceneError> {
+        let Value::Table(table) = &self.node.value else {
+            return Err(self.wrong_type("a table"));
+        };
+        Ok(Fields {
+            sources: self.sources,
+            path: self.path.clone(),
+            span: self.node.span,
+            table,
+            known: &[],
+        })
     }
 }

@@ -16,10 +16,11 @@ mod materials;
 mod motion;
 mod names;
 mod overrides;
+mod paths;
 mod reader;
 mod text;
 
-pub use crate::motion::Function;
+pub use crate::motion::{Function, Path};
 pub use error::{SceneError, Span};
 pub use reader::read_file;
 
@@ -28,7 +29,7 @@ use crate::contact::normal::{NormalLaw, NormalLawKind, NormalParameters};
 use crate::math::plane::{Vec2, perp, scale, sub};
 use error::Sources;
 use serde::Serialize;
-use std::path::Path;
+use std::sync::Arc;
 
 /// A complete description of one simulation.
 #[derive(Debug, Clone)]
@@ -257,7 +258,7 @@ pub enum BodyKind {
     /// A body without mass of its own that follows a path.
     Moving {
         /// Path of its reference point and its angle.
-        path: Path2,
+        path: Arc<dyn Path>,
         /// Named points relative to the reference point at theta = 0 \[m\].
         points: Vec<Point>,
     },
@@ -497,7 +498,7 @@ pub struct Drive {
     /// Driven body: index into [`Scene::bodies`], a rigid body.
     pub body: usize,
     /// Path of its reference point and its angle.
-    pub path: Path2,
+    pub path: Arc<dyn Path>,
     /// Where the path stands.
     pub path_span: Span,
 }
@@ -590,44 +591,6 @@ pub enum ForceKind {
     },
 }
 
-/// A path in (x, y, theta).
-#[derive(Debug, Clone)]
-pub enum Path2 {
-    /// center + radius (cos(2 pi frequency t + phase), sin(...)), constant theta.
-    Circle {
-        /// Centre \[m\].
-        center: [f64; 2],
-        /// Radius \[m\].
-        radius: f64,
-        /// Revolutions a second \[Hz\], negative for clockwise.
-        frequency: f64,
-        /// Angle at t = 0 \[rad\].
-        phase: f64,
-        /// Orientation of the body \[rad\].
-        theta: f64,
-    },
-    /// From one pose to another between t = 0 and `duration` along a straight line with the quintic
-    /// s = 10 u^3 - 15 u^4 + 6 u^5, at rest before and after.
-    Line {
-        /// Start x, y \[m\], theta \[rad\].
-        from: [f64; 3],
-        /// End x, y \[m\], theta \[rad\].
-        to: [f64; 3],
-        /// Time of travel \[s\].
-        duration: f64,
-    },
-    /// Each coordinate a function of time of its own.
-    Coordinates {
-        /// x, y \[m\], theta \[rad\].
-        functions: [Function; 3],
-    },
-    /// Rows t, x, y, theta joined by a natural cubic spline (twice continuously differentiable).
-    Table {
-        /// Rows \[t, x, y, theta\], times increasing, the first at or before 0, the last at or after the duration.
-        rows: Vec<[f64; 4]>,
-    },
-}
-
 /// `[initial]`
 #[derive(Debug, Clone)]
 pub struct Initial {
@@ -707,7 +670,7 @@ impl Scene {
     ///
     /// # Errors
     /// The first fault found, with the place it stands at.
-    pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
+    pub fn load(path: &std::path::Path, overrides: &[String]) -> Result<Scene, SceneError> {
         reader::load(path, overrides)
     }
 

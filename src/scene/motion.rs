@@ -4,14 +4,13 @@ use super::bodies::Bodies;
 use super::error::SceneError;
 use super::field::Field;
 use super::fields::Fields;
-use super::functions::{Use, function, rows};
+use super::functions::{Use, function};
 use super::names::named;
+use super::paths::path;
 use super::{Body, BodyKind, BodyState, Drive, GivenVelocity, Initial, Joint, JointModel};
-use super::{Motion, MotionKind, Path2, PointRef, SketchPoint, Sketched};
+use super::{Motion, MotionKind, PointRef, SketchPoint, Sketched};
 use super::{forces, joints};
 use indexmap::IndexMap;
-
-const POSE: &str = "[x, y, theta]";
 
 /// What `[drives]` prescribes.
 #[derive(Default)]
@@ -156,83 +155,6 @@ fn inverse_kinematics(
         path: path(&path_field, duration)?,
         path_span: path_field.node.span,
     })
-}
-
-pub(super) fn path(field: &Field, duration: f64) -> Result<Path2, SceneError> {
-    #[derive(Clone, Copy)]
-    enum Type {
-        Circle,
-        Line,
-        Table,
-        Coordinates,
-    }
-    let mut table = field.fields()?;
-    let types = [
-        ("circle", Type::Circle),
-        ("line", Type::Line),
-        ("table", Type::Table),
-        ("coordinates", Type::Coordinates),
-    ];
-    match table
-        .required("type", "\"circle\", \"line\", \"table\" or \"coordinates\"")?
-        .choice(&types)?
-    {
-        Type::Circle => {
-            table.only(&["type", "center", "radius", "frequency", "phase", "theta"])?;
-            Ok(Path2::Circle {
-                center: table
-                    .required("center", "the centre of the circle [m]")?
-                    .numbers("[x, y]")?,
-                radius: table
-                    .required("radius", "the radius of the circle [m]")?
-                    .positive()?,
-                frequency: table
-                    .required("frequency", "revolutions a second [Hz]")?
-                    .number()?,
-                phase: table
-                    .required("phase", "the angle on the circle at t = 0 [rad]")?
-                    .number()?,
-                theta: table
-                    .required("theta", "the orientation of the body [rad]")?
-                    .number()?,
-            })
-        }
-        Type::Line => {
-            table.only(&["type", "from", "to", "duration"])?;
-            Ok(Path2::Line {
-                from: table
-                    .required("from", "the first pose [m, m, rad]")?
-                    .numbers(POSE)?,
-                to: table
-                    .required("to", "the last pose [m, m, rad]")?
-                    .numbers(POSE)?,
-                duration: table
-                    .required("duration", "the time of travel [s]")?
-                    .positive()?,
-            })
-        }
-        Type::Coordinates => {
-            table.only(&["type", "x", "y", "theta"])?;
-            let coordinate = |key, purpose| {
-                let field = table.required(key, purpose)?;
-                function(&field, Use::Motion, duration)
-            };
-            Ok(Path2::Coordinates {
-                functions: [
-                    coordinate("x", "x as a function of time [m]")?,
-                    coordinate("y", "y as a function of time [m]")?,
-                    coordinate("theta", "theta as a function of time [rad]")?,
-                ],
-            })
-        }
-        Type::Table => {
-            table.only(&["type", "rows"])?;
-            let table_rows = table.required("rows", "the rows [t, x, y, theta]")?;
-            Ok(Path2::Table {
-                rows: rows(&table_rows, duration, "[t, x, y, theta]")?,
-            })
-        }
-    }
 }
 
 pub(super) fn initial(

@@ -2,9 +2,8 @@
 
 use super::super::{Compiler, Role};
 use super::guess::coordinates;
-use super::{CLOSED, check_sketch, close, is_guide, names, opening, position, reach};
+use super::{CENTRE, CLOSED, check_sketch, close, is_guide, names, opening, position, reach};
 use crate::effect::Effect;
-use crate::initial::CENTRE;
 use crate::math::plane::{norm, sub};
 use crate::model::{Model, Placed};
 use crate::scene::{BodyKind, BodyState, SceneError, SketchPoint};

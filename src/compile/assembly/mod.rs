@@ -8,7 +8,7 @@ mod contradictions;
 mod guess;
 mod velocities;
 
-use super::{Compiler, Mode, known_roles, numbering, terms};
+use super::{Compiler, Mode, build, known_roles, numbering};
 use crate::effect::Effect;
 use crate::math::dense::Equations;
 use crate::math::plane::{norm, sub};
@@ -21,6 +21,9 @@ use contradictions::{blame, check_given};
 use guess::guess;
 use numbers::number;
 use velocities::velocities;
+
+/// Help for a pose that does not fit: its meaning.
+pub(crate) const CENTRE: &str = "`x` and `y` locate the centre of mass, the midpoint of a straight link; `theta` is the direction from `start` to `end`";
 
 /// Largest violation of an assembled constraint \[m\]: far above rounding, far below anything measurable.
 const CLOSED: f64 = 1e-12;
@@ -48,7 +51,7 @@ pub(crate) fn assemble(scene: &Scene) -> Result<Assembly, SceneError> {
         roles: known_roles(scene),
     };
     let numbering = numbering::number(&c, None)?;
-    let mechanism = terms::build(&c, numbering, None)?;
+    let mechanism = build::build(&c, numbering, None)?;
     let mut state = mechanism.blank_state();
     mechanism.follow_rules(&mut state);
     mechanism.ride(&mut state);
