@@ -4,7 +4,6 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use looselink::newton::Newton;
 use looselink::scene::Scene;
 use looselink::simulate::Simulation;
-use looselink::stepper::stepper;
 use looselink::system::System;
 use std::path::Path;
 
@@ -31,7 +30,7 @@ fn steps(criterion: &mut Criterion) {
         let model = simulation.model();
         let mut newton = Newton::new(model, scene.integrator.newton_tolerance);
         let mut work = model.work();
-        let mut stepper = stepper(scene.integrator.method, model);
+        let mut stepper = scene.integrator.method.stepper(model.shape());
         group.bench_function(format!("case{case}"), |b| {
             b.iter(|| stepper.step(model, &from, from.t + STEP, &mut to, &mut newton, &mut work));
         });

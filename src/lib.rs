@@ -50,6 +50,7 @@ pub mod motion;
 pub mod newton;
 pub mod output;
 pub mod record;
+pub mod registry;
 pub mod scene;
 pub mod simulate;
 pub mod statics;

@@ -33,9 +33,9 @@ use crate::initial::{self, redundancy};
 use crate::model::Model;
 use crate::newton::{Failure, Newton};
 use crate::record::Recorder;
-use crate::scene::{Accuracy, Analysis, Method, Pace, Scene, SceneError};
+use crate::scene::{Accuracy, Analysis, Pace, Scene, SceneError};
 use crate::statics::Statics;
-use crate::stepper::{LocalError, StepError, Stepper, look_ahead, stepper};
+use crate::stepper::{LocalError, StepError, Stepper, look_ahead};
 use crate::system::{PrescribeError, State, System, Work};
 use control::{Candidate, Controller, Verdict};
 use pace::Pacer;
@@ -268,7 +268,7 @@ impl Simulation {
         }
         let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
         let extremes = vec![Extreme::default(); recorder.channels().len()];
-        let stepper = stepper(scene.integrator.method, &model);
+        let stepper = scene.integrator.method.stepper(model.shape());
         let pacer = match scene.integrator.pace {
             Pace::Step(step) => Pacer::grid(step),
             Pace::Accuracy(accuracy) => {
@@ -714,15 +714,16 @@ fn check_turns(model: &Model, from: &State, to: &State) -> Result<(), StepError>
     }
 }
 
-/// Refuses velocity Verlet for a mechanism with constraint rows, which this method cannot satisfy.
+/// Refuses constraint rows for a scheme that does not keep them.
 fn refuse_constraints(scene: &Scene, model: &Model) -> Result<(), SceneError> {
     let shape = model.shape();
-    if scene.integrator.method != Method::VelocityVerlet || shape.multipliers == 0 {
+    if scene.integrator.method.scheme.keeps_constraints || shape.multipliers == 0 {
         return Ok(());
     }
     let first = &model.unknown_names()[shape.unknowns];
     let message = format!(
-        "method \"velocity_verlet\" cannot enforce constraints; the first of the {} constraints here is {first}",
+        "method {:?} cannot enforce constraints; the first of the {} constraints here is {first}",
+        scene.integrator.method.name(),
         shape.multipliers
     );
     let error = scene.error(

@@ -1,6 +1,7 @@
 //! A linear system against the trait that mechanisms implement: masses and springs in a row.
 
 use looselink::math::lu::Symbolic;
+use looselink::stepper::Method;
 use looselink::system::{PrescribeError, Shape, State, System, Weights, Work};
 
 /// Masses and springs in series between walls: m_i a_i + d v_i + (K q)_i = 0.
@@ -133,4 +134,9 @@ impl System for Chain {
     fn unknown_name(&self, index: usize) -> String {
         format!("mass {index}")
     }
+}
+
+/// Bathe's scheme with this splitting and spectral radius 0.
+pub fn bathe(gamma: f64) -> Method {
+    Method::new(&looselink::stepper::bathe::SCHEME).with("gamma", gamma)
 }

@@ -1,10 +1,12 @@
 //! Rounding of positions in long runs.
 
 use crate::chain::Chain;
+use crate::chain::bathe;
 use ladder::{Rung, Worst};
 use looselink::newton::Newton;
-use looselink::scene::Method;
-use looselink::stepper::stepper;
+use looselink::stepper::{
+    Method, backward_euler, dormand_prince, generalized_alpha, trapezoidal, velocity_verlet,
+};
 use looselink::system::{State, System};
 
 /// The displacement of a step is a twentieth of the rounding of the position: without a compensated sum the mass stays at 1 m.
@@ -14,13 +16,13 @@ fn displacements_below_the_rounding_of_the_position_add_up() {
     let chain = Chain::new(vec![1.0], vec![0.0, 0.0]);
     let spectral_radius = 0.8;
     let methods = [
-        Method::bathe(0.5),
-        Method::Trapezoidal,
-        Method::BackwardEuler,
-        Method::GeneralizedAlpha { spectral_radius },
-        Method::Hht { spectral_radius },
-        Method::VelocityVerlet,
-        Method::DormandPrince,
+        bathe(0.5),
+        Method::new(&trapezoidal::SCHEME),
+        Method::new(&backward_euler::SCHEME),
+        Method::new(&generalized_alpha::SCHEME).with("spectral_radius", spectral_radius),
+        Method::new(&generalized_alpha::HHT).with("spectral_radius", spectral_radius),
+        Method::new(&velocity_verlet::SCHEME),
+        Method::new(&dormand_prince::SCHEME),
     ];
     let worst = Worst::new();
     for method in methods {
@@ -29,7 +31,7 @@ fn displacements_below_the_rounding_of_the_position_add_up() {
         let mut from = State::zeros(chain.shape());
         (from.q[0], from.v[0]) = (1.0, 1e-11);
         let mut to = from.clone();
-        let mut scheme = stepper(method, &chain);
+        let mut scheme = method.stepper(chain.shape());
         for k in 1..=steps {
             scheme
                 .step(&chain, &from, k as f64 * h, &mut to, &mut newton, &mut work)

@@ -4,8 +4,9 @@ use crate::evidence::{Evidence, statement};
 use crate::interval::Verdict;
 use crate::statement::{Basis, Statement};
 use looselink::link::{ElasticRoute, GaussCable, LiteralCable};
-use looselink::scene::{BodyKind, JointModel, LinkModel, Method};
+use looselink::scene::{BodyKind, JointModel, LinkModel};
 use looselink::simulate::Simulation;
+use looselink::stepper::bathe::splitting;
 use numbers::{digits, percent, si};
 
 /// The statements.
@@ -293,10 +294,7 @@ fn two_sources(e: &Evidence) -> Statement {
 }
 
 fn bathe(e: &Evidence) -> Statement {
-    let gamma = match e.c.both.scene.integrator.method {
-        Method::Bathe { gamma, .. } => gamma,
-        _ => f64::NAN,
-    };
+    let gamma = splitting(&e.c.both.scene.integrator.method);
     let runs = [&e.c.flexible, &e.c.loose, &e.c.both];
     Statement {
         measured: format!("the runs of the figures use this method with a first sub-step of {} h and reach {} s.", digits(gamma), crate::campaign::DURATION),

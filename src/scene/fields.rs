@@ -13,7 +13,7 @@ pub(super) struct Fields<'a> {
     pub span: Span,
     pub table: &'a Table,
     /// The keys it may have, once they are declared.
-    pub known: &'static [&'static str],
+    pub known: Vec<&'static str>,
 }
 
 impl<'a> Fields<'a> {
@@ -30,8 +30,8 @@ impl<'a> Fields<'a> {
     }
 
     /// Declares the keys this table may have; any other is a fault.
-    pub(super) fn only(&mut self, known: &'static [&'static str]) -> Result<(), SceneError> {
-        self.known = known;
+    pub(super) fn only(&mut self, known: &[&'static str]) -> Result<(), SceneError> {
+        self.known = known.to_vec();
         match self.table.keys().find(|key| !known.contains(&key.as_str())) {
             Some(key) => Err(self.unknown(key, known.iter().copied())),
             None => Ok(()),
@@ -131,7 +131,7 @@ impl<'a> Field<'a> {
             path: self.path.clone(),
             span: self.node.span,
             table,
-            known: &[],
+            known: Vec::new(),
         })
     }
 }

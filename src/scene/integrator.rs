@@ -4,6 +4,8 @@ use super::error::SceneError;
 use super::field::Field;
 use super::fields::Fields;
 use super::{Accuracy, Analysis, Integrator, Method, Pace, Simulation};
+use crate::registry::Registry;
+use crate::stepper::{Parameter, Scheme};
 use numbers::number;
 
 /// More steps than this are a slip of the pen: a week of computing at 20 microseconds a step.
@@ -14,26 +16,32 @@ pub(super) fn read(
     root: &Fields,
     simulation: &Simulation,
     clearance: Option<f64>,
+    registry: &Registry,
 ) -> Result<Integrator, SceneError> {
     let mut table = root
         .required("integrator", "the table of method, step and tolerances")?
         .fields()?;
-    table.only(&[
-        "method",
-        "gamma",
-        "spectral_radius",
+    let schemes = &registry.schemes;
+    let parameters = schemes.iter().flat_map(|s| s.parameters);
+    let mut known = vec!["method"];
+    for parameter in parameters {
+        if !known.contains(&parameter.name) {
+            known.push(parameter.name);
+        }
+    }
+    known.extend([
         "step",
         "accuracy",
         "newton_tolerance",
         "onset_tolerance",
         "locate_onsets",
-    ])?;
-    let names = Method::NAMES.map(|name| format!("{name:?}")).join(", ");
-    let named = table.required("method", &format!("the integration scheme: {names}"))?;
-    let method = method(
-        &table,
-        named.choice(&Method::NAMES.map(|name| (name, name)))?,
-    )?;
+    ]);
+    table.only(&known)?;
+    let names: Vec<String> = schemes.iter().map(|s| format!("{:?}", s.name)).collect();
+    let purpose = format!("the integration scheme: {}", names.join(", "));
+    let named = table.required("method", &purpose)?;
+    let choices: Vec<_> = schemes.iter().map(|s| (s.name, *s)).collect();
+    let method = method(&table, named.choice(&choices)?, schemes)?;
     let paced = pace_field(&table)?;
     let pace = match paced.name.as_str() {
         "step" => Pace::Step(step(&paced, simulation)?),
@@ -53,15 +61,19 @@ pub(super) fn read(
     })
 }
 
-fn method(table: &Fields, name: &str) -> Result<Method, SceneError> {
-    for (key, owners) in [
-        ("gamma", &["bathe"] as &[&str]),
-        ("spectral_radius", &["bathe", "generalized_alpha", "hht"]),
-    ] {
-        if let Some(field) = table.optional(key)
-            && !owners.contains(&name)
+/// The scheme with the parameters that the table gives.
+fn method(
+    table: &Fields,
+    scheme: &'static Scheme,
+    schemes: &[&'static Scheme],
+) -> Result<Method, SceneError> {
+    let has = |scheme: &Scheme, name| scheme.parameters.iter().any(|p| p.name == name);
+    for parameter in schemes.iter().flat_map(|s| s.parameters) {
+        if let Some(field) = table.optional(parameter.name)
+            && !has(scheme, parameter.name)
         {
-            let owners: Vec<String> = owners.iter().map(|o| format!("{o:?}")).collect();
+            let owners = schemes.iter().filter(|s| has(s, parameter.name));
+            let owners: Vec<String> = owners.map(|s| format!("{:?}", s.name)).collect();
             let message = format!(
                 "`{}` is a parameter of {} only",
                 field.path,
@@ -70,63 +82,31 @@ fn method(table: &Fields, name: &str) -> Result<Method, SceneError> {
             return Err(field.key_fault(message, "remove this"));
         }
     }
-    Ok(match name {
-        "bathe" => bathe(table)?,
-        "trapezoidal" => Method::Trapezoidal,
-        "backward_euler" => Method::BackwardEuler,
-        "generalized_alpha" => Method::GeneralizedAlpha {
-            spectral_radius: required_radius(table, 0.0)?,
-        },
-        "hht" => Method::Hht {
-            spectral_radius: required_radius(table, 0.5)?,
-        },
-        "velocity_verlet" => Method::VelocityVerlet,
-        _ => Method::DormandPrince,
-    })
-}
-
-fn bathe(table: &Fields) -> Result<Method, SceneError> {
-    let radius = table.optional("spectral_radius");
-    let radius = radius
-        .map(|field| spectral_radius(&field, 0.0))
-        .transpose()?;
-    let gamma = match (table.optional("gamma"), radius) {
-        (Some(field), _) => {
-            let gamma = field.number()?;
-            if !(gamma > 0.0 && gamma < 1.0) {
-                return Err(field.must("lie between 0 and 1, both excluded"));
-            }
-            gamma
+    let mut method = Method::new(scheme);
+    for parameter in scheme.parameters {
+        let field = match parameter.required {
+            true => Some(table.required(parameter.name, parameter.purpose)?),
+            false => table.optional(parameter.name),
+        };
+        if let Some(field) = field {
+            method = method.with(parameter.name, value(&field, parameter)?);
         }
-        (None, Some(radius)) => optimal_gamma(radius),
-        (None, None) => 0.5,
-    };
-    Ok(Method::Bathe {
-        gamma,
-        spectral_radius: radius.unwrap_or(0.0),
-    })
-}
-
-/// The splitting at which both sub-steps have the same stage matrix (Noh & Bathe 2019, Comput. Struct. 212:299):
-/// gamma = (2 - sqrt(2 + 2 rho))/(1 - rho), 1/2 at rho = 1.
-fn optimal_gamma(radius: f64) -> f64 {
-    // the same without a difference of nearly equal numbers
-    2.0 / (2.0 + (2.0 + 2.0 * radius).sqrt())
-}
-
-fn required_radius(table: &Fields, least: f64) -> Result<f64, SceneError> {
-    let purpose = format!(
-        "the spectral radius at infinite frequency, from {least}, which damps most, to 1, which damps nothing"
-    );
-    spectral_radius(&table.required("spectral_radius", &purpose)?, least)
-}
-
-fn spectral_radius(field: &Field, least: f64) -> Result<f64, SceneError> {
-    let radius = field.number()?;
-    if !(least..=1.0).contains(&radius) {
-        return Err(field.must(&format!("lie between {least} and 1")));
     }
-    Ok(radius)
+    Ok(method)
+}
+
+/// A number in the range of a parameter.
+fn value(field: &Field, parameter: &Parameter) -> Result<f64, SceneError> {
+    let ([least, most], x) = (parameter.range, field.number()?);
+    if parameter.closed && (least..=most).contains(&x) || x > least && x < most {
+        return Ok(x);
+    }
+    let ends = if parameter.closed {
+        ""
+    } else {
+        ", both excluded"
+    };
+    Err(field.must(&format!("lie between {least} and {most}{ends}")))
 }
 
 /// `step` or `accuracy`; where both stand the one that comes from a later source, which is an override.
@@ -202,7 +182,7 @@ fn accuracy(field: &Field, simulation: &Simulation, loose: bool) -> Result<Accur
 
 fn newton_tolerance(table: &Fields, method: Method) -> Result<f64, SceneError> {
     let purpose = "the largest error Newton's method may leave in a velocity [m/s]";
-    let field = match method.is_explicit() {
+    let field = match method.scheme.is_explicit {
         true => table.optional("newton_tolerance"),
         false => Some(table.required("newton_tolerance", purpose)?),
     };

@@ -8,11 +8,18 @@ use super::fields::Fields;
 use super::names::{RESERVED, check_name, derived, named};
 use super::{Body, BodyKind, Contact, Friction, Joint, JointModel, PointRef};
 use crate::contact::Slip;
-use crate::contact::normal::{LAWS, NormalLawKind};
+use crate::contact::normal::NormalLawKind;
+use crate::registry::Registry;
 use indexmap::IndexMap;
 
-pub(super) fn read(root: &Fields, bodies: &Bodies) -> Result<IndexMap<String, Joint>, SceneError> {
-    let contacts = named(root.optional("contacts"), |field| contact(field, bodies))?;
+pub(super) fn read(
+    root: &Fields,
+    bodies: &Bodies,
+    registry: &Registry,
+) -> Result<IndexMap<String, Joint>, SceneError> {
+    let contacts = named(root.optional("contacts"), |field| {
+        contact(field, bodies, registry)
+    })?;
     named(root.optional("joints"), |field| {
         check_name(field, &RESERVED)?;
         if bodies.bodies.contains_key(&field.name) {
@@ -204,7 +211,7 @@ pub(super) fn point(field: &Field, bodies: &Bodies) -> Result<PointRef, SceneErr
     }
 }
 
-fn contact(field: &Field, bodies: &Bodies) -> Result<Contact, SceneError> {
+fn contact(field: &Field, bodies: &Bodies, registry: &Registry) -> Result<Contact, SceneError> {
     let mut table = field.fields()?;
     table.only(&[
         "law",
@@ -218,7 +225,7 @@ fn contact(field: &Field, bodies: &Bodies) -> Result<Contact, SceneError> {
         "impact_velocity_floor",
         "friction",
     ])?;
-    let laws = LAWS.map(|kind| (kind.name, kind));
+    let laws: Vec<_> = registry.laws.iter().map(|k| (k.name, *k)).collect();
     let law = table
         .required("law", "the normal contact law")?
         .choice(&laws)?;

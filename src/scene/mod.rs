@@ -21,12 +21,14 @@ mod reader;
 mod text;
 
 pub use crate::motion::{Function, Path};
+pub use crate::stepper::Method;
 pub use error::{SceneError, Span};
 pub use reader::read_file;
 
 use crate::contact::Slip;
 use crate::contact::normal::{NormalLaw, NormalLawKind, NormalParameters};
 use crate::math::plane::{Vec2, perp, scale, sub};
+use crate::registry::Registry;
 use error::Sources;
 use serde::Serialize;
 use std::sync::Arc;
@@ -126,76 +128,6 @@ impl std::fmt::Display for Accuracy {
             write!(f, " and {energy:e} J")?;
         }
         write!(f, " over {} s", self.horizon)
-    }
-}
-
-/// Time integration scheme.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Method {
-    /// Bathe's two sub-steps.
-    Bathe {
-        /// First sub-step over step, in (0, 1); 1/2 unless given.
-        gamma: f64,
-        /// Spectral radius at infinite frequency, in \[0, 1\]; 0 unless given.
-        spectral_radius: f64,
-    },
-    /// The trapezoidal rule.
-    Trapezoidal,
-    /// The backward Euler rule.
-    BackwardEuler,
-    /// The generalised-alpha method.
-    GeneralizedAlpha {
-        /// Spectral radius at infinite frequency, in \[0, 1\].
-        spectral_radius: f64,
-    },
-    /// The method of Hilber, Hughes and Taylor.
-    Hht {
-        /// Spectral radius at infinite frequency, in \[1/2, 1\].
-        spectral_radius: f64,
-    },
-    /// Velocity Verlet, explicit.
-    VelocityVerlet,
-    /// Dormand and Prince's pair of orders 5 and 4, explicit.
-    DormandPrince,
-}
-
-impl Method {
-    /// Every method, as scenes name it.
-    pub const NAMES: [&'static str; 7] = [
-        "bathe",
-        "trapezoidal",
-        "backward_euler",
-        "generalized_alpha",
-        "hht",
-        "velocity_verlet",
-        "dormand_prince",
-    ];
-
-    /// Its name in a scene.
-    pub fn name(&self) -> &'static str {
-        let index = match self {
-            Method::Bathe { .. } => 0,
-            Method::Trapezoidal => 1,
-            Method::BackwardEuler => 2,
-            Method::GeneralizedAlpha { .. } => 3,
-            Method::Hht { .. } => 4,
-            Method::VelocityVerlet => 5,
-            Method::DormandPrince => 6,
-        };
-        Method::NAMES[index]
-    }
-
-    /// Bathe's scheme with spectral radius 0.
-    pub fn bathe(gamma: f64) -> Method {
-        Method::Bathe {
-            gamma,
-            spectral_radius: 0.0,
-        }
-    }
-
-    /// True of a scheme that solves no equations.
-    pub fn is_explicit(&self) -> bool {
-        matches!(self, Method::VelocityVerlet | Method::DormandPrince)
     }
 }
 
@@ -671,7 +603,19 @@ impl Scene {
     /// # Errors
     /// The first fault found, with the place it stands at.
     pub fn load(path: &std::path::Path, overrides: &[String]) -> Result<Scene, SceneError> {
-        reader::load(path, overrides)
+        Scene::load_with(&Registry::standard(), path, overrides)
+    }
+
+    /// As [`Scene::load`], with the kinds of a registry.
+    ///
+    /// # Errors
+    /// The first fault found, with the place it stands at.
+    pub fn load_with(
+        registry: &Registry,
+        path: &std::path::Path,
+        overrides: &[String],
+    ) -> Result<Scene, SceneError> {
+        reader::load(registry, path, overrides)
     }
 
     /// Reads a scene from text; `name` stands for the file in errors.
@@ -679,7 +623,20 @@ impl Scene {
     /// # Errors
     /// The first fault found, with the place it stands at.
     pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Scene, SceneError> {
-        reader::parse(name, text, overrides)
+        Scene::parse_with(&Registry::standard(), name, text, overrides)
+    }
+
+    /// As [`Scene::parse`], with the kinds of a registry.
+    ///
+    /// # Errors
+    /// The first fault found, with the place it stands at.
+    pub fn parse_with(
+        registry: &Registry,
+        name: &str,
+        text: &str,
+        overrides: &[String],
+    ) -> Result<Scene, SceneError> {
+        reader::parse(registry, name, text, overrides)
     }
 
     /// Hexadecimal SHA-256 of the scene text and the overrides.

@@ -6,6 +6,7 @@ use super::field::Field;
 use super::fields::Fields;
 use super::{Analysis, bodies, forces, integrator, joints, motion, overrides, smallest_clearance};
 use super::{Assumption, ChannelPattern, Integrator, Output, Scene, Simulation};
+use crate::registry::Registry;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -30,7 +31,11 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-pub(super) fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
+pub(super) fn load(
+    registry: &Registry,
+    path: &Path,
+    overrides: &[String],
+) -> Result<Scene, SceneError> {
     let name = path.display().to_string();
     let unreadable =
         |cause: String| SceneError::unreadable(format!("cannot read `{name}`: {cause}"));
@@ -40,7 +45,7 @@ pub(super) fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneErro
     }
     let bytes = read_file(path).map_err(|e| unreadable(e.to_string()))?;
     match String::from_utf8(bytes) {
-        Ok(text) => parse(&name, &text, overrides),
+        Ok(text) => parse(registry, &name, &text, overrides),
         Err(error) => {
             let at = error.utf8_error().valid_up_to();
             let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
@@ -57,7 +62,12 @@ pub(super) fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneErro
     }
 }
 
-pub(super) fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Scene, SceneError> {
+pub(super) fn parse(
+    registry: &Registry,
+    name: &str,
+    text: &str,
+    overrides: &[String],
+) -> Result<Scene, SceneError> {
     let sources = Sources::new(name, text, overrides);
     let mut tree = document(&sources)?;
     overrides::apply(&sources, &mut tree)?;
@@ -91,9 +101,9 @@ pub(super) fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Scen
     let title = title.text()?.to_owned();
     let simulation = simulation(&root)?;
     let bodies = bodies::read(&root, simulation.duration)?;
-    let joints = joints::read(&root, &bodies)?;
+    let joints = joints::read(&root, &bodies, registry)?;
     let clearance = smallest_clearance(joints.values());
-    let integrator = integrator::read(&root, &simulation, clearance)?;
+    let integrator = integrator::read(&root, &simulation, clearance, registry)?;
     let output = output(&root, &simulation, &integrator)?;
     let drives = motion::drives(&root, &bodies, &joints, simulation.duration)?;
     let forces = forces::read(&root, &bodies, &joints, simulation.duration)?;

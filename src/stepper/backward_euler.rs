@@ -5,9 +5,18 @@
 //! ```
 
 use super::history::History;
-use super::{Estimate, LocalError, Stage, StepError, Stepper, integrate_ends};
+use super::{Estimate, LocalError, Scheme, Stage, StepError, Stepper, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
+
+/// `method = "backward_euler"`
+pub static SCHEME: Scheme = Scheme {
+    name: "backward_euler",
+    is_explicit: false,
+    keeps_constraints: true,
+    parameters: &[],
+    build: |_, shape| Box::new(BackwardEuler::new(shape)),
+};
 
 /// The scheme with its memory.
 #[derive(Debug)]

@@ -22,9 +22,49 @@
 //! scheme is TR-BDF2:
 //! e_v = h sum (w - c) a, e_q = h sum (w - c) v, both of h^3.
 
-use super::{Estimate, LocalError, Stage, StepError, Stepper, integrate};
+use super::{
+    Estimate, LocalError, Method, Parameter, Scheme, Stage, StepError, Stepper, integrate,
+};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
+
+/// `method = "bathe"`
+pub static SCHEME: Scheme = Scheme {
+    name: "bathe",
+    is_explicit: false,
+    keeps_constraints: true,
+    parameters: &[
+        Parameter {
+            name: "gamma",
+            range: [0.0, 1.0],
+            closed: false,
+            required: false,
+            purpose: "the first sub-step over the step",
+        },
+        Parameter {
+            name: "spectral_radius",
+            range: [0.0, 1.0],
+            closed: true,
+            required: false,
+            purpose: "the spectral radius at infinite frequency",
+        },
+    ],
+    build: |method, shape| {
+        let rho = method.get("spectral_radius").unwrap_or(0.0);
+        Box::new(Bathe::new(splitting(method), rho, shape))
+    },
+};
+
+/// gamma of this method: 1/2 unless `gamma` or a spectral radius is given. With a spectral radius alone both sub-steps have the
+/// same stage matrix (Noh & Bathe 2019): gamma = (2 - sqrt(2 + 2 rho))/(1 - rho), 1/2 at rho = 1.
+pub fn splitting(method: &Method) -> f64 {
+    let optimal = |rho: f64| {
+        // the same without a difference of nearly equal numbers
+        2.0 / (2.0 + (2.0 + 2.0 * rho).sqrt())
+    };
+    let by_radius = || method.get("spectral_radius").map(optimal);
+    method.get("gamma").or_else(by_radius).unwrap_or(0.5)
+}
 
 /// The scheme with its memory.
 #[derive(Debug)]

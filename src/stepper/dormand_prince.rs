@@ -7,7 +7,7 @@
 //!
 //! The local error is the difference of the two solutions, of order h^5. The step continues with the solution of order 5.
 
-use super::{Estimate, LocalError, StepError, Stepper, accumulate, integrate};
+use super::{Estimate, LocalError, Scheme, StepError, Stepper, accumulate, integrate};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Work};
 
@@ -58,6 +58,15 @@ const DIFFERENCE: [f64; 7] = [
     22.0 / 525.0,
     -1.0 / 40.0,
 ];
+
+/// `method = "dormand_prince"`
+pub static SCHEME: Scheme = Scheme {
+    name: "dormand_prince",
+    is_explicit: true,
+    keeps_constraints: true,
+    parameters: &[],
+    build: |_, shape| Box::new(DormandPrince::new(shape)),
+};
 
 /// The scheme with its memory.
 #[derive(Debug)]

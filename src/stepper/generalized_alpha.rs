@@ -16,9 +16,45 @@
 //! therefore carries (b - a)/h from step to step, which keeps order two when the step changes. It starts at zero.
 
 use super::history::History;
-use super::{Estimate, LocalError, Stage, StepError, Stepper, integrate_ends};
+use super::{Estimate, LocalError, Parameter, Scheme, Stage, StepError, Stepper, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
+
+/// `method = "generalized_alpha"`
+pub static SCHEME: Scheme = Scheme {
+    name: "generalized_alpha",
+    is_explicit: false,
+    keeps_constraints: true,
+    parameters: &[Parameter {
+        name: "spectral_radius",
+        range: [0.0, 1.0],
+        closed: true,
+        required: true,
+        purpose: "the spectral radius at infinite frequency, from 0, which damps most, to 1, which damps nothing",
+    }],
+    build: |method, shape| {
+        let rho = method.get("spectral_radius").unwrap_or(1.0);
+        Box::new(GeneralizedAlpha::new(rho, shape))
+    },
+};
+
+/// `method = "hht"`
+pub static HHT: Scheme = Scheme {
+    name: "hht",
+    is_explicit: false,
+    keeps_constraints: true,
+    parameters: &[Parameter {
+        name: "spectral_radius",
+        range: [0.5, 1.0],
+        closed: true,
+        required: true,
+        purpose: "the spectral radius at infinite frequency, from 0.5, which damps most, to 1, which damps nothing",
+    }],
+    build: |method, shape| {
+        let rho = method.get("spectral_radius").unwrap_or(1.0);
+        Box::new(GeneralizedAlpha::hht(rho, shape))
+    },
+};
 
 /// The scheme with its memory.
 #[derive(Debug)]

@@ -1,22 +1,23 @@
 //! Time integration: a step as a short list of stages, each solved for the acceleration.
 
-mod backward_euler;
-mod bathe;
-mod dormand_prince;
-mod generalized_alpha;
+pub mod backward_euler;
+pub mod bathe;
+pub mod dormand_prince;
+pub mod generalized_alpha;
 mod history;
-mod trapezoidal;
-mod velocity_verlet;
+mod scheme;
+pub mod trapezoidal;
+pub mod velocity_verlet;
 
 pub use backward_euler::BackwardEuler;
 pub use bathe::Bathe;
 pub use dormand_prince::DormandPrince;
 pub use generalized_alpha::GeneralizedAlpha;
+pub use scheme::{MOST, Method, Parameter, Scheme};
 pub use trapezoidal::Trapezoidal;
 pub use velocity_verlet::VelocityVerlet;
 
 use crate::newton::{Failure, Newton};
-use crate::scene::Method;
 use crate::system::{INTEGRALS, PrescribeError, Shape, State, System, Weights, Work};
 
 /// Why a step was not taken.
@@ -174,24 +175,16 @@ pub fn look_ahead(
     }
 }
 
-/// The scheme that a scene names.
-pub fn stepper(method: Method, system: &dyn System) -> Box<dyn Stepper> {
-    let shape = system.shape();
-    match method {
-        Method::Bathe {
-            gamma,
-            spectral_radius,
-        } => Box::new(Bathe::new(gamma, spectral_radius, shape)),
-        Method::Trapezoidal => Box::new(Trapezoidal::new(shape)),
-        Method::BackwardEuler => Box::new(BackwardEuler::new(shape)),
-        Method::GeneralizedAlpha { spectral_radius } => {
-            Box::new(GeneralizedAlpha::new(spectral_radius, shape))
-        }
-        Method::Hht { spectral_radius } => Box::new(GeneralizedAlpha::hht(spectral_radius, shape)),
-        Method::VelocityVerlet => Box::new(VelocityVerlet::new(shape)),
-        Method::DormandPrince => Box::new(DormandPrince::new(shape)),
-    }
-}
+/// All schemes.
+pub static SCHEMES: [&Scheme; 7] = [
+    &bathe::SCHEME,
+    &trapezoidal::SCHEME,
+    &backward_euler::SCHEME,
+    &generalized_alpha::SCHEME,
+    &generalized_alpha::HHT,
+    &velocity_verlet::SCHEME,
+    &dormand_prince::SCHEME,
+];
 
 /// The predictor of an implicit stage: q = q_hat + w.q a and v = v_hat + w.v a.
 #[derive(Debug)]

@@ -10,9 +10,18 @@
 //! Its local error is -h^3/12 (q''', v''').
 
 use super::history::History;
-use super::{Estimate, LocalError, Stage, StepError, Stepper, integrate_ends};
+use super::{Estimate, LocalError, Scheme, Stage, StepError, Stepper, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
+
+/// `method = "trapezoidal"`
+pub static SCHEME: Scheme = Scheme {
+    name: "trapezoidal",
+    is_explicit: false,
+    keeps_constraints: true,
+    parameters: &[],
+    build: |_, shape| Box::new(Trapezoidal::new(shape)),
+};
 
 /// The scheme with its memory.
 #[derive(Debug)]

@@ -9,9 +9,18 @@
 //! forces the scheme is symplectic. It is stable while h omega < 2 in every mode.
 
 use super::history::History;
-use super::{Estimate, LocalError, StepError, Stepper, accumulate, integrate_ends};
+use super::{Estimate, LocalError, Scheme, StepError, Stepper, accumulate, integrate_ends};
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Work};
+
+/// `method = "velocity_verlet"`
+pub static SCHEME: Scheme = Scheme {
+    name: "velocity_verlet",
+    is_explicit: true,
+    keeps_constraints: false,
+    parameters: &[],
+    build: |_, shape| Box::new(VelocityVerlet::new(shape)),
+};
 
 /// The scheme.
 #[derive(Debug)]

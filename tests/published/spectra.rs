@@ -3,8 +3,7 @@
 use crate::chain::Chain;
 use ladder::{Rung, Worst};
 use looselink::newton::Newton;
-use looselink::scene::Method;
-use looselink::stepper::stepper;
+use looselink::stepper::{Method, bathe, generalized_alpha, trapezoidal};
 use looselink::system::{State, System};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -20,7 +19,8 @@ fn spectrum(method: Method, dt_over_period: f64) -> [f64; 3] {
         let mut from = State::zeros(oscillator.shape());
         (from.q[0], from.v[0], from.a[0]) = (q, v * omega, -omega * omega * q);
         let mut to = from.clone();
-        stepper(method, &oscillator)
+        method
+            .stepper(oscillator.shape())
             .step(&oscillator, &from, 1.0, &mut to, &mut newton, &mut work)
             .unwrap();
         [to.q[0], to.v[0] / omega]
@@ -56,7 +56,7 @@ fn spectrum_with_memory(method: Method, rho: f64, dt_over_period: f64) -> [f64; 
         let [q, v, mut b] = start;
         (from.q[0], from.v[0], from.a[0]) = (q, v * omega, b * omega * omega);
         let mut to = from.clone();
-        let mut scheme = stepper(method, &oscillator);
+        let mut scheme = method.stepper(oscillator.shape());
         for (t, matrix) in [(1.0, &mut before), (2.0, &mut after)] {
             scheme
                 .step(&oscillator, &from, t, &mut to, &mut newton, &mut work)
@@ -87,10 +87,8 @@ const SPECTRA: &str = include_str!("integrator_spectral.csv");
 
 #[test]
 fn spectra_follow_the_tables() {
-    let bathe = |rho: f64| Method::Bathe {
-        gamma: 2.0 / (2.0 + (2.0 + 2.0 * rho).sqrt()),
-        spectral_radius: rho,
-    };
+    // the splitting of one stage matrix
+    let optimal = |rho: f64| Method::new(&bathe::SCHEME).with("spectral_radius", rho);
     let worst = Worst::new();
     let mut rows = 0;
     for line in SPECTRA.lines().skip(1) {
@@ -98,18 +96,16 @@ fn spectra_follow_the_tables() {
         let number = |i: usize| cells[i].parse().unwrap_or(f64::NAN);
         let dt: f64 = number(1);
         let [radius, elongation, decay] = match cells[0] {
-            "trapezoidal" => spectrum(Method::Trapezoidal, dt),
-            "bathe_g0.5" => spectrum(Method::bathe(0.5), dt),
-            "bathe_g2-sqrt2" => spectrum(bathe(0.0), dt),
-            "rho_inf_bathe_0.5_opt" => spectrum(bathe(0.5), dt),
-            "rho_inf_bathe_0.9_opt" => spectrum(bathe(0.9), dt),
+            "trapezoidal" => spectrum(Method::new(&trapezoidal::SCHEME), dt),
+            "bathe_g0.5" => spectrum(Method::new(&bathe::SCHEME), dt),
+            "bathe_g2-sqrt2" => spectrum(optimal(0.0), dt),
+            "rho_inf_bathe_0.5_opt" => spectrum(optimal(0.5), dt),
+            "rho_inf_bathe_0.9_opt" => spectrum(optimal(0.9), dt),
             // its three roots come together there: rounding moves them by its cube root
             _ if dt > 5.0 => continue,
             other => {
                 let rho = other.strip_prefix("genalpha_").unwrap().parse().unwrap();
-                let method = Method::GeneralizedAlpha {
-                    spectral_radius: rho,
-                };
+                let method = Method::new(&generalized_alpha::SCHEME).with("spectral_radius", rho);
                 spectrum_with_memory(method, rho, dt)
             }
         };
@@ -135,7 +131,7 @@ fn spectra_follow_the_tables() {
     for dt in [0.02, 0.3, 3.0, 100.0, 1000.0] {
         let x = (2.0 * PI * dt).powi(2);
         let exact = ((144.0 + 25.0 * x) / ((9.0 + x) * (16.0 + x))).sqrt();
-        let [r, ..] = spectrum(Method::bathe(0.5), dt);
+        let [r, ..] = spectrum(Method::new(&bathe::SCHEME), dt);
         worst.see((r - exact) / (1e-2 + exact));
     }
     Rung::Published
@@ -148,9 +144,7 @@ fn spectra_follow_the_tables() {
 fn long_steps_of_hht_have_the_spectral_radius_asked_for() {
     // at 1/2 a third root comes to the two
     for rho in [0.6, 0.75, 0.9] {
-        let method = Method::Hht {
-            spectral_radius: rho,
-        };
+        let method = Method::new(&generalized_alpha::HHT).with("spectral_radius", rho);
         let [radius, ..] = spectrum_with_memory(method, rho, 1000.0);
         // two roots come together in the limit: they are some 1/(omega h) = 2e-4 away from it, and rounding of entries of size
         // (omega h)^2 moves them by its square root, 1e-4

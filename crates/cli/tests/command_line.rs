@@ -625,6 +625,7 @@ mod unix {
             let line = format!("\"$0\" inspect {SCENE} {target}");
             let mut shell = Command::new("bash");
             shell.args(["-o", "pipefail", "-c", &line]).arg(&program);
+            shell.current_dir(TOP);
             shell.output().unwrap()
         };
         expect(

@@ -7,7 +7,15 @@ use super::{NormalForce, NormalLaw, NormalLawKind, NormalParameters};
 pub static HERTZ: NormalLawKind = NormalLawKind {
     name: "hertz",
     is_damped: false,
-    build: |p| Box::new(DampedPower::new(p, 0.0)),
+    build: |p| {
+        // nothing is divided by the impact velocity
+        let impact_velocity_floor = f64::MIN_POSITIVE;
+        let undamped = NormalParameters {
+            impact_velocity_floor,
+            ..*p
+        };
+        Box::new(DampedPower::new(&undamped, 0.0))
+    },
 };
 
 /// Lankarani and Nikravesh (eq. 24): chi = 3 (1 - c_e^2)/4.

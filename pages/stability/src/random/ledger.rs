@@ -11,7 +11,7 @@
 use super::newton_law::{at_rest, extent, flies, inertia, mass, stiffness};
 use super::outcome::{Breach, Outcome, Rows, Run, run};
 use looselink::contact::Slip;
-use looselink::scene::{BodyKind, ForceKind, JointModel, Method, Pace, Scene};
+use looselink::scene::{BodyKind, ForceKind, JointModel, Pace, Scene};
 use std::time::Duration;
 
 /// Terms of the ledger are sums of a few dozen numbers each, which may cancel each other.
@@ -153,7 +153,7 @@ fn defects(run: &Run) -> Vec<Defect> {
         return Vec::new();
     }
     let onsets = run.report.as_ref().map_or(0, |r| r.onsets);
-    let lossy = onsets > 0 || scene.integrator.method == Method::BackwardEuler;
+    let lossy = onsets > 0 || scene.integrator.method.name() == "backward_euler";
     let energy = energy(scene, &run.rows, lossy);
     std::iter::once(energy)
         .chain(spin(scene, &run.rows))
@@ -193,7 +193,10 @@ pub fn closes(text: &str, first: &Run, guard: Option<Duration>) -> Result<(), Br
         return Ok(());
     }
     let ran = matches!(first.outcome, Outcome::Finished | Outcome::Remarked(_));
-    if !ran || (scene.integrator.method.is_explicit() && fixed) || !scene.integrator.locate_onsets {
+    if !ran
+        || (scene.integrator.method.scheme.is_explicit && fixed)
+        || !scene.integrator.locate_onsets
+    {
         return Ok(());
     }
     linear(scene, &first.rows)?;
@@ -234,10 +237,8 @@ pub fn closes(text: &str, first: &Run, guard: Option<Duration>) -> Result<(), Br
 /// Point masses on springs without rest length are linear: one-step schemes that are A-stable gain nothing in any row, since
 /// their amplification is a function of a skew-symmetric matrix, and its norm the largest of |R(i omega h)| <= 1.
 fn linear(scene: &Scene, rows: &Rows) -> Result<(), Breach> {
-    let one_step = matches!(
-        scene.integrator.method,
-        Method::Bathe { .. } | Method::Trapezoidal | Method::BackwardEuler
-    );
+    let one_step =
+        ["bathe", "trapezoidal", "backward_euler"].contains(&scene.integrator.method.name());
     let masses = scene
         .bodies
         .iter()

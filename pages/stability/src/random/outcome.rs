@@ -125,7 +125,7 @@ impl Run {
         let explicit = self
             .scene
             .as_ref()
-            .is_some_and(|s| s.integrator.method.is_explicit());
+            .is_some_and(|s| s.integrator.method.scheme.is_explicit);
         explicit && self.report.as_ref().is_some_and(blown_up)
     }
 }
