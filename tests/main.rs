@@ -1,6 +1,7 @@
 //! All integration tests, in one binary.
 
 mod accuracy;
+mod architecture;
 mod bad_input;
 mod bad_mechanism;
 mod balance;
@@ -19,6 +20,7 @@ mod mechanisms;
 mod methods;
 mod overrides;
 mod published;
+mod registry;
 mod rrr;
 mod stability;
 mod start;

@@ -7,7 +7,7 @@ use looselink::scene::Scene;
 use looselink::simulate::Simulation;
 
 /// Overrides that choose a method, its name for reports and its order.
-const METHODS: [(&[&str], &str, f64); 7] = [
+const METHODS: [(&[&str], &str, f64); 8] = [
     (&[], "Bathe's scheme", 2.0),
     (
         &["integrator.spectral_radius=0.8"],
@@ -42,15 +42,20 @@ const METHODS: [(&[&str], &str, f64); 7] = [
         "Dormand and Prince's pair",
         5.0,
     ),
+    (
+        &["integrator.method=esdirk3"],
+        "the diagonally implicit method",
+        3.0,
+    ),
 ];
 
-/// A scene, its duration, the time between rows, the coarsest step of methods of order 1, 2 and 5, and channels that are
+/// A scene, its duration, the time between rows, the coarsest step of methods of order 1, 2, 3 and 5, and channels that are
 /// compared.
 struct Smooth {
     scene: &'static str,
     duration: f64,
     interval: f64,
-    coarse: [f64; 3],
+    coarse: [f64; 4],
     channels: &'static [&'static str],
 }
 
@@ -59,21 +64,21 @@ const SMOOTH: [Smooth; 3] = [
         scene: "pendulum",
         duration: 0.96,
         interval: 0.04,
-        coarse: [1e-3, 4e-3, 0.02],
+        coarse: [1e-3, 4e-3, 8e-3, 0.02],
         channels: &["points.rod.bob.y", "points.rod.bob.ay", "pivot.force"],
     },
     Smooth {
         scene: "soft-pendulum",
         duration: 0.2,
         interval: 4e-3,
-        coarse: [1e-4, 4e-4, 2e-3],
+        coarse: [1e-4, 4e-4, 8e-4, 2e-3],
         channels: &["points.rod.end.y", "points.rod.end.vy"],
     },
     Smooth {
         scene: "3rrr/case2",
         duration: 8e-4,
         interval: 1.6e-5,
-        coarse: [1e-7, 1e-6, 1.6e-5],
+        coarse: [1e-7, 1e-6, 2e-6, 1.6e-5],
         channels: &["platform.ax", "B1.force"],
     },
 ];
@@ -104,9 +109,12 @@ impl Smooth {
 #[test]
 fn every_method_has_its_order_on_mechanisms() {
     for smooth in &SMOOTH {
-        let exact = smooth.run(METHODS[6].0, smooth.coarse[2] / 16.0);
+        let exact = smooth.run(METHODS[6].0, smooth.coarse[3] / 16.0);
         for (method, name, order) in METHODS {
-            let coarse = smooth.coarse[[1.0, 2.0, 5.0].iter().position(|o| *o == order).unwrap()];
+            let coarse = smooth.coarse[[1.0, 2.0, 3.0, 5.0]
+                .iter()
+                .position(|o| *o == order)
+                .unwrap()];
             let steps = [coarse, coarse / 2.0, coarse / 4.0];
             let runs = steps.map(|h| smooth.run(method, h));
             for channel in smooth.channels {
@@ -134,7 +142,7 @@ fn every_method_has_its_order_on_mechanisms() {
 #[test]
 fn velocity_verlet_takes_what_it_can() {
     let smooth = &SMOOTH[1];
-    let exact = smooth.run(METHODS[6].0, smooth.coarse[2] / 16.0);
+    let exact = smooth.run(METHODS[6].0, smooth.coarse[3] / 16.0);
     let steps = [4e-4, 2e-4, 1e-4];
     let runs = steps.map(|h| smooth.run(&["integrator.method=velocity_verlet"], h));
     for channel in smooth.channels {

@@ -6,7 +6,7 @@ use looselink::newton::{Counters, Newton};
 use looselink::stepper::bathe::splitting;
 use looselink::stepper::{Estimate, LocalError, Method, Stepper, look_ahead};
 use looselink::stepper::{
-    backward_euler, dormand_prince, generalized_alpha, trapezoidal, velocity_verlet,
+    backward_euler, dormand_prince, esdirk3, generalized_alpha, trapezoidal, velocity_verlet,
 };
 use looselink::system::{State, System};
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
@@ -98,13 +98,18 @@ fn schemes() -> Vec<(Method, String, f64, f64)> {
             "Dormand and Prince's pair".to_owned(),
             5.0,
         ),
+        (
+            Method::new(&esdirk3::SCHEME),
+            "The diagonally implicit method of order 3".to_owned(),
+            3.0,
+        ),
     ]
     // the higher the order, the longer the steps that stand above rounding
     .map(|(method, name, order)| {
-        let steps = if order == 5.0 {
-            40.0
-        } else {
-            160.0 * 2.0 / order
+        let steps = match order {
+            5.0 => 40.0,
+            3.0 => 80.0,
+            _ => 160.0 * 2.0 / order,
         };
         (method, name, order, 2.0 / steps)
     });
@@ -295,20 +300,38 @@ fn local_errors_are_estimated() {
                 "the error is of h³ and its estimate right to leading order",
             );
     }
-    let size = |h: f64| {
-        let (_, estimated, estimate) = step(Method::new(&dormand_prince::SCHEME), h);
-        assert!(!estimate.is_error && estimate.order == 5.0 && !estimate.implicit);
-        let errors = estimated.q.iter().chain(&estimated.v);
-        (h, largest(errors.map(|e| e.abs())))
-    };
-    Rung::OrderInTime
-        .asks("Dormand and Prince's pair: the difference of its two solutions after one step")
-        .falls(
-            "Step h [s]",
-            &[size(0.2), size(0.1), size(0.05)],
-            4.8..5.3,
+    for (scheme, order, name, reason) in [
+        (
+            &dormand_prince::SCHEME,
+            5.0,
+            "Dormand and Prince's pair",
             "the error of the solution of order 4 is of h⁵",
-        );
+        ),
+        (
+            &esdirk3::SCHEME,
+            3.0,
+            "The diagonally implicit method of order 3",
+            "the error of the solution of order 2 is of h³",
+        ),
+    ] {
+        let size = |h: f64| {
+            let (_, estimated, estimate) = step(Method::new(scheme), h);
+            assert!(!estimate.is_error && estimate.order == order);
+            assert_eq!(estimate.implicit, !scheme.is_explicit);
+            let errors = estimated.q.iter().chain(&estimated.v);
+            (h, largest(errors.map(|e| e.abs())))
+        };
+        Rung::OrderInTime
+            .asks(format!(
+                "{name}: the difference of its two solutions after one step"
+            ))
+            .falls(
+                "Step h [s]",
+                &[size(0.2), size(0.1), size(0.05)],
+                order - 0.2..order + 0.3,
+                reason,
+            );
+    }
     // the first of two steps, which looks ahead, and the second, which looks back
     let missed = |method: Method, h: f64, share: f64| {
         let mut newton = Newton::new(&chain, 1e-16);

@@ -3,6 +3,7 @@
 pub mod backward_euler;
 pub mod bathe;
 pub mod dormand_prince;
+pub mod esdirk3;
 pub mod generalized_alpha;
 mod history;
 mod scheme;
@@ -12,6 +13,7 @@ pub mod velocity_verlet;
 pub use backward_euler::BackwardEuler;
 pub use bathe::Bathe;
 pub use dormand_prince::DormandPrince;
+pub use esdirk3::Esdirk3;
 pub use generalized_alpha::GeneralizedAlpha;
 pub use scheme::{MOST, Method, Parameter, Scheme};
 pub use trapezoidal::Trapezoidal;
@@ -176,12 +178,13 @@ pub fn look_ahead(
 }
 
 /// All schemes.
-pub static SCHEMES: [&Scheme; 7] = [
+pub static SCHEMES: [&Scheme; 8] = [
     &bathe::SCHEME,
     &trapezoidal::SCHEME,
     &backward_euler::SCHEME,
     &generalized_alpha::SCHEME,
     &generalized_alpha::HHT,
+    &esdirk3::SCHEME,
     &velocity_verlet::SCHEME,
     &dormand_prince::SCHEME,
 ];

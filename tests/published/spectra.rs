@@ -3,7 +3,7 @@
 use crate::chain::Chain;
 use ladder::{Rung, Worst};
 use looselink::newton::Newton;
-use looselink::stepper::{Method, bathe, generalized_alpha, trapezoidal};
+use looselink::stepper::{Method, bathe, esdirk3, generalized_alpha, trapezoidal};
 use looselink::system::{State, System};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -137,6 +137,20 @@ fn spectra_follow_the_tables() {
     Rung::Published
         .asks("Bathe's scheme, γ = 1/2, 0.02 ... 1000 periods a step: spectral radius ρ against the closed form, over 0.01 + ρ")
         .within(&worst, 1e-10, "rounding of the amplification matrix, whose entries vanish with ρ");
+}
+
+/// L-stability: no step of any length amplifies an oscillation, and an infinitely long one extinguishes it.
+#[test]
+fn the_method_of_order_3_is_l_stable() {
+    let method = Method::new(&esdirk3::SCHEME);
+    let radius = |dt: f64| spectrum(method, dt)[0];
+    for k in -300..=300 {
+        let dt = 10.0_f64.powf(f64::from(k) / 100.0);
+        // rounding of a matrix with entries of size 1
+        assert!(radius(dt) < 1.0 + 1e-13, "{dt} periods a step");
+    }
+    // R decays with the inverse of the step
+    assert!(radius(1e3) < 1e-3);
 }
 
 /// Steps far longer than the period damp by the spectral radius that was asked for; the table above has no HHT.

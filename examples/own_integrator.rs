@@ -1,0 +1,61 @@
+//! An integration scheme from outside the library: `cargo run --release --example own_integrator`.
+
+use looselink::stepper::{Estimate, LocalError, Scheme, StepError, Stepper};
+use looselink::system::{State, System, Work};
+use looselink::{newton::Newton, registry::Registry, scene::Scene, simulate::Simulation};
+
+/// The symplectic Euler method: v_1 = v + h a, q_1 = q + h v_1.
+#[derive(Debug)]
+struct SymplecticEuler;
+
+impl Stepper for SymplecticEuler {
+    #[rustfmt::skip]
+    fn step(&mut self, system: &dyn System, from: &State, t: f64, to: &mut State, newton: &mut Newton, work: &mut Work)
+        -> Result<usize, StepError> {
+        let h = t - from.t;
+        to.copy_from(from);
+        to.t = t;
+        system.prescribe(from, to, work)?;
+        for i in 0..system.shape().unknowns {
+            to.v[i] = from.v[i] + h * from.a[i];
+            to.q[i] = from.q[i] + h * to.v[i];
+        }
+        newton.accelerate(system, to, work)?;
+        Ok(system.powers(to, work))
+    }
+
+    fn estimate(&self) -> Estimate {
+        Estimate {
+            order: 2.0,
+            is_error: true,
+            implicit: false,
+        }
+    }
+
+    fn local_error(&self, from: &State, to: &State, _: &State, error: &mut LocalError) {
+        let h = to.t - from.t;
+        for i in 0..error.q.len() {
+            error.q[i] = -0.5 * h * h * from.a[i];
+            error.v[i] = 0.5 * h * (to.a[i] - from.a[i]);
+        }
+    }
+}
+
+/// What a scene has to know of it.
+pub static SCHEME: Scheme = Scheme {
+    name: "symplectic_euler",
+    is_explicit: true,
+    keeps_constraints: false,
+    parameters: &[],
+    build: |_, _| Box::new(SymplecticEuler),
+};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let registry = Registry::standard().with_scheme(&SCHEME);
+    let overrides = ["integrator={method=\"symplectic_euler\",step=1e-5}".to_owned()];
+    let scene = Scene::load_with(&registry, "scenes/soft-pendulum.toml".as_ref(), &overrides)?;
+    let mut simulation = Simulation::new(&scene)?;
+    simulation.run(&mut ())?;
+    println!("{:#?}", simulation.report().ledger);
+    Ok(())
+}

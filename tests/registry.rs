@@ -1,0 +1,117 @@
+//! Kinds that a user of the library adds.
+
+use looselink::contact::normal::{NormalForce, NormalLaw, NormalLawKind, NormalParameters};
+use looselink::registry::Registry;
+use looselink::scene::Scene;
+use looselink::simulate::{Recording, Simulation};
+use looselink::stepper::{Method, Parameter, Scheme};
+
+#[path = "../examples/own_integrator.rs"]
+#[allow(dead_code, reason = "the example is a program")]
+mod own_integrator;
+
+/// A wall that pushes with a constant force.
+#[derive(Debug)]
+struct Constant(f64);
+
+impl NormalLaw for Constant {
+    fn force(&self, _: f64, _: f64, _: f64) -> NormalForce {
+        NormalForce {
+            value: self.0,
+            by_delta: 0.0,
+            by_rate: 0.0,
+            elastic: self.0,
+            clamped: false,
+        }
+    }
+
+    fn energy(&self, delta: f64) -> f64 {
+        self.0 * delta.max(0.0)
+    }
+
+    fn delivered_restitution(&self) -> f64 {
+        1.0
+    }
+}
+
+static CONSTANT: NormalLawKind = NormalLawKind {
+    name: "constant",
+    is_damped: false,
+    build: |p: &NormalParameters| Box::new(Constant(p.stiffness)),
+};
+
+/// The scheme of the example, with a parameter that it does not use.
+static SYMPLECTIC_EULER: Scheme = Scheme {
+    name: "symplectic_euler",
+    is_explicit: true,
+    keeps_constraints: false,
+    parameters: &[Parameter {
+        name: "theta",
+        range: [0.0, 1.0],
+        closed: true,
+        required: false,
+        purpose: "the share of the acceleration",
+    }],
+    build: |_, shape| (own_integrator::SCHEME.build)(&Method::new(&own_integrator::SCHEME), shape),
+};
+
+fn registry() -> Registry {
+    Registry::standard()
+        .with_law(&CONSTANT)
+        .with_scheme(&SYMPLECTIC_EULER)
+}
+
+fn scene(overrides: &[&str]) -> Result<Scene, looselink::scene::SceneError> {
+    let text = include_str!("../scenes/bouncing-journal.toml");
+    let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
+    Scene::parse_with(&registry(), "bouncing-journal.toml", text, &overrides)
+}
+
+#[test]
+fn a_scene_names_a_law_and_a_scheme_of_the_user() {
+    let scene = scene(&[
+        "integrator={method=\"symplectic_euler\",step=1e-7,onset_tolerance=1e-13}",
+        "simulation.duration=0.004",
+        "output={interval=1e-5,channels=[\"journal.vx\",\"pin.*\"]}",
+        "contacts.aluminium={law=\"constant\",bearing_radius=0.01,clearance=2e-5,stiffness=50.0,exponent=1.0}",
+    ]);
+    let mut simulation = Simulation::new(&scene.unwrap()).unwrap();
+    let mut recording = Recording::new(&simulation);
+    simulation.run(&mut recording).unwrap();
+    // 0.05 kg at 0.02 m/s turns back in 2 m v/F
+    let contact = &recording.onsets[0];
+    let lasted = contact.end.unwrap() - contact.t;
+    // order 1: a step of 1e-7 s in 4e-5 s
+    assert!((lasted - 4e-5).abs() < 1e-6, "{lasted}");
+    assert!((contact.impact_velocity - 0.02).abs() < 1e-12);
+}
+
+#[test]
+fn parameters_and_names_of_the_user_are_checked_as_all_others() {
+    for (overrides, message) in [
+        (
+            ["integrator.method=symplectic_euler", "integrator.theta=2"],
+            "`integrator.theta` must lie between 0 and 1, not 2",
+        ),
+        (
+            ["integrator.method=bathe", "integrator.theta=1"],
+            "`integrator.theta` is a parameter of \"symplectic_euler\" only",
+        ),
+        (
+            ["integrator.method=symplectic_eule", "integrator.step=1e-6"],
+            "did you mean `symplectic_euler`?",
+        ),
+        (
+            ["contacts.aluminium.law=konstant", "integrator.step=1e-6"],
+            "did you mean `constant`?",
+        ),
+    ] {
+        let error = scene(&overrides).unwrap_err().to_string();
+        assert!(error.contains(message), "{error}");
+    }
+    // without the registry nobody knows them
+    let text = include_str!("../scenes/bouncing-journal.toml");
+    let unknown = ["integrator.method=symplectic_euler".to_owned()];
+    assert!(Scene::parse("bouncing-journal.toml", text, &unknown).is_err());
+    assert_eq!(Method::new(&SYMPLECTIC_EULER).get("gamma"), None);
+}
