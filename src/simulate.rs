@@ -707,8 +707,8 @@ impl Simulation {
 /// Refuses a step that may have added a turn to a body or a half turn to a prescribed angle.
 fn check_turns(model: &Model, from: &State, to: &State) -> Result<(), StepError> {
     let half = model.half_turned(to).map(|index| (index, HALF_TURN));
-    let wound = || model.wound(from, to).map(|index| (index, TURN));
-    match half.or_else(wound) {
+    let full_turn = || model.full_turn(from, to).map(|index| (index, TURN));
+    match half.or_else(full_turn) {
         Some((index, cause)) => Err(StepError::Turn { index, cause }),
         None => Ok(()),
     }

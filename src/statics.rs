@@ -50,7 +50,7 @@ impl Statics {
     /// Equilibrium at the known coordinates and loads of `s`, from the q and lambda in it.
     ///
     /// # Errors
-    /// See [`Failure`]; updates are told in units of coordinates. `s` is then undefined.
+    /// See [`Failure`]; updates are reported in units of coordinates. `s` is then undefined.
     pub fn solve(&mut self, model: &Model, s: &mut State, work: &mut Work) -> Result<(), Failure> {
         let n = model.shape().unknowns;
         s.v.fill(0.0);
@@ -100,7 +100,7 @@ impl Statics {
         let w = Weights { q: 1.0, v: 0.0 };
         model.linearise(s, w, &mut self.r, &mut self.phi, &mut self.k, work);
         model.remove_mass(&mut self.k);
-        model.stiffen(s, &mut self.r, &mut self.k)
+        model.augment(s, &mut self.r, &mut self.k)
     }
 
     fn factor_and_solve(&mut self, model: &Model) -> Result<(), Failure> {

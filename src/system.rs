@@ -169,7 +169,7 @@ pub trait System {
     /// Pattern of the tangent: unknown coordinates, then multipliers.
     fn symbolic(&self) -> &Symbolic;
     /// Pattern of the matrix of the acceleration level, in the same order of unknowns.
-    fn level_symbolic(&self) -> &Symbolic;
+    fn acceleration_symbolic(&self) -> &Symbolic;
     /// Fresh work memory.
     fn work(&self) -> Work;
     /// Sets the known coordinates and their rates in `to` at time `to.t`; `from` is a nearby state.
@@ -197,7 +197,7 @@ pub trait System {
         work: &mut Work,
     );
     /// phi = Phi and the matrix of the acceleration level.
-    fn level(&self, at: &State, phi: &mut [f64], k: &mut [f64]);
+    fn acceleration_level(&self, at: &State, phi: &mut [f64], k: &mut [f64]);
     /// The residual of the unknown coordinates without their accelerations and without multipliers, in the first rows of r.
     fn free_residual(&self, at: &State, r: &mut [f64], work: &mut Work);
     /// d(Phi)/dt = Phi_q v + Phi_t.

@@ -16,7 +16,7 @@ pub struct Chain {
     /// States after this time cannot be prescribed.
     pub prescribed_until: f64,
     symbolic: Symbolic,
-    level_symbolic: Symbolic,
+    acceleration_symbolic: Symbolic,
 }
 
 impl Chain {
@@ -33,7 +33,7 @@ impl Chain {
             contacts: 0,
             prescribed_until: f64::INFINITY,
             symbolic: Symbolic::analyse(n, &cliques, &vec![vec![]; n]),
-            level_symbolic: Symbolic::analyse(n, &[], &vec![vec![]; n]),
+            acceleration_symbolic: Symbolic::analyse(n, &[], &vec![vec![]; n]),
         }
     }
 
@@ -58,8 +58,8 @@ impl System for Chain {
     fn symbolic(&self) -> &Symbolic {
         &self.symbolic
     }
-    fn level_symbolic(&self) -> &Symbolic {
-        &self.level_symbolic
+    fn acceleration_symbolic(&self) -> &Symbolic {
+        &self.acceleration_symbolic
     }
     fn work(&self) -> Work {
         Work {
@@ -108,9 +108,9 @@ impl System for Chain {
             }
         }
     }
-    fn level(&self, _: &State, _: &mut [f64], k: &mut [f64]) {
+    fn acceleration_level(&self, _: &State, _: &mut [f64], k: &mut [f64]) {
         for (i, m) in self.masses.iter().enumerate() {
-            k[self.level_symbolic.slot(i, i) as usize] = *m;
+            k[self.acceleration_symbolic.slot(i, i) as usize] = *m;
         }
     }
     fn free_residual(&self, at: &State, r: &mut [f64], work: &mut Work) {

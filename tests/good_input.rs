@@ -5,6 +5,7 @@ use crate::support::{all_scenes, path};
 use looselink::contact::Slip;
 use looselink::contact::normal::damped_power::{HERTZ, LANKARANI_NIKRAVESH};
 use looselink::scene::{BodyKind, JointModel, LinkModel, Scene};
+use looselink::stepper::bathe::splitting;
 
 pub fn load(text: &str, overrides: &[&str]) -> Scene {
     let overrides: Vec<String> = overrides.iter().map(|o| o.to_string()).collect();
@@ -56,7 +57,7 @@ fn case_4_is_what_the_paper_says() {
     );
     assert_eq!(scene.drives[0].joints, [0, 1, 2]);
     let method = scene.integrator.method;
-    assert_eq!((method.name(), method.get("gamma")), ("bathe", Some(0.5)));
+    assert_eq!((method.name(), splitting(&method)), ("bathe", 0.5));
     let BodyKind::Link(link) = &scene.bodies[4].kind else {
         panic!("link1 is a link")
     };

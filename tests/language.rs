@@ -1,6 +1,7 @@
 //! The reference of the scene language, docs/scene.md, speaks of the language that the program reads.
 
 use crate::support::run_scene;
+use looselink::registry::Registry;
 use looselink::scene::Scene;
 use looselink::simulate::Simulation;
 use std::collections::{BTreeMap, BTreeSet};
@@ -126,10 +127,19 @@ fn words(source: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The keys of every table that the reader declares.
+/// The keys of every table that the reader declares; those of `[integrator]` include the parameters of all schemes.
 fn declared() -> BTreeSet<BTreeSet<String>> {
     let mut tables = BTreeSet::new();
+    let schemes = Registry::standard().schemes;
+    let parameters = schemes.iter().flat_map(|s| s.parameters);
+    let parameters: BTreeSet<String> = parameters.map(|p| p.name.to_owned()).collect();
     for source in sources() {
+        if let Some((_, rest)) = source.split_once("known = vec![") {
+            let (first, rest) = rest.split_once(']').unwrap();
+            let (_, rest) = rest.split_once("known.extend([").unwrap();
+            let (last, _) = rest.split_once(']').unwrap();
+            tables.insert(&(&words(first) | &words(last)) | &parameters);
+        }
         for (at, found) in source.match_indices(".only(") {
             let rest = &source[at + found.len()..];
             let call = &rest[..rest.find(")?").unwrap()];
@@ -141,9 +151,11 @@ fn declared() -> BTreeSet<BTreeSet<String>> {
     tables
 }
 
-/// The words that the reader offers as choices: the first parts of pairs such as `("ground", Type::Ground)`.
+/// The words that the reader offers as choices: the first parts of pairs such as `("ground", Type::Ground)` or
+/// `("circle", circle)`, and the laws of the registry.
 fn choices() -> BTreeSet<String> {
-    let mut choices = BTreeSet::new();
+    let laws = Registry::standard().laws;
+    let mut choices: BTreeSet<String> = laws.iter().map(|law| law.name.to_owned()).collect();
     for source in sources() {
         for (at, _) in source.match_indices("(\"") {
             let mut parts = source[at + 2..].splitn(2, "\", ");
@@ -154,6 +166,7 @@ fn choices() -> BTreeSet<String> {
             let is_choice = value.starts_with("()")
                 || value.starts_with("true)")
                 || value.starts_with("false)")
+                || value.starts_with(&format!("{word})"))
                 || value.starts_with(|c: char| c.is_ascii_uppercase());
             if is_word && is_choice {
                 choices.insert(word.to_owned());
@@ -205,7 +218,9 @@ fn every_key_stands_in_a_table_of_the_language() {
 
 #[test]
 fn every_choice_stands_in_the_language() {
-    let (document, choices) = (document(), choices());
+    let (document, mut choices) = (document(), choices());
+    let schemes = Registry::standard().schemes;
+    choices.extend(schemes.iter().map(|scheme| scheme.name.to_owned()));
     for word in &choices {
         assert!(document.contains(&format!("`\"{word}\"`")), "{word}");
     }

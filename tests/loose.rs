@@ -296,13 +296,13 @@ fn a_run_that_is_stopped_tells_the_contacts_that_are_closed() {
             })
         }
     }
-    let mut told = Stop::default();
+    let mut reported = Stop::default();
     let mut simulation = Simulation::new(&load("bouncing-journal.toml", &[])).unwrap();
-    let ended = simulation.run(&mut told);
+    let ended = simulation.run(&mut reported);
     assert!(matches!(ended, Err(RunError::Interrupted { .. })));
-    assert_eq!(told.0, simulation.report().impacts);
-    assert_eq!((told.0.len(), told.0[0].end), (1, None));
-    assert!(told.0[0].deepest_penetration > 1e-7);
+    assert_eq!(reported.0, simulation.report().impacts);
+    assert_eq!((reported.0.len(), reported.0[0].end), (1, None));
+    assert!(reported.0[0].deepest_penetration > 1e-7);
 }
 
 /// The rates of the eccentricity are the derivatives of the eccentricity, in the flight of six journals before any closes.

@@ -201,7 +201,7 @@ initial.bodies.rocker = { x = 0.3711875, y = 0.1216340406454953, theta = 1.80338
     );
     assert!(shown.contains("[0.08, 0.06]"), "{shown}");
 
-    // a pose from the command line stands in another text, whose place is told
+    // a pose from the command line stands in another text, whose place is reported
     let text = HEAD.to_owned()
         + FOUR_BAR
         + "initial.sketch = { B = [0.0, 0.1], C = [0.28, 0.22] }\ninitial.bodies = {}\n";

@@ -626,7 +626,7 @@ fn the_trapezoidal_rule_keeps_the_energy() {
 }
 
 /// The ledger is integrated over the stages: by Simpson's rule for γ = ½, for any γ exactly up to t²; by the trapezoidal
-/// rule up to t. Clamps are counted stage by stage, and the state between is told.
+/// rule up to t. Clamps are counted stage by stage, and the state between is reported.
 #[test]
 fn stages_are_integrated_and_told() {
     let chain = Chain::new(vec![1.0], vec![2.0, 3.0]);

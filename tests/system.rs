@@ -204,13 +204,13 @@ fn the_widest_open_constraint_is_named() {
     let model = simulation.model();
     let shape = model.shape();
     let mut phi = vec![0.0; shape.multipliers];
-    let mut k = vec![0.0; model.level_symbolic().len()];
+    let mut k = vec![0.0; model.acceleration_symbolic().len()];
     // "joint C1 (x)" is a row of joint C1
     let constraint = |row: &str| row.split(" (").next().unwrap().to_owned();
     for i in 0..shape.unknowns {
         let mut at = accepted.clone();
         at.q[i] += 1e-3 * (1.0 + i as f64);
-        model.level(&at, &mut phi, &mut k);
+        model.acceleration_level(&at, &mut phi, &mut k);
         let mut open = std::collections::BTreeMap::<String, f64>::new();
         for (row, value) in phi.iter().enumerate() {
             let distance = open

@@ -395,7 +395,7 @@ fn reactions_are_conjugate_to_motions() {
         .within(&worst, 1e-14, "rounding of sums of numbers near one");
 }
 
-/// A direction has two zeros, half a turn apart; only the second is told. Other constraints have none.
+/// A direction has two zeros, half a turn apart; only the second is reported. Other constraints have none.
 #[test]
 fn the_second_zero_of_an_angle_is_told() {
     let align = Align {
@@ -719,7 +719,7 @@ fn forces_tell_what_they_do() {
         let found = forces().into_iter().find(|(name, _)| *name == wanted);
         found.expect("the force is in the list").1
     };
-    let told = |force: &dyn Force| -> Vec<(&'static str, f64)> {
+    let reported = |force: &dyn Force| -> Vec<(&'static str, f64)> {
         let names = force.quantities().iter().map(|(name, _)| *name);
         names.zip(force.measure(&s)).collect()
     };
@@ -730,31 +730,34 @@ fn forces_tell_what_they_do() {
     let rate = (e[0] * e_dot[0] + e[1] * e_dot[1]) / length;
     let expected = [("force", 3.0 * length), ("length", length), ("rate", rate)];
     let worst = Worst::new();
-    let compare = |told: &[(&str, f64)], expected: &[(&str, f64)]| {
-        assert_eq!(told.len(), expected.len());
-        for (told, expected) in told.iter().zip(expected) {
-            assert_eq!(told.0, expected.0);
-            worst.see(told.1 - expected.1);
+    let compare = |reported: &[(&str, f64)], expected: &[(&str, f64)]| {
+        assert_eq!(reported.len(), expected.len());
+        for (reported, expected) in reported.iter().zip(expected) {
+            assert_eq!(reported.0, expected.0);
+            worst.see(reported.1 - expected.1);
         }
     };
-    compare(&told(&*spring), &expected);
+    compare(&reported(&*spring), &expected);
     let coil = by_name("torsion spring, ground and body");
     let angle = s.q[5];
     let speed = s.v[5];
     // on the second body, the journal's: against the angle
     let torque = -2.0 * (angle + 0.2) - 0.4 * speed;
     compare(
-        &told(&*coil),
+        &reported(&*coil),
         &[("torque", torque), ("angle", angle), ("speed", speed)],
     );
     compare(
-        &told(&*by_name("dead force on a body")),
+        &reported(&*by_name("dead force on a body")),
         &[("fx", 1.3), ("fy", 0.2)],
     );
-    compare(&told(&*by_name("torque on a slope")), &[("torque", 0.8)]);
+    compare(
+        &reported(&*by_name("torque on a slope")),
+        &[("torque", 0.8)],
+    );
     for silent in ["element damping", "mass damping"] {
         let force = by_name(silent);
-        compare(&told(&*force), &[]);
+        compare(&reported(&*force), &[]);
         assert_eq!((force.energy(&s), force.measure(&s)), (0.0, [0.0; 3]));
     }
     Rung::Identities

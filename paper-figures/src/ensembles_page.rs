@@ -9,7 +9,7 @@ use crate::methods::HORIZON;
 use crate::record::{BOTH, Ensemble, Exponents, Record, Single};
 use crate::runs::words;
 use crate::shuffles::{PAIRS, SHUFFLES, Test};
-use crate::warned::{Source, told};
+use crate::warned::{Source, reported};
 use numbers::{digits, percent, si};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 use std::fmt::Write;
@@ -380,8 +380,8 @@ fn ensembles_section(record: &Record) -> String {
             e.name,
             e.case,
             e.moved,
-            e.mean("energy_lost").told(percent),
-            told(&warnings)
+            e.mean("energy_lost").reported(percent),
+            reported(&warnings)
         );
     }
     text + "\n"
@@ -435,7 +435,10 @@ impl Sizes<'_> {
         }
         table += " p |\n|---|---|---|---|---|\n";
         for (i, s) in SHOWN.iter().enumerate() {
-            let means = self.ensembles.iter().map(|e| e.mean(s.name).told(s.show));
+            let means = self
+                .ensembles
+                .iter()
+                .map(|e| e.mean(s.name).reported(s.show));
             let cells: Vec<String> = means.collect();
             let p = p_value(self.test.least(i));
             let _ = writeln!(table, "| {} | {} | {p} |", s.words, cells.join(" | "));
@@ -546,8 +549,8 @@ fn exponents_section(record: &Record) -> String {
             e.case,
             e.distance,
             e.how,
-            e.mean().told(rate),
-            told(&e.source().warnings)
+            e.mean().reported(rate),
+            reported(&e.source().warnings)
         );
     }
     for case in [3, 4] {
@@ -578,7 +581,7 @@ fn meshes_section(record: &Record) -> String {
         text += &format!("| {n} | 2 | {} |\n", mesh_cells(single));
     }
     for (n, e) in MESHES.iter().zip(meshes(record)) {
-        let show = |name: &str, unit: &str| e.mean(name).told(|v| si(v, unit));
+        let show = |name: &str, unit: &str| e.mean(name).reported(|v| si(v, unit));
         let _ = writeln!(
             text,
             "| {n} | 4 | {} | {} | {} | {} | {} | {} |",
@@ -586,8 +589,8 @@ fn meshes_section(record: &Record) -> String {
             show("deviation_rms", "m/s²"),
             show("deviation_frequency", "Hz"),
             show("force_peak", "N"),
-            e.mean("energy_lost").told(percent),
-            told(&e.source().warnings)
+            e.mean("energy_lost").reported(percent),
+            reported(&e.source().warnings)
         );
     }
     text + "\n"
@@ -601,7 +604,7 @@ fn mesh_cells(s: &Single) -> String {
         show("deviation_frequency", "Hz"),
         show("force_peak", "N"),
         percent(s.measures.get("energy_lost")),
-        told(&s.warnings),
+        reported(&s.warnings),
     ]
     .join(" | ")
 }
@@ -632,7 +635,7 @@ fn singles_section(record: &Record) -> String {
             percent(m.get("repetition")),
             si(m.get("deviation_rms"), "m/s²"),
             si(m.get("error_peak"), "m"),
-            told(&single.warnings)
+            reported(&single.warnings)
         );
     }
     text + "\n"
@@ -657,7 +660,7 @@ fn work_section(record: &Record) -> String {
             w.case,
             words(&w.method),
             si(w.step, "s"),
-            told(&w.warnings)
+            reported(&w.warnings)
         );
     }
     text + "\n"
@@ -678,8 +681,8 @@ fn long_section(record: &Record) -> String {
             words(&l.method),
             si(l.step, "s"),
             l.cycles,
-            l.told(),
-            told(&l.source().warnings)
+            l.reported(),
+            reported(&l.source().warnings)
         );
     }
     text

@@ -127,7 +127,7 @@ impl Interval {
     }
 
     /// Mean and interval, each number written by `show`.
-    pub fn told(&self, show: impl Fn(f64) -> String) -> String {
+    pub fn reported(&self, show: impl Fn(f64) -> String) -> String {
         format!("{} ± {}", show(self.mean), show(self.half))
     }
 }

@@ -88,7 +88,7 @@ const TIMINGS: &str = "timings.json";
 
 fn reproduce(settings: Settings) -> Result<()> {
     let run = Run::begin("reproduction")?;
-    // before the runs, so that a missing record is told at once
+    // before the runs, so that a missing record is reported at once
     let (record, timings) = (record::load(ENSEMBLES)?, record::load(TIMINGS)?);
     let mut numbers = Numbers::default();
     let campaign = Campaign::run(settings)?;

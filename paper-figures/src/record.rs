@@ -130,11 +130,11 @@ pub struct Long {
 
 impl Long {
     /// The growth in words.
-    pub fn told(&self) -> String {
+    pub fn reported(&self) -> String {
         let runs = self.warnings.len();
         match self.growth.as_slice() {
             [one] if runs == 1 => digits(*one),
-            all if all.len() == STARTS => Interval::of(all).told(digits),
+            all if all.len() == STARTS => Interval::of(all).reported(digits),
             _ => format!("stopped runs: {} of {runs}", self.stopped),
         }
     }

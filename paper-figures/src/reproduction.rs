@@ -143,7 +143,7 @@ fn count(statements: &[Statement], numbers: &mut Numbers) -> String {
         .count();
     numbers.put("statements", statements.len() as f64);
     numbers.put("statements.undecided", undecided as f64);
-    let told: Vec<String> = [
+    let reported: Vec<String> = [
         (Basis::Measurement, "measurement"),
         (Basis::Construction, "construction"),
         (Basis::Assumption, "an assumed value"),
@@ -162,7 +162,7 @@ fn count(statements: &[Statement], numbers: &mut Numbers) -> String {
          \"By construction\": the equations or the scene allow no other outcome. \"By an assumed value\": the outcome depends \
          on a value that the paper does not give.",
         statements.len(),
-        told.concat()
+        reported.concat()
     )
 }
 
@@ -233,8 +233,8 @@ fn bound_argument(e: &Evidence, numbers: &mut Numbers) -> String {
         si(most, "m"),
         digits(least / CLAIMED),
         digits(most / CLAIMED),
-        used[0].told(digits),
-        used[1].told(digits),
+        used[0].reported(digits),
+        used[1].reported(digits),
     )
 }
 
@@ -297,7 +297,7 @@ fn runs_table(e: &Evidence, numbers: &mut Numbers) -> String {
             r.report.steps,
             r.report.newton_iterations,
             r.report.onsets,
-            told(&r.warnings)
+            reported(&r.warnings)
         );
         let report = serde_json::to_value(&r.report).unwrap_or_default();
         numbers.put_value(format!("run.{}", r.number), report);
@@ -320,14 +320,14 @@ fn runs_table(e: &Evidence, numbers: &mut Numbers) -> String {
             ensemble.case,
             ensemble.moved,
             ensemble.how,
-            ensemble.mean("energy_lost").told(percent),
-            told(&ensemble.source().warnings)
+            ensemble.mean("energy_lost").reported(percent),
+            reported(&ensemble.source().warnings)
         );
     }
     table
 }
 
-fn told(warnings: &[String]) -> String {
+fn reported(warnings: &[String]) -> String {
     if warnings.is_empty() {
         "none".into()
     } else {

@@ -7,7 +7,7 @@ use crate::interval::OF_THREE;
 use crate::numbers::Numbers;
 use crate::record::Record;
 use crate::scans::{Entry, Scan, Values};
-use crate::warned::told;
+use crate::warned::reported;
 use numbers::{digits, percent, si};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 use std::collections::BTreeSet;
@@ -256,7 +256,7 @@ pub fn page(scans: &[Scan], record: &Record, numbers: &mut Numbers) -> String {
 
 fn cells(v: &Values) -> String {
     let contact = v.contact.map_or("–".into(), percent);
-    let warnings = told(&v.warnings);
+    let warnings = reported(&v.warnings);
     format!(
         " {} | {} | {} | {} | {} | {} | {contact} | {} | {warnings} |",
         si(v.error_peak, "m"),

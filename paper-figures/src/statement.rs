@@ -102,13 +102,13 @@ impl Statement {
 
 /// The runs, each once, those without warnings together.
 fn from(sources: &[Source]) -> String {
-    let mut told: Vec<String> = Vec::new();
+    let mut reported: Vec<String> = Vec::new();
     let silent = sources.iter().filter(|s| s.warnings.is_empty());
     let mut names: Vec<&str> = silent.map(|s| s.name.as_str()).collect();
     names.sort_unstable();
     names.dedup();
     if !names.is_empty() {
-        told.push(format!("* Runs without warnings: {}.\n", names.join("; ")));
+        reported.push(format!("* Runs without warnings: {}.\n", names.join("; ")));
     }
     for source in sources.iter().filter(|s| !s.warnings.is_empty()) {
         let line = format!(
@@ -116,11 +116,11 @@ fn from(sources: &[Source]) -> String {
             source.name,
             source.warnings.join("; ")
         );
-        if !told.contains(&line) {
-            told.push(line);
+        if !reported.contains(&line) {
+            reported.push(line);
         }
     }
-    told.concat()
+    reported.concat()
 }
 
 #[cfg(test)]

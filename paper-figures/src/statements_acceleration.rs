@@ -40,8 +40,8 @@ fn very_different(e: &Evidence) -> Statement {
             "rms deviation from the ideal acceleration over the rms of the latter: case 2 {} at the finer step and {} at the coarser, case 3 {}, case 4 {}.",
             percent(fine),
             percent(e.flexible_coarse.get("deviation_share")),
-            share[0].told(percent),
-            share[1].told(percent)
+            share[0].reported(percent),
+            share[1].reported(percent)
         ),
         criterion: "above 25 % in cases 2 (finer step), 3 and 4",
         verdict: Verdict::of(fine > 0.25).and(share[0].above(0.25)).and(share[1].above(0.25)),
@@ -72,8 +72,8 @@ fn high_frequency(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "half of the power of the deviation lies above {} in case 3 and {} in case 4.",
-            frequency[0].told(hertz),
-            frequency[1].told(hertz)
+            frequency[0].reported(hertz),
+            frequency[1].reported(hertz)
         ),
         criterion: "above 50 Hz, fifty times the frequency of the motion, in both",
         verdict: frequency[0].above(50.0).and(frequency[1].above(50.0)),
@@ -92,9 +92,9 @@ fn by_impacts(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "{} of the {PEAKS} highest peaks of the deviation follow a contact onset within {}. By chance it would be {}.",
-            share.told(percent),
+            share.reported(percent),
             si(AFTER_ONSET, "s"),
-            e.loose().mean("after_onset_by_chance").told(percent)
+            e.loose().mean("after_onset_by_chance").reported(percent)
         ),
         criterion: "at least 90 % of the peaks",
         verdict: share.above(0.9),
@@ -109,8 +109,8 @@ fn unstable(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "rms deviation of the acceleration in the third cycle over that in the first: case 3 {}, case 4 {}.",
-            growth[0].told(digits),
-            growth[1].told(digits)
+            growth[0].reported(digits),
+            growth[1].reported(digits)
         ),
         criterion: "unstable means that the deviation grows: above 1.5 in case 3 or 4",
         verdict: growth[0].above(1.5).or(growth[1].above(1.5)),
@@ -127,11 +127,11 @@ fn larger_in_case_4(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "rms deviation {} in case 4 and {} in case 3, ratio {}; largest deviation {} and {}.",
-            four.told(acceleration),
-            three.told(acceleration),
-            ratio.told(digits),
-            peaks[1].told(acceleration),
-            peaks[0].told(acceleration)
+            four.reported(acceleration),
+            three.reported(acceleration),
+            ratio.reported(digits),
+            peaks[1].reported(acceleration),
+            peaks[0].reported(acceleration)
         ),
         criterion: "the ratio of the rms deviations is above 1",
         verdict: ratio.above(1.0),
@@ -149,9 +149,9 @@ fn higher_frequency_in_case_4(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "half of the power of the deviation lies below {} in case 4 and {} in case 3; ratio {}.",
-            four.told(hertz),
-            three.told(hertz),
-            ratio.told(digits)
+            four.reported(hertz),
+            three.reported(hertz),
+            ratio.reported(digits)
         ),
         criterion: "the ratio of these frequencies is above 1",
         verdict: ratio.above(1.0),

@@ -51,8 +51,8 @@ fn same_phenomena(e: &Evidence) -> Statement {
         text.push(format!(
             "{words} {}, {}, {}",
             show(two),
-            three.told(show),
-            e.both().mean(name).told(show)
+            three.reported(show),
+            e.both().mean(name).reported(show)
         ));
         let grows = e.both().mean_with(e.loose(), name, |b, a| b / a);
         verdict = verdict.and(three.above(two)).and(grows.above(1.0));
@@ -77,10 +77,10 @@ fn simultaneous_peaks(e: &Evidence) -> Statement {
         measured: format!(
             "of the {PEAKS} highest acceleration peaks, within {} of one of the {PEAKS} highest force peaks of B1: case 3 {}, case 4 {}; of B1, B2 or B3: {}, {}.",
             si(SIMULTANEOUS, "s"),
-            one[0].told(percent),
-            one[1].told(percent),
-            any[0].told(percent),
-            any[1].told(percent)
+            one[0].reported(percent),
+            one[1].reported(percent),
+            any[0].reported(percent),
+            any[1].reported(percent)
         ),
         criterion: "at least 90 % with one of the three joints, in both cases",
         verdict: any[0].above(0.9).and(any[1].above(0.9)),
@@ -107,12 +107,12 @@ fn enlarged_forces(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "peak force in B1 of case 3 {} times that of case 1 ({}) and {} times that of case 2 ({}); of case 4 {} and {} times.",
-            rigid[0].told(digits),
+            rigid[0].reported(digits),
             newton(one),
-            flexible[0].told(digits),
+            flexible[0].reported(digits),
             newton(two),
-            rigid[1].told(digits),
-            flexible[1].told(digits)
+            rigid[1].reported(digits),
+            flexible[1].reported(digits)
         ),
         criterion: "above 1.5 times the forces of cases 1 and 2, in cases 3 and 4",
         verdict: verdict.fold(Verdict::Holds, Verdict::and),
@@ -140,10 +140,10 @@ fn service_life(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "life by the cubic-mean load of B1: {} (case 3) and {} (case 4) of that of case 1; {} and {} of that of case 2.",
-            rigid[0].told(percent),
-            rigid[1].told(percent),
-            flexible[0].told(percent),
-            flexible[1].told(percent)
+            rigid[0].reported(percent),
+            rigid[1].reported(percent),
+            flexible[0].reported(percent),
+            flexible[1].reported(percent)
         ),
         criterion: "life ~ (cubic-mean load)⁻³, as for rolling bearings, is below 90 % of that of case 1 and of case 2, in cases 3 and 4",
         verdict: verdict.fold(Verdict::Holds, Verdict::and),
@@ -176,10 +176,10 @@ fn mostly_in_contact(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "B1 is in contact {} (case 3) and {} (case 4) of the time; the joint with the least contact {} and {}.",
-            first[0].told(percent),
-            first[1].told(percent),
-            least[0].told(percent),
-            least[1].told(percent)
+            first[0].reported(percent),
+            first[1].reported(percent),
+            least[0].reported(percent),
+            least[1].reported(percent)
         ),
         criterion: "all six joints above 50 % in both cases",
         verdict: least[0].above(0.5).and(least[1].above(0.5)),
@@ -233,8 +233,8 @@ fn not_periodic_loose(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "distance between the accelerations of cycles 2 and 3: case 3 {}, case 4 {}. Spread of the stroboscopic section over {} periods: {} and {}.",
-            distance[0].told(percent),
-            distance[1].told(percent),
+            distance[0].reported(percent),
+            distance[1].reported(percent),
             e.c.settings.periods,
             acceleration(spread(e, loose)),
             acceleration(spread(e, both))
@@ -253,10 +253,10 @@ fn chaotic(e: &Evidence) -> Statement {
         let exponents = e.e.exponents(case);
         exponents.map(|x| (x.distance, x.mean())).collect()
     };
-    let told = |case: u32| {
+    let reported = |case: u32| {
         let each: Vec<String> = of(case)
             .into_iter()
-            .map(|(distance, x)| format!("{} (d₀ = {distance:e})", x.told(rate)))
+            .map(|(distance, x)| format!("{} (d₀ = {distance:e})", x.reported(rate)))
             .collect();
         format!("case {case} {}", each.join(", "))
     };
@@ -273,9 +273,9 @@ fn chaotic(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "largest Lyapunov exponent by Benettin's method: {}; {}; {}.",
-            told(2),
-            told(3),
-            told(4)
+            reported(2),
+            reported(3),
+            reported(4)
         ),
         criterion: "above 1 s⁻¹, one e-fold per cycle, in cases 3 and 4 and below it in case 2, for both initial distances d₀",
         verdict: above(3).and(above(4)).and(below),
@@ -295,8 +295,8 @@ fn smoother(e: &Evidence) -> Statement {
             "largest deviation of the acceleration: case 2 {} at the finer step and {} at the coarser, case 3 {}; ratio of the larger value of case 2 to case 3: {}.",
             acceleration(flexible[0]),
             acceleration(flexible[1]),
-            e.loose().mean("deviation_peak").told(acceleration),
-            ratio.told(digits)
+            e.loose().mean("deviation_peak").reported(acceleration),
+            ratio.reported(digits)
         ),
         criterion: "the ratio is below 0.5",
         verdict: ratio.below(0.5),
@@ -319,9 +319,9 @@ fn nonlinear_interaction(e: &Evidence) -> Statement {
         measured: format!(
             "rms deviation of the acceleration: case 2 {}, case 3 {}, case 4 {}; ratio of case 4 to the root of the sum of squares of cases 2 and 3: {}.",
             acceleration(flexible),
-            e.loose().mean("deviation_rms").told(acceleration),
-            e.both().mean("deviation_rms").told(acceleration),
-            ratio.told(digits)
+            e.loose().mean("deviation_rms").reported(acceleration),
+            e.both().mean("deviation_rms").reported(acceleration),
+            ratio.reported(digits)
         ),
         criterion: "the ratio differs from 1 by more than 0.1",
         verdict: ratio.within(0.9, 1.1).not(),

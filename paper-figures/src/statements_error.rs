@@ -81,7 +81,7 @@ fn error_loose(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "largest |e_x| {}; the kinematic bound without penetration is {}.",
-            error.told(metres),
+            error.reported(metres),
             metres(bound)
         ),
         criterion: "between 0.1 and 0.4 mm",
@@ -106,9 +106,9 @@ fn clearance_matters(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "largest |e_x| with half the clearance {} instead of {}; the ratio is {}.",
-            half.mean("error_peak").told(metres),
-            e.loose().mean("error_peak").told(metres),
-            ratio.told(digits)
+            half.mean("error_peak").reported(metres),
+            e.loose().mean("error_peak").reported(metres),
+            ratio.reported(digits)
         ),
         criterion: "the ratio is between 1.5 and 2.5",
         verdict: ratio.within(1.5, 2.5),
@@ -133,9 +133,9 @@ fn largest_in_case_4(e: &Evidence) -> Statement {
         measured: format!(
             "largest |e_x|: case 2 {}, case 3 {}, case 4 {}; case 4 over the larger of the others {}.",
             metres(flexible),
-            e.loose().mean("error_peak").told(metres),
-            e.both().mean("error_peak").told(metres),
-            ratio.told(digits)
+            e.loose().mean("error_peak").reported(metres),
+            e.both().mean("error_peak").reported(metres),
+            ratio.reported(digits)
         ),
         criterion: "the ratio is above 1",
         verdict: ratio.above(1.0),
@@ -158,8 +158,8 @@ fn composition(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "20 ms means: e₄ − e₂ − e₃ is {} of e₄ (rms). The largest error of case 4 is {} times the sum of those of cases 2 and 3.",
-            rest.told(percent),
-            sum.told(digits)
+            rest.reported(percent),
+            sum.reported(digits)
         ),
         criterion: "the remainder is below 20 %, and the largest error is within 20 % of the sum",
         verdict: rest.below(0.2).and(sum.within(0.8, 1.2)),
@@ -176,8 +176,8 @@ fn both_matter(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "largest error over that of case 4: {} with flexibility alone, {} with clearance alone.",
-            part.told(percent),
-            other.told(percent)
+            part.reported(percent),
+            other.reported(percent)
         ),
         criterion: "each above 10 %",
         verdict: part.above(0.1).and(other.above(0.1)),

@@ -36,8 +36,8 @@ fn represents_well(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "energy lost or gained by the integrator in three cycles, over the contact dissipation: case 3 {}, case 4 {}; in case 2, where nothing dissipates, over the largest elastic energy: {}. Runs of the figures with Bathe's method: case 3 {}, case 4 {}.",
-            lost[0].told(percent),
-            lost[1].told(percent),
+            lost[0].reported(percent),
+            lost[1].reported(percent),
             percent(e.flexible.get("energy_lost").abs()),
             percent(crate::measures::energy_lost(&e.c.loose).abs()),
             percent(crate::measures::energy_lost(&e.c.both).abs())
@@ -57,7 +57,7 @@ fn flexibility_matters(e: &Evidence) -> Statement {
         measured: format!(
             "flexible links change the acceleration of the ideal mechanism by {} (rms, case 2). With clearance, the peak force with flexible links is {} times that with rigid links.",
             percent(share),
-            peak.told(digits)
+            peak.reported(digits)
         ),
         criterion: "both change by more than 10 %",
         verdict: Verdict::of(share > 0.1).and(peak.within(0.9, 1.1).not()),
@@ -78,8 +78,8 @@ fn vibration(e: &Evidence) -> Statement {
         measured: format!(
             "rms deviation from the ideal acceleration over the rms of the latter: case 2 {}, case 3 {}, case 4 {}.",
             percent(two),
-            share[0].told(percent),
-            share[1].told(percent)
+            share[0].reported(percent),
+            share[1].reported(percent)
         ),
         criterion: "above 5 % in cases 2, 3 and 4",
         verdict: Verdict::of(two > 0.05)
@@ -146,7 +146,7 @@ fn work(e: &Evidence) -> (Vec<f64>, String, Vec<Source>) {
             };
             let ratio = one.evaluations as f64 / other.evaluations as f64;
             ratios.push(ratio);
-            let told = |w: &Work| {
+            let reported = |w: &Work| {
                 format!(
                     "{} evaluations by {} with h = {}",
                     w.evaluations,
@@ -157,8 +157,8 @@ fn work(e: &Evidence) -> (Vec<f64>, String, Vec<Source>) {
             text.push(format!(
                 "case {case} at {}: {} against {}, ratio {}",
                 percent(level),
-                told(one),
-                told(other),
+                reported(one),
+                reported(other),
                 digits(ratio)
             ));
             sources.extend([one, other].map(source));
@@ -204,14 +204,14 @@ fn explicit_fails(e: &Evidence) -> Statement {
         bathe.is_some_and(|b| b.error.is_some_and(|error| error < 0.1 * b.size))
     };
     let failed: Vec<&Work> = steps.copied().filter(|w| bathe_works(w)).collect();
-    let told: Vec<String> = failed.iter().map(|w| source(w).name).collect();
+    let reported: Vec<String> = failed.iter().map(|w| source(w).name).collect();
     Statement {
-        measured: if told.is_empty() {
+        measured: if reported.is_empty() {
             "no run of an explicit method stops or has an error of e_x above its largest value at a step at which the error of Bathe's method is below a tenth of it.".into()
         } else {
             format!(
                 "runs that stop, or whose error of e_x exceeds its largest value, at a step at which the error of Bathe's method is below a tenth of it: {}.",
-                told.join("; ")
+                reported.join("; ")
             )
         },
         criterion: "there is such a run",
@@ -229,11 +229,11 @@ fn explicit_fails(e: &Evidence) -> Statement {
 
 fn implicit_efficient(e: &Evidence) -> Statement {
     let (ratios, _, sources) = work(e);
-    let told: Vec<String> = ratios.iter().map(|r| digits(*r)).collect();
+    let reported: Vec<String> = ratios.iter().map(|r| digits(*r)).collect();
     Statement {
         measured: format!(
             "work of the best explicit method over that of the best implicit one, as in the statement on explicit methods: {}.",
-            told.join(", ")
+            reported.join(", ")
         ),
         criterion: "above 2 in both cases at both accuracies",
         verdict: Verdict::of(ratios.len() == 4 && ratios.iter().all(|r| *r > MUCH)),
@@ -245,14 +245,18 @@ fn implicit_efficient(e: &Evidence) -> Statement {
 
 /// What became of the vibration in long runs, in words.
 fn grown(runs: &[&Long]) -> String {
-    let told: Vec<String> = runs
+    let reported: Vec<String> = runs
         .iter()
         .map(|l| {
             let (method, step) = (words(&l.method), si(l.step, "s"));
-            format!("{method} in case {} at h = {step}: {}", l.case, l.told())
+            format!(
+                "{method} in case {} at h = {step}: {}",
+                l.case,
+                l.reported()
+            )
         })
         .collect();
-    told.join("; ")
+    reported.join("; ")
 }
 
 fn others_unstable(e: &Evidence) -> Statement {

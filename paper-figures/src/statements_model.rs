@@ -200,8 +200,8 @@ fn located(e: &Evidence) -> Statement {
             "contact changes of {} runs that are not located to within {}: {missed}. Trial steps per contact change: {} (case 3) and {} (case 4).",
             all.len(),
             si(tolerance, "m"),
-            trials[0].told(digits),
-            trials[1].told(digits)
+            trials[0].reported(digits),
+            trials[1].reported(digits)
         ),
         criterion: "all are located",
         verdict: Verdict::of(missed == 0.0),
@@ -222,8 +222,8 @@ fn dissipates(e: &Evidence) -> Statement {
     Statement {
         measured: format!(
             "energy dissipated in contacts in three cycles: {} in case 3 and {} in case 4.",
-            lost[0].told(joule),
-            lost[1].told(joule)
+            lost[0].reported(joule),
+            lost[1].reported(joule)
         ),
         criterion: "above 0 in both",
         verdict: lost[0].above(0.0).and(lost[1].above(0.0)),
@@ -272,14 +272,14 @@ fn two_sources(e: &Evidence) -> Statement {
         .into_iter()
         .fold(0.0, f64::max);
     let hertz = |v: f64| si(v, "Hz");
-    let told: Vec<String> = frequency.iter().map(|f| hertz(*f)).collect();
+    let reported: Vec<String> = frequency.iter().map(|f| hertz(*f)).collect();
     let mut sources = vec![e.loose().source()];
     sources.extend(meshes.map(|m| m.source()));
     Statement {
         measured: format!(
             "median frequency of the deviation of the acceleration: {} with contacts and rigid links (case 3); {} with 1, 2, 4 and 8 elements per link and without contacts (case 2).",
-            impacts.told(hertz),
-            told.join(", ")
+            impacts.reported(hertz),
+            reported.join(", ")
         ),
         criterion: "contacts alone excite more than 50 Hz, and a finer mesh changes the frequency by more than 10 %",
         verdict: impacts.above(50.0).and(Verdict::of(change > 0.1)),

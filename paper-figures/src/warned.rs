@@ -98,7 +98,7 @@ fn range<'a>(values: impl Iterator<Item = &'a str>) -> String {
 }
 
 /// Warnings in a cell of a table.
-pub fn told(warnings: &[String]) -> String {
+pub fn reported(warnings: &[String]) -> String {
     if warnings.is_empty() {
         "none".into()
     } else {

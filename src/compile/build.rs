@@ -12,8 +12,8 @@ use crate::kinematics::Kinematics;
 use crate::link::{AncfCable, ElasticRoute, natural_rigid};
 use crate::math::lu::Symbolic;
 use crate::model::{
-    Acting, Block, BodyCoordinates, BodyPlace, Border, ConstraintTerm, Contacting, Element,
-    Inertia, JointPlace, Mass, Model, Placed, PointPlace,
+    Block, BodyCoordinates, Border, ConstraintTerm, Element, Inertia, Mass, Model, PlacedBody,
+    PlacedConstraint, PlacedContact, PlacedForce, PlacedJoint, PlacedPoint,
 };
 use crate::scene::{BodyKind, Link, LinkModel, PointRef, SceneError};
 use crate::system::Shape;
@@ -61,9 +61,9 @@ pub(super) fn build(
         Vec::new()
     };
     let mut mass = mass(std::mem::take(&mut terms.inertia), &numbering, c.mode);
-    let level_symbolic = analyse_level(&terms, &mass, n);
+    let acceleration_symbolic = analyse_level(&terms, &mass, n);
     mass.tangent = mass.matrix(n, &symbolic, c.mode);
-    mass.level = mass.matrix(n, &level_symbolic, c.mode);
+    mass.acceleration_level = mass.matrix(n, &acceleration_symbolic, c.mode);
     let place = |coordinates: Vec<usize>| Block::new(coordinates, &symbolic, n);
     let elements = terms
         .elements
@@ -81,9 +81,9 @@ pub(super) fn build(
             let border = |d| Border::new(&coordinates, row + d, symbolic, n);
             (0..rows).map(border).collect()
         };
-        let placed = Placed {
+        let placed = PlacedConstraint {
             border: borders(&symbolic),
-            level_border: borders(&level_symbolic),
+            acceleration_border: borders(&acceleration_symbolic),
             owners: owners(&coordinates, r.term.split(), r.sides),
             block: place(coordinates),
             effect: r.effect,
@@ -95,21 +95,21 @@ pub(super) fn build(
         row += rows;
         placed
     });
-    let constraints: Vec<Placed> = constraints.collect();
+    let constraints: Vec<PlacedConstraint> = constraints.collect();
     let forces = terms.forces.into_iter().map(|(term, sides)| {
         let coordinates = term.coordinates();
-        Acting {
+        PlacedForce {
             owners: owners(&coordinates, term.split(), sides),
             block: place(coordinates),
             term,
         }
     });
     let forces = forces.collect();
-    let contacts = terms.contacts.into_iter().map(|pair| Contacting {
+    let contacts = terms.contacts.into_iter().map(|pair| PlacedContact {
         block: place(pair.coordinates()),
         pair,
     });
-    let contacts: Vec<Contacting> = contacts.collect();
+    let contacts: Vec<PlacedContact> = contacts.collect();
 
     let shape = Shape {
         unknowns: n,
@@ -121,7 +121,7 @@ pub(super) fn build(
     let mut model = Model {
         shape,
         symbolic,
-        level_symbolic,
+        acceleration_symbolic,
         names,
         mass,
         elements,
@@ -135,7 +135,7 @@ pub(super) fn build(
         rules: rules(c, &numbering),
         prescribed: kinematics.into_iter().map(Kinematics::motion).collect(),
         driven: Vec::new(),
-        riders: numbering.riders,
+        driven_nodes: numbering.driven_nodes,
         bodies: Vec::new(),
         joints: Vec::new(),
     };
@@ -146,7 +146,7 @@ pub(super) fn build(
         .iter()
         .zip(numbering.bodies)
         .enumerate()
-        .map(|(b, (body, coordinates))| BodyPlace {
+        .map(|(b, (body, coordinates))| PlacedBody {
             name: body.name.clone(),
             points: points(c, &coordinates, b),
             coordinates,
@@ -157,7 +157,7 @@ pub(super) fn build(
         model.driven = reactions::driven_forces(c, &model, kinematics.map(|k| &**k), &own);
         for (j, joint) in c.scene.joints.iter().enumerate() {
             let (kind, actuator) = reactions::joint(c, &model, &own, j)?;
-            model.joints.push(JointPlace {
+            model.joints.push(PlacedJoint {
                 name: joint.name.clone(),
                 kind,
                 actuator,
@@ -178,7 +178,7 @@ fn owners(coordinates: &[usize], split: usize, sides: [usize; 2]) -> Vec<usize> 
 }
 
 /// Named points of a body that moves.
-fn points(c: &Compiler, coordinates: &BodyCoordinates, body: usize) -> Vec<PointPlace> {
+fn points(c: &Compiler, coordinates: &BodyCoordinates, body: usize) -> Vec<PlacedPoint> {
     let count = match &c.scene.bodies[body].kind {
         BodyKind::Ground { .. } => 0,
         BodyKind::Link(link) => 2 + link.points.len(),
@@ -189,7 +189,7 @@ fn points(c: &Compiler, coordinates: &BodyCoordinates, body: usize) -> Vec<Point
     let place = |point| {
         let point = PointRef { body, point };
         let name = c.point_name(point);
-        PointPlace {
+        PlacedPoint {
             name: name
                 .split_once('.')
                 .map_or(name.clone(), |(_, p)| p.to_owned()),

@@ -3,7 +3,7 @@
 use super::Compiler;
 use super::Role;
 use super::numbering::{Connection, Numbering};
-use super::terms::{Own, OwnTerm, Terms};
+use super::terms::{ForceTerm, JointTerms, Terms};
 use crate::constraint::{Align, ClampSlope, Coincide, Place, Slide};
 use crate::contact::friction::Ambrosio;
 use crate::contact::geometry::CircleInCircle;
@@ -19,14 +19,14 @@ pub(super) fn joint_terms(
     j: usize,
     joint: &Joint,
     terms: &mut Terms,
-) -> Result<Own, SceneError> {
+) -> Result<JointTerms, SceneError> {
     let points = [joint.bearing, joint.journal];
     let sides = points.map(|p| p.body);
     let [bearing, journal] = points.map(|p| c.marker(&numbering.bodies[p.body], p));
     let name = format!("joint {}", joint.name);
     let mut line = None;
     let force = match (numbering.connections[j], &joint.model) {
-        (Connection::Eliminated, _) => OwnTerm::Eliminated,
+        (Connection::Eliminated, _) => ForceTerm::Eliminated,
         (Connection::Contact, JointModel::Clearance(contact)) => {
             let n = numbering.unknowns;
             if bearing.x() >= n && journal.x() >= n {
@@ -57,7 +57,7 @@ pub(super) fn joint_terms(
                     Box::new(Rough::new(surface, Box::new(law), f.slip, spins))
                 }
             });
-            OwnTerm::Contact(terms.contacts.len() - 1)
+            ForceTerm::Contact(terms.contacts.len() - 1)
         }
         (_, JointModel::Prismatic { direction, .. }) => {
             let slide = Slide {
@@ -76,7 +76,7 @@ pub(super) fn joint_terms(
                 sides,
                 joint.span,
             );
-            OwnTerm::Constraint(row)
+            ForceTerm::Constraint(row)
         }
         _ => {
             let coincide = Coincide { bearing, journal };
@@ -88,10 +88,10 @@ pub(super) fn joint_terms(
                 sides,
                 joint.span,
             );
-            OwnTerm::Constraint(row)
+            ForceTerm::Constraint(row)
         }
     };
-    Ok(Own {
+    Ok(JointTerms {
         force,
         couple: couple(c, numbering, joint, terms),
         turned: None,
@@ -158,7 +158,7 @@ fn couple(c: &Compiler, numbering: &Numbering, joint: &Joint, terms: &mut Terms)
 pub(super) fn motion_terms(
     c: &Compiler,
     numbering: &Numbering,
-    own: &mut [Own],
+    own: &mut [JointTerms],
     terms: &mut Terms,
 ) {
     for (m, motion) in c.scene.motions.iter().enumerate() {

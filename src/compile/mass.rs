@@ -72,7 +72,7 @@ pub(super) fn mass(parts: Vec<Inertia>, numbering: &Numbering, mode: Mode) -> Ma
         columns: Vec::new(),
         values: Vec::new(),
         tangent: Vec::new(),
-        level: Vec::new(),
+        acceleration_level: Vec::new(),
         known: Vec::new(),
     };
     let n = numbering.unknowns;

@@ -2,7 +2,7 @@
 
 use super::{Compiler, Mode, Role};
 use crate::marker::Marker;
-use crate::model::{BodyCoordinates, Model, Rider};
+use crate::model::{BodyCoordinates, DrivenNode, Model};
 use crate::scene::{BodyKind, JointModel, LinkModel, MotionKind, PointRef, SceneError};
 
 /// How a joint of this mechanism connects its points.
@@ -28,7 +28,7 @@ pub(crate) struct Numbering {
     pub bodies: Vec<BodyCoordinates>,
     /// Known coordinates that never change, with their values.
     pub fixed: Vec<(usize, f64)>,
-    pub riders: Vec<Rider>,
+    pub driven_nodes: Vec<DrivenNode>,
     pub connections: Vec<Connection>,
 }
 
@@ -184,7 +184,7 @@ pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, S
     }
     let unknowns = names.len();
 
-    // known coordinates: the ground, the body on the path, the riders, the inner mechanism
+    // known coordinates: the ground, the body on the path, the driven_nodes, the inner mechanism
     let mut numbering = Numbering {
         unknowns,
         coordinates: unknowns,
@@ -192,7 +192,7 @@ pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, S
         names,
         bodies,
         fixed: Vec::new(),
-        riders: Vec::new(),
+        driven_nodes: Vec::new(),
         connections,
     };
     for (b, body) in c.scene.bodies.iter().enumerate() {
@@ -244,7 +244,7 @@ pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, S
             Marker::Node { x } => x,
             marker => {
                 let x = numbering.known(2);
-                numbering.riders.push(Rider { x, marker });
+                numbering.driven_nodes.push(DrivenNode { x, marker });
                 x
             }
         };

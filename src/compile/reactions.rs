@@ -1,6 +1,6 @@
 //! The terms whose sum is the force of an eliminated joint or the torque of an actuated one.
 
-use super::terms::{Own, OwnTerm};
+use super::terms::{ForceTerm, JointTerms};
 use super::{Compiler, Role};
 use crate::kinematics::Kinematics;
 use crate::model::{
@@ -74,7 +74,7 @@ fn runs(
 }
 
 /// The shares of all terms that belong to `point`: its body's own, and those of joints attached there.
-fn shares_of(c: &Compiler, model: &Model, own: &[Own], point: PointRef) -> Vec<Share> {
+fn shares_of(c: &Compiler, model: &Model, own: &[JointTerms], point: PointRef) -> Vec<Share> {
     let Some((x, width)) = place(model, point) else {
         return Vec::new();
     };
@@ -122,7 +122,7 @@ fn shares_of(c: &Compiler, model: &Model, own: &[Own], point: PointRef) -> Vec<S
     for (joint, own) in c.scene.joints.iter().zip(own) {
         // the couple of a friction force on a rigid link acts on both ends
         let ends = [joint.bearing, joint.journal].map(|p| attachment(model, p));
-        if let OwnTerm::Contact(i) = own.force
+        if let ForceTerm::Contact(i) = own.force
             && ends.iter().any(|end| end.body == point.body)
         {
             add(Source::Contact(i), &model.contacts[i].block.coordinates);
@@ -136,7 +136,7 @@ fn shares_of(c: &Compiler, model: &Model, own: &[Own], point: PointRef) -> Vec<S
 fn hanging(
     c: &Compiler,
     model: &Model,
-    own: &[Own],
+    own: &[JointTerms],
     cut: usize,
     from: PointRef,
 ) -> Option<Vec<PointRef>> {
@@ -153,7 +153,7 @@ fn hanging(
             reached.extend(attachments(model, point.body));
         }
         for (j, joint) in c.scene.joints.iter().enumerate() {
-            if j != cut && matches!(own[j].force, OwnTerm::Eliminated) {
+            if j != cut && matches!(own[j].force, ForceTerm::Eliminated) {
                 let ends = [joint.bearing, joint.journal].map(|p| attachment(model, p));
                 for (near, far) in [(0, 1), (1, 0)] {
                     if ends[near] == point {
@@ -175,13 +175,13 @@ fn hanging(
 pub(super) fn joint(
     c: &Compiler,
     model: &Model,
-    own: &[Own],
+    own: &[JointTerms],
     j: usize,
 ) -> Result<(JointKind, Option<Actuator>), SceneError> {
     let kind = match own[j].force {
-        OwnTerm::Constraint(i) => JointKind::Constraint(i),
-        OwnTerm::Contact(i) => JointKind::Contact(i),
-        OwnTerm::Eliminated => {
+        ForceTerm::Constraint(i) => JointKind::Constraint(i),
+        ForceTerm::Contact(i) => JointKind::Contact(i),
+        ForceTerm::Eliminated => {
             let joint = &c.scene.joints[j];
             let journal_side = hanging(c, model, own, j, joint.journal).map(|side| (side, 1.0));
             let side = journal_side
@@ -237,7 +237,7 @@ pub(super) fn driven_forces(
     c: &Compiler,
     model: &Model,
     kinematics: Option<&Kinematics>,
-    own: &[Own],
+    own: &[JointTerms],
 ) -> Vec<DrivenForce> {
     let mut resting: Vec<usize> = model.fixed.iter().map(|&(x, _)| x).collect();
     if let Some(kinematics) = kinematics {

@@ -56,14 +56,14 @@ fn turn(c: &Compiler, numbering: &Numbering, b: usize, m: usize) -> Option<Rule>
             })
         }
         (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
-            let way = if own.point == 0 {
+            let along = if own.point == 0 {
                 link.length
             } else {
                 -link.length
             };
             Some(Rule::Turn {
                 pivot,
-                point: (ends[1 - own.point], [way, 0.0]),
+                point: (ends[1 - own.point], [along, 0.0]),
                 theta: None,
                 angle: angle.clone(),
                 sign,

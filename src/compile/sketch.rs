@@ -17,7 +17,7 @@ pub(super) fn close(
     let mechanism = &*kinematics.mechanism;
     let mut inner = kinematics.work();
     mechanism.follow_rules(&mut inner.state);
-    mechanism.ride(&mut inner.state);
+    mechanism.move_driven_nodes(&mut inner.state);
     let guessed = guess(c, mechanism, &mut inner.state)?;
     kinematics.solve(&mut inner, 60).map_err(|e| {
         c.scene.error(

@@ -64,8 +64,8 @@ impl Terms {
 
 /// Terms of a joint, by index in the list of their kind.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Own {
-    pub force: OwnTerm,
+pub(super) struct JointTerms {
+    pub force: ForceTerm,
     /// Constraint of directions.
     pub couple: Option<usize>,
     /// Directions whose angle a motion prescribes.
@@ -76,7 +76,7 @@ pub(super) struct Own {
 
 /// The term that carries the force of a joint.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum OwnTerm {
+pub(super) enum ForceTerm {
     Constraint(usize),
     Contact(usize),
     /// None: the joint shares or eliminates coordinates.

@@ -5,7 +5,7 @@ pub(crate) mod redundancy;
 use crate::compile::Compiled;
 use crate::compile::assembly::{CENTRE, assemble, opening};
 use crate::math::plane::{Vec2, add, cross, dot, norm, perp, scale, sub};
-use crate::model::{BodyCoordinates, Model, Placed};
+use crate::model::{BodyCoordinates, Model, PlacedConstraint};
 use crate::scene::{Analysis, BodyKind, BodyState, ForceKind, JointModel, Scene, SceneError};
 use crate::system::State;
 
@@ -77,7 +77,7 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         state.v[here.clone()].copy_from_slice(&inner.state.v);
         state.a[here].copy_from_slice(&inner.state.a);
     }
-    model.ride(&mut state);
+    model.move_driven_nodes(&mut state);
     let starts = starts(scene, compiled, &state)?;
 
     let unknowns = model.shape().unknowns;
@@ -140,12 +140,12 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
 
 /// Checks that a start satisfies the constraints and their rates.
 fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneError> {
-    let worst = |of: fn(&Placed, &State) -> f64| {
+    let worst = |of: fn(&PlacedConstraint, &State) -> f64| {
         let all = model.constraints.iter().map(|p| (of(p, state), p));
         let worst = all.max_by(|a, b| a.0.total_cmp(&b.0));
         worst.filter(|(x, _)| x.is_nan() || *x > START_TOLERANCE)
     };
-    let name = |p: &Placed| {
+    let name = |p: &PlacedConstraint| {
         let row = model.names[model.shape().unknowns + p.row].as_str();
         // the violation is measured over all rows together, so no single row can be named
         match p.rows {

@@ -34,7 +34,7 @@ pub struct Kinematics {
     pub(crate) period: f64,
     /// End of the motion \[s\].
     pub(crate) duration: f64,
-    /// Two links in series between known points: the loops whose closing can be told in words.
+    /// Two links in series between known points: the loops whose closing can be described in words.
     pub(crate) dyads: Vec<Dyad>,
 }
 
@@ -95,7 +95,7 @@ impl Kinematics {
         Inner {
             state: self.mechanism.blank_state(),
             phi: vec![0.0; shape.multipliers],
-            k: vec![0.0; self.mechanism.level_symbolic().len()],
+            k: vec![0.0; self.mechanism.acceleration_symbolic().len()],
             b: vec![0.0; size],
             series: Series::new(self.moving.len(), self.period),
         }
@@ -170,7 +170,7 @@ impl Kinematics {
         let mechanism = &*self.mechanism;
         let n = mechanism.shape().unknowns;
         mechanism.follow_rules(&mut inner.state);
-        mechanism.ride(&mut inner.state);
+        mechanism.move_driven_nodes(&mut inner.state);
         inner.state.v[..n].fill(0.0);
         inner.state.a[..n].fill(0.0);
         let mut last = f64::INFINITY;
@@ -205,20 +205,24 @@ impl Kinematics {
     /// Phi and the factors of \[\[I, Phi_q^T\], \[Phi_q, 0\]\] at the current coordinates.
     fn factor(&self, inner: &mut Inner) -> Result<(), PrescribeError> {
         let Inner { state, phi, k, .. } = inner;
-        self.mechanism.level(state, phi, k);
-        self.mechanism.level_symbolic().factor(k).map_err(|weak| {
-            let name = self.mechanism.unknown_name(weak.index);
-            let closed = phi.iter().all(|x| x.abs() < LAST_UPDATE);
-            if closed {
-                let message = format!("the ideal rigid mechanism is in a singular pose ({name})");
-                PrescribeError {
-                    message,
-                    t: state.t,
+        self.mechanism.acceleration_level(state, phi, k);
+        self.mechanism
+            .acceleration_symbolic()
+            .factor(k)
+            .map_err(|weak| {
+                let name = self.mechanism.unknown_name(weak.index);
+                let closed = phi.iter().all(|x| x.abs() < LAST_UPDATE);
+                if closed {
+                    let message =
+                        format!("the ideal rigid mechanism is in a singular pose ({name})");
+                    PrescribeError {
+                        message,
+                        t: state.t,
+                    }
+                } else {
+                    self.cannot_close(state)
                 }
-            } else {
-                self.cannot_close(state)
-            }
-        })
+            })
     }
 
     /// Solves Phi_q x = -phi for the x of least norm: the first entries of `inner.b`.
@@ -229,7 +233,7 @@ impl Kinematics {
             *b = -phi;
         }
         self.mechanism
-            .level_symbolic()
+            .acceleration_symbolic()
             .solve(&inner.k, &mut inner.b);
     }
 

@@ -153,9 +153,9 @@ impl Symbolic {
         self.pivots.len()
     }
 
-    /// Length of the value array, the unread last entry included.
+    /// Length of the value array, the discarded_slot last entry included.
     pub fn len(&self) -> usize {
-        self.unread() as usize + 1
+        self.discarded_slot() as usize + 1
     }
 
     /// True for a matrix without unknowns.
@@ -164,18 +164,18 @@ impl Symbolic {
     }
 
     /// Index of the value that takes what is scattered to known coordinates.
-    pub fn unread(&self) -> u32 {
+    pub fn discarded_slot(&self) -> u32 {
         let last = self.pivots.last();
         last.map_or(0, |p| p.start + 1 + 2 * p.count) as u32
     }
 
-    /// Value index of entry (row, column), or of the unread entry where one of them is not an unknown (index >= n).
+    /// Value index of entry (row, column), or of the discarded_slot entry where one of them is not an unknown (index >= n).
     ///
     /// # Panics
     /// If the entry is not in the pattern.
     pub fn slot(&self, row: usize, column: usize) -> u32 {
         if row >= self.n() || column >= self.n() {
-            return self.unread();
+            return self.discarded_slot();
         }
         self.entry(self.position[row], self.position[column])
             .expect("the entry belongs to a clique")
@@ -363,8 +363,8 @@ mod tests {
     #[test]
     fn what_is_scattered_to_known_coordinates_is_not_read() {
         let (symbolic, mut values) = bordered();
-        assert_eq!(symbolic.slot(0, 17), symbolic.unread());
-        values[symbolic.unread() as usize] = f64::NAN;
+        assert_eq!(symbolic.slot(0, 17), symbolic.discarded_slot());
+        values[symbolic.discarded_slot() as usize] = f64::NAN;
         assert!(symbolic.factor(&mut values).is_ok());
     }
 }

@@ -185,16 +185,16 @@ impl Model {
     }
 
     /// Sets the known nodes that are fixed to known bodies.
-    pub(crate) fn ride(&self, to: &mut State) {
-        for rider in &self.riders {
-            let arm = rider.marker.arm(&to.q);
-            let position = rider.marker.position(&to.q, arm);
-            let velocity = rider.marker.velocity(&to.v, arm);
-            let acceleration = rider.marker.acceleration(&to.v, &to.a, arm);
+    pub(crate) fn move_driven_nodes(&self, to: &mut State) {
+        for driven_node in &self.driven_nodes {
+            let arm = driven_node.marker.arm(&to.q);
+            let position = driven_node.marker.position(&to.q, arm);
+            let velocity = driven_node.marker.velocity(&to.v, arm);
+            let acceleration = driven_node.marker.acceleration(&to.v, &to.a, arm);
             for i in 0..2 {
-                to.q[rider.x + i] = position[i];
-                to.v[rider.x + i] = velocity[i];
-                to.a[rider.x + i] = acceleration[i];
+                to.q[driven_node.x + i] = position[i];
+                to.v[driven_node.x + i] = velocity[i];
+                to.a[driven_node.x + i] = acceleration[i];
             }
         }
     }
@@ -209,8 +209,8 @@ impl System for Model {
         &self.symbolic
     }
 
-    fn level_symbolic(&self) -> &Symbolic {
-        &self.level_symbolic
+    fn acceleration_symbolic(&self) -> &Symbolic {
+        &self.acceleration_symbolic
     }
 
     fn work(&self) -> Work {
@@ -235,7 +235,7 @@ impl System for Model {
             work.tally[Effect::InverseKinematics as usize] += 1;
             motion.follow(from, to)?;
         }
-        self.ride(to);
+        self.move_driven_nodes(to);
         Ok(())
     }
 
@@ -269,14 +269,14 @@ impl System for Model {
         self.linearised_forces(at, w, r, k, work);
     }
 
-    fn level(&self, at: &State, phi: &mut [f64], k: &mut [f64]) {
-        k.copy_from_slice(&self.mass.level);
+    fn acceleration_level(&self, at: &State, phi: &mut [f64], k: &mut [f64]) {
+        k.copy_from_slice(&self.mass.acceleration_level);
         let mut gradient = [[0.0; constraint::WIDTH]; ROWS];
         for c in &self.constraints {
             let value = c.term.value_and_gradient(at, &mut gradient);
             for d in 0..c.rows {
                 phi[c.row + d] = c.kept[d] * value[d];
-                c.level_border[d].add(&gradient[d], k);
+                c.acceleration_border[d].add(&gradient[d], k);
             }
         }
     }

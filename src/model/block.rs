@@ -83,10 +83,10 @@ impl Border {
     }
 
     /// Slots that are never read.
-    pub fn nowhere(columns: usize, symbolic: &Symbolic) -> Border {
+    pub fn discarded(columns: usize, symbolic: &Symbolic) -> Border {
         Border {
-            column: vec![symbolic.unread(); columns],
-            row: vec![symbolic.unread(); columns],
+            column: vec![symbolic.discarded_slot(); columns],
+            row: vec![symbolic.discarded_slot(); columns],
         }
     }
 

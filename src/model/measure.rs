@@ -1,6 +1,6 @@
 //! Measured quantities of a model: poses, strains, energies, joint forces, drive torques.
 
-use super::{Actuator, BodyCoordinates, JointKind, JointPlace, Model};
+use super::{Actuator, BodyCoordinates, JointKind, Model, PlacedJoint};
 use crate::contact;
 use crate::contact::geometry::Gap;
 use crate::marker::Marker;
@@ -279,7 +279,8 @@ impl Model {
 
     /// Index of the joint that owns contact memory `contact`.
     pub fn contact_joint(&self, contact: usize) -> Option<usize> {
-        let owns = |joint: &JointPlace| matches!(joint.kind, JointKind::Contact(i) if i == contact);
+        let owns =
+            |joint: &PlacedJoint| matches!(joint.kind, JointKind::Contact(i) if i == contact);
         self.joints.iter().position(owns)
     }
 
@@ -314,7 +315,7 @@ impl Model {
 
     /// The unknown angle of a rigid body that differs by more than half a turn between two states, if there is one. Joints
     /// determine angles only up to full turns, so without this check a step could add one.
-    pub fn wound(&self, from: &State, to: &State) -> Option<usize> {
+    pub fn full_turn(&self, from: &State, to: &State) -> Option<usize> {
         self.bodies.iter().find_map(|body| match body.coordinates {
             BodyCoordinates::Rigid { x } => {
                 let angle = x + 2;

@@ -27,19 +27,19 @@ use std::sync::Arc;
 pub struct Model {
     pub(crate) shape: Shape,
     pub(crate) symbolic: Symbolic,
-    pub(crate) level_symbolic: Symbolic,
+    pub(crate) acceleration_symbolic: Symbolic,
     /// Names of the unknowns, then of the multipliers.
     pub(crate) names: Vec<String>,
     pub(crate) mass: Mass,
     pub(crate) elements: Vec<Element>,
-    pub(crate) constraints: Vec<Placed>,
-    pub(crate) forces: Vec<Acting>,
+    pub(crate) constraints: Vec<PlacedConstraint>,
+    pub(crate) forces: Vec<PlacedForce>,
     /// Evaluations of each effect in one residual; contacts are counted separately, because they may be open.
     pub(crate) counts: Vec<(Effect, u64)>,
     /// Forces with a name of their own, as indices into the forces.
     pub(crate) named_forces: Vec<(String, usize)>,
     /// In the order of their memory.
-    pub(crate) contacts: Vec<Contacting>,
+    pub(crate) contacts: Vec<PlacedContact>,
     /// Weight: (coordinate, force on the left side of the equations of motion) \[N\].
     pub(crate) weight: Vec<(usize, f64)>,
     /// Known coordinates that never change, with their values.
@@ -51,11 +51,11 @@ pub struct Model {
     /// Forces on known coordinates that move.
     pub(crate) driven: Vec<DrivenForce>,
     /// Known nodes that are fixed to a known rigid body.
-    pub(crate) riders: Vec<Rider>,
+    pub(crate) driven_nodes: Vec<DrivenNode>,
     /// Bodies of the scene, in its order.
-    pub(crate) bodies: Vec<BodyPlace>,
+    pub(crate) bodies: Vec<PlacedBody>,
     /// Joints of the scene, in its order.
-    pub(crate) joints: Vec<JointPlace>,
+    pub(crate) joints: Vec<PlacedJoint>,
 }
 
 /// Known coordinates as a function of time.
@@ -79,7 +79,7 @@ pub(crate) enum Rule {
 
 /// A known node at `x` that follows a marker on a known body.
 #[derive(Debug)]
-pub(crate) struct Rider {
+pub(crate) struct DrivenNode {
     pub x: usize,
     pub marker: Marker,
 }
@@ -126,7 +126,7 @@ impl std::ops::Deref for ConstraintTerm {
 
 /// A constraint with its place in the equations.
 #[derive(Debug)]
-pub(crate) struct Placed {
+pub(crate) struct PlacedConstraint {
     pub term: ConstraintTerm,
     pub effect: Effect,
     /// Index of its first multiplier among the multipliers.
@@ -136,22 +136,22 @@ pub(crate) struct Placed {
     /// Slots of the gradient of each row in the tangent ...
     pub border: Vec<Border>,
     /// ... and in the matrix of the acceleration level.
-    pub level_border: Vec<Border>,
+    pub acceleration_border: Vec<Border>,
     /// The body that each local coordinate stands for.
     pub owners: Vec<usize>,
     /// 0 for a redundant row that is left out of the equations, otherwise 1.
     pub kept: [f64; ROWS],
 }
 
-impl Placed {
+impl PlacedConstraint {
     /// Removes row `d` from the equations and replaces it by lambda = 0.
     fn drop_row(&mut self, d: usize, symbolic: [&Symbolic; 2], unknowns: usize, mass: &mut Mass) {
         let m = unknowns + self.row + d;
         self.kept[d] = 0.0;
-        let nowhere = |symbolic| Border::nowhere(self.block.coordinates.len(), symbolic);
-        let [border, level_border] = symbolic.map(nowhere);
-        (self.border[d], self.level_border[d]) = (border, level_border);
-        let matrices = [&mut mass.tangent, &mut mass.level];
+        let discarded = |symbolic| Border::discarded(self.block.coordinates.len(), symbolic);
+        let [border, acceleration_border] = symbolic.map(discarded);
+        (self.border[d], self.acceleration_border[d]) = (border, acceleration_border);
+        let matrices = [&mut mass.tangent, &mut mass.acceleration_level];
         for (symbolic, matrix) in symbolic.into_iter().zip(matrices) {
             matrix[symbolic.slot(m, m) as usize] = 1.0;
         }
@@ -168,7 +168,7 @@ impl Placed {
 
 /// A force without memory, with its place in the equations.
 #[derive(Debug)]
-pub(crate) struct Acting {
+pub(crate) struct PlacedForce {
     pub term: Box<dyn Force>,
     pub block: Block,
     /// The body that each local coordinate stands for.
@@ -177,12 +177,12 @@ pub(crate) struct Acting {
 
 /// A contact with its place in the equations.
 #[derive(Debug)]
-pub(crate) struct Contacting {
+pub(crate) struct PlacedContact {
     pub pair: Box<dyn ContactPair>,
     pub block: Block,
 }
 
-impl Contacting {
+impl PlacedContact {
     /// Counts an evaluation of touching surfaces.
     #[inline]
     pub fn count(&self, work: &mut Work) {
@@ -210,7 +210,7 @@ pub(crate) struct Mass {
     /// The sum over unknowns in the layout of the tangent.
     pub tangent: Vec<f64>,
     /// The same in the layout of the acceleration level.
-    pub level: Vec<f64>,
+    pub acceleration_level: Vec<f64>,
     /// (unknown row, known column, mass): inertia forces on unknown coordinates from accelerations of known ones.
     pub known: Vec<(usize, usize, f64)>,
 }
@@ -235,7 +235,7 @@ pub(crate) struct Inertia {
 
 /// A body of the scene and its coordinates.
 #[derive(Debug, Clone)]
-pub struct BodyPlace {
+pub struct PlacedBody {
     /// The name the user wrote.
     pub name: String,
     /// Its coordinates.
@@ -243,12 +243,12 @@ pub struct BodyPlace {
     /// Its coordinates in the ideal mechanism that the drive follows, for the driven body.
     pub prescribed: Option<usize>,
     /// Its named points, if it moves.
-    pub points: Vec<PointPlace>,
+    pub points: Vec<PlacedPoint>,
 }
 
 /// A named point of a body.
 #[derive(Debug, Clone)]
-pub struct PointPlace {
+pub struct PlacedPoint {
     /// The name the user wrote.
     pub name: String,
     /// Where it is.
@@ -297,7 +297,7 @@ pub enum BodyCoordinates {
 
 /// A joint of the scene and its terms.
 #[derive(Debug)]
-pub struct JointPlace {
+pub struct PlacedJoint {
     /// The name the user wrote.
     pub name: String,
     /// How its force is computed.
@@ -369,19 +369,19 @@ impl Model {
     }
 
     /// Bodies in the order of the scene.
-    pub fn bodies(&self) -> &[BodyPlace] {
+    pub fn bodies(&self) -> &[PlacedBody] {
         &self.bodies
     }
 
     /// Joints in the order of the scene.
-    pub fn joints(&self) -> &[JointPlace] {
+    pub fn joints(&self) -> &[PlacedJoint] {
         &self.joints
     }
 
     /// Removes rows, as (constraint, row of it), from the equations.
     pub(crate) fn drop_rows(&mut self, rows: &[(usize, usize)]) {
         for &(i, d) in rows {
-            let symbolic = [&self.symbolic, &self.level_symbolic];
+            let symbolic = [&self.symbolic, &self.acceleration_symbolic];
             self.constraints[i].drop_row(d, symbolic, self.shape.unknowns, &mut self.mass);
         }
     }
@@ -401,7 +401,7 @@ impl Model {
 
     /// Adds s Phi_q^T Phi_q to a tangent and s Phi_q^T Phi to the residual, where s is the largest entry on the diagonal of the
     /// tangent, and multiplies the constraint rows and columns by s. Returns s.
-    pub(crate) fn stiffen(&self, at: &State, r: &mut [f64], k: &mut [f64]) -> f64 {
+    pub(crate) fn augment(&self, at: &State, r: &mut [f64], k: &mut [f64]) -> f64 {
         let diagonal = (0..self.shape.unknowns).map(|i| k[self.symbolic.slot(i, i) as usize].abs());
         let s = diagonal.fold(f64::MIN_POSITIVE, f64::max);
         for p in &self.constraints {

@@ -94,11 +94,11 @@ pub struct Newton {
     /// The tangent of a stage.
     stage: Factors,
     /// The matrix of the acceleration level.
-    level: Factors,
+    acceleration: Factors,
     /// True where the state made consistent last is a pose in which the constraints lose rank.
     in_singular_pose: bool,
     met_singular_pose: bool,
-    /// True once `level` holds the mass matrix of a system without multipliers, which never changes.
+    /// True once `acceleration` holds the mass matrix of a system without multipliers, which never changes.
     holds_mass: bool,
     /// Work done so far.
     pub counters: Counters,
@@ -115,7 +115,7 @@ impl Newton {
             phi: vec![0.0; shape.multipliers],
             b: vec![0.0; size],
             stage: Factors::new(system.symbolic()),
-            level: Factors::new(system.level_symbolic()),
+            acceleration: Factors::new(system.acceleration_symbolic()),
             in_singular_pose: false,
             met_singular_pose: false,
             holds_mass: false,
@@ -141,9 +141,9 @@ impl Newton {
     /// Phi and the factors of the acceleration level.
     fn renew_level(&mut self, system: &dyn System, at: &State) -> Result<(), Failure> {
         let phi = &mut self.phi;
-        self.level
-            .renew(system.level_symbolic(), &mut self.counters, |k| {
-                system.level(at, phi, k);
+        self.acceleration
+            .renew(system.acceleration_symbolic(), &mut self.counters, |k| {
+                system.acceleration_level(at, phi, k);
             })?;
         self.holds_mass = system.shape().multipliers == 0;
         Ok(())
@@ -304,9 +304,13 @@ impl Newton {
         }
         self.renew_level(system, s)?;
         let n = system.shape().unknowns;
-        let pivots = || system.level_symbolic().pivot_range(&self.level.values, n);
-        self.in_singular_pose =
-            system.shape().multipliers > 0 && (self.level.dense.is_some() || pivots() < SINGULAR);
+        let pivots = || {
+            system
+                .acceleration_symbolic()
+                .pivot_range(&self.acceleration.values, n)
+        };
+        self.in_singular_pose = system.shape().multipliers > 0
+            && (self.acceleration.dense.is_some() || pivots() < SINGULAR);
         Ok(self.in_singular_pose)
     }
 
@@ -381,9 +385,9 @@ impl Newton {
         let n = system.shape().unknowns;
         self.counters.singular_poses += 1;
         self.met_singular_pose = true;
-        let k = &mut self.level.values;
-        system.level(s, &mut self.phi, k);
-        let Some(truncated) = Truncated::new(system.level_symbolic(), k, n) else {
+        let k = &mut self.acceleration.values;
+        system.acceleration_level(s, &mut self.phi, k);
+        let Some(truncated) = Truncated::new(system.acceleration_symbolic(), k, n) else {
             return Err(Failure::Singular { index: n });
         };
         if project {
@@ -458,7 +462,9 @@ impl Newton {
         self.b[n..].fill(0.0);
         match implicit {
             true => self.stage.solve(system.symbolic(), &mut self.b),
-            false => self.level.solve(system.level_symbolic(), &mut self.b),
+            false => self
+                .acceleration
+                .solve(system.acceleration_symbolic(), &mut self.b),
         }
         e.copy_from_slice(&self.b[..n]);
     }
@@ -469,7 +475,8 @@ impl Newton {
         for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
             *b = -phi;
         }
-        self.level.solve(system.level_symbolic(), &mut self.b);
+        self.acceleration
+            .solve(system.acceleration_symbolic(), &mut self.b);
     }
 
     /// Solves as above and adds the first part of the solution to the positions, velocities or accelerations of the state.

@@ -114,7 +114,7 @@ impl SceneError {
     }
 
     /// The same fault with a second place, which contradicts the first. Only one text can be shown: a place in another one
-    /// is told as advice.
+    /// is reported as advice.
     pub(super) fn against(mut self, sources: &Sources, span: Span, label: String) -> SceneError {
         let mut other = SceneError::new(sources, span, String::new(), label);
         match (&self.text, &other.text) {

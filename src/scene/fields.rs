@@ -72,7 +72,7 @@ impl<'a> Fields<'a> {
         if let Some(field) = self.optional(key) {
             return Ok(field);
         }
-        // Before `only` the table's keys are not declared yet: a misspelt discriminating key is told as such.
+        // Before `only` the table's keys are not declared yet: a misspelt discriminating key is reported as such.
         let stranger = self
             .table
             .keys()

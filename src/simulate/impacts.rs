@@ -156,7 +156,7 @@ impl Impacts {
     /// cubic through values and rates at both ends, whose maximum has an error of h^4.
     ///
     /// # Errors
-    /// When a contact cannot be told.
+    /// When a contact cannot be reported.
     pub fn step(
         &mut self,
         model: &Model,
@@ -193,7 +193,7 @@ impl Impacts {
     /// Ends the run: reports the contacts that are still closed, in the order of the joints.
     ///
     /// # Errors
-    /// When a contact cannot be told.
+    /// When a contact cannot be reported.
     pub fn finish(&self, model: &Model, observer: &mut dyn Observer) -> io::Result<()> {
         let mut closed = self.closed.iter().flatten();
         closed.try_for_each(|course| observer.contact(&course.contact(model)))

@@ -202,7 +202,7 @@ fn lost_energy_is_told() {
 /// E A is 1e4 N: a hundredth of it presses the rod by 1 % and, applied at once, by twice that; a fifth nearly crushes it.
 #[test]
 fn a_crushed_link_is_told() {
-    for (load, told) in [(-1e2, false), (-2e3, true)] {
+    for (load, reported) in [(-1e2, false), (-2e3, true)] {
         let text = format!(
             r#"
 format = 1
@@ -225,7 +225,7 @@ initial.bodies.rod = {{ x = 0.5, y = 0.0, theta = 0.0 }}
         let report = simulation.report();
         assert_eq!(
             warned(&report, "rod is compressed"),
-            told,
+            reported,
             "{:?}",
             report.strain
         );

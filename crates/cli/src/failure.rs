@@ -84,7 +84,7 @@ impl Failure {
                 format!("{:?}", miette::Report::new(error.clone()))
             }
         };
-        // Nobody is left to be told that standard error is closed.
+        // Standard error is closed: nobody can read this.
         let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
         ExitCode::from(self.code)
     }

@@ -84,7 +84,7 @@ pub fn warn(warning: &str) {
     say(&format!("warning: {warning}"));
 }
 
-/// Shows what is told of many runs; with `quiet` the warnings alone.
+/// Shows what is reported of many runs; with `quiet` the warnings alone.
 pub fn show(notice: Notice, quiet: bool) {
     match notice {
         Notice::Begun(name) if !quiet => say(name),

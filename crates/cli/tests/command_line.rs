@@ -266,23 +266,23 @@ fn a_quiet_run_shows_its_warnings() {
     let out = folder.path().join("quiet");
     let output = run(&out, &quiet);
     expect(&output, 0, "");
-    let told = warnings(&summary(&out));
-    assert!(!told.is_empty());
-    expect_warnings(&output, &told);
+    let reported = warnings(&summary(&out));
+    assert!(!reported.is_empty());
+    expect_warnings(&output, &reported);
     assert!(output.stdout.is_empty());
 
     let out = folder.path().join("loud");
     let output = run(&out, &[&rough[..], &[rows]].concat());
-    for warning in &told {
+    for warning in &reported {
         expect(&output, 0, &format!("warning: {warning}\n"));
     }
     expect(&output, 0, "steps in ");
 
     let out = folder.path().join("stopped");
     let output = run(&out, &["--quiet", "--set", "bodies.journal.mass=1e-300"]);
-    let told = warnings(&summary(&out));
-    assert!(!told.is_empty());
-    for warning in &told {
+    let reported = warnings(&summary(&out));
+    assert!(!reported.is_empty());
+    for warning in &reported {
         expect(&output, 3, &format!("warning: {warning}\n"));
     }
     expect(&output, 3, "error: the run cannot go on: ");
@@ -546,23 +546,26 @@ fn an_ablation_on_standard_output() {
     expect(&output, 0, "");
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     // variants with the same effects share one run
-    let mut told = std::collections::BTreeMap::new();
+    let mut reported = std::collections::BTreeMap::new();
     for variant in json["ablation"]["variants"].as_array().unwrap() {
         let name = variant["variant"].as_str().unwrap();
         let named = warnings(variant)
             .into_iter()
             .map(|w| format!("{name}: {w}"));
-        told.entry(variant["effects"].to_string())
+        reported
+            .entry(variant["effects"].to_string())
             .or_insert_with(|| named.collect::<Vec<_>>());
     }
     let stderr = String::from_utf8_lossy(&output.stderr);
     let mut shown: Vec<&str> = stderr.lines().collect();
-    let mut told: Vec<_> = told.into_values().flatten().collect();
-    told.iter_mut().for_each(|w| w.insert_str(0, "warning: "));
+    let mut reported: Vec<_> = reported.into_values().flatten().collect();
+    reported
+        .iter_mut()
+        .for_each(|w| w.insert_str(0, "warning: "));
     shown.sort_unstable();
-    told.sort_unstable();
-    assert!(!told.is_empty(), "contacts of 2 ms in long steps");
-    assert_eq!(shown, told);
+    reported.sort_unstable();
+    assert!(!reported.is_empty(), "contacts of 2 ms in long steps");
+    assert_eq!(shown, reported);
     assert_eq!(json["ablation"]["body"]["name"], "coupler");
     let table = ablate(&["--quiet", "--body", "coupler"]).stdout;
     let table = String::from_utf8_lossy(&table);

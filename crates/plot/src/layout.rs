@@ -26,7 +26,7 @@ const BELOW: i32 = 110;
 const CATEGORY_LINE: i32 = 52;
 
 /// A panel with its axes and the place of its parts.
-pub struct Placed<'a> {
+pub struct PlacedConstraint<'a> {
     /// The panel.
     pub panel: &'a Panel,
     /// Horizontal axis.
@@ -50,7 +50,7 @@ pub struct Placed<'a> {
 /// A figure laid out.
 pub struct Page<'a> {
     /// Panels in reading order.
-    pub panels: Vec<Placed<'a>>,
+    pub panels: Vec<PlacedConstraint<'a>>,
     /// Caption broken to the width of the page.
     pub caption: Vec<String>,
     /// First line of the caption.
@@ -123,7 +123,13 @@ fn columns(figure: &Figure, row: &[Panel]) -> (Vec<(i32, i32)>, i32) {
     ((0..count).map(edge).collect(), cell - left - right)
 }
 
-fn place(panel: &Panel, head: Head, frame: [i32; 4], cell_left: i32, top: i32) -> Placed<'_> {
+fn place(
+    panel: &Panel,
+    head: Head,
+    frame: [i32; 4],
+    cell_left: i32,
+    top: i32,
+) -> PlacedConstraint<'_> {
     let note_y = top + TITLE_LINE + SMALL_LINE / 2;
     let legend_top = frame[1] - GAP - LEGEND_LINE * head.legend.len() as i32;
     let legend = head
@@ -140,7 +146,7 @@ fn place(panel: &Panel, head: Head, frame: [i32; 4], cell_left: i32, top: i32) -
     let (across, up) = axes(panel, [frame[2] - frame[0], frame[3] - frame[1]]);
     let x = horizontal(panel, &across, frame[2] - frame[0]);
     let y = Ticks::new(&up, extent(panel, &up, false), 6);
-    Placed {
+    PlacedConstraint {
         panel,
         x,
         y,

@@ -3,7 +3,7 @@
 use crate::clip::Frame;
 use crate::decimate::{Point, envelope, portrait};
 use crate::label::Label;
-use crate::layout::{LABEL, Placed, SAMPLE, SMALL, SMALL_LINE, TITLE};
+use crate::layout::{LABEL, PlacedConstraint, SAMPLE, SMALL, SMALL_LINE, TITLE};
 use crate::ticks::Ticks;
 use crate::{Color, Mark, Shape, palette};
 use plotters::coord::Shift;
@@ -21,7 +21,7 @@ const GRID: Color = (228, 228, 228);
 const CURVE_BUDGET: usize = 25_000;
 
 /// Draws a panel: grid, marks, frame, ticks, texts.
-pub fn draw<'a>(canvas: &Canvas<'a>, placed: &Placed) -> Result<(), DrawError<'a>> {
+pub fn draw<'a>(canvas: &Canvas<'a>, placed: &PlacedConstraint) -> Result<(), DrawError<'a>> {
     let scales = Scales::new(placed);
     grid(canvas, placed, &scales)?;
     for mark in &placed.panel.marks {
@@ -39,7 +39,7 @@ struct Scales<'p> {
 }
 
 impl<'p> Scales<'p> {
-    fn new(placed: &'p Placed) -> Scales<'p> {
+    fn new(placed: &'p PlacedConstraint) -> Scales<'p> {
         Scales {
             x: &placed.x,
             y: &placed.y,
@@ -103,7 +103,11 @@ fn dashes<'a>(
         .try_for_each(|x| line(canvas, vec![(x, y), ((x + 14).min(to), y)], color, 3))
 }
 
-fn grid<'a>(canvas: &Canvas<'a>, placed: &Placed, scales: &Scales) -> Result<(), DrawError<'a>> {
+fn grid<'a>(
+    canvas: &Canvas<'a>,
+    placed: &PlacedConstraint,
+    scales: &Scales,
+) -> Result<(), DrawError<'a>> {
     let [left, top, right, bottom] = placed.frame;
     for (value, _) in &placed.x.major {
         let x = scales.across(*value).round() as i32;
@@ -166,7 +170,11 @@ fn cross<'a>(canvas: &Canvas<'a>, (x, y): (i32, i32), color: Color) -> Result<()
     line(canvas, vec![(x - 12, y + 12), (x + 12, y - 12)], color, 4)
 }
 
-fn axes<'a>(canvas: &Canvas<'a>, placed: &Placed, scales: &Scales) -> Result<(), DrawError<'a>> {
+fn axes<'a>(
+    canvas: &Canvas<'a>,
+    placed: &PlacedConstraint,
+    scales: &Scales,
+) -> Result<(), DrawError<'a>> {
     let [left, top, right, bottom] = placed.frame;
     let ink = palette::BLACK;
     line(
@@ -220,7 +228,7 @@ fn axes<'a>(canvas: &Canvas<'a>, placed: &Placed, scales: &Scales) -> Result<(),
     up.draw(canvas, (placed.cell_left + 20, (top + bottom) / 2))
 }
 
-fn heading<'a>(canvas: &Canvas<'a>, placed: &Placed) -> Result<(), DrawError<'a>> {
+fn heading<'a>(canvas: &Canvas<'a>, placed: &PlacedConstraint) -> Result<(), DrawError<'a>> {
     let left = placed.frame[0];
     Label {
         bold: true,

@@ -238,8 +238,11 @@ fn a_variant_that_cannot_be_built_is_told_by_name() {
     let ablation = ablate(&scene, body, Some(1), &mut |_| {});
     let text = ablation.text();
     let mut lines = text.lines().filter(|l| l.starts_with("  − more elements"));
-    let told = lines.next().unwrap();
-    assert!(told.contains(" not possible: joint P uses"), "{told}");
+    let reported = lines.next().unwrap();
+    assert!(
+        reported.contains(" not possible: joint P uses"),
+        "{reported}"
+    );
     // without the rigid ideal mechanism there is no path to compare with
     let full = ablation.outcome(Role::Full).unwrap();
     assert_eq!(full.physics.rms_error, None);

@@ -1,4 +1,4 @@
-//! Studies of precision against time: those of the project work, faults are told, failures are part of the outcome.
+//! Studies of precision against time: those of the project work, faults are reported, failures are part of the outcome.
 
 use std::path::{Path, PathBuf};
 use studies::precision::{Effort, Outcome, Pace, Study, Survey, figure, run, table};

@@ -15,8 +15,8 @@ const DURATION: &str = "simulation.duration=1";
 pub fn ablation(path: &Path) -> Result<Ablation> {
     let scene = Scene::load(path, &[DURATION.to_owned()]).map_err(|e| miette!("{e}"))?;
     let body = Observed::choose(&scene, None).map_err(|e| miette!("{e}"))?;
-    Ok(ablate(&scene, body, None, &mut |told| {
-        crate::show("ablation", told)
+    Ok(ablate(&scene, body, None, &mut |reported| {
+        crate::show("ablation", reported)
     }))
 }
 

@@ -56,7 +56,7 @@ impl Tally {
         tally
     }
 
-    fn told(&self) -> String {
+    fn reported(&self) -> String {
         if self.runs == 0 {
             return "no run was judged".to_owned();
         }
@@ -239,9 +239,9 @@ fn page(entries: &[Entry]) -> Result<String> {
         records::place("guarantee"),
         scenes.len(),
         percent(SHARE),
-        tally(&calm, |j| j.ratio).told(),
-        tally(&loud, |j| j.divided()).told(),
-        tally(&loud, |j| j.ratio).told(),
+        tally(&calm, |j| j.ratio).reported(),
+        tally(&loud, |j| j.divided()).reported(),
+        tally(&loud, |j| j.ratio).reported(),
         planned,
         METHODS.len(),
         ACCURACIES.len(),
@@ -583,7 +583,7 @@ mod tests {
             (tally.largest - 4.0).abs() < 1e-12,
             "4e-4 over 1e-4, but for rounding"
         );
-        assert!(tally.told().contains("not met"));
+        assert!(tally.reported().contains("not met"));
         assert_eq!(dearer(&one[0]).len(), 1, "1e-3 takes more steps than 1e-4");
         let text = not_judged(&one);
         assert!(text.contains("reference that is good enough: 1."));

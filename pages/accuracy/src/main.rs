@@ -164,7 +164,7 @@ fn studied(repeats: u16) -> Result<()> {
     campaign.finish()
 }
 
-/// Shows what is told of the runs of a study.
+/// Shows what is reported of the runs of a study.
 fn show(study: &str, notice: Notice) {
     match notice {
         Notice::Begun(run) => eprintln!("{study}: {run}"),

@@ -287,7 +287,7 @@ fn long_runs(one: &Surveyed) -> String {
     });
     let mut good: Vec<_> = good.collect();
     good.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let told = |(run, time): &(&studies::precision::Sampled, f64)| {
+    let reported = |(run, time): &(&studies::precision::Sampled, f64)| {
         format!(
             "{} with {} ({} times real time)",
             run.curve,
@@ -303,7 +303,7 @@ fn long_runs(one: &Surveyed) -> String {
         one.survey.runs.len()
     );
     if let Some(first) = good.first() {
-        text += &format!(" The fastest of these is {}", told(first));
+        text += &format!(" The fastest of these is {}", reported(first));
         let controlled = |(run, _): &&(&studies::precision::Sampled, f64)| {
             matches!(run.pace, Pace::Accuracy { .. })
         };
@@ -311,7 +311,7 @@ fn long_runs(one: &Surveyed) -> String {
             Some(other) if other.1 > first.1 => {
                 format!(
                     "; the fastest with a requested accuracy is {}.",
-                    told(other)
+                    reported(other)
                 )
             }
             _ => ".".to_owned(),

@@ -70,7 +70,7 @@ fn head(page: &mut String, answers: &[Answer]) {
             "# Verification\n\n\
              The questions form a ladder: each rung rests on those before it. Every row is a test with its number, the allowed \
              range and the reason for that range. **{held} of {} rows hold.** `cargo run --release -p ladder` runs the tests \
-             and writes this page. `./test.sh` fails when a row fails, when the page lacks the row of a test or has a row \
+             and writes this page. `./test.sh --all` fails when a row fails, when the page lacks the row of a test or has a row \
              without a test, and when bound, reason or number of a row differ from those of the test. A number may differ by \
              5 % between machines, an order by 5 % of the width of its range. A number below 1e-9, or whose reason names \
              rounding, random draws or chaos, may differ by a factor of ten; one of random mechanisms by a factor of 1000 \

@@ -5,7 +5,7 @@
 
 use crate::digest::Tree;
 use crate::registry::{Record, Registry};
-use crate::state::{State, state, told};
+use crate::state::{State, reported, state};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -146,7 +146,7 @@ pub fn check(root: &Path) -> Result<Findings> {
     for (name, record) in &present.registry.records {
         findings
             .outdated
-            .extend(told(record, &present.states[name]));
+            .extend(reported(record, &present.states[name]));
     }
     for (page, mut notes) in present.notes() {
         let text = open(root, page)?;

@@ -119,7 +119,7 @@ pub fn state(registry: &Registry, tree: &Tree, root: &Path, name: &str) -> Resul
 const NAMED: usize = 6;
 
 /// What the gate says of a record; nothing of one that is current.
-pub fn told(record: &Record, state: &State) -> Option<String> {
+pub fn reported(record: &Record, state: &State) -> Option<String> {
     let what = match state {
         State::Current => return None,
         State::Unknown => "an unknown earlier state".to_owned(),

@@ -124,7 +124,7 @@ fn rivalry(made: &[Made]) -> String {
             lost.push(format!("{loses} in {}", one.name));
         }
     }
-    let told = |list: Vec<String>| match list.is_empty() {
+    let reported = |list: Vec<String>| match list.is_empty() {
         true => "none".to_owned(),
         false => list.join(", "),
     };
@@ -132,8 +132,8 @@ fn rivalry(made: &[Made]) -> String {
         "* Runs in which the trapezoidal rule fails or is refused and Bathe's scheme with the same step does neither: {}.\n\
          * Runs in which the trapezoidal rule is accurate and Bathe's scheme with the same step is not: {}. For the same \
          number of stages its step is twice as long; case 1 has the ratio of the errors where the steps resolve the motion.",
-        told(saved),
-        told(lost)
+        reported(saved),
+        reported(lost)
     )
 }
 

@@ -2,7 +2,7 @@
 
 use stability::cases::CASES;
 
-/// Makes the checks of a case and asserts them, all told if one fails.
+/// Makes the checks of a case and asserts them, all reported if one fails.
 fn holds(number: usize) {
     let case = CASES[number - 1];
     assert_eq!(case.number, number);

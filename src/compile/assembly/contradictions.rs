@@ -5,7 +5,7 @@ use super::guess::coordinates;
 use super::{CENTRE, CLOSED, check_sketch, close, is_guide, names, opening, position, reach};
 use crate::effect::Effect;
 use crate::math::plane::{norm, sub};
-use crate::model::{Model, Placed};
+use crate::model::{Model, PlacedConstraint};
 use crate::scene::{BodyKind, BodyState, SceneError, SketchPoint};
 use crate::system::State;
 
@@ -67,7 +67,7 @@ pub(super) fn check_given(
 }
 
 /// An error for a link if given poses fix its ends at a distance other than its length.
-fn wrong_length(c: &Compiler, placed: &Placed, state: &State) -> Result<(), SceneError> {
+fn wrong_length(c: &Compiler, placed: &PlacedConstraint, state: &State) -> Result<(), SceneError> {
     let own = placed.owners[0];
     let body = &c.scene.bodies[own];
     let BodyKind::Link(link) = &body.kind else {
@@ -105,7 +105,12 @@ fn wrong_length(c: &Compiler, placed: &Placed, state: &State) -> Result<(), Scen
 }
 
 /// An error for a joint or a drive that a given pose violates, if there is one.
-fn misfit(c: &Compiler, placed: &Placed, name: &str, open: f64) -> Result<(), SceneError> {
+fn misfit(
+    c: &Compiler,
+    placed: &PlacedConstraint,
+    name: &str,
+    open: f64,
+) -> Result<(), SceneError> {
     let mut poses = c.scene.initial.bodies.iter();
     let Some(pose) = poses.find(|s| placed.owners.contains(&s.body)) else {
         return Ok(());

@@ -203,8 +203,8 @@ impl Placed<'_> {
     /// Sets those ends of a link that are unknown and not fixed by a given pose.
     fn write_link(&self, ends: [usize; 2], length: f64, pose: [f64; 3], state: &mut State) {
         let n = self.mechanism.shape().unknowns;
-        let way = [length * pose[2].cos(), length * pose[2].sin()];
-        let points = [[pose[0], pose[1]], add([pose[0], pose[1]], way)];
+        let along = [length * pose[2].cos(), length * pose[2].sin()];
+        let points = [[pose[0], pose[1]], add([pose[0], pose[1]], along)];
         for (x, at) in ends.into_iter().zip(points) {
             if x < n && !self.held[x] {
                 state.q[x..x + 2].copy_from_slice(&at);

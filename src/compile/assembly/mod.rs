@@ -54,7 +54,7 @@ pub(crate) fn assemble(scene: &Scene) -> Result<Assembly, SceneError> {
     let mechanism = build::build(&c, numbering, None)?;
     let mut state = mechanism.blank_state();
     mechanism.follow_rules(&mut state);
-    mechanism.ride(&mut state);
+    mechanism.move_driven_nodes(&mut state);
     let held = guess(&c, &mechanism, &mut state)?;
     check_given(&c, &mechanism, &state, &held)?;
     let guessed = state.clone();

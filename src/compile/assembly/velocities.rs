@@ -75,7 +75,7 @@ pub(super) fn velocities(
     let (mass, momentum) = mass(mechanism, state);
     let v = equations.least_energy(&mass, &momentum);
     state.v[..n].copy_from_slice(&v);
-    mechanism.ride(state);
+    mechanism.move_driven_nodes(state);
     Ok(())
 }
 

@@ -386,9 +386,9 @@ fn rust_constraints(model: &Model, at: &State) -> (Vec<f64>, Vec<f64>) {
     let shape = model.shape();
     let (n, m) = (shape.unknowns, shape.multipliers);
     let mut phi = vec![0.0; m];
-    let mut k = vec![0.0; model.level_symbolic().len()];
-    model.level(at, &mut phi, &mut k);
-    let dense = model.level_symbolic().to_dense(&k);
+    let mut k = vec![0.0; model.acceleration_symbolic().len()];
+    model.acceleration_level(at, &mut phi, &mut k);
+    let dense = model.acceleration_symbolic().to_dense(&k);
     let entries = (0..m * n).map(|e| dense[(n + e / n, e % n)]);
     (phi, entries.collect())
 }

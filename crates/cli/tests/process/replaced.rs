@@ -173,7 +173,7 @@ fn what_is_no_file_is_not_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path();
     fs::write(out.join("summary.json"), "{}").unwrap();
-    symlink("nowhere", out.join("channels.csv")).unwrap();
+    symlink("discarded", out.join("channels.csv")).unwrap();
     fs::create_dir(out.join("timing.json")).unwrap();
     let before = files(out);
     expect(

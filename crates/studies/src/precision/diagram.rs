@@ -82,7 +82,7 @@ pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
         .to_string_lossy();
     let caption = format!(
         "{}. Scene {}, the first {}; errors are the largest over rows every {}. Reference: {}, {coarse} and {fine}; dashed: \
-             the difference between the two, below which errors are not told apart.{kept} {failures}",
+             the difference between the two, below which errors are not distinguished.{kept} {failures}",
         outcome.title,
         with(&scene, &study.set, None),
         numbers::si(study.duration, "s"),

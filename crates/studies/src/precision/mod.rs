@@ -41,7 +41,7 @@ pub struct Effort {
 pub struct Outcome {
     /// The study's title.
     pub title: String,
-    /// Difference between the two runs of the reference: nothing below it is told apart.
+    /// Difference between the two runs of the reference: nothing below it is distinguished.
     pub floor: Errors,
     /// Warnings of the two runs of the reference, coarse and fine.
     pub reference_warnings: [Vec<String>; 2],

@@ -236,7 +236,7 @@ fn follow(tape: &mut Tape, m: &Mechanism, scales: &Scales) -> Option<Drive> {
 }
 
 /// A spring or a load.
-pub struct Acting {
+pub struct PlacedForce {
     /// Its table.
     pub text: String,
     /// What it is, for tallies.
@@ -244,7 +244,7 @@ pub struct Acting {
 }
 
 /// Springs and loads; anchors of springs become points of the ground.
-pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<Acting> {
+pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<PlacedForce> {
     let mut forces = Vec::new();
     let mut name = 0;
     let mut named = |body: &str| {
@@ -290,7 +290,7 @@ pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<Acting
         } else {
             distance * tape.between(0.7, 1.3)
         };
-        forces.push(Acting {
+        forces.push(PlacedForce {
             text: named(&format!(
                 "type = \"spring_damper\"\nfrom = {:?}\nto = {:?}\nstiffness = {stiffness:?}\ndamping = {damping:?}\nrest_length = {rest:?}",
                 point_name(m, from),
@@ -314,7 +314,7 @@ pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<Acting
             size * scales.time * tape.decades(-3.0, 0.0),
         );
         let rest = angle + tape.between(-1.0, 1.0);
-        forces.push(Acting {
+        forces.push(PlacedForce {
             text: named(&format!(
                 "type = \"torsion_spring\"\njoint = {:?}\nstiffness = {stiffness:?}\ndamping = {damping:?}\nrest_angle = {rest:?}",
                 joint_name(j)
@@ -330,7 +330,7 @@ pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<Acting
             function(tape, 0.3 * size, size, scales, false).text
         });
         let frame = if body { "body" } else { "ground" };
-        forces.push(Acting {
+        forces.push(PlacedForce {
             text: named(&format!(
                 "type = \"force\"\npoint = {:?}\nx = {x}\ny = {y}\nframe = {frame:?}",
                 point_name(m, pin)
@@ -343,7 +343,7 @@ pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<Acting
         let size = scales.force() * scales.length * tape.signed_decades(-2.0, 1.0);
         let value = function(tape, 0.3 * size, size, scales, false).text;
         if turns(pin) {
-            forces.push(Acting {
+            forces.push(PlacedForce {
                 text: named(&format!(
                     "type = \"torque\"\npoint = {:?}\nvalue = {value}",
                     point_name(m, pin)

@@ -139,7 +139,7 @@ fn loads(scene: &Scene, rows: &Rows, row: usize, extent: f64) -> Loads {
     loads
 }
 
-/// What is left of Newton's law for every body, and of Euler's where it can be told from outside.
+/// What is left of Newton's law for every body, and of Euler's where it can be evaluated from outside.
 pub fn forces(run: &Run) -> Result<(), Breach> {
     let (Some(scene), rows) = (&run.scene, &run.rows) else {
         return Ok(());

@@ -1,4 +1,4 @@
-//! One run: what it told, and how it ended.
+//! One run: what it reported, and how it ended.
 
 use looselink::scene::{Scene, SceneError};
 use looselink::simulate::{Control, Observer, Progress, Report, RunError, Simulation};
@@ -107,7 +107,7 @@ impl Rows {
 pub struct Run {
     /// The scene, where it could be read.
     pub scene: Option<Scene>,
-    /// What it told.
+    /// What it reported.
     pub rows: Rows,
     /// How it ended.
     pub outcome: Outcome,
