@@ -4,6 +4,7 @@ mod change;
 mod closures;
 mod control;
 mod equilibrium;
+mod failure;
 mod foresight;
 mod impacts;
 mod meter;
@@ -13,6 +14,7 @@ mod recording;
 mod report;
 mod resume;
 mod stall;
+mod start;
 mod top;
 mod warnings;
 
@@ -20,26 +22,26 @@ pub use crate::record::Channel;
 pub use closures::Chatter;
 use closures::Closures;
 pub use control::AccuracyReport;
+pub use failure::RunError;
+use failure::short;
 use impacts::Impacts;
 pub use impacts::{Impact, Overrun};
 pub use meter::Integration;
-use meter::{Gain, Meter};
+use meter::Meter;
 pub use observer::{Contact, Control, End, Notice, Observer, Onset, Progress};
 pub use recording::Recording;
 pub use report::{Extreme, Inspection, Report, Status};
 
-use crate::compile::compile;
-use crate::initial::{self, redundancy};
 use crate::model::Model;
-use crate::newton::{Failure, Newton};
+use crate::newton::Newton;
 use crate::record::Recorder;
-use crate::scene::{Accuracy, Analysis, Pace, Scene, SceneError};
+use crate::scene::{Analysis, Scene};
 use crate::statics::Statics;
 use crate::stepper::{LocalError, StepError, Stepper, look_ahead};
-use crate::system::{PrescribeError, State, System, Work};
-use control::{Candidate, Controller, Verdict};
+use crate::system::{State, System, Work};
+use control::{Candidate, Verdict};
 use pace::Pacer;
-use stall::{Stall, Stalled};
+use stall::Stall;
 
 /// A step is halved this many times at most before the run gives up.
 const HALVINGS: i32 = 24;
@@ -55,121 +57,6 @@ const HALF_TURN: &str = "its direction has flipped by half a turn";
 const TURN: &str = "it rotates by more than half a turn in one step";
 /// A difference of times below this part of a step is rounding.
 const GRID_ROUNDING: f64 = 1e-6;
-
-/// Why a run ended early.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// The method found no solution of the equations.
-    #[error("{name}: {cause} at t = {t} s (last step tried: {} s)", short(step))]
-    Physics {
-        /// Coordinate or constraint.
-        name: String,
-        /// What happened.
-        cause: String,
-        /// When \[s\].
-        t: f64,
-        /// The last step tried \[s\].
-        step: f64,
-    },
-    /// Even the shortest step is too long for the accuracy of the scene.
-    #[error(
-        "the accuracy of {accuracy} cannot be reached at t = {t} s: the estimated error of {name} is too large even with a step of \
-         {} s{}; a larger `position`, a shorter `horizon` or a method of higher order may help",
-        short(step),
-        if *in_singular_pose {
-            ", in a singular pose, near which rounding moves the mechanism"
-        } else {
-            ""
-        }
-    )]
-    Accuracy {
-        /// Coordinate with the largest error, or the energy balance.
-        name: String,
-        /// When \[s\].
-        t: f64,
-        /// The last step tried \[s\].
-        step: f64,
-        /// The accuracy asked for.
-        accuracy: Accuracy,
-        /// True where the step had to pass a singular pose.
-        in_singular_pose: bool,
-    },
-    /// The accuracy takes more steps than a run may take.
-    #[error(
-        "the accuracy of {accuracy} takes about {} steps for the error of {name}, more than the 1e8 that a run may take; {}",
-        short(steps),
-        affordable.map_or_else(
-            || "so does a looser one with this method".to_owned(),
-            |accuracy| format!("{accuracy} can be afforded")
-        )
-    )]
-    Unaffordable {
-        /// What was asked for.
-        accuracy: Accuracy,
-        /// The number of steps foreseen.
-        steps: f64,
-        /// Coordinate with the largest error.
-        name: String,
-        /// What takes fewer than 1e8 steps; `None` where stability keeps the steps of the method short.
-        affordable: Option<Accuracy>,
-    },
-    /// The integrator has put far more energy into the motion than the scene supplies.
-    #[error(
-        "{name}: the method is unstable with these steps: up to t = {t} s the integrator has added {} J, \
-         the scene {} J",
-        short(gained),
-        short(supplied)
-    )]
-    Unstable {
-        /// Coordinate with the largest velocity.
-        name: String,
-        /// When \[s\].
-        t: f64,
-        /// Energy gained \[J\].
-        gained: f64,
-        /// Energy supplied: that at the start plus the work of drives, loads and weight since \[J\].
-        supplied: f64,
-    },
-    /// The steps are so short that the run would not end.
-    #[error(
-        "the steps are too short for the run to end, at t = {t} s after {steps} steps: {cause}"
-    )]
-    Stalled {
-        /// When \[s\].
-        t: f64,
-        /// Which joint chatters, or which coordinate makes the steps short.
-        cause: String,
-        /// Steps so far.
-        steps: u64,
-    },
-    /// No equilibrium was found.
-    #[error("no equilibrium at t = {t}: {name}: {cause}")]
-    Equilibrium {
-        /// Coordinate or constraint.
-        name: String,
-        /// What happened.
-        cause: String,
-        /// The load factor.
-        t: f64,
-    },
-    /// The prescribed motion cannot be followed.
-    #[error(transparent)]
-    Drive(#[from] PrescribeError),
-    /// The observer asked to stop.
-    #[error("interrupted at t = {t} s")]
-    Interrupted {
-        /// When \[s\].
-        t: f64,
-    },
-    /// Results could not be stored.
-    #[error("{0}")]
-    Output(#[from] std::io::Error),
-}
-
-/// A number as messages print it.
-fn short(value: &f64) -> String {
-    numbers::number(*value, 2)
-}
 
 /// Counts of the loop, beside those of Newton's method.
 #[derive(Debug, Clone, Copy, Default)]
@@ -229,95 +116,6 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Compiles a scene, closes its mechanism and makes its start consistent.
-    ///
-    /// # Errors
-    /// A mechanism that cannot close, be driven or start as the scene says.
-    pub fn new(scene: &Scene) -> Result<Simulation, SceneError> {
-        let compiled = compile(scene)?;
-        let mut state = initial::start(scene, &compiled)?;
-        let mut model = compiled.model;
-        keep_independent(scene, &mut model, &state)?;
-        refuse_constraints(scene, &model)?;
-        let mut newton = Newton::new(&model, scene.integrator.newton_tolerance);
-        let mut work = model.work();
-        let shape = model.shape();
-        let mut started = Vec::with_capacity(shape.contacts);
-        model.commit(
-            &mut state,
-            scene.integrator.onset_tolerance,
-            &mut |c, v, d| started.push((c, v, d)),
-        );
-        let statics = equilibrium::prepare(scene, &model, &mut state, &mut work)?;
-        if scene.simulation.analysis == Analysis::Dynamic {
-            newton
-                .make_consistent(&model, &mut state, &mut work)
-                .map_err(|failure| {
-                    let (name, cause) = describe(&model, &failure);
-                    scene.error(
-                        scene.initial.span,
-                        format!("the start has no accelerations: {name}: {cause}"),
-                        "this start",
-                    )
-                })?;
-        }
-        model.powers(&mut state, &mut work);
-        let mut impacts = Impacts::new(scene, &model);
-        for &(contact, velocity, delta) in &started {
-            impacts.begin(&model, contact, [delta, velocity], &state);
-        }
-        let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
-        let extremes = vec![Extreme::default(); recorder.channels().len()];
-        let stepper = scene.integrator.method.stepper(model.shape());
-        let pacer = match scene.integrator.pace {
-            Pace::Step(step) => Pacer::grid(step),
-            Pace::Accuracy(accuracy) => {
-                let estimate = stepper.estimate();
-                Pacer::Controller(Box::new(Controller::new(scene, &model, accuracy, estimate)))
-            }
-        };
-        Ok(Simulation {
-            stepper,
-            pacer,
-            leaves_out: !model.redundant().is_empty(),
-            locates: scene.integrator.locate_onsets && shape.contacts > 0,
-            newton,
-            stays_in_singular_pose: false,
-            passes_singular_pose: false,
-            statics,
-            work,
-            meter: Meter::new(scene, &model, &state),
-            is_pilot: false,
-            trial: state.clone(),
-            output: state.clone(),
-            state,
-            recorder,
-            extremes,
-            strains: vec![0.0; scene.bodies.len()],
-            impacts,
-            closures: Closures::new(shape.contacts),
-            local_error: LocalError::new(shape.unknowns),
-            stall: Stall::new(
-                shape.contacts,
-                scene.simulation.duration,
-                scene.integrator.step(),
-            ),
-            counters: LoopCounters {
-                onsets: started.len() as u64,
-                ..LoopCounters::default()
-            },
-            halved: vec![0; shape.unknowns + shape.multipliers],
-            delta: vec![0.0; shape.contacts],
-            rate: vec![0.0; shape.contacts],
-            last_gaps: vec![[0.0; 2]; shape.contacts],
-            started,
-            status: Status::Incomplete,
-            error: None,
-            model,
-            scene: scene.clone(),
-        })
-    }
-
     /// What is recorded; the first channel is the time.
     pub fn channels(&self) -> &[Channel] {
         self.recorder.channels()
@@ -621,87 +419,6 @@ impl Simulation {
             _ => Ok(()),
         }
     }
-
-    /// The error of a row with a value that is not finite; it names the fastest coordinate.
-    fn overflown(&self, channel: &str) -> RunError {
-        RunError::Physics {
-            name: self.meter.fastest(&self.model, &self.state).to_owned(),
-            cause: format!("{channel} is not finite: the motion grows without bound"),
-            t: self.state.t,
-            step: self.state.t - self.trial.t,
-        }
-    }
-
-    fn stuck(&self, name: String) -> RunError {
-        let Pace::Accuracy(accuracy) = self.scene.integrator.pace else {
-            unreachable!("only a run with an accuracy judges its steps")
-        };
-        RunError::Accuracy {
-            name,
-            t: self.state.t,
-            step: self.trial.t - self.state.t,
-            accuracy,
-            in_singular_pose: self.passes_singular_pose,
-        }
-    }
-
-    fn unstable(&self, gain: Gain) -> RunError {
-        RunError::Unstable {
-            name: self.meter.fastest(&self.model, &self.state).to_owned(),
-            t: self.state.t,
-            gained: gain.gained,
-            supplied: gain.supplied,
-        }
-    }
-
-    fn stalled(&self, stalled: Stalled) -> RunError {
-        let halved = self.halved.iter().enumerate().max_by_key(|(_, n)| **n);
-        let halved = halved.filter(|(_, n)| **n > 0);
-        let step = self.state.t - self.trial.t;
-        let cause = match (stalled.contact, halved) {
-            (Some((contact, changes)), _) => {
-                let joint = self.model.contact_joint(contact);
-                let joint = joint.map_or("", |j| &self.model.joints()[j].name);
-                format!("contact in {joint} was made or lost {changes} times")
-            }
-            (None, Some((index, times))) => format!(
-                "for {} the step failed and was halved {times} times, down to {} s",
-                self.model.unknown_name(index),
-                short(&step)
-            ),
-            (None, None) => format!(
-                "the error of {} limits the step to {} s",
-                self.meter.worst(&self.model, &self.local_error),
-                short(&step)
-            ),
-        };
-        RunError::Stalled {
-            t: self.state.t,
-            cause,
-            steps: stalled.steps,
-        }
-    }
-
-    fn failed(&self, error: StepError, step: f64) -> RunError {
-        match error {
-            StepError::Prescribe(error) => RunError::Drive(error),
-            StepError::Turn { index, cause } => RunError::Physics {
-                name: self.model.unknown_name(index),
-                cause: cause.to_owned(),
-                t: self.state.t,
-                step,
-            },
-            StepError::Stage(failure) => {
-                let (name, cause) = describe(&self.model, &failure);
-                RunError::Physics {
-                    name,
-                    cause,
-                    t: self.state.t,
-                    step,
-                }
-            }
-        }
-    }
 }
 
 /// Refuses a step that may have added a turn to a body or a half turn to a prescribed angle.
@@ -711,65 +428,5 @@ fn check_turns(model: &Model, from: &State, to: &State) -> Result<(), StepError>
     match half.or_else(full_turn) {
         Some((index, cause)) => Err(StepError::Turn { index, cause }),
         None => Ok(()),
-    }
-}
-
-/// Refuses constraint rows for a scheme that does not keep them.
-fn refuse_constraints(scene: &Scene, model: &Model) -> Result<(), SceneError> {
-    let shape = model.shape();
-    if scene.integrator.method.scheme.keeps_constraints || shape.multipliers == 0 {
-        return Ok(());
-    }
-    let first = &model.unknown_names()[shape.unknowns];
-    let message = format!(
-        "method {:?} cannot enforce constraints; the first of the {} constraints here is {first}",
-        scene.integrator.method.name(),
-        shape.multipliers
-    );
-    let error = scene.error(
-        scene.integrator.method_span,
-        message,
-        "cannot take this scene",
-    );
-    Err(error.with_help(
-        "use an implicit method, or \"dormand_prince\", which is explicit and enforces constraints",
-    ))
-}
-
-/// Removes redundant constraints from the equations.
-fn keep_independent(scene: &Scene, model: &mut Model, start: &State) -> Result<(), SceneError> {
-    match redundancy::find(model, start) {
-        redundancy::Redundancy::Rows(rows) => {
-            model.drop_rows(&rows);
-            Ok(())
-        }
-        redundancy::Redundancy::SingularStart(name) => {
-            let message = format!(
-                "the start is a singular pose, in which {name} depends on the other constraints"
-            );
-            let error = scene.error(scene.initial.span, message, "this start");
-            Err(error.with_help("start slightly away from the dead centre"))
-        }
-    }
-}
-
-/// The unknown and the cause of a failure, for the message.
-fn describe(model: &Model, failure: &Failure) -> (String, String) {
-    match *failure {
-        Failure::NoConvergence { index, update } => (
-            model.unknown_name(index),
-            format!(
-                "Newton's method does not converge (last update {} m/s)",
-                short(&update)
-            ),
-        ),
-        Failure::NotFinite { index } => (
-            model.unknown_name(index),
-            "the state is not finite".to_owned(),
-        ),
-        Failure::Singular { index } => (
-            model.unknown_name(index),
-            "the equations are singular".to_owned(),
-        ),
     }
 }

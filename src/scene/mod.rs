@@ -4,6 +4,7 @@
 //! text so that a later error (a mechanism that cannot close) still names file, line and field.
 
 mod bodies;
+mod body;
 mod document;
 mod error;
 mod field;
@@ -11,6 +12,7 @@ mod fields;
 mod forces;
 mod functions;
 mod integrator;
+mod joint;
 mod joints;
 mod materials;
 mod motion;
@@ -22,12 +24,12 @@ mod text;
 
 pub use crate::motion::{Function, Path};
 pub use crate::stepper::Method;
+pub use body::{Body, BodyKind, Damping, Link, LinkModel, LinkPoint, Point, PointRef, RigidBody};
 pub use error::{SceneError, Span};
+pub(crate) use joint::smallest_clearance;
+pub use joint::{Contact, Friction, Joint, JointModel, SlopeClamp};
 pub use reader::read_file;
 
-use crate::contact::Slip;
-use crate::contact::normal::{NormalLaw, NormalLawKind, NormalParameters};
-use crate::math::plane::{Vec2, perp, scale, sub};
 use crate::registry::Registry;
 use error::Sources;
 use serde::Serialize;
@@ -157,265 +159,6 @@ pub struct ChannelPattern {
     pub pattern: String,
     /// Where it stands.
     pub span: Span,
-}
-
-/// `[bodies.NAME]`
-#[derive(Debug, Clone)]
-pub struct Body {
-    /// The name the user wrote.
-    pub name: String,
-    /// Where the table stands.
-    pub span: Span,
-    /// What the body is.
-    pub kind: BodyKind,
-}
-
-/// The kinds of body.
-#[derive(Debug, Clone)]
-pub enum BodyKind {
-    /// Points that do not move.
-    Ground {
-        /// Named points \[m\].
-        points: Vec<Point>,
-    },
-    /// A slender uniform link with the points `start` (index 0), `end` (index 1) and, if flexible, points at its nodes.
-    Link(Link),
-    /// A rigid body with the reference point in its centre of mass.
-    Rigid(RigidBody),
-    /// A point with mass; its only point is `center`.
-    PointMass {
-        /// Mass \[kg\].
-        mass: f64,
-    },
-    /// A body without mass of its own that follows a path.
-    Moving {
-        /// Path of its reference point and its angle.
-        path: Arc<dyn Path>,
-        /// Named points relative to the reference point at theta = 0 \[m\].
-        points: Vec<Point>,
-    },
-}
-
-impl BodyKind {
-    /// Its mass \[kg\]; of the ground and of a moving body none.
-    pub fn mass(&self) -> Option<f64> {
-        match self {
-            BodyKind::Link(link) => Some(link.density * link.area * link.length),
-            BodyKind::Rigid(rigid) => Some(rigid.mass),
-            BodyKind::PointMass { mass } => Some(*mass),
-            BodyKind::Ground { .. } | BodyKind::Moving { .. } => None,
-        }
-    }
-}
-
-/// A named point.
-#[derive(Debug, Clone)]
-pub struct Point {
-    /// The name the user wrote.
-    pub name: String,
-    /// Coordinates in the frame of the body \[m\].
-    pub at: [f64; 2],
-}
-
-/// A slender uniform link.
-#[derive(Debug, Clone)]
-pub struct Link {
-    /// Length l \[m\].
-    pub length: f64,
-    /// Cross-section A \[m2\].
-    pub area: f64,
-    /// Second moment of area I about the axis normal to the plane \[m4\].
-    pub second_moment: f64,
-    /// Density \[kg/m3\].
-    pub density: f64,
-    /// Rigid or flexible.
-    pub model: LinkModel,
-    /// Named points of a flexible link between its ends, each at a node.
-    pub points: Vec<LinkPoint>,
-    /// Structural damping, absent when the scene names none.
-    pub damping: Option<Damping>,
-}
-
-impl Link {
-    /// Where point `index` of the link is, as a share of its length.
-    pub fn share(&self, index: usize) -> f64 {
-        match (index, self.model) {
-            (0, _) => 0.0,
-            (1, _) | (_, LinkModel::Rigid) => 1.0,
-            (inner, LinkModel::Flexible { elements, .. }) => {
-                self.points[inner - 2].node as f64 / elements as f64
-            }
-        }
-    }
-
-    /// Position \[m\] and velocity \[m/s\] of its `start` in a state: half the length behind the centre of mass, the link
-    /// being straight.
-    pub(crate) fn start(&self, state: &BodyState) -> [Vec2; 2] {
-        let ([x, y, theta], [vx, vy, omega]) = (state.position, state.velocity);
-        let half = scale(0.5 * self.length, [theta.cos(), theta.sin()]);
-        [sub([x, y], half), sub([vx, vy], scale(omega, perp(half)))]
-    }
-}
-
-/// A named inner point of a flexible link.
-#[derive(Debug, Clone)]
-pub struct LinkPoint {
-    /// The name the user wrote.
-    pub name: String,
-    /// Index of the node, counted from `start`.
-    pub node: usize,
-}
-
-/// Structural damping of a flexible link.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Damping {
-    /// Retardation time of the strain rates \[s\]: Kelvin-Voigt, or the second half of Rayleigh's.
-    pub strain: f64,
-    /// Damping proportional to mass \[1/s\], the first half of Rayleigh's.
-    pub mass: f64,
-}
-
-/// How a link deforms.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LinkModel {
-    /// Natural coordinates, constant length.
-    Rigid,
-    /// Planar cubic ANCF elements.
-    Flexible {
-        /// Number of equal elements.
-        elements: usize,
-        /// Young's modulus \[Pa\].
-        youngs_modulus: f64,
-    },
-}
-
-/// A rigid body in reference-point coordinates (x, y, theta).
-#[derive(Debug, Clone)]
-pub struct RigidBody {
-    /// Mass \[kg\].
-    pub mass: f64,
-    /// Moment of inertia about the centre of mass \[kg m2\].
-    pub inertia: f64,
-    /// Named points relative to the centre of mass at theta = 0 \[m\].
-    pub points: Vec<Point>,
-}
-
-/// A point of a body: indices into [`Scene::bodies`] and into the points of that body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct PointRef {
-    /// Index of the body.
-    pub body: usize,
-    /// Index of the point; of a link 0 is `start`, 1 is `end`.
-    pub point: usize,
-}
-
-/// `[joints.NAME]`: a joint between two points.
-#[derive(Debug, Clone)]
-pub struct Joint {
-    /// The name the user wrote.
-    pub name: String,
-    /// Where the table stands.
-    pub span: Span,
-    /// The point that carries the bearing (i of eq. 19), the guide, or the first side of a weld.
-    pub bearing: PointRef,
-    /// The point that carries the journal (j of eq. 19), the slider, or the second side of a weld.
-    pub journal: PointRef,
-    /// What it allows.
-    pub model: JointModel,
-}
-
-impl Joint {
-    /// Geometry and laws of its contact, where it has clearance.
-    pub fn contact(&self) -> Option<&Contact> {
-        match &self.model {
-            JointModel::Clearance(contact) => Some(contact),
-            _ => None,
-        }
-    }
-}
-
-/// The smallest clearance of some joints \[m\]; none where no joint has clearance.
-pub(crate) fn smallest_clearance<'a>(joints: impl Iterator<Item = &'a Joint>) -> Option<f64> {
-    let contacts = joints.filter_map(Joint::contact);
-    contacts.map(|contact| contact.clearance).reduce(f64::min)
-}
-
-/// How a joint connects its two points.
-#[derive(Debug, Clone)]
-pub enum JointModel {
-    /// The points coincide.
-    Ideal,
-    /// The journal moves inside the bearing and touches it.
-    Clearance(Contact),
-    /// The points coincide and the bodies keep their relative angle.
-    Weld {
-        /// Direction of the second body relative to the first \[rad\].
-        angle: f64,
-        /// What of the slope of a flexible end is held.
-        slope: SlopeClamp,
-    },
-    /// The second point stays on a line of the first body.
-    Prismatic {
-        /// Direction of the line in the frame of the first body \[rad\].
-        direction: f64,
-        /// Angle of the second body relative to the first \[rad\]; absent for a pin in a slot.
-        locked: Option<f64>,
-    },
-}
-
-/// What a weld holds of the slope r' of a flexible end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SlopeClamp {
-    /// Its direction: the stretch is free.
-    Direction,
-    /// Direction and stretch.
-    Vector,
-}
-
-/// Geometry and laws of a loose joint.
-#[derive(Debug, Clone)]
-pub struct Contact {
-    /// Bearing radius R_i \[m\].
-    pub bearing_radius: f64,
-    /// Radial clearance c = R_i - R_j \[m\].
-    pub clearance: f64,
-    /// Normal law.
-    pub law: &'static NormalLawKind,
-    /// Contact stiffness K \[N/m^exponent\], typed or from eq. 25.
-    pub stiffness: f64,
-    /// Exponent n.
-    pub exponent: f64,
-    /// Restitution coefficient c_e as typed; 1 for Hertz.
-    pub restitution: f64,
-    /// Smallest impact velocity that the damping term divides by \[m/s\].
-    pub impact_velocity_floor: f64,
-    /// Friction, absent when the scene names none.
-    pub friction: Option<Friction>,
-}
-
-impl Contact {
-    /// The normal law with its parameters.
-    pub fn normal_law(&self) -> Box<dyn NormalLaw> {
-        (self.law.build)(&NormalParameters {
-            stiffness: self.stiffness,
-            exponent: self.exponent,
-            restitution: self.restitution,
-            impact_velocity_floor: self.impact_velocity_floor,
-        })
-    }
-}
-
-/// Friction of eq. 26.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Friction {
-    /// Coefficient c_f.
-    pub coefficient: f64,
-    /// Slip below which there is no friction \[m/s\].
-    pub v0: f64,
-    /// Slip above which friction is full \[m/s\].
-    pub v1: f64,
-    /// Which slip velocity enters.
-    pub slip: Slip,
 }
 
 /// `[drives.NAME]`: the joints follow the inverse kinematics of the ideal rigid mechanism while the body follows the path.

@@ -1,8 +1,8 @@
 //! Static runs: a load path, and the equilibrium that a motion starts from.
 
+use super::failure::describe;
 use super::{
     Control, GRID_ROUNDING, HALVINGS, Observer, Progress, RunError, Simulation, check_turns,
-    describe,
 };
 use crate::model::Model;
 use crate::newton::Failure;

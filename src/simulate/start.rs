@@ -1,0 +1,149 @@
+//! A simulation before its first step.
+
+use super::closures::Closures;
+use super::control::Controller;
+use super::failure::describe;
+use super::impacts::Impacts;
+use super::meter::Meter;
+use super::pace::Pacer;
+use super::report::{Extreme, Status};
+use super::stall::Stall;
+use super::{LoopCounters, Simulation, equilibrium};
+use crate::compile::compile;
+use crate::initial::{self, redundancy};
+use crate::model::Model;
+use crate::newton::Newton;
+use crate::record::Recorder;
+use crate::scene::{Analysis, Pace, Scene, SceneError};
+use crate::stepper::LocalError;
+use crate::system::{State, System};
+
+impl Simulation {
+    /// Compiles a scene, closes its mechanism and makes its start consistent.
+    ///
+    /// # Errors
+    /// A mechanism that cannot close, be driven or start as the scene says.
+    pub fn new(scene: &Scene) -> Result<Simulation, SceneError> {
+        let compiled = compile(scene)?;
+        let mut state = initial::start(scene, &compiled)?;
+        let mut model = compiled.model;
+        keep_independent(scene, &mut model, &state)?;
+        refuse_constraints(scene, &model)?;
+        let mut newton = Newton::new(&model, scene.integrator.newton_tolerance);
+        let mut work = model.work();
+        let shape = model.shape();
+        let mut started = Vec::with_capacity(shape.contacts);
+        model.commit(
+            &mut state,
+            scene.integrator.onset_tolerance,
+            &mut |c, v, d| started.push((c, v, d)),
+        );
+        let statics = equilibrium::prepare(scene, &model, &mut state, &mut work)?;
+        if scene.simulation.analysis == Analysis::Dynamic {
+            newton
+                .make_consistent(&model, &mut state, &mut work)
+                .map_err(|failure| {
+                    let (name, cause) = describe(&model, &failure);
+                    scene.error(
+                        scene.initial.span,
+                        format!("the start has no accelerations: {name}: {cause}"),
+                        "this start",
+                    )
+                })?;
+        }
+        model.powers(&mut state, &mut work);
+        let mut impacts = Impacts::new(scene, &model);
+        for &(contact, velocity, delta) in &started {
+            impacts.begin(&model, contact, [delta, velocity], &state);
+        }
+        let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
+        let extremes = vec![Extreme::default(); recorder.channels().len()];
+        let stepper = scene.integrator.method.stepper(model.shape());
+        let pacer = match scene.integrator.pace {
+            Pace::Step(step) => Pacer::grid(step),
+            Pace::Accuracy(accuracy) => {
+                let estimate = stepper.estimate();
+                Pacer::Controller(Box::new(Controller::new(scene, &model, accuracy, estimate)))
+            }
+        };
+        Ok(Simulation {
+            stepper,
+            pacer,
+            leaves_out: !model.redundant().is_empty(),
+            locates: scene.integrator.locate_onsets && shape.contacts > 0,
+            newton,
+            stays_in_singular_pose: false,
+            passes_singular_pose: false,
+            statics,
+            work,
+            meter: Meter::new(scene, &model, &state),
+            is_pilot: false,
+            trial: state.clone(),
+            output: state.clone(),
+            state,
+            recorder,
+            extremes,
+            strains: vec![0.0; scene.bodies.len()],
+            impacts,
+            closures: Closures::new(shape.contacts),
+            local_error: LocalError::new(shape.unknowns),
+            stall: Stall::new(
+                shape.contacts,
+                scene.simulation.duration,
+                scene.integrator.step(),
+            ),
+            counters: LoopCounters {
+                onsets: started.len() as u64,
+                ..LoopCounters::default()
+            },
+            halved: vec![0; shape.unknowns + shape.multipliers],
+            delta: vec![0.0; shape.contacts],
+            rate: vec![0.0; shape.contacts],
+            last_gaps: vec![[0.0; 2]; shape.contacts],
+            started,
+            status: Status::Incomplete,
+            error: None,
+            model,
+            scene: scene.clone(),
+        })
+    }
+}
+
+/// Refuses constraint rows for a scheme that does not keep them.
+fn refuse_constraints(scene: &Scene, model: &Model) -> Result<(), SceneError> {
+    let shape = model.shape();
+    if scene.integrator.method.scheme.keeps_constraints || shape.multipliers == 0 {
+        return Ok(());
+    }
+    let first = &model.unknown_names()[shape.unknowns];
+    let message = format!(
+        "method {:?} cannot enforce constraints; the first of the {} constraints here is {first}",
+        scene.integrator.method.name(),
+        shape.multipliers
+    );
+    let error = scene.error(
+        scene.integrator.method_span,
+        message,
+        "cannot take this scene",
+    );
+    Err(error.with_help(
+        "use an implicit method, or \"dormand_prince\", which is explicit and enforces constraints",
+    ))
+}
+
+/// Removes redundant constraints from the equations.
+fn keep_independent(scene: &Scene, model: &mut Model, start: &State) -> Result<(), SceneError> {
+    match redundancy::find(model, start) {
+        redundancy::Redundancy::Rows(rows) => {
+            model.drop_rows(&rows);
+            Ok(())
+        }
+        redundancy::Redundancy::SingularStart(name) => {
+            let message = format!(
+                "the start is a singular pose, in which {name} depends on the other constraints"
+            );
+            let error = scene.error(scene.initial.span, message, "this start");
+            Err(error.with_help("start slightly away from the dead centre"))
+        }
+    }
+}
