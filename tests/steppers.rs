@@ -327,7 +327,7 @@ fn local_errors_are_estimated() {
             ))
             .falls(
                 "Step h [s]",
-                &[size(0.2), size(0.1), size(0.05)],
+                &[size(0.1), size(0.05), size(0.025)],
                 order - 0.2..order + 0.3,
                 reason,
             );

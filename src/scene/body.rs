@@ -147,7 +147,7 @@ pub struct RigidBody {
     pub points: Vec<Point>,
 }
 
-/// A point of a body: indices into [`Scene::bodies`] and into the points of that body.
+/// A point of a body: indices into [`super::Scene::bodies`] and into the points of that body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PointRef {
     /// Index of the body.
