@@ -35,12 +35,15 @@
 //! to functions; ARCHITECTURE.md maps the mechanics to folders.
 #![forbid(unsafe_code)]
 
+pub mod body;
 pub mod compile;
 pub mod constraint;
 pub mod contact;
+pub mod document;
 pub mod effect;
 pub mod force;
 pub mod initial;
+pub mod interaction;
 pub mod kinematics;
 pub mod link;
 pub mod marker;
@@ -56,3 +59,5 @@ pub mod simulate;
 pub mod statics;
 pub mod stepper;
 pub mod system;
+pub mod table;
+pub mod terms;

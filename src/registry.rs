@@ -1,25 +1,61 @@
 //! What a scene can name.
 
+use crate::body::{self, BodyKind};
 use crate::contact::normal::{LAWS, NormalLawKind};
+use crate::interaction::{FORCES, ForceKind, JOINTS, JointKind};
 use crate::stepper::{SCHEMES, Scheme};
+use crate::table::{FORMATS, Format};
 
 /// The kinds that a scene can name. A user of the library adds kinds of his own and reads scenes with
 /// [`crate::scene::Scene::load_with`].
 #[derive(Debug, Clone)]
 pub struct Registry {
+    /// Bodies.
+    pub bodies: Vec<&'static BodyKind>,
+    /// Joints.
+    pub joints: Vec<&'static JointKind>,
+    /// Springs and loads.
+    pub forces: Vec<&'static ForceKind>,
     /// Normal contact laws.
     pub laws: Vec<&'static NormalLawKind>,
     /// Integration schemes.
     pub schemes: Vec<&'static Scheme>,
+    /// Formats of tables.
+    pub formats: Vec<&'static Format>,
 }
 
 impl Registry {
     /// Everything that the library has.
     pub fn standard() -> Registry {
         Registry {
+            bodies: body::KINDS.to_vec(),
+            joints: JOINTS.to_vec(),
+            forces: FORCES.to_vec(),
             laws: LAWS.to_vec(),
             schemes: SCHEMES.to_vec(),
+            formats: FORMATS.to_vec(),
         }
+    }
+
+    /// The same with a kind of body.
+    #[must_use]
+    pub fn with_body(mut self, kind: &'static BodyKind) -> Registry {
+        self.bodies.push(kind);
+        self
+    }
+
+    /// The same with a kind of joint.
+    #[must_use]
+    pub fn with_joint(mut self, kind: &'static JointKind) -> Registry {
+        self.joints.push(kind);
+        self
+    }
+
+    /// The same with a kind of force.
+    #[must_use]
+    pub fn with_force(mut self, kind: &'static ForceKind) -> Registry {
+        self.forces.push(kind);
+        self
     }
 
     /// The same with a normal contact law.
@@ -33,6 +69,13 @@ impl Registry {
     #[must_use]
     pub fn with_scheme(mut self, scheme: &'static Scheme) -> Registry {
         self.schemes.push(scheme);
+        self
+    }
+
+    /// The same with a format of tables.
+    #[must_use]
+    pub fn with_format(mut self, format: &'static Format) -> Registry {
+        self.formats.push(format);
         self
     }
 }

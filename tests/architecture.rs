@@ -9,16 +9,21 @@ use syn::visit::Visit;
 use syn::{ItemUse, UseTree};
 
 /// Folders and files at the top of `src`, the lowest first: each uses those before it only.
-const LAYERS: [&str; 20] = [
+const LAYERS: [&str; 25] = [
     "math",
+    "table",
     "effect",
     "marker",
     "link",
+    "document",
     "motion",
     "system",
     "constraint",
     "force",
     "contact",
+    "terms",
+    "body",
+    "interaction",
     "newton",
     "stepper",
     "registry",

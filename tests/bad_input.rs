@@ -116,7 +116,7 @@ fn missing_keys_point_at_the_table() {
 fn a_missing_key_is_explained() {
     let shown = rendered(&fault(&edited("duration = 3.0", ""), &[]));
     assert!(
-        shown.contains("`duration` is the simulated time [s]"),
+        shown.contains("`duration` is the simulated time from t = 0"),
         "{shown}"
     );
 }

@@ -3,7 +3,8 @@
 
 use crate::support::{Recording, load, run_scene};
 use ladder::{Rung, Worst};
-use looselink::scene::{BodyKind, Scene};
+use looselink::body::RigidBody;
+use looselink::scene::Scene;
 
 /// A chain of a rigid link, a flexible link and a rigid body under gravity, with every kind of joint in it: the first
 /// fixed to ground by a shared node, two links sharing a node, a constraint, and a second link on the same node.
@@ -31,21 +32,12 @@ side = { x = 0.42701511529340697, y = 0.15792645075960518, theta = -1.0, vx = 0.
 bob = { x = 0.5655165123780746, y = 0.24588510772084061, theta = 0.0, vx = 0.0, vy = 0.0, omega = 0.0 }
 "#;
 
-fn mass(kind: &BodyKind) -> f64 {
-    match kind {
-        BodyKind::Ground { .. } | BodyKind::Moving { .. } => 0.0,
-        BodyKind::PointMass { mass } => *mass,
-        BodyKind::Link(link) => link.density * link.area * link.length,
-        BodyKind::Rigid(rigid) => rigid.mass,
-    }
-}
-
 /// What is left of Newton's law for every body, and of Euler's about the centre of mass of rigid bodies, relative to the
 /// largest forces.
 fn check(worst: &Worst, scene: &Scene, run: &Recording) {
     let gravity = scene.simulation.gravity.unwrap_or([0.0; 2]);
     for (b, body) in scene.bodies.iter().enumerate() {
-        let m = mass(&body.kind);
+        let m = body.kind.mass().unwrap_or(0.0);
         if m == 0.0 {
             continue;
         }
@@ -67,7 +59,7 @@ fn check(worst: &Worst, scene: &Scene, run: &Recording) {
                 let force = ["fx", "fy"].map(|q| sign * run.get(&format!("{}.{q}", joint.name))[k]);
                 sum = [sum[0] + force[0], sum[1] + force[1]];
                 scale += force[0].abs() + force[1].abs();
-                if let BodyKind::Rigid(rigid) = &body.kind {
+                if let Some(rigid) = body.kind.get::<RigidBody>() {
                     let (s, c) = run.get(&format!("{}.theta", body.name))[k].sin_cos();
                     let [x, y] = rigid.points[*point].at;
                     moment += (c * x - s * y) * force[1] - (s * x + c * y) * force[0];
@@ -78,7 +70,7 @@ fn check(worst: &Worst, scene: &Scene, run: &Recording) {
             for d in 0..2 {
                 worst.see((sum[d] + m * (gravity[d] - a[d])) / size);
             }
-            if let BodyKind::Rigid(rigid) = &body.kind {
+            if let Some(rigid) = body.kind.get::<RigidBody>() {
                 let alpha = run.get(&format!("{}.alpha", body.name))[k];
                 worst.see((moment - rigid.inertia * alpha) / size);
             }

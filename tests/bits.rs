@@ -1,16 +1,17 @@
 //! Every number on disk reads back to the bits that were recorded, through the writer of runs.
 
 use crate::support::load;
-use looselink::output::{FILES, Folder, Results};
+use looselink::output::{Folder, Results, files};
 use looselink::scene::Scene;
 use looselink::simulate::{Contact, Control, Observer, Onset, Progress, Recording, Simulation};
+use looselink::table::FORMATS;
 use proptest::prelude::*;
 use std::io;
 use std::path::Path;
 
 fn begin(scene: &Scene, folder: &Path) -> (Simulation, Results) {
     let simulation = Simulation::new(scene).unwrap();
-    let folder = Folder::new(folder, &FILES, false).unwrap();
+    let folder = Folder::new(folder, &files(&FORMATS), false).unwrap();
     let results = Results::begin(folder, scene, simulation.channels()).unwrap();
     (simulation, results)
 }

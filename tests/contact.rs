@@ -147,7 +147,7 @@ fn delivered_restitution_follows_the_exact_map() {
 #[test]
 fn laws_are_built_from_contacts() {
     let contact = |law: &'static NormalLawKind| Contact {
-        bearing_radius: 0.01,
+        bearing_radius: Some(0.01),
         clearance: 2e-5,
         law,
         stiffness: 3e9,

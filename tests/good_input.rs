@@ -2,9 +2,10 @@
 
 use crate::bad_input::CASE4;
 use crate::support::{all_scenes, path};
+use looselink::body::{FlexibleLink, RigidBody};
 use looselink::contact::Slip;
 use looselink::contact::normal::damped_power::{HERTZ, LANKARANI_NIKRAVESH};
-use looselink::scene::{BodyKind, JointModel, LinkModel, Scene};
+use looselink::scene::Scene;
 use looselink::stepper::bathe::splitting;
 
 pub fn load(text: &str, overrides: &[&str]) -> Scene {
@@ -25,10 +26,8 @@ fn edited(from: &str, to: &str) -> Scene {
 }
 
 pub fn contact(scene: &Scene, joint: &str) -> Option<looselink::scene::Contact> {
-    match &scene.joints[scene.joint(joint).unwrap()].model {
-        JointModel::Clearance(contact) => Some(contact.clone()),
-        _ => None,
-    }
+    let joint = &scene.joints[scene.joint(joint).unwrap()];
+    joint.contact().cloned()
 }
 
 #[test]
@@ -58,16 +57,9 @@ fn case_4_is_what_the_paper_says() {
     assert_eq!(scene.drives[0].joints, [0, 1, 2]);
     let method = scene.integrator.method;
     assert_eq!((method.name(), splitting(&method)), ("bathe", 0.5));
-    let BodyKind::Link(link) = &scene.bodies[4].kind else {
-        panic!("link1 is a link")
-    };
-    assert_eq!(
-        link.model,
-        LinkModel::Flexible {
-            elements: 1,
-            youngs_modulus: 7e9
-        }
-    );
+    let flexible: &FlexibleLink = scene.bodies[4].kind.get().unwrap();
+    assert_eq!((flexible.elements, flexible.youngs_modulus), (1, 7e9));
+    let link = &flexible.link;
     assert_eq!((link.area, link.density), (0.005 * 0.03, 2700.0));
     // Relative tolerance 1e-15: a handful of roundings.
     approx::assert_relative_eq!(
@@ -75,9 +67,7 @@ fn case_4_is_what_the_paper_says() {
         0.03 * 0.005f64.powi(3) / 12.0,
         max_relative = 1e-15
     );
-    let BodyKind::Rigid(platform) = &scene.bodies[7].kind else {
-        panic!("the platform is rigid")
-    };
+    let platform: &RigidBody = scene.bodies[7].kind.get().unwrap();
     // Four digits are given: 0.440 kg; I = m s^2 / 12 with s = sqrt(3) 0.112 m.
     approx::assert_abs_diff_eq!(platform.mass, 0.440, epsilon = 5e-4);
     let side = 3f64.sqrt() * 0.112;
@@ -194,9 +184,9 @@ fn paths() {
 #[test]
 fn plates() {
     let triangle = "plate = { shape = \"equilateral_triangle\", circumradius = 0.112, thickness = 0.01, material = \"aluminium\" }";
-    let mass = |scene: &Scene| match &scene.bodies[7].kind {
-        BodyKind::Rigid(rigid) => (rigid.mass, rigid.inertia),
-        _ => panic!("the platform is rigid"),
+    let mass = |scene: &Scene| {
+        let rigid: &RigidBody = scene.bodies[7].kind.get().unwrap();
+        (rigid.mass, rigid.inertia)
     };
     let disc = edited(
         triangle,

@@ -7,6 +7,7 @@ use looselink::contact::geometry::CircleInCircle;
 use looselink::contact::normal::NormalParameters;
 use looselink::contact::normal::damped_power::LANKARANI_NIKRAVESH;
 use looselink::contact::{At, ContactPair, Rough, Slip, Smooth};
+use looselink::force::WIDTH;
 use looselink::marker::{Marker, Spin};
 use looselink::system::Weights;
 
@@ -55,12 +56,13 @@ fn closed<'a>(q: &'a [f64], v: &'a [f64]) -> At<'a> {
 }
 
 /// The local force and the tangents by q and by v of a term, gathered over all coordinates.
-type Evaluate<'a> = &'a dyn Fn(&[f64], &[f64], Weights, &mut [f64; 8], &mut [[f64; 8]; 8]) -> bool;
+type Evaluate<'a> =
+    &'a dyn Fn(&[f64], &[f64], Weights, &mut [f64; WIDTH], &mut [[f64; WIDTH]; WIDTH]) -> bool;
 
 fn check(name: &str, local: &[usize], evaluate: Evaluate) {
     let (q, v) = coordinates();
     let total = |q: &[f64], v: &[f64], w: Weights| {
-        let (mut f, mut k) = ([0.0; 8], [[0.0; 8]; 8]);
+        let (mut f, mut k) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
         assert!(
             evaluate(q, v, w, &mut f, &mut k),
             "{name}: the surfaces must touch"
@@ -128,9 +130,10 @@ fn tangents_with_friction() {
         for (name, spin) in spins {
             let spins = [spin, Spin::Angle { theta: 6 }];
             let friction = Rough::new(joint(NODE, BODY), Box::new(law), slip, spins);
-            let evaluate = |q: &[f64], v: &[f64], w, f: &mut [f64; 8], k: &mut [[f64; 8]; 8]| {
-                friction.force_and_tangent(closed(q, v), w, f, k)
-            };
+            let evaluate =
+                |q: &[f64], v: &[f64], w, f: &mut [f64; WIDTH], k: &mut [[f64; WIDTH]; WIDTH]| {
+                    friction.force_and_tangent(closed(q, v), w, f, k)
+                };
             check(
                 &format!(
                     "with friction, {} slip, {name}",
@@ -155,7 +158,7 @@ fn friction_balances_and_dissipates() {
     let spins = [Spin::Angle { theta: 6 }, Spin::Angle { theta: 9 }];
     let joint = Rough::new(joint(BODY, OTHER), Box::new(law), Slip::Material, spins);
     let at = closed(&q, &v);
-    let mut f = [0.0; 8];
+    let mut f = [0.0; WIDTH];
     assert!(joint.force(at, &mut f), "the surfaces touch");
     let scale = f[0].abs() + f[1].abs();
     for i in 0..2 {
@@ -197,7 +200,7 @@ fn the_force_alone_is_that_of_the_tangent() {
         v0: 0.01,
         v1: 3.0,
     };
-    let same = |name: &str, alone: [f64; 8], with_tangent: [f64; 8], normal: f64| {
+    let same = |name: &str, alone: [f64; WIDTH], with_tangent: [f64; WIDTH], normal: f64| {
         for (a, b) in alone.iter().zip(with_tangent) {
             // one quotient and one product each, and arms shorter than 1
             assert!((a - b).abs() <= 4.0 * f64::EPSILON * normal, "{name}");
@@ -208,7 +211,8 @@ fn the_force_alone_is_that_of_the_tangent() {
         ("body in node", BODY, NODE),
         ("body in body", BODY, OTHER),
     ] {
-        let (mut alone, mut with_tangent, mut k) = ([0.0; 8], [0.0; 8], [[0.0; 8]; 8]);
+        let (mut alone, mut with_tangent, mut k) =
+            ([0.0; WIDTH], [0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
         let smooth = joint(bearing, journal);
         let at = closed(&q, &v);
         let normal = smooth.normal_force(&smooth.gap(&q, &v), at.z);
@@ -219,7 +223,7 @@ fn the_force_alone_is_that_of_the_tangent() {
 
         let spins = [Spin::Angle { theta: 6 }, Spin::Angle { theta: 9 }];
         let rough = Rough::new(smooth, Box::new(law), Slip::Material, spins);
-        let (mut alone, mut with_tangent) = ([0.0; 8], [0.0; 8]);
+        let (mut alone, mut with_tangent) = ([0.0; WIDTH], [0.0; WIDTH]);
         rough.force(at, &mut alone);
         rough.force_and_tangent(at, w, &mut with_tangent, &mut k);
         same(name, alone, with_tangent, normal);
@@ -232,9 +236,9 @@ fn no_normal_is_asked_for_at_the_centre() {
     let (mut q, v) = coordinates();
     let arm = BODY.arm(&q);
     (q[4], q[5]) = (q[0] - arm[0], q[1] - arm[1]);
-    let mut f = [0.0; 8];
+    let mut f = [0.0; WIDTH];
     assert!(!joint.force(closed(&q, &v), &mut f));
-    assert_eq!(f, [0.0; 8]);
+    assert_eq!(f, [0.0; WIDTH]);
     assert!(joint.rate(&joint.gap(&q, &v)) > 0.0);
 }
 

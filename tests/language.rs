@@ -1,16 +1,21 @@
 //! The reference of the scene language, docs/scene.md, speaks of the language that the program reads.
 
 use crate::support::run_scene;
+use looselink::document::{Range, Takes};
 use looselink::registry::Registry;
 use looselink::scene::Scene;
+use looselink::scene::language::{self, language};
 use looselink::simulate::Simulation;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
+fn path() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scene.md")
+}
+
 fn document() -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scene.md");
-    std::fs::read_to_string(path).unwrap()
+    std::fs::read_to_string(path()).unwrap()
 }
 
 /// Blocks between fences, with the line each begins at; a fence of a kind that no test reads is a fault.
@@ -108,72 +113,97 @@ fn quoted(row: &[String]) -> &str {
     inner.unwrap_or_else(|| panic!("{} is not `quoted`", row[0]))
 }
 
-/// The source of the scene reader.
-fn sources() -> Vec<String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scene");
-    let files = std::fs::read_dir(folder).unwrap();
-    files
-        .map(|file| std::fs::read_to_string(file.unwrap().path()).unwrap())
-        .collect()
+/// The line before the table of a sheet.
+fn marker(sheet: &language::Sheet) -> String {
+    let table = match sheet.table {
+        "" => "the scene",
+        table => table,
+    };
+    match sheet.kind {
+        Some([key, kind]) => format!("<!-- keys of {table}, {key} \"{kind}\" -->"),
+        None => format!("<!-- keys of {table} -->"),
+    }
 }
 
-/// The words between the quotes of a piece of source.
-fn words(source: &str) -> BTreeSet<String> {
-    source
-        .split('"')
-        .skip(1)
-        .step_by(2)
-        .map(str::to_owned)
-        .collect()
+/// The table of a sheet.
+fn table(sheet: &language::Sheet) -> String {
+    let mut text = "| key | unit | default | meaning |\n|---|---|---|---|\n".to_owned();
+    if let Some([key, kind]) = sheet.kind {
+        text += &format!("| `{key}` | - | required | `\"{kind}\"` |\n");
+    }
+    for key in &sheet.keys {
+        let unit = Some(key.unit()).filter(|unit| !unit.is_empty());
+        let list = |words: &[&str]| {
+            let words: Vec<String> = words.iter().map(|w| format!("`\"{w}\"`")).collect();
+            format!(": {}", words.join(", "))
+        };
+        let detail = match key.takes {
+            Takes::Word(words) => list(words),
+            Takes::Function { .. } => ", a [function of time](#functions-of-time)".to_owned(),
+            Takes::Vector { shape, .. } | Takes::Rows { shape, .. } => format!(", as {shape}"),
+            Takes::Number {
+                range: Range::NonNegative,
+                ..
+            } => ", not negative".to_owned(),
+            _ => String::new(),
+        };
+        text += &format!(
+            "| `{}` | {} | {} | {}{detail} |\n",
+            key.name,
+            unit.unwrap_or("-"),
+            key.default.unwrap_or("required"),
+            key.purpose,
+        );
+    }
+    text
 }
 
-/// The keys of every table that the reader declares; those of `[integrator]` include the parameters of all schemes.
-fn declared() -> BTreeSet<BTreeSet<String>> {
-    let mut tables = BTreeSet::new();
-    let schemes = Registry::standard().schemes;
-    let parameters = schemes.iter().flat_map(|s| s.parameters);
-    let parameters: BTreeSet<String> = parameters.map(|p| p.name.to_owned()).collect();
-    for source in sources() {
-        if let Some((_, rest)) = source.split_once("known = vec![") {
-            let (first, rest) = rest.split_once(']').unwrap();
-            let (_, rest) = rest.split_once("known.extend([").unwrap();
-            let (last, _) = rest.split_once(']').unwrap();
-            tables.insert(&(&words(first) | &words(last)) | &parameters);
-        }
-        for (at, found) in source.match_indices(".only(") {
-            let rest = &source[at + found.len()..];
-            let call = &rest[..rest.find(")?").unwrap()];
-            for list in call.split("&[").skip(1) {
-                tables.insert(words(&list[..list.find(']').unwrap()]));
-            }
+/// The document with the tables of the reader after their markers.
+fn rewritten(document: &str, sheets: &[language::Sheet]) -> String {
+    let tables: BTreeMap<_, _> = sheets.iter().map(|s| (marker(s), table(s))).collect();
+    assert_eq!(
+        tables.len(),
+        sheets.len(),
+        "two sheets have the same marker"
+    );
+    let mut lines = document.lines().peekable();
+    let mut text = String::new();
+    while let Some(line) = lines.next() {
+        text += line;
+        text.push('\n');
+        if line.starts_with("<!-- keys of ") {
+            text.push('\n');
+            text += tables
+                .get(line)
+                .unwrap_or_else(|| panic!("the reader has no {line}"));
+            lines.next_if_eq(&"");
+            while lines.next_if(|l| l.starts_with('|')).is_some() {}
         }
     }
-    tables
+    for marker in tables.keys() {
+        let count = document.lines().filter(|line| line == marker).count();
+        assert_eq!(count, 1, "docs/scene.md: {marker}");
+    }
+    text
 }
 
-/// The words that the reader offers as choices: the first parts of pairs such as `("ground", Type::Ground)` or
-/// `("circle", circle)`, and the laws of the registry.
-fn choices() -> BTreeSet<String> {
-    let laws = Registry::standard().laws;
-    let mut choices: BTreeSet<String> = laws.iter().map(|law| law.name.to_owned()).collect();
-    for source in sources() {
-        for (at, _) in source.match_indices("(\"") {
-            let mut parts = source[at + 2..].splitn(2, "\", ");
-            let (Some(word), Some(value)) = (parts.next(), parts.next()) else {
-                continue;
-            };
-            let is_word = word.chars().all(|c| c.is_ascii_lowercase() || c == '_');
-            let is_choice = value.starts_with("()")
-                || value.starts_with("true)")
-                || value.starts_with("false)")
-                || value.starts_with(&format!("{word})"))
-                || value.starts_with(|c: char| c.is_ascii_uppercase());
-            if is_word && is_choice {
-                choices.insert(word.to_owned());
-            }
-        }
-    }
-    choices
+/// The words that a scene can choose from: kinds, laws, schemes, and those that keys take.
+fn choices() -> BTreeSet<&'static str> {
+    let registry = Registry::standard();
+    let sheets = language(&registry);
+    let kinds = sheets.iter().filter_map(|sheet| Some(sheet.kind?[1]));
+    let keys = sheets.iter().flat_map(|sheet| &sheet.keys);
+    let words = keys.flat_map(|key| match key.takes {
+        Takes::Word(words) => words,
+        _ => &[],
+    });
+    let laws = registry.laws.iter().map(|law| law.name);
+    let schemes = registry.schemes.iter().map(|scheme| scheme.name);
+    kinds
+        .chain(words.copied())
+        .chain(laws)
+        .chain(schemes)
+        .collect()
 }
 
 #[test]
@@ -194,33 +224,21 @@ fn every_example_of_the_language_runs() {
     assert!(scenes.len() >= 49, "{} examples", scenes.len());
 }
 
+/// `LOOSELINK_WRITE=1 cargo test the_tables_of_the_language` writes the tables of docs/scene.md anew.
 #[test]
-fn every_key_stands_in_a_table_of_the_language() {
-    let mut described = BTreeSet::new();
-    for sheet in sheets(&document()) {
-        if sheet.heading[0] == "key" {
-            assert_eq!(sheet.heading[1..3], ["unit", "default"]);
-            let keys: BTreeSet<String> = sheet.rows.iter().map(|r| quoted(r).to_owned()).collect();
-            assert_eq!(keys.len(), sheet.rows.len(), "line {}: twice", sheet.line);
-            assert!(
-                declared().contains(&keys),
-                "line {}: the reader has no table of {keys:?}",
-                sheet.line
-            );
-            described.insert(keys);
-        }
+fn the_tables_of_the_language_are_those_of_the_reader() {
+    let document = document();
+    let text = rewritten(&document, &language(&Registry::standard()));
+    if std::env::var_os("LOOSELINK_WRITE").is_some() {
+        std::fs::write(path(), text).unwrap();
+    } else {
+        assert_eq!(document, text);
     }
-    for keys in declared() {
-        assert!(described.contains(&keys), "no table has the keys {keys:?}");
-    }
-    assert!(described.len() > 30, "{} tables", described.len());
 }
 
 #[test]
 fn every_choice_stands_in_the_language() {
-    let (document, mut choices) = (document(), choices());
-    let schemes = Registry::standard().schemes;
-    choices.extend(schemes.iter().map(|scheme| scheme.name.to_owned()));
+    let (document, choices) = (document(), choices());
     for word in &choices {
         assert!(document.contains(&format!("`\"{word}\"`")), "{word}");
     }
@@ -232,10 +250,12 @@ fn every_choice_stands_in_the_language() {
 fn every_choice_has_an_example() {
     let document = document();
     let examples: String = examples(&document).into_iter().map(|e| e.1).collect();
+    let schemes = Registry::standard().schemes;
     for word in choices() {
-        // the default of `analysis` needs no example
+        // the default of `analysis` needs no example, and schemes differ in their name alone
+        let is_example = examples.contains(&format!("\"{word}\"")) || word == "dynamic";
         assert!(
-            examples.contains(&format!("\"{word}\"")) || word == "dynamic",
+            is_example || schemes.iter().any(|s| s.name == word),
             "{word}"
         );
     }
@@ -388,7 +408,7 @@ model = "ideal"
         (
             "[forces.f]\ntype = 'spring_damper'\nfrom = 'crank.end'\nto = 'rod.start'
             stiffness = 1.0\ndamping = 0.0\nrest_length = 0.1",
-            "the ends of f coincide at the start, where the direction of a spring with a rest length is undefined",
+            "force f is not defined at the start: a spring with a rest length has no direction where its ends coincide",
         ),
     ] {
         let text = format!("{base}{bob}{addition}");

@@ -2,7 +2,7 @@
 
 use crate::bad_input::{CASE4, check, fault};
 use crate::good_input::{contact, load};
-use looselink::scene::{BodyKind, LinkModel};
+use looselink::body::{FlexibleLink, RigidLink};
 
 #[test]
 fn overrides_point_into_the_override() {
@@ -42,18 +42,10 @@ fn overrides() {
     );
     assert_eq!(scene.integrator.step(), Some(1e-6));
     assert!(contact(&scene, "B1").is_none() && contact(&scene, "B2").is_some());
-    let model = |body: &str| match &scene.bodies[scene.body(body).unwrap()].kind {
-        BodyKind::Link(link) => link.model,
-        _ => panic!("{body} is a link"),
-    };
-    assert_eq!(
-        model("link1"),
-        LinkModel::Flexible {
-            elements: 4,
-            youngs_modulus: 7e9
-        }
-    );
-    assert_eq!(model("link2"), LinkModel::Rigid);
+    let kind = |body: &str| &scene.bodies[scene.body(body).unwrap()].kind;
+    let link: &FlexibleLink = kind("link1").get().unwrap();
+    assert_eq!((link.elements, link.youngs_modulus), (4, 7e9));
+    assert!(kind("link2").get::<RigidLink>().is_some());
     let scene = load(
         CASE4,
         &[
@@ -61,10 +53,7 @@ fn overrides() {
             "bodies.ground.points.A1.1=0.3",
         ],
     );
-    let BodyKind::Ground { points } = &scene.bodies[0].kind else {
-        panic!("ground")
-    };
-    assert_eq!(points[0].at, [0.1, 0.3]);
+    assert_eq!(scene.bodies[0].kind.points()[0].at, [0.1, 0.3]);
     // A missing optional key is created; the last override of a key wins.
     let scene = load(
         CASE4,

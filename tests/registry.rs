@@ -49,7 +49,7 @@ static SYMPLECTIC_EULER: Scheme = Scheme {
         name: "theta",
         range: [0.0, 1.0],
         closed: true,
-        required: false,
+        default: Some("0.5"),
         purpose: "the share of the acceleration",
     }],
     build: |_, shape| (own_integrator::SCHEME.build)(&Method::new(&own_integrator::SCHEME), shape),

@@ -5,9 +5,8 @@ use ladder::{Rung, Worst};
 use looselink::constraint::{
     Align, ClampSlope, Coincide, Constraint, Curvature, Length, Place, Slide,
 };
-use looselink::force::{
-    ElementDamping, Force, MassDamping, PointForce, SpringDamper, Torque, TorsionSpring, WIDTH,
-};
+use looselink::force::{ElementDamping, Force, MassDamping, WIDTH};
+use looselink::interaction::{PointForce, SpringDamper, Torque, TorsionSpring};
 use looselink::marker::{Marker, Spin};
 use looselink::motion::Function;
 use looselink::system::{INTEGRALS, Integral, Shape, State, Weights};

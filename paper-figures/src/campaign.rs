@@ -2,7 +2,7 @@
 
 use crate::kinematics::Geometry;
 use crate::runs::{Pace, Plan, Recording, each};
-use looselink::scene::{BodyKind, LinkModel};
+use looselink::body::FlexibleLink;
 use miette::{Result, miette};
 
 /// How finely and how long the mechanism is run.
@@ -149,11 +149,8 @@ impl Campaign {
 /// Young's modulus of the passive links of a scene \[Pa\].
 fn youngs_modulus(plan: &Plan) -> Result<f64> {
     let scene = plan.scene()?;
-    match scene.body("link1").map(|b| &scene.bodies[b].kind) {
-        Some(BodyKind::Link(looselink::scene::Link {
-            model: LinkModel::Flexible { youngs_modulus, .. },
-            ..
-        })) => Ok(*youngs_modulus),
-        _ => Err(miette!("{} has no flexible link1", plan.scene_name())),
-    }
+    let link = scene.body("link1").and_then(|b| scene.bodies[b].kind.get());
+    let link: Option<&FlexibleLink> = link;
+    link.map(|link| link.youngs_modulus)
+        .ok_or_else(|| miette!("{} has no flexible link1", plan.scene_name()))
 }

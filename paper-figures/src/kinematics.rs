@@ -11,7 +11,7 @@
 //! |e_x| <= sum_i |J^-1|_{xi} (|e_B| + |e_C|)_i to first order in the eccentricities e.
 
 use looselink::motion::Circle;
-use looselink::scene::{BodyKind, JointModel, PointRef, Scene, Sketched};
+use looselink::scene::{PointRef, Scene, Sketched};
 use miette::{Result, miette};
 use std::any::Any;
 use std::f64::consts::TAU;
@@ -72,10 +72,8 @@ impl Geometry {
             let corner = [radius + platform[i][0], platform[i][1]];
             elbow[i] = cross(minus(corner, base[i]), minus(pin, base[i])).signum();
         }
-        let clearance = match scene.joint("B1").map(|j| &scene.joints[j].model) {
-            Some(JointModel::Clearance(contact)) => contact.clearance,
-            _ => 0.0,
-        };
+        let contact = scene.joint("B1").and_then(|j| scene.joints[j].contact());
+        let clearance = contact.map_or(0.0, |contact| contact.clearance);
         let (crank, link) = (link_length(scene, "crank1")?, link_length(scene, "link1")?);
         Ok(Geometry {
             base,
@@ -186,11 +184,7 @@ fn end_on(scene: &Scene, joint: &str, body: &str) -> Result<Vector> {
         .into_iter()
         .find(on)
         .ok_or_else(missing)?;
-    match &scene.bodies[body].kind {
-        BodyKind::Ground { points } => Ok(points[end.point].at),
-        BodyKind::Rigid(rigid) => Ok(rigid.points[end.point].at),
-        _ => Err(missing()),
-    }
+    Ok(scene.bodies[body].kind.points()[end.point].at)
 }
 
 fn sketched(scene: &Scene, joint: &str) -> Result<Vector> {
@@ -202,10 +196,8 @@ fn sketched(scene: &Scene, joint: &str) -> Result<Vector> {
 }
 
 fn link_length(scene: &Scene, name: &str) -> Result<f64> {
-    match scene.body(name).map(|b| &scene.bodies[b].kind) {
-        Some(BodyKind::Link(link)) => Ok(link.length),
-        _ => Err(miette!("the scene has no link {name}")),
-    }
+    let link = scene.body(name).and_then(|b| scene.bodies[b].kind.length());
+    link.ok_or_else(|| miette!("the scene has no link {name}"))
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use crate::{
     statements_acceleration, statements_contact, statements_error, statements_introduction,
     statements_model, statements_setup,
 };
-use looselink::scene::{BodyKind, LinkModel};
+use looselink::body::FlexibleLink;
 use numbers::{digits, percent, si};
 use std::fmt::Write;
 
@@ -239,14 +239,13 @@ fn bound_argument(e: &Evidence, numbers: &mut Numbers) -> String {
 }
 
 fn stiffness_argument(c: &Campaign, numbers: &mut Numbers) -> String {
-    let link = c.flexible.scene.bodies.iter().find_map(|b| match &b.kind {
-        BodyKind::Link(link) => match link.model {
-            LinkModel::Flexible { youngs_modulus, .. } => {
-                Some((link.area * youngs_modulus, link.length))
-            }
-            LinkModel::Rigid => None,
-        },
-        _ => None,
+    let link = c.flexible.scene.bodies.iter().find_map(|b| {
+        let FlexibleLink {
+            link,
+            youngs_modulus,
+            ..
+        } = b.kind.get()?;
+        Some((link.area * youngs_modulus, link.length))
     });
     let (axial, length) = link.unwrap_or((f64::NAN, f64::NAN));
     let stiffness = numbers.put("case2.axial_stiffness", axial / length);

@@ -3,8 +3,8 @@
 use crate::evidence::{Evidence, statement};
 use crate::interval::Verdict;
 use crate::statement::{Basis, Statement};
+use looselink::body::{Body, FlexibleLink, RigidBody};
 use looselink::link::{ElasticRoute, GaussCable, LiteralCable};
-use looselink::scene::{BodyKind, JointModel, LinkModel};
 use looselink::simulate::Simulation;
 use looselink::stepper::bathe::splitting;
 use numbers::{digits, percent, si};
@@ -27,15 +27,12 @@ pub fn statements(e: &Evidence) -> Vec<Statement> {
 }
 
 fn coordinates(e: &Evidence) -> Statement {
-    let of = |kind: &BodyKind| match kind {
-        BodyKind::Link(link) => match link.model {
-            LinkModel::Flexible { elements, .. } => 4 * (elements + 1),
-            LinkModel::Rigid => 0,
-        },
-        BodyKind::Rigid(_) => 3,
+    let of = |kind: &dyn Body| match (kind.get(), kind.get()) {
+        (Some(FlexibleLink { elements, .. }), _) => 4 * (elements + 1),
+        (_, Some(RigidBody { .. })) => 3,
         _ => 0,
     };
-    let count: usize = e.c.both.scene.bodies.iter().map(|b| of(&b.kind)).sum();
+    let count: usize = e.c.both.scene.bodies.iter().map(|b| of(&*b.kind)).sum();
     Statement {
         measured: format!("the scene of case 4 has {count}; separate coordinates for the cranks would add 12."),
         criterion: "the count is 27",
@@ -47,19 +44,9 @@ fn coordinates(e: &Evidence) -> Statement {
 }
 
 fn constant_mass(e: &Evidence) -> Statement {
-    let elements: usize =
-        e.c.both
-            .scene
-            .bodies
-            .iter()
-            .map(|b| match &b.kind {
-                BodyKind::Link(link) => match link.model {
-                    LinkModel::Flexible { elements, .. } => elements,
-                    LinkModel::Rigid => 0,
-                },
-                _ => 0,
-            })
-            .sum();
+    let bodies = e.c.both.scene.bodies.iter();
+    let links = bodies.filter_map(|b| b.kind.get::<FlexibleLink>());
+    let elements: usize = links.map(|link| link.elements).sum();
     Statement {
         measured: format!(
             "the mass matrices of the {elements} elements of case 4 are integrated once, when the scene is compiled, and do not depend on the coordinates."
@@ -240,12 +227,7 @@ fn dissipates(e: &Evidence) -> Statement {
 
 fn restitution(e: &Evidence) -> Statement {
     let scene = &e.c.both.scene;
-    let contact = scene
-        .joint("B1")
-        .and_then(|j| match &scene.joints[j].model {
-            JointModel::Clearance(contact) => Some(contact),
-            _ => None,
-        });
+    let contact = scene.joint("B1").and_then(|j| scene.joints[j].contact());
     let (typed, delivered) = contact.map_or((f64::NAN, f64::NAN), |c| {
         (c.restitution, c.normal_law().delivered_restitution())
     });

@@ -6,7 +6,8 @@ use crate::measures::Measures;
 use crate::runs::Recording;
 use crate::signal::peak;
 use crate::statement::{Basis, Statement};
-use looselink::scene::{BodyKind, JointModel, Link, LinkModel, Scene};
+use looselink::body::{FlexibleLink, Link};
+use looselink::scene::Scene;
 use numbers::{digits, percent, si};
 
 /// Young's modulus of aluminium \[Pa\].
@@ -53,20 +54,18 @@ fn geometry(e: &Evidence) -> Statement {
     }
 }
 
+fn link<'a>(scene: &'a Scene, name: &str) -> Option<&'a Link> {
+    scene.bodies[scene.body(name)?].kind.link()
+}
+
 /// Area \[m2\] of the section of a link.
 fn area(scene: &Scene, name: &str) -> f64 {
-    match scene.body(name).map(|b| &scene.bodies[b].kind) {
-        Some(BodyKind::Link(link)) => link.area,
-        _ => f64::NAN,
-    }
+    link(scene, name).map_or(f64::NAN, |link| link.area)
 }
 
 /// Second moment of area \[m4\] of a flexible link.
 fn second_moment(scene: &Scene, name: &str) -> f64 {
-    match scene.body(name).map(|b| &scene.bodies[b].kind) {
-        Some(BodyKind::Link(link)) => link.second_moment,
-        _ => f64::NAN,
-    }
+    link(scene, name).map_or(f64::NAN, |link| link.second_moment)
 }
 
 fn sections(e: &Evidence) -> Statement {
@@ -96,9 +95,9 @@ fn cases(e: &Evidence) -> Statement {
     let c = e.c;
     let read = |r: &Recording| {
         let link = r.scene.body("link1").map(|b| &r.scene.bodies[b].kind);
-        let flexible = matches!(link, Some(BodyKind::Link(l)) if l.model != LinkModel::Rigid);
-        let loose = |j: &looselink::scene::Joint| matches!(j.model, JointModel::Clearance(_));
-        (flexible, r.scene.joints.iter().filter(|j| loose(j)).count())
+        let flexible = link.is_some_and(|link| !link.is_rigid());
+        let loose = r.scene.joints.iter().filter(|j| j.contact().is_some());
+        (flexible, loose.count())
     };
     let read = [&c.ideal, &c.flexible, &c.loose, &c.both].map(read);
     let words = |(flexible, loose): (bool, usize)| {
@@ -123,12 +122,8 @@ fn cases(e: &Evidence) -> Statement {
 
 fn normal_clearance(e: &Evidence) -> Statement {
     let scene = &e.c.both.scene;
-    let radius = scene
-        .joint("B1")
-        .and_then(|j| match &scene.joints[j].model {
-            JointModel::Clearance(contact) => Some(contact.bearing_radius),
-            _ => None,
-        });
+    let contact = scene.joint("B1").and_then(|j| scene.joints[j].contact());
+    let radius = contact.and_then(|contact| contact.bearing_radius);
     let radius = radius.unwrap_or(f64::NAN);
     let relative = e.c.geometry.clearance / radius;
     Statement {
@@ -152,15 +147,9 @@ fn normal_clearance(e: &Evidence) -> Statement {
 }
 
 fn modulus(e: &Evidence) -> Statement {
-    let of = |kind: &BodyKind| match kind {
-        BodyKind::Link(Link {
-            model: LinkModel::Flexible { youngs_modulus, .. },
-            ..
-        }) => Some(*youngs_modulus),
-        _ => None,
-    };
-    let bodies = &e.c.flexible.scene.bodies;
-    let modulus = bodies.iter().find_map(|b| of(&b.kind)).unwrap_or(f64::NAN);
+    let bodies = e.c.flexible.scene.bodies.iter();
+    let mut links = bodies.filter_map(|b| b.kind.get::<FlexibleLink>());
+    let modulus = links.next().map_or(f64::NAN, |link| link.youngs_modulus);
     Statement {
         measured: format!(
             "the scenes have {}; aluminium has {}.",

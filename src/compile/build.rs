@@ -1,59 +1,87 @@
 //! Builds a model from the terms of a scene: masses, patterns, and the place of each term in the equations.
 
-use super::joints::{joint_terms, motion_terms};
-use super::mass::{mass, planar_inertia, weight};
-use super::numbering::{Numbering, shifted};
+use super::mass::{mass, weight};
+use super::motions::motion_terms;
+use super::numbering::{Connection, Numbering, shifted};
 use super::rules::rules;
-use super::terms::Terms;
-use super::{Compiler, Mode, Role, loads, reactions};
-use crate::constraint::Length;
-use crate::effect::Effect;
+use super::{Compiler, Mode, Role, reactions};
+use crate::body::{Content, Point};
+use crate::contact::ContactPair;
+use crate::force::Force;
+use crate::interaction::{Ends, JointEnds, Placed};
 use crate::kinematics::Kinematics;
-use crate::link::{AncfCable, ElasticRoute, natural_rigid};
+use crate::link::AncfCable;
 use crate::math::lu::Symbolic;
 use crate::model::{
-    Block, BodyCoordinates, Border, ConstraintTerm, Element, Inertia, Mass, Model, PlacedBody,
-    PlacedConstraint, PlacedContact, PlacedForce, PlacedJoint, PlacedPoint,
+    Block, Border, Element, Mass, Model, PlacedBody, PlacedConstraint, PlacedContact, PlacedForce,
+    PlacedJoint, PlacedPoint,
 };
-use crate::scene::{BodyKind, Link, LinkModel, PointRef, SceneError};
+use crate::scene::{Analysis, SceneError};
 use crate::system::Shape;
+use crate::terms::{ConstraintRows, Inertia, JointTerms, Owner, Terms};
+use std::ops::Range;
 use std::sync::Arc;
 
-/// Builds the model.
-pub(super) fn build(
-    c: &Compiler,
-    mut numbering: Numbering,
-    kinematics: Option<&Arc<Kinematics>>,
-) -> Result<Model, SceneError> {
-    let mut terms = Terms::default();
-    for b in 0..c.scene.bodies.len() {
-        body_terms(c, &mut numbering, b, &mut terms)?;
-    }
-    let mut own = Vec::new();
-    for (j, joint) in c.scene.joints.iter().enumerate() {
-        own.push(joint_terms(c, &numbering, j, joint, &mut terms)?);
-    }
-    motion_terms(c, &numbering, &mut own, &mut terms);
-    if c.mode == Mode::Real {
-        loads::add(c, &numbering, &mut terms);
-    }
+/// The terms of a mechanism, and what of them belongs to each body, joint and force of the scene.
+struct Collected {
+    terms: Terms,
+    bodies: Vec<BodyParts>,
+    joints: Vec<JointTerms>,
+    forces: Vec<(String, usize)>,
+}
 
-    let n = numbering.unknowns;
-    if let Some(row) = terms
-        .rows
-        .iter()
-        .find(|r| r.term.coordinates().iter().all(|&i| i >= n))
-    {
+fn collect(c: &Compiler, numbering: &Numbering) -> Result<Collected, SceneError> {
+    let mut terms = Terms {
+        gravity: c.scene.simulation.gravity.unwrap_or([0.0; 2]),
+        ..Terms::default()
+    };
+    let bodies = 0..c.bodies.len();
+    let bodies = bodies.map(|b| body_terms(c, numbering, b, &mut terms));
+    let bodies = bodies.collect::<Result<_, _>>()?;
+    let joints = 0..c.joints.len();
+    let joints = joints.map(|j| joint_terms(c, numbering, j, &mut terms));
+    let mut joints: Vec<JointTerms> = joints.collect::<Result<_, _>>()?;
+    motion_terms(c, numbering, &mut joints, &mut terms);
+    let forces = match c.mode {
+        Mode::Real => force_terms(c, numbering, &mut terms),
+        Mode::Ideal => Vec::new(),
+    };
+    let known = |row: &&ConstraintRows| {
+        let coordinates = row.term.coordinates();
+        coordinates.iter().all(|&i| i >= numbering.unknowns)
+    };
+    if let Some(row) = terms.constraints.iter().find(known) {
         let message = format!(
             "{} constrains only points whose motion is known already, because they are fixed or prescribed",
             row.names[0]
         );
         return Err(c.scene.error(row.span, message, "nothing here can move"));
     }
-    let multipliers = terms.rows.iter().map(|row| row.names.len()).sum();
+    Ok(Collected {
+        terms,
+        bodies,
+        joints,
+        forces,
+    })
+}
+
+/// Builds the model.
+pub(super) fn build(
+    c: &Compiler,
+    numbering: Numbering,
+    kinematics: Option<&Arc<Kinematics>>,
+) -> Result<Model, SceneError> {
+    let Collected {
+        mut terms,
+        bodies: parts,
+        joints: own,
+        forces: named_forces,
+    } = collect(c, &numbering)?;
+    let n = numbering.unknowns;
+    let multipliers = terms.constraints.iter().map(|row| row.names.len()).sum();
     let symbolic = analyse(&terms, n);
-    let mut names = numbering.names.clone();
-    names.extend(terms.rows.iter().flat_map(|row| row.names.iter().cloned()));
+    let rows = terms.constraints.iter().flat_map(|row| &row.names);
+    let names = numbering.names.iter().chain(rows).cloned().collect();
 
     let weight = if c.mode == Mode::Real {
         weight(&terms.inertia, numbering.coordinates)
@@ -64,72 +92,33 @@ pub(super) fn build(
     let acceleration_symbolic = analyse_level(&terms, &mass, n);
     mass.tangent = mass.matrix(n, &symbolic, c.mode);
     mass.acceleration_level = mass.matrix(n, &acceleration_symbolic, c.mode);
-    let place = |coordinates: Vec<usize>| Block::new(coordinates, &symbolic, n);
-    let elements = terms
-        .elements
-        .into_iter()
-        .map(|(kernel, coordinates)| Element {
-            kernel,
-            block: place(coordinates),
-        })
-        .collect();
-    let mut row = 0;
-    let constraints = terms.rows.into_iter().map(|r| {
-        let coordinates = r.term.coordinates();
-        let rows = r.term.rows();
-        let borders = |symbolic| {
-            let border = |d| Border::new(&coordinates, row + d, symbolic, n);
-            (0..rows).map(border).collect()
-        };
-        let placed = PlacedConstraint {
-            border: borders(&symbolic),
-            acceleration_border: borders(&acceleration_symbolic),
-            owners: owners(&coordinates, r.term.split(), r.sides),
-            block: place(coordinates),
-            effect: r.effect,
-            row,
-            rows,
-            kept: [1.0; 2],
-            term: r.term,
-        };
-        row += rows;
-        placed
-    });
-    let constraints: Vec<PlacedConstraint> = constraints.collect();
-    let forces = terms.forces.into_iter().map(|(term, sides)| {
-        let coordinates = term.coordinates();
-        PlacedForce {
-            owners: owners(&coordinates, term.split(), sides),
-            block: place(coordinates),
-            term,
-        }
-    });
-    let forces = forces.collect();
-    let contacts = terms.contacts.into_iter().map(|pair| PlacedContact {
-        block: place(pair.coordinates()),
-        pair,
-    });
-    let contacts: Vec<PlacedContact> = contacts.collect();
-
     let shape = Shape {
         unknowns: n,
         coordinates: numbering.coordinates,
         multipliers,
-        contacts: contacts.len(),
+        contacts: terms.contacts.len(),
         angles: terms.angles,
+    };
+    let places = Places {
+        tangent: &symbolic,
+        acceleration_level: &acceleration_symbolic,
+        unknowns: n,
     };
     let mut model = Model {
         shape,
-        symbolic,
-        acceleration_symbolic,
         names,
+        states: numbering.states.concat(),
+        angles: angles(c, &numbering),
+        kinematics_counter: 0,
+        elastic_counter: 0,
+        effects: Vec::new(),
         mass,
-        elements,
-        constraints,
-        forces,
+        elements: places.elements(terms.elements),
+        constraints: places.constraints(terms.constraints),
+        forces: places.forces(terms.forces, terms.damping),
         counts: Vec::new(),
-        named_forces: terms.named_forces,
-        contacts,
+        named_forces,
+        contacts: places.contacts(terms.contacts),
         weight,
         fixed: numbering.fixed.clone(),
         rules: rules(c, &numbering),
@@ -138,36 +127,131 @@ pub(super) fn build(
         driven_nodes: numbering.driven_nodes,
         bodies: Vec::new(),
         joints: Vec::new(),
+        symbolic,
+        acceleration_symbolic,
     };
     model.count_effects();
-    model.bodies = c
-        .scene
-        .bodies
-        .iter()
-        .zip(numbering.bodies)
-        .enumerate()
-        .map(|(b, (body, coordinates))| PlacedBody {
-            name: body.name.clone(),
-            points: points(c, &coordinates, b),
-            coordinates,
-            prescribed: kinematics.and_then(|k| prescribed(c, k, b)),
-        })
-        .collect();
+    let bodies = numbering.bodies.into_iter().zip(parts).enumerate();
+    let bodies = bodies.map(|(b, (placed, parts))| placed_body(c, b, placed, parts, kinematics));
+    model.bodies = bodies.collect();
     if c.mode == Mode::Real {
         model.driven = reactions::driven_forces(c, &model, kinematics.map(|k| &**k), &own);
-        for (j, joint) in c.scene.joints.iter().enumerate() {
-            let (kind, actuator) = reactions::joint(c, &model, &own, j)?;
-            model.joints.push(PlacedJoint {
-                name: joint.name.clone(),
-                kind,
-                actuator,
-                couple: own[j].couple,
-                turned: own[j].turned,
-                slide: own[j].slide,
-            });
-        }
+        model.joints = placed_joints(c, &model, &own)?;
     }
     Ok(model)
+}
+
+/// A body with its coordinates and terms.
+fn placed_body(
+    c: &Compiler,
+    b: usize,
+    placed: Placed,
+    parts: BodyParts,
+    kinematics: Option<&Arc<Kinematics>>,
+) -> PlacedBody {
+    PlacedBody {
+        name: c.scene.bodies[b].name.clone(),
+        points: points(c, &placed, b),
+        contents: c.slots[b].iter().map(|slot| slot.content).collect(),
+        prescribed: kinematics.and_then(|k| prescribed(c, k, b)),
+        moves: c.roles[b] != Role::Ground,
+        inertia: parts.inertia,
+        elements: parts.elements,
+        placed,
+    }
+}
+
+/// The joints, with the terms that carry their forces.
+fn placed_joints(
+    c: &Compiler,
+    model: &Model,
+    own: &[JointTerms],
+) -> Result<Vec<PlacedJoint>, SceneError> {
+    let joints = c.scene.joints.iter().enumerate().map(|(j, joint)| {
+        let (kind, actuator) = reactions::joint(c, model, own, j)?;
+        Ok(PlacedJoint {
+            name: joint.name.clone(),
+            kind,
+            actuator,
+            couple: own[j].couple,
+            turned: own[j].turned,
+            slide: own[j].slide,
+        })
+    });
+    joints.collect()
+}
+
+/// Finds the places of terms in the matrices.
+struct Places<'a> {
+    tangent: &'a Symbolic,
+    acceleration_level: &'a Symbolic,
+    unknowns: usize,
+}
+
+impl Places<'_> {
+    fn block(&self, coordinates: Vec<usize>) -> Block {
+        Block::new(coordinates, self.tangent, self.unknowns)
+    }
+
+    fn elements(&self, elements: Vec<(AncfCable, Vec<usize>)>) -> Vec<Element> {
+        let elements = elements.into_iter().map(|(kernel, coordinates)| Element {
+            kernel,
+            block: self.block(coordinates),
+        });
+        elements.collect()
+    }
+
+    fn constraints(&self, constraints: Vec<ConstraintRows>) -> Vec<PlacedConstraint> {
+        let mut row = 0;
+        let constraints = constraints.into_iter().map(|r| {
+            let coordinates = r.term.coordinates();
+            let rows = r.term.rows();
+            let borders = |symbolic| {
+                let border = |d| Border::new(&coordinates, row + d, symbolic, self.unknowns);
+                (0..rows).map(border).collect()
+            };
+            let placed = PlacedConstraint {
+                border: borders(self.tangent),
+                acceleration_border: borders(self.acceleration_level),
+                owners: owners(&coordinates, r.term.split(), r.sides),
+                block: self.block(coordinates),
+                row,
+                rows,
+                kept: [1.0; 2],
+                term: r.term,
+            };
+            row += rows;
+            placed
+        });
+        constraints.collect()
+    }
+
+    fn forces(
+        &self,
+        forces: Vec<(Box<dyn Force>, [usize; 2])>,
+        damping: Vec<(Box<dyn Force>, usize)>,
+    ) -> Vec<PlacedForce> {
+        let damping = damping.into_iter().map(|(term, body)| (term, [body, body]));
+        let forces = forces.into_iter().chain(damping).map(|(term, sides)| {
+            let coordinates = term.coordinates();
+            PlacedForce {
+                owners: owners(&coordinates, term.split(), sides),
+                block: self.block(coordinates),
+                counter: 0,
+                term,
+            }
+        });
+        forces.collect()
+    }
+
+    fn contacts(&self, contacts: Vec<Box<dyn ContactPair>>) -> Vec<PlacedContact> {
+        let contacts = contacts.into_iter().map(|pair| PlacedContact {
+            block: self.block(pair.coordinates()),
+            counters: Vec::new(),
+            pair,
+        });
+        contacts.collect()
+    }
 }
 
 /// The body of each local coordinate: the first `split` belong to the first side.
@@ -177,154 +261,136 @@ fn owners(coordinates: &[usize], split: usize, sides: [usize; 2]) -> Vec<usize> 
         .collect()
 }
 
+/// The unknown angles of rigid bodies.
+fn angles(c: &Compiler, numbering: &Numbering) -> Vec<usize> {
+    let bodies = c.slots.iter().zip(&numbering.bodies);
+    let slots = bodies.flat_map(|(slots, placed)| slots.iter().zip(&placed.x));
+    let poses = slots.filter(|(slot, _)| slot.content == Content::Pose);
+    let angles = poses.map(|(_, x)| x + 2);
+    angles.filter(|angle| *angle < numbering.unknowns).collect()
+}
+
 /// Named points of a body that moves.
-fn points(c: &Compiler, coordinates: &BodyCoordinates, body: usize) -> Vec<PlacedPoint> {
-    let count = match &c.scene.bodies[body].kind {
-        BodyKind::Ground { .. } => 0,
-        BodyKind::Link(link) => 2 + link.points.len(),
-        BodyKind::Rigid(rigid) => rigid.points.len(),
-        BodyKind::PointMass { .. } => 1,
-        BodyKind::Moving { points, .. } => points.len(),
+fn points(c: &Compiler, placed: &Placed, body: usize) -> Vec<PlacedPoint> {
+    if c.roles[body] == Role::Ground {
+        return Vec::new();
+    }
+    let points = placed.kind.points().iter().enumerate();
+    let place = |(i, point): (usize, &Point)| PlacedPoint {
+        name: point.name.clone(),
+        marker: placed.marker(i),
+        slope: placed.kind.slope_slot(i).map(|slot| placed.x[slot]),
     };
-    let place = |point| {
-        let point = PointRef { body, point };
-        let name = c.point_name(point);
-        PlacedPoint {
-            name: name
-                .split_once('.')
-                .map_or(name.clone(), |(_, p)| p.to_owned()),
-            marker: c.marker(coordinates, point),
-            slope: match coordinates {
-                BodyCoordinates::FlexibleLink { slopes, points, .. } => {
-                    Some(slopes[points[point.point]])
-                }
-                _ => None,
-            },
-        }
-    };
-    (0..count).map(place).collect()
+    points.map(place).collect()
 }
 
 /// First coordinate of body `b` in the ideal mechanism that the drive follows.
 fn prescribed(c: &Compiler, kinematics: &Kinematics, b: usize) -> Option<usize> {
-    if !c.scene.drives.iter().any(|d| d.body == b) {
-        return None;
-    }
-    match shifted(
-        &kinematics.mechanism.bodies()[b].coordinates,
-        kinematics.offset,
-    ) {
-        BodyCoordinates::Rigid { x } => Some(x),
-        _ => None,
-    }
+    let driven = c.scene.drives.iter().any(|d| d.body == b);
+    let x = &kinematics.mechanism.bodies()[b].placed.x;
+    driven.then(|| shifted(x, kinematics.offset)[0])
+}
+
+/// The terms of a body, by their indices.
+struct BodyParts {
+    inertia: Range<usize>,
+    elements: Range<usize>,
 }
 
 fn body_terms(
     c: &Compiler,
-    numbering: &mut Numbering,
+    numbering: &Numbering,
     b: usize,
     terms: &mut Terms,
-) -> Result<(), SceneError> {
+) -> Result<BodyParts, SceneError> {
     let body = &c.scene.bodies[b];
-    let gravity = c.scene.simulation.gravity.unwrap_or([0.0; 2]);
-    match (&body.kind, &mut numbering.bodies[b]) {
-        (BodyKind::Rigid(rigid), BodyCoordinates::Rigid { x }) => {
-            let (m, i) = (rigid.mass, rigid.inertia);
-            terms.inertia.push(Inertia {
-                coordinates: vec![*x, *x + 1, *x + 2],
-                values: vec![m, 0.0, 0.0, 0.0, m, 0.0, 0.0, 0.0, i],
-                field: vec![gravity[0], gravity[1], 0.0],
-            });
-        }
-        (BodyKind::PointMass { mass }, BodyCoordinates::PointMass { x }) => {
-            terms
-                .inertia
-                .push(planar_inertia([[*mass]], [*x], [true], gravity));
-        }
-        (BodyKind::Link(link), BodyCoordinates::RigidLink { ends }) => {
-            let mass = link.density * link.area * link.length;
-            terms.inertia.push(planar_inertia(
-                natural_rigid::mass(mass),
-                *ends,
-                [true; 2],
-                gravity,
-            ));
-            if c.roles[b] == Role::Free {
-                let [i, j] = *ends;
-                if i >= numbering.unknowns && j >= numbering.unknowns {
-                    let message = format!(
-                        "the length of {} is redundant: the joints at its two ends fix it already",
-                        body.name
-                    );
-                    return Err(c.scene.error(body.span, message, "redundant link"));
-                }
-                let length = Length {
-                    i,
-                    j,
-                    length: link.length,
-                };
-                let name = format!("length of {}", body.name);
-                terms.constrain(
-                    ConstraintTerm::Length(length),
-                    Effect::Length,
-                    &name,
-                    &[""],
-                    [b, b],
-                    body.span,
-                );
-            }
-        }
-        (
-            BodyKind::Link(link),
-            BodyCoordinates::FlexibleLink {
-                nodes,
-                slopes,
-                elements,
-                element_length,
-                ..
-            },
-        ) => {
-            let first = terms.elements.len();
-            for k in 0..nodes.len() - 1 {
-                let firsts = [nodes[k], slopes[k], nodes[k + 1], slopes[k + 1]];
-                let m = AncfCable::mass(*element_length, link.density * link.area);
-                terms.inertia.push(planar_inertia(
-                    m,
-                    firsts,
-                    [true, false, true, false],
-                    gravity,
-                ));
-                let coordinates = firsts.iter().flat_map(|&x| [x, x + 1]).collect();
-                terms
-                    .elements
-                    .push((kernel(link, *element_length), coordinates));
-            }
-            *elements = first..terms.elements.len();
-        }
-        _ => {}
+    let first = (terms.inertia.len(), terms.elements.len());
+    let before = terms.constraints.len();
+    let owner = Owner {
+        name: &body.name,
+        sides: [b, b],
+        span: body.span,
+    };
+    c.bodies[b].terms(&numbering.bodies[b].x, owner, terms);
+    if c.roles[b] != Role::Free {
+        terms.constraints.truncate(before);
     }
-    Ok(())
+    let n = numbering.unknowns;
+    for row in &terms.constraints[before..] {
+        if row.term.coordinates().iter().all(|&i| i >= n) {
+            let message = format!(
+                "the {} is redundant: the joints at its two ends fix it already",
+                row.names[0]
+            );
+            return Err(c.scene.error(body.span, message, "redundant link"));
+        }
+    }
+    Ok(BodyParts {
+        inertia: first.0..terms.inertia.len(),
+        elements: first.1..terms.elements.len(),
+    })
 }
 
-fn kernel(link: &Link, element_length: f64) -> AncfCable {
-    let modulus = match link.model {
-        LinkModel::Flexible { youngs_modulus, .. } => youngs_modulus,
-        LinkModel::Rigid => unreachable!("a rigid link has no elements"),
+fn joint_terms(
+    c: &Compiler,
+    numbering: &Numbering,
+    j: usize,
+    terms: &mut Terms,
+) -> Result<JointTerms, SceneError> {
+    let joint = &c.scene.joints[j];
+    let points = joint.points();
+    let markers = points.map(|p| numbering.bodies[p.body].marker(p.point));
+    let loose = c.joints[j].contact().is_some();
+    if loose && markers.iter().all(|m| m.x() >= numbering.unknowns) {
+        let message = format!(
+            "joint {} has clearance, but both of its points are fixed or prescribed",
+            joint.name
+        );
+        return Err(c.joint_error(j, message, "nothing here can move"));
+    }
+    let ends = JointEnds {
+        markers,
+        spins: points.map(|p| numbering.bodies[p.body].spin(p.point)),
+        inverse_sizes: points.map(|p| c.inverse_size(p.body)),
+        owner: Owner {
+            name: &format!("joint {}", joint.name),
+            sides: points.map(|p| p.body),
+            span: joint.span,
+        },
+        eliminated: numbering.connections[j] == Connection::Eliminated,
     };
-    AncfCable::new(
-        element_length,
-        modulus * link.area,
-        modulus * link.second_moment,
-    )
+    Ok(c.joints[j].terms(&ends, terms))
+}
+
+/// Adds the forces of the scene; returns their names with their indices.
+fn force_terms(c: &Compiler, numbering: &Numbering, terms: &mut Terms) -> Vec<(String, usize)> {
+    let simulation = &c.scene.simulation;
+    let full_load = (simulation.analysis == Analysis::Static).then_some(simulation.duration);
+    let mut names = Vec::new();
+    for (force, states) in c.scene.forces.iter().zip(&numbering.states) {
+        let ends = Ends {
+            bodies: &numbering.bodies,
+            joints: &c.scene.joints,
+            full_load,
+            memory: terms.angles,
+            states,
+        };
+        names.push((force.name.clone(), terms.forces.len()));
+        terms.forces.push(force.kind.term(&ends));
+        terms.inertia.extend(states.iter().map(|&x| Inertia {
+            coordinates: vec![x],
+            values: vec![1.0],
+            field: vec![0.0],
+        }));
+        terms.angles += usize::from(force.kind.counts_turns());
+    }
+    names
 }
 
 impl Compiler<'_> {
-    /// 1/|d| of the undeformed direction of a body: of a chord its length, else 1.
-    pub fn inverse_size(&self, body: usize, numbering: &Numbering) -> f64 {
-        match (&numbering.bodies[body], &self.scene.bodies[body].kind) {
-            (BodyCoordinates::RigidLink { .. }, BodyKind::Link(link)) => 1.0 / link.length,
-            _ => 1.0,
-        }
+    /// 1/|d| of the undeformed direction of a body.
+    pub fn inverse_size(&self, body: usize) -> f64 {
+        1.0 / self.bodies[body].direction_size()
     }
 }
 
@@ -339,7 +405,7 @@ impl Pattern {
     /// A pattern without cliques, multipliers after the coordinates of their constraints.
     fn new(terms: &Terms, unknowns: usize) -> Pattern {
         let mut after = vec![Vec::new(); unknowns];
-        for row in &terms.rows {
+        for row in &terms.constraints {
             let coordinates = row.term.coordinates().into_iter();
             let coordinates: Vec<usize> = coordinates.filter(|i| *i < unknowns).collect();
             after.extend(std::iter::repeat_n(coordinates, row.names.len()));

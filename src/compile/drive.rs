@@ -2,10 +2,11 @@
 
 use super::sketch::{close, marker};
 use super::{Compiler, Mode, Role, build, numbering};
+use crate::body::{PointRef, RigidLink};
 use crate::kinematics::{Dyad, Kinematics};
 use crate::math::plane::{norm, sub};
-use crate::model::{BodyCoordinates, Model};
-use crate::scene::{BodyKind, Drive, LinkModel, PointRef, Scene, SceneError};
+use crate::model::Model;
+use crate::scene::{Drive, Scene, SceneError};
 use crate::system::State;
 
 /// Largest distance of two prescribed points in one joint \[m\]: the digits of typed positions.
@@ -19,11 +20,7 @@ pub(super) fn ideal_mechanism(
 ) -> Result<Kinematics, SceneError> {
     let mut roles = roles.to_vec();
     roles[drive.body] = Role::Path;
-    let compiler = Compiler {
-        scene,
-        mode: Mode::Ideal,
-        roles,
-    };
+    let compiler = Compiler::new(scene, Mode::Ideal, roles);
     let numbering = numbering::number(&compiler, None)?;
     let mechanism = build::build(&compiler, numbering, None)?;
     let shape = mechanism.shape();
@@ -82,7 +79,7 @@ fn sweep(
         for (j, joint) in c.scene.joints.iter().enumerate() {
             let points = [joint.bearing, joint.journal];
             if points.iter().all(|&p| c.is_known(p)) {
-                let [a, b] = points.map(|p| mechanism.position(&marker(c, mechanism, p), &to));
+                let [a, b] = points.map(|p| mechanism.position(&marker(mechanism, p), &to));
                 let distance = norm(sub(a, b));
                 if distance > HELD_TOLERANCE {
                     let message = format!(
@@ -105,12 +102,11 @@ fn sweep(
 fn find_dyads(c: &Compiler, mechanism: &Model) -> Vec<Dyad> {
     let n = mechanism.shape().unknowns;
     let far_ends = |x: usize| {
-        let of = |b: usize| match (&mechanism.bodies()[b].coordinates, &c.scene.bodies[b].kind) {
-            (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
-                let near = ends.iter().position(|&e| e == x)?;
-                Some((b, 1 - near, ends[1 - near], link.length))
-            }
-            _ => None,
+        let of = |b: usize| {
+            let ends = &mechanism.bodies()[b].placed.x;
+            let link = &c.bodies[b].get::<RigidLink>()?.link;
+            let near = ends.iter().position(|&e| e == x)?;
+            Some((b, 1 - near, ends[1 - near], link.length))
         };
         (0..c.scene.bodies.len()).filter_map(of).collect::<Vec<_>>()
     };
@@ -162,11 +158,12 @@ pub(super) fn mark_driven(
                 }
                 (false, false) => return true,
             };
-            let flexible =
-                matches!(&scene.bodies[moved].kind, BodyKind::Link(l) if l.model != LinkModel::Rigid);
-            if flexible {
-                fault = Some((j, "the body it moves is flexible; a driven body must be rigid"));
-            } else if !matches!(joint.model, crate::scene::JointModel::Ideal) {
+            if !scene.bodies[moved].kind.is_rigid() {
+                fault = Some((
+                    j,
+                    "the body it moves is flexible; a driven body must be rigid",
+                ));
+            } else if joint.contact().is_some() {
                 fault = Some((j, "it has clearance; an actuated joint must be ideal"));
             }
             roles[moved] = Role::Driven;

@@ -3,34 +3,8 @@
 use super::Mode;
 use super::numbering::Numbering;
 use crate::math::lu::Symbolic;
-use crate::model::{Inertia, Mass};
-
-/// m (x) I_2 on the positions and slopes that start at `firsts`; gravity acts on the positions.
-pub(super) fn planar_inertia<const N: usize>(
-    m: [[f64; N]; N],
-    firsts: [usize; N],
-    positions: [bool; N],
-    g: [f64; 2],
-) -> Inertia {
-    let coordinates = firsts.iter().flat_map(|&x| [x, x + 1]).collect();
-    let mut values = vec![0.0; 4 * N * N];
-    for a in 0..N {
-        for b in 0..N {
-            for i in 0..2 {
-                values[(2 * a + i) * 2 * N + 2 * b + i] = m[a][b];
-            }
-        }
-    }
-    let field = positions
-        .iter()
-        .flat_map(|&p| if p { g } else { [0.0; 2] })
-        .collect();
-    Inertia {
-        coordinates,
-        values,
-        field,
-    }
-}
+use crate::model::Mass;
+use crate::terms::Inertia;
 
 /// Weight as forces on the left side of the equations of motion, if there is gravity.
 pub(super) fn weight(parts: &[Inertia], coordinates: usize) -> Vec<(usize, f64)> {

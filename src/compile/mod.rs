@@ -3,19 +3,18 @@
 pub(crate) mod assembly;
 mod build;
 mod drive;
-mod joints;
-mod loads;
 mod mass;
+mod motions;
 mod numbering;
 mod reactions;
 mod rules;
 mod sketch;
-mod terms;
 
+use crate::body::{Body, Known, PointRef, Slot};
+use crate::interaction::JointModel;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
-use crate::scene::{BodyKind, JointModel, LinkModel, MotionKind, PointRef, Scene, SceneError};
-use crate::scene::{SketchPoint, Sketched};
+use crate::scene::{MotionKind, NamedBody, Scene, SceneError, SketchPoint, Sketched};
 use std::sync::Arc;
 
 /// What determines the motion of a body.
@@ -42,20 +41,44 @@ pub(crate) enum Mode {
     Ideal,
 }
 
-/// A scene under compilation.
+/// A scene under compilation: its bodies and joints as they are in this mechanism.
 pub(crate) struct Compiler<'a> {
     pub scene: &'a Scene,
     pub mode: Mode,
     pub roles: Vec<Role>,
+    pub bodies: Vec<Arc<dyn Body>>,
+    /// Coordinates of every body.
+    pub slots: Vec<Vec<Slot>>,
+    pub joints: Vec<Arc<dyn JointModel>>,
+}
+
+impl<'a> Compiler<'a> {
+    fn new(scene: &'a Scene, mode: Mode, roles: Vec<Role>) -> Compiler<'a> {
+        let ideal = mode == Mode::Ideal;
+        let body = |b: &NamedBody| {
+            let rigid = b.kind.rigid().filter(|_| ideal);
+            rigid.unwrap_or_else(|| b.kind.clone())
+        };
+        let joint = |model: &Arc<dyn JointModel>| match model.contact() {
+            Some(_) if ideal => model.with_contact(None),
+            _ => None,
+        };
+        let bodies: Vec<_> = scene.bodies.iter().map(body).collect();
+        let joints = scene.joints.iter().map(|j| &j.model);
+        Compiler {
+            scene,
+            mode,
+            roles,
+            slots: bodies.iter().map(|b| b.slots()).collect(),
+            bodies,
+            joints: joints
+                .map(|j| joint(j).unwrap_or_else(|| j.clone()))
+                .collect(),
+        }
+    }
 }
 
 impl Compiler<'_> {
-    /// True where the joint is ideal in this mechanism.
-    pub fn is_ideal(&self, joint: usize) -> bool {
-        let model = &self.scene.joints[joint].model;
-        self.mode == Mode::Ideal || !matches!(model, JointModel::Clearance(_))
-    }
-
     pub fn is_known(&self, point: PointRef) -> bool {
         self.roles[point.body] != Role::Free
     }
@@ -78,13 +101,10 @@ impl Compiler<'_> {
             })
     }
 
-    /// True for a point whose node joints can share: an end of a link, a point mass.
-    pub fn is_node(&self, point: PointRef) -> bool {
-        match self.scene.bodies[point.body].kind {
-            BodyKind::Link(_) => point.point < 2,
-            BodyKind::PointMass { .. } => true,
-            _ => false,
-        }
+    /// The slot of a point whose node joints can share: of an end of a link, of a point mass.
+    pub fn node(&self, point: PointRef) -> Option<usize> {
+        let mut slots = self.slots[point.body].iter();
+        slots.position(|slot| slot.point == Some(point.point))
     }
 
     /// The points of an entry of the sketch: both sides of a joint, or the point itself.
@@ -123,14 +143,8 @@ impl Compiler<'_> {
 
     /// The longest link, for advice; a length in another unit stands out.
     pub fn longest(&self) -> String {
-        let links = self
-            .scene
-            .bodies
-            .iter()
-            .filter_map(|body| match &body.kind {
-                BodyKind::Link(link) => Some((&body.name, link.length)),
-                _ => None,
-            });
+        let bodies = self.scene.bodies.iter();
+        let links = bodies.filter_map(|body| Some((&body.name, body.kind.length()?)));
         let longest = links.max_by(|a, b| a.1.total_cmp(&b.1));
         longest.map_or(String::new(), |(name, length)| {
             format!(
@@ -149,28 +163,16 @@ impl Compiler<'_> {
     /// Name of a point as the user writes it.
     pub fn point_name(&self, point: PointRef) -> String {
         let body = &self.scene.bodies[point.body];
-        let name = match &body.kind {
-            BodyKind::Ground { points } | BodyKind::Moving { points, .. } => {
-                points[point.point].name.as_str()
-            }
-            BodyKind::Rigid(rigid) => rigid.points[point.point].name.as_str(),
-            BodyKind::PointMass { .. } => "center",
-            BodyKind::Link(link) => match point.point {
-                0 => "start",
-                1 => "end",
-                inner => link.points[inner - 2].name.as_str(),
-            },
-        };
-        format!("{}.{name}", body.name)
+        format!("{}.{}", body.name, body.kind.points()[point.point].name)
     }
 }
 
 /// Roles that a scene gives directly: ground, bodies on paths, rigid bodies turned about a point of the ground.
 fn known_roles(scene: &Scene) -> Vec<Role> {
-    let role = |b: &crate::scene::Body| match b.kind {
-        BodyKind::Ground { .. } => Role::Ground,
-        BodyKind::Moving { .. } => Role::Path,
-        _ => Role::Free,
+    let role = |b: &NamedBody| match b.kind.known() {
+        Some(Known::Fixed) => Role::Ground,
+        Some(Known::Path(_)) => Role::Path,
+        None => Role::Free,
     };
     let mut roles: Vec<Role> = scene.bodies.iter().map(role).collect();
     for (m, motion) in scene.motions.iter().enumerate() {
@@ -184,12 +186,8 @@ fn known_roles(scene: &Scene) -> Vec<Role> {
             (Role::Free, Role::Ground) => i,
             _ => continue,
         };
-        let rigid = match &scene.bodies[turned].kind {
-            BodyKind::Rigid(_) => true,
-            BodyKind::Link(link) => link.model == LinkModel::Rigid,
-            _ => false,
-        };
-        if rigid && matches!(joint.model, JointModel::Ideal) {
+        let body = &scene.bodies[turned].kind;
+        if body.is_rigid() && body.turns() && joint.contact().is_none() {
             roles[turned] = Role::Turned(m);
         }
     }
@@ -223,11 +221,7 @@ pub fn compile(scene: &Scene) -> Result<Compiled, SceneError> {
             return Err(scene.error(second.span, message, "the second one"));
         }
     };
-    let compiler = Compiler {
-        scene,
-        mode: Mode::Real,
-        roles,
-    };
+    let compiler = Compiler::new(scene, Mode::Real, roles);
     let numbering = numbering::number(&compiler, kinematics.as_ref().map(|k| &*k.mechanism))?;
     let kinematics = kinematics.map(|kinematics| {
         Arc::new(Kinematics {

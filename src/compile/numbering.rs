@@ -1,9 +1,12 @@
 //! Numbers the coordinates: which link ends share a node, which are known, and the indices of every body.
 
 use super::{Compiler, Mode, Role};
+use crate::body::{Body, Content, Known, PointRef, Slot};
+use crate::interaction::Placed;
 use crate::marker::Marker;
-use crate::model::{BodyCoordinates, DrivenNode, Model};
-use crate::scene::{BodyKind, JointModel, LinkModel, MotionKind, PointRef, SceneError};
+use crate::model::{DrivenNode, Model};
+use crate::scene::{MotionKind, SceneError};
+use std::sync::Arc;
 
 /// How a joint of this mechanism connects its points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,16 +27,20 @@ pub(crate) struct Numbering {
     /// First coordinate of the inner mechanism.
     pub offset: usize,
     pub names: Vec<String>,
-    /// Coordinates of every body.
-    pub bodies: Vec<BodyCoordinates>,
+    /// Every body with its coordinates.
+    pub bodies: Vec<Placed>,
+    /// Internal states of every force.
+    pub states: Vec<Vec<usize>>,
     /// Known coordinates that never change, with their values.
     pub fixed: Vec<(usize, f64)>,
     pub driven_nodes: Vec<DrivenNode>,
     pub connections: Vec<Connection>,
 }
 
-/// Classes of link ends that share a node (union-find); the index of an end is 2 body + end.
+/// Classes of slots that share a node (union-find); the slots of all bodies are counted one after the other.
 struct Nodes {
+    /// Index of the first slot of every body.
+    first: Vec<usize>,
     parent: Vec<usize>,
     /// The known point that a class is fixed to.
     anchor: Vec<Option<PointRef>>,
@@ -42,22 +49,29 @@ struct Nodes {
 }
 
 impl Nodes {
-    fn find(&self, mut end: usize) -> usize {
-        while self.parent[end] != end {
-            end = self.parent[end];
+    fn find(&self, mut slot: usize) -> usize {
+        while self.parent[slot] != slot {
+            slot = self.parent[slot];
         }
-        end
+        slot
     }
-}
 
-fn end_of(point: PointRef) -> usize {
-    2 * point.body + point.point
+    /// The class of a slot of a body.
+    fn class(&self, body: usize, slot: usize) -> usize {
+        self.find(self.first[body] + slot)
+    }
 }
 
 /// Shares and anchors the ends of free links.
 fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
-    let count = 2 * c.scene.bodies.len();
+    let mut count = 0;
+    let mut first = Vec::with_capacity(c.slots.len());
+    for slots in &c.slots {
+        first.push(count);
+        count += slots.len();
+    }
     let mut nodes = Nodes {
+        first,
         parent: (0..count).collect(),
         anchor: vec![None; count],
         x: vec![None; count],
@@ -69,18 +83,20 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
             c.joint_error(j, message, "redundant joint")
         };
         let (bearing, journal) = (joint.bearing, joint.journal);
-        let free_end = |p: PointRef| !c.is_known(p) && c.is_node(p);
-        connections.push(if !c.is_ideal(j) {
+        let free_end = |p: PointRef| c.node(p).filter(|_| !c.is_known(p));
+        let ends = [bearing, journal].map(free_end);
+        let model = &c.joints[j];
+        connections.push(if model.contact().is_some() {
             Connection::Contact
-        } else if matches!(joint.model, JointModel::Prismatic { .. }) {
+        } else if !model.coincides() {
             Connection::Constraint
         } else if c.is_known(bearing) && c.is_known(journal) {
             if !c.may_stay_closed(j) {
                 return Err(redundant("the motion of both of its bodies is prescribed"));
             }
             Connection::Eliminated
-        } else if free_end(bearing) && free_end(journal) {
-            let (a, b) = (nodes.find(end_of(bearing)), nodes.find(end_of(journal)));
+        } else if let [Some(a), Some(b)] = ends {
+            let (a, b) = (nodes.class(bearing.body, a), nodes.class(journal.body, b));
             if a == b {
                 return Err(redundant(
                     "other joints already make its two points coincide",
@@ -93,15 +109,15 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
             // only the root of a class is fixed
             nodes.anchor[a] = nodes.anchor[a].or(nodes.anchor[b].take());
             Connection::Eliminated
-        } else if free_end(bearing) && c.is_known(journal)
-            || free_end(journal) && c.is_known(bearing)
-        {
-            let (end, known) = if free_end(bearing) {
-                (bearing, journal)
-            } else {
-                (journal, bearing)
-            };
-            let class = nodes.find(end_of(end));
+        } else if let Some((class, known)) = match ends {
+            [Some(end), _] if c.is_known(journal) => {
+                Some((nodes.class(bearing.body, end), journal))
+            }
+            [_, Some(end)] if c.is_known(bearing) => {
+                Some((nodes.class(journal.body, end), bearing))
+            }
+            _ => None,
+        } {
             if nodes.anchor[class].is_some() {
                 return Err(redundant("the link end it joins is already fixed"));
             }
@@ -114,240 +130,169 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
     Ok((nodes, connections))
 }
 
-/// Numbers all coordinates; `inner` is the ideal mechanism that drives this one.
+/// Numbers all coordinates; `inner` is the ideal mechanism that drives this one. Known coordinates follow the unknown ones: the
+/// ground, bodies on paths, driven nodes, and last the inner mechanism.
 pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, SceneError> {
     let (mut nodes, connections) = connect(c)?;
-    let mut names = Vec::new();
-    let mut take = |labels: &[String]| {
-        names.extend_from_slice(labels);
-        names.len() - labels.len()
-    };
-    let xy = |label: String| [format!("{label}.x"), format!("{label}.y")];
-
-    // unknown coordinates, body by body in the order of the scene
-    let mut bodies = vec![BodyCoordinates::Ground { points: Vec::new() }; c.scene.bodies.len()];
-    for (b, body) in c.scene.bodies.iter().enumerate() {
-        if c.roles[b] != Role::Free {
-            continue;
-        }
-        let mut node_of = |end: usize, take: &mut dyn FnMut(&[String]) -> usize| {
-            let class = nodes.find(2 * b + end);
-            if nodes.anchor[class].is_none() && nodes.x[class].is_none() {
-                let point = PointRef {
-                    body: b,
-                    point: end,
-                };
-                nodes.x[class] = Some(take(&xy(c.point_name(point))));
-            }
-            nodes.x[class].unwrap_or(usize::MAX)
-        };
-        bodies[b] = match &body.kind {
-            BodyKind::Ground { .. } | BodyKind::Moving { .. } => {
-                unreachable!("these bodies are not free")
-            }
-            BodyKind::PointMass { .. } => BodyCoordinates::PointMass {
-                x: node_of(0, &mut take),
-            },
-            BodyKind::Rigid(_) => {
-                let labels = ["x", "y", "theta"].map(|s| format!("{}.{s}", body.name));
-                BodyCoordinates::Rigid { x: take(&labels) }
-            }
-            BodyKind::Link(link) => match (c.mode, link.model) {
-                (Mode::Ideal, _) | (_, LinkModel::Rigid) => BodyCoordinates::RigidLink {
-                    ends: [node_of(0, &mut take), node_of(1, &mut take)],
-                },
-                (Mode::Real, LinkModel::Flexible { elements, .. }) => {
-                    let (mut positions, mut slopes) = (Vec::new(), Vec::new());
-                    for k in 0..=elements {
-                        let label = format!("{}.node{k}", body.name);
-                        positions.push(match k {
-                            0 => node_of(0, &mut take),
-                            k if k == elements => node_of(1, &mut take),
-                            _ => take(&xy(label.clone())),
-                        });
-                        slopes.push(take(&xy(format!("{label}.slope"))));
-                    }
-                    let element_length = link.length / elements as f64;
-                    BodyCoordinates::FlexibleLink {
-                        nodes: positions,
-                        slopes,
-                        elements: 0..0,
-                        element_length,
-                        points: [0, elements]
-                            .into_iter()
-                            .chain(link.points.iter().map(|p| p.node))
-                            .collect(),
-                    }
-                }
-            },
-        };
+    let mut numbering = number_unknowns(c, &mut nodes, connections);
+    for b in 0..c.bodies.len() {
+        numbering.know(c, b);
     }
-    let unknowns = names.len();
-
-    // known coordinates: the ground, the body on the path, the driven_nodes, the inner mechanism
-    let mut numbering = Numbering {
-        unknowns,
-        coordinates: unknowns,
-        offset: 0,
-        names,
-        bodies,
-        fixed: Vec::new(),
-        driven_nodes: Vec::new(),
-        connections,
-    };
-    for (b, body) in c.scene.bodies.iter().enumerate() {
-        match (&body.kind, c.roles[b]) {
-            (BodyKind::Ground { points }, _) => {
-                let mut firsts = Vec::new();
-                for point in points {
-                    let x = numbering.known(2);
-                    numbering
-                        .fixed
-                        .extend([(x, point.at[0]), (x + 1, point.at[1])]);
-                    firsts.push(x);
-                }
-                numbering.bodies[b] = BodyCoordinates::Ground { points: firsts };
-            }
-            (_, Role::Path) | (BodyKind::Rigid(_), Role::Turned(_)) => {
-                numbering.bodies[b] = BodyCoordinates::Rigid {
-                    x: numbering.known(3),
-                }
-            }
-            _ => {}
+    for b in 0..c.bodies.len() {
+        if let Role::Turned(m) = c.roles[b] {
+            numbering.turn_link(c, b, m);
         }
     }
-    for b in 0..c.scene.bodies.len() {
-        if let (BodyKind::Link(_), Role::Turned(m)) = (&c.scene.bodies[b].kind, c.roles[b]) {
-            numbering.bodies[b] = numbering.turned_link(c, b, m);
+    let classes = 0..nodes.parent.len();
+    let anchored: Vec<usize> = classes.filter(|&e| nodes.anchor[e].is_some()).collect();
+    let riders = anchored.iter().filter(|&&e| c.needs_rider(&nodes, e));
+    numbering.offset = numbering.coordinates + 2 * riders.count();
+    for b in (0..c.bodies.len()).filter(|b| c.roles[*b] == Role::Driven) {
+        if let Some(inner) = inner {
+            numbering.bodies[b].x = shifted(&inner.bodies()[b].placed.x, numbering.offset);
         }
     }
-    let anchored: Vec<usize> = (0..nodes.parent.len())
-        .filter(|&e| nodes.anchor[e].is_some())
-        .collect();
-    numbering.offset = numbering.coordinates
-        + 2 * anchored
-            .iter()
-            .filter(|&&e| c.needs_rider(&nodes, e))
-            .count();
-    if let Some(inner) = inner {
-        for b in 0..c.scene.bodies.len() {
-            if c.roles[b] == Role::Driven {
-                numbering.bodies[b] = shifted(&inner.bodies()[b].coordinates, numbering.offset);
-            }
-        }
-    }
-    for &class in &anchored {
-        let Some(point) = nodes.anchor[class] else {
-            continue;
-        };
-        let x = match c.marker(&numbering.bodies[point.body], point) {
-            Marker::Node { x } => x,
-            marker => {
-                let x = numbering.known(2);
-                numbering.driven_nodes.push(DrivenNode { x, marker });
-                x
-            }
-        };
-        nodes.x[class] = Some(x);
-    }
+    numbering.anchor(&mut nodes, &anchored);
     numbering.coordinates = numbering.offset + inner.map_or(0, |m| m.shape().coordinates);
 
     // ends tied to known points got their coordinates only now
-    for b in 0..c.scene.bodies.len() {
-        let x = |end: usize| nodes.x[nodes.find(2 * b + end)];
-        match &mut numbering.bodies[b] {
-            BodyCoordinates::RigidLink { ends } if c.roles[b] == Role::Free => {
-                *ends = [x(0).unwrap_or(ends[0]), x(1).unwrap_or(ends[1])];
-            }
-            BodyCoordinates::FlexibleLink {
-                nodes: positions, ..
-            } => {
-                let last = positions.len() - 1;
-                positions[0] = x(0).unwrap_or(positions[0]);
-                positions[last] = x(1).unwrap_or(positions[last]);
-            }
-            BodyCoordinates::PointMass { x: own } => *own = x(0).unwrap_or(*own),
-            _ => {}
+    for b in (0..c.bodies.len()).filter(|b| c.roles[*b] == Role::Free) {
+        for (s, _) in c.slots[b]
+            .iter()
+            .enumerate()
+            .filter(|(_, slot)| slot.point.is_some())
+        {
+            let x = &mut numbering.bodies[b].x[s];
+            *x = nodes.x[nodes.class(b, s)].unwrap_or(*x);
         }
     }
     Ok(numbering)
 }
 
-impl Compiler<'_> {
-    /// The marker of a point, given the coordinates of its body.
-    pub fn marker(&self, coordinates: &BodyCoordinates, point: PointRef) -> Marker {
-        match (coordinates, &self.scene.bodies[point.body].kind) {
-            (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid)) => Marker::OnBody {
-                x: *x,
-                s: rigid.points[point.point].at,
-            },
-            (BodyCoordinates::Ground { points }, _) => Marker::Node {
-                x: points[point.point],
-            },
-            (BodyCoordinates::Rigid { x }, BodyKind::Moving { points, .. }) => Marker::OnBody {
-                x: *x,
-                s: points[point.point].at,
-            },
-            (BodyCoordinates::FlexibleLink { nodes, points, .. }, _) => Marker::Node {
-                x: nodes[points[point.point]],
-            },
-            (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) if point.point > 1 => {
-                Marker::OnChord {
-                    from: ends[0],
-                    to: ends[1],
-                    share: link.share(point.point),
+/// The unknown coordinates, body by body in the order of the scene, then the internal states of forces.
+fn number_unknowns(c: &Compiler, nodes: &mut Nodes, connections: Vec<Connection>) -> Numbering {
+    let mut names = Vec::new();
+    let mut take = |labels: &[String]| {
+        names.extend_from_slice(labels);
+        names.len() - labels.len()
+    };
+    let blank = |(kind, slots): (&Arc<dyn Body>, &Vec<Slot>)| Placed {
+        kind: kind.clone(),
+        x: vec![usize::MAX; slots.len()],
+    };
+    let mut bodies: Vec<Placed> = c.bodies.iter().zip(&c.slots).map(blank).collect();
+    for (b, body) in c.scene.bodies.iter().enumerate() {
+        if c.roles[b] != Role::Free {
+            continue;
+        }
+        for (s, slot) in c.slots[b].iter().enumerate() {
+            let labels = slot.content.names().iter();
+            let labels = labels.map(|name| format!("{}{}.{name}", body.name, slot.label));
+            let labels: Vec<String> = labels.collect();
+            bodies[b].x[s] = match slot.point {
+                None => take(&labels),
+                Some(_) => {
+                    let class = nodes.class(b, s);
+                    if nodes.anchor[class].is_none() && nodes.x[class].is_none() {
+                        nodes.x[class] = Some(take(&labels));
+                    }
+                    nodes.x[class].unwrap_or(usize::MAX)
                 }
-            }
-            (BodyCoordinates::RigidLink { ends }, _) => Marker::Node {
-                x: ends[point.point],
-            },
-            (BodyCoordinates::PointMass { x }, _) => Marker::Node { x: *x },
-            (BodyCoordinates::Rigid { .. }, _) => {
-                unreachable!("only these bodies have reference-point coordinates")
-            }
+            };
         }
     }
+    let real = c.scene.forces.iter().filter(|_| c.mode == Mode::Real);
+    let states = real.map(|force| {
+        let states = force.kind.states().iter();
+        let states = states.map(|state| take(&[format!("{}.{state}", force.name)]));
+        states.collect()
+    });
+    let states = states.collect();
+    let unknowns = names.len();
+    Numbering {
+        unknowns,
+        coordinates: unknowns,
+        offset: 0,
+        names,
+        bodies,
+        states,
+        fixed: Vec::new(),
+        driven_nodes: Vec::new(),
+        connections,
+    }
+}
 
+impl Compiler<'_> {
     /// True for a class fixed to a known point of a rigid body, whose node must be computed.
     fn needs_rider(&self, nodes: &Nodes, class: usize) -> bool {
-        let Some(point) = nodes.anchor[class] else {
-            return false;
-        };
-        matches!(
-            self.scene.bodies[point.body].kind,
-            BodyKind::Rigid(_) | BodyKind::Moving { .. }
-        )
+        nodes.anchor[class].is_some_and(|point| {
+            let x = vec![0; self.slots[point.body].len()];
+            let marker = self.bodies[point.body].marker(point.point, &x);
+            !matches!(marker, Marker::Node { .. })
+        })
     }
 }
 
 /// Coordinates of a body of the inner mechanism, counted in the outer one.
-pub(crate) fn shifted(coordinates: &BodyCoordinates, offset: usize) -> BodyCoordinates {
-    match coordinates {
-        BodyCoordinates::Rigid { x } => BodyCoordinates::Rigid { x: x + offset },
-        BodyCoordinates::RigidLink { ends } => BodyCoordinates::RigidLink {
-            ends: ends.map(|x| x + offset),
-        },
-        other => other.clone(),
-    }
+pub(crate) fn shifted(x: &[usize], offset: usize) -> Vec<usize> {
+    x.iter().map(|x| x + offset).collect()
 }
 
 impl Numbering {
-    /// Coordinates of a link that motion `m` turns about a point of the ground: that point, and a known end.
-    fn turned_link(&mut self, c: &Compiler, b: usize, m: usize) -> BodyCoordinates {
+    /// Coordinates of a body whose motion is known.
+    fn know(&mut self, c: &Compiler, b: usize) {
+        let poses = c.slots[b].iter().all(|slot| slot.content == Content::Pose);
+        match (c.bodies[b].known(), c.roles[b]) {
+            (Some(Known::Fixed), _) => {
+                for (s, point) in c.bodies[b].points().iter().enumerate() {
+                    let x = self.known(2);
+                    self.fixed.extend([(x, point.at[0]), (x + 1, point.at[1])]);
+                    self.bodies[b].x[s] = x;
+                }
+            }
+            (_, Role::Path) => self.bodies[b].x = vec![self.known(3)],
+            (_, Role::Turned(_)) if poses => self.bodies[b].x = vec![self.known(3)],
+            _ => {}
+        }
+    }
+
+    /// Coordinates of the nodes that are fixed to known points.
+    fn anchor(&mut self, nodes: &mut Nodes, anchored: &[usize]) {
+        for &class in anchored {
+            let Some(point) = nodes.anchor[class] else {
+                continue;
+            };
+            let x = match self.bodies[point.body].marker(point.point) {
+                Marker::Node { x } => x,
+                marker => {
+                    let x = self.known(2);
+                    self.driven_nodes.push(DrivenNode { x, marker });
+                    x
+                }
+            };
+            nodes.x[class] = Some(x);
+        }
+    }
+
+    /// Coordinates of a link that motion `m` turns about a point of the ground: that point, and known ends.
+    fn turn_link(&mut self, c: &Compiler, b: usize, m: usize) {
         let MotionKind::Angle { joint, .. } = c.scene.motions[m].kind else {
             unreachable!("only an angle turns a body");
         };
         let joint = &c.scene.joints[joint];
-        let (own, ground) = if joint.journal.body == b {
-            (joint.journal, joint.bearing)
-        } else {
-            (joint.bearing, joint.journal)
+        let (own, ground) = match joint.journal.body == b {
+            true => (joint.journal, joint.bearing),
+            false => (joint.bearing, joint.journal),
         };
-        let mut ends = [self.known(2); 2];
-        if let BodyCoordinates::Ground { points } = &self.bodies[ground.body] {
-            ends[own.point] = points[ground.point];
+        for (s, slot) in c.slots[b].iter().enumerate() {
+            match slot.point {
+                Some(point) if point == own.point => {
+                    self.bodies[b].x[s] = self.bodies[ground.body].x[ground.point];
+                }
+                Some(_) => self.bodies[b].x[s] = self.known(2),
+                None => {}
+            }
         }
-        BodyCoordinates::RigidLink { ends }
     }
 
     fn known(&mut self, count: usize) -> usize {

@@ -1,46 +1,42 @@
 //! The terms whose sum is the force of an eliminated joint or the torque of an actuated one.
 
-use super::terms::{ForceTerm, JointTerms};
 use super::{Compiler, Role};
+use crate::body::{Content, PointRef};
 use crate::kinematics::Kinematics;
-use crate::model::{
-    Actuator, BodyCoordinates, DrivenForce, JointKind, Model, Reaction, Share, Source,
-};
-use crate::scene::{BodyKind, MotionKind, PointRef, SceneError};
+use crate::model::{Actuator, DrivenForce, ForceCarrier, Model, Reaction, Share, Source};
+use crate::scene::{MotionKind, SceneError};
+use crate::terms::{ForceTerm, JointTerms};
 
-/// First coordinate of a link end or of a rigid body, and the number of coordinates there.
+/// First coordinate of the slot that carries a point, and the number of coordinates there.
 fn place(model: &Model, point: PointRef) -> Option<(usize, usize)> {
-    match &model.bodies()[point.body].coordinates {
-        BodyCoordinates::Ground { .. } => None,
-        BodyCoordinates::Rigid { x } => Some((*x, 3)),
-        BodyCoordinates::RigidLink { ends } => Some((ends[point.point], 2)),
-        BodyCoordinates::PointMass { x } => Some((*x, 2)),
-        BodyCoordinates::FlexibleLink { nodes, points, .. } => {
-            Some((nodes[points[point.point]], 2))
-        }
-    }
+    let body = &model.bodies()[point.body];
+    let slot = body.placed.kind.slot_of(point.point);
+    let width = || body.contents[slot].names().len();
+    body.moves.then(|| (body.placed.x[slot], width()))
 }
 
-/// Attachment points of a body: the two ends of a link, or one point that represents all points of a rigid body.
-fn attachments(model: &Model, body: usize) -> Vec<PointRef> {
-    match model.bodies()[body].coordinates {
-        BodyCoordinates::Ground { .. } => vec![],
-        BodyCoordinates::Rigid { .. } | BodyCoordinates::PointMass { .. } => {
-            vec![PointRef { body, point: 0 }]
-        }
-        _ => vec![PointRef { body, point: 0 }, PointRef { body, point: 1 }],
+/// Attachment points of a body: those whose nodes joints can share, or one point that represents all points of a rigid body.
+fn attachments(c: &Compiler, model: &Model, body: usize) -> Vec<PointRef> {
+    if !model.bodies()[body].moves {
+        return Vec::new();
     }
+    let slots = c.slots[body].iter();
+    let points = slots.filter_map(|slot| match slot.content {
+        Content::Pose => Some(0),
+        _ => slot.point,
+    });
+    points.map(|point| PointRef { body, point }).collect()
 }
 
 /// The attachment point that represents a point.
 fn attachment(model: &Model, point: PointRef) -> PointRef {
-    match model.bodies()[point.body].coordinates {
-        BodyCoordinates::Rigid { .. } => PointRef {
-            body: point.body,
-            point: 0,
-        },
+    let PointRef { body, point } = point;
+    let placed = &model.bodies()[body];
+    let point = match placed.contents.get(placed.placed.kind.slot_of(point)) {
+        Some(Content::Pose) => 0,
         _ => point,
-    }
+    };
+    PointRef { body, point }
 }
 
 /// The shares of a term in the coordinates x .. x + width, one for each group of consecutive coordinates. A body may occur
@@ -82,25 +78,12 @@ fn shares_of(c: &Compiler, model: &Model, own: &[JointTerms], point: PointRef) -
     let mut add = |source: Source, coordinates: &[usize]| {
         shares.extend(runs(source, coordinates, x, width, |_| true));
     };
-    // the masses of a body come in the order of the bodies; a flexible link has one an element
-    let mut first = 0;
-    for (b, place) in model.bodies().iter().enumerate() {
-        let count = match (&place.coordinates, &c.scene.bodies[b].kind) {
-            (BodyCoordinates::FlexibleLink { elements, .. }, _) => elements.len(),
-            (_, BodyKind::Ground { .. } | BodyKind::Moving { .. }) => 0,
-            _ => 1,
-        };
-        if b == point.body {
-            for i in first..first + count {
-                add(Source::Inertia(i), &model.mass.parts[i].coordinates);
-            }
-            if let BodyCoordinates::FlexibleLink { elements, .. } = &place.coordinates {
-                for i in elements.clone() {
-                    add(Source::Element(i), &model.elements[i].block.coordinates);
-                }
-            }
-        }
-        first += count;
+    let body = &model.bodies()[point.body];
+    for i in body.inertia.clone() {
+        add(Source::Inertia(i), &model.mass.parts[i].coordinates);
+    }
+    for i in body.elements.clone() {
+        add(Source::Element(i), &model.elements[i].block.coordinates);
     }
     let mut add_owned = |source: Source, coordinates: &[usize], owners: &[usize]| {
         let own = |local: usize| owners[local] == point.body;
@@ -150,7 +133,7 @@ fn hanging(
         }
         let mut reached = Vec::new();
         if matches!(c.roles[point.body], Role::Driven | Role::Turned(_)) {
-            reached.extend(attachments(model, point.body));
+            reached.extend(attachments(c, model, point.body));
         }
         for (j, joint) in c.scene.joints.iter().enumerate() {
             if j != cut && matches!(own[j].force, ForceTerm::Eliminated) {
@@ -177,10 +160,10 @@ pub(super) fn joint(
     model: &Model,
     own: &[JointTerms],
     j: usize,
-) -> Result<(JointKind, Option<Actuator>), SceneError> {
+) -> Result<(ForceCarrier, Option<Actuator>), SceneError> {
     let kind = match own[j].force {
-        ForceTerm::Constraint(i) => JointKind::Constraint(i),
-        ForceTerm::Contact(i) => JointKind::Contact(i),
+        ForceTerm::Constraint(i) => ForceCarrier::Constraint(i),
+        ForceTerm::Contact(i) => ForceCarrier::Contact(i),
         ForceTerm::Eliminated => {
             let joint = &c.scene.joints[j];
             let journal_side = hanging(c, model, own, j, joint.journal).map(|side| (side, 1.0));
@@ -216,15 +199,14 @@ pub(super) fn joint(
                     .any(|r| matches!(r, Role::Turned(m) if turned(m)));
             let actuator = actuated.then(|| Actuator {
                 bodies: [joint.bearing.body, joint.journal.body],
-                centre: c.marker(
-                    &model.bodies()[joint.bearing.body].coordinates,
-                    joint.bearing,
-                ),
+                centre: model.bodies()[joint.bearing.body]
+                    .placed
+                    .marker(joint.bearing.point),
                 outboard,
                 sign,
             });
             return Ok((
-                JointKind::Eliminated(Reaction { shares: all, sign }),
+                ForceCarrier::Eliminated(Reaction { shares: all, sign }),
                 actuator,
             ));
         }
@@ -246,7 +228,7 @@ pub(super) fn driven_forces(
     }
     let mut forces: Vec<DrivenForce> = Vec::new();
     let all: Vec<PointRef> = (0..c.scene.bodies.len())
-        .flat_map(|b| attachments(model, b))
+        .flat_map(|b| attachments(c, model, b))
         .collect();
     for &point in &all {
         let Some((x, width)) = place(model, point) else {

@@ -2,25 +2,23 @@
 
 use super::numbering::Numbering;
 use super::{Compiler, Role};
-use crate::model::{BodyCoordinates, Rule};
-use crate::scene::{BodyKind, MotionKind};
+use crate::body::{Content, Known};
+use crate::model::Rule;
+use crate::scene::MotionKind;
 
 /// The rules: bodies on paths, bodies that turn about a point of the ground.
 pub(super) fn rules(c: &Compiler, numbering: &Numbering) -> Vec<Rule> {
     let mut rules = Vec::new();
-    for (b, body) in c.scene.bodies.iter().enumerate() {
-        let coordinates = &numbering.bodies[b];
-        let path = match (&body.kind, c.roles[b]) {
-            (BodyKind::Moving { path, .. }, _) => Some(path),
-            (_, Role::Path) => c.scene.drives.first().map(|d| &d.path),
+    for (b, body) in c.bodies.iter().enumerate() {
+        let path = match (body.known(), c.roles[b]) {
+            (Some(Known::Path(path)), _) => Some(path),
+            (None, Role::Path) => c.scene.drives.first().map(|d| &d.path),
             _ => None,
         };
-        if let (Some(path), BodyCoordinates::Rigid { x }) = (path, coordinates) {
-            rules.push(Rule::Path {
-                x: *x,
-                path: path.clone(),
-            });
-        }
+        rules.extend(path.map(|path| Rule::Path {
+            x: numbering.bodies[b].x[0],
+            path: path.clone(),
+        }));
         if let Role::Turned(motion) = c.roles[b] {
             rules.extend(turn(c, numbering, b, motion));
         }
@@ -40,35 +38,22 @@ fn turn(c: &Compiler, numbering: &Numbering, b: usize, m: usize) -> Option<Rule>
     } else {
         (joint.bearing, joint.journal, -1.0)
     };
-    let pivot = match &numbering.bodies[ground.body] {
-        BodyCoordinates::Ground { points } => points[ground.point],
-        _ => return None,
+    let (x, points) = (&numbering.bodies[b].x, c.bodies[b].points());
+    let angle = angle.clone();
+    let at = points[own.point].at;
+    let pivot = numbering.bodies[ground.body].x[ground.point];
+    let (point, theta) = match c.slots[b][0].content {
+        Content::Pose => ((x[0], [-at[0], -at[1]]), Some(x[0] + 2)),
+        _ => {
+            let other = 1 - own.point;
+            ((x[other], [points[other].at[0] - at[0], 0.0]), None)
+        }
     };
-    match (&numbering.bodies[b], &c.scene.bodies[b].kind) {
-        (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid)) => {
-            let s = rigid.points[own.point].at;
-            Some(Rule::Turn {
-                pivot,
-                point: (*x, [-s[0], -s[1]]),
-                theta: Some(x + 2),
-                angle: angle.clone(),
-                sign,
-            })
-        }
-        (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
-            let along = if own.point == 0 {
-                link.length
-            } else {
-                -link.length
-            };
-            Some(Rule::Turn {
-                pivot,
-                point: (ends[1 - own.point], [along, 0.0]),
-                theta: None,
-                angle: angle.clone(),
-                sign,
-            })
-        }
-        _ => None,
-    }
+    Some(Rule::Turn {
+        pivot,
+        point,
+        theta,
+        angle,
+        sign,
+    })
 }

@@ -1,11 +1,12 @@
 //! Closing the ideal mechanism at t = 0: the sketch chooses the branch.
 
 use super::Compiler;
+use crate::body::{Content, PointRef};
 use crate::kinematics::Kinematics;
 use crate::marker::Marker;
 use crate::math::plane::{cross, dot, norm, sub};
-use crate::model::{BodyCoordinates, Model};
-use crate::scene::{BodyKind, Drive, Link, PointRef, SceneError, Sketched};
+use crate::model::Model;
+use crate::scene::{Drive, SceneError, Sketched};
 use crate::system::State;
 
 /// Closes the mechanism at t = 0 from the sketch.
@@ -30,7 +31,7 @@ pub(super) fn close(
         let found = [inner.state.q[x], inner.state.q[x + 1]];
         let drawn = &c.scene.initial.sketch[sketch];
         let points = c.sketched_points(drawn).into_iter();
-        let lengths = points.map(|p| link(c, p).map_or(f64::INFINITY, |l| l.length));
+        let lengths = points.map(|p| c.bodies[p.body].length().unwrap_or(f64::INFINITY));
         if norm(sub(found, drawn.at)) > 0.25 * lengths.fold(f64::INFINITY, f64::min) {
             return Err(c.far_from_sketch(drawn, found));
         }
@@ -38,15 +39,8 @@ pub(super) fn close(
     Ok(inner.state)
 }
 
-pub(super) fn marker(c: &Compiler, mechanism: &Model, point: PointRef) -> Marker {
-    c.marker(&mechanism.bodies()[point.body].coordinates, point)
-}
-
-fn link<'a>(c: &Compiler<'a>, point: PointRef) -> Option<&'a Link> {
-    match &c.scene.bodies[point.body].kind {
-        BodyKind::Link(link) => Some(link),
-        _ => None,
-    }
+pub(super) fn marker(mechanism: &Model, point: PointRef) -> Marker {
+    mechanism.bodies()[point.body].placed.marker(point.point)
 }
 
 /// Puts the sketched positions into the unknown nodes and fits the unknown rigid bodies to them; returns all sketched
@@ -62,7 +56,7 @@ fn guess(
     let mut guessed = Vec::new();
     for (k, sketch) in c.scene.initial.sketch.iter().enumerate() {
         for point in c.sketched_points(sketch) {
-            if let Marker::Node { x } = marker(c, mechanism, point) {
+            if let Marker::Node { x } = marker(mechanism, point) {
                 if x < n {
                     state.q[x..x + 2].copy_from_slice(&sketch.at);
                 }
@@ -72,9 +66,10 @@ fn guess(
         }
     }
     for (b, body) in c.scene.bodies.iter().enumerate() {
-        match (&mechanism.bodies()[b].coordinates, &body.kind) {
-            (BodyCoordinates::RigidLink { ends }, _) => {
-                if let Some(end) = (0..2).find(|&e| !known[ends[e]]) {
+        let x = &mechanism.bodies()[b].placed.x;
+        match c.slots[b].first().map(|slot| slot.content) {
+            Some(Content::Position) if body.kind.length().is_some() => {
+                if let Some(end) = (0..2).find(|&e| !known[x[e]]) {
                     let name = c.point_name(PointRef {
                         body: b,
                         point: end,
@@ -86,8 +81,8 @@ fn guess(
                     ));
                 }
             }
-            (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid)) if *x < n => {
-                let pairs: Vec<_> = (0..rigid.points.len())
+            Some(Content::Pose) if x[0] < n => {
+                let pairs: Vec<_> = (0..body.kind.points().len())
                     .filter_map(|point| sketch_of(c, mechanism, state, PointRef { body: b, point }))
                     .collect();
                 if pairs.len() < 2 {
@@ -98,7 +93,7 @@ fn guess(
                     return Err(c.scene.error(body.span, message, "this body"));
                 }
                 let pose = fit(&pairs);
-                state.q[*x..x + 3].copy_from_slice(&pose);
+                state.q[x[0]..x[0] + 3].copy_from_slice(&pose);
             }
             _ => {}
         }
@@ -108,10 +103,7 @@ fn guess(
 
 /// (point in the body, approximate position) of a point of a rigid body, from a sketch or from a known partner.
 fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) -> Option<Pair> {
-    let BodyKind::Rigid(rigid) = &c.scene.bodies[point.body].kind else {
-        return None;
-    };
-    let local = rigid.points[point.point].at;
+    let local = c.bodies[point.body].points()[point.point].at;
     let of_joint = c.scene.joints.iter().enumerate().find_map(|(j, joint)| {
         let partner = match () {
             () if joint.bearing == point => joint.journal,
@@ -120,7 +112,7 @@ fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) ->
         };
         let known = || {
             c.is_known(partner)
-                .then(|| mechanism.position(&marker(c, mechanism, partner), state))
+                .then(|| mechanism.position(&marker(mechanism, partner), state))
         };
         c.drawn(Sketched::Joint(j)).or_else(known)
     });

@@ -1,6 +1,7 @@
 //! Prescribed relative angle of two directions: welds, guides that do not turn, driven joints.
 
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use crate::effect::Effect;
 use crate::marker::Spin;
 use crate::math::plane::{Vec2, add, cross, dot, perp, rotate, scale};
 use crate::motion::Function;
@@ -50,6 +51,14 @@ impl Align {
 }
 
 impl Constraint for Align {
+    fn effect(&self) -> Effect {
+        "direction_constraint"
+    }
+
+    fn unit(&self) -> &'static str {
+        "rad"
+    }
+
     fn rows(&self) -> usize {
         1
     }

@@ -1,6 +1,7 @@
 //! A slope vector held in full: the second kind of clamp of a flexible end.
 
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use crate::effect::Effect;
 use crate::marker::Spin;
 use crate::math::plane::{Vec2, cross, rotate, scale, sub};
 use crate::system::State;
@@ -36,6 +37,14 @@ impl ClampSlope {
 }
 
 impl Constraint for ClampSlope {
+    fn effect(&self) -> Effect {
+        "direction_constraint"
+    }
+
+    fn unit(&self) -> &'static str {
+        "rad"
+    }
+
     fn rows(&self) -> usize {
         2
     }

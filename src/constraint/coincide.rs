@@ -1,6 +1,7 @@
 //! Ideal revolute joint between two markers (eq. 16, second and third row).
 
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use crate::effect::Effect;
 use crate::marker::Marker;
 use crate::math::plane::{Vec2, dot, sub};
 use crate::system::State;
@@ -15,6 +16,10 @@ pub struct Coincide {
 }
 
 impl Constraint for Coincide {
+    fn effect(&self) -> Effect {
+        "ideal_joint_constraint"
+    }
+
     fn rows(&self) -> usize {
         2
     }

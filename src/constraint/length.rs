@@ -1,6 +1,7 @@
 //! Constant distance of two nodes (eq. 2).
 
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use crate::effect::Effect;
 use crate::math::plane::{Vec2, dot, scale};
 use crate::system::State;
 
@@ -26,6 +27,10 @@ impl Length {
 }
 
 impl Constraint for Length {
+    fn effect(&self) -> Effect {
+        "length_constraint"
+    }
+
     fn rows(&self) -> usize {
         1
     }

@@ -14,6 +14,7 @@ pub use length::Length;
 pub use place::Place;
 pub use slide::Slide;
 
+use crate::effect::Effect;
 use crate::math::plane::Vec2;
 use crate::system::State;
 
@@ -53,6 +54,12 @@ impl Curvature<'_> {
 /// Local columns are in the order of [`Constraint::coordinates`], which may name a coordinate twice; what belongs to it
 /// is then the sum.
 pub trait Constraint: std::fmt::Debug + Send + Sync {
+    /// What it is counted as.
+    fn effect(&self) -> Effect;
+    /// Unit of Phi.
+    fn unit(&self) -> &'static str {
+        "m"
+    }
     /// Number of rows, 1 or 2.
     fn rows(&self) -> usize;
     /// The coordinates in local order: those of the first side, then those of the second.

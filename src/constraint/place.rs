@@ -1,6 +1,7 @@
 //! A prescribed coordinate of a point.
 
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use crate::effect::Effect;
 use crate::marker::Marker;
 use crate::math::plane::{Vec2, dot, scale};
 use crate::motion::Function;
@@ -19,6 +20,10 @@ pub struct Place {
 }
 
 impl Constraint for Place {
+    fn effect(&self) -> Effect {
+        "prescribed_coordinate"
+    }
+
     fn rows(&self) -> usize {
         1
     }

@@ -1,6 +1,7 @@
 //! A point on a line: the guide of a prismatic joint, a pin in a slot.
 
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use crate::effect::Effect;
 use crate::marker::{Marker, Spin};
 use crate::math::plane::{Vec2, cross, dot, norm, perp, rotate, scale, sub};
 use crate::system::State;
@@ -44,6 +45,10 @@ impl Slide {
 }
 
 impl Constraint for Slide {
+    fn effect(&self) -> Effect {
+        "sliding_constraint"
+    }
+
     fn rows(&self) -> usize {
         1
     }

@@ -9,7 +9,7 @@ use super::friction::{FrictionLaw, TangentialForce};
 use super::geometry::{Gap, Geometry, Touch};
 use super::normal::NormalForce;
 use super::{At, ContactPair, Smooth};
-use crate::effect::Effect;
+use crate::effect::{self, Effect};
 use crate::force::{LocalMatrix, WIDTH};
 use crate::marker::{Spin, SpinDerivatives};
 use crate::math::plane::{Vec2, add, scale};
@@ -67,7 +67,8 @@ impl<G: Geometry> Rough<G> {
         let mut coordinates = surface.geometry.coordinates();
         let mut rims = Vec::new();
         if slip == Slip::Material {
-            for (radius, spin) in surface.geometry.radii().into_iter().zip(spins) {
+            let sides = surface.geometry.radii().into_iter().zip(spins);
+            for (radius, spin) in sides.filter(|(radius, _)| *radius != 0.0) {
                 let local = spin.coordinates().into_iter().map(|index| {
                     coordinates
                         .iter()
@@ -127,7 +128,7 @@ impl<G: Geometry> Rough<G> {
     fn sliding(&self, at: At) -> Option<Sliding> {
         let gap = self.surface.geometry.gap(at.q, at.v);
         let normal = self.surface.normal_force(&gap, at.z)?;
-        let touch = self.surface.geometry.touch(at.v, &gap);
+        let touch = self.surface.geometry.touch(at, &gap);
         let slip = self.slip_state(at.q, at.v, &gap, &touch);
         let tangential = self.law.force(slip.value, normal.value);
         Some(Sliding {
@@ -159,7 +160,7 @@ impl<G: Geometry> ContactPair for Rough<G> {
     }
 
     fn effects(&self) -> &'static [Effect] {
-        &[Effect::Contact, Effect::Friction]
+        &[effect::CONTACT, effect::FRICTION]
     }
 
     fn gap(&self, q: &[f64], v: &[f64]) -> Gap {
@@ -173,7 +174,7 @@ impl<G: Geometry> ContactPair for Rough<G> {
     fn force(&self, at: At, f: &mut [f64; WIDTH]) -> bool {
         let sliding = self.sliding(at);
         if let Some(s) = &sliding {
-            self.surface.geometry.push(&s.gap, s.normal.value, f);
+            self.surface.geometry.push(at, &s.gap, s.normal.value, f);
             for (f, lever) in f.iter_mut().zip(s.slip.lever) {
                 *f += s.tangential.value * lever;
             }
@@ -212,7 +213,7 @@ impl<G: Geometry> ContactPair for Rough<G> {
         let [normal, tangential] = [w.q * normal.value, w.q * tangential.value];
         self.surface
             .geometry
-            .curve(&gap, &touch, normal, tangential, k);
+            .curve(at, &gap, &touch, normal, tangential, k);
         for ((radius, _, local), d) in self.rims.iter().zip(slip.spins) {
             for (m, &r) in local.iter().enumerate() {
                 for (n, &c) in local.iter().enumerate() {

@@ -3,7 +3,7 @@
 use super::geometry::{Gap, Geometry, Touch};
 use super::normal::{NormalForce, NormalLaw};
 use super::{At, ContactPair};
-use crate::effect::Effect;
+use crate::effect::{self, Effect};
 use crate::force::{LocalMatrix, WIDTH};
 use crate::math::plane::{Vec2, scale};
 use crate::system::{INTEGRALS, Integral, Weights};
@@ -65,7 +65,7 @@ impl<G: Geometry> ContactPair for Smooth<G> {
     }
 
     fn effects(&self) -> &'static [Effect] {
-        &[Effect::Contact]
+        &[effect::CONTACT]
     }
 
     fn gap(&self, q: &[f64], v: &[f64]) -> Gap {
@@ -80,7 +80,7 @@ impl<G: Geometry> ContactPair for Smooth<G> {
         let gap = self.geometry.gap(at.q, at.v);
         let force = self.normal_force(&gap, at.z);
         if let Some(force) = &force {
-            self.geometry.push(&gap, force.value, f);
+            self.geometry.push(at, &gap, force.value, f);
         }
         force.is_some()
     }
@@ -96,10 +96,11 @@ impl<G: Geometry> ContactPair for Smooth<G> {
         let Some(force) = self.normal_force(&gap, at.z) else {
             return false;
         };
-        let touch = self.geometry.touch(at.v, &gap);
+        let touch = self.geometry.touch(at, &gap);
         let gradient = self.gradient(&touch, &force, w);
         self.press(&touch, &force, &gradient, f, k);
-        self.geometry.curve(&gap, &touch, w.q * force.value, 0.0, k);
+        self.geometry
+            .curve(at, &gap, &touch, w.q * force.value, 0.0, k);
         true
     }
 

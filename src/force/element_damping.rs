@@ -7,6 +7,9 @@ use crate::math::plane::{Vec2, cross, dot, perp};
 use crate::math::quadrature::GAUSS5;
 use crate::system::{INTEGRALS, Integral, State, Weights};
 
+/// Coordinates of an element.
+const NODAL: usize = 8;
+
 /// The dissipation 1/2 int EA tau eps_dot^2 + EI tau kappa_dot^2 dx with eps = (r'.r' - 1)/2 and kappa = r' x r''.
 ///
 /// ```text
@@ -49,13 +52,13 @@ impl ElementDamping {
     }
 
     /// Local q and v.
-    fn gather(&self, at: &State) -> [[f64; WIDTH]; 2] {
+    fn gather(&self, at: &State) -> [[f64; NODAL]; 2] {
         [&at.q, &at.v].map(|x| std::array::from_fn(|i| x[self.coordinates[i]]))
     }
 
-    fn rates(first: &[f64; 4], second: &[f64; 4], [q, v]: &[[f64; WIDTH]; 2]) -> Rates {
+    fn rates(first: &[f64; 4], second: &[f64; 4], [q, v]: &[[f64; NODAL]; 2]) -> Rates {
         // sum_a s_a x_a over the four local vectors
-        let combine = |s: &[f64; 4], x: &[f64; WIDTH]| {
+        let combine = |s: &[f64; 4], x: &[f64; NODAL]| {
             [0, 1].map(|i| s[0] * x[i] + s[1] * x[2 + i] + s[2] * x[4 + i] + s[3] * x[6 + i])
         };
         let r = [combine(first, q), combine(second, q)];
@@ -69,8 +72,8 @@ impl ElementDamping {
     }
 
     /// deps/dq and dkappa/dq, or their rates where `r` are the rates of r' and r''.
-    fn slopes(first: &[f64; 4], second: &[f64; 4], r: &[Vec2; 2]) -> [[f64; WIDTH]; 2] {
-        let (mut eps, mut kappa) = ([0.0; WIDTH], [0.0; WIDTH]);
+    fn slopes(first: &[f64; 4], second: &[f64; 4], r: &[Vec2; 2]) -> [[f64; NODAL]; 2] {
+        let (mut eps, mut kappa) = ([0.0; NODAL], [0.0; NODAL]);
         let turned = [perp(r[0]), perp(r[1])];
         for a in 0..4 {
             for i in 0..2 {
@@ -84,7 +87,7 @@ impl ElementDamping {
 
 impl Force for ElementDamping {
     fn effect(&self) -> Effect {
-        Effect::ElementDamping
+        "element_damping"
     }
 
     fn coordinates(&self) -> Vec<usize> {
@@ -102,7 +105,7 @@ impl Force for ElementDamping {
             let [eps, kappa] = Self::slopes(first, second, &rates.r);
             let axial = weight * self.axial * rates.eps;
             let bending = weight * self.bending * rates.kappa;
-            for i in 0..WIDTH {
+            for i in 0..NODAL {
                 f[i] += axial * eps[i] + bending * kappa[i];
             }
         }
@@ -115,16 +118,16 @@ impl Force for ElementDamping {
             let (axial, bending) = (weight * self.axial, weight * self.bending);
             let [eps, kappa] = Self::slopes(first, second, &rates.r);
             let [eps_dot, kappa_dot] = Self::slopes(first, second, &rates.v);
-            let by_stage = |slope: &[f64; WIDTH], slope_dot: &[f64; WIDTH]| -> [f64; WIDTH] {
+            let by_stage = |slope: &[f64; NODAL], slope_dot: &[f64; NODAL]| -> [f64; NODAL] {
                 std::array::from_fn(|i| w.v * slope[i] + w.q * slope_dot[i])
             };
             let eps_stage = by_stage(&eps, &eps_dot);
             let kappa_stage = by_stage(&kappa, &kappa_dot);
             let (pull, moment) = (axial * rates.eps, bending * rates.kappa);
-            for r in 0..WIDTH {
+            for r in 0..NODAL {
                 let (along, across) = (axial * eps[r], bending * kappa[r]);
                 f[r] += pull * eps[r] + moment * kappa[r];
-                for c in 0..WIDTH {
+                for c in 0..NODAL {
                     k[r][c] += along * eps_stage[c] + across * kappa_stage[c];
                 }
             }

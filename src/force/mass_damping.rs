@@ -30,7 +30,7 @@ impl MassDamping {
 
 impl Force for MassDamping {
     fn effect(&self) -> Effect {
-        Effect::MassDamping
+        "mass_damping"
     }
 
     fn coordinates(&self) -> Vec<usize> {

@@ -1,25 +1,16 @@
-//! Forces between bodies and from outside, one kind a file.
+//! The trait of forces, and structural damping. Forces that a scene names are in [`crate::interaction`].
 
 mod element_damping;
 mod mass_damping;
-mod point_force;
-mod spring_damper;
-mod torque;
-mod torsion_spring;
 
 pub use element_damping::ElementDamping;
 pub use mass_damping::MassDamping;
-pub use point_force::PointForce;
-pub use spring_damper::SpringDamper;
-pub use torque::Torque;
-pub use torsion_spring::TorsionSpring;
 
 use crate::effect::Effect;
 use crate::system::{INTEGRALS, State, Weights};
 
-/// Most coordinates that one force can depend on: an element, or a node and another node that fixes its spin, on both
-/// sides.
-pub const WIDTH: usize = 8;
+/// Most coordinates that one force can depend on: a point between two nodes on both sides, and an internal state.
+pub const WIDTH: usize = 9;
 
 /// A square block in the local coordinates of a force.
 pub type LocalMatrix = [[f64; WIDTH]; WIDTH];
@@ -42,6 +33,14 @@ pub trait Force: std::fmt::Debug + Send + Sync {
     }
     /// Adds what it does and dissipates to the integrands of the ledger \[W\].
     fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]);
+    /// True of a spring: its energy is a channel.
+    fn stores_energy(&self) -> bool {
+        false
+    }
+    /// Why it is not defined in a state, if it is not.
+    fn fault(&self, _at: &State) -> Option<&'static str> {
+        None
+    }
     /// Sets memory before the start.
     fn begin(&self, _at: &mut State) {}
     /// Updates memory at an accepted state.

@@ -2,35 +2,16 @@
 
 pub(crate) mod redundancy;
 
+use crate::body::{Content, Frame};
 use crate::compile::Compiled;
 use crate::compile::assembly::{CENTRE, assemble, opening};
-use crate::math::plane::{Vec2, add, cross, dot, norm, perp, scale, sub};
-use crate::model::{BodyCoordinates, Model, PlacedConstraint};
-use crate::scene::{Analysis, BodyKind, BodyState, ForceKind, JointModel, Scene, SceneError};
+use crate::math::plane::norm;
+use crate::model::{Model, PlacedConstraint};
+use crate::scene::{Analysis, BodyState, Scene, SceneError};
 use crate::system::State;
 
 /// Largest violation of a constraint \[m\] or of its rate \[m/s\] at the start: the digits of a typed position.
 const START_TOLERANCE: f64 = 1e-9;
-
-/// Position and velocity of a body: of a rigid body (x, y, theta), of a link its `start` and its direction.
-#[derive(Debug, Clone, Copy)]
-struct Start {
-    position: [f64; 3],
-    velocity: [f64; 3],
-}
-
-impl Start {
-    /// The start that the scene gives to a body.
-    fn given(state: &BodyState, kind: &BodyKind) -> Start {
-        let (mut position, mut velocity) = (state.position, state.velocity);
-        if let BodyKind::Link(link) = kind {
-            let start = link.start(state);
-            position[..2].copy_from_slice(&start[0]);
-            velocity[..2].copy_from_slice(&start[1]);
-        }
-        Start { position, velocity }
-    }
-}
 
 /// Writes coordinates and remembers which were written, so that two bodies that share a node must agree on it.
 struct Writer<'a> {
@@ -40,22 +21,21 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// Sets a node; false if it is already known or written and differs.
-    fn node(&mut self, x: usize, position: Vec2, velocity: Vec2) -> bool {
+    /// Sets coordinates from `x` and their rates; false if they are already known or written and differ.
+    fn slot(&mut self, x: usize, [position, velocity]: [[f64; 3]; 2], content: Content) -> bool {
+        let here = x..x + content.names().len();
         if x >= self.unknowns || self.written[x] {
-            let here = [self.state.q[x], self.state.q[x + 1]];
-            let rate = [self.state.v[x], self.state.v[x + 1]];
-            return norm(sub(here, position)) <= START_TOLERANCE
-                && norm(sub(rate, velocity)) <= START_TOLERANCE;
+            let agrees = |level: &[f64], values: [f64; 3]| {
+                let differences = level[here.clone()].iter().zip(values).map(|(a, b)| a - b);
+                differences.map(|d| d * d).sum::<f64>().sqrt() <= START_TOLERANCE
+            };
+            return agrees(&self.state.q, position) && agrees(&self.state.v, velocity);
         }
-        self.set(x, position, velocity);
-        true
-    }
-
-    fn set(&mut self, x: usize, position: Vec2, velocity: Vec2) {
         self.written[x] = true;
-        self.state.q[x..x + 2].copy_from_slice(&position);
-        self.state.v[x..x + 2].copy_from_slice(&velocity);
+        let width = here.len();
+        self.state.q[here.clone()].copy_from_slice(&position[..width]);
+        self.state.v[here].copy_from_slice(&velocity[..width]);
+        true
     }
 }
 
@@ -89,7 +69,7 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
     for (b, start) in starts.iter().enumerate() {
         let Some(start) = start else { continue };
         let body = &scene.bodies[b];
-        if !place(model, b, body_length(&body.kind), start, &mut writer) {
+        if !place(model, b, start, &mut writer) {
             let given = scene.initial.bodies.iter().find(|s| s.body == b);
             let span = given.map_or(body.span, |g| g.span);
             let message = format!(
@@ -101,7 +81,7 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         }
     }
     for j in 0..scene.joints.len() {
-        let JointModel::Clearance(contact) = &scene.joints[j].model else {
+        let Some(contact) = scene.joints[j].contact() else {
             continue;
         };
         let delta = model.gap(j, &state).map_or(0.0, |(gap, ..)| gap.delta);
@@ -116,16 +96,9 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         }
     }
     for (f, force) in scene.forces.iter().enumerate() {
-        let length = model.named_force(f, &state)[1];
-        if let ForceKind::SpringDamper { rest_length, .. } = force.kind
-            && rest_length > 0.0
-            && (length.is_nan() || length <= START_TOLERANCE)
-        {
-            let message = format!(
-                "the ends of {} coincide at the start, where the direction of a spring with a rest length is undefined",
-                force.name
-            );
-            return Err(scene.error(force.span, message, "this spring"));
+        if let Some(fault) = model.force_fault(f, &state) {
+            let message = format!("force {} is not defined at the start: {fault}", force.name);
+            return Err(scene.error(force.span, message, "this force"));
         }
     }
     satisfied(scene, model, &state)?;
@@ -157,7 +130,7 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
         let message = format!(
             "the start violates {}: it is open by {}",
             name(placed),
-            opening(placed.effect, open, "")
+            opening(&placed.term, open, "")
         );
         let error = scene.error(scene.initial.span, message, "this start");
         return Err(error.with_help(CENTRE));
@@ -172,7 +145,7 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
     let message = format!(
         "the velocities of the start violate {}, by {}",
         name(placed),
-        opening(placed.effect, off, "/s")
+        opening(&placed.term, off, "/s")
     );
     let silent = scene.initial.bodies.iter().filter(|s| !s.velocity_given);
     let silent: Vec<&BodyState> = silent.collect();
@@ -201,7 +174,7 @@ fn starts(
     scene: &Scene,
     compiled: &Compiled,
     state: &State,
-) -> Result<Vec<Option<Start>>, SceneError> {
+) -> Result<Vec<Option<Frame>>, SceneError> {
     let Compiled { model, kinematics } = compiled;
     let free: Vec<bool> = (0..scene.bodies.len()).map(|b| is_free(model, b)).collect();
     let given = |b: usize| scene.initial.bodies.iter().find(|s| s.body == b);
@@ -221,7 +194,7 @@ fn starts(
         );
         return Err(scene.error(given.span, message, "remove this"));
     }
-    let exact = |b: usize| given(b).map(|g| Start::given(g, &scene.bodies[b].kind));
+    let exact = |b: usize| given(b).map(|g| scene.bodies[b].kind.frame(g.position, g.velocity));
     let incomplete = (0..scene.bodies.len()).any(|b| free[b] && given(b).is_none());
     let assembled = kinematics.is_none()
         && (incomplete || !scene.initial.sketch.is_empty() || !scene.initial.velocities.is_empty());
@@ -243,89 +216,21 @@ fn starts(
 
 fn is_free(model: &Model, b: usize) -> bool {
     let unknowns = model.shape().unknowns;
-    match &model.bodies()[b].coordinates {
-        BodyCoordinates::Ground { .. } => false,
-        BodyCoordinates::Rigid { x } | BodyCoordinates::PointMass { x } => *x < unknowns,
-        BodyCoordinates::RigidLink { ends } => ends.iter().any(|&x| x < unknowns),
-        BodyCoordinates::FlexibleLink { .. } => true,
-    }
+    model.bodies()[b].placed.x.iter().any(|&x| x < unknowns)
 }
 
-fn body_length(kind: &BodyKind) -> f64 {
-    match kind {
-        BodyKind::Link(link) => link.length,
-        _ => 0.0,
-    }
-}
-
-/// Start of a body in the ideal mechanism, whose coordinates begin at `offset` in `state`.
-fn ideal_start(mechanism: &Model, b: usize, state: &State, offset: usize) -> Option<Start> {
-    let at = |x: usize| {
-        let x = x + offset;
-        ([state.q[x], state.q[x + 1]], [state.v[x], state.v[x + 1]])
-    };
-    match mechanism.bodies()[b].coordinates {
-        BodyCoordinates::Rigid { x } => {
-            let x = x + offset;
-            let of = |level: &[f64]| [level[x], level[x + 1], level[x + 2]];
-            Some(Start {
-                position: of(&state.q),
-                velocity: of(&state.v),
-            })
-        }
-        BodyCoordinates::PointMass { x } => {
-            let (p, v) = at(x);
-            Some(Start {
-                position: [p[0], p[1], 0.0],
-                velocity: [v[0], v[1], 0.0],
-            })
-        }
-        BodyCoordinates::RigidLink { ends: [i, j] } => {
-            let ((from, from_rate), (to, to_rate)) = (at(i), at(j));
-            let (d, d_dot) = (sub(to, from), sub(to_rate, from_rate));
-            let omega = cross(d, d_dot) / dot(d, d);
-            Some(Start {
-                position: [from[0], from[1], d[1].atan2(d[0])],
-                velocity: [from_rate[0], from_rate[1], omega],
-            })
-        }
-        _ => None,
-    }
+/// Frame of a body in the ideal mechanism, whose coordinates begin at `offset` in `state`.
+fn ideal_start(mechanism: &Model, b: usize, state: &State, offset: usize) -> Option<Frame> {
+    let placed = &mechanism.bodies()[b].placed;
+    let (q, v) = (&state.q[offset..], &state.v[offset..]);
+    placed.kind.frame_at(&placed.x, q, v)
 }
 
 /// Writes the coordinates of body `b`, undeformed; false if a node differs from one already known or written.
-fn place(model: &Model, b: usize, length: f64, start: &Start, writer: &mut Writer) -> bool {
-    let [x0, y0, theta] = start.position;
-    let [vx, vy, omega] = start.velocity;
-    let direction = [theta.cos(), theta.sin()];
-    let turning = scale(omega, perp(direction));
-    let point = |s: f64| {
-        (
-            add([x0, y0], scale(s, direction)),
-            add([vx, vy], scale(s, turning)),
-        )
-    };
-    match &model.bodies()[b].coordinates {
-        BodyCoordinates::Ground { .. } => true,
-        BodyCoordinates::PointMass { x } => writer.node(*x, [x0, y0], [vx, vy]),
-        BodyCoordinates::Rigid { x } => {
-            writer.set(*x, [x0, y0], [vx, vy]);
-            writer.state.q[x + 2] = theta;
-            writer.state.v[x + 2] = omega;
-            true
-        }
-        BodyCoordinates::RigidLink { ends } => {
-            let ((p, v), (p1, v1)) = (point(0.0), point(length));
-            writer.node(ends[0], p, v) & writer.node(ends[1], p1, v1)
-        }
-        BodyCoordinates::FlexibleLink { nodes, slopes, .. } => {
-            let mut fits = true;
-            for (k, (&node, &slope)) in nodes.iter().zip(slopes).enumerate() {
-                let (p, v) = point(length * k as f64 / (nodes.len() - 1) as f64);
-                fits &= writer.node(node, p, v);
-                writer.set(slope, direction, turning);
-            }
-            fits
-        }
-    }
+fn place(model: &Model, b: usize, start: &Frame, writer: &mut Writer) -> bool {
+    let body = &model.bodies()[b];
+    let values = body.placed.kind.place(start);
+    let slots = body.placed.x.iter().zip(values).zip(&body.contents);
+    let fits = slots.map(|((x, value), content)| writer.slot(*x, value, *content));
+    fits.fold(true, |all, fits| all & fits)
 }

@@ -3,7 +3,6 @@
 use super::{Model, Rule};
 use crate::constraint::{self, Curvature, ROWS};
 use crate::contact;
-use crate::effect::Effect;
 use crate::force::WIDTH;
 use crate::link::ElasticRoute;
 use crate::math::lu::Symbolic;
@@ -138,8 +137,8 @@ impl Model {
     }
 
     fn count(&self, work: &mut Work) {
-        for &(effect, count) in &self.counts {
-            work.tally[effect as usize] += count;
+        for &(counter, count) in &self.counts {
+            work.tally[counter] += count;
         }
     }
 
@@ -215,7 +214,7 @@ impl System for Model {
 
     fn work(&self) -> Work {
         Work {
-            tally: [0; Effect::ALL.len()].to_vec(),
+            tally: vec![0; self.effects.len()],
             prescribed: self.prescribed.clone(),
         }
     }
@@ -232,7 +231,7 @@ impl System for Model {
         to.a[n..].copy_from_slice(&from.a[n..]);
         self.follow_rules(to);
         for motion in &mut work.prescribed {
-            work.tally[Effect::InverseKinematics as usize] += 1;
+            work.tally[self.kinematics_counter] += 1;
             motion.follow(from, to)?;
         }
         self.move_driven_nodes(to);

@@ -1,23 +1,13 @@
 //! Measured quantities of a model: poses, strains, energies, joint forces, drive torques.
 
-use super::{Actuator, BodyCoordinates, JointKind, Model, PlacedJoint};
+use super::{Actuator, ForceCarrier, Model, PlacedJoint};
+use crate::body::{Pose, rigid_body};
 use crate::contact;
 use crate::contact::geometry::Gap;
 use crate::marker::Marker;
-use crate::math::plane::{Vec2, add, cross, dot, norm, scale, sub};
+use crate::math::plane::{Vec2, cross, dot, norm, sub};
 use crate::system::{Integral, State, Work};
 use std::f64::consts::PI;
-
-/// Position, velocity and acceleration of a body: centre of mass, and angle (of a link: of its chord).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Pose {
-    /// x, y \[m\], theta \[rad\].
-    pub position: [f64; 3],
-    /// vx, vy, omega.
-    pub velocity: [f64; 3],
-    /// ax, ay, alpha.
-    pub acceleration: [f64; 3],
-}
 
 /// Stored energies \[J\].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -57,69 +47,11 @@ fn pair(x: &[f64], i: usize) -> Vec2 {
     [x[i], x[i + 1]]
 }
 
-/// Sum over the nodes of a flexible link of the integral of the shape functions over the length, per length.
-fn mean(x: &[f64], nodes: &[usize], slopes: &[usize], element_length: f64) -> Vec2 {
-    let mut sum = [0.0; 2];
-    for (n, s) in nodes.windows(2).zip(slopes.windows(2)) {
-        sum = add(sum, scale(0.5, add(pair(x, n[0]), pair(x, n[1]))));
-        sum = add(
-            sum,
-            scale(element_length / 12.0, sub(pair(x, s[0]), pair(x, s[1]))),
-        );
-    }
-    scale(1.0 / (nodes.len() - 1) as f64, sum)
-}
-
-/// Pose of a link from its centre and its chord, each as (position, velocity, acceleration).
-fn link_pose(centre: [Vec2; 3], chord: [Vec2; 3]) -> Pose {
-    let [d, d_dot, d_ddot] = chord;
-    let square = dot(d, d);
-    let omega = cross(d, d_dot) / square;
-    let alpha = (cross(d, d_ddot) - 2.0 * omega * dot(d, d_dot)) / square;
-    Pose {
-        position: [centre[0][0], centre[0][1], d[1].atan2(d[0])],
-        velocity: [centre[1][0], centre[1][1], omega],
-        acceleration: [centre[2][0], centre[2][1], alpha],
-    }
-}
-
 impl Model {
     /// Pose of body `index` of the scene; angles of links in (-pi, pi].
     pub fn pose(&self, index: usize, at: &State) -> Pose {
-        let levels = [&at.q, &at.v, &at.a];
-        match &self.bodies[index].coordinates {
-            BodyCoordinates::Ground { .. } => Pose::default(),
-            BodyCoordinates::Rigid { x } => {
-                let [position, velocity, acceleration] =
-                    levels.map(|l| [l[*x], l[x + 1], l[x + 2]]);
-                Pose {
-                    position,
-                    velocity,
-                    acceleration,
-                }
-            }
-            BodyCoordinates::PointMass { x } => {
-                let [position, velocity, acceleration] = levels.map(|l| [l[*x], l[x + 1], 0.0]);
-                Pose {
-                    position,
-                    velocity,
-                    acceleration,
-                }
-            }
-            BodyCoordinates::RigidLink { ends: [i, j] } => link_pose(
-                levels.map(|l| scale(0.5, add(pair(l, *i), pair(l, *j)))),
-                levels.map(|l| sub(pair(l, *j), pair(l, *i))),
-            ),
-            BodyCoordinates::FlexibleLink {
-                nodes,
-                slopes,
-                element_length,
-                ..
-            } => link_pose(
-                levels.map(|l| mean(l, nodes, slopes, *element_length)),
-                levels.map(|l| sub(pair(l, nodes[nodes.len() - 1]), pair(l, nodes[0]))),
-            ),
-        }
+        let placed = &self.bodies[index].placed;
+        placed.kind.pose(&placed.x, [&at.q, &at.v, &at.a])
     }
 
     /// Position, velocity and acceleration of point `point` of body `body`.
@@ -135,39 +67,24 @@ impl Model {
 
     /// Pose that the drive prescribes for body `index`, if it does.
     pub fn prescribed(&self, index: usize, at: &State) -> Option<Pose> {
-        self.bodies[index].prescribed.map(|x| {
-            let [position, velocity, acceleration] =
-                [&at.q, &at.v, &at.a].map(|l| [l[x], l[x + 1], l[x + 2]]);
-            Pose {
-                position,
-                velocity,
-                acceleration,
-            }
-        })
+        let x = self.bodies[index].prescribed?;
+        Some(rigid_body::pose(x, [&at.q, &at.v, &at.a]))
     }
 
     /// The axial strain of largest magnitude along a flexible link, sampled at eleven points of every element.
     pub fn strain(&self, index: usize, at: &State) -> Option<f64> {
-        let BodyCoordinates::FlexibleLink { elements, .. } = &self.bodies[index].coordinates else {
-            return None;
-        };
-        let mut largest: f64 = 0.0;
-        for element in &self.elements[elements.clone()] {
-            let q = std::array::from_fn(|i| at.q[element.block.coordinates[i]]);
-            for k in 0..=10 {
-                let strain = element.kernel.strain(&q, f64::from(k) / 10.0);
-                if strain.abs() > largest.abs() {
-                    largest = strain;
-                }
-            }
-        }
-        Some(largest)
+        let placed = &self.bodies[index].placed;
+        placed.kind.strain(&placed.x, &at.q)
     }
 
     /// Stored energies.
     pub fn energies(&self, at: &State) -> Energies {
         let mut energies = Energies::default();
-        for (i, v) in at.v.iter().enumerate() {
+        for (i, v) in
+            at.v.iter()
+                .enumerate()
+                .filter(|(i, _)| !self.states.contains(i))
+        {
             let row = self.mass.row(i);
             energies.kinetic += 0.5 * v * row.map(|(&j, m)| m * at.v[j]).sum::<f64>();
         }
@@ -192,12 +109,12 @@ impl Model {
     /// Force of the bearing side on the journal side of joint `index` \[N\].
     pub fn joint_force(&self, index: usize, at: &State, work: &mut Work) -> Vec2 {
         match &self.joints[index].kind {
-            JointKind::Constraint(i) => {
+            ForceCarrier::Constraint(i) => {
                 let c = &self.constraints[*i];
                 c.term.force(at, c.multipliers(at))
             }
-            JointKind::Contact(i) => self.contacts[*i].pair.reaction(contact_state(at, *i)),
-            JointKind::Eliminated(reaction) => {
+            ForceCarrier::Contact(i) => self.contacts[*i].pair.reaction(contact_state(at, *i)),
+            ForceCarrier::Eliminated(reaction) => {
                 let force = self.reaction(reaction, at, work);
                 [force[0], force[1]]
             }
@@ -244,14 +161,19 @@ impl Model {
         self.forces[self.named_forces[index].1].term.measure(at)
     }
 
+    /// Why the force `index` of the scene is not defined in a state, if it is not.
+    pub fn force_fault(&self, index: usize, at: &State) -> Option<&'static str> {
+        self.forces[self.named_forces[index].1].term.fault(at)
+    }
+
     /// True for a joint with clearance.
     pub fn is_loose(&self, index: usize) -> bool {
-        matches!(self.joints[index].kind, JointKind::Contact(_))
+        matches!(self.joints[index].kind, ForceCarrier::Contact(_))
     }
 
     /// Where the surfaces of a joint with clearance are, the rate of its penetration \[m/s\], and whether the contact is closed.
     pub fn gap(&self, index: usize, at: &State) -> Option<(Gap, f64, bool)> {
-        let JointKind::Contact(i) = self.joints[index].kind else {
+        let ForceCarrier::Contact(i) = self.joints[index].kind else {
             return None;
         };
         let pair = &self.contacts[i].pair;
@@ -280,7 +202,7 @@ impl Model {
     /// Index of the joint that owns contact memory `contact`.
     pub fn contact_joint(&self, contact: usize) -> Option<usize> {
         let owns =
-            |joint: &PlacedJoint| matches!(joint.kind, JointKind::Contact(i) if i == contact);
+            |joint: &PlacedJoint| matches!(joint.kind, ForceCarrier::Contact(i) if i == contact);
         self.joints.iter().position(owns)
     }
 
@@ -316,14 +238,8 @@ impl Model {
     /// The unknown angle of a rigid body that differs by more than half a turn between two states, if there is one. Joints
     /// determine angles only up to full turns, so without this check a step could add one.
     pub fn full_turn(&self, from: &State, to: &State) -> Option<usize> {
-        self.bodies.iter().find_map(|body| match body.coordinates {
-            BodyCoordinates::Rigid { x } => {
-                let angle = x + 2;
-                let turned = (to.q[angle] - from.q[angle]).abs();
-                (angle < self.shape.unknowns && turned > PI).then_some(angle)
-            }
-            _ => None,
-        })
+        let turned = |angle: &&usize| (to.q[**angle] - from.q[**angle]).abs() > PI;
+        self.angles.iter().find(turned).copied()
     }
 
     /// The redundant constraint left out with the largest violation: the index of its multiplier among the unknowns, and the

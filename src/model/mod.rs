@@ -5,21 +5,26 @@ mod block;
 mod measure;
 mod reaction;
 
+pub use crate::body::Pose;
 pub use block::{Block, Border};
-pub use measure::{Energies, Pose};
+pub use measure::Energies;
 pub(crate) use reaction::{DrivenForce, Source};
 pub use reaction::{Reaction, Share};
 
-use crate::constraint::{Coincide, Constraint, Curvature, Gradient, Length, ROWS, Slide};
+use crate::body::Content;
+use crate::constraint::{ROWS, Slide};
 use crate::contact::ContactPair;
-use crate::effect::Effect;
+use crate::effect::{self, Effect};
 use crate::force::Force;
+use crate::interaction::Placed;
 use crate::link::AncfCable;
 use crate::marker::{Marker, Spin};
 use crate::math::lu::Symbolic;
 use crate::math::plane::Vec2;
 use crate::motion::{Function, Path};
 use crate::system::{Prescribed, Shape, State, Work};
+use crate::terms::{ConstraintTerm, Inertia};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A mechanism ready to be integrated.
@@ -30,12 +35,21 @@ pub struct Model {
     pub(crate) acceleration_symbolic: Symbolic,
     /// Names of the unknowns, then of the multipliers.
     pub(crate) names: Vec<String>,
+    /// Unknowns that are internal states of forces, at the level of velocities.
+    pub(crate) states: Vec<usize>,
+    /// Unknown angles of rigid bodies.
+    pub(crate) angles: Vec<usize>,
+    /// Index of the effect of inverse kinematics, if there is one, and of that of elements.
+    pub(crate) kinematics_counter: usize,
+    pub(crate) elastic_counter: usize,
+    /// Effects present, in the order of their counters.
+    pub(crate) effects: Vec<Effect>,
     pub(crate) mass: Mass,
     pub(crate) elements: Vec<Element>,
     pub(crate) constraints: Vec<PlacedConstraint>,
     pub(crate) forces: Vec<PlacedForce>,
     /// Evaluations of each effect in one residual; contacts are counted separately, because they may be open.
-    pub(crate) counts: Vec<(Effect, u64)>,
+    pub(crate) counts: Vec<(usize, u64)>,
     /// Forces with a name of their own, as indices into the forces.
     pub(crate) named_forces: Vec<(String, usize)>,
     /// In the order of their memory.
@@ -84,51 +98,10 @@ pub(crate) struct DrivenNode {
     pub marker: Marker,
 }
 
-/// A constraint: the kinds that every mechanism has many of by themselves, so that the step loop calls them directly.
-#[derive(Debug)]
-pub(crate) enum ConstraintTerm {
-    Length(Length),
-    Coincide(Coincide),
-    Other(Box<dyn Constraint>),
-}
-
-impl ConstraintTerm {
-    #[inline]
-    pub fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
-        match self {
-            ConstraintTerm::Length(term) => term.value_and_gradient(at, gradient),
-            ConstraintTerm::Coincide(term) => term.value_and_gradient(at, gradient),
-            ConstraintTerm::Other(term) => term.value_and_gradient(at, gradient),
-        }
-    }
-
-    #[inline]
-    pub fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {
-        match self {
-            ConstraintTerm::Length(term) => term.curvature(at, lambda, out),
-            ConstraintTerm::Coincide(term) => term.curvature(at, lambda, out),
-            ConstraintTerm::Other(term) => term.curvature(at, lambda, out),
-        }
-    }
-}
-
-impl std::ops::Deref for ConstraintTerm {
-    type Target = dyn Constraint;
-
-    fn deref(&self) -> &(dyn Constraint + 'static) {
-        match self {
-            ConstraintTerm::Length(term) => term,
-            ConstraintTerm::Coincide(term) => term,
-            ConstraintTerm::Other(term) => &**term,
-        }
-    }
-}
-
 /// A constraint with its place in the equations.
 #[derive(Debug)]
 pub(crate) struct PlacedConstraint {
     pub term: ConstraintTerm,
-    pub effect: Effect,
     /// Index of its first multiplier among the multipliers.
     pub row: usize,
     pub rows: usize,
@@ -173,6 +146,8 @@ pub(crate) struct PlacedForce {
     pub block: Block,
     /// The body that each local coordinate stands for.
     pub owners: Vec<usize>,
+    /// Index of its effect.
+    pub counter: usize,
 }
 
 /// A contact with its place in the equations.
@@ -180,14 +155,16 @@ pub(crate) struct PlacedForce {
 pub(crate) struct PlacedContact {
     pub pair: Box<dyn ContactPair>,
     pub block: Block,
+    /// Indices of its effects.
+    pub counters: Vec<usize>,
 }
 
 impl PlacedContact {
     /// Counts an evaluation of touching surfaces.
     #[inline]
     pub fn count(&self, work: &mut Work) {
-        for effect in self.pair.effects() {
-            work.tally[*effect as usize] += 1;
+        for counter in &self.counters {
+            work.tally[*counter] += 1;
         }
     }
 }
@@ -224,26 +201,24 @@ impl Mass {
     }
 }
 
-/// A mass matrix on some coordinates, row by row.
-#[derive(Debug)]
-pub(crate) struct Inertia {
-    pub coordinates: Vec<usize>,
-    pub values: Vec<f64>,
-    /// Gravity field on these coordinates: g on positions, zero on slopes and angles \[m/s2\].
-    pub field: Vec<f64>,
-}
-
-/// A body of the scene and its coordinates.
+/// A body of the scene and its place in the equations.
 #[derive(Debug, Clone)]
 pub struct PlacedBody {
     /// The name the user wrote.
     pub name: String,
-    /// Its coordinates.
-    pub coordinates: BodyCoordinates,
+    /// The body with its coordinates.
+    pub placed: Placed,
+    /// What its slots hold.
+    pub contents: Vec<Content>,
+    /// False of the ground.
+    pub moves: bool,
     /// Its coordinates in the ideal mechanism that the drive follows, for the driven body.
     pub prescribed: Option<usize>,
     /// Its named points, if it moves.
     pub points: Vec<PlacedPoint>,
+    /// Indices of its masses and elements in the model.
+    pub(crate) inertia: Range<usize>,
+    pub(crate) elements: Range<usize>,
 }
 
 /// A named point of a body.
@@ -257,51 +232,13 @@ pub struct PlacedPoint {
     pub slope: Option<usize>,
 }
 
-/// Coordinates of a body.
-#[derive(Debug, Clone)]
-pub enum BodyCoordinates {
-    /// Points that do not move.
-    Ground {
-        /// First coordinate of each point.
-        points: Vec<usize>,
-    },
-    /// x, y, theta from this index.
-    Rigid {
-        /// Index of x.
-        x: usize,
-    },
-    /// x, y from this index.
-    PointMass {
-        /// Index of x.
-        x: usize,
-    },
-    /// Two ends.
-    RigidLink {
-        /// First coordinates of the ends.
-        ends: [usize; 2],
-    },
-    /// Nodes with slopes.
-    FlexibleLink {
-        /// First coordinate of each node's position.
-        nodes: Vec<usize>,
-        /// First coordinate of each node's slope.
-        slopes: Vec<usize>,
-        /// Indices of its elements in the model.
-        elements: std::ops::Range<usize>,
-        /// Length of one element \[m\].
-        element_length: f64,
-        /// Node of each point: start, end, inner points.
-        points: Vec<usize>,
-    },
-}
-
 /// A joint of the scene and its terms.
 #[derive(Debug)]
 pub struct PlacedJoint {
     /// The name the user wrote.
     pub name: String,
     /// How its force is computed.
-    pub kind: JointKind,
+    pub kind: ForceCarrier,
     /// Present if a drive actuates the joint and the joint moves a body.
     pub actuator: Option<Actuator>,
     /// Constraint of directions that carries its couple: index into the constraints.
@@ -314,7 +251,7 @@ pub struct PlacedJoint {
 
 /// How a joint appears in the equations.
 #[derive(Debug)]
-pub enum JointKind {
+pub enum ForceCarrier {
     /// By constraint rows: index into the constraints.
     Constraint(usize),
     /// By a contact: index into the contacts.
@@ -342,25 +279,9 @@ impl Model {
         self.shape
     }
 
-    /// Names of the effects present and their indices in the tally.
-    pub fn effects(&self) -> Vec<(Effect, &'static str)> {
-        let present = |effect: Effect| match effect {
-            Effect::Elastic => !self.elements.is_empty(),
-            Effect::Contact | Effect::Friction => {
-                let mut pairs = self.contacts.iter().map(|c| &c.pair);
-                pairs.any(|pair| pair.effects().contains(&effect))
-            }
-            Effect::Gravity => !self.weight.is_empty(),
-            Effect::InverseKinematics => !self.prescribed.is_empty(),
-            other => {
-                self.constraints.iter().any(|c| c.effect == other)
-                    || self.forces.iter().any(|f| f.term.effect() == other)
-            }
-        };
-        Effect::ALL
-            .into_iter()
-            .filter(|(effect, _)| present(*effect))
-            .collect()
+    /// The effects present, in the order of the tally.
+    pub fn effects(&self) -> &[Effect] {
+        &self.effects
     }
 
     /// Names of the unknown coordinates, then of the multipliers.
@@ -421,21 +342,41 @@ impl Model {
         s
     }
 
-    /// How often each effect but contact is evaluated with every residual.
+    /// Collects the effects present, and how often each but contact is evaluated with every residual.
     pub(crate) fn count_effects(&mut self) {
-        let effects = [
-            vec![Effect::Elastic; self.elements.len()],
-            self.constraints.iter().map(|c| c.effect).collect(),
-            self.forces.iter().map(|f| f.term.effect()).collect(),
-            vec![Effect::Gravity; usize::from(!self.weight.is_empty())],
-        ]
-        .concat();
-        for (effect, _) in Effect::ALL {
-            let count = effects.iter().filter(|e| **e == effect).count() as u64;
-            if count > 0 {
-                self.counts.push((effect, count));
-            }
+        let mut effects: Vec<Effect> = Vec::new();
+        let mut counts: Vec<u64> = Vec::new();
+        let mut counter = |effect: Effect, count: usize| {
+            let known = effects.iter().position(|e| *e == effect);
+            let index = known.unwrap_or_else(|| {
+                effects.push(effect);
+                counts.push(0);
+                effects.len() - 1
+            });
+            counts[index] += count as u64;
+            index
+        };
+        if !self.elements.is_empty() {
+            self.elastic_counter = counter(effect::ELASTIC, self.elements.len());
         }
+        for c in &self.constraints {
+            counter(c.term.effect(), 1);
+        }
+        for c in &mut self.contacts {
+            c.counters = c.pair.effects().iter().map(|e| counter(e, 0)).collect();
+        }
+        if !self.weight.is_empty() {
+            counter(effect::GRAVITY, 1);
+        }
+        if !self.prescribed.is_empty() {
+            self.kinematics_counter = counter(effect::INVERSE_KINEMATICS, 0);
+        }
+        for f in &mut self.forces {
+            f.counter = counter(f.term.effect(), 1);
+        }
+        let counts = counts.into_iter().enumerate();
+        self.counts = counts.filter(|(_, count)| *count > 0).collect();
+        self.effects = effects;
     }
 
     /// True where a link or a spring stores energy.
@@ -445,8 +386,7 @@ impl Model {
 
     /// True where a spring stores energy.
     pub fn has_springs(&self) -> bool {
-        let spring = |e: Effect| matches!(e, Effect::SpringDamper | Effect::TorsionSpring);
-        self.forces.iter().any(|f| spring(f.term.effect()))
+        self.forces.iter().any(|f| f.term.stores_energy())
     }
 
     /// Names of the redundant rows that are left out.

@@ -4,11 +4,11 @@
 //! joint it is the force of the joint; summed over all terms at a driven coordinate it is the force of the drive.
 
 use super::measure::contact_state;
-use super::{ConstraintTerm, Model};
-use crate::effect::Effect;
+use super::{Model, PlacedForce};
 use crate::force::WIDTH;
 use crate::link::ElasticRoute;
 use crate::system::{State, Work};
+use crate::terms::ConstraintTerm;
 
 /// What a term contributes to consecutive coordinates of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl Model {
                 }
             }
             Source::Element(i) => {
-                work.tally[Effect::Elastic as usize] += 1;
+                work.tally[self.elastic_counter] += 1;
                 let element = &self.elements[i];
                 let mut f = [0.0; 8];
                 let q = std::array::from_fn(|j| at.q[element.block.coordinates[j]]);
@@ -86,8 +86,8 @@ impl Model {
                 }
             }
             Source::Force(i) => {
-                let term = &self.forces[i].term;
-                work.tally[term.effect() as usize] += 1;
+                let PlacedForce { term, counter, .. } = &self.forces[i];
+                work.tally[*counter] += 1;
                 let mut f = [0.0; WIDTH];
                 term.force(at, &mut f);
                 add(&f);

@@ -4,12 +4,17 @@ mod circle;
 mod coordinates;
 mod function;
 mod line;
+mod read_function;
+mod read_path;
 mod table;
 
 pub use circle::Circle;
 pub use coordinates::Coordinates;
 pub use function::Function;
 pub use line::Line;
+pub use read_function::{FUNCTIONS, FunctionKind, Use, read_function};
+pub(crate) use read_path::read_path;
+pub use read_path::{PATHS, PathKind};
 pub use table::Table;
 
 /// Position, velocity and acceleration of (x, y, theta).

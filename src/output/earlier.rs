@@ -17,10 +17,10 @@ pub fn earlier_result(folder: &Path) -> Option<PathBuf> {
 
 /// Sets `files` of `folder` aside, of which the first closes a result. What stands aside already gives way to a `whole`
 /// result only: a run that was killed does not push out the result that it was to replace.
-pub(super) fn set_aside(folder: &Path, files: &[&str], whole: bool) -> io::Result<()> {
+pub(super) fn set_aside(folder: &Path, files: &[String], whole: bool) -> io::Result<()> {
     let [aside, temporary] = [PREVIOUS, TEMPORARY].map(|name| folder.join(name));
     let present = || {
-        let is_there = |file: &&&str| folder.join(file).exists();
+        let is_there = |file: &&String| folder.join(file).exists();
         files.iter().filter(is_there)
     };
     if present().next().is_some() && (whole || !aside.exists()) {
@@ -36,11 +36,11 @@ pub(super) fn set_aside(folder: &Path, files: &[&str], whole: bool) -> io::Resul
 }
 
 /// Deletes what was set aside.
-pub(super) fn forget(folder: &Path, files: &[&str]) -> io::Result<()> {
+pub(super) fn forget(folder: &Path, files: &[String]) -> io::Result<()> {
     discard(&folder.join(PREVIOUS), files)
 }
 
-fn discard(aside: &Path, files: &[&str]) -> io::Result<()> {
+fn discard(aside: &Path, files: &[String]) -> io::Result<()> {
     if !aside.exists() {
         return Ok(());
     }

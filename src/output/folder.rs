@@ -15,7 +15,7 @@ pub enum OutputError {
         /// The folder.
         folder: PathBuf,
         /// A file of the result.
-        file: &'static str,
+        file: String,
     },
     /// The path of the folder is that of a file.
     #[error("`{}` is not a directory", .0.display())]
@@ -36,7 +36,7 @@ pub enum OutputError {
 pub struct Folder {
     path: PathBuf,
     /// Names of the files of a result. The first of them closes it and comes last: without that there is none.
-    files: &'static [&'static str],
+    files: Vec<String>,
     replaces: bool,
 }
 
@@ -48,12 +48,12 @@ impl Folder {
     /// A result that may not be replaced, or a path that is not a folder.
     pub fn new(
         path: &Path,
-        files: &'static [&'static str],
+        files: &[impl AsRef<str>],
         replaces: bool,
     ) -> Result<Folder, OutputError> {
         let folder = Folder {
             path: path.to_owned(),
-            files,
+            files: files.iter().map(|file| file.as_ref().to_owned()).collect(),
             replaces,
         };
         folder.refuse_occupied()?;
@@ -78,7 +78,7 @@ impl Folder {
     pub fn write(&self, texts: &[Vec<u8>]) -> Result<(), OutputError> {
         self.refuse_occupied()?;
         if self.replaces {
-            self.set_aside(self.path.join(self.files[0]).exists())?;
+            self.set_aside(self.path.join(&self.files[0]).exists())?;
         }
         for (name, bytes) in self.files.iter().zip(texts).rev() {
             self.replace(name, bytes)?;
@@ -94,6 +94,11 @@ impl Folder {
         &self.path
     }
 
+    /// The names of its files.
+    pub(super) fn files(&self) -> &[String] {
+        &self.files
+    }
+
     /// True where an earlier result may be replaced.
     pub(super) fn replaces(&self) -> bool {
         self.replaces
@@ -106,12 +111,12 @@ impl Folder {
 
     /// Sets the earlier result aside; `whole` where it was complete.
     pub(super) fn set_aside(&self, whole: bool) -> io::Result<()> {
-        earlier::set_aside(&self.path, self.files, whole)
+        earlier::set_aside(&self.path, &self.files, whole)
     }
 
     /// Deletes the earlier result.
     pub(super) fn forget(&self) -> io::Result<()> {
-        earlier::forget(&self.path, self.files)
+        earlier::forget(&self.path, &self.files)
     }
 
     /// Puts a whole file in its place at once: a reader sees the old one or the new one, never a part.
@@ -138,7 +143,7 @@ impl Folder {
         if is_there(&self.path) && !self.path.is_dir() {
             return Err(OutputError::NotADirectory(self.path.clone()));
         }
-        for file in self.files {
+        for file in &self.files {
             let path = self.path.join(file);
             if !is_there(&path) {
                 continue;
@@ -146,7 +151,7 @@ impl Folder {
             if !self.replaces {
                 return Err(OutputError::Occupied {
                     folder: self.path.clone(),
-                    file,
+                    file: file.clone(),
                 });
             }
             if !path.is_file() {

@@ -2,8 +2,8 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `channels.csv` | one row an output interval, `name [unit]` above each column |
-//! | `onsets.csv` | one row a contact, when it opens; last those that are closed at the end, without end and exit velocity |
+//! | `channels.*` | one row an output interval, `name [unit]` above each column |
+//! | `onsets.*` | one row a contact, when it opens; last those that are closed at the end, without end and exit velocity |
 //! | `scene.toml` | the scene as it was read; overrides are in the summary |
 //! | `summary.json` | status, counters, energy ledger, extremes, warnings |
 //! | `timing.json` | wall and processor time, machine, date |
@@ -14,30 +14,31 @@
 //!
 //! A result that is replaced stands in `previous-result` inside the folder until the new one is complete.
 
-mod csv;
 mod earlier;
 mod folder;
+mod table_file;
 mod timing;
 
 use crate::scene::Scene;
 use crate::simulate::{Channel, Contact, Report, Status};
-use csv::CsvFile;
+use crate::table::{Cell, Format};
 pub use earlier::earlier_result;
 pub use folder::{Folder, OutputError, json};
 use serde::Serialize;
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::Path;
+use table_file::TableFile;
 use timing::Stopwatch;
 pub use timing::machine;
 
-const CHANNELS: &str = "channels.csv";
-const ONSETS: &str = "onsets.csv";
+const CHANNELS: &str = "channels";
+const ONSETS: &str = "onsets";
 const SCENE: &str = "scene.toml";
 const SUMMARY: &str = "summary.json";
 /// The file of what differs when a run is repeated.
 pub const TIMING: &str = "timing.json";
-/// The columns of `onsets.csv`.
+/// The columns of the table of onsets.
 const CONTACT: [&str; 8] = [
     "t [s]",
     "joint",
@@ -48,16 +49,25 @@ const CONTACT: [&str; 8] = [
     "end [s]",
     "exit_velocity [m/s]",
 ];
-/// The files of a result, first the summary, which closes it.
-pub const FILES: [&str; 5] = [SUMMARY, CHANNELS, ONSETS, SCENE, TIMING];
+
+/// The files that a result can have, with tables in any of some formats; first the summary, which closes it.
+pub fn files(formats: &[&'static Format]) -> Vec<String> {
+    let tables = [CHANNELS, ONSETS].into_iter();
+    let tables = tables.flat_map(|table| formats.iter().map(move |format| format.file(table)));
+    let others = [SCENE, TIMING].map(str::to_owned);
+    let summary = std::iter::once(SUMMARY.to_owned());
+    summary.chain(tables).chain(others).collect()
+}
 
 /// A result being written.
 #[derive(Debug)]
 pub struct Results {
     folder: Folder,
     header: Header,
-    channels: CsvFile,
-    onsets: CsvFile,
+    channels: TableFile,
+    onsets: TableFile,
+    /// A row of channels.
+    cells: Vec<Cell<'static>>,
     stopwatch: Stopwatch,
 }
 
@@ -102,7 +112,7 @@ impl Results {
     ) -> Result<Results, OutputError> {
         folder.make()?;
         if folder.replaces() {
-            refuse_busy(folder.path())?;
+            refuse_busy(&folder)?;
             folder.set_aside(is_complete(folder.path()))?;
         }
         let header = Header {
@@ -113,23 +123,26 @@ impl Results {
         };
         let names = channels.iter().map(|c| format!("{} [{}]", c.name, c.unit));
         // First of all and never over another: of two runs that start together one fails.
-        let path = folder.path().join(CHANNELS);
-        let channels = CsvFile::create(path, names).map_err(|e| match e.kind() {
-            io::ErrorKind::AlreadyExists => OutputError::Occupied {
-                folder: folder.path().to_owned(),
-                file: CHANNELS,
-            },
-            _ => e.into(),
-        })?;
+        let format = scene.output.format;
+        let table = |name| folder.path().join(format.file(name));
+        let channels =
+            TableFile::create(table(CHANNELS), format, names).map_err(|e| match e.kind() {
+                io::ErrorKind::AlreadyExists => OutputError::Occupied {
+                    folder: folder.path().to_owned(),
+                    file: format.file(CHANNELS),
+                },
+                _ => e.into(),
+            })?;
         let status = Status::Incomplete;
         write_summary(&folder, &header, Pending { status })?;
         folder.replace(SCENE, scene.text().as_bytes())?;
-        let onsets = CsvFile::create(folder.path().join(ONSETS), CONTACT.map(str::to_owned))?;
+        let onsets = TableFile::create(table(ONSETS), format, CONTACT.map(str::to_owned))?;
         Ok(Results {
             folder,
             header,
             channels,
             onsets,
+            cells: Vec::new(),
             stopwatch: Stopwatch::start(),
         })
     }
@@ -139,8 +152,9 @@ impl Results {
     /// # Errors
     /// When it cannot be stored; the message names the file.
     pub fn row(&mut self, values: &[f64]) -> io::Result<()> {
-        values.iter().for_each(|value| self.channels.number(*value));
-        self.channels.end_row()
+        self.cells.clear();
+        self.cells.extend(values.iter().copied().map(Cell::Number));
+        self.channels.row(&self.cells)
     }
 
     /// Appends a contact; what a contact without an end does not have stays empty.
@@ -153,20 +167,20 @@ impl Results {
             deepest_penetration,
             end,
         } = contact;
-        self.onsets.number(onset.t);
-        self.onsets.text(onset.joint);
-        self.onsets.number(onset.impact_velocity);
-        self.onsets.number(onset.delta);
-        self.onsets.number(onset.angle);
-        self.onsets.number(*deepest_penetration);
-        match end {
-            Some(end) => {
-                self.onsets.number(end.t);
-                self.onsets.number(end.exit_velocity);
-            }
-            None => (0..2).for_each(|_| self.onsets.text("")),
-        }
-        self.onsets.end_row()
+        let [t, exit_velocity] = match end {
+            Some(end) => [end.t, end.exit_velocity].map(Cell::Number),
+            None => [Cell::Empty; 2],
+        };
+        self.onsets.row(&[
+            Cell::Number(onset.t),
+            Cell::Word(onset.joint),
+            Cell::Number(onset.impact_velocity),
+            Cell::Number(onset.delta),
+            Cell::Number(onset.angle),
+            Cell::Number(*deepest_penetration),
+            t,
+            exit_velocity,
+        ])
     }
 
     /// Hands everything so far to the system, for readers of a running simulation.
@@ -205,12 +219,18 @@ fn is_complete(folder: &Path) -> bool {
 }
 
 /// Refuses a folder to which a run writes: it holds its channels locked.
-fn refuse_busy(folder: &Path) -> Result<(), OutputError> {
-    let locked = File::open(folder.join(CHANNELS)).map(|file| file.try_lock());
-    match locked {
-        Ok(Err(TryLockError::WouldBlock)) => Err(OutputError::Busy(folder.to_owned())),
-        _ => Ok(()),
+fn refuse_busy(folder: &Folder) -> Result<(), OutputError> {
+    for name in folder
+        .files()
+        .iter()
+        .filter(|name| name.starts_with(CHANNELS))
+    {
+        let locked = File::open(folder.path().join(name)).map(|file| file.try_lock());
+        if let Ok(Err(TryLockError::WouldBlock)) = locked {
+            return Err(OutputError::Busy(folder.path().to_owned()));
+        }
     }
+    Ok(())
 }
 
 fn write_summary(

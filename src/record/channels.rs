@@ -67,101 +67,118 @@ pub(super) enum Energy {
     Numerical,
 }
 
-/// Everything a scene can record, in a fixed order.
-pub(super) fn available(model: &Model, analysis: Analysis) -> Vec<(Channel, Quantity)> {
-    let mut list = vec![(
-        Channel {
-            name: "t".to_owned(),
-            unit: "s",
-        },
-        Quantity::Time,
-    )];
-    let mut add = |name: String, unit, quantity| list.push((Channel { name, unit }, quantity));
-    let levels = [
-        [("x", "m"), ("y", "m"), ("theta", "rad")],
-        [("vx", "m/s"), ("vy", "m/s"), ("omega", "rad/s")],
-        [("ax", "m/s2"), ("ay", "m/s2"), ("alpha", "rad/s2")],
-    ];
-    for (b, body) in model.bodies().iter().enumerate() {
-        if matches!(
-            body.coordinates,
-            crate::model::BodyCoordinates::Ground { .. }
-        ) {
-            continue;
-        }
-        for (l, level) in levels.iter().enumerate() {
-            for (i, (name, unit)) in level.iter().enumerate() {
-                add(
-                    format!("{}.{name}", body.name),
-                    unit,
-                    Quantity::Pose(b, l, i),
-                );
+/// Names and units of a pose at the levels of position, velocity and acceleration.
+const LEVELS: [[(&str, &str); 3]; 3] = [
+    [("x", "m"), ("y", "m"), ("theta", "rad")],
+    [("vx", "m/s"), ("vy", "m/s"), ("omega", "rad/s")],
+    [("ax", "m/s2"), ("ay", "m/s2"), ("alpha", "rad/s2")],
+];
+
+/// Quantities of every joint, of those with clearance, with a motion that is prescribed, and with a line.
+const FORCE: [(&str, &str, JointQuantity); 3] = [
+    ("fx", "N", JointQuantity::Fx),
+    ("fy", "N", JointQuantity::Fy),
+    ("force", "N", JointQuantity::Force),
+];
+const CLEARANCE: [(&str, &str, JointQuantity); 8] = [
+    ("ex", "m", JointQuantity::Ex),
+    ("ey", "m", JointQuantity::Ey),
+    ("eccentricity", "m", JointQuantity::Eccentricity),
+    ("penetration", "m", JointQuantity::Penetration),
+    ("ex_rate", "m/s", JointQuantity::ExRate),
+    ("ey_rate", "m/s", JointQuantity::EyRate),
+    ("eccentricity_rate", "m/s", JointQuantity::EccentricityRate),
+    ("contact", "1", JointQuantity::Contact),
+];
+const TURNED: [(&str, &str, JointQuantity); 2] = [
+    ("angle", "rad", JointQuantity::Angle),
+    ("speed", "rad/s", JointQuantity::Speed),
+];
+const COUPLE: [(&str, &str, JointQuantity); 1] = [("torque", "N m", JointQuantity::Couple)];
+const LINE: [(&str, &str, JointQuantity); 2] = [
+    ("travel", "m", JointQuantity::Travel),
+    ("travel_rate", "m/s", JointQuantity::TravelRate),
+];
+const ACTUATOR: [(&str, &str); 3] = [("angle", "rad"), ("speed", "rad/s"), ("torque", "N m")];
+
+const ENERGIES: [(&str, Energy); 12] = [
+    ("kinetic", Energy::Kinetic),
+    ("axial", Energy::Axial),
+    ("bending", Energy::Bending),
+    ("contact", Energy::Contact),
+    ("gravity", Energy::Gravity),
+    ("springs", Energy::Springs),
+    ("work", Energy::Integral(Integral::Work)),
+    (
+        "contact_dissipated",
+        Energy::Integral(Integral::ContactDissipated),
+    ),
+    (
+        "friction_dissipated",
+        Energy::Integral(Integral::FrictionDissipated),
+    ),
+    (
+        "damping_dissipated",
+        Energy::Integral(Integral::DampingDissipated),
+    ),
+    ("clamp", Energy::Integral(Integral::Clamp)),
+    ("numerical", Energy::Numerical),
+];
+
+/// A list of channels.
+#[derive(Default)]
+struct List(Vec<(Channel, Quantity)>);
+
+impl List {
+    fn add(&mut self, name: String, unit: &'static str, quantity: Quantity) {
+        self.0.push((Channel { name, unit }, quantity));
+    }
+
+    fn bodies(&mut self, model: &Model) {
+        for (b, body) in model
+            .bodies()
+            .iter()
+            .enumerate()
+            .filter(|(_, body)| body.moves)
+        {
+            for (l, level) in LEVELS.iter().enumerate() {
+                for (i, (name, unit)) in level.iter().enumerate() {
+                    self.add(
+                        format!("{}.{name}", body.name),
+                        unit,
+                        Quantity::Pose(b, l, i),
+                    );
+                }
             }
-        }
-        if matches!(
-            body.coordinates,
-            crate::model::BodyCoordinates::FlexibleLink { .. }
-        ) {
-            add(format!("{}.strain", body.name), "1", Quantity::Strain(b));
-        }
-        if body.prescribed.is_some() {
-            for (i, (name, unit)) in levels[0].iter().enumerate() {
-                add(format!("error.{name}"), unit, Quantity::Error(b, i));
+            if !body.placed.kind.is_rigid() {
+                self.add(format!("{}.strain", body.name), "1", Quantity::Strain(b));
+            }
+            if body.prescribed.is_some() {
+                for (i, (name, unit)) in LEVELS[0].iter().enumerate() {
+                    self.add(format!("error.{name}"), unit, Quantity::Error(b, i));
+                }
             }
         }
     }
-    for (j, joint) in model.joints().iter().enumerate() {
-        use JointQuantity::{
-            Angle, Contact, Couple, Eccentricity, EccentricityRate, Ex, ExRate, Ey, EyRate, Force,
-            Fx, Fy, Penetration, Speed, Travel, TravelRate,
-        };
-        let mut joint_channel = |name: &str, unit, q| {
-            add(
-                format!("{}.{name}", joint.name),
-                unit,
-                Quantity::Joint(j, q),
-            )
-        };
-        for (name, q) in [("fx", Fx), ("fy", Fy), ("force", Force)] {
-            joint_channel(name, "N", q);
-        }
-        if model.is_loose(j) {
-            for (name, q) in [
-                ("ex", Ex),
-                ("ey", Ey),
-                ("eccentricity", Eccentricity),
-                ("penetration", Penetration),
-            ] {
-                joint_channel(name, "m", q);
+
+    fn joints(&mut self, model: &Model) {
+        for (j, joint) in model.joints().iter().enumerate() {
+            let has =
+                |present: bool, quantities: &'static [_]| if present { quantities } else { &[] };
+            let quantities = [
+                &FORCE[..],
+                has(model.is_loose(j), &CLEARANCE),
+                has(joint.couple.is_some() && joint.turned.is_some(), &TURNED),
+                has(joint.couple.is_some(), &COUPLE),
+                has(joint.slide.is_some(), &LINE),
+            ];
+            for (name, unit, quantity) in quantities.into_iter().flatten() {
+                let name = format!("{}.{name}", joint.name);
+                self.add(name, unit, Quantity::Joint(j, *quantity));
             }
-            for (name, q) in [
-                ("ex_rate", ExRate),
-                ("ey_rate", EyRate),
-                ("eccentricity_rate", EccentricityRate),
-            ] {
-                joint_channel(name, "m/s", q);
-            }
-            joint_channel("contact", "1", Contact);
-        }
-        if joint.couple.is_some() {
-            let turned = joint
-                .turned
-                .map(|_| [("angle", "rad", Angle), ("speed", "rad/s", Speed)]);
-            for (name, unit, q) in turned.into_iter().flatten() {
-                joint_channel(name, unit, q);
-            }
-            joint_channel("torque", "N m", Couple);
-        }
-        if joint.slide.is_some() {
-            joint_channel("travel", "m", Travel);
-            joint_channel("travel_rate", "m/s", TravelRate);
-        }
-        if joint.actuator.is_some() {
-            for (k, (name, unit)) in [("angle", "rad"), ("speed", "rad/s"), ("torque", "N m")]
-                .into_iter()
-                .enumerate()
-            {
-                add(
+            let actuator = joint.actuator.iter().flat_map(|_| ACTUATOR);
+            for (k, (name, unit)) in actuator.enumerate() {
+                self.add(
                     format!("{}.{name}", joint.name),
                     unit,
                     Quantity::Actuator(j, k),
@@ -169,49 +186,39 @@ pub(super) fn available(model: &Model, analysis: Analysis) -> Vec<(Channel, Quan
             }
         }
     }
-    for (b, body) in model.bodies().iter().enumerate() {
-        for (p, point) in body.points.iter().enumerate() {
-            let name = |quantity| format!("points.{}.{}.{quantity}", body.name, point.name);
-            for (l, level) in levels.iter().enumerate() {
-                for (i, (quantity, unit)) in level[..2].iter().enumerate() {
-                    add(name(quantity), unit, Quantity::Point(b, p, l, i));
+
+    fn points(&mut self, model: &Model) {
+        for (b, body) in model.bodies().iter().enumerate() {
+            for (p, point) in body.points.iter().enumerate() {
+                let name =
+                    |quantity: &str| format!("points.{}.{}.{quantity}", body.name, point.name);
+                for (l, level) in LEVELS.iter().enumerate() {
+                    for (i, (quantity, unit)) in level[..2].iter().enumerate() {
+                        self.add(name(quantity), unit, Quantity::Point(b, p, l, i));
+                    }
                 }
-            }
-            if point.slope.is_some() {
-                for (i, quantity) in ["slope_x", "slope_y"].iter().enumerate() {
-                    add(name(quantity), "1", Quantity::Slope(b, p, i));
+                let slope = point.slope.iter().flat_map(|_| ["slope_x", "slope_y"]);
+                for (i, quantity) in slope.enumerate() {
+                    self.add(name(quantity), "1", Quantity::Slope(b, p, i));
                 }
             }
         }
     }
+}
+
+/// Everything a scene can record, in a fixed order.
+pub(super) fn available(model: &Model, analysis: Analysis) -> Vec<(Channel, Quantity)> {
+    let mut list = List::default();
+    list.add("t".to_owned(), "s", Quantity::Time);
+    list.bodies(model);
+    list.joints(model);
+    list.points(model);
     for (f, (force, quantities)) in model.named_forces().enumerate() {
         for (k, (name, unit)) in quantities.iter().enumerate() {
-            add(format!("{force}.{name}"), unit, Quantity::Force(f, k));
+            list.add(format!("{force}.{name}"), unit, Quantity::Force(f, k));
         }
     }
-    for (name, energy) in [
-        ("kinetic", Energy::Kinetic),
-        ("axial", Energy::Axial),
-        ("bending", Energy::Bending),
-        ("contact", Energy::Contact),
-        ("gravity", Energy::Gravity),
-        ("springs", Energy::Springs),
-        ("work", Energy::Integral(Integral::Work)),
-        (
-            "contact_dissipated",
-            Energy::Integral(Integral::ContactDissipated),
-        ),
-        (
-            "friction_dissipated",
-            Energy::Integral(Integral::FrictionDissipated),
-        ),
-        (
-            "damping_dissipated",
-            Energy::Integral(Integral::DampingDissipated),
-        ),
-        ("clamp", Energy::Integral(Integral::Clamp)),
-        ("numerical", Energy::Numerical),
-    ] {
+    for (name, energy) in ENERGIES {
         let present = match energy {
             // a load path has no balance of powers
             Energy::Integral(_) | Energy::Numerical => analysis == Analysis::Dynamic,
@@ -219,10 +226,10 @@ pub(super) fn available(model: &Model, analysis: Analysis) -> Vec<(Channel, Quan
             _ => true,
         };
         if present {
-            add(format!("energy.{name}"), "J", Quantity::Energy(energy));
+            list.add(format!("energy.{name}"), "J", Quantity::Energy(energy));
         }
     }
-    list
+    list.0
 }
 
 /// True where `name` has the form of `pattern`, in which `*` stands for any run of characters.

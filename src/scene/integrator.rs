@@ -1,15 +1,88 @@
 //! `[integrator]`: scheme, step or accuracy, tolerances.
 
-use super::error::SceneError;
-use super::field::Field;
-use super::fields::Fields;
 use super::{Accuracy, Analysis, Integrator, Method, Pace, Simulation};
+use crate::document::{Field, Fields, Key, SceneError, Takes};
 use crate::registry::Registry;
 use crate::stepper::{Parameter, Scheme};
 use numbers::number;
 
 /// More steps than this are a slip of the pen: a week of computing at 20 microseconds a step.
 const MOST_STEPS: f64 = 1e10;
+
+/// The keys of `[integrator]` besides the parameters of schemes.
+pub(super) static INTEGRATOR: [Key; 6] = [
+    Key::name_in("method", "schemes", "the scheme, see below; a static analysis does not use it"),
+    Key::positive(
+        "step",
+        "s",
+        "the time step, at most `duration`; of a static analysis the step of t",
+    )
+    .or("required without `accuracy`"),
+    Key::new(
+        "accuracy",
+        Takes::Table,
+        "the error that is allowed, instead of a step: `accuracy = { position = ... }`",
+    )
+    .or("required without `step`"),
+    Key::positive(
+        "newton_tolerance",
+        "m/s",
+        "the largest error that Newton's method leaves in a velocity (rad/s for angles, 1/s for slopes)",
+    )
+    .or("required, except for explicit methods"),
+    Key::positive(
+        "onset_tolerance",
+        "m",
+        "the largest penetration or gap at a located onset or loss of contact; below the clearance of every joint",
+    )
+    .or("required with clearance"),
+    Key::new(
+        "locate_onsets",
+        Takes::Boolean,
+        "whether a step is cut where a contact closes or opens. With false the error of an impact depends on where in the step it falls; for comparisons only",
+    )
+    .or("true"),
+];
+
+/// The keys of `[integrator.accuracy]`.
+pub(super) static ACCURACY: [Key; 3] = [
+    Key::positive(
+        "position",
+        "m",
+        "the allowed estimated error of the position of any point of a body, as the steps of a horizon add it up",
+    ),
+    Key::positive(
+        "energy",
+        "J",
+        "the allowed error of the energy balance, the channel `energy.numerical`, within a horizon",
+    )
+    .or("none"),
+    Key::positive(
+        "horizon",
+        "s",
+        "the time over which the errors of single steps add up. With clearance the motion is chaotic: beyond some tens of milliseconds no step is small enough",
+    )
+    .or("required with clearance, else `duration`"),
+];
+
+/// Every parameter of a scheme once, with the schemes that have it.
+pub(super) fn parameters(
+    schemes: &[&'static Scheme],
+) -> Vec<(&'static Parameter, Vec<&'static Scheme>)> {
+    let mut parameters: Vec<(&Parameter, Vec<&Scheme>)> = Vec::new();
+    for scheme in schemes {
+        for parameter in scheme.parameters {
+            match parameters
+                .iter_mut()
+                .find(|(p, _)| p.name == parameter.name)
+            {
+                Some((_, owners)) => owners.push(scheme),
+                None => parameters.push((parameter, vec![scheme])),
+            }
+        }
+    }
+    parameters
+}
 
 /// `clearance` is the smallest one of the scene.
 pub(super) fn read(
@@ -18,25 +91,11 @@ pub(super) fn read(
     clearance: Option<f64>,
     registry: &Registry,
 ) -> Result<Integrator, SceneError> {
-    let mut table = root
-        .required("integrator", "the table of method, step and tolerances")?
-        .fields()?;
+    let mut table = root.field("integrator")?.fields()?;
     let schemes = &registry.schemes;
-    let parameters = schemes.iter().flat_map(|s| s.parameters);
-    let mut known = vec!["method"];
-    for parameter in parameters {
-        if !known.contains(&parameter.name) {
-            known.push(parameter.name);
-        }
-    }
-    known.extend([
-        "step",
-        "accuracy",
-        "newton_tolerance",
-        "onset_tolerance",
-        "locate_onsets",
-    ]);
-    table.only(&known)?;
+    let parameters = parameters(schemes);
+    let parameters: Vec<_> = parameters.iter().map(|p| p.0.name).collect();
+    table.declare(&parameters, &INTEGRATOR)?;
     let names: Vec<String> = schemes.iter().map(|s| format!("{:?}", s.name)).collect();
     let purpose = format!("the integration scheme: {}", names.join(", "));
     let named = table.required("method", &purpose)?;
@@ -50,12 +109,12 @@ pub(super) fn read(
     Ok(Integrator {
         method,
         pace,
-        newton_tolerance: newton_tolerance(&table, method)?,
-        onset_tolerance: onset_tolerance(&table, clearance)?,
-        locate_onsets: match table.optional("locate_onsets") {
-            Some(field) => field.boolean()?,
-            None => true,
+        newton_tolerance: match method.scheme.is_explicit {
+            true => table.optional_number("newton_tolerance")?.unwrap_or(0.0),
+            false => table.number("newton_tolerance")?,
         },
+        onset_tolerance: onset_tolerance(&table, clearance)?,
+        locate_onsets: table.optional_boolean("locate_onsets")?.unwrap_or(true),
         method_span: named.node.span,
         pace_span: paced.node.span,
     })
@@ -67,13 +126,11 @@ fn method(
     scheme: &'static Scheme,
     schemes: &[&'static Scheme],
 ) -> Result<Method, SceneError> {
-    let has = |scheme: &Scheme, name| scheme.parameters.iter().any(|p| p.name == name);
-    for parameter in schemes.iter().flat_map(|s| s.parameters) {
+    for (parameter, owners) in parameters(schemes) {
         if let Some(field) = table.optional(parameter.name)
-            && !has(scheme, parameter.name)
+            && !owners.iter().any(|owner| owner.name == scheme.name)
         {
-            let owners = schemes.iter().filter(|s| has(s, parameter.name));
-            let owners: Vec<String> = owners.map(|s| format!("{:?}", s.name)).collect();
+            let owners: Vec<String> = owners.iter().map(|s| format!("{:?}", s.name)).collect();
             let message = format!(
                 "`{}` is a parameter of {} only",
                 field.path,
@@ -84,9 +141,9 @@ fn method(
     }
     let mut method = Method::new(scheme);
     for parameter in scheme.parameters {
-        let field = match parameter.required {
-            true => Some(table.required(parameter.name, parameter.purpose)?),
-            false => table.optional(parameter.name),
+        let field = match parameter.default {
+            None => Some(table.required(parameter.name, parameter.purpose)?),
+            Some(_) => table.optional(parameter.name),
         };
         if let Some(field) = field {
             method = method.with(parameter.name, value(&field, parameter)?);
@@ -121,10 +178,7 @@ fn pace_field<'a>(table: &Fields<'a>) -> Result<Field<'a>, SceneError> {
             }
         },
         (None, Some(accuracy)) => Ok(accuracy),
-        _ => table.required(
-            "step",
-            "the time step [s]; or give `accuracy = { position = ... }` [m] instead of it",
-        ),
+        _ => table.field("step"),
     }
 }
 
@@ -155,52 +209,28 @@ fn accuracy(field: &Field, simulation: &Simulation, loose: bool) -> Result<Accur
         return Err(field.key_fault(message, "write `step`"));
     }
     let mut table = field.fields()?;
-    table.only(&["position", "energy", "horizon"])?;
-    let position = table
-        .required(
-            "position",
-            "the error allowed in the position of a point [m]",
-        )?
-        .positive()?;
-    let energy = match table.optional("energy") {
-        Some(energy) => Some(energy.positive()?),
-        None => None,
-    };
-    let purpose = "the time [s] over which errors may add up to `position`; it is required because a joint has clearance: \
-                   such motion is chaotic, and beyond some tens of milliseconds no step is small enough";
-    let horizon = match table.optional("horizon") {
-        None if loose => Some(table.required("horizon", purpose)?),
-        other => other,
-    };
-    let horizon = horizon.map_or(Ok(simulation.duration), |h| h.positive())?;
+    table.declare(&[], &ACCURACY)?;
     Ok(Accuracy {
-        position,
-        energy,
-        horizon,
+        position: table.number("position")?,
+        energy: table.optional_number("energy")?,
+        horizon: match loose {
+            true => table.number("horizon")?,
+            false => table
+                .optional_number("horizon")?
+                .unwrap_or(simulation.duration),
+        },
     })
 }
 
-fn newton_tolerance(table: &Fields, method: Method) -> Result<f64, SceneError> {
-    let purpose = "the largest error Newton's method may leave in a velocity [m/s]";
-    let field = match method.scheme.is_explicit {
-        true => table.optional("newton_tolerance"),
-        false => Some(table.required("newton_tolerance", purpose)?),
-    };
-    field.map_or(Ok(0.0), |f| f.positive())
-}
-
 fn onset_tolerance(table: &Fields, clearance: Option<f64>) -> Result<f64, SceneError> {
-    let purpose = "the largest penetration or gap at a located contact onset [m]; it is required because a joint has clearance";
-    let field = match clearance {
-        Some(_) => Some(table.required("onset_tolerance", purpose)?),
-        None => table.optional("onset_tolerance"),
+    let Some(clearance) = clearance else {
+        return Ok(table.optional_number("onset_tolerance")?.unwrap_or(0.0));
     };
-    let Some(field) = field else {
-        return Ok(0.0);
-    };
-    let tolerance = field.positive()?;
-    if clearance.is_some_and(|c| tolerance >= c) {
-        return Err(field.must("be less than every clearance"));
+    let tolerance = table.number("onset_tolerance")?;
+    if tolerance >= clearance {
+        return Err(table
+            .field("onset_tolerance")?
+            .must("be less than every clearance"));
     }
     Ok(tolerance)
 }

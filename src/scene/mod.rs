@@ -3,35 +3,23 @@
 //! A [`Scene`] is plain data with every name resolved and every number checked; the spans point back into the
 //! text so that a later error (a mechanism that cannot close) still names file, line and field.
 
-mod bodies;
-mod body;
-mod document;
-mod error;
-mod field;
-mod fields;
-mod forces;
-mod functions;
 mod integrator;
-mod joint;
-mod joints;
-mod materials;
+mod kinds;
+pub mod language;
 mod motion;
-mod names;
-mod overrides;
-mod paths;
 mod reader;
-mod text;
 
+pub use crate::body::PointRef;
+pub use crate::document::{SceneError, Span};
+pub use crate::interaction::{Contact, Friction, Joint, NamedForce};
 pub use crate::motion::{Function, Path};
 pub use crate::stepper::Method;
-pub use body::{Body, BodyKind, Damping, Link, LinkModel, LinkPoint, Point, PointRef, RigidBody};
-pub use error::{SceneError, Span};
-pub(crate) use joint::smallest_clearance;
-pub use joint::{Contact, Friction, Joint, JointModel, SlopeClamp};
 pub use reader::read_file;
 
+use crate::body::Body;
+use crate::document::Sources;
 use crate::registry::Registry;
-use error::Sources;
+use crate::table::Format;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -47,7 +35,7 @@ pub struct Scene {
     /// What is recorded.
     pub output: Output,
     /// Bodies in the order of the file; `ground` is one of them.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<NamedBody>,
     /// Joints in the order of the file.
     pub joints: Vec<Joint>,
     /// Motions prescribed by inverse kinematics.
@@ -55,7 +43,7 @@ pub struct Scene {
     /// Motions prescribed directly.
     pub motions: Vec<Motion>,
     /// Springs and loads.
-    pub forces: Vec<Force>,
+    pub forces: Vec<NamedForce>,
     /// Where the motion starts.
     pub initial: Initial,
     /// Values that the source of the scene does not give.
@@ -150,6 +138,8 @@ pub struct Output {
     pub interval: f64,
     /// Channel names; `*` stands for any run of characters.
     pub channels: Vec<ChannelPattern>,
+    /// How tables are written.
+    pub format: &'static Format,
 }
 
 /// One entry of `output.channels`.
@@ -208,62 +198,15 @@ pub enum MotionKind {
     },
 }
 
-/// `[forces.NAME]`
+/// `[bodies.NAME]`
 #[derive(Debug, Clone)]
-pub struct Force {
+pub struct NamedBody {
     /// The name the user wrote.
     pub name: String,
     /// Where the table stands.
     pub span: Span,
-    /// What acts.
-    pub kind: ForceKind,
-}
-
-/// The kinds of force.
-#[derive(Debug, Clone)]
-pub enum ForceKind {
-    /// Between two points along their line.
-    SpringDamper {
-        /// One end.
-        from: PointRef,
-        /// The other.
-        to: PointRef,
-        /// Stiffness \[N/m\].
-        stiffness: f64,
-        /// Damping \[N s/m\].
-        damping: f64,
-        /// Rest length \[m\].
-        rest_length: f64,
-    },
-    /// Between the two bodies of a revolute joint.
-    TorsionSpring {
-        /// Index into [`Scene::joints`].
-        joint: usize,
-        /// Stiffness \[N m/rad\].
-        stiffness: f64,
-        /// Damping \[N m s/rad\].
-        damping: f64,
-        /// Rest angle of the journal's body relative to the bearing's \[rad\].
-        rest_angle: f64,
-    },
-    /// At a point.
-    PointForce {
-        /// Where it acts.
-        point: PointRef,
-        /// Components \[N\].
-        components: [Function; 2],
-        /// True where the direction turns with the body.
-        follower: bool,
-    },
-    /// On a body, at a point of it.
-    Torque {
-        /// The point at whose material it acts.
-        point: PointRef,
-        /// The point whose body takes the reaction; the ground when absent.
-        reaction: Option<PointRef>,
-        /// Torque \[N m\].
-        value: Function,
-    },
+    /// What it is.
+    pub kind: Arc<dyn Body>,
 }
 
 /// `[initial]`
@@ -432,4 +375,10 @@ impl Scene {
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|j| j.name == name)
     }
+}
+
+/// The smallest clearance of some joints \[m\]; none where no joint has clearance.
+fn smallest_clearance<'a>(joints: impl Iterator<Item = &'a Joint>) -> Option<f64> {
+    let contacts = joints.filter_map(Joint::contact);
+    contacts.map(|contact| contact.clearance).reduce(f64::min)
 }

@@ -1,118 +1,124 @@
 //! `[drives]` and `[initial]`.
 
-use super::bodies::Bodies;
-use super::error::SceneError;
-use super::field::Field;
-use super::fields::Fields;
-use super::functions::{Use, function};
-use super::names::named;
-use super::paths::path;
-use super::{Body, BodyKind, BodyState, Drive, GivenVelocity, Initial, Joint, JointModel};
-use super::{Motion, MotionKind, PointRef, SketchPoint, Sketched};
-use super::{forces, joints};
-use indexmap::IndexMap;
+use super::{BodyState, Drive, GivenVelocity, Initial, Motion, MotionKind, SketchPoint, Sketched};
+use crate::body::{Known, PointRef, RigidBody};
+use crate::document::{Field, Fields, Key, Kind, SceneError, Takes, named};
+use crate::interaction::Names;
+use crate::motion::{Use, read_function, read_path};
 
-/// What `[drives]` prescribes.
-#[derive(Default)]
-pub(super) struct Drives {
-    pub kinematics: Vec<Drive>,
-    pub motions: Vec<Motion>,
+/// What a drive prescribes.
+pub(super) enum Driven {
+    Kinematics(Drive),
+    Motion(MotionKind),
 }
 
+/// A kind of drive. It is read knowing the joints that are driven already.
+pub(super) type DriveKind =
+    Kind<fn(&Field, &Fields, &Names, &mut Vec<usize>) -> Result<Driven, SceneError>>;
+
+/// The kinds of drive that a scene can name.
+pub(super) static KINDS: [&DriveKind; 3] = [&INVERSE_KINEMATICS, &ANGLE, &POINT];
+
+static INVERSE_KINEMATICS: DriveKind = DriveKind {
+    name: "inverse_kinematics",
+    keys: &[
+        Key::new(
+            "joints",
+            Takes::List,
+            "the list of the actuated joints, all of them revolute",
+        ),
+        Key::name_in(
+            "body",
+            "bodies",
+            "the driven body, of type `\"rigid_body\"`",
+        ),
+        Key::new(
+            "path",
+            Takes::Path,
+            "the path of its centre of mass and its angle, see [Paths](#paths)",
+        ),
+    ],
+    read: |drive, table, names, driven| {
+        inverse_kinematics(drive, table, names, driven).map(Driven::Kinematics)
+    },
+};
+
+static ANGLE: DriveKind = DriveKind {
+    name: "angle",
+    keys: &[
+        Key::name_in("joint", "joints", "the name of a revolute joint"),
+        Key::function("angle", "rad", "the angle (no ramp)"),
+    ],
+    read: |_, table, names, driven| {
+        let name = table.field("joint")?;
+        let joint = actuated(&name, names, driven)?;
+        for side in names.joints[joint].points() {
+            names.check_turns(&name, side)?;
+        }
+        let angle = read_function(&table.field("angle")?, Use::Motion, names.duration)?;
+        Ok(Driven::Motion(MotionKind::Angle { joint, angle }))
+    },
+};
+
+static POINT: DriveKind = DriveKind {
+    name: "point",
+    keys: &[
+        Key::point("point", "the point"),
+        Key::function("x", "m", "x (no ramp)").or("free"),
+        Key::function("y", "m", "y (no ramp)").or("free; one of the two is needed"),
+    ],
+    read: |drive, table, names, _| {
+        let point_field = table.field("point")?;
+        let point = names.point(&point_field)?;
+        let (name, body) = names.bodies.get_index(point.body).expect("it is there");
+        if body.known().is_some() {
+            let message = format!(
+                "the motion of {name} is known at every time, so its points cannot be driven"
+            );
+            return Err(point_field.fault(message, "not a free body"));
+        }
+        let coordinate = |key| {
+            let field = table.optional(key);
+            field
+                .map(|f| read_function(&f, Use::Motion, names.duration))
+                .transpose()
+        };
+        let coordinates = [coordinate("x")?, coordinate("y")?];
+        if coordinates.iter().all(Option::is_none) {
+            let message = format!("`{}` prescribes neither x nor y", drive.path);
+            return Err(drive.key_fault(message, "needs `x`, `y` or both"));
+        }
+        Ok(Driven::Motion(MotionKind::Point { point, coordinates }))
+    },
+};
+
+/// `[drives]`: by inverse kinematics, and the others.
 pub(super) fn drives(
     root: &Fields,
-    bodies: &Bodies,
-    joints: &IndexMap<String, Joint>,
-    duration: f64,
-) -> Result<Drives, SceneError> {
-    #[derive(Clone, Copy)]
-    enum Type {
-        InverseKinematics,
-        Angle,
-        Point,
-    }
-    let types = [
-        ("inverse_kinematics", Type::InverseKinematics),
-        ("angle", Type::Angle),
-        ("point", Type::Point),
-    ];
-    let mut driven = Vec::new();
-    let mut drives = Drives::default();
+    names: &Names,
+) -> Result<(Vec<Drive>, Vec<Motion>), SceneError> {
+    let (mut driven, mut kinematics, mut motions) = (Vec::new(), Vec::new(), Vec::new());
     named(root.optional("drives"), |field| {
         let mut table = field.fields()?;
-        let purpose = "the kind of drive: \"inverse_kinematics\", \"angle\" or \"point\"";
-        let kind = match table.required("type", purpose)?.choice(&types)? {
-            Type::InverseKinematics => {
-                table.only(&["type", "joints", "body", "path"])?;
-                let drive =
-                    inverse_kinematics(field, &table, bodies, joints, duration, &mut driven)?;
-                drives.kinematics.push(drive);
-                return Ok(());
-            }
-            Type::Angle => {
-                table.only(&["type", "joint", "angle"])?;
-                let name = table.required("joint", "the name of a revolute joint")?;
-                let joint = actuated(&name, joints, &mut driven)?;
-                for side in [joints[joint].bearing, joints[joint].journal] {
-                    forces::turns(&name, side, bodies)?;
-                }
-                let angle = table.required("angle", "the angle as a function of time [rad]")?;
-                MotionKind::Angle {
-                    joint,
-                    angle: function(&angle, Use::Motion, duration)?,
-                }
-            }
-            Type::Point => {
-                table.only(&["type", "point", "x", "y"])?;
-                let point_field = table.required("point", "the point, as \"body.point\"")?;
-                let point = joints::point(&point_field, bodies)?;
-                let (name, body) = bodies.bodies.get_index(point.body).expect("it is there");
-                if let BodyKind::Ground { .. } | BodyKind::Moving { .. } = body.kind {
-                    let message = format!(
-                        "the motion of {name} is known at every time, so its points cannot be driven"
-                    );
-                    return Err(point_field.fault(message, "not a free body"));
-                }
-                let coordinate = |key| {
-                    let field = table.optional(key);
-                    field
-                        .map(|f| function(&f, Use::Motion, duration))
-                        .transpose()
-                };
-                let coordinates = [coordinate("x")?, coordinate("y")?];
-                if coordinates.iter().all(Option::is_none) {
-                    let message = format!("`{}` prescribes neither x nor y", field.path);
-                    return Err(field.key_fault(message, "needs `x`, `y` or both"));
-                }
-                MotionKind::Point { point, coordinates }
-            }
-        };
-        drives.motions.push(Motion {
-            name: field.name.clone(),
-            span: field.node.span,
-            kind,
-        });
+        let kind = Kind::of(&mut table, "drive", &KINDS)?;
+        match (kind.read)(field, &table, names, &mut driven)? {
+            Driven::Kinematics(drive) => kinematics.push(drive),
+            Driven::Motion(kind) => motions.push(Motion {
+                name: field.name.clone(),
+                span: field.span(),
+                kind,
+            }),
+        }
         Ok(())
     })?;
-    Ok(drives)
+    Ok((kinematics, motions))
 }
 
 /// The revolute joint that a field names, driven for the first time.
-fn actuated(
-    field: &Field,
-    joints: &IndexMap<String, Joint>,
-    driven: &mut Vec<usize>,
-) -> Result<usize, SceneError> {
-    let (index, joint) = field.lookup("joint", joints)?;
-    if !matches!(joint.model, JointModel::Ideal | JointModel::Clearance(_)) {
-        let message = format!(
-            "the joint `{}` is not revolute, so a drive cannot turn it",
-            joint.name
-        );
-        return Err(field.fault(message, "not a revolute joint"));
-    }
+fn actuated(field: &Field, names: &Names, driven: &mut Vec<usize>) -> Result<usize, SceneError> {
+    let index = names.revolute(field, ", so a drive cannot turn it")?;
     if driven.contains(&index) {
-        let message = format!("the joint `{}` is driven twice", joint.name);
+        let message = format!("the joint `{}` is driven twice", names.joints[index].name);
         return Err(field.fault(message, "a second time"));
     }
     driven.push(index);
@@ -122,46 +128,111 @@ fn actuated(
 fn inverse_kinematics(
     field: &Field,
     table: &Fields,
-    bodies: &Bodies,
-    joints: &IndexMap<String, Joint>,
-    duration: f64,
+    names: &Names,
     driven: &mut Vec<usize>,
 ) -> Result<Drive, SceneError> {
-    let list = table.required("joints", "the list of actuated joints")?;
+    let list = table.field("joints")?;
     let items = list.items()?;
     let indices: Result<Vec<usize>, _> = items
         .iter()
-        .map(|item| actuated(item, joints, driven))
+        .map(|item| actuated(item, names, driven))
         .collect();
     let indices = indices?;
     if indices.is_empty() {
         return Err(list.fault(format!("`{}` names no joint", list.path), "empty"));
     }
-    let body_field = table.required("body", "the name of the driven rigid body")?;
-    let (body, found) = body_field.lookup("body", &bodies.bodies)?;
-    if !matches!(found.kind, BodyKind::Rigid(_)) {
+    let body_field = table.field("body")?;
+    let (body, found) = body_field.lookup("body", names.bodies)?;
+    if found.get::<RigidBody>().is_none() {
         let message = format!(
             "`{}` must be a body of type \"rigid_body\"",
             body_field.path
         );
         return Err(body_field.fault(message, "not a rigid body"));
     }
-    let path_field = table.required("path", "the path of the driven body")?;
+    let path_field = table.field("path")?;
     Ok(Drive {
         name: field.name.clone(),
-        span: field.node.span,
+        span: field.span(),
         joints: indices,
         body,
-        path: path(&path_field, duration)?,
-        path_span: path_field.node.span,
+        path: read_path(&path_field, names.duration)?,
+        path_span: path_field.span(),
     })
 }
 
-pub(super) fn initial(
-    root: &Fields,
-    bodies: &Bodies,
-    joints: &IndexMap<String, Joint>,
-) -> Result<Initial, SceneError> {
+/// The keys of `[initial]`.
+pub(super) static INITIAL: [Key; 4] = [
+    Key::new(
+        "sketch",
+        Takes::Table,
+        "approximate positions of joints, `JOINT = [x, y]`, and of points, `BODY = { POINT = [x, y] }`: they choose the branch [m]",
+    )
+    .or("none"),
+    Key::new("bodies", Takes::Table, "states of bodies, `BODY = { ... }`").or("none"),
+    Key::new("velocities", Takes::Table, "single velocities, `BODY = { ... }`").or("none"),
+    Key::new(
+        "equilibrium",
+        Takes::Boolean,
+        "true: the motion starts in the equilibrium under the loads at t = 0",
+    )
+    .or("false"),
+];
+
+const POSE: [&str; 3] = ["x", "y", "theta"];
+const RATES: [&str; 3] = ["vx", "vy", "omega"];
+const WITH_ONE: &str = "required with one of them";
+
+/// The keys of a state of a body.
+pub(super) static STATE: [Key; 6] = [
+    Key::number("x", "m", "x of the centre of mass"),
+    Key::number("y", "m", "y of the centre of mass"),
+    Key::number(
+        "theta",
+        "rad",
+        "the angle; of a link the direction from `start` to `end`",
+    ),
+    Key::number(
+        "vx",
+        "m/s",
+        "a velocity of the centre of mass; give all three or none",
+    )
+    .or(WITH_ONE),
+    Key::number(
+        "vy",
+        "m/s",
+        "a velocity of the centre of mass; give all three or none",
+    )
+    .or(WITH_ONE),
+    Key::number(
+        "omega",
+        "rad/s",
+        "the angular velocity; give all three or none",
+    )
+    .or(WITH_ONE),
+];
+
+/// The keys of a state of a point mass, which has no angle.
+pub(super) static POINT_STATE: [Key; 4] = [
+    Key::number("x", "m", "x of the point mass"),
+    Key::number("y", "m", "y of the point mass"),
+    Key::number("vx", "m/s", "a velocity; give both or none").or(WITH_ONE),
+    Key::number("vy", "m/s", "a velocity; give both or none").or(WITH_ONE),
+];
+
+/// The keys of an entry of `[initial.velocities]`.
+pub(super) static VELOCITIES: [Key; 3] = [
+    Key::number("vx", "m/s", "a velocity of the centre of mass").or("not given"),
+    Key::number("vy", "m/s", "a velocity of the centre of mass").or("not given"),
+    Key::number(
+        "omega",
+        "rad/s",
+        "the angular velocity, which a point mass does not have",
+    )
+    .or("not given"),
+];
+
+pub(super) fn initial(root: &Fields, names: &Names) -> Result<Initial, SceneError> {
     let Some(field) = root.optional("initial") else {
         return Ok(Initial {
             sketch: Vec::new(),
@@ -172,29 +243,26 @@ pub(super) fn initial(
         });
     };
     let mut table = field.fields()?;
-    table.only(&["sketch", "bodies", "velocities", "equilibrium"])?;
+    table.declare(&[], &INITIAL)?;
     let mut sketch = Vec::new();
     named(table.optional("sketch"), |field| {
-        match joints.get_index_of(&field.name) {
+        match names.joints.get_index_of(&field.name) {
             Some(joint) => sketch.push(sketched(field, Sketched::Joint(joint))?),
-            None => sketch.extend(sketched_points(field, &bodies.bodies, joints)?),
+            None => sketch.extend(sketched_points(field, names)?),
         }
         Ok(())
     })?;
-    let states = named(table.optional("bodies"), |field| {
-        state(field, &bodies.bodies)
-    })?;
+    let states = named(table.optional("bodies"), |field| state(field, names))?;
     let mut velocities = Vec::new();
     named(table.optional("velocities"), |field| {
-        velocities.extend(given_velocities(field, &bodies.bodies)?);
+        velocities.extend(given_velocities(field, names)?);
         Ok(())
     })?;
-    let equilibrium = table.optional("equilibrium").map(|f| f.boolean());
     Ok(Initial {
         sketch,
         bodies: states.into_values().collect(),
         velocities,
-        equilibrium: equilibrium.transpose()?.unwrap_or(false),
+        equilibrium: table.optional_boolean("equilibrium")?.unwrap_or(false),
         span: table.span,
     })
 }
@@ -203,21 +271,18 @@ fn sketched(field: &Field, what: Sketched) -> Result<SketchPoint, SceneError> {
     Ok(SketchPoint {
         what,
         at: field.numbers("[x, y]")?,
-        span: field.node.span,
+        span: field.span(),
     })
 }
 
 /// `sketch.BODY = { POINT = [x, y], ... }`
-fn sketched_points(
-    field: &Field,
-    bodies: &IndexMap<String, Body>,
-    joints: &IndexMap<String, Joint>,
-) -> Result<Vec<SketchPoint>, SceneError> {
-    let Some((body, _, found)) = bodies.get_full(&field.name) else {
-        let known = joints.keys().chain(bodies.keys()).map(String::as_str);
+fn sketched_points(field: &Field, names: &Names) -> Result<Vec<SketchPoint>, SceneError> {
+    let Some((body, _, found)) = names.bodies.get_full(&field.name) else {
+        let known = names.joints.keys().chain(names.bodies.keys());
+        let known = known.map(String::as_str);
         return Err(field.dangling_key("joint or body", known));
     };
-    if let BodyKind::Ground { .. } | BodyKind::Moving { .. } = found.kind {
+    if found.known().is_some() {
         let message = format!(
             "the position of `{}` is known at every time; a sketch cannot change it",
             field.name
@@ -229,11 +294,11 @@ fn sketched_points(
         let help = format!("write `{} = {{ POINT = [x, y] }}`", field.name);
         return Err(field.fault(message, "of which point?").with_help(help));
     }
-    let names = joints::point_names(found);
+    let own = || found.points().iter().map(|p| p.name.as_str());
     let points = named(Some(field.clone()), |point| {
-        let Some(index) = names.iter().position(|name| *name == point.name) else {
+        let Some(index) = own().position(|name| name == point.name) else {
             let kind = format!("point of `{}` called", field.name);
-            return Err(point.dangling_key(&kind, names.iter().copied()));
+            return Err(point.dangling_key(&kind, own()));
         };
         let what = Sketched::Point(PointRef { body, point: index });
         sketched(point, what)
@@ -242,17 +307,14 @@ fn sketched_points(
 }
 
 /// `velocities.BODY = { vx, vy, omega }`, any of them.
-fn given_velocities(
-    field: &Field,
-    bodies: &IndexMap<String, Body>,
-) -> Result<Vec<GivenVelocity>, SceneError> {
-    let body = moving_body(field, bodies)?;
+fn given_velocities(field: &Field, names: &Names) -> Result<Vec<GivenVelocity>, SceneError> {
+    let body = moving_body(field, names)?;
     let mut table = field.fields()?;
-    table.only(&["vx", "vy", "omega"])?;
+    table.declare(&[], &VELOCITIES)?;
     let mut given = Vec::new();
-    for (component, key) in ["vx", "vy", "omega"].into_iter().enumerate() {
+    for (component, key) in RATES.into_iter().enumerate() {
         if let Some(value) = table.optional(key) {
-            if component == 2 && matches!(bodies[body].kind, BodyKind::PointMass { .. }) {
+            if component == 2 && !names.bodies[body].turns() {
                 let message = format!("`{}` is a point mass and does not turn", field.name);
                 return Err(value.key_fault(message, "remove this"));
             }
@@ -260,7 +322,7 @@ fn given_velocities(
                 body,
                 component,
                 value: value.number()?,
-                span: value.node.span,
+                span: value.span(),
             });
         }
     }
@@ -277,88 +339,46 @@ fn given_velocities(
 }
 
 /// The body that a key names, one that has a state of its own.
-fn moving_body(field: &Field, bodies: &IndexMap<String, Body>) -> Result<usize, SceneError> {
-    let Some((body, _, found)) = bodies.get_full(&field.name) else {
-        return Err(field.dangling_key("body", bodies.keys().map(String::as_str)));
+fn moving_body(field: &Field, names: &Names) -> Result<usize, SceneError> {
+    let Some((body, name, found)) = names.bodies.get_full(&field.name) else {
+        let known = names.bodies.keys().map(String::as_str);
+        return Err(field.dangling_key("body", known));
     };
-    match found.kind {
-        BodyKind::Ground { .. } => {
-            let message = format!("`{}` is the ground and has no initial state", field.name);
-            Err(field.key_fault(message, "does not move"))
-        }
-        BodyKind::Moving { .. } => {
-            let message = format!(
-                "`{}` follows its path, so it cannot be given an initial state",
-                field.name
-            );
-            Err(field.key_fault(message, "prescribed"))
-        }
-        _ => Ok(body),
-    }
+    let (message, label) = match found.known() {
+        None => return Ok(body),
+        Some(Known::Fixed) => (
+            format!("`{name}` is the ground and has no initial state"),
+            "does not move",
+        ),
+        Some(Known::Path(_)) => (
+            format!("`{name}` follows its path, so it cannot be given an initial state"),
+            "prescribed",
+        ),
+    };
+    Err(field.key_fault(message, label))
 }
 
-fn state(field: &Field, bodies: &IndexMap<String, Body>) -> Result<BodyState, SceneError> {
-    let body = moving_body(field, bodies)?;
-    if let BodyKind::PointMass { .. } = bodies[body].kind {
-        return point_state(field, body);
-    }
+fn state(field: &Field, names: &Names) -> Result<BodyState, SceneError> {
+    let body = moving_body(field, names)?;
+    let turns = names.bodies[body].turns();
     let mut table = field.fields()?;
-    table.only(&["x", "y", "theta", "vx", "vy", "omega"])?;
-    let position = [
-        table
-            .required("x", "the position of the body [m]")?
-            .number()?,
-        table
-            .required("y", "the position of the body [m]")?
-            .number()?,
-        table
-            .required("theta", "the orientation of the body [rad]")?
-            .number()?,
-    ];
-    let velocity_given = ["vx", "vy", "omega"]
+    table.declare(&[], if turns { &STATE } else { &POINT_STATE })?;
+    let components = if turns { 3 } else { 2 };
+    let velocity_given = RATES[..components]
         .iter()
         .any(|key| table.optional(key).is_some());
-    let mut velocity = [0.0; 3];
-    if velocity_given {
-        for (v, key) in velocity.iter_mut().zip(["vx", "vy", "omega"]) {
-            *v = table
-                .required(key, "a velocity; give all three or none")?
-                .number()?;
-        }
+    let (mut position, mut velocity) = ([0.0; 3], [0.0; 3]);
+    for component in 0..components {
+        position[component] = table.number(POSE[component])?;
+    }
+    for component in (0..components).filter(|_| velocity_given) {
+        velocity[component] = table.number(RATES[component])?;
     }
     Ok(BodyState {
         body,
         position,
         velocity,
         velocity_given,
-        span: field.node.span,
-    })
-}
-
-/// The state of a point mass, which has no angle.
-fn point_state(field: &Field, body: usize) -> Result<BodyState, SceneError> {
-    let mut table = field.fields()?;
-    table.only(&["x", "y", "vx", "vy"])?;
-    let number = |key: &'static str| {
-        table
-            .required(key, "the position of the point mass [m]")?
-            .number()
-    };
-    let position = [number("x")?, number("y")?, 0.0];
-    let velocity_given = ["vx", "vy"].iter().any(|key| table.optional(key).is_some());
-    let mut velocity = [0.0; 3];
-    if velocity_given {
-        for (v, key) in velocity.iter_mut().zip(["vx", "vy"]) {
-            *v = table
-                .required(key, "a velocity; give both or none")?
-                .number()?;
-        }
-    }
-    Ok(BodyState {
-        body,
-        position,
-        velocity,
-        velocity_given,
-        span: field.node.span,
+        span: field.span(),
     })
 }

@@ -1,11 +1,10 @@
 //! From the tree to a [`Scene`]: the tables that stand alone; bodies, joints and motion have files of their own.
 
-use super::document::{Node, document};
-use super::error::{SceneError, Sources, Span, nearest};
-use super::field::Field;
-use super::fields::Fields;
-use super::{Analysis, bodies, forces, integrator, joints, motion, overrides, smallest_clearance};
+use super::{Analysis, integrator, kinds, motion, smallest_clearance};
 use super::{Assumption, ChannelPattern, Integrator, Output, Scene, Simulation};
+use crate::document::{
+    Field, Fields, Key, Node, SceneError, Sources, Span, Takes, apply_overrides, document, nearest,
+};
 use crate::registry::Registry;
 use std::fs::File;
 use std::io::{self, Read};
@@ -15,6 +14,85 @@ use std::path::Path;
 const LARGEST_FILE: u64 = 8 << 20;
 /// Relative error allowed in `interval / step`: decimal fractions are not exact in binary.
 const WHOLE: f64 = 1e-9;
+
+/// The keys of a scene.
+pub(super) static SCENE: [Key; 14] = [
+    Key::new(
+        "format",
+        Takes::Whole(1, 1),
+        "the version of the scene language: `format = 1`",
+    ),
+    Key::new("title", Takes::Text, "one line that says what the scene is"),
+    Key::new(
+        "assumptions",
+        Takes::Table,
+        "values that the source of the scene does not give, see [Assumptions](#assumptions)",
+    )
+    .or("none"),
+    Key::new(
+        "simulation",
+        Takes::Table,
+        "the table of duration, gravity and kind of analysis",
+    ),
+    Key::new(
+        "integrator",
+        Takes::Table,
+        "the table of method, step and tolerances",
+    ),
+    Key::new(
+        "output",
+        Takes::Table,
+        "the table of what is recorded, and how often",
+    ),
+    Key::new("materials", Takes::Table, "named materials").or("none"),
+    Key::new("sections", Takes::Table, "named cross-sections").or("none"),
+    Key::new(
+        "contacts",
+        Takes::Table,
+        "named contacts of joints with clearance",
+    )
+    .or("none"),
+    Key::new(
+        "bodies",
+        Takes::Table,
+        "named bodies, exactly one of them of type `\"ground\"`",
+    ),
+    Key::new("joints", Takes::Table, "named joints").or("none"),
+    Key::new("drives", Takes::Table, "named prescribed motions").or("none"),
+    Key::new("forces", Takes::Table, "named springs and loads").or("none"),
+    Key::new("initial", Takes::Table, "where the motion starts").or("none"),
+];
+
+/// The keys of `[simulation]`.
+pub(super) static SIMULATION: [Key; 3] = [
+    Key::word(
+        "analysis",
+        &["dynamic", "static"],
+        "motion over time, or equilibrium under growing loads",
+    )
+    .or("`\"dynamic\"`"),
+    Key::positive(
+        "duration",
+        "s",
+        "the simulated time from t = 0; of a static analysis the t of the full load",
+    ),
+    Key::vector("gravity", "m/s2", "[gx, gy]", "the gravity vector").or("no weight"),
+];
+
+/// The keys of `[output]`.
+pub(super) static OUTPUT: [Key; 3] = [
+    Key::positive(
+        "interval",
+        "s",
+        "the time between rows, a whole multiple of `step` and at most `duration`",
+    ),
+    Key::new(
+        "channels",
+        Takes::List,
+        "the list of recorded channels, such as [\"platform.*\"]; `*` stands for any sequence of characters",
+    ),
+    Key::name_in("format", "formats", "the format of the tables, see below").or("`\"csv\"`"),
+];
 
 /// The bytes of a scene or a study; whatever the file is, their number is bounded.
 ///
@@ -70,10 +148,10 @@ pub(super) fn parse(
 ) -> Result<Scene, SceneError> {
     let sources = Sources::new(name, text, overrides);
     let mut tree = document(&sources)?;
-    overrides::apply(&sources, &mut tree)?;
+    apply_overrides(&sources, &mut tree)?;
 
     let mut root = Fields::root(&sources, &tree)?;
-    let format = root.required("format", "the version of the scene language: `format = 1`")?;
+    let format = root.required("format", SCENE[0].purpose)?;
     if format.integer()? != 1 {
         let message = format!(
             "this program reads scene format 1, not {}",
@@ -81,44 +159,26 @@ pub(super) fn parse(
         );
         return Err(format.fault(message, "unknown format"));
     }
-    root.only(&[
-        "format",
-        "title",
-        "assumptions",
-        "simulation",
-        "integrator",
-        "output",
-        "materials",
-        "sections",
-        "contacts",
-        "bodies",
-        "joints",
-        "drives",
-        "forces",
-        "initial",
-    ])?;
-    let title = root.required("title", "one line that says what the scene is")?;
-    let title = title.text()?.to_owned();
+    root.declare(&[], &SCENE)?;
+    let title = root.field("title")?.text()?.to_owned();
     let simulation = simulation(&root)?;
-    let bodies = bodies::read(&root, simulation.duration)?;
-    let joints = joints::read(&root, &bodies, registry)?;
-    let clearance = smallest_clearance(joints.values());
+    let things = kinds::read(&root, simulation.duration, registry)?;
+    let clearance = smallest_clearance(things.joints.values());
     let integrator = integrator::read(&root, &simulation, clearance, registry)?;
-    let output = output(&root, &simulation, &integrator)?;
-    let drives = motion::drives(&root, &bodies, &joints, simulation.duration)?;
-    let forces = forces::read(&root, &bodies, &joints, simulation.duration)?;
-    let initial = motion::initial(&root, &bodies, &joints)?;
+    let output = output(&root, &simulation, &integrator, registry)?;
+    let (drives, motions) = motion::drives(&root, &things.names())?;
+    let initial = motion::initial(&root, &things.names())?;
     let assumptions = assumptions(&root, &tree)?;
     Ok(Scene {
         title,
         simulation,
         integrator,
         output,
-        bodies: bodies.bodies.into_values().collect(),
-        joints: joints.into_values().collect(),
-        drives: drives.kinematics,
-        motions: drives.motions,
-        forces,
+        bodies: things.named_bodies(),
+        joints: things.joints.into_values().collect(),
+        drives,
+        motions,
+        forces: things.forces,
         initial,
         assumptions,
         sources,
@@ -126,24 +186,15 @@ pub(super) fn parse(
 }
 
 fn simulation(root: &Fields) -> Result<Simulation, SceneError> {
-    let mut table = root
-        .required("simulation", "the table of duration and gravity")?
-        .fields()?;
-    table.only(&["analysis", "duration", "gravity"])?;
-    let kinds = [("dynamic", Analysis::Dynamic), ("static", Analysis::Static)];
-    let analysis = table.optional("analysis").map(|a| a.choice(&kinds));
-    let analysis = analysis.transpose()?.unwrap_or(Analysis::Dynamic);
-    let duration = table
-        .required("duration", "the simulated time [s]")?
-        .positive()?;
-    let gravity = table
-        .optional("gravity")
-        .map(|g| g.numbers("[gx, gy]"))
-        .transpose()?;
+    let mut table = root.field("simulation")?.fields()?;
+    table.declare(&[], &SIMULATION)?;
     Ok(Simulation {
-        analysis,
-        duration,
-        gravity,
+        analysis: match table.optional_word("analysis")? {
+            Some(1) => Analysis::Static,
+            _ => Analysis::Dynamic,
+        },
+        duration: table.number("duration")?,
+        gravity: table.optional_vector("gravity")?,
     })
 }
 
@@ -151,13 +202,12 @@ fn output(
     root: &Fields,
     simulation: &Simulation,
     integrator: &Integrator,
+    registry: &Registry,
 ) -> Result<Output, SceneError> {
-    let mut table = root
-        .required("output", "the table of what is recorded")?
-        .fields()?;
-    table.only(&["interval", "channels"])?;
-    let field = table.required("interval", "the time between recorded rows [s]")?;
-    let interval = field.positive()?;
+    let mut table = root.field("output")?.fields()?;
+    table.declare(&[], &OUTPUT)?;
+    let field = table.field("interval")?;
+    let interval = table.number("interval")?;
     if let Some(step) = integrator.step() {
         check_interval(&field, interval, step)?;
     }
@@ -167,10 +217,7 @@ fn output(
             simulation.duration
         )));
     }
-    let field = table.required(
-        "channels",
-        "the list of recorded channels, such as [\"platform.*\"]",
-    )?;
+    let field = table.field("channels")?;
     let mut channels = Vec::new();
     for item in field.items()? {
         channels.push(ChannelPattern {
@@ -181,7 +228,13 @@ fn output(
     if channels.is_empty() {
         return Err(field.fault("`output.channels` names no channel", "empty"));
     }
-    Ok(Output { interval, channels })
+    let formats: Vec<_> = registry.formats.iter().map(|f| (f.name, *f)).collect();
+    let format = table.optional("format").map(|f| f.choice(&formats));
+    Ok(Output {
+        interval,
+        channels,
+        format: format.transpose()?.unwrap_or(registry.formats[0]),
+    })
 }
 
 fn check_interval(field: &Field, interval: f64, step: f64) -> Result<(), SceneError> {

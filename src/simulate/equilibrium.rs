@@ -6,7 +6,7 @@ use super::{
 };
 use crate::model::Model;
 use crate::newton::Failure;
-use crate::scene::{Analysis, JointModel, Scene, SceneError};
+use crate::scene::{Analysis, Scene, SceneError};
 use crate::statics::Statics;
 use crate::stepper::StepError;
 use crate::system::{State, System, Work};
@@ -24,7 +24,7 @@ pub(super) fn prepare(
         return Ok(None);
     }
     for joint in &scene.joints {
-        if let JointModel::Clearance(_) = joint.model {
+        if joint.contact().is_some() {
             let message = format!(
                 "joint {} has clearance: its bodies have no equilibrium before it closes",
                 joint.name
@@ -34,6 +34,15 @@ pub(super) fn prepare(
                 error.with_help("make it ideal for the static analysis, or let the motion settle")
             );
         }
+    }
+    let mut forces = scene.forces.iter();
+    if let Some(force) = forces.find(|force| !force.kind.states().is_empty()) {
+        let message = format!(
+            "force {} has an internal state, which reaches its equilibrium in time only",
+            force.name
+        );
+        let error = scene.error(force.span, message, "this force");
+        return Err(error.with_help("leave it out, or let the motion settle"));
     }
     if let Some(drive) = scene.drives.first() {
         let message = "a static analysis cannot have inverse kinematics";

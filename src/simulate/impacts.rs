@@ -114,7 +114,9 @@ impl Impacts {
         let radius = |contact| {
             let joint = model.contact_joint(contact);
             let contact = joint.and_then(|joint| scene.joints[joint].contact());
-            contact.map_or(f64::INFINITY, |contact| contact.bearing_radius)
+            contact
+                .and_then(|contact| contact.bearing_radius)
+                .unwrap_or(f64::INFINITY)
         };
         Impacts {
             closed: vec![None; contacts.len()],

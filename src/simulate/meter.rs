@@ -20,14 +20,12 @@
 //! is 2 pi/n for a vibration of n steps a period. The largest rho_i is reported, over the coordinates with at least a tenth of
 //! the largest acceleration whose changes move points by more than rounding.
 
-use crate::model::{BodyCoordinates, Model};
-use crate::scene::{BodyKind, Pace, Scene};
+use crate::body::Content;
+use crate::model::Model;
+use crate::scene::{Pace, Scene};
 use crate::stepper::LocalError;
 use crate::system::{Integral, State};
 use serde::Serialize;
-
-/// A unit of slope of a cubic beam moves points by this part of its length at most, x (1 - x)^2 at x = 1/3.
-const SLOPE_WAY: f64 = 4.0 / 27.0;
 
 /// Coordinates with less than this part of the largest acceleration do not count for rho,
 const LEAST_SHARE: f64 = 0.1;
@@ -151,26 +149,17 @@ impl Range {
 pub fn lengths(scene: &Scene, model: &Model) -> Vec<f64> {
     let mut lengths = vec![1.0; model.shape().coordinates];
     for (body, place) in scene.bodies.iter().zip(model.bodies()) {
-        match (&body.kind, &place.coordinates) {
-            (BodyKind::Rigid(rigid), BodyCoordinates::Rigid { x }) => {
-                let gyration = (rigid.inertia / rigid.mass).sqrt();
-                let arms = rigid.points.iter().map(|p| p.at[0].hypot(p.at[1]));
-                lengths[x + 2] = arms.fold(gyration, f64::max);
+        for (slot, x) in place.placed.x.iter().enumerate() {
+            let lever = body.kind.lever(slot);
+            match place.contents[slot] {
+                Content::Pose => lengths[x + 2] = lever,
+                Content::Slope => lengths[*x..x + 2].fill(lever),
+                Content::Position => {}
             }
-            (
-                _,
-                BodyCoordinates::FlexibleLink {
-                    slopes,
-                    element_length,
-                    ..
-                },
-            ) => {
-                for x in slopes {
-                    lengths[*x..x + 2].fill(SLOPE_WAY * element_length);
-                }
-            }
-            _ => {}
         }
+    }
+    for state in &model.states {
+        lengths[*state] = 0.0;
     }
     lengths.truncate(model.shape().unknowns);
     lengths
@@ -189,11 +178,7 @@ fn plain_motion(scene: &Scene, model: &Model, start: &State) -> f64 {
     let (mut mass, mut size) = (0.0, extent.width());
     for body in &scene.bodies {
         mass += body.kind.mass().unwrap_or(0.0);
-        size = match &body.kind {
-            BodyKind::Link(link) => size.max(link.length),
-            BodyKind::Rigid(rigid) => size.max((rigid.inertia / rigid.mass).sqrt()),
-            _ => size,
-        };
+        size = size.max(body.kind.size());
     }
     0.5 * mass * (size / scene.simulation.duration).powi(2)
 }

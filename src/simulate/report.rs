@@ -2,7 +2,6 @@
 
 use super::pace::Pacer;
 use super::{AccuracyReport, Chatter, Impact, Integration, Overrun, Simulation};
-use crate::model::BodyCoordinates;
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, Scene};
 use crate::system::System;
@@ -198,7 +197,7 @@ impl Simulation {
                 .model
                 .effects()
                 .iter()
-                .map(|(_, name)| (*name).to_owned())
+                .map(|name| (*name).to_owned())
                 .collect(),
             assumptions: notes(&self.scene)
                 .into_iter()
@@ -217,7 +216,6 @@ impl Simulation {
             Some(statics) => self.newton.counters.with(&statics.counters),
             None => self.newton.counters,
         };
-        let tally = |effect: crate::effect::Effect| self.work.tally[effect as usize];
         let dynamic = self.scene.simulation.analysis == Analysis::Dynamic;
         let bodies = self.model.bodies().iter().enumerate();
         let names = self.recorder.channels().iter().map(|c| c.name.clone());
@@ -229,7 +227,8 @@ impl Simulation {
                 .model
                 .effects()
                 .iter()
-                .map(|(e, name)| ((*name).to_owned(), tally(*e)))
+                .zip(&self.work.tally)
+                .map(|(name, count)| ((*name).to_owned(), *count))
                 .collect(),
             steps: self.counters.steps,
             stages: newton.stages,
@@ -264,7 +263,7 @@ impl Simulation {
             ledger: dynamic.then(|| self.recorder.ledger(&self.model, &self.state)),
             redundant: self.model.redundant(),
             strain: bodies
-                .filter(|(_, p)| matches!(p.coordinates, BodyCoordinates::FlexibleLink { .. }))
+                .filter(|(_, p)| !p.placed.kind.is_rigid())
                 .map(|(b, p)| (p.name.clone(), self.strains[b]))
                 .collect(),
             extremes: names

@@ -15,8 +15,8 @@ use crate::model::Model;
 use crate::newton::Newton;
 use crate::record::Recorder;
 use crate::scene::{Analysis, Pace, Scene, SceneError};
-use crate::stepper::LocalError;
-use crate::system::{State, System};
+use crate::stepper::{Estimate, LocalError};
+use crate::system::{State, System, Work};
 
 impl Simulation {
     /// Compiles a scene, closes its mechanism and makes its start consistent.
@@ -25,12 +25,22 @@ impl Simulation {
     /// A mechanism that cannot close, be driven or start as the scene says.
     pub fn new(scene: &Scene) -> Result<Simulation, SceneError> {
         let compiled = compile(scene)?;
-        let mut state = initial::start(scene, &compiled)?;
+        let state = initial::start(scene, &compiled)?;
         let mut model = compiled.model;
         keep_independent(scene, &mut model, &state)?;
         refuse_constraints(scene, &model)?;
-        let mut newton = Newton::new(&model, scene.integrator.newton_tolerance);
-        let mut work = model.work();
+        let newton = Newton::new(&model, scene.integrator.newton_tolerance);
+        let work = model.work();
+        Simulation::begin(scene, model, state, newton, work)
+    }
+
+    fn begin(
+        scene: &Scene,
+        model: Model,
+        mut state: State,
+        mut newton: Newton,
+        mut work: Work,
+    ) -> Result<Simulation, SceneError> {
         let shape = model.shape();
         let mut started = Vec::with_capacity(shape.contacts);
         model.commit(
@@ -59,13 +69,7 @@ impl Simulation {
         let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
         let extremes = vec![Extreme::default(); recorder.channels().len()];
         let stepper = scene.integrator.method.stepper(model.shape());
-        let pacer = match scene.integrator.pace {
-            Pace::Step(step) => Pacer::grid(step),
-            Pace::Accuracy(accuracy) => {
-                let estimate = stepper.estimate();
-                Pacer::Controller(Box::new(Controller::new(scene, &model, accuracy, estimate)))
-            }
-        };
+        let pacer = pacer(scene, &model, stepper.estimate());
         Ok(Simulation {
             stepper,
             pacer,
@@ -106,6 +110,17 @@ impl Simulation {
             model,
             scene: scene.clone(),
         })
+    }
+}
+
+/// What chooses the steps.
+fn pacer(scene: &Scene, model: &Model, estimate: Estimate) -> Pacer {
+    match scene.integrator.pace {
+        Pace::Step(step) => Pacer::grid(step),
+        Pace::Accuracy(accuracy) => {
+            let controller = Controller::new(scene, model, accuracy, estimate);
+            Pacer::Controller(Box::new(controller))
+        }
     }
 }
 

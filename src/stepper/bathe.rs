@@ -38,15 +38,17 @@ pub static SCHEME: Scheme = Scheme {
             name: "gamma",
             range: [0.0, 1.0],
             closed: false,
-            required: false,
-            purpose: "the first sub-step over the step",
+            default: Some(
+                "0.5; with a `spectral_radius` rho below 1 (2 - sqrt(2 + 2 rho))/(1 - rho), for which both stages have the same matrix",
+            ),
+            purpose: "of `\"bathe\"`: the first sub-step over the step, between 0 and 1, both excluded",
         },
         Parameter {
             name: "spectral_radius",
             range: [0.0, 1.0],
             closed: true,
-            required: false,
-            purpose: "the spectral radius at infinite frequency",
+            default: Some("required, but 0 for `\"bathe\"`"),
+            purpose: "of `\"bathe\"`, `\"generalized_alpha\"` (0 to 1) and `\"hht\"` (0.5 to 1): the spectral radius at infinite frequency: 1 is without damping, the smallest value damps most",
         },
     ],
     build: |method, shape| {

@@ -29,7 +29,7 @@ pub static SCHEME: Scheme = Scheme {
         name: "spectral_radius",
         range: [0.0, 1.0],
         closed: true,
-        required: true,
+        default: None,
         purpose: "the spectral radius at infinite frequency, from 0, which damps most, to 1, which damps nothing",
     }],
     build: |method, shape| {
@@ -47,7 +47,7 @@ pub static HHT: Scheme = Scheme {
         name: "spectral_radius",
         range: [0.5, 1.0],
         closed: true,
-        required: true,
+        default: None,
         purpose: "the spectral radius at infinite frequency, from 0.5, which damps most, to 1, which damps nothing",
     }],
     build: |method, shape| {

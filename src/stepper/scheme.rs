@@ -13,8 +13,8 @@ pub struct Parameter {
     pub range: [f64; 2],
     /// True if the ends belong to the range.
     pub closed: bool,
-    /// True if a scene has to give it.
-    pub required: bool,
+    /// What holds without it; a scene has to give a parameter that has none.
+    pub default: Option<&'static str>,
     /// What it is.
     pub purpose: &'static str,
 }

@@ -4,7 +4,7 @@
 //! forces are B^T f_full: what the reference computes body by body is summed where Looselink shares a node.
 
 use crate::reference::Scene;
-use looselink::model::{BodyCoordinates, Model};
+use looselink::model::Model;
 
 /// Both sides' numbering of one scene, matched through names.
 #[derive(Debug)]
@@ -26,18 +26,19 @@ fn coordinate(model: &Model, name: &str) -> Option<usize> {
     let (body, part, last) = (parts.next()?, parts.next()?, parts.next());
     let body = model.bodies().iter().find(|b| b.name == body)?;
     let place = |quantity: &str| ["x", "y", "theta"].iter().position(|q| *q == quantity);
-    Some(match &body.coordinates {
-        BodyCoordinates::Ground { .. } => return None,
-        BodyCoordinates::Rigid { x } | BodyCoordinates::PointMass { x } => x + place(part)?,
-        BodyCoordinates::RigidLink { ends } => ends[usize::from(part == "end")] + place(last?)?,
-        BodyCoordinates::FlexibleLink { nodes, slopes, .. } => {
-            let node: usize = part.strip_prefix("node")?.parse().ok()?;
-            match last?.strip_prefix("slope_") {
-                Some(quantity) => slopes.get(node)? + place(quantity)?,
-                None => nodes.get(node)? + place(last?)?,
+    let x = &body.placed.x;
+    match (part, last) {
+        (quantity, None) => Some(x[0] + place(quantity)?),
+        ("start", Some(quantity)) => Some(x[0] + place(quantity)?),
+        ("end", Some(quantity)) => Some(x[1] + place(quantity)?),
+        (node, Some(last)) => {
+            let node: usize = node.strip_prefix("node")?.parse().ok()?;
+            match last.strip_prefix("slope_") {
+                Some(quantity) => Some(x.get(2 * node + 1)? + place(quantity)?),
+                None => Some(x.get(2 * node)? + place(last)?),
             }
         }
-    })
+    }
 }
 
 /// What the reference calls the row that Looselink calls `name`.

@@ -114,11 +114,14 @@ fn clearances(scene: &Scene) -> Vec<String> {
     let mut lines = Vec::new();
     for joint in &scene.joints {
         if let Some(contact) = joint.contact() {
+            let radius = contact.bearing_radius;
+            let radius = radius.map_or(String::new(), |r| {
+                format!("bearing radius {} m, ", exact(r))
+            });
             lines.push(format!(
-                "{:<20}clearance {} m, bearing radius {} m, stiffness K = {} N/m^{}",
+                "{:<20}clearance {} m, {radius}stiffness K = {} N/m^{}",
                 joint.name,
                 exact(contact.clearance),
-                exact(contact.bearing_radius),
                 number(contact.stiffness, 4),
                 exact(contact.exponent)
             ));

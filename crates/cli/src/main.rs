@@ -7,6 +7,7 @@ mod inspect;
 mod precision;
 mod progress;
 mod run;
+mod schema;
 
 use clap::{Args, Parser, Subcommand};
 use failure::Failure;
@@ -51,6 +52,9 @@ enum Command {
         after_help = "Example:\n  looselink ablate scenes/3rrr/case4.toml --set simulation.duration=0.05 --out out/ablation"
     )]
     Ablate(ablate::Arguments),
+    /// Show the scene language as a JSON schema, for editors.
+    #[command(after_help = "Example:\n  looselink schema > scene.schema.json")]
+    Schema,
 }
 
 /// A scene and changes to it.
@@ -114,6 +118,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check(arguments),
         Command::Precision(arguments) => precision::precision(arguments),
         Command::Ablate(arguments) => ablate::ablate(arguments),
+        Command::Schema => schema::show(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

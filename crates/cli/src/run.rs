@@ -5,7 +5,8 @@ use super::closing;
 use super::failure::{Failure, INTERRUPTED};
 use super::progress::{Display, Pace, warn};
 use clap::Args;
-use looselink::output::{FILES, Folder, OutputError, Results, earlier_result};
+use looselink::output::{Folder, OutputError, Results, earlier_result, files};
+use looselink::registry::Registry;
 use looselink::simulate::{Contact, Control, Observer, Progress};
 use std::io;
 use std::path::PathBuf;
@@ -67,7 +68,11 @@ impl Observer for Watch {
 /// Simulates the scene; whatever ends the run, what was recorded up to there stands.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let stop = stop_on_interrupt()?;
-    let folder = Folder::new(&arguments.out, &FILES, arguments.force)?;
+    let folder = Folder::new(
+        &arguments.out,
+        &files(&Registry::standard().formats),
+        arguments.force,
+    )?;
     let (scene, mut simulation) = arguments.scene.load()?;
     let started = Instant::now();
     let not_stored = |error: OutputError| Failure::from(error).and(&earlier(arguments));

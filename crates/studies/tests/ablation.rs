@@ -144,7 +144,7 @@ fn the_rigid_ideal_mechanism_has_none_of_the_terms() {
     let ideal = all[0].scene.as_ref().unwrap();
     assert_eq!(effects(ideal), []);
     let model = simulation(ideal);
-    let names: Vec<&str> = model.model().effects().iter().map(|(_, n)| *n).collect();
+    let names: Vec<&str> = model.model().effects().to_vec();
     assert_eq!(names, ["length_constraint"]);
     assert_eq!(model.model().shape().contacts, 0);
 }

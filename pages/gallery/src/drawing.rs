@@ -1,7 +1,8 @@
 //! One figure a scene: the mechanism at a few instants, and a channel over time.
 
 use crate::runs::Run;
-use looselink::scene::{Analysis, Body, BodyKind, ForceKind, LinkModel, PointRef};
+use looselink::body::{FlexibleLink, Ground, Known};
+use looselink::scene::{Analysis, NamedBody, PointRef};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
 /// Instants at which the mechanism is drawn.
@@ -91,33 +92,31 @@ fn blend(from: Color, to: Color, share: f64) -> Color {
 }
 
 /// Names of the points that the run has recorded of a body, in the order of the body.
-fn points(run: &Run, body: &Body) -> Vec<String> {
-    match &body.kind {
-        BodyKind::Ground { points } | BodyKind::Moving { points, .. } => {
-            points.iter().map(|p| p.name.clone()).collect()
-        }
-        BodyKind::Rigid(rigid) => rigid.points.iter().map(|p| p.name.clone()).collect(),
-        BodyKind::PointMass { .. } => vec!["center".into()],
-        BodyKind::Link(link) => {
-            let elements = match link.model {
-                LinkModel::Rigid => 1,
-                LinkModel::Flexible { elements, .. } => elements,
-            };
-            let inner = (1..elements).map(|k| {
-                let named = link.points.iter().find(|p| p.node == k);
-                named.map_or_else(|| format!("node{k}"), |p| p.name.clone())
+fn points(run: &Run, body: &NamedBody) -> Vec<String> {
+    let all = || body.kind.points().iter();
+    let names: Vec<String> = match body.kind.get::<FlexibleLink>() {
+        None => all().map(|p| p.name.clone()).collect(),
+        Some(link) => {
+            let named = |k: usize| link.nodes.iter().position(|n| *n == k);
+            let nodes = (0..=link.elements).map(|k| match named(k) {
+                Some(point) => link.link.points[point].name.clone(),
+                None => format!("node{k}"),
             });
-            let start = std::iter::once("start".to_owned());
-            start.chain(inner).chain(["end".to_owned()]).collect()
+            nodes.collect()
         }
-    }
-    .into_iter()
-    .filter(|name| run.get(&format!("points.{}.{name}.x", body.name)).is_some())
-    .collect()
+    };
+    let recorded = |name: &String| run.get(&format!("points.{}.{name}.x", body.name)).is_some();
+    names.into_iter().filter(recorded).collect()
 }
 
 /// Two channels of a point, `x` and `y` or the two of its slope.
-fn pair(run: &Run, body: &Body, point: &str, names: [&str; 2], row: usize) -> Option<[f64; 2]> {
+fn pair(
+    run: &Run,
+    body: &NamedBody,
+    point: &str,
+    names: [&str; 2],
+    row: usize,
+) -> Option<[f64; 2]> {
     let value = |q: &str| {
         let channel = run.get(&format!("points.{}.{point}.{q}", body.name))?;
         channel.get(row).copied()
@@ -129,7 +128,7 @@ fn pair(run: &Run, body: &Body, point: &str, names: [&str; 2], row: usize) -> Op
 fn pose(run: &Run, row: usize, color: Color, label: &str, marks: &mut Vec<Mark>) {
     let before = marks.len();
     for force in &run.scene.forces {
-        if let ForceKind::SpringDamper { from, to, .. } = force.kind {
+        if let [from, to] = force.kind.points()[..] {
             let ends = [from, to].map(|p| place(run, p, row));
             if let [Some(a), Some(b)] = ends {
                 marks.push(Mark::curve("", color, &[a[0], b[0]], &[a[1], b[1]]).width(2));
@@ -137,7 +136,7 @@ fn pose(run: &Run, row: usize, color: Color, label: &str, marks: &mut Vec<Mark>)
         }
     }
     for body in &run.scene.bodies {
-        if let BodyKind::Ground { .. } = body.kind {
+        if let Some(Known::Fixed) = body.kind.known() {
             continue;
         }
         let names = points(run, body);
@@ -145,21 +144,19 @@ fn pose(run: &Run, row: usize, color: Color, label: &str, marks: &mut Vec<Mark>)
             .iter()
             .filter_map(|name| pair(run, body, name, ["x", "y"], row))
             .collect();
-        let outline = match &body.kind {
-            BodyKind::Link(link) if link.model != LinkModel::Rigid => {
-                bent(run, body, link.length, &names, row)
-            }
-            BodyKind::Link(_) => at.clone(),
-            _ => hull(at.clone()),
+        let outline = match body.kind.link() {
+            Some(link) if !body.kind.is_rigid() => bent(run, body, link.length, &names, row),
+            Some(_) => at.clone(),
+            None => hull(at.clone()),
         };
         let (x, y): (Vec<f64>, Vec<f64>) = outline.iter().map(|p| (p[0], p[1])).unzip();
         if outline.len() > 1 {
             marks.push(Mark::curve("", color, &x, &y).width(5));
         }
         // nodes between the ends of a flexible link are not marked
-        let marked: Vec<&[f64; 2]> = match &body.kind {
-            BodyKind::Link(_) => at.first().into_iter().chain(at.last()).collect(),
-            _ => at.iter().collect(),
+        let marked: Vec<&[f64; 2]> = match body.kind.link() {
+            Some(_) => at.first().into_iter().chain(at.last()).collect(),
+            None => at.iter().collect(),
         };
         let (x, y): (Vec<f64>, Vec<f64>) = marked.iter().map(|p| (p[0], p[1])).unzip();
         let radius = if outline.len() > 1 { 7 } else { 12 };
@@ -173,25 +170,15 @@ fn pose(run: &Run, row: usize, color: Color, label: &str, marks: &mut Vec<Mark>)
 /// Where a point of the scene is.
 fn place(run: &Run, point: PointRef, row: usize) -> Option<[f64; 2]> {
     let body = &run.scene.bodies[point.body];
-    match &body.kind {
-        BodyKind::Ground { points } => Some(points[point.point].at),
-        BodyKind::Link(link) => {
-            let name = match point.point {
-                0 => "start",
-                1 => "end",
-                inner => &link.points[inner - 2].name,
-            };
-            pair(run, body, name, ["x", "y"], row)
-        }
-        _ => {
-            let names = points(run, body);
-            pair(run, body, names.get(point.point)?, ["x", "y"], row)
-        }
+    let own = &body.kind.points()[point.point];
+    match body.kind.known() {
+        Some(Known::Fixed) => Some(own.at),
+        _ => pair(run, body, &own.name, ["x", "y"], row),
     }
 }
 
 /// The axis of a flexible link: the cubic of its elements between nodes and slopes.
-fn bent(run: &Run, body: &Body, length: f64, names: &[String], row: usize) -> Vec<[f64; 2]> {
+fn bent(run: &Run, body: &NamedBody, length: f64, names: &[String], row: usize) -> Vec<[f64; 2]> {
     let get = |name: &String, channels| pair(run, body, name, channels, row).unwrap_or_default();
     let l = length / (names.len() - 1) as f64;
     let mut line = vec![get(&names[0], ["x", "y"])];
@@ -268,10 +255,10 @@ fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 fn paths(run: &Run) -> Vec<Mark> {
     let mut marks = Vec::new();
     for body in &run.scene.bodies {
-        let names = match body.kind {
-            BodyKind::Ground { .. } => continue,
-            _ => points(run, body),
-        };
+        if let Some(Known::Fixed) = body.kind.known() {
+            continue;
+        }
+        let names = points(run, body);
         if let [name] = &names[..] {
             let of = |q| run.get(&format!("points.{}.{name}.{q}", body.name));
             let (x, y) = (of("x").unwrap_or_default(), of("y").unwrap_or_default());
@@ -285,7 +272,7 @@ fn paths(run: &Run) -> Vec<Mark> {
 fn grounds(run: &Run) -> Vec<Mark> {
     let mut marks = Vec::new();
     for body in &run.scene.bodies {
-        if let BodyKind::Ground { points } = &body.kind {
+        if let Some(Ground { points }) = body.kind.get() {
             let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.at[0], p.at[1])).unzip();
             marks.push(Mark::points("", palette::BLACK, &x, &y, 9));
         }

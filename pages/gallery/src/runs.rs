@@ -1,6 +1,7 @@
 //! The runs: which scenes there are, what is shown of each, and what a run leaves.
 
-use looselink::scene::{BodyKind, LinkModel, Scene};
+use looselink::body::FlexibleLink;
+use looselink::scene::Scene;
 use looselink::simulate::{Channel, Inspection, Recording, Report, Simulation};
 use miette::{IntoDiagnostic, Result, miette};
 use std::path::Path;
@@ -186,13 +187,11 @@ pub fn run(root: &Path, name: &str) -> Result<Run> {
 fn nodes(scene: &Scene) -> Vec<String> {
     let mut overrides = Vec::new();
     for body in &scene.bodies {
-        let BodyKind::Link(link) = &body.kind else {
+        let Some(flexible) = body.kind.get::<FlexibleLink>() else {
             continue;
         };
-        let LinkModel::Flexible { elements, .. } = link.model else {
-            continue;
-        };
-        let named = |k: usize| link.points.iter().find(|p| p.node == k);
+        let (elements, link) = (flexible.elements, &flexible.link);
+        let named = |k: usize| Some(&link.points[flexible.nodes.iter().position(|n| *n == k)?]);
         let points: Vec<String> = (1..elements)
             .map(|k| {
                 let name = named(k).map_or_else(|| format!("node{k}"), |p| p.name.clone());

@@ -35,7 +35,7 @@ fn a_changed_token_of_a_kernel_outdates_the_records_that_depend_on_it() {
         ("src/link/ancf_cable.rs", "+=", "-="),
         ("src/contact/normal/damped_power.rs", "1.5", "1.4"),
         ("src/constraint/length.rs", "2.0", "3.0"),
-        ("src/force/torque.rs", "-1.0", "1.0"),
+        ("src/interaction/torque.rs", "-1.0", "1.0"),
         ("src/stepper/bathe.rs", " * ", " / "),
     ];
     for (file, from, to) in kernels {
@@ -151,9 +151,9 @@ fn files_that_come_and_go_outdate_too() {
     );
     fs::remove_file(copy.path("src/force/magnet.rs")).unwrap();
     assert_eq!(copy.outdated(), [""; 0]);
-    fs::remove_file(copy.path("src/force/torque.rs")).unwrap();
+    fs::remove_file(copy.path("src/interaction/torque.rs")).unwrap();
     assert!(
-        copy.outdated_by("src/force/torque.rs")
+        copy.outdated_by("src/interaction/torque.rs")
             .contains(&MUTANTS.to_owned())
     );
 }

@@ -3,11 +3,11 @@
 use super::super::{Compiler, Role};
 use super::guess::coordinates;
 use super::{CENTRE, CLOSED, check_sketch, close, is_guide, names, opening, position, reach};
-use crate::effect::Effect;
 use crate::math::plane::{norm, sub};
 use crate::model::{Model, PlacedConstraint};
-use crate::scene::{BodyKind, BodyState, SceneError, SketchPoint};
+use crate::scene::{BodyState, SceneError, SketchPoint};
 use crate::system::State;
+use crate::terms::ConstraintTerm;
 
 /// The state that the scene gives to a body.
 fn given<'a>(c: &Compiler<'a>, body: usize) -> Option<&'a BodyState> {
@@ -23,7 +23,7 @@ pub(super) fn check_given(
 ) -> Result<(), SceneError> {
     for drawn in &c.scene.initial.sketch {
         for point in c.sketched_points(drawn) {
-            let at = position(c, model, state, point);
+            let at = position(model, state, point);
             if is_guide(c, drawn, point) || norm(sub(at, drawn.at)) <= reach(c, drawn) {
                 continue;
             }
@@ -57,8 +57,8 @@ pub(super) fn check_given(
         let fixed = placed.block.coordinates.iter().all(|&i| i >= n || held[i]);
         let open = norm(placed.term.value(state));
         if fixed && open > CLOSED {
-            match placed.effect {
-                Effect::Length => wrong_length(c, placed, state)?,
+            match placed.term {
+                ConstraintTerm::Length(_) => wrong_length(c, placed, state)?,
                 _ => misfit(c, placed, name, open)?,
             }
         }
@@ -70,13 +70,13 @@ pub(super) fn check_given(
 fn wrong_length(c: &Compiler, placed: &PlacedConstraint, state: &State) -> Result<(), SceneError> {
     let own = placed.owners[0];
     let body = &c.scene.bodies[own];
-    let BodyKind::Link(link) = &body.kind else {
+    let Some(length) = body.kind.length() else {
         return Ok(());
     };
     // Phi = (d^2 - l^2)/(2 l)
     let phi = placed.term.value(state)[0];
-    let distance = (link.length * (link.length + 2.0 * phi)).sqrt();
-    let [distance, length] = [distance, link.length].map(|x| numbers::si(x, "m"));
+    let distance = (length * (length + 2.0 * phi)).sqrt();
+    let [distance, length] = [distance, length].map(|x| numbers::si(x, "m"));
     let neighbour = c.scene.joints.iter().find_map(|joint| {
         let bodies = [joint.bearing.body, joint.journal.body];
         let other = bodies.iter().find(|b| **b != own)?;
@@ -119,7 +119,7 @@ fn misfit(
     let message = format!(
         "the given pose of {} does not fit {whole}, which stays open by {}",
         c.scene.bodies[pose.body].name,
-        opening(placed.effect, open, "")
+        opening(&placed.term, open, "")
     );
     let joints = c.scene.joints.iter();
     let joints = joints.map(|j| (format!("joint {}", j.name), j.span));
@@ -153,7 +153,7 @@ pub(super) fn blame(
     })?;
     let (body, open) = (
         &c.scene.bodies[pose.body].name,
-        opening(placed.effect, open, ""),
+        opening(&placed.term, open, ""),
     );
     let name = names(model).nth(constraint)?;
     let mut sketch = c.scene.initial.sketch.iter();

@@ -1,10 +1,11 @@
 //! Initial guess of the assembly: given poses, sketched joints, and the bodies connected to them.
 
-use super::super::sketch::fit;
+use super::super::sketch::{fit, marker};
 use super::super::{Compiler, Role};
-use crate::math::plane::{add, rotate, sub};
-use crate::model::{BodyCoordinates, Model};
-use crate::scene::{BodyKind, JointModel, MotionKind, PointRef, SceneError, Sketched};
+use crate::body::{Frame, PointRef};
+use crate::math::plane::{rotate, sub};
+use crate::model::Model;
+use crate::scene::{MotionKind, SceneError, Sketched};
 use crate::system::State;
 
 /// The bodies that have been placed, and their coordinates.
@@ -18,9 +19,8 @@ struct Placed<'a> {
 
 impl Placed<'_> {
     fn position(&self, point: PointRef, state: &State) -> [f64; 2] {
-        let coordinates = &self.mechanism.bodies()[point.body].coordinates;
-        let marker = self.c.marker(coordinates, point);
-        self.mechanism.position(&marker, state)
+        self.mechanism
+            .position(&marker(self.mechanism, point), state)
     }
 
     /// Position of a point, if a placed body joined to it, the sketch or a drive gives it.
@@ -59,16 +59,14 @@ impl Placed<'_> {
     /// Position of a point that a joint connects to a placed body, or whose joint is sketched.
     fn met(&self, point: PointRef, state: &State) -> Option<[f64; 2]> {
         let mut joints = self.c.scene.joints.iter().enumerate();
-        let prismatic =
-            |j: usize| matches!(self.c.scene.joints[j].model, JointModel::Prismatic { .. });
         joints.find_map(|(j, joint)| {
             let partner = match () {
                 () if joint.bearing == point => joint.journal,
                 () if joint.journal == point => joint.bearing,
                 () => return None,
             };
-            let partner =
-                (self.done[partner.body] && !prismatic(j)).then(|| self.position(partner, state));
+            let partner = (self.done[partner.body] && self.c.joints[j].coincides())
+                .then(|| self.position(partner, state));
             partner.or_else(|| self.c.drawn(Sketched::Joint(j)))
         })
     }
@@ -85,84 +83,53 @@ impl Placed<'_> {
             )
             .map(|r| (at, r))
         };
-        match (
-            &self.mechanism.bodies()[b].coordinates,
-            &self.c.scene.bodies[b].kind,
-        ) {
-            (BodyCoordinates::Rigid { x }, BodyKind::Rigid(rigid)) => {
-                let points = rigid.points.iter().enumerate();
-                let pairs: Vec<_> = points.filter_map(|(i, p)| known(i, p.at)).collect();
+        let body = &self.c.bodies[b];
+        let points = body.points().iter().enumerate();
+        let pairs: Vec<_> = points.filter_map(|(i, p)| known(i, p.at)).collect();
+        let pose = match body.turns() {
+            true => {
                 let apart = pairs.iter().any(|p| p.0 != pairs[0].0);
-                if apart {
-                    state.q[*x..x + 3].copy_from_slice(&fit(&pairs));
-                    self.done[b] = true;
-                }
+                apart.then(|| fit(&pairs))
             }
-            (BodyCoordinates::PointMass { x }, _) => {
-                if let Some((_, at)) = known(0, [0.0; 2]) {
-                    state.q[*x..x + 2].copy_from_slice(&at);
-                    self.done[b] = true;
-                }
-            }
-            (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
-                let count = 2 + link.points.len();
-                let pairs: Vec<_> = (0..count)
-                    .filter_map(|i| known(i, [link.share(i) * link.length, 0.0]))
-                    .collect();
-                let apart = pairs.iter().any(|p| p.0 != pairs[0].0);
-                if apart {
-                    let pose = fit(&pairs);
-                    self.write_link(*ends, link.length, pose, state);
-                    self.done[b] = true;
-                }
-            }
-            _ => {}
+            false => pairs.first().map(|(_, [x, y])| [*x, *y, 0.0]),
+        };
+        if let Some(pose) = pose {
+            self.write(b, pose, state);
+            self.done[b] = true;
         }
     }
 
     /// Places a body with one known point at the angle that follows from its joints with placed bodies: from a weld, a locked
     /// guide or a drive, or from the direction of a slot towards its pin. False if there is no such joint.
     fn place_at_point(&mut self, b: usize, state: &mut State) -> bool {
-        let points: Vec<[f64; 2]> = match &self.c.scene.bodies[b].kind {
-            _ if self.done[b] => return false,
-            BodyKind::Rigid(rigid) => rigid.points.iter().map(|p| p.at).collect(),
-            BodyKind::Link(link) => {
-                let places = (0..2 + link.points.len()).map(|i| link.share(i) * link.length);
-                places.map(|x| [x, 0.0]).collect()
-            }
-            _ => return false,
-        };
+        let body = &self.c.bodies[b];
+        if self.done[b] || !body.turns() {
+            return false;
+        }
+        let points = body.points();
         let known = |point| self.known(PointRef { body: b, point }, state);
-        let mut known = points.iter().enumerate().map(|(i, p)| Some((p, known(i)?)));
+        let mut known = points
+            .iter()
+            .enumerate()
+            .map(|(i, p)| Some((p.at, known(i)?)));
         let Some((local, at)) = known.find_map(|known| known) else {
             return false;
         };
         let Some(angle) = self.suggested_angle(b, at, state) else {
             return false;
         };
-        let arm = rotate(angle.cos(), angle.sin(), *local);
+        let arm = rotate(angle.cos(), angle.sin(), local);
         let pose = [at[0] - arm[0], at[1] - arm[1], angle];
-        match (
-            &self.mechanism.bodies()[b].coordinates,
-            &self.c.scene.bodies[b].kind,
-        ) {
-            (BodyCoordinates::Rigid { x }, _) => state.q[*x..x + 3].copy_from_slice(&pose),
-            (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
-                self.write_link(*ends, link.length, pose, state);
-            }
-            _ => return false,
-        }
+        self.write(b, pose, state);
         self.done[b] = true;
         true
     }
 
     fn suggested_angle(&self, b: usize, at: [f64; 2], state: &State) -> Option<f64> {
-        let direction = |body: usize| match &self.mechanism.bodies()[body].coordinates {
-            BodyCoordinates::Rigid { x } => state.q[x + 2],
-            BodyCoordinates::RigidLink { ends: [i, j] } => {
-                (state.q[j + 1] - state.q[i + 1]).atan2(state.q[*j] - state.q[*i])
-            }
-            _ => 0.0,
+        let direction = |body: usize| {
+            let placed = &self.mechanism.bodies()[body].placed;
+            let frame = placed.kind.frame_at(&placed.x, &state.q, &state.v);
+            frame.map_or(0.0, |frame| frame.position[2])
         };
         let driven = |j: usize| {
             self.c.scene.motions.iter().find_map(|m| match &m.kind {
@@ -177,21 +144,16 @@ impl Placed<'_> {
             .enumerate()
             .find_map(|(j, joint)| {
                 let (first, second) = (joint.bearing.body, joint.journal.body);
-                let angle = match joint.model {
-                    JointModel::Weld { angle, .. } => Some(angle),
-                    JointModel::Prismatic { locked, .. } => locked,
-                    JointModel::Ideal | JointModel::Clearance(_) => driven(j),
-                };
-                match (angle, joint.model.clone()) {
+                let model = &self.c.joints[j];
+                let driven = || driven(j).filter(|_| model.is_revolute());
+                match (model.angle().or_else(driven), model.line()) {
                     (Some(angle), _) if second == b && self.done[first] => {
                         Some(direction(first) + angle)
                     }
                     (Some(angle), _) if first == b && self.done[second] => {
                         Some(direction(second) - angle)
                     }
-                    (None, JointModel::Prismatic { direction, .. })
-                        if first == b && self.done[second] =>
-                    {
+                    (None, Some(direction)) if first == b && self.done[second] => {
                         let to_pin = sub(self.position(joint.journal, state), at);
                         Some(to_pin[1].atan2(to_pin[0]) - direction)
                     }
@@ -200,14 +162,19 @@ impl Placed<'_> {
             })
     }
 
-    /// Sets those ends of a link that are unknown and not fixed by a given pose.
-    fn write_link(&self, ends: [usize; 2], length: f64, pose: [f64; 3], state: &mut State) {
-        let n = self.mechanism.shape().unknowns;
-        let along = [length * pose[2].cos(), length * pose[2].sin()];
-        let points = [[pose[0], pose[1]], add([pose[0], pose[1]], along)];
-        for (x, at) in ends.into_iter().zip(points) {
-            if x < n && !self.held[x] {
-                state.q[x..x + 2].copy_from_slice(&at);
+    /// Puts the frame of a body into those of its coordinates that are unknown and not fixed by a given pose.
+    fn write(&self, b: usize, position: [f64; 3], state: &mut State) {
+        let frame = Frame {
+            position,
+            velocity: [0.0; 3],
+        };
+        let placed = &self.mechanism.bodies()[b];
+        let values = placed.placed.kind.place(&frame);
+        for ((x, [value, _]), content) in placed.placed.x.iter().zip(values).zip(&placed.contents) {
+            for (i, value) in value.iter().enumerate().take(content.names().len()) {
+                if x + i < self.held.len() && !self.held[x + i] {
+                    state.q[x + i] = *value;
+                }
             }
         }
     }
@@ -215,14 +182,11 @@ impl Placed<'_> {
 
 /// The unknown coordinates of a body.
 pub(super) fn coordinates(mechanism: &Model, body: usize) -> Vec<usize> {
-    let all: Vec<usize> = match &mechanism.bodies()[body].coordinates {
-        BodyCoordinates::Rigid { x } => (*x..x + 3).collect(),
-        BodyCoordinates::PointMass { x } => (*x..x + 2).collect(),
-        BodyCoordinates::RigidLink { ends } => ends.iter().flat_map(|&x| [x, x + 1]).collect(),
-        _ => Vec::new(),
-    };
+    let body = &mechanism.bodies()[body];
+    let slots = body.placed.x.iter().zip(&body.contents);
+    let all = slots.flat_map(|(x, content)| *x..x + content.names().len());
     let n = mechanism.shape().unknowns;
-    all.into_iter().filter(|&i| i < n).collect()
+    all.filter(|&i| i < n).collect()
 }
 
 /// Places all bodies from the given states, the sketch and the joints; returns the coordinates of given poses.
@@ -239,20 +203,8 @@ pub(super) fn guess(
         held: vec![false; n],
     };
     for given in &c.scene.initial.bodies {
-        let body = &c.scene.bodies[given.body];
-        match (&mechanism.bodies()[given.body].coordinates, &body.kind) {
-            (BodyCoordinates::Rigid { x }, _) => {
-                state.q[*x..x + 3].copy_from_slice(&given.position);
-            }
-            (BodyCoordinates::PointMass { x }, _) => {
-                state.q[*x..x + 2].copy_from_slice(&given.position[..2]);
-            }
-            (BodyCoordinates::RigidLink { ends }, BodyKind::Link(link)) => {
-                let [x, y] = link.start(given)[0];
-                placed.write_link(*ends, link.length, [x, y, given.position[2]], state);
-            }
-            _ => {}
-        }
+        let frame = c.bodies[given.body].frame(given.position, given.velocity);
+        placed.write(given.body, frame.position, state);
         for i in coordinates(mechanism, given.body) {
             placed.held[i] = true;
         }

@@ -8,15 +8,15 @@ mod contradictions;
 mod guess;
 mod velocities;
 
+use super::sketch::marker;
 use super::{Compiler, Mode, build, known_roles, numbering};
-use crate::effect::Effect;
+use crate::body::PointRef;
 use crate::math::dense::Equations;
 use crate::math::plane::{norm, sub};
 use crate::model::Model;
-use crate::scene::{
-    BodyKind, Joint, JointModel, PointRef, Scene, SceneError, SketchPoint, Sketched,
-};
+use crate::scene::{Scene, SceneError, SketchPoint, Sketched};
 use crate::system::State;
+use crate::terms::ConstraintTerm;
 use contradictions::{blame, check_given};
 use guess::guess;
 use numbers::number;
@@ -45,11 +45,7 @@ pub(crate) struct Assembly {
 /// # Errors
 /// A body without a place, a mechanism that cannot close, velocities that contradict or repeat each other.
 pub(crate) fn assemble(scene: &Scene) -> Result<Assembly, SceneError> {
-    let c = Compiler {
-        scene,
-        mode: Mode::Ideal,
-        roles: known_roles(scene),
-    };
+    let c = Compiler::new(scene, Mode::Ideal, known_roles(scene));
     let numbering = numbering::number(&c, None)?;
     let mechanism = build::build(&c, numbering, None)?;
     let mut state = mechanism.blank_state();
@@ -139,11 +135,8 @@ fn check_turns(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneEr
 }
 
 /// The violation of a constraint in words, or that of its rate with `per` = "/s".
-pub(crate) fn opening(effect: Effect, value: f64, per: &str) -> String {
-    match effect {
-        Effect::Direction => numbers::si(value, &format!("rad{per}")),
-        _ => numbers::si(value, &format!("m{per}")),
-    }
+pub(crate) fn opening(term: &ConstraintTerm, value: f64, per: &str) -> String {
+    numbers::si(value, &format!("{}{per}", term.unit()))
 }
 
 /// The error of a mechanism that does not close. It names the body that is larger than all others together, if there is one and
@@ -156,8 +149,7 @@ fn cannot_close(
 ) -> SceneError {
     let sizes: Vec<f64> = (0..c.scene.bodies.len()).map(|b| size(c, b)).collect();
     let total: f64 = sizes.iter().sum();
-    let guides = |joint: &Joint| matches!(joint.model, JointModel::Prismatic { .. });
-    let pinned = !holds && !c.scene.joints.iter().any(guides);
+    let pinned = !holds && c.joints.iter().all(|joint| joint.coincides());
     if let Some(b) = sizes.iter().position(|s| pinned && *s > total - s) {
         let body = &c.scene.bodies[b];
         let message = format!(
@@ -175,7 +167,7 @@ fn cannot_close(
     let name = &model.names[model.shape().unknowns + model.constraints[constraint].row];
     let message = format!(
         "the mechanism cannot be assembled: {name} stays open by {}",
-        opening(model.constraints[constraint].effect, open, "")
+        opening(&model.constraints[constraint].term, open, "")
     );
     let error = c
         .scene
@@ -188,12 +180,10 @@ fn cannot_close(
 
 /// Largest distance between two points of a body that joints use.
 fn size(c: &Compiler, b: usize) -> f64 {
-    let points = match &c.scene.bodies[b].kind {
-        BodyKind::Link(link) => return link.length,
-        BodyKind::PointMass { .. } => return 0.0,
-        BodyKind::Ground { points } | BodyKind::Moving { points, .. } => points,
-        BodyKind::Rigid(rigid) => &rigid.points,
-    };
+    if let Some(length) = c.bodies[b].length() {
+        return length;
+    }
+    let points = c.bodies[b].points();
     let used = |i: usize| {
         let point = PointRef { body: b, point: i };
         let joints = c.scene.joints.iter();
@@ -220,9 +210,8 @@ fn names(model: &Model) -> impl Iterator<Item = &String> {
 }
 
 /// Position of a point of a body.
-fn position(c: &Compiler, model: &Model, state: &State, point: PointRef) -> [f64; 2] {
-    let marker = c.marker(&model.bodies()[point.body].coordinates, point);
-    model.position(&marker, state)
+fn position(model: &Model, state: &State, point: PointRef) -> [f64; 2] {
+    model.position(&marker(model, point), state)
 }
 
 /// True for the guide's point of a prismatic joint, which is not the position of the joint.
@@ -230,25 +219,23 @@ fn is_guide(c: &Compiler, drawn: &SketchPoint, point: PointRef) -> bool {
     let Sketched::Joint(j) = drawn.what else {
         return false;
     };
-    let joint = &c.scene.joints[j];
-    matches!(joint.model, JointModel::Prismatic { .. }) && joint.bearing == point
+    c.joints[j].line().is_some() && c.scene.joints[j].bearing == point
 }
 
 /// Largest permitted distance of a joint or point from its sketch \[m\].
 fn reach(c: &Compiler, drawn: &SketchPoint) -> f64 {
-    let size = |p: PointRef| match &c.scene.bodies[p.body].kind {
-        BodyKind::Link(link) => link.length,
-        BodyKind::Rigid(rigid) => {
-            let far = rigid
-                .points
-                .iter()
-                .map(|q| norm(sub(q.at, rigid.points[p.point].at)));
-            match far.fold(0.0, f64::max) {
+    let size = |p: PointRef| {
+        let body = &c.bodies[p.body];
+        let points = body.points();
+        let far = points.iter().map(|q| norm(sub(q.at, points[p.point].at)));
+        match (body.known(), body.length()) {
+            (Some(_), _) => f64::INFINITY,
+            (None, Some(length)) => length,
+            (None, None) => match far.fold(0.0, f64::max) {
                 0.0 => f64::INFINITY,
                 far => far,
-            }
+            },
         }
-        _ => f64::INFINITY,
     };
     let sizes = c.sketched_points(drawn).into_iter().map(size);
     SKETCH * sizes.fold(f64::INFINITY, f64::min)
@@ -258,7 +245,7 @@ fn reach(c: &Compiler, drawn: &SketchPoint) -> f64 {
 fn check_sketch(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneError> {
     for drawn in &c.scene.initial.sketch {
         for point in c.sketched_points(drawn) {
-            let at = position(c, model, state, point);
+            let at = position(model, state, point);
             if !is_guide(c, drawn, point) && norm(sub(at, drawn.at)) > reach(c, drawn) {
                 return Err(c.far_from_sketch(drawn, at));
             }

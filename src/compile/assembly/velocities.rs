@@ -3,8 +3,7 @@
 use super::super::{Compiler, Role};
 use super::{AGREEING, opening, row};
 use crate::math::dense::{Added, Equations};
-use crate::math::plane::{dot, perp, scale, sub};
-use crate::model::{BodyCoordinates, Model};
+use crate::model::Model;
 use crate::scene::{BodyState, SceneError};
 use crate::system::{State, System};
 use faer::Mat;
@@ -29,7 +28,7 @@ pub(super) fn velocities(
                 let name = &mechanism.names[n + placed.row + d];
                 let message = format!(
                     "the prescribed motions contradict each other at t = 0: the rate of {name} is off by {}",
-                    opening(placed.effect, off.abs(), "/s")
+                    opening(&placed.term, off.abs(), "/s")
                 );
                 return Err(c.scene.error(c.scene.initial.span, message, "this start"));
             }
@@ -98,17 +97,8 @@ fn velocity_row(
     component: usize,
 ) -> Option<(Vec<f64>, f64)> {
     let n = mechanism.shape().unknowns;
-    let entries: Vec<(usize, f64)> = match (&mechanism.bodies()[body].coordinates, component) {
-        (BodyCoordinates::Rigid { x }, _) => vec![(x + component, 1.0)],
-        (BodyCoordinates::PointMass { x }, 0 | 1) => vec![(x + component, 1.0)],
-        (BodyCoordinates::RigidLink { ends }, 0 | 1) => ends.map(|x| (x + component, 0.5)).to_vec(),
-        (BodyCoordinates::RigidLink { ends: [i, j] }, _) => {
-            let d = sub([state.q[*j], state.q[j + 1]], [state.q[*i], state.q[i + 1]]);
-            let b = scale(1.0 / dot(d, d), perp(d));
-            vec![(*i, -b[0]), (i + 1, -b[1]), (*j, b[0]), (j + 1, b[1])]
-        }
-        _ => return None,
-    };
+    let placed = &mechanism.bodies()[body].placed;
+    let entries = placed.kind.velocity(component, &placed.x, &state.q)?;
     let (mut row, mut known) = (vec![0.0; n], 0.0);
     for (i, value) in entries {
         if i < n {

@@ -5,9 +5,10 @@
 //! of the paper's runs e = 0 and n does not exist.
 
 use super::{Gap, Geometry, Touch};
+use crate::contact::At;
 use crate::force::{LocalMatrix, WIDTH};
 use crate::marker::Marker;
-use crate::math::plane::{Vec2, cross, dot, norm, perp, scale, sub};
+use crate::math::plane::{cross, dot, norm, perp, scale, sub};
 
 /// A journal in a bearing.
 #[derive(Debug)]
@@ -53,23 +54,8 @@ impl Geometry for CircleInCircle {
         }
     }
 
-    /// n . e_dot; |e_dot| for a journal that leaves the centre.
     #[inline]
-    fn rate(&self, gap: &Gap) -> f64 {
-        if gap.eccentricity > 0.0 {
-            dot(gap.e, gap.e_dot) / gap.eccentricity
-        } else {
-            norm(gap.e_dot)
-        }
-    }
-
-    #[inline]
-    fn along_normal(&self, gap: &Gap, force: f64) -> Vec2 {
-        scale(force / gap.eccentricity, gap.e)
-    }
-
-    #[inline]
-    fn push(&self, gap: &Gap, force: f64, f: &mut [f64; WIDTH]) {
+    fn push(&self, _: At, gap: &Gap, force: f64, f: &mut [f64; WIDTH]) {
         let push = self.along_normal(gap, force);
         let mut column = 0;
         for (marker, sign, arm) in [
@@ -86,7 +72,7 @@ impl Geometry for CircleInCircle {
         }
     }
 
-    fn touch(&self, v: &[f64], gap: &Gap) -> Touch {
+    fn touch(&self, at: At, gap: &Gap) -> Touch {
         let n = scale(1.0 / gap.eccentricity, gap.e);
         let t = perp(n);
         let (rate, slip) = (dot(gap.e_dot, n), dot(gap.e_dot, t));
@@ -119,8 +105,8 @@ impl Geometry for CircleInCircle {
                 touch.tangent[column + 2] = dot(t, turn);
                 // e_dot depends on theta through the direction of the arm
                 let bend = scale(-sign, arm);
-                touch.rate_q[column + 2] = v[x + 2] * dot(n, bend);
-                touch.slip_q[column + 2] = v[x + 2] * dot(t, bend);
+                touch.rate_q[column + 2] = at.v[x + 2] * dot(n, bend);
+                touch.slip_q[column + 2] = at.v[x + 2] * dot(t, bend);
                 touch.bends[side] = Some((column + 2, bend));
             }
             column += marker.width();
@@ -134,7 +120,15 @@ impl Geometry for CircleInCircle {
     }
 
     #[inline]
-    fn curve(&self, gap: &Gap, touch: &Touch, normal: f64, tangential: f64, k: &mut LocalMatrix) {
+    fn curve(
+        &self,
+        _: At,
+        gap: &Gap,
+        touch: &Touch,
+        normal: f64,
+        tangential: f64,
+        k: &mut LocalMatrix,
+    ) {
         let turning = [normal, tangential].map(|force| force / gap.eccentricity);
         let columns = self.columns();
         for r in 0..columns {

@@ -4,13 +4,14 @@ mod circle_in_circle;
 
 pub use circle_in_circle::CircleInCircle;
 
+use super::At;
 use crate::force::{LocalMatrix, WIDTH};
-use crate::math::plane::Vec2;
+use crate::math::plane::{Vec2, dot, norm, scale};
 
 /// Where the surfaces of a contact are.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Gap {
-    /// Eccentricity vector: second side minus first (eq. 19) \[m\].
+    /// Eccentricity vector along the normal: second side minus first (eq. 19) \[m\].
     pub e: Vec2,
     /// Its rate \[m/s\].
     pub e_dot: Vec2,
@@ -18,12 +19,12 @@ pub struct Gap {
     pub eccentricity: f64,
     /// Penetration delta (eq. 21) \[m\].
     pub delta: f64,
-    /// Arms of the two markers \[m\].
-    pub(super) arms: [Vec2; 2],
+    /// Arms of the two markers, for a geometry that needs them again \[m\].
+    pub arms: [Vec2; 2],
 }
 
 /// A touching contact: directions, rates, and the gradients of both in local coordinates.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Touch {
     /// Unit normal, out of the first side.
     pub n: Vec2,
@@ -39,8 +40,8 @@ pub struct Touch {
     pub rate_q: [f64; WIDTH],
     /// d(slip)/dq.
     pub slip_q: [f64; WIDTH],
-    /// For a marker on a body: local index of theta and d2(e)/d(theta)2.
-    pub(super) bends: [Option<(usize, Vec2)>; 2],
+    /// For a marker on a body, of a geometry that needs it again: local index of theta and d2(e)/d(theta)2.
+    pub bends: [Option<(usize, Vec2)>; 2],
 }
 
 /// The surfaces of a contact between two points. Nothing but [`Geometry::gap`] is evaluated while they are apart.
@@ -51,18 +52,40 @@ pub trait Geometry: std::fmt::Debug + Send + Sync {
     fn columns(&self) -> usize;
     /// Eccentricity and penetration.
     fn gap(&self, q: &[f64], v: &[f64]) -> Gap;
-    /// d(delta)/dt \[m/s\].
-    fn rate(&self, gap: &Gap) -> f64;
-    /// `force` along the normal \[N\].
-    fn along_normal(&self, gap: &Gap, force: f64) -> Vec2;
+    /// d(delta)/dt = n . e_dot; |e_dot| of sides that leave their centre \[m/s\].
+    #[inline]
+    fn rate(&self, gap: &Gap) -> f64 {
+        if gap.eccentricity > 0.0 {
+            dot(gap.e, gap.e_dot) / gap.eccentricity
+        } else {
+            norm(gap.e_dot)
+        }
+    }
+    /// `force` along the normal n = e/|e| \[N\].
+    #[inline]
+    fn along_normal(&self, gap: &Gap, force: f64) -> Vec2 {
+        scale(force / gap.eccentricity, gap.e)
+    }
     /// Adds `force` d(delta)/dq to `f`.
-    fn push(&self, gap: &Gap, force: f64, f: &mut [f64; WIDTH]);
+    fn push(&self, at: At, gap: &Gap, force: f64, f: &mut [f64; WIDTH]);
     /// Directions, rates and gradients of surfaces that touch.
-    fn touch(&self, v: &[f64], gap: &Gap) -> Touch;
+    fn touch(&self, at: At, gap: &Gap) -> Touch;
     /// Adds normal d2(delta)/dq2 + tangential d2(slip)/(dv dq) to `k`, without the rates.
-    fn curve(&self, gap: &Gap, touch: &Touch, normal: f64, tangential: f64, k: &mut LocalMatrix);
+    fn curve(
+        &self,
+        at: At,
+        gap: &Gap,
+        touch: &Touch,
+        normal: f64,
+        tangential: f64,
+        k: &mut LocalMatrix,
+    );
     /// The part of the slip with which the point of contact moves over the surfaces (eqs. 22, 23), and its derivative by delta.
-    fn share(&self, gap: &Gap) -> [f64; 2];
+    fn share(&self, _gap: &Gap) -> [f64; 2] {
+        [1.0, 0.0]
+    }
     /// Radii of the two surfaces \[m\]: what spins of the bodies add to the slip.
-    fn radii(&self) -> [f64; 2];
+    fn radii(&self) -> [f64; 2] {
+        [0.0; 2]
+    }
 }

@@ -5,8 +5,9 @@ use crate::check::{Agreement, Worst, largest};
 use crate::embedding::Embedding;
 use crate::reference::{At, Scene as Reference};
 use crate::trajectory::Plan;
+use looselink::interaction::{SlopeClamp, Weld};
 use looselink::model::Model;
-use looselink::scene::{Analysis, BodyKind, JointModel, PointRef, Scene, SlopeClamp};
+use looselink::scene::{Analysis, PointRef, Scene};
 use looselink::simulate::{Control, Observer, Progress, RunError, Simulation};
 use looselink::system::{State, System, Weights};
 use miette::{IntoDiagnostic, Result};
@@ -68,10 +69,10 @@ pub fn plans() -> Result<Vec<Plan>> {
 
 /// False if a weld holds the slope vector of its first side: the two programs write its rows in different frames.
 pub fn has_like_rows(scene: &Scene) -> bool {
-    let is_link = |p: PointRef| matches!(scene.bodies[p.body].kind, BodyKind::Link(_));
+    let is_link = |p: PointRef| scene.bodies[p.body].kind.link().is_some();
     !scene.joints.iter().any(|joint| {
-        let clamp = SlopeClamp::Vector;
-        let holds_vector = matches!(joint.model, JointModel::Weld { slope, .. } if slope == clamp);
+        let weld = joint.model.get::<Weld>();
+        let holds_vector = weld.is_some_and(|weld| weld.slope == SlopeClamp::Vector);
         holds_vector && is_link(joint.bearing) && !is_link(joint.journal)
     })
 }

@@ -3,12 +3,11 @@
 //! Taking an effect out changes the data of the scene and sets no flag: what is left is what a user would have written who
 //! never heard of the effect, and compiles to the same model.
 
+use looselink::body::FlexibleLink;
 use looselink::contact::normal::damped_power::HERTZ;
-use looselink::scene::{
-    BodyKind, Contact, ForceKind, JointModel, Link, LinkModel, MotionKind, PointRef, Scene,
-    SceneError, Sketched, Span,
-};
+use looselink::scene::{Contact, MotionKind, PointRef, Scene, SceneError, Sketched, Span};
 use serde::{Serialize, Serializer};
+use std::sync::Arc;
 
 /// An effect that can be added to the rigid ideal mechanism and removed from the full scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,16 +64,14 @@ impl Effect {
 
     /// True of a scene that has the effect in one of its links or joints at least.
     pub fn is_in(self, scene: &Scene) -> bool {
-        let a_link = |has: fn(&Link) -> bool| links(scene).any(|(_, link)| has(link));
+        let a_link = |has: fn(&FlexibleLink) -> bool| links(scene).any(|(_, link)| has(link));
         let a_contact = |has: fn(&Contact) -> bool| {
-            scene.joints.iter().any(|joint| match &joint.model {
-                JointModel::Clearance(contact) => has(contact),
-                _ => false,
-            })
+            let contacts = scene.joints.iter().filter_map(|joint| joint.contact());
+            contacts.into_iter().any(has)
         };
         match self {
-            Effect::Flexibility => a_link(|link| link.model != LinkModel::Rigid),
-            Effect::Elements => a_link(has_inner_nodes),
+            Effect::Flexibility => a_link(|_| true),
+            Effect::Elements => a_link(|link| link.elements > 1),
             Effect::StructuralDamping => a_link(|link| link.damping.is_some()),
             Effect::Clearance => a_contact(|_| true),
             Effect::ContactDamping => a_contact(|c| c.law.is_damped && c.restitution < 1.0),
@@ -95,31 +92,44 @@ impl Effect {
             _ => {}
         }
         for body in &mut scene.bodies {
-            let BodyKind::Link(link) = &mut body.kind else {
+            let Some(link) = body.kind.get::<FlexibleLink>() else {
                 continue;
             };
-            match (self, &mut link.model) {
-                (Effect::Flexibility, model) => {
-                    *model = LinkModel::Rigid;
-                    link.damping = None;
+            let mut link = link.clone();
+            body.kind = match self {
+                Effect::Flexibility => Arc::new(link.rigid_link()),
+                Effect::Elements => {
+                    link.elements = 1;
+                    link.nodes = vec![0, 1];
+                    Arc::new(link)
                 }
-                (Effect::Elements, LinkModel::Flexible { elements, .. }) => *elements = 1,
-                (Effect::StructuralDamping, _) => link.damping = None,
-                _ => {}
-            }
+                Effect::StructuralDamping => {
+                    link.damping = None;
+                    Arc::new(link)
+                }
+                _ => continue,
+            };
         }
         for joint in &mut scene.joints {
-            let JointModel::Clearance(contact) = &mut joint.model else {
+            let Some(contact) = joint.contact() else {
                 continue;
             };
-            match self {
-                Effect::Clearance => joint.model = JointModel::Ideal,
+            let mut contact = contact.clone();
+            let changed = match self {
+                Effect::Clearance => None,
                 Effect::ContactDamping => {
                     contact.law = &HERTZ;
                     contact.restitution = 1.0;
+                    Some(contact)
                 }
-                Effect::Friction => contact.friction = None,
-                _ => {}
+                Effect::Friction => {
+                    contact.friction = None;
+                    Some(contact)
+                }
+                _ => continue,
+            };
+            if let Some(model) = joint.model.with_contact(changed) {
+                joint.model = model;
             }
         }
         if self == Effect::Gravity {
@@ -141,16 +151,9 @@ pub fn effects(scene: &Scene) -> Vec<Effect> {
     all.filter(|effect| effect.is_in(scene)).collect()
 }
 
-fn links(scene: &Scene) -> impl Iterator<Item = (usize, &Link)> {
+fn links(scene: &Scene) -> impl Iterator<Item = (usize, &FlexibleLink)> {
     let bodies = scene.bodies.iter().enumerate();
-    bodies.filter_map(|(b, body)| match &body.kind {
-        BodyKind::Link(link) => Some((b, link)),
-        _ => None,
-    })
-}
-
-fn has_inner_nodes(link: &Link) -> bool {
-    matches!(link.model, LinkModel::Flexible { elements, .. } if elements > 1)
+    bodies.filter_map(|(b, body)| Some((b, body.kind.get()?)))
 }
 
 /// Takes the inner points from all links, unless one of them carries something.
@@ -161,15 +164,14 @@ fn drop_inner_points(scene: &mut Scene, why: &str) -> Result<(), SceneError> {
         if let Some(Fastening { name, span, point }) = user {
             let message = format!(
                 "{name} uses the inner node {}.{}, but {why}",
-                scene.bodies[b].name,
-                link.points[point.point - 2].name
+                scene.bodies[b].name, link.link.points[point.point].name
             );
             return Err(scene.error(span, message, "uses an inner node"));
         }
     }
     for body in &mut scene.bodies {
-        if let BodyKind::Link(link) = &mut body.kind {
-            link.points.clear();
+        if let Some(link) = body.kind.get::<FlexibleLink>() {
+            body.kind = Arc::new(link.without_inner_points());
         }
     }
     Ok(())
@@ -192,15 +194,7 @@ fn fastenings(scene: &Scene) -> Vec<Fastening> {
         }
     }
     for force in &scene.forces {
-        let points = match force.kind {
-            ForceKind::SpringDamper { from, to, .. } => vec![from, to],
-            ForceKind::TorsionSpring { .. } => vec![],
-            ForceKind::PointForce { point, .. } => vec![point],
-            ForceKind::Torque {
-                point, reaction, ..
-            } => std::iter::once(point).chain(reaction).collect(),
-        };
-        for point in points {
+        for point in force.kind.points() {
             add(format!("force {}", force.name), force.span, point);
         }
     }

@@ -5,7 +5,8 @@
 
 use crate::machine::Timing;
 use cpu_time::ThreadTime;
-use looselink::scene::{BodyKind, ChannelPattern, Scene};
+use looselink::body::Known;
+use looselink::scene::{ChannelPattern, Scene};
 use looselink::simulate::{Recording, Report, Simulation};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -71,10 +72,10 @@ impl Observed {
     /// # Errors
     /// There is no such body, or it does not move.
     pub fn choose(scene: &Scene, name: Option<&str>) -> Result<Observed, CannotObserve> {
-        let moves = |b: &usize| !matches!(scene.bodies[*b].kind, BodyKind::Ground { .. });
+        let moves = |b: &usize| !matches!(scene.bodies[*b].kind.known(), Some(Known::Fixed));
         let extended = |b: &usize| {
             let kind = &scene.bodies[*b].kind;
-            matches!(kind, BodyKind::Link(_) | BodyKind::Rigid(_))
+            kind.known().is_none() && kind.turns()
         };
         let moving: Vec<usize> = (0..scene.bodies.len()).filter(moves).collect();
         let driven = scene.drives.first().map(|drive| drive.body);

@@ -1,6 +1,6 @@
 //! What a study file says.
 
-use looselink::scene::{BodyKind, LinkModel, Scene, SceneError, read_file};
+use looselink::scene::{Scene, SceneError, read_file};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -242,10 +242,7 @@ impl Study {
         overrides.extend_from_slice(set);
         if let Some(elements) = elements {
             let scene = Scene::load(&self.scene, &overrides)?;
-            let links = scene.bodies.iter().filter(|body| match &body.kind {
-                BodyKind::Link(link) => matches!(link.model, LinkModel::Flexible { .. }),
-                _ => false,
-            });
+            let links = scene.bodies.iter().filter(|body| !body.kind.is_rigid());
             overrides.extend(links.map(|link| format!("bodies.{}.elements={elements}", link.name)));
         }
         overrides.extend([

@@ -1,8 +1,9 @@
 //! Links that bend, from chains to bars.
 
 use super::{Check, apart, column, gain, imbalance, largest, load, lost, order, run};
+use looselink::body::FlexibleLink;
 use looselink::math::quadrature::GAUSS5;
-use looselink::model::{BodyCoordinates, Model};
+use looselink::model::Model;
 use looselink::simulate::{Recording, Simulation};
 use looselink::system::State;
 
@@ -24,21 +25,13 @@ pub(super) struct Flight {
 
 /// Angular momentum about the origin of a link of unit mass a length \[m3/s\]: int r x r_dot dx, by quadrature.
 fn spin(model: &Model, at: &State) -> f64 {
-    let links = model
-        .bodies()
-        .iter()
-        .filter_map(|body| match &body.coordinates {
-            BodyCoordinates::FlexibleLink {
-                nodes,
-                slopes,
-                element_length,
-                ..
-            } => Some((nodes, slopes, *element_length)),
-            _ => None,
-        });
-    let of_link = |(nodes, slopes, l): (&Vec<usize>, &Vec<usize>, f64)| -> f64 {
-        let ends = nodes.windows(2).zip(slopes.windows(2));
-        let of_element = |(nodes, slopes): (&[usize], &[usize])| -> f64 {
+    let links = model.bodies().iter().filter_map(|body| {
+        let link = body.placed.kind.get::<FlexibleLink>()?;
+        Some((&body.placed.x, link.element_length()))
+    });
+    let of_link = |(x, l): (&Vec<usize>, f64)| -> f64 {
+        let of_element = |x: &[usize]| -> f64 {
+            let (nodes, slopes) = ([x[0], x[2]], [x[1], x[3]]);
             let part = |&(xi, weight): &(f64, f64)| {
                 let (x2, x3) = (xi * xi, xi * xi * xi);
                 let shapes = [1.0 - 3.0 * x2 + 2.0 * x3, 3.0 * x2 - 2.0 * x3];
@@ -52,7 +45,7 @@ fn spin(model: &Model, at: &State) -> f64 {
             };
             GAUSS5.iter().map(part).sum()
         };
-        ends.map(of_element).sum()
+        x.windows(4).step_by(2).map(of_element).sum()
     };
     links.map(of_link).sum()
 }

@@ -2,7 +2,8 @@
 
 use super::newton_law::{extent, point};
 use super::outcome::{Breach, Outcome, Run};
-use looselink::scene::{BodyKind, JointModel, LinkModel, Pace};
+use looselink::body::RigidLink;
+use looselink::scene::Pace;
 
 /// Roundings of a coordinate that add up in a constraint: those of the points, of a length, and of Newton's last solve.
 const ROUNDINGS: f64 = 200.0;
@@ -51,30 +52,27 @@ pub fn kept(run: &Run) -> Result<(), Breach> {
         for joint in &scene.joints {
             let [a, b] = [joint.bearing, joint.journal].map(|p| point(scene, rows, p, row));
             let way = [b[0] - a[0], b[1] - a[1]];
-            let open = match &joint.model {
-                JointModel::Ideal | JointModel::Weld { .. } => way[0].hypot(way[1]),
-                JointModel::Prismatic { direction, .. } => {
+            let open = match joint.model.line() {
+                None if joint.model.coincides() => way[0].hypot(way[1]),
+                Some(direction) if joint.contact().is_none() => {
                     let body = &scene.bodies[joint.bearing.body];
                     // a bent guide has its direction where the joint is
-                    if matches!(&body.kind, BodyKind::Link(l) if l.model != LinkModel::Rigid) {
+                    if !body.kind.is_rigid() {
                         continue;
                     }
                     let theta = rows.get(&format!("{}.theta", body.name), row) + direction;
                     (theta.cos() * way[1] - theta.sin() * way[0]).abs()
                 }
-                JointModel::Clearance(_) => continue,
+                _ => continue,
             };
             if open.is_nan() || open > allowed {
                 return breach(&joint.name, open, allowed, row);
             }
         }
         for (b, body) in scene.bodies.iter().enumerate() {
-            let BodyKind::Link(link) = &body.kind else {
+            let Some(RigidLink { link }) = body.kind.get() else {
                 continue;
             };
-            if link.model != LinkModel::Rigid {
-                continue;
-            }
             let end = |point| looselink::scene::PointRef { body: b, point };
             let [a, c] = [0, 1].map(|k| point(scene, rows, end(k), row));
             let open = ((c[0] - a[0]).hypot(c[1] - a[1]) - link.length).abs();

@@ -10,8 +10,10 @@
 
 use super::newton_law::{at_rest, extent, flies, inertia, mass, stiffness};
 use super::outcome::{Breach, Outcome, Rows, Run, run};
+use looselink::body::Known;
 use looselink::contact::Slip;
-use looselink::scene::{BodyKind, ForceKind, JointModel, Pace, Scene};
+use looselink::interaction::SpringDamperModel;
+use looselink::scene::{NamedBody, Pace, Scene};
 use std::time::Duration;
 
 /// Terms of the ledger are sums of a few dozen numbers each, which may cancel each other.
@@ -93,7 +95,7 @@ fn energy(scene: &Scene, rows: &Rows, lossy: bool) -> Defect {
         .fold(0.0, |m, (a, b)| b.max(-a).max(m));
     let length = extent(scene, rows, 0);
     let pace = length / scene.simulation.duration;
-    let masses: f64 = scene.bodies.iter().map(|b| mass(&b.kind)).sum();
+    let masses: f64 = scene.bodies.iter().map(|b| mass(&*b.kind)).sum();
     let noise =
         ROUNDING * largest + 1e-20 * (stiffness(scene, length) * length + masses * pace * pace);
     Defect {
@@ -106,18 +108,18 @@ fn energy(scene: &Scene, rows: &Rows, lossy: bool) -> Defect {
 /// Angular momentum about the origin, of bodies that do not bend and nothing turns from outside.
 fn spin(scene: &Scene, rows: &Rows) -> Option<Defect> {
     let still = scene.simulation.gravity.is_none_or(|g| g == [0.0; 2]);
-    let bodies = scene.bodies.iter().filter(|b| mass(&b.kind) > 0.0);
+    let bodies = scene.bodies.iter().filter(|b| mass(&*b.kind) > 0.0);
     let known: Option<Vec<_>> = bodies
-        .map(|b| inertia(&b.kind).map(|i| (&b.name, mass(&b.kind), i)))
+        .map(|b| inertia(&*b.kind).map(|i| (&b.name, mass(&*b.kind), i)))
         .collect();
     // as printed, friction acts on the centres, apart from each other, without the couples that would balance it; and a point
     // mass takes no couple
-    let is_point = |b: usize| matches!(scene.bodies[b].kind, BodyKind::PointMass { .. });
-    let uncoupled = scene.joints.iter().any(|j| match &j.model {
-        JointModel::Clearance(c) => c.friction.is_some_and(|f| {
+    let is_point = |b: usize| !scene.bodies[b].kind.turns();
+    let uncoupled = scene.joints.iter().any(|j| {
+        let friction = j.contact().and_then(|c| c.friction);
+        friction.is_some_and(|f| {
             f.slip == Slip::Paper || is_point(j.bearing.body) || is_point(j.journal.body)
-        }),
-        _ => false,
+        })
     });
     let known =
         known.filter(|_| still && !uncoupled && flies(scene) && scene.motions.is_empty())?;
@@ -239,12 +241,11 @@ pub fn closes(text: &str, first: &Run, guard: Option<Duration>) -> Result<(), Br
 fn linear(scene: &Scene, rows: &Rows) -> Result<(), Breach> {
     let one_step =
         ["bathe", "trapezoidal", "backward_euler"].contains(&scene.integrator.method.name());
-    let masses = scene
-        .bodies
-        .iter()
-        .all(|b| matches!(b.kind, BodyKind::Ground { .. } | BodyKind::PointMass { .. }));
+    let at_rest = |b: &NamedBody| matches!(b.kind.known(), Some(Known::Fixed));
+    let masses = scene.bodies.iter().all(|b| at_rest(b) || !b.kind.turns());
     let springs = scene.forces.iter().all(|f| {
-        matches!(f.kind, ForceKind::SpringDamper { rest_length, damping, .. } if rest_length == 0.0 && damping == 0.0)
+        let spring = f.kind.get::<SpringDamperModel>();
+        spring.is_some_and(|s| s.rest_length == 0.0 && s.damping == 0.0)
     });
     if !one_step
         || !masses

@@ -2,7 +2,11 @@
 //! of what flies freely. Rows are consistent at the acceleration level, whatever the scheme.
 
 use super::outcome::{Breach, Rows, Run};
-use looselink::scene::{BodyKind, ForceKind, JointModel, LinkModel, PointRef, Scene};
+use looselink::body::{Body, FlexibleLink, Known, RigidBody, RigidLink};
+use looselink::interaction::{
+    ForceModel, PointForceModel, SpringDamperModel, TorqueModel, TorsionSpringModel,
+};
+use looselink::scene::{PointRef, Scene};
 
 /// Error of a sum of forces over the largest force of the row: a linear solve of equations whose masses differ by up to six
 /// decades, without row exchanges as long as no pivot is weak.
@@ -11,45 +15,43 @@ const FORCES: f64 = 1e-8;
 const MOMENTUM: f64 = 1e-9;
 
 /// Mass of a body \[kg\].
-pub(super) fn mass(kind: &BodyKind) -> f64 {
-    match kind {
-        BodyKind::Ground { .. } | BodyKind::Moving { .. } => 0.0,
-        BodyKind::PointMass { mass } => *mass,
-        BodyKind::Link(link) => link.density * link.area * link.length,
-        BodyKind::Rigid(rigid) => rigid.mass,
-    }
+pub(super) fn mass(kind: &dyn Body) -> f64 {
+    kind.mass().unwrap_or(0.0)
 }
 
-/// Moment of inertia about the centre of mass of a body that does not bend \[kg m2\].
-pub(super) fn inertia(kind: &BodyKind) -> Option<f64> {
-    match kind {
-        BodyKind::Rigid(rigid) => Some(rigid.inertia),
-        BodyKind::PointMass { .. } => Some(0.0),
-        BodyKind::Link(link) => {
-            let stiff = link.model == LinkModel::Rigid;
-            stiff.then(|| mass(kind) * link.length.powi(2) / 12.0)
-        }
-        _ => None,
+/// Moment of inertia about the centre of mass \[kg m2\] of a body that does not bend.
+pub(super) fn inertia(kind: &dyn Body) -> Option<f64> {
+    if let Some(rigid) = kind.get::<RigidBody>() {
+        return Some(rigid.inertia);
+    }
+    match kind.get::<RigidLink>() {
+        Some(RigidLink { link }) => Some(mass(kind) * link.length.powi(2) / 12.0),
+        None => (!kind.turns()).then_some(0.0),
     }
 }
 
 /// Sum of the axial stiffnesses of flexible links, and of stiffness times `extent` \[m\] of springs \[N\]: their forces are
 /// rounded relative to it.
 pub(super) fn stiffness(scene: &Scene, extent: f64) -> f64 {
-    let of = |kind: &BodyKind| match kind {
-        BodyKind::Link(link) => match link.model {
-            LinkModel::Flexible { youngs_modulus, .. } => youngs_modulus * link.area,
-            LinkModel::Rigid => 0.0,
-        },
-        _ => 0.0,
+    let links = scene.bodies.iter().filter_map(|b| b.kind.get());
+    let links = links.map(|link: &FlexibleLink| link.youngs_modulus * link.link.area);
+    let spring = |kind: &dyn ForceModel| {
+        let straight = kind
+            .get::<SpringDamperModel>()
+            .map(|s| s.stiffness * extent);
+        let torsion = || {
+            kind.get::<TorsionSpringModel>()
+                .map(|s| s.stiffness / extent)
+        };
+        straight.or_else(torsion).unwrap_or(0.0)
     };
-    let spring = |kind: &ForceKind| match kind {
-        ForceKind::SpringDamper { stiffness, .. } => stiffness * extent,
-        ForceKind::TorsionSpring { stiffness, .. } => stiffness / extent,
-        _ => 0.0,
-    };
-    let links: f64 = scene.bodies.iter().map(|b| of(&b.kind)).sum();
-    links + scene.forces.iter().map(|f| spring(&f.kind)).sum::<f64>()
+    links.sum::<f64>() + scene.forces.iter().map(|f| spring(&*f.kind)).sum::<f64>()
+}
+
+/// Damping proportional to mass \[1/s\].
+fn mass_damping(kind: &dyn Body) -> f64 {
+    let damping = kind.get::<FlexibleLink>().and_then(|link| link.damping);
+    damping.map_or(0.0, |damping| damping.mass)
 }
 
 fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -59,13 +61,11 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 /// Position of a point in a row.
 pub(super) fn point(scene: &Scene, rows: &Rows, at: PointRef, row: usize) -> [f64; 2] {
     let body = &scene.bodies[at.body];
-    let name = match &body.kind {
-        BodyKind::Ground { points } => return points[at.point].at,
-        BodyKind::Moving { points, .. } => &points[at.point].name,
-        BodyKind::Rigid(rigid) => &rigid.points[at.point].name,
-        BodyKind::PointMass { .. } => "center",
-        BodyKind::Link(_) => ["start", "end"][at.point],
-    };
+    let own = &body.kind.points()[at.point];
+    if let Some(Known::Fixed) = body.kind.known() {
+        return own.at;
+    }
+    let name = &own.name;
     let of = |axis: &str| rows.get(&format!("points.{}.{name}.{axis}", body.name), row);
     [of("x"), of("y")]
 }
@@ -100,10 +100,10 @@ fn loads(scene: &Scene, rows: &Rows, row: usize, extent: f64) -> Loads {
     for joint in &scene.joints {
         let of = |q: &str| rows.get(&format!("{}.{q}", joint.name), row);
         let force = [of("fx"), of("fy")];
-        let at = match joint.model {
+        let at = match joint.model.line() {
             // the force of a guide acts where the slider is
-            JointModel::Prismatic { .. } => [point(scene, rows, joint.journal, row); 2],
-            _ => [joint.bearing, joint.journal].map(|p| point(scene, rows, p, row)),
+            Some(_) => [point(scene, rows, joint.journal, row); 2],
+            None => joint.points().map(|p| point(scene, rows, p, row)),
         };
         act(joint.journal.body, at[1], force);
         act(joint.bearing.body, at[0], force.map(|f| -f));
@@ -111,24 +111,24 @@ fn loads(scene: &Scene, rows: &Rows, row: usize, extent: f64) -> Loads {
     }
     for force in &scene.forces {
         let of = |q: &str| rows.get(&format!("{}.{q}", force.name), row);
-        match &force.kind {
-            ForceKind::SpringDamper { from, to, .. } => {
-                let [a, b] = [from, to].map(|p| point(scene, rows, *p, row));
-                let way = [b[0] - a[0], b[1] - a[1]];
-                let pull = of("force") / way[0].hypot(way[1]).max(f64::MIN_POSITIVE);
-                act(from.body, a, way.map(|w| pull * w));
-                act(to.body, b, way.map(|w| -pull * w));
-            }
-            ForceKind::PointForce { point: p, .. } => {
-                act(p.body, point(scene, rows, *p, row), [of("fx"), of("fy")]);
-            }
-            ForceKind::TorsionSpring { joint, .. } => {
-                let joint = &scene.joints[*joint];
-                couples.push((joint.journal.body, joint.bearing.body, of("torque")));
-            }
-            ForceKind::Torque { point, .. } => {
-                couples.push((point.body, 0, of("torque")));
-            }
+        if let [from, to] = force.kind.points()[..]
+            && force.kind.get::<TorqueModel>().is_none()
+        {
+            let [a, b] = [from, to].map(|p| point(scene, rows, p, row));
+            let way = [b[0] - a[0], b[1] - a[1]];
+            let pull = of("force") / way[0].hypot(way[1]).max(f64::MIN_POSITIVE);
+            act(from.body, a, way.map(|w| pull * w));
+            act(to.body, b, way.map(|w| -pull * w));
+        }
+        if let Some(PointForceModel { point: p, .. }) = force.kind.get() {
+            act(p.body, point(scene, rows, *p, row), [of("fx"), of("fy")]);
+        }
+        if let Some(TorsionSpringModel { joint, .. }) = force.kind.get() {
+            let joint = &scene.joints[*joint];
+            couples.push((joint.journal.body, joint.bearing.body, of("torque")));
+        }
+        if let Some(TorqueModel { point, .. }) = force.kind.get() {
+            couples.push((point.body, 0, of("torque")));
         }
     }
     for (on, by, couple) in couples {
@@ -149,7 +149,7 @@ pub fn forces(run: &Run) -> Result<(), Breach> {
     let has_couple = |b: usize| {
         scene.joints.iter().any(|j| {
             (j.bearing.body == b || j.journal.body == b)
-                && matches!(&j.model, JointModel::Clearance(c) if c.friction.is_some())
+                && j.contact().is_some_and(|c| c.friction.is_some())
         })
     };
     let still = at_rest(scene, rows) / scene.simulation.duration;
@@ -160,28 +160,22 @@ pub fn forces(run: &Run) -> Result<(), Breach> {
         let mut size = loads.largest.max(rounding).max(still);
         let mut parts = Vec::new();
         for (b, body) in scene.bodies.iter().enumerate() {
-            let m = mass(&body.kind);
+            let m = mass(&*body.kind);
             let of = |q: &str| rows.get(&format!("{}.{q}", body.name), row);
-            let damped = match &body.kind {
-                BodyKind::Link(link) => link.damping.map_or(0.0, |d| d.mass),
-                _ => 0.0,
-            };
+            let damped = mass_damping(&*body.kind);
             let (a, v) = ([of("ax"), of("ay")], [of("vx"), of("vy")]);
             let rest = [0, 1].map(|d| {
                 let asked = m * (a[d] - gravity[d] + damped * v[d]);
                 size = size.max(m * a[d].abs()).max(m * gravity[d].abs());
                 loads.force[b][d] - asked
             });
-            let euler = inertia(&body.kind).filter(|_| !has_couple(b) && b > 0);
+            let euler = inertia(&*body.kind).filter(|_| !has_couple(b) && b > 0);
             let moment = euler.map_or(0.0, |i| loads.moment[b] - i * of("alpha"));
             parts.push((b, rest[0].hypot(rest[1]), moment));
         }
         for (b, rest, moment) in parts {
             // what carries the ground and moving bodies is no channel
-            if matches!(
-                scene.bodies[b].kind,
-                BodyKind::Ground { .. } | BodyKind::Moving { .. }
-            ) {
+            if scene.bodies[b].kind.known().is_some() {
                 continue;
             }
             let worst = rest.max(moment.abs() / extent);
@@ -205,14 +199,7 @@ pub(super) fn extent(scene: &Scene, rows: &Rows, row: usize) -> f64 {
     let mut extent = f64::MIN_POSITIVE;
     for (index, body) in scene.bodies.iter().enumerate() {
         extent = extent.max(of(&body.name, "x")).max(of(&body.name, "y"));
-        let count = match &body.kind {
-            BodyKind::Ground { points } => points.len(),
-            BodyKind::Moving { points, .. } => points.len(),
-            BodyKind::Rigid(rigid) => rigid.points.len(),
-            BodyKind::PointMass { .. } => 1,
-            BodyKind::Link(_) => 2,
-        };
-        for k in 0..count {
+        for k in 0..body.kind.points().len() {
             let at = PointRef {
                 body: index,
                 point: k,
@@ -227,26 +214,23 @@ pub(super) fn extent(scene: &Scene, rows: &Rows, row: usize) -> f64 {
 /// The momentum \[kg m/s\] of everything moving by 1e-6 of the extent in the duration: what changes by less is at rest but
 /// for rounding.
 pub(super) fn at_rest(scene: &Scene, rows: &Rows) -> f64 {
-    let masses: f64 = scene.bodies.iter().map(|b| mass(&b.kind)).sum();
+    let masses: f64 = scene.bodies.iter().map(|b| mass(&*b.kind)).sum();
     1e-6 * masses * extent(scene, rows, 0) / scene.simulation.duration
 }
 
 /// True where nothing but weight acts from outside.
 pub(super) fn flies(scene: &Scene) -> bool {
-    let grounded = |b: usize| mass(&scene.bodies[b].kind) == 0.0;
+    let grounded = |b: usize| mass(&*scene.bodies[b].kind) == 0.0;
     let joined = scene
         .joints
         .iter()
         .any(|j| grounded(j.bearing.body) || grounded(j.journal.body));
-    let pulled = scene.forces.iter().any(|f| match &f.kind {
-        ForceKind::SpringDamper { from, to, .. } => grounded(from.body) || grounded(to.body),
-        ForceKind::TorsionSpring { .. } => false,
-        ForceKind::PointForce { .. } | ForceKind::Torque { .. } => true,
+    let pulled = scene.forces.iter().any(|f| {
+        let outside = f.kind.get::<PointForceModel>().is_some();
+        let turned = f.kind.get::<TorqueModel>().is_some();
+        outside || turned || f.kind.points().iter().any(|p| grounded(p.body))
     });
-    let damped = scene.bodies.iter().any(|b| match &b.kind {
-        BodyKind::Link(link) => link.damping.is_some_and(|d| d.mass > 0.0),
-        _ => false,
-    });
+    let damped = scene.bodies.iter().any(|b| mass_damping(&*b.kind) > 0.0);
     !(joined || pulled || damped)
 }
 
@@ -263,7 +247,7 @@ pub fn momentum(run: &Run) -> Result<(), Breach> {
         let (mut sum, mut size) = ([0.0; 2], 0.0);
         let t = rows.get("t", row);
         for body in &scene.bodies {
-            let m = mass(&body.kind);
+            let m = mass(&*body.kind);
             for (d, q) in ["vx", "vy"].iter().enumerate() {
                 let own = m * rows.get(&format!("{}.{q}", body.name), row);
                 sum[d] += own - m * gravity[d] * t;

@@ -1,0 +1,187 @@
+//! `type = "link"`: a slender uniform link that is straight when undeformed.
+
+use super::{BodyKind, Damping, FlexibleLink, Point, RigidLink};
+use crate::document::{Fields, Key, SceneError, Takes, named};
+use std::sync::Arc;
+
+/// More elements in one link than any convergence study needs.
+const MOST_ELEMENTS: i64 = 10_000;
+
+pub(super) static KIND: BodyKind = BodyKind {
+    name: "link",
+    keys: &[
+        Key::word("model", &["rigid", "flexible"], "how the link deforms; a flexible one consists of planar cubic ANCF elements"),
+        Key::positive("length", "m", "the length of the link"),
+        Key::name_in("section", "sections", "the name of a section"),
+        Key::name_in("material", "materials", "the name of a material; a flexible link needs its `youngs_modulus`"),
+        Key::new(
+            "elements",
+            Takes::Whole(1, MOST_ELEMENTS),
+            "the number of equal elements of a flexible link, 1 to 10000; a rigid link ignores it",
+        )
+        .or("required if flexible"),
+        Key::new(
+            "points",
+            Takes::Table,
+            "of a flexible link: named points by their distance from `start`, each at a node between elements [m]",
+        )
+        .or("none"),
+        Key::non_negative(
+            "kelvin_voigt",
+            "s",
+            "of a flexible link: the retardation time tau; the stress is E tau times the strain rate",
+        )
+        .or("0"),
+        Key::new(
+            "rayleigh",
+            Takes::Table,
+            "of a flexible link: Rayleigh damping",
+        )
+        .or("none"),
+    ],
+    read: |table, known| {
+        let flexible = table.word("model")? == 1;
+        let length = table.number("length")?;
+        let section = known.section(table, "section")?;
+        let material = known.material(table, "material")?;
+        let elements = elements(table, flexible)?;
+        let modulus = flexible.then(|| known.youngs_modulus(table, "material"));
+        let modulus = modulus.transpose()?;
+        let inner = inner_points(table, length, elements, flexible)?;
+        let damping = damping(table, flexible)?;
+        let shares: Vec<f64> = [0.0, 1.0]
+            .into_iter()
+            .chain(inner.iter().map(|(_, node)| *node as f64 / elements as f64))
+            .collect();
+        let names = ["start", "end"].map(str::to_owned).into_iter();
+        let names = names.chain(inner.iter().map(|(name, _)| name.clone()));
+        let points = names.zip(&shares);
+        let link = Link {
+            length,
+            area: section.area,
+            second_moment: section.second_moment,
+            density: material.density,
+            points: points
+                .map(|(name, share)| Point::new(&name, [share * length, 0.0]))
+                .collect(),
+            shares,
+        };
+        Ok(match modulus {
+            None => Arc::new(RigidLink { link }),
+            Some(youngs_modulus) => Arc::new(FlexibleLink {
+                nodes: [0, elements]
+                    .into_iter()
+                    .chain(inner.iter().map(|p| p.1))
+                    .collect(),
+                link,
+                elements,
+                youngs_modulus,
+                damping,
+            }),
+        })
+    },
+};
+
+/// What rigid and flexible links have in common.
+#[derive(Debug, Clone)]
+pub struct Link {
+    /// Length l \[m\].
+    pub length: f64,
+    /// Cross-section A \[m2\].
+    pub area: f64,
+    /// Second moment of area I about the axis normal to the plane \[m4\].
+    pub second_moment: f64,
+    /// Density \[kg/m3\].
+    pub density: f64,
+    /// `start`, `end`, and points at nodes between them.
+    pub points: Vec<Point>,
+    /// Where the points are, as shares of the length.
+    pub shares: Vec<f64>,
+}
+
+impl Link {
+    /// Mass \[kg\].
+    pub fn mass(&self) -> f64 {
+        self.density * self.area * self.length
+    }
+}
+
+fn elements(table: &Fields, flexible: bool) -> Result<usize, SceneError> {
+    let field = match flexible {
+        true => Some(table.field("elements")?),
+        false => table.optional("elements"),
+    };
+    let Some(field) = field else {
+        return Ok(1);
+    };
+    match field.integer()? {
+        n @ 1..=MOST_ELEMENTS => Ok(n as usize),
+        _ => Err(field.must(&format!("lie between 1 and {MOST_ELEMENTS}"))),
+    }
+}
+
+/// Names and nodes of the inner points of a flexible link.
+fn inner_points(
+    table: &Fields,
+    length: f64,
+    elements: usize,
+    flexible: bool,
+) -> Result<Vec<(String, usize)>, SceneError> {
+    let points = table.optional("points");
+    if let Some(field) = points.as_ref().filter(|_| !flexible) {
+        let message = format!(
+            "`{}`: a rigid link has only the points `start` and `end`",
+            field.path
+        );
+        let error = field.key_fault(message, "not on a rigid link");
+        return Err(error.with_help("a body of type \"rigid_body\" has points anywhere"));
+    }
+    let points = named(points, |field| {
+        if ["start", "end"].contains(&field.name.as_str()) {
+            let message = format!("`{}` is already the name of an end of the link", field.name);
+            return Err(field.key_fault(message, "taken"));
+        }
+        let place = field.number()? / length * elements as f64;
+        let node = place.round();
+        if !(node > 0.0 && node < elements as f64 && (place - node).abs() <= 1e-9 * node) {
+            let requirement = format!(
+                "lie at a node between the ends: a multiple of {} m, less than {} m",
+                numbers::exact(length / elements as f64),
+                numbers::exact(length)
+            );
+            return Err(field.must(&requirement));
+        }
+        Ok(node as usize)
+    })?;
+    Ok(points.into_iter().collect())
+}
+
+/// The keys of Rayleigh damping.
+pub static RAYLEIGH: [Key; 2] = [
+    Key::non_negative("mass", "1/s", "the factor of the mass matrix"),
+    Key::non_negative(
+        "stiffness",
+        "s",
+        "the factor of the stiffness, which acts on strain rates as `kelvin_voigt` does",
+    ),
+];
+
+/// `kelvin_voigt` and `rayleigh = { mass, stiffness }`; none where all of them are zero.
+fn damping(table: &Fields, flexible: bool) -> Result<Option<Damping>, SceneError> {
+    let fields = ["kelvin_voigt", "rayleigh"].map(|key| table.optional(key));
+    if let Some(field) = fields.iter().flatten().next().filter(|_| !flexible) {
+        let message = format!("`{}`: a rigid link has no structural damping", field.path);
+        return Err(field.key_fault(message, "not on a rigid link"));
+    }
+    let mut damping = Damping {
+        strain: table.optional_number("kelvin_voigt")?.unwrap_or(0.0),
+        mass: 0.0,
+    };
+    if let [_, Some(rayleigh)] = fields {
+        let mut table = rayleigh.fields()?;
+        table.declare(&[], &RAYLEIGH)?;
+        damping.mass = table.number("mass")?;
+        damping.strain += table.number("stiffness")?;
+    }
+    Ok((damping.strain > 0.0 || damping.mass > 0.0).then_some(damping))
+}

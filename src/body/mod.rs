@@ -1,0 +1,231 @@
+//! Bodies, one kind a file: coordinates, masses, elastic elements, points and directions as functions of the coordinates.
+
+mod flexible_link;
+mod ground;
+mod link;
+mod materials;
+mod moving;
+mod point_mass;
+mod points;
+pub(crate) mod rigid_body;
+mod rigid_link;
+
+pub use flexible_link::{Damping, FlexibleLink};
+pub use ground::Ground;
+pub use link::{Link, RAYLEIGH};
+pub use materials::{MATERIAL, Material, Materials, SECTION, Section};
+pub use moving::Moving;
+pub use point_mass::PointMass;
+pub use points::{POLAR, Point};
+pub use rigid_body::{PLATES, RigidBody};
+pub use rigid_link::RigidLink;
+
+use crate::document::{Fields, Kind, SceneError};
+use crate::marker::{Marker, Spin};
+use crate::math::plane::{add, perp, scale};
+use crate::motion::Path;
+use crate::terms::{Owner, Terms};
+use std::any::Any;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// The kinds that a scene can name.
+pub static KINDS: [&BodyKind; 5] = [
+    &ground::KIND,
+    &link::KIND,
+    &rigid_body::KIND,
+    &point_mass::KIND,
+    &moving::KIND,
+];
+
+/// A kind of body.
+pub type BodyKind = Kind<fn(&Fields, &Materials) -> Result<Arc<dyn Body>, SceneError>>;
+
+/// A point of a body: indices into the bodies of a scene and into the points of that body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PointRef {
+    /// Index of the body.
+    pub body: usize,
+    /// Index of the point.
+    pub point: usize,
+}
+
+/// What the motion of a body is known to be.
+#[derive(Debug, Clone, Copy)]
+pub enum Known<'a> {
+    /// It does not move.
+    Fixed,
+    /// It follows a path.
+    Path(&'a Arc<dyn Path>),
+}
+
+/// A group of coordinates of a body.
+#[derive(Debug, Clone)]
+pub struct Slot {
+    /// What follows the name of the body in the names of the coordinates, such as `.end`; empty for the pose.
+    pub label: String,
+    /// What it is.
+    pub content: Content,
+    /// The point whose position it is, if joints can share it.
+    pub point: Option<usize>,
+}
+
+/// What a slot holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Content {
+    /// x, y of a point.
+    Position,
+    /// x, y of a slope.
+    Slope,
+    /// x, y, theta.
+    Pose,
+}
+
+impl Content {
+    /// Names of the coordinates.
+    pub fn names(self) -> &'static [&'static str] {
+        match self {
+            Content::Position | Content::Slope => &["x", "y"],
+            Content::Pose => &["x", "y", "theta"],
+        }
+    }
+}
+
+impl Slot {
+    /// The position of a point, which joints can share.
+    pub fn node(name: &str, point: usize) -> Slot {
+        Slot {
+            label: format!(".{name}"),
+            content: Content::Position,
+            point: Some(point),
+        }
+    }
+
+    /// Coordinates of the body alone.
+    pub fn own(label: String, content: Content) -> Slot {
+        Slot {
+            label,
+            content,
+            point: None,
+        }
+    }
+}
+
+/// Positions, velocities and accelerations of all coordinates.
+pub type Levels<'a> = [&'a [f64]; 3];
+
+/// Position, velocity and acceleration of a body: centre of mass, and angle (of a link: of its chord).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Pose {
+    /// x, y \[m\], theta \[rad\].
+    pub position: [f64; 3],
+    /// vx, vy, omega.
+    pub velocity: [f64; 3],
+    /// ax, ay, alpha.
+    pub acceleration: [f64; 3],
+}
+
+/// Position and velocity of the frame in which the points of a body are given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// x, y \[m\], theta \[rad\].
+    pub position: [f64; 3],
+    /// vx, vy \[m/s\], omega \[rad/s\].
+    pub velocity: [f64; 3],
+}
+
+/// A body. Its coordinates come in slots; `x` is the index of the first coordinate of each.
+pub trait Body: Any + Debug + Send + Sync {
+    /// Its points, in its frame.
+    fn points(&self) -> &[Point];
+    /// Its coordinates.
+    fn slots(&self) -> Vec<Slot>;
+    /// What its motion is known to be.
+    fn known(&self) -> Option<Known<'_>> {
+        None
+    }
+    /// Its mass \[kg\], if it has one.
+    fn mass(&self) -> Option<f64> {
+        None
+    }
+    /// Dimensions of a slender body between two ends, which are its points 0 and 1.
+    fn link(&self) -> Option<&Link> {
+        None
+    }
+    /// True of a body that does not deform.
+    fn is_rigid(&self) -> bool {
+        true
+    }
+    /// False of a point, which has no direction.
+    fn turns(&self) -> bool {
+        true
+    }
+    /// The largest dimension that its mass gives it \[m\].
+    fn size(&self) -> f64 {
+        0.0
+    }
+    /// A point as a function of the coordinates.
+    fn marker(&self, point: usize, x: &[usize]) -> Marker;
+    /// The direction of the material at a point.
+    fn spin(&self, point: usize, x: &[usize]) -> Spin;
+    /// Magnitude of its undeformed direction.
+    fn direction_size(&self) -> f64 {
+        1.0
+    }
+    /// The slot on which forces at a point act.
+    fn slot_of(&self, _point: usize) -> usize {
+        0
+    }
+    /// Distance by which a unit change of the last coordinate of a slot, an angle or slope, moves a point of the body at most \[m\].
+    fn lever(&self, _slot: usize) -> f64 {
+        1.0
+    }
+    /// Adds its masses, elements, constraints and damping.
+    fn terms(&self, x: &[usize], owner: Owner, terms: &mut Terms);
+    /// Pose of its centre of mass; angles of links in (-pi, pi].
+    fn pose(&self, x: &[usize], levels: Levels) -> Pose;
+    /// The frame of its points, undeformed, where its centre of mass has this position and velocity.
+    fn frame(&self, position: [f64; 3], velocity: [f64; 3]) -> Frame {
+        Frame { position, velocity }
+    }
+    /// The frame of its points in a state of the rigid mechanism.
+    fn frame_at(&self, x: &[usize], q: &[f64], v: &[f64]) -> Option<Frame>;
+    /// The values of all slots of the undeformed body in a frame, and their rates.
+    fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]>;
+    /// A velocity of the body (0, 1: of its centre of mass, 2: angular) as a sum of velocities of coordinates times factors.
+    fn velocity(&self, component: usize, x: &[usize], q: &[f64]) -> Option<Vec<(usize, f64)>>;
+    /// The body in the ideal mechanism, where it does not deform; none for a body that is the same there.
+    fn rigid(&self) -> Option<Arc<dyn Body>> {
+        None
+    }
+    /// The axial strain of largest magnitude of a body that deforms, sampled at eleven points of every element.
+    fn strain(&self, _x: &[usize], _q: &[f64]) -> Option<f64> {
+        None
+    }
+    /// The slot of the slope at a point, of a body that has slopes.
+    fn slope_slot(&self, _point: usize) -> Option<usize> {
+        None
+    }
+}
+
+impl dyn Body {
+    /// The body as one of this kind, if it is one.
+    pub fn get<T: Body>(&self) -> Option<&T> {
+        (self as &dyn Any).downcast_ref()
+    }
+
+    /// Length \[m\] of a body between two ends.
+    pub fn length(&self) -> Option<f64> {
+        self.link().map(|link| link.length)
+    }
+}
+
+/// Position and velocity of the point at this distance along the x axis of a frame.
+fn carried(frame: &Frame, along: f64) -> [[f64; 3]; 2] {
+    let ([x, y, theta], [vx, vy, omega]) = (frame.position, frame.velocity);
+    let direction = [theta.cos(), theta.sin()];
+    let turning = scale(omega, perp(direction));
+    let [px, py] = add([x, y], scale(along, direction));
+    let [ux, uy] = add([vx, vy], scale(along, turning));
+    [[px, py, 0.0], [ux, uy, 0.0]]
+}

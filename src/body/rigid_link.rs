@@ -1,0 +1,145 @@
+//! A rigid link in natural coordinates (eqs. 1-5): the positions of its two ends, at a constant distance.
+
+use super::{Body, Frame, Levels, Link, Point, Pose, Slot, carried};
+use crate::constraint::Length;
+use crate::link::natural_rigid;
+use crate::marker::{Marker, Spin};
+use crate::math::plane::{Vec2, add, cross, dot, perp, scale, sub};
+use crate::terms::{ConstraintTerm, Inertia, Owner, Terms};
+
+/// A link that does not deform.
+#[derive(Debug, Clone)]
+pub struct RigidLink {
+    /// Dimensions and points.
+    pub link: Link,
+}
+
+/// Two entries of an array.
+#[inline]
+fn pair(x: &[f64], i: usize) -> Vec2 {
+    [x[i], x[i + 1]]
+}
+
+impl Body for RigidLink {
+    fn points(&self) -> &[Point] {
+        &self.link.points
+    }
+
+    fn slots(&self) -> Vec<Slot> {
+        vec![Slot::node("start", 0), Slot::node("end", 1)]
+    }
+
+    fn mass(&self) -> Option<f64> {
+        Some(self.link.mass())
+    }
+
+    fn link(&self) -> Option<&Link> {
+        Some(&self.link)
+    }
+
+    fn size(&self) -> f64 {
+        self.link.length
+    }
+
+    fn marker(&self, point: usize, x: &[usize]) -> Marker {
+        match point {
+            0 | 1 => Marker::Node { x: x[point] },
+            inner => Marker::OnChord {
+                from: x[0],
+                to: x[1],
+                share: self.link.shares[inner],
+            },
+        }
+    }
+
+    fn spin(&self, _: usize, x: &[usize]) -> Spin {
+        Spin::Chord {
+            from: x[0],
+            to: x[1],
+        }
+    }
+
+    fn direction_size(&self) -> f64 {
+        self.link.length
+    }
+
+    fn slot_of(&self, point: usize) -> usize {
+        point
+    }
+
+    fn terms(&self, x: &[usize], owner: Owner, terms: &mut Terms) {
+        let [i, j] = [x[0], x[1]];
+        let mass = natural_rigid::mass(self.link.mass());
+        let inertia = Inertia::planar(mass, [i, j], [true; 2], terms.gravity);
+        terms.inertia.push(inertia);
+        let length = Length {
+            i,
+            j,
+            length: self.link.length,
+        };
+        let name = &format!("length of {}", owner.name);
+        let term = ConstraintTerm::Length(length);
+        terms.constrain(term, Owner { name, ..owner }, &[""]);
+    }
+
+    fn pose(&self, x: &[usize], levels: Levels) -> Pose {
+        let [i, j] = [x[0], x[1]];
+        pose(
+            levels.map(|l| scale(0.5, add(pair(l, i), pair(l, j)))),
+            levels.map(|l| sub(pair(l, j), pair(l, i))),
+        )
+    }
+
+    fn frame(&self, position: [f64; 3], velocity: [f64; 3]) -> Frame {
+        frame(self.link.length, position, velocity)
+    }
+
+    fn frame_at(&self, x: &[usize], q: &[f64], v: &[f64]) -> Option<Frame> {
+        let (from, from_rate) = (pair(q, x[0]), pair(v, x[0]));
+        let (d, d_dot) = (sub(pair(q, x[1]), from), sub(pair(v, x[1]), from_rate));
+        let omega = cross(d, d_dot) / dot(d, d);
+        Some(Frame {
+            position: [from[0], from[1], d[1].atan2(d[0])],
+            velocity: [from_rate[0], from_rate[1], omega],
+        })
+    }
+
+    fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]> {
+        vec![carried(frame, 0.0), carried(frame, self.link.length)]
+    }
+
+    fn velocity(&self, component: usize, x: &[usize], q: &[f64]) -> Option<Vec<(usize, f64)>> {
+        let [i, j] = [x[0], x[1]];
+        if component < 2 {
+            return Some(vec![(i + component, 0.5), (j + component, 0.5)]);
+        }
+        let d = sub(pair(q, j), pair(q, i));
+        let b = scale(1.0 / dot(d, d), perp(d));
+        Some(vec![(i, -b[0]), (i + 1, -b[1]), (j, b[0]), (j + 1, b[1])])
+    }
+}
+
+/// The frame at the start of a link, from its centre of mass.
+pub(super) fn frame(length: f64, position: [f64; 3], velocity: [f64; 3]) -> Frame {
+    let ([x, y, theta], [vx, vy, omega]) = (position, velocity);
+    let half = scale(0.5 * length, [theta.cos(), theta.sin()]);
+    let start = sub([x, y], half);
+    let rate = sub([vx, vy], scale(omega, perp(half)));
+    Frame {
+        position: [start[0], start[1], theta],
+        velocity: [rate[0], rate[1], omega],
+    }
+}
+
+/// Pose of a link from its centre and its chord, each as (position, velocity, acceleration).
+pub(super) fn pose(centre: [Vec2; 3], chord: [Vec2; 3]) -> Pose {
+    let [d, d_dot, d_ddot] = chord;
+    let square = dot(d, d);
+    let omega = cross(d, d_dot) / square;
+    let alpha = (cross(d, d_ddot) - 2.0 * omega * dot(d, d_dot)) / square;
+    Pose {
+        position: [centre[0][0], centre[0][1], d[1].atan2(d[0])],
+        velocity: [centre[1][0], centre[1][1], omega],
+        acceleration: [centre[2][0], centre[2][1], alpha],
+    }
+}

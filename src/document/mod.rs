@@ -1,0 +1,22 @@
+//! What a user wrote: TOML text as a tree that knows where everything stands, typed access to it, and errors that point at it.
+
+mod error;
+mod field;
+mod fields;
+mod key;
+mod kind;
+mod names;
+mod overrides;
+mod text;
+mod tree;
+
+pub use error::{SceneError, Span};
+pub(crate) use error::{Sources, nearest};
+pub use field::Field;
+pub use fields::Fields;
+pub use key::{Key, Range, Takes};
+pub use kind::Kind;
+pub use names::derived;
+pub(crate) use names::{RESERVED, check_name, named};
+pub(crate) use overrides::apply as apply_overrides;
+pub(crate) use tree::{Node, document};

@@ -1,0 +1,267 @@
+//! `[contacts.NAME]`: geometry and laws of a joint with clearance.
+
+use crate::body::Materials;
+use crate::contact::friction::Ambrosio;
+use crate::contact::geometry::Geometry;
+use crate::contact::normal::{NormalLaw, NormalLawKind, NormalParameters};
+use crate::contact::{ContactPair, Rough, Slip, Smooth};
+use crate::document::{Field, Fields, Key, SceneError, Takes, derived};
+use crate::marker::Spin;
+
+/// The keys of a contact.
+pub static KEYS: [Key; 10] = [
+    Key::name_in("law", "normal laws", "the normal law, see below"),
+    Key::positive("bearing_radius", "m", "the radius R_i of the bearing")
+        .or("required in a revolute joint"),
+    Key::positive(
+        "clearance",
+        "m",
+        "R_i - R_j, with R_j the radius of the journal; below `bearing_radius`",
+    ),
+    Key::name_in(
+        "bearing_material",
+        "materials",
+        "the material of the bearing; or give `stiffness`",
+    )
+    .or("required without `stiffness`"),
+    Key::name_in(
+        "journal_material",
+        "materials",
+        "the material of the journal; or give `stiffness`",
+    )
+    .or("required without `stiffness`"),
+    Key::positive("stiffness", "N/m^exponent", "the stiffness K; excludes the two materials").or("from the materials"),
+    Key::positive(
+        "exponent",
+        "",
+        "the exponent n of the penetration, at least 1; 1.5 for metals",
+    ),
+    Key::number(
+        "restitution",
+        "",
+        "the coefficient of restitution c_e, above 0 and at most 1; `\"hertz\"` takes no other than 1",
+    )
+    .or("required; 1 for `\"hertz\"`"),
+    Key::positive(
+        "impact_velocity_floor",
+        "m/s",
+        "the lower bound of v in the formula below",
+    )
+    .or("required; not for `\"hertz\"`"),
+    Key::new("friction", Takes::Table, "the table of the friction law").or("none"),
+];
+
+/// The keys of a friction law.
+pub static FRICTION: [Key; 5] = [
+    Key::word("law", &["ambrosio"], "the friction law"),
+    Key::non_negative("coefficient", "", "the coefficient of friction c_f"),
+    Key::non_negative("v0", "m/s", "the slip below which there is no friction"),
+    Key::positive(
+        "v1",
+        "m/s",
+        "the slip above which friction is full, greater than `v0`",
+    ),
+    Key::word("slip", &["paper", "material"], "which slip velocity enters").or("`\"material\"`"),
+];
+
+/// Geometry and laws of a loose joint.
+#[derive(Debug, Clone)]
+pub struct Contact {
+    /// Bearing radius R_i \[m\]; none of a straight slot.
+    pub bearing_radius: Option<f64>,
+    /// Radial clearance c = R_i - R_j \[m\].
+    pub clearance: f64,
+    /// Normal law.
+    pub law: &'static NormalLawKind,
+    /// Contact stiffness K \[N/m^exponent\], typed or from eq. 25.
+    pub stiffness: f64,
+    /// Exponent n.
+    pub exponent: f64,
+    /// Restitution coefficient c_e as typed; 1 for Hertz.
+    pub restitution: f64,
+    /// Smallest impact velocity that the damping term divides by \[m/s\].
+    pub impact_velocity_floor: f64,
+    /// Friction, absent when the scene names none.
+    pub friction: Option<Friction>,
+}
+
+/// Friction of eq. 26.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Friction {
+    /// Coefficient c_f.
+    pub coefficient: f64,
+    /// Slip below which there is no friction \[m/s\].
+    pub v0: f64,
+    /// Slip above which friction is full \[m/s\].
+    pub v1: f64,
+    /// Which slip velocity enters.
+    pub slip: Slip,
+}
+
+impl Contact {
+    /// The normal law with its parameters.
+    pub fn normal_law(&self) -> Box<dyn NormalLaw> {
+        (self.law.build)(&NormalParameters {
+            stiffness: self.stiffness,
+            exponent: self.exponent,
+            restitution: self.restitution,
+            impact_velocity_floor: self.impact_velocity_floor,
+        })
+    }
+
+    /// The contact of these surfaces, on bodies that turn with the given spins.
+    pub fn pair<G: Geometry + 'static>(
+        &self,
+        geometry: G,
+        spins: [Spin; 2],
+    ) -> Box<dyn ContactPair> {
+        let law = self.normal_law();
+        let surface = Smooth { geometry, law };
+        let Some(f) = self.friction else {
+            return Box::new(surface);
+        };
+        let law = Ambrosio {
+            coefficient: f.coefficient,
+            v0: f.v0,
+            v1: f.v1,
+        };
+        Box::new(Rough::new(surface, Box::new(law), f.slip, spins))
+    }
+
+    /// Reads `[contacts.NAME]`.
+    pub(crate) fn read(
+        field: &Field,
+        materials: &Materials,
+        laws: &[&'static NormalLawKind],
+    ) -> Result<Contact, SceneError> {
+        let mut table = field.fields()?;
+        table.declare(&[], &KEYS)?;
+        let choices: Vec<_> = laws.iter().map(|k| (k.name, *k)).collect();
+        let law = table.field("law")?.choice(&choices)?;
+        let bearing_radius = table.optional_number("bearing_radius")?;
+        let clearance = table.number("clearance")?;
+        if bearing_radius.is_some_and(|radius| clearance >= radius) {
+            let field = table.field("clearance")?;
+            return Err(field.must("be less than `bearing_radius`, or no journal is left"));
+        }
+        let exponent = table.number("exponent")?;
+        if exponent < 1.0 {
+            let field = table.field("exponent")?;
+            return Err(field.must("be at least 1, or the stiffness is infinite at first touch"));
+        }
+        let friction = table.optional("friction");
+        Ok(Contact {
+            bearing_radius,
+            clearance,
+            law,
+            stiffness: stiffness(field, &table, materials, bearing_radius, clearance)?,
+            exponent,
+            restitution: restitution(&table, law)?,
+            impact_velocity_floor: floor(&table, law)?,
+            friction: friction.map(|f| read_friction(&f)).transpose()?.flatten(),
+        })
+    }
+}
+
+/// Typed, or K = 4 / (3 (h_i + h_j)) sqrt(R_i R_j / (R_i - R_j)) with h = (1 - nu^2) / E (eq. 25).
+fn stiffness(
+    contact: &Field,
+    table: &Fields,
+    materials: &Materials,
+    bearing_radius: Option<f64>,
+    clearance: f64,
+) -> Result<f64, SceneError> {
+    let keys = ["bearing_material", "journal_material"];
+    let material = keys.iter().find_map(|key| table.optional(key));
+    match (
+        table.optional_number("stiffness")?,
+        material,
+        bearing_radius,
+    ) {
+        (Some(_), Some(material), _) => {
+            let message = format!(
+                "`{}` cannot be combined with a given `stiffness`",
+                material.path
+            );
+            Err(material.key_fault(message, "remove this or the stiffness"))
+        }
+        (Some(typed), None, _) => Ok(typed),
+        (None, None, None) => {
+            let message = format!(
+                "`{}` has neither a `bearing_radius` nor a `stiffness`",
+                contact.path
+            );
+            let error = contact.key_fault(message, "needs one of them");
+            Err(error.with_help(
+                "the contact of a bearing needs `bearing_radius`, that of a slot `stiffness`",
+            ))
+        }
+        (None, Some(material), None) => {
+            let message = format!(
+                "`{}` gives a stiffness by eq. 25, which needs a `bearing_radius`",
+                material.path
+            );
+            Err(material.key_fault(message, "give `bearing_radius`, or `stiffness` instead"))
+        }
+        (None, _, Some(bearing_radius)) => {
+            let mut compliance = 0.0;
+            for key in keys {
+                compliance += materials.compliance(table, key)?;
+            }
+            let radii = bearing_radius * (bearing_radius - clearance) / clearance;
+            let stiffness = 4.0 / (3.0 * compliance) * radii.sqrt();
+            derived(contact, "a stiffness", stiffness)
+        }
+    }
+}
+
+fn restitution(table: &Fields, law: &NormalLawKind) -> Result<f64, SceneError> {
+    let field = match (law.is_damped, table.optional("restitution")) {
+        (false, None) => return Ok(1.0),
+        (false, Some(field)) if field.number()? != 1.0 => {
+            let message = format!(
+                "law \"{}\" has no damping: it cannot deliver a restitution of {}",
+                law.name,
+                field.written()
+            );
+            let error = field.fault(message, "leave this out");
+            return Err(error.with_help("or choose another `law`"));
+        }
+        (_, Some(field)) => field,
+        (_, None) => table.field("restitution")?,
+    };
+    match field.number()? {
+        e if e > 0.0 && e <= 1.0 => Ok(e),
+        _ => Err(field.must("lie above 0 and not above 1")),
+    }
+}
+
+fn floor(table: &Fields, law: &NormalLawKind) -> Result<f64, SceneError> {
+    match (law.is_damped, table.optional("impact_velocity_floor")) {
+        // there is no damping term; one keeps the quotient harmless
+        (false, None) => Ok(1.0),
+        _ => table.number("impact_velocity_floor"),
+    }
+}
+
+/// None for a coefficient of zero: what does not act does not exist.
+fn read_friction(field: &Field) -> Result<Option<Friction>, SceneError> {
+    let mut table = field.fields()?;
+    table.declare(&[], &FRICTION)?;
+    table.word("law")?;
+    let coefficient = table.number("coefficient")?;
+    let (v0, v1) = (table.number("v0")?, table.number("v1")?);
+    if v1 <= v0 {
+        return Err(table.field("v1")?.must("be greater than `v0`"));
+    }
+    let slip = match table.optional_word("slip")? {
+        Some(0) => Slip::Paper,
+        _ => Slip::Material,
+    };
+    Ok((coefficient > 0.0).then_some(Friction {
+        coefficient,
+        v0,
+        v1,
+        slip,
+    }))
+}

@@ -1,0 +1,200 @@
+//! Functions of time: a number, or an inline table with a `type`.
+
+use super::Function;
+use crate::document::{Field, Fields, Key, Kind, SceneError, Takes};
+
+/// What the function is for: motions must have an acceleration, loads need not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Use {
+    /// A prescribed motion.
+    Motion,
+    /// A load.
+    Load,
+}
+
+/// A kind of function of time. It is read for a use, in a run of a duration \[s\].
+pub type FunctionKind = Kind<fn(&Fields, Use, f64) -> Result<Function, SceneError>>;
+
+/// The kinds that a scene can name.
+pub static FUNCTIONS: [&FunctionKind; 6] = [
+    &POLYNOMIAL,
+    &HARMONIC,
+    &RAMP,
+    &SMOOTH_STEP,
+    &SPIN_UP,
+    &TABLE,
+];
+
+static POLYNOMIAL: FunctionKind = FunctionKind {
+    name: "polynomial",
+    keys: &[Key::new(
+        "coefficients",
+        Takes::Rows {
+            unit: "value/s^k",
+            shape: "[c0, c1, c2, ...]",
+        },
+        "the coefficients of c0 + c1 t + c2 t^2 + ..., one at least",
+    )],
+    read: |table, _, _| {
+        let list = table.field("coefficients")?;
+        let items = list.items()?;
+        let coefficients: Result<Vec<f64>, _> = items.iter().map(Field::number).collect();
+        if items.is_empty() {
+            return Err(list.fault(format!("`{}` is empty", list.path), "no coefficient"));
+        }
+        Ok(Function::Polynomial(coefficients?))
+    },
+};
+
+static HARMONIC: FunctionKind = FunctionKind {
+    name: "harmonic",
+    keys: &[
+        Key::number("mean", "value", "the mean value"),
+        Key::number("amplitude", "value", "the largest deviation from the mean"),
+        Key::number("frequency", "Hz", "periods a second"),
+        Key::number("phase", "rad", "the phase of the sine at t = 0"),
+    ],
+    read: |table, _, _| {
+        Ok(Function::Harmonic {
+            mean: table.number("mean")?,
+            amplitude: table.number("amplitude")?,
+            frequency: table.number("frequency")?,
+            phase: table.number("phase")?,
+        })
+    },
+};
+
+const STEP: [Key; 4] = [
+    Key::number("from", "value", "the value before"),
+    Key::number("to", "value", "the value after"),
+    Key::number("start", "s", "when it begins"),
+    Key::positive("duration", "s", "how long it takes"),
+];
+
+static RAMP: FunctionKind = FunctionKind {
+    name: "ramp",
+    keys: &STEP,
+    read: |table, purpose, _| {
+        if purpose == Use::Motion {
+            let message = format!(
+                "`{}` cannot follow a ramp: its speed would jump where the ramp begins",
+                table.path()
+            );
+            let error = table.optional("type").map_or_else(
+                || table.fault(&message, "no acceleration"),
+                |kind| kind.fault(&message, "no acceleration"),
+            );
+            return Err(error.with_help("use \"smooth_step\""));
+        }
+        Ok(Function::Ramp {
+            from: table.number("from")?,
+            to: table.number("to")?,
+            start: table.number("start")?,
+            duration: table.number("duration")?,
+        })
+    },
+};
+
+static SMOOTH_STEP: FunctionKind = FunctionKind {
+    name: "smooth_step",
+    keys: &STEP,
+    read: |table, _, _| {
+        Ok(Function::SmoothStep {
+            from: table.number("from")?,
+            to: table.number("to")?,
+            start: table.number("start")?,
+            duration: table.number("duration")?,
+        })
+    },
+};
+
+static SPIN_UP: FunctionKind = FunctionKind {
+    name: "spin_up",
+    keys: &[
+        Key::number("start", "value", "the value at t = 0"),
+        Key::number("speed", "value/s", "the final rate"),
+        Key::positive("duration", "s", "T, how long it takes"),
+    ],
+    read: |table, _, _| {
+        Ok(Function::SpinUp {
+            start: table.number("start")?,
+            speed: table.number("speed")?,
+            duration: table.number("duration")?,
+        })
+    },
+};
+
+/// What rows of a table over time are.
+pub(super) const ROWS: &str =
+    "two rows or more; their times increase, from 0 or earlier to the end of the run or later";
+
+static TABLE: FunctionKind = FunctionKind {
+    name: "table",
+    keys: &[Key::new(
+        "rows",
+        Takes::Rows {
+            unit: "s, value",
+            shape: "[t, value]",
+        },
+        ROWS,
+    )],
+    read: |table, _, duration| {
+        let rows = rows(&table.field("rows")?, duration, "[t, value]")?;
+        Ok(Function::table(&rows))
+    },
+};
+
+/// Reads a function of time; `duration` is what a table must cover \[s\].
+///
+/// # Errors
+/// The first fault found.
+pub fn read_function(field: &Field, purpose: Use, duration: f64) -> Result<Function, SceneError> {
+    if !field.is_table() {
+        return Ok(Function::Constant(field.number()?));
+    }
+    let mut table = field.fields()?;
+    let kind = Kind::of(&mut table, "function of time", &FUNCTIONS)?;
+    (kind.read)(&table, purpose, duration)
+}
+
+/// Rows of a table over time: times increase and cover the duration.
+pub(super) fn rows<const N: usize>(
+    field: &Field,
+    duration: f64,
+    shape: &str,
+) -> Result<Vec<[f64; N]>, SceneError> {
+    let items = field.items()?;
+    let mut rows: Vec<[f64; N]> = Vec::with_capacity(items.len());
+    for item in &items {
+        let row = item.numbers::<N>(shape)?;
+        if let Some(last) = rows.last().filter(|last| row[0] <= last[0]) {
+            let message = format!(
+                "the times of `{}` must increase: {:?} after {:?}",
+                field.path, row[0], last[0]
+            );
+            return Err(item.fault(message, "not later than the row before"));
+        }
+        rows.push(row);
+    }
+    let [first, .., last] = &rows[..] else {
+        return Err(field.fault(
+            format!("`{}` needs two rows or more", field.path),
+            "too short",
+        ));
+    };
+    if first[0] > 0.0 {
+        let message = format!(
+            "the first time of `{}` must not be later than 0",
+            field.path
+        );
+        return Err(items[0].fault(message, "starts too late"));
+    }
+    if last[0] < duration {
+        let message = format!(
+            "the last time of `{}` must reach the duration of {duration} s",
+            field.path
+        );
+        return Err(items[items.len() - 1].fault(message, "ends too early"));
+    }
+    Ok(rows)
+}

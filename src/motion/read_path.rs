@@ -1,0 +1,95 @@
+//! Paths of bodies: `type` and its keys.
+
+use super::read_function::{ROWS, Use, read_function, rows};
+use super::{Circle, Coordinates, Line, Path, Table};
+use crate::document::{Field, Fields, Key, Kind, SceneError, Takes};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+const POSE: &str = "[x, y, theta]";
+const POSE_UNITS: &str = "m, m, rad";
+
+/// A kind of path. It is read for a run of a duration \[s\].
+pub type PathKind = Kind<fn(&Fields, f64) -> Result<Arc<dyn Path>, SceneError>>;
+
+/// The kinds that a scene can name.
+pub static PATHS: [&PathKind; 4] = [&CIRCLE, &LINE, &TABLE, &COORDINATES];
+
+static CIRCLE: PathKind = PathKind {
+    name: "circle",
+    keys: &[
+        Key::vector("center", "m", "[x, y]", "the centre"),
+        Key::positive("radius", "m", "the radius"),
+        Key::number(
+            "frequency",
+            "Hz",
+            "revolutions a second, negative for clockwise",
+        ),
+        Key::number("phase", "rad", "the angle on the circle at t = 0"),
+        Key::number("theta", "rad", "the angle of the body"),
+    ],
+    read: |fields, _| {
+        Ok(Arc::new(Circle {
+            center: fields.vector("center")?,
+            radius: fields.number("radius")?,
+            rate: TAU * fields.number("frequency")?,
+            phase: fields.number("phase")?,
+            theta: fields.number("theta")?,
+        }))
+    },
+};
+
+static LINE: PathKind = PathKind {
+    name: "line",
+    keys: &[
+        Key::vector("from", POSE_UNITS, POSE, "the first pose"),
+        Key::vector("to", POSE_UNITS, POSE, "the last pose"),
+        Key::positive("duration", "s", "the time of travel"),
+    ],
+    read: |fields, _| {
+        Ok(Arc::new(Line {
+            from: fields.vector("from")?,
+            to: fields.vector("to")?,
+            duration: fields.number("duration")?,
+        }))
+    },
+};
+
+static TABLE: PathKind = PathKind {
+    name: "table",
+    keys: &[Key::new(
+        "rows",
+        Takes::Rows {
+            unit: "s, m, m, rad",
+            shape: "[t, x, y, theta]",
+        },
+        ROWS,
+    )],
+    read: |fields, duration| {
+        let rows: Vec<[f64; 4]> = rows(&fields.field("rows")?, duration, "[t, x, y, theta]")?;
+        let times = rows.iter().map(|r| r[0]).collect();
+        let poses = rows.iter().map(|r| [r[1], r[2], r[3]]).collect();
+        Ok(Arc::new(Table::new(times, poses)))
+    },
+};
+
+static COORDINATES: PathKind = PathKind {
+    name: "coordinates",
+    keys: &[
+        Key::function("x", "m", "x"),
+        Key::function("y", "m", "y"),
+        Key::function("theta", "rad", "theta"),
+    ],
+    read: |fields, duration| {
+        let coordinate = |key| read_function(&fields.field(key)?, Use::Motion, duration);
+        let functions = [coordinate("x")?, coordinate("y")?, coordinate("theta")?];
+        Ok(Arc::new(Coordinates { functions }))
+    },
+};
+
+/// Reads a path of a run of this duration.
+pub(crate) fn read_path(field: &Field, duration: f64) -> Result<Arc<dyn Path>, SceneError> {
+    let mut fields = field.fields()?;
+    let kind = Kind::of(&mut fields, "path", &PATHS)?;
+    (kind.read)(&fields, duration)
+}

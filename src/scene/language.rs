@@ -1,0 +1,78 @@
+//! The tables of the scene language as data, for references and for editors that check a scene.
+
+use super::{integrator, motion, reader};
+use crate::body::{MATERIAL, PLATES, POLAR, RAYLEIGH, SECTION};
+use crate::document::{Key, Kind};
+use crate::interaction::contact;
+use crate::motion::{FUNCTIONS, PATHS};
+use crate::registry::Registry;
+
+/// A table of the language.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sheet {
+    /// What it describes, such as `joints.NAME`; empty for the scene itself.
+    pub table: &'static str,
+    /// Its kind, and the key that says so.
+    pub kind: Option<[&'static str; 2]>,
+    /// Its other keys.
+    pub keys: Vec<Key>,
+}
+
+/// All tables of the language, with the kinds of a registry.
+pub fn language(registry: &Registry) -> Vec<Sheet> {
+    let mut sheets = Vec::new();
+    let mut plain = |table, keys: &[Key]| {
+        sheets.push(Sheet {
+            table,
+            kind: None,
+            keys: keys.to_vec(),
+        });
+    };
+    let schemes = &registry.schemes;
+    let mut settings = integrator::INTEGRATOR.to_vec();
+    let parameters = integrator::parameters(schemes).into_iter();
+    settings.splice(
+        1..1,
+        parameters.map(|(p, _)| Key {
+            default: p.default,
+            ..Key::number(p.name, "", p.purpose)
+        }),
+    );
+    plain("", &reader::SCENE);
+    plain("simulation", &reader::SIMULATION);
+    plain("integrator", &settings);
+    plain("integrator.accuracy", &integrator::ACCURACY);
+    plain("output", &reader::OUTPUT);
+    plain("materials.NAME", &MATERIAL);
+    plain("sections.NAME", &SECTION);
+    plain("contacts.NAME", &contact::KEYS);
+    plain("contacts.NAME.friction", &contact::FRICTION);
+    plain("bodies.NAME.points.NAME", &POLAR);
+    plain("bodies.NAME.rayleigh", &RAYLEIGH);
+    plain("initial", &motion::INITIAL);
+    plain("initial.bodies.NAME", &motion::STATE);
+    plain("initial.bodies.NAME of a point mass", &motion::POINT_STATE);
+    plain("initial.velocities.NAME", &motion::VELOCITIES);
+    for (shape, keys) in &PLATES {
+        sheets.push(Sheet {
+            table: "bodies.NAME.plate",
+            kind: Some(["shape", shape]),
+            keys: keys.to_vec(),
+        });
+    }
+    add(&mut sheets, "bodies.NAME", &registry.bodies);
+    add(&mut sheets, "joints.NAME", &registry.joints);
+    add(&mut sheets, "drives.NAME", &motion::KINDS);
+    add(&mut sheets, "forces.NAME", &registry.forces);
+    add(&mut sheets, "path", &PATHS);
+    add(&mut sheets, "function of time", &FUNCTIONS);
+    sheets
+}
+
+fn add<F>(sheets: &mut Vec<Sheet>, table: &'static str, kinds: &[&'static Kind<F>]) {
+    sheets.extend(kinds.iter().map(|kind| Sheet {
+        table,
+        kind: Some(["type", kind.name]),
+        keys: kind.keys.to_vec(),
+    }));
+}

@@ -1,0 +1,28 @@
+//! Cells between commas, below a line with the names of the columns.
+
+use super::{Cell, Format};
+
+pub(super) static FORMAT: Format = Format {
+    name: "csv",
+    extension: "csv",
+    header: |columns, text| {
+        let cells: Vec<Cell> = columns.iter().map(|name| Cell::Word(name)).collect();
+        row(&cells, text);
+    },
+    row: |_, cells, text| row(cells, text),
+};
+
+fn row(cells: &[Cell], text: &mut Vec<u8>) {
+    for cell in cells {
+        match cell {
+            // the shortest decimal fraction that reads back as the same number
+            Cell::Number(x) => text.extend_from_slice(ryu::Buffer::new().format(*x).as_bytes()),
+            Cell::Word(word) => text.extend_from_slice(word.as_bytes()),
+            Cell::Empty => {}
+        }
+        text.push(b',');
+    }
+    if let Some(last) = text.last_mut() {
+        *last = b'\n';
+    }
+}

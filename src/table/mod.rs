@@ -1,0 +1,37 @@
+//! Formats of tables that are written row by row, one a file.
+
+mod csv;
+
+/// The formats that a scene can name; the first is taken by default.
+pub static FORMATS: [&Format; 1] = [&csv::FORMAT];
+
+/// A cell of a row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cell<'a> {
+    /// A number.
+    Number(f64),
+    /// A word without commas and quotes, such as the name of a joint.
+    Word(&'a str),
+    /// Nothing.
+    Empty,
+}
+
+/// A format of tables.
+#[derive(Debug)]
+pub struct Format {
+    /// Its name in a scene.
+    pub name: &'static str,
+    /// How names of its files end.
+    pub extension: &'static str,
+    /// Appends what comes before the rows of a table with these columns.
+    pub header: fn(columns: &[String], text: &mut Vec<u8>),
+    /// Appends a row.
+    pub row: fn(columns: &[String], cells: &[Cell], text: &mut Vec<u8>),
+}
+
+impl Format {
+    /// The name of the file of a table.
+    pub fn file(&self, table: &str) -> String {
+        format!("{table}.{}", self.extension)
+    }
+}
