@@ -1,5 +1,6 @@
 //! Bodies, one kind a file: coordinates, masses, elastic elements, points and directions as functions of the coordinates.
 
+mod disc;
 mod flexible_link;
 mod ground;
 mod link;
@@ -30,10 +31,11 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 /// The kinds that a scene can name.
-pub static KINDS: [&BodyKind; 5] = [
+pub static KINDS: [&BodyKind; 6] = [
     &ground::KIND,
     &link::KIND,
     &rigid_body::KIND,
+    &disc::KIND,
     &point_mass::KIND,
     &moving::KIND,
 ];

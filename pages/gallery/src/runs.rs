@@ -48,7 +48,7 @@ impl Show {
 }
 
 /// The first entry whose name begins that of the scene counts.
-const SHOWN: [Show; 25] = [
+const SHOWN: [Show; 26] = [
     show("3rrr/case1", "A1.torque", "Torque of motor A1").cut(0.5),
     show("3rrr/", "error.x", "Error of the platform, x").cut(0.5),
     show("ablation/", "rocker.alpha", "Acceleration of the rocker"),
@@ -62,6 +62,11 @@ const SHOWN: [Show; 25] = [
         "Right end of the axle, y",
     ),
     show("double-pendulum", "energy.bending", "Bending energy"),
+    show(
+        "driven-disc",
+        "points.disc.center.x",
+        "Centre of the disc, x",
+    ),
     show(
         "four-bar-three-loose",
         "C.eccentricity",

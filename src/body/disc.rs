@@ -1,0 +1,82 @@
+//! `type = "disc"`: a rigid disc about its centre of mass, with a point on its rim.
+
+use super::{BodyKind, Point, RigidBody, points};
+use crate::document::{Fields, Key, SceneError, Takes, derived};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+pub(super) static KIND: BodyKind = BodyKind {
+    name: "disc",
+    keys: &[
+        Key::positive("radius", "m", "the radius"),
+        Key::positive("mass", "kg", "the mass; or give `thickness` and `material`")
+            .or("that of the material"),
+        Key::positive("thickness", "m", "the size normal to the plane").or("required without mass"),
+        Key::new(
+            "material",
+            Takes::Name("materials"),
+            "the name of a material",
+        )
+        .or("required without mass"),
+        Key::number(
+            "rim",
+            "rad",
+            "the direction from `center` to `rim`, from the x axis of the disc",
+        )
+        .or("0"),
+        Key::new(
+            "points",
+            Takes::Table,
+            "named points relative to the centre [m]",
+        )
+        .or("none"),
+    ],
+    read: |table, known| {
+        let radius = table.number("radius")?;
+        let (sin, cos) = table.optional_number("rim")?.unwrap_or(0.0).sin_cos();
+        let mut all = vec![
+            Point::new("center", [0.0; 2]),
+            Point::new("rim", [radius * cos, radius * sin]),
+        ];
+        let named = points::read(table)?;
+        if let Some(double) = named
+            .iter()
+            .find(|p| all.iter().any(|own| own.name == p.name))
+        {
+            let message = format!("every disc has a point `{}` already", double.name);
+            return Err(table.fault(message, "name the point otherwise"));
+        }
+        all.extend(named);
+        let mass = mass(table, known, PI * radius * radius)?;
+        let inertia = 0.5 * mass * radius * radius;
+        Ok(Arc::new(RigidBody {
+            mass,
+            inertia,
+            points: all,
+        }))
+    },
+};
+
+/// Mass \[kg\], typed or from thickness, material and area \[m2\].
+fn mass(table: &Fields, known: &crate::body::Materials, area: f64) -> Result<f64, SceneError> {
+    let plate = ["thickness", "material"].into_iter();
+    match (
+        table.optional_number("mass")?,
+        plate.filter_map(|key| table.optional(key)).next(),
+    ) {
+        (Some(_), Some(second)) => {
+            let message = format!("`{}` cannot be combined with a given `mass`", second.path);
+            Err(second.key_fault(message, "remove this or the mass"))
+        }
+        (Some(mass), None) => Ok(mass),
+        (None, _) => {
+            let material = known.material(table, "material")?;
+            let thickness = table.number("thickness")?;
+            derived(
+                &table.field("thickness")?,
+                "a mass",
+                material.density * area * thickness,
+            )
+        }
+    }
+}
