@@ -22,6 +22,7 @@ mod methods;
 mod overrides;
 mod published;
 mod registry;
+mod rod;
 mod rrr;
 mod stability;
 mod start;

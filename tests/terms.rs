@@ -6,6 +6,7 @@ use looselink::constraint::{
     Align, ClampSlope, Coincide, Constraint, Curvature, Length, Place, Slide,
 };
 use looselink::force::{ElementDamping, Force, MassDamping, WIDTH};
+use looselink::interaction::rod::Distance;
 use looselink::interaction::{PointForce, SpringDamper, Torque, TorsionSpring};
 use looselink::marker::{Marker, Spin};
 use looselink::motion::Function;
@@ -141,6 +142,26 @@ fn constraints() -> Vec<(&'static str, Box<dyn Constraint>)> {
                 angle: 0.0,
                 scale: 1.2,
                 slider: Marker::Node { x: 6 },
+            }),
+        ),
+        (
+            "rod, bodies",
+            Box::new(Distance {
+                first: body(0, [0.3, -0.1]),
+                second: body(3, [0.2, 0.4]),
+                length: 0.8,
+            }),
+        ),
+        (
+            "rod, chord and node",
+            Box::new(Distance {
+                first: Marker::OnChord {
+                    from: 14,
+                    to: 16,
+                    share: 0.3,
+                },
+                second: Marker::Node { x: 6 },
+                length: 0.8,
             }),
         ),
         (
@@ -299,7 +320,15 @@ fn reactions_are_conjugate_to_motions() {
         slider,
     };
     // each with the coordinates that move the second side along x and y
-    let points: [(Box<dyn Constraint>, [usize; 2]); 4] = [
+    let points: [(Box<dyn Constraint>, [usize; 2]); 5] = [
+        (
+            Box::new(Distance {
+                first: body(0, [0.3, -0.1]),
+                second: body(3, [0.2, 0.4]),
+                length: 0.8,
+            }),
+            [3, 4],
+        ),
         (
             Box::new(Coincide {
                 bearing: body(0, [0.3, -0.1]),
@@ -694,6 +723,8 @@ fn torsion_springs_start_near_their_rest_angle() {
 fn sides_are_split_behind_the_first() {
     let splits = |name: &str| match name {
         "length" | "spring without rest length" => 2,
+        "rod, bodies" => 3,
+        "rod, chord and node" => 4,
         "coincide, body and node" | "spring-damper between bodies" => 3,
         "coincide, chord and body" | "align, chord and slope" | "clamped slope on a chord" => 4,
         "align, bodies" | "clamped slope on a body" => 1,

@@ -6,6 +6,7 @@ mod names;
 pub mod point_force;
 pub mod prismatic;
 pub mod revolute;
+pub mod rod;
 pub mod spring_damper;
 pub mod torque;
 pub mod torsion_spring;
@@ -32,7 +33,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 /// The kinds of joint that a scene can name.
-pub static JOINTS: [&JointKind; 3] = [&revolute::KIND, &prismatic::KIND, &weld::KIND];
+pub static JOINTS: [&JointKind; 4] = [&revolute::KIND, &prismatic::KIND, &weld::KIND, &rod::KIND];
 
 /// The kinds of force that a scene can name.
 pub static FORCES: [&ForceKind; 4] = [

@@ -48,7 +48,7 @@ impl Show {
 }
 
 /// The first entry whose name begins that of the scene counts.
-const SHOWN: [Show; 26] = [
+const SHOWN: [Show; 27] = [
     show("3rrr/case1", "A1.torque", "Torque of motor A1").cut(0.5),
     show("3rrr/", "error.x", "Error of the platform, x").cut(0.5),
     show("ablation/", "rocker.alpha", "Acceleration of the rocker"),
@@ -83,6 +83,7 @@ const SHOWN: [Show; 26] = [
     show("pendulum", "points.rod.bob.x", "Point at 1 m, x").drawn(1.18),
     show("quick-return", "ram.vx", "Velocity of the ram").drawn(0.6),
     show("ramped-cantilever", "points.beam.end.y", "Tip, y").drawn(3.5),
+    show("rod-linkage", "large.theta", "Angle of the large disc"),
     show("roll-up", "points.beam.end.y", "Tip, y"),
     show(
         "slider-crank/free",
