@@ -8,6 +8,7 @@ use looselink::contact::normal::NormalParameters;
 use looselink::contact::normal::damped_power::LANKARANI_NIKRAVESH;
 use looselink::contact::{At, ContactPair, Rough, Slip, Smooth};
 use looselink::force::WIDTH;
+use looselink::interaction::loose_guide::Walls;
 use looselink::marker::{Marker, Spin};
 use looselink::system::Weights;
 
@@ -299,4 +300,38 @@ fn friction_follows_the_definitions_of_slip() {
     Rung::Identities
         .asks("Do normal force, friction, force on the journal and power follow their definitions, for both slips? Relative error")
         .within(&worst, 1e-13, "rounding; delta is a difference of numbers twice its size");
+}
+
+/// Pins between walls on a body, on a rigid link and on the end of a flexible one, with and without friction.
+#[test]
+fn tangents_of_pins_between_walls() {
+    let law = Ambrosio {
+        coefficient: 0.3,
+        v0: 0.01,
+        v1: 3.0,
+    };
+    for (name, guide, spin, slider) in [
+        ("on a body", BODY, Spin::Angle { theta: 6 }, NODE),
+        ("on a link", NODE, Spin::Chord { from: 0, to: 2 }, OTHER),
+        ("on a slope", NODE, Spin::Slope { x: 10 }, OTHER),
+        ("on the ground", NODE, Spin::Fixed, BODY),
+    ] {
+        let surface = || Smooth {
+            geometry: Walls::new([guide, slider], spin, -0.6, 0.003),
+            law: joint(NODE, BODY).law,
+        };
+        let smooth = surface();
+        check(
+            &format!("pin between walls {name}"),
+            &smooth.coordinates(),
+            &|q, v, w, f, k| smooth.force_and_tangent(closed(q, v), w, f, k),
+        );
+        let spins = [spin, Spin::Angle { theta: 9 }];
+        let rough = Rough::new(surface(), Box::new(law), Slip::Material, spins);
+        check(
+            &format!("pin between walls {name}, with friction"),
+            &rough.coordinates(),
+            &|q, v, w, f, k| rough.force_and_tangent(closed(q, v), w, f, k),
+        );
+    }
 }

@@ -16,6 +16,7 @@ mod ideal;
 mod language;
 mod library;
 mod loose;
+mod loose_guide;
 mod malformed;
 mod mechanisms;
 mod methods;

@@ -2,6 +2,7 @@
 
 pub mod contact;
 mod joint;
+pub mod loose_guide;
 mod names;
 pub mod point_force;
 pub mod prismatic;
@@ -33,7 +34,13 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 /// The kinds of joint that a scene can name.
-pub static JOINTS: [&JointKind; 4] = [&revolute::KIND, &prismatic::KIND, &weld::KIND, &rod::KIND];
+pub static JOINTS: [&JointKind; 5] = [
+    &revolute::KIND,
+    &prismatic::KIND,
+    &loose_guide::KIND,
+    &weld::KIND,
+    &rod::KIND,
+];
 
 /// The kinds of force that a scene can name.
 pub static FORCES: [&ForceKind; 4] = [

@@ -48,7 +48,7 @@ impl Show {
 }
 
 /// The first entry whose name begins that of the scene counts.
-const SHOWN: [Show; 27] = [
+const SHOWN: [Show; 28] = [
     show("3rrr/case1", "A1.torque", "Torque of motor A1").cut(0.5),
     show("3rrr/", "error.x", "Error of the platform, x").cut(0.5),
     show("ablation/", "rocker.alpha", "Acceleration of the rocker"),
@@ -85,6 +85,7 @@ const SHOWN: [Show; 27] = [
     show("ramped-cantilever", "points.beam.end.y", "Tip, y").drawn(3.5),
     show("rod-linkage", "large.theta", "Angle of the large disc"),
     show("roll-up", "points.beam.end.y", "Tip, y"),
+    show("scotch-yoke", "yoke.ax", "Acceleration of the yoke").drawn(0.5),
     show(
         "slider-crank/free",
         "points.slider.front.y",

@@ -1,0 +1,307 @@
+//! `type = "loose_guide"`: a pin between two straight, parallel walls, with play on both sides.
+//!
+//! With e from the guide's point to the pin, u the unit direction of the guide, which turns with its body, and m = u turned by
+//! 90 degrees: s = m . e is the distance of the pin from the centre line, p = u . e its travel, delta = |s| - c the
+//! penetration. The normal is sign(s) m, the slip dp/dt. Forces act on both bodies at the pin, so that they do the work
+//! N d(delta) and T dp.
+
+use super::prismatic::{DIRECTION, Prismatic, direction};
+use super::{Contact, JointEnds, JointKind, JointModel};
+use crate::constraint::Slide;
+use crate::contact::geometry::{Gap, Geometry, Touch};
+use crate::contact::{At, Slip};
+use crate::document::{Key, Takes};
+use crate::force::{LocalMatrix, WIDTH};
+use crate::marker::{Marker, Spin};
+use crate::math::plane::{Vec2, add, dot, perp, rotate, scale, sub};
+use crate::terms::{ForceTerm, JointTerms, Terms};
+use std::sync::Arc;
+
+pub(super) static KIND: JointKind = JointKind {
+    name: "loose_guide",
+    keys: &[
+        Key::point(
+            "guide",
+            "the point on the centre line, of the body that carries the guide",
+        ),
+        Key::point("slider", "the pin, the point that slides"),
+        DIRECTION,
+        Key::new(
+            "contact",
+            Takes::Name("contacts"),
+            "the name of a contact, whose clearance is the play on either side",
+        ),
+    ],
+    read: |table, contacts| {
+        let name = table.field("contact")?;
+        let (_, contact) = name.lookup("contact", contacts)?;
+        if contact
+            .friction
+            .is_some_and(|friction| friction.slip == Slip::Paper)
+        {
+            let message = format!(
+                "the friction of {} has slip \"paper\", which a guide does not know",
+                name.written()
+            );
+            return Err(name.fault(message, "has a slip of eqs. 22-23, those of a bearing"));
+        }
+        Ok(Arc::new(LooseGuide {
+            direction: direction(table)?,
+            contact: contact.clone(),
+        }))
+    },
+};
+
+/// A prismatic joint with free rotation and play.
+#[derive(Debug, Clone)]
+pub struct LooseGuide {
+    /// Direction of the centre line in the frame of the first body \[rad\].
+    pub direction: f64,
+    /// Play and laws.
+    pub contact: Contact,
+}
+
+impl JointModel for LooseGuide {
+    fn line(&self) -> Option<f64> {
+        Some(self.direction)
+    }
+
+    fn contact(&self) -> Option<&Contact> {
+        Some(&self.contact)
+    }
+
+    fn with_contact(&self, contact: Option<Contact>) -> Option<Arc<dyn JointModel>> {
+        let direction = self.direction;
+        Some(match contact {
+            Some(contact) => Arc::new(LooseGuide { direction, contact }),
+            None => Arc::new(Prismatic {
+                direction,
+                locked: None,
+            }),
+        })
+    }
+
+    fn terms(&self, ends: &JointEnds, terms: &mut Terms) -> JointTerms {
+        let slide = Slide {
+            guide: ends.markers[0],
+            spin: ends.spins[0],
+            angle: self.direction,
+            scale: ends.inverse_sizes[0],
+            slider: ends.markers[1],
+        };
+        let walls = Walls::new(
+            ends.markers,
+            ends.spins[0],
+            self.direction,
+            self.contact.clearance,
+        );
+        terms.contacts.push(self.contact.pair(walls, ends.spins));
+        JointTerms {
+            slide: Some(slide),
+            ..JointTerms::of(ForceTerm::Contact(terms.contacts.len() - 1))
+        }
+    }
+}
+
+/// A pin between two walls.
+#[derive(Debug)]
+pub struct Walls {
+    markers: [Marker; 2],
+    spin: Spin,
+    direction: f64,
+    clearance: f64,
+    coordinates: Vec<usize>,
+    /// Local indices of the coordinates of both markers and of the spin.
+    places: [Vec<usize>; 3],
+}
+
+/// Everything about a pin in a state, in local coordinates.
+struct Pin {
+    u: Vec2,
+    m: Vec2,
+    s: f64,
+    p: f64,
+    /// Rates of s and p.
+    rates: [f64; 2],
+    omega: f64,
+    /// de/dq.
+    e_q: [Vec2; WIDTH],
+    /// d(omega)/dv.
+    b: [f64; WIDTH],
+}
+
+impl Walls {
+    /// Walls along a direction \[rad\] from that of the spin through the first marker, at the distance `clearance` \[m\] on
+    /// either side of the second.
+    pub fn new(markers: [Marker; 2], spin: Spin, direction: f64, clearance: f64) -> Walls {
+        let mut coordinates: Vec<usize> = Vec::new();
+        let mut place = |own: Vec<usize>| -> Vec<usize> {
+            let local = own.into_iter().map(|index| {
+                let known = coordinates.iter().position(|&x| x == index);
+                known.unwrap_or_else(|| {
+                    coordinates.push(index);
+                    coordinates.len() - 1
+                })
+            });
+            local.collect()
+        };
+        let [guide, slider] = markers;
+        let places = [
+            place(guide.coordinates()),
+            place(slider.coordinates()),
+            place(spin.coordinates()),
+        ];
+        Walls {
+            markers,
+            spin,
+            direction,
+            clearance,
+            coordinates,
+            places,
+        }
+    }
+
+    fn pin(&self, q: &[f64], v: &[f64]) -> Pin {
+        let arms = self.markers.map(|marker| marker.arm(q));
+        let [guide, slider] = &self.markers;
+        let e = sub(slider.position(q, arms[1]), guide.position(q, arms[0]));
+        let e_dot = sub(slider.velocity(v, arms[1]), guide.velocity(v, arms[0]));
+        let (sine, cosine) = self.direction.sin_cos();
+        let along = rotate(cosine, sine, self.spin.vector(q));
+        let u = scale(1.0 / dot(along, along).sqrt(), along);
+        let m = perp(u);
+        let (s, p) = (dot(m, e), dot(u, e));
+        let omega = self.spin.rate(q, v);
+        let mut pin = Pin {
+            u,
+            m,
+            s,
+            p,
+            rates: [dot(m, e_dot) - omega * p, dot(u, e_dot) + omega * s],
+            omega,
+            e_q: [[0.0; 2]; WIDTH],
+            b: [0.0; WIDTH],
+        };
+        for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
+            let columns = self.markers[side].columns(arms[side]);
+            for (&c, column) in self.places[side].iter().zip(columns.iter()) {
+                pin.e_q[c] = add(pin.e_q[c], scale(sign, *column));
+            }
+        }
+        for (&c, b) in self.places[2].iter().zip(self.spin.derivatives(q, v).b) {
+            pin.b[c] = b;
+        }
+        pin
+    }
+
+    /// d2s/dq2 and d2p/dq2. With phi the angle of the spin, du = m dphi and dm = -u dphi.
+    fn second(&self, at: At, pin: &Pin) -> [LocalMatrix; 2] {
+        let Pin {
+            u, m, s, p, e_q, b, ..
+        } = pin;
+        let mut second = [[[0.0; WIDTH]; WIDTH]; 2];
+        let count = self.coordinates.len();
+        for i in 0..count {
+            for j in 0..count {
+                let mixed = |x: &Vec2| dot(*x, e_q[i]) * b[j] + dot(*x, e_q[j]) * b[i];
+                second[0][i][j] = -mixed(u) - s * b[i] * b[j];
+                second[1][i][j] = mixed(m) - p * b[i] * b[j];
+            }
+        }
+        let turning = self.spin.derivatives(at.q, at.v).b_q;
+        for (&i, row) in self.places[2].iter().zip(turning) {
+            for (&j, bend) in self.places[2].iter().zip(row) {
+                second[0][i][j] -= p * bend;
+                second[1][i][j] += s * bend;
+            }
+        }
+        for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
+            if let Marker::OnBody { .. } = self.markers[side] {
+                let bend = scale(-sign, self.markers[side].arm(at.q));
+                let theta = self.places[side][2];
+                second[0][theta][theta] += dot(*m, bend);
+                second[1][theta][theta] += dot(*u, bend);
+            }
+        }
+        second
+    }
+}
+
+impl Pin {
+    /// ds/dq and dp/dq.
+    fn first(&self) -> [[f64; WIDTH]; 2] {
+        let s_q = std::array::from_fn(|c| dot(self.m, self.e_q[c]) - self.p * self.b[c]);
+        let p_q = std::array::from_fn(|c| dot(self.u, self.e_q[c]) + self.s * self.b[c]);
+        [s_q, p_q]
+    }
+}
+
+impl Geometry for Walls {
+    fn coordinates(&self) -> Vec<usize> {
+        self.coordinates.clone()
+    }
+
+    fn columns(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    fn gap(&self, q: &[f64], v: &[f64]) -> Gap {
+        let Pin {
+            u,
+            m,
+            s,
+            rates,
+            omega,
+            ..
+        } = self.pin(q, v);
+        Gap {
+            e: scale(s, m),
+            e_dot: sub(scale(rates[0], m), scale(s * omega, u)),
+            eccentricity: s.abs(),
+            delta: s.abs() - self.clearance,
+            ..Gap::default()
+        }
+    }
+
+    fn push(&self, at: At, _: &Gap, force: f64, f: &mut [f64; WIDTH]) {
+        let pin = self.pin(at.q, at.v);
+        let [s_q, _] = pin.first();
+        for (f, s_q) in f.iter_mut().zip(s_q) {
+            *f += force * pin.s.signum() * s_q;
+        }
+    }
+
+    fn touch(&self, at: At, _: &Gap) -> Touch {
+        let pin = self.pin(at.q, at.v);
+        let side = pin.s.signum();
+        let [s_q, p_q] = pin.first();
+        let [s_qq, p_qq] = self.second(at, &pin);
+        let rate = |second: &LocalMatrix, sign: f64| -> [f64; WIDTH] {
+            std::array::from_fn(|i| {
+                let row = second[i].iter().zip(&self.coordinates);
+                sign * row.map(|(x, &j)| x * at.v[j]).sum::<f64>()
+            })
+        };
+        Touch {
+            n: scale(side, pin.m),
+            t: scale(-side, pin.u),
+            slip: -side * pin.rates[1],
+            normal: s_q.map(|x| side * x),
+            tangent: p_q.map(|x| -side * x),
+            rate_q: rate(&s_qq, side),
+            slip_q: rate(&p_qq, -side),
+            ..Touch::default()
+        }
+    }
+
+    fn curve(&self, at: At, _: &Gap, _: &Touch, normal: f64, tangential: f64, k: &mut LocalMatrix) {
+        let pin = self.pin(at.q, at.v);
+        let side = pin.s.signum();
+        let [s_qq, p_qq] = self.second(at, &pin);
+        for i in 0..WIDTH {
+            for j in 0..WIDTH {
+                k[i][j] += side * (normal * s_qq[i][j] - tangential * p_qq[i][j]);
+            }
+        }
+    }
+}
