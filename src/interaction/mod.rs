@@ -3,6 +3,7 @@
 pub mod contact;
 mod joint;
 pub mod loose_guide;
+mod maxwell;
 mod names;
 pub mod point_force;
 pub mod prismatic;
@@ -15,6 +16,7 @@ pub mod weld;
 
 pub use contact::{Contact, Friction};
 pub use joint::{Joint, JointEnds, JointKind, JointModel};
+pub use maxwell::{Maxwell, MaxwellModel};
 pub use names::Names;
 pub use point_force::{PointForce, PointForceModel};
 pub use prismatic::Prismatic;
@@ -43,8 +45,9 @@ pub static JOINTS: [&JointKind; 5] = [
 ];
 
 /// The kinds of force that a scene can name.
-pub static FORCES: [&ForceKind; 4] = [
+pub static FORCES: [&ForceKind; 5] = [
     &spring_damper::KIND,
+    &maxwell::KIND,
     &torsion_spring::KIND,
     &point_force::KIND,
     &torque::KIND,

@@ -96,7 +96,7 @@ pub struct SpringDamper {
 const MEETING: f64 = 1e-9;
 
 /// The line between the ends.
-struct Line {
+pub(super) struct Line {
     length: f64,
     /// Unit vector from one end to the other.
     n: Vec2,
@@ -105,13 +105,13 @@ struct Line {
     inverse: f64,
     e_dot: Vec2,
     /// n^T d(e)/dq
-    along: [f64; WIDTH],
+    pub along: [f64; WIDTH],
     columns: [Vec2; WIDTH],
     count: usize,
 }
 
 impl SpringDamper {
-    fn line(&self, at: &State) -> Line {
+    pub(super) fn line(&self, at: &State) -> Line {
         let arms = [self.from.arm(&at.q), self.to.arm(&at.q)];
         let e = sub(
             self.to.position(&at.q, arms[1]),

@@ -48,7 +48,7 @@ impl Show {
 }
 
 /// The first entry whose name begins that of the scene counts.
-const SHOWN: [Show; 28] = [
+const SHOWN: [Show; 29] = [
     show("3rrr/case1", "A1.torque", "Torque of motor A1").cut(0.5),
     show("3rrr/", "error.x", "Error of the platform, x").cut(0.5),
     show("ablation/", "rocker.alpha", "Acceleration of the rocker"),
@@ -79,6 +79,7 @@ const SHOWN: [Show; 28] = [
         "weld.torque",
         "Couple of the weld on the body",
     ),
+    show("maxwell", "element.force", "Pull of the element"),
     show("n-four-bar", "points.crank0.end.x", "B0, x").drawn(1.2),
     show("pendulum", "points.rod.bob.x", "Point at 1 m, x").drawn(1.18),
     show("quick-return", "ram.vx", "Velocity of the ram").drawn(0.6),
