@@ -6,6 +6,7 @@ use looselink::scene::Scene;
 use looselink::simulate::{Contact, Control, Observer, Onset, Progress, Recording, Simulation};
 use looselink::table::FORMATS;
 use proptest::prelude::*;
+use serde_json::Value;
 use std::io;
 use std::path::Path;
 
@@ -164,5 +165,45 @@ fn every_number_of_a_run_reads_back_to_the_same_bits() {
                 row[k]
             );
         }
+    }
+}
+
+/// Rows of JSON have the cells of the table between commas.
+#[test]
+fn lines_of_json_hold_the_same_numbers() {
+    let [commas, lines] = ["csv", "json_lines"].map(|format| {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = load(
+            "bouncing-journal.toml",
+            &[&format!("output.format={format:?}")],
+        );
+        let (mut simulation, results) = begin(&scene, folder.path());
+        let recording = Recording::new(&simulation);
+        let mut both = Both { results, recording };
+        simulation.run(&mut both).unwrap();
+        both.results.finish(&simulation.report()).unwrap();
+        folder
+    });
+    for table in ["channels", "onsets"] {
+        let text = std::fs::read_to_string(commas.path().join(format!("{table}.csv"))).unwrap();
+        let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+        let rows = cells(commas.path(), &format!("{table}.csv"));
+        let text = std::fs::read_to_string(lines.path().join(format!("{table}.jsonl"))).unwrap();
+        assert_eq!(text.lines().count(), rows.len());
+        for (line, row) in text.lines().zip(&rows) {
+            let object: serde_json::Map<String, Value> = serde_json::from_str(line).unwrap();
+            assert_eq!(object.len(), names.len());
+            for (name, cell) in names.iter().zip(row) {
+                let written = match &object[*name] {
+                    Value::Null => "null".to_owned(),
+                    Value::String(word) => format!("{word:?}"),
+                    // the digits of the cell, which read back to the bits of the run
+                    _ => cell.clone(),
+                };
+                assert!(cell.is_empty() || written.contains(cell.as_str()), "{line}");
+                assert!(line.contains(&format!("{name:?}:{written}")), "{line}");
+            }
+        }
+        assert!(rows.len() > 3, "{table}");
     }
 }

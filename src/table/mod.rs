@@ -1,9 +1,10 @@
 //! Formats of tables that are written row by row, one a file.
 
 mod csv;
+mod json_lines;
 
 /// The formats that a scene can name; the first is taken by default.
-pub static FORMATS: [&Format; 1] = [&csv::FORMAT];
+pub static FORMATS: [&Format; 2] = [&csv::FORMAT, &json_lines::FORMAT];
 
 /// A cell of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
