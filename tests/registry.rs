@@ -1,5 +1,6 @@
 //! Kinds that a user of the library adds.
 
+use crate::support::run_scene;
 use looselink::contact::normal::{NormalForce, NormalLaw, NormalLawKind, NormalParameters};
 use looselink::registry::Registry;
 use looselink::scene::Scene;
@@ -9,6 +10,10 @@ use looselink::stepper::{Method, Parameter, Scheme};
 #[path = "../examples/own_integrator.rs"]
 #[allow(dead_code, reason = "the example is a program")]
 mod own_integrator;
+
+#[path = "../examples/own_interaction.rs"]
+#[allow(dead_code, reason = "the example is a program")]
+mod own_interaction;
 
 /// A wall that pushes with a constant force.
 #[derive(Debug)]
@@ -114,4 +119,33 @@ fn parameters_and_names_of_the_user_are_checked_as_all_others() {
     let unknown = ["integrator.method=symplectic_euler".to_owned()];
     assert!(Scene::parse("bouncing-journal.toml", text, &unknown).is_err());
     assert_eq!(Method::new(&SYMPLECTIC_EULER).get("gamma"), None);
+}
+
+/// The joint of the example is the loose guide of the library, on a body that does not turn.
+#[test]
+fn a_scene_names_a_joint_of_the_user() {
+    let registry = Registry::standard().with_joint(&own_interaction::KIND);
+    let text = own_interaction::SCENE;
+    let guide = text
+        .replace(
+            "type = \"slot\", middle =",
+            "type = \"loose_guide\", guide =",
+        )
+        .replace(", pin =", ", slider =");
+    assert!(Scene::parse("slot", text, &[]).is_err());
+    let [own, guide] = [text, &guide].map(|text| {
+        let scene = Scene::parse_with(&registry, "slot", text, &[]).unwrap();
+        run_scene(&scene).0
+    });
+    assert!(own.onsets.len() > 2, "{} impacts", own.onsets.len());
+    assert_eq!(own.onsets.len(), guide.onsets.len());
+    // the first impacts: later ones amplify rounding
+    let rows = own.row(0.05);
+    for name in own.names() {
+        let (a, b) = (own.get(name), guide.get(name));
+        let size = a.iter().fold(1e-6_f64, |m, x| m.max(x.abs()));
+        for (a, b) in a.iter().zip(&b).take(rows) {
+            assert!((a - b).abs() < 1e-9 * size, "{name}: {a} {b}");
+        }
+    }
 }

@@ -1,0 +1,225 @@
+//! A joint of one's own, with a contact geometry of its own: a pin between two walls that keep their direction in space.
+//!
+//! `cargo run --release --example own_interaction` runs a scene with it and prints how often the pin has hit the walls.
+
+use looselink::constraint::Slide;
+use looselink::contact::At;
+use looselink::contact::geometry::{Gap, Geometry, Touch};
+use looselink::document::Key;
+use looselink::force::{LocalMatrix, WIDTH};
+use looselink::interaction::{Contact, JointEnds, JointKind, JointModel, Prismatic};
+use looselink::marker::{Marker, Spin};
+use looselink::math::plane::{Vec2, dot, perp, scale, sub};
+use looselink::registry::Registry;
+use looselink::scene::Scene;
+use looselink::simulate::{Recording, Simulation};
+use looselink::terms::{ForceTerm, JointTerms, Terms};
+use std::error::Error;
+use std::sync::Arc;
+
+/// The joint as a scene names it: the first two keys are its points.
+pub static KIND: JointKind = JointKind {
+    name: "slot",
+    keys: &[
+        Key::point(
+            "middle",
+            "a point on the middle line, of a body that does not turn",
+        ),
+        Key::point("pin", "the pin"),
+        Key::vector("direction", "", "[dx, dy]", "the direction of the walls"),
+        Key::name_in("contact", "contacts", "the name of a contact"),
+    ],
+    read: |table, contacts| {
+        let [dx, dy] = table.vector("direction")?;
+        let (_, contact) = table.field("contact")?.lookup("contact", contacts)?;
+        Ok(Arc::new(Slot {
+            direction: dy.atan2(dx),
+            contact: contact.clone(),
+        }))
+    },
+};
+
+#[derive(Debug)]
+struct Slot {
+    direction: f64,
+    contact: Contact,
+}
+
+impl JointModel for Slot {
+    fn line(&self) -> Option<f64> {
+        Some(self.direction)
+    }
+
+    fn contact(&self) -> Option<&Contact> {
+        Some(&self.contact)
+    }
+
+    /// Without play it is a prismatic joint, in which the mechanism is assembled.
+    fn with_contact(&self, contact: Option<Contact>) -> Option<Arc<dyn JointModel>> {
+        let direction = self.direction;
+        Some(match contact {
+            Some(contact) => Arc::new(Slot { direction, contact }),
+            None => Arc::new(Prismatic {
+                direction,
+                locked: None,
+            }),
+        })
+    }
+
+    fn terms(&self, ends: &JointEnds, terms: &mut Terms) -> JointTerms {
+        let (sine, cosine) = self.direction.sin_cos();
+        let [middle, pin] = ends.markers;
+        let walls = Walls {
+            markers: ends.markers,
+            u: [cosine, sine],
+            play: self.contact.clearance,
+        };
+        terms.contacts.push(self.contact.pair(walls, ends.spins));
+        let line = Slide {
+            guide: middle,
+            spin: Spin::Fixed,
+            angle: self.direction,
+            scale: 1.0,
+            slider: pin,
+        };
+        JointTerms {
+            slide: Some(line),
+            ..JointTerms::of(ForceTerm::Contact(terms.contacts.len() - 1))
+        }
+    }
+}
+
+/// The distance s = m . e of the pin from the middle line is a function of e alone, so every derivative is that of e.
+#[derive(Debug)]
+struct Walls {
+    markers: [Marker; 2],
+    u: Vec2,
+    play: f64,
+}
+
+impl Walls {
+    /// x . de/dq for every local coordinate.
+    fn along(&self, x: Vec2, q: &[f64]) -> [f64; WIDTH] {
+        let mut values = [0.0; WIDTH];
+        let mut local = 0;
+        for (marker, sign) in self.markers.iter().zip([-1.0, 1.0]) {
+            for column in marker.columns(marker.arm(q)).iter() {
+                values[local] = sign * dot(x, *column);
+                local += 1;
+            }
+        }
+        values
+    }
+
+    /// The difference of the velocities of pin and middle line.
+    fn velocity(&self, q: &[f64], v: &[f64]) -> Vec2 {
+        let [middle, pin] = self.markers.map(|marker| marker.velocity(v, marker.arm(q)));
+        sub(pin, middle)
+    }
+
+    /// x . d2e/dtheta2 for both angles, with their local indices.
+    fn bends(&self, x: Vec2, q: &[f64]) -> [Option<(usize, usize, f64)>; 2] {
+        let first = self.markers[0].width();
+        [(0, -1.0, 2), (1, 1.0, first + 2)].map(|(side, sign, local)| match self.markers[side] {
+            Marker::OnBody { x: index, .. } => {
+                Some((local, index + 2, -sign * dot(x, self.markers[side].arm(q))))
+            }
+            _ => None,
+        })
+    }
+}
+
+impl Geometry for Walls {
+    fn coordinates(&self) -> Vec<usize> {
+        self.markers.iter().flat_map(Marker::coordinates).collect()
+    }
+
+    fn columns(&self) -> usize {
+        self.markers.iter().map(Marker::width).sum()
+    }
+
+    fn gap(&self, q: &[f64], v: &[f64]) -> Gap {
+        let [middle, pin] = self.markers.map(|marker| marker.position(q, marker.arm(q)));
+        let m = perp(self.u);
+        let s = dot(m, sub(pin, middle));
+        Gap {
+            e: scale(s, m),
+            e_dot: scale(dot(m, self.velocity(q, v)), m),
+            eccentricity: s.abs(),
+            delta: s.abs() - self.play,
+            ..Gap::default()
+        }
+    }
+
+    fn push(&self, at: At, gap: &Gap, force: f64, f: &mut [f64; WIDTH]) {
+        let along = self.along(self.along_normal(gap, force), at.q);
+        f.iter_mut().zip(along).for_each(|(f, push)| *f += push);
+    }
+
+    fn touch(&self, at: At, gap: &Gap) -> Touch {
+        let n = self.along_normal(gap, 1.0);
+        let t = perp(n);
+        let mut touch = Touch {
+            n,
+            t,
+            slip: dot(t, self.velocity(at.q, at.v)),
+            normal: self.along(n, at.q),
+            tangent: self.along(t, at.q),
+            ..Touch::default()
+        };
+        for (bends, rates) in [
+            (self.bends(n, at.q), &mut touch.rate_q),
+            (self.bends(t, at.q), &mut touch.slip_q),
+        ] {
+            for (local, theta, bend) in bends.into_iter().flatten() {
+                rates[local] = at.v[theta] * bend;
+            }
+        }
+        touch
+    }
+
+    fn curve(
+        &self,
+        at: At,
+        _: &Gap,
+        touch: &Touch,
+        normal: f64,
+        tangential: f64,
+        k: &mut LocalMatrix,
+    ) {
+        for (force, x) in [(normal, touch.n), (tangential, touch.t)] {
+            for (local, _, bend) in self.bends(x, at.q).into_iter().flatten() {
+                k[local][local] += force * bend;
+            }
+        }
+    }
+}
+
+/// A block on a spring that drags a pin along a slot.
+pub const SCENE: &str = r#"
+format = 1
+title = "a pin in a slot of one's own"
+simulation = { duration = 0.5, gravity = [0.0, -9.81] }
+integrator = { method = "bathe", step = 1e-5, newton_tolerance = 1e-10, onset_tolerance = 1e-12 }
+output = { interval = 1e-3, channels = ["block.*", "slot.*", "energy.*"] }
+contacts.steel = { law = "hunt_crossley", clearance = 1e-4, stiffness = 1e9, exponent = 1.5, restitution = 0.6, impact_velocity_floor = 1e-6, friction = { law = "ambrosio", coefficient = 0.1, v0 = 1e-4, v1 = 1e-3 } }
+bodies.ground = { type = "ground", points.wall = [0.0, 0.0] }
+bodies.block = { type = "rigid_body", mass = 0.3, inertia = 2e-4, points.pin = [0.0, 0.02] }
+joints.slot = { type = "slot", middle = "ground.wall", pin = "block.pin", direction = [1.0, 0.0], contact = "steel" }
+forces.spring = { type = "spring_damper", from = "ground.wall", to = "block.pin", stiffness = 200.0, damping = 0.0, rest_length = 0.1 }
+initial.bodies.block = { x = 0.15, y = -0.02, theta = 0.0, vx = 0.0, vy = 0.0, omega = 1.0 }
+"#;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let registry = Registry::standard().with_joint(&KIND);
+    let scene = Scene::parse_with(&registry, "slot", SCENE, &[])?;
+    let mut simulation = Simulation::new(&scene)?;
+    let mut recording = Recording::new(&simulation);
+    simulation.run(&mut recording)?;
+    println!(
+        "{} impacts in {} s",
+        recording.onsets.len(),
+        scene.simulation.duration
+    );
+    Ok(())
+}
