@@ -6,7 +6,10 @@
  *     M a + f(t, q, v; z) + Phi_q^T lambda = 0        Phi(t, q) = 0
  *
  * with n coordinates, m constraint rows and one impact velocity z a joint: that of eq. 24 while the contact of a joint with
- * clearance is closed, 0 while it is open and for every other joint.
+ * clearance is closed, 0 while it is open and for every other joint. Every Maxwell element adds an unknown, the elongation of
+ * its damper, with the equation (damping) d(elongation)/dt = pull; f depends on it, but it is not among q or z. A run keeps it
+ * as an unknown and reports it in the channel FORCE.elongation. Functions at a given state take it from
+ * ls_scene_set_elongations.
  *
  * Coordinates by name, the bodies in the order of the file:
  *
@@ -21,6 +24,7 @@
  * flexible one. R(alpha) turns counter-clockwise.
  *
  *     BODY.length                    (|chord|^2 - l^2) / (2 l) of a rigid link; multiplier: axial force, tension positive
+ *     JOINT.length                   (|r_2 - r_1|^2 - l^2) / (2 l) of a rod; multiplier: its force, tension positive
  *     BODY.x, .y, .theta             coordinate minus path, of a moving body
  *     JOINT.x, .y                    r_1 - r_2; multiplier: force on side 2
  *     JOINT.line                     R(direction) d_1 x (r_2 - r_1)
@@ -89,7 +93,8 @@ typedef enum {
     LS_JOINT = 2,      /* of z */
     LS_CHANNEL = 3,    /* all channels of the scene, t first */
     LS_SELECTED = 4,   /* those that `output.channels` selects, in its order, t first */
-    LS_REDUNDANT = 5   /* constraint rows left out */
+    LS_REDUNDANT = 5,  /* constraint rows left out */
+    LS_ELONGATION = 6  /* Maxwell elements */
 } ls_list;
 size_t ls_scene_count(const ls_scene *scene, int32_t list);
 const char *ls_scene_name(const ls_scene *scene, int32_t list, size_t index); /* null beyond the end */
@@ -100,6 +105,10 @@ size_t ls_scene_selected(const ls_scene *scene, size_t index);
 int32_t ls_scene_start(const ls_scene *scene, double *q, double *v, ls_error *error);
 
 /* ---- the equations at a given state ---------------------------------------------------------------------------- */
+
+/* The elongations of the Maxwell elements (one number an element) at which the functions below and ls_run_from take the scene
+ * from now on. Before the first call they are those of the scene at t = 0. ls_run_new always starts from those of the scene. */
+int32_t ls_scene_set_elongations(ls_scene *scene, const double *elongations, ls_error *error);
 
 /* M (n x n). */
 int32_t ls_scene_mass(const ls_scene *scene, double *mass, ls_error *error);
@@ -128,7 +137,8 @@ typedef enum {
     LS_SPARSE = 1 /* KLU; for fine meshes */
 } ls_linear_solver;
 
-/* The error of a step in q is weighted with relative |q| + position, in v with relative |v| + velocity. */
+/* The error of a step in q is weighted with relative |q| + position, in v with relative |v| + velocity, in the elongation of a
+ * Maxwell element with relative |elongation| + position. */
 typedef struct {
     double relative;
     double position;       /* m; angles and slopes: divided by a length of the body */
@@ -141,7 +151,8 @@ typedef struct {
 
 typedef struct ls_run ls_run;
 
-/* Starts at t = 0 from the start of the scene, or at t from (q, v) with all contacts open. The run keeps its own copy of what
+/* Starts at t = 0 from the start of the scene, or at t from (q, v) with all contacts open and the elongations of
+ * ls_scene_set_elongations. The run keeps its own copy of what
  * it needs. A static scene starts from its own start only and uses no tolerance. Null on failure. */
 ls_run *ls_run_new(const ls_scene *scene, const ls_tolerances *tolerances, ls_error *error);
 ls_run *ls_run_from(const ls_scene *scene, double t, const double *q, const double *v, const ls_tolerances *tolerances,
@@ -158,7 +169,7 @@ int32_t ls_run_state(const ls_run *run, double *q, double *v, double *a, double 
 typedef struct {
     double time;
     double velocity;   /* onset: rate of the penetration, before the floor; loss: the same, negative */
-    double eccentricity_x, eccentricity_y; /* journal minus bearing */
+    double eccentricity_x, eccentricity_y; /* journal minus bearing; of a loose guide its part across the guide */
     double deepest;    /* loss: largest penetration since the onset; onset: 0 */
     int32_t joint;
     int32_t onset;     /* 1 onset, 0 loss */

@@ -22,6 +22,12 @@ void System::visit_pairs(const Inputs &inputs, const Memory &memory, Visit visit
         const double impact_velocity = memory.impact_velocity[k];
         if (impact_velocity <= 0.0) continue;
         const Joint &j = joints_[k];
+        if (j.kind == JointKind::prismatic) {
+            visit(j.bearing, j.journal, [&](auto qi, auto vi, auto qj, auto vj) {
+                return guide_forces(*j.law, impact_velocity, j.direction, j.bearing, j.journal, qi, vi, qj, vj);
+            });
+            continue;
+        }
         visit(j.bearing, j.journal, [&](auto qi, auto vi, auto qj, auto vj) {
             return loose_forces(*j.law, impact_velocity, j.bearing, j.journal, qi, vi, qj, vj);
         });
@@ -33,6 +39,11 @@ void System::visit_pairs(const Inputs &inputs, const Memory &memory, Visit visit
         const double near = memory.turn[static_cast<int>(i)];
         visit(s.bearing, s.journal,
               [&s, near](auto qi, auto vi, auto qj, auto vj) { return spring_forces(s, near, qi, vi, qj, vj); });
+    }
+    for (int i = 0; i < elongations(); ++i) {
+        const Maxwell &m = maxwells_[i];
+        const double z = memory.elongation[i];
+        visit(m.from, m.to, [&m, z](auto qi, auto, auto qj, auto) { return maxwell_forces(m, z, qi, qj); });
     }
     for (const Load &l : loads_)
         visit(l.reaction, l.point,
@@ -74,6 +85,15 @@ void System::force_derivatives(const Inputs &inputs, const VectorXd &q, const Ve
     visit_pairs(inputs, memory, [&](const Attachment &bearing, const Attachment &journal, const auto &law) {
         subtract_derivatives(bearing, journal, law, q, v, by_q, by_v);
     });
+}
+
+void System::elongation_rates(const VectorXd &q, const Memory &memory, VectorXd &rates) const {
+    rates.resize(elongations());
+    for (int i = 0; i < elongations(); ++i) rates[i] = pull(maxwells_[i], memory.elongation[i], q) / maxwells_[i].damping;
+}
+
+void System::length_derivatives(const VectorXd &q, Entries &by_q) const {
+    for (int i = 0; i < elongations(); ++i) append_length_derivatives(maxwells_[i], i, q, by_q);
 }
 
 Prescribed System::prescription(const Constraint &c, const Inputs &inputs) const {

@@ -182,6 +182,16 @@ void Channels::add_forces() {
             const double pull = spring.stiffness * (length - spring.rest_length) + spring.damping * growth;
             put(out, {pull, length, growth});
         });
+    for (std::size_t i = 0; i < system_.maxwells().size(); ++i) {
+        const Maxwell &m = system_.maxwells()[i];
+        const int number = static_cast<int>(i);
+        const bool at_rest = model_.scene.is_static; // the damper has given way until the pull is zero
+        add(m.name + ".", {"length", "elongation", "force"}, [&m, number, at_rest](const Snapshot &s, double *out) {
+            const double length = magnitude(position(m.to, part(s.q, m.to)) - position(m.from, part(s.q, m.from)));
+            const double z = at_rest ? length - m.rest_length : s.memory.elongation[number];
+            put(out, {length, z, m.stiffness * (length - m.rest_length - z)});
+        });
+    }
     for (std::size_t i = 0; i < system_.torsion_springs().size(); ++i) {
         const TorsionSpring &spring = system_.torsion_springs()[i];
         const int number = static_cast<int>(i);
@@ -198,7 +208,7 @@ void Channels::add_energies() {
         const Energies u = system_.energies(s.q, s.v, s.memory);
         put(out, {u.kinetic, u.axial, u.bending, u.contact, u.gravity});
     });
-    if (!system_.springs().empty() || !system_.torsion_springs().empty())
+    if (!system_.springs().empty() || !system_.torsion_springs().empty() || !system_.maxwells().empty())
         add("energy.", {"springs"}, [this](const Snapshot &s, double *out) {
             *out = system_.energies(s.q, s.v, s.memory).springs;
         });

@@ -7,6 +7,12 @@ Vec<T> chord(const T *u) {
     return {u[2] - u[0], u[3] - u[1]};
 }
 
+// eq. 2 divided by 2 l
+template <class T>
+T lengthening(const Vec<T> &d, double length) {
+    return (dot(d, d) - length * length) * (0.5 / length);
+}
+
 // R d_1 / l_1 of an align or slope row.
 template <class T>
 Vec<T> held_direction(const Constraint &c, const T *u, const T &given) {
@@ -17,10 +23,8 @@ template <class T>
 T row(const Constraint &c, const T *u, const T &given) {
     const T *w = u + c.bearing.size; // coordinates of the journal
     switch (c.kind) {
-    case Constraint::length: { // eq. 2 divided by 2 l
-        const Vec<T> d = chord(u);
-        return (dot(d, d) - c.link_length * c.link_length) * (0.5 / c.link_length);
-    }
+    case Constraint::length: return lengthening(chord(u), c.link_length);
+    case Constraint::distance: return lengthening(position(c.journal, w) - position(c.bearing, u), c.link_length);
     case Constraint::coordinate: return u[0] - given;
     case Constraint::coincide: {
         const Vec<T> gap = position(c.bearing, u) - position(c.journal, w);
@@ -120,6 +124,12 @@ Constraint length_constraint(const Body &link) {
     return c;
 }
 
+Constraint distance_constraint(const Attachment &bearing, const Attachment &journal, double length) {
+    Constraint c = of_points(bearing, journal, Constraint::distance);
+    c.link_length = length;
+    return c;
+}
+
 Constraint coordinate_constraint(const Body &body, int coordinate, int given) {
     Constraint c = of_kind(Constraint::coordinate);
     c.size = 1;
@@ -192,6 +202,8 @@ void hessian(const Constraint &c, const Eigen::VectorXd &q, double given, Constr
 
 Vec<double> by_journal(const Constraint &c, const Eigen::VectorXd &q) {
     const auto u = gathered(c, q);
+    if (c.kind == Constraint::distance)
+        return (1.0 / c.link_length) * (position(c.journal, u.data() + c.bearing.size) - position(c.bearing, u.data()));
     return turned(rotated(direction(c.bearing, u.data()), c.angle));
 }
 

@@ -12,6 +12,7 @@ constexpr int constraint_size = 2 * attachment_size;
 struct Constraint {
     enum Kind {
         length,     // of a rigid link
+        distance,   // of two points
         coordinate, // prescribed, of a body
         coincide,   // two points, one component
         slide,      // the journal on a line of the bearing's body
@@ -21,8 +22,8 @@ struct Constraint {
     } kind;
     std::array<int, constraint_size> index; // the coordinates it depends on, in the order of `row`
     int size;
-    double link_length;          // length
-    Attachment bearing, journal; // coincide, slide, align, slope; place: the journal only
+    double link_length;          // length, distance: that of the link or rod
+    Attachment bearing, journal; // distance, coincide, slide, align, slope; place: the journal only
     int axis;                    // coincide, slope, place: 0 x, 1 y
     double angle;                // slide, slope, align that is not prescribed: R turns by it
     int given;                   // index in Inputs::given of the angle or coordinate prescribed, else -1
@@ -32,6 +33,7 @@ struct Constraint {
 };
 
 Constraint length_constraint(const Body &link);
+Constraint distance_constraint(const Attachment &bearing, const Attachment &journal, double length);
 Constraint coordinate_constraint(const Body &body, int coordinate, int given);
 Constraint coincide_constraint(const Attachment &bearing, const Attachment &journal, int axis);
 Constraint slide_constraint(const Attachment &bearing, const Attachment &journal, double direction);
@@ -56,7 +58,7 @@ double convective_acceleration(const Constraint &c, const Eigen::VectorXd &q, co
 using ConstraintHessian = Eigen::Matrix<double, constraint_size + 1, constraint_size + 1>;
 void hessian(const Constraint &c, const Eigen::VectorXd &q, double given, ConstraintHessian &h);
 
-// dPhi/d(r_2) of a slide row.
+// dPhi/d(r_2) of a slide or distance row.
 Vec<double> by_journal(const Constraint &c, const Eigen::VectorXd &q);
 // dPhi/d(rotation of d_2) of an align or slope row.
 double by_rotation(const Constraint &c, const Eigen::VectorXd &q, double given);

@@ -6,7 +6,7 @@
 #include "dual.hpp"
 
 struct ContactLaw {
-    double bearing_radius, clearance;
+    double bearing_radius, clearance; // radius 0: not given, a loose guide does not need it
     double stiffness; // K
     double exponent;  // n
     double damping;   // chi
@@ -14,6 +14,7 @@ struct ContactLaw {
     bool friction, material_slip;
     double friction_coefficient, friction_v0, friction_v1;
 
+    bool has_radii() const { return bearing_radius > 0.0; }
     double journal_radius() const { return bearing_radius - clearance; }
 };
 

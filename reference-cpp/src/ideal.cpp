@@ -21,6 +21,7 @@ Scene idealised(const Scene &scene) {
     if (ideal.inverse_kinematics) ideal.bodies[ideal.inverse_kinematics->body].path = ideal.inverse_kinematics->path;
     ideal.springs.clear();
     ideal.torsion_springs.clear();
+    ideal.maxwells.clear();
     ideal.loads.clear();
     return ideal;
 }

@@ -110,6 +110,7 @@ struct GivenState {
     GivenState(const ls_scene &scene, double time, const double *qs, const double *vs, const double *z)
         : t(time), q(input(qs, scene.model.system.coordinates(), "q")),
           v(input(vs, scene.model.system.coordinates(), "v")), memory(scene.model.system.memory()) {
+        memory.elongation = scene.memory.elongation;
         require(std::isfinite(t), "t is not finite");
         memory.impact_velocity = input(z, memory.impact_velocity.size(), "z");
     }
@@ -127,8 +128,11 @@ ls_run *new_run(const ls_scene *scene, double t, const double *q, const double *
         } else {
             const int n = model.system.coordinates();
             require(std::isfinite(t), "t is not finite");
+            Memory memory = model.system.memory();
+            if (!from_start) memory.elongation = scene->memory.elongation;
             run->dynamic = std::make_unique<Run>(model, t, from_start ? model.q : input(q, n, "q"),
-                                                 from_start ? model.v : input(v, n, "v"), need(tolerances, "tolerances"));
+                                                 from_start ? model.v : input(v, n, "v"), memory,
+                                                 need(tolerances, "tolerances"));
         }
         result = run.release();
     });
@@ -166,6 +170,7 @@ std::size_t ls_scene_count(const ls_scene *scene, std::int32_t list) {
     case LS_CHANNEL: return scene->channels.names().size();
     case LS_SELECTED: return scene->selected.size();
     case LS_REDUNDANT: return scene->model.redundant.size();
+    case LS_ELONGATION: return system.maxwells().size();
     default: return 0;
     }
 }
@@ -179,6 +184,7 @@ const char *ls_scene_name(const ls_scene *scene, std::int32_t list, std::size_t 
     case LS_JOINT: return system.joints()[index].name.c_str();
     case LS_CHANNEL: return scene->channels.names()[index].c_str();
     case LS_SELECTED: return scene->channels.names()[scene->selected[index]].c_str();
+    case LS_ELONGATION: return system.maxwells()[index].name.c_str();
     default: return scene->model.redundant[index].c_str();
     }
 }
@@ -192,6 +198,13 @@ std::int32_t ls_scene_start(const ls_scene *scene, double *q, double *v, ls_erro
         const Model &model = need(scene, "scene").model;
         output(model.q, q, "q");
         output(model.v, v, "v");
+    });
+}
+
+std::int32_t ls_scene_set_elongations(ls_scene *scene, const double *elongations, ls_error *error) {
+    return guarded(error, [&] {
+        VectorXd &target = need(scene, "scene").memory.elongation;
+        target = input(elongations, target.size(), "elongations");
     });
 }
 
@@ -251,7 +264,8 @@ std::int32_t ls_scene_channels(const ls_scene *scene, double t, const double *q,
         s.q = state.q;
         s.v = state.v;
         s.angles = continued(system, scene->angles, s.q);
-        s.memory = {state.memory.impact_velocity, spring_turns(system, s.angles)};
+        s.memory = state.memory;
+        s.memory.turn = spring_turns(system, s.angles);
         s.initial_energy = scene->energy;
         Acceleration level(system);
         level.solve(t, s.q, s.v, s.memory, true);

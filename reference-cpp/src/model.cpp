@@ -61,7 +61,9 @@ void check_exact_start(const Scene &scene, const System &system, const VectorXd 
     system.check_angles(inputs, q);
     for (int k : system.loose_joints())
         if (system.gap(k, q.data(), v.data()).delta() > limit)
-            refuse(scene.joints[k].source, "the journal starts outside its bearing");
+            refuse(scene.joints[k].source, system.joints()[k].kind == JointKind::prismatic
+                                               ? "the slider starts outside its guide"
+                                               : "the journal starts outside its bearing");
 }
 
 } // namespace

@@ -10,8 +10,8 @@ void add_to(MatrixXd &matrix, const Entries &entries, double factor) {
 
 SparseMatrix newton_matrix(const System &system, double c, const Inputs &inputs, const VectorXd &q, const VectorXd &v,
                            const Memory &memory, const VectorXd &lambda) {
-    const int n = system.coordinates(), m = system.constraints(), size = 2 * (n + m);
-    Entries stiffness, damping, rate, all;
+    const int n = system.coordinates(), m = system.constraints(), z = 2 * (n + m), size = z + system.elongations();
+    Entries stiffness, damping, rate, lengthening, all;
     system.force_derivatives(inputs, q, v, memory, stiffness, damping);
     system.constraint_derivatives(inputs, q, v, lambda, stiffness, rate);
     for (int column = 0; column < n; ++column)
@@ -39,6 +39,14 @@ SparseMatrix newton_matrix(const System &system, double c, const Inputs &inputs,
             all.emplace_back(2 * n + m + k, n + coordinate, entry);
         }
     }
+    system.length_derivatives(q, lengthening);
+    for (const auto &entry : lengthening) {
+        const double by_q = system.maxwells()[entry.row()].stiffness * entry.value();
+        all.emplace_back(z + entry.row(), entry.col(), -by_q); // r5
+        all.emplace_back(n + entry.col(), z + entry.row(), -by_q); // f holds N dL/dq
+    }
+    for (int i = 0; i < system.elongations(); ++i)
+        all.emplace_back(z + i, z + i, c * system.maxwells()[i].damping + system.maxwells()[i].stiffness);
     SparseMatrix matrix(size, size);
     matrix.setFromTriplets(all.begin(), all.end());
     return matrix;
@@ -59,6 +67,8 @@ SparseMatrix newton_matrix(const System &system, double c, const Inputs &inputs,
 // The coordinates p of moving bodies have no mass; M^-1 means zero there. Their dq is in b3 by the second row above, and
 // what the first row leaves open, s = dv - c dq, is b4 - c b3 of the rows that prescribe them: it is added to dv wherever
 // that occurs. Their rows of r1 hold no more than mu, and give it at the end.
+//
+// The elongations are eliminated before all that: (c d + k) dz = b5 + k dL/dq dq.
 
 DenseNewton::DenseNewton(const System &system) : system_(system) {}
 
@@ -76,12 +86,23 @@ void DenseNewton::assemble(double c, const Inputs &inputs, const VectorXd &q, co
     add_to(rate_by_q_, rate, 1.0);
     damped_ = (by_v_.array() != 0.0).any();
 
+    Entries lengthening;
+    system_.length_derivatives(q, lengthening);
+    pull_by_q_.setZero(system_.elongations(), n);
+    elongation_pivot_.resize(system_.elongations());
+    for (const auto &entry : lengthening)
+        pull_by_q_(entry.row(), entry.col()) += system_.maxwells()[entry.row()].stiffness * entry.value();
+    for (int i = 0; i < system_.elongations(); ++i)
+        elongation_pivot_[i] = c * system_.maxwells()[i].damping + system_.maxwells()[i].stiffness;
+
     kkt_.setZero(n + m, n + m);
     add_to(kkt_, stiffness, 1.0 / (c * c));
     for (int column = 0; column < n; ++column)
         for (SparseMatrix::InnerIterator entry(system_.mass(), column); entry; ++entry)
             kkt_(entry.row(), column) += entry.value();
     if (damped_) kkt_.topLeftCorner(n, n) += by_v_ / c;
+    for (int i = 0; i < system_.elongations(); ++i)
+        kkt_.topLeftCorner(n, n) -= pull_by_q_.row(i).transpose() * pull_by_q_.row(i) / (elongation_pivot_[i] * c * c);
     kkt_.topRightCorner(n, m) = phi_q_.transpose();
     kkt_.bottomLeftCorner(m, n) = phi_q_;
     lu_.compute(kkt_);
@@ -93,7 +114,8 @@ void DenseNewton::assemble(double c, const Inputs &inputs, const VectorXd &q, co
 
 void DenseNewton::solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd> x) const {
     const int n = system_.coordinates(), m = system_.constraints();
-    const auto b1 = b.segment(0, n), b2 = b.segment(n, n), b3 = b.segment(2 * n, m), b4 = b.segment(2 * n + m, m);
+    const auto b1 = b.segment(0, n), b2 = b.segment(n, n), b3 = b.segment(2 * n, m), b4 = b.segment(2 * n + m, m),
+               b5 = b.tail(system_.elongations());
     const VectorXd m_b1 = system_.divided_by_mass(b1);
 
     VectorXd known = -m_b1; // dv - c dq as far as it does not depend on dmu
@@ -105,6 +127,7 @@ void DenseNewton::solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd
     }
     VectorXd rhs(n + m);
     rhs.head(n) = b2 + c_ * b1;
+    if (pull_by_q_.rows() > 0) rhs.head(n) += pull_by_q_.transpose() * b5.cwiseQuotient(elongation_pivot_);
     if (damped_) rhs.head(n) -= by_v_ * (known + w_mu);
     rhs.head(n) /= c_ * c_;
     rhs.tail(m) = b3;
@@ -113,6 +136,7 @@ void DenseNewton::solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd
 
     x.segment(0, n) = dq;
     x.segment(n, n) = c_ * dq + known;
+    x.tail(system_.elongations()) = (b5 + pull_by_q_ * dq).cwiseQuotient(elongation_pivot_);
     if (m == 0) return;
     VectorXd dmu = projection_.solve(drift - rate_by_q_ * dq);
     x.segment(n, n) += w_ * dmu;

@@ -16,14 +16,21 @@ Gap System::gap(int k, const double *q, const double *v) const {
     const Joint &j = joints_[k];
     const double *qi = q + j.bearing.offset, *qj = q + j.journal.offset;
     const double *vi = v + j.bearing.offset, *vj = v + j.journal.offset;
+    if (j.kind == JointKind::prismatic) { // the part of the eccentricity across the guide, s m
+        const GuideMotion<double> x = guide_motion(j.direction, j.bearing, j.journal, qi, vi, qj, vj);
+        return {x.s * x.m, x.s_rate * x.m - (x.s * x.spin) * x.u, law(k).clearance};
+    }
     return {position(j.journal, qj) - position(j.bearing, qi),
             velocity(j.journal, qj, vj) - velocity(j.bearing, qi, vi), law(k).clearance};
 }
 
 LooseForces<double> System::loose(int k, const VectorXd &q, const VectorXd &v, const Memory &memory) const {
     const Joint &j = joints_[k];
-    return loose_forces<double>(law(k), memory.impact_velocity[k], j.bearing, j.journal, q.data() + j.bearing.offset,
-                                v.data() + j.bearing.offset, q.data() + j.journal.offset, v.data() + j.journal.offset);
+    const double *qi = q.data() + j.bearing.offset, *qj = q.data() + j.journal.offset;
+    const double *vi = v.data() + j.bearing.offset, *vj = v.data() + j.journal.offset;
+    const double z = memory.impact_velocity[k];
+    if (j.kind == JointKind::prismatic) return guide_forces(law(k), z, j.direction, j.bearing, j.journal, qi, vi, qj, vj);
+    return loose_forces(law(k), z, j.bearing, j.journal, qi, vi, qj, vj);
 }
 
 Energies System::energies(const VectorXd &q, const VectorXd &v, const Memory &memory) const {
@@ -43,6 +50,7 @@ Energies System::energies(const VectorXd &q, const VectorXd &v, const Memory &me
     for (const Spring &s : springs_) sum.springs += energy(s, q);
     for (std::size_t i = 0; i < torsion_springs_.size(); ++i)
         sum.springs += energy(torsion_springs_[i], memory.turn[static_cast<int>(i)], q);
+    for (int i = 0; i < elongations(); ++i) sum.springs += energy(maxwells_[i], memory.elongation[i], q);
     return sum;
 }
 
@@ -64,6 +72,7 @@ Powers System::powers(const Inputs &inputs, const VectorXd &q, const VectorXd &v
     }
     for (const Spring &s : springs_) p.damping_dissipated += loss(s, q, v);
     for (const TorsionSpring &s : torsion_springs_) p.damping_dissipated += loss(s, q, v);
+    for (int i = 0; i < elongations(); ++i) p.damping_dissipated += loss(maxwells_[i], memory.elongation[i], q);
     for (const Body &b : bodies_) {
         if (b.strain_damping == 0.0) continue;
         for (int e = 0; e < b.elements; ++e) {
@@ -80,7 +89,7 @@ bool System::prescribes_motion() const {
 }
 
 bool System::has_power() const {
-    if (prescribes_motion() || !loads_.empty() || mass_damping_.nonZeros() > 0) return true;
+    if (prescribes_motion() || !loads_.empty() || elongations() > 0 || mass_damping_.nonZeros() > 0) return true;
     for (const Spring &s : springs_)
         if (s.damping > 0.0) return true;
     for (const TorsionSpring &s : torsion_springs_)
@@ -96,7 +105,8 @@ Vec<double> System::joint_force(int k, const VectorXd &q, const VectorXd &v, con
     const Joint &j = joints_[k];
     if (j.law) return loose(k, q, v, memory).on_journal;
     auto multiplier = [&](int row) { return row < 0 ? 0.0 : lambda[row]; };
-    if (j.kind != JointKind::prismatic) return {multiplier(j.rows[0]), multiplier(j.rows[1])};
+    if (j.kind == JointKind::revolute || j.kind == JointKind::weld)
+        return {multiplier(j.rows[0]), multiplier(j.rows[1])};
     if (j.rows[0] < 0) return {0.0, 0.0};
     return -lambda[j.rows[0]] * by_journal(constraints_[j.rows[0]], q);
 }

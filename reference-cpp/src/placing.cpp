@@ -29,7 +29,7 @@ Known gather(const Scene &ideal, int body, const Placed &placed) {
         if (!is_first && joint.second.body != body) continue;
         const PointReference &here = is_first ? joint.first : joint.second;
         const PointReference &there = is_first ? joint.second : joint.first;
-        const bool coincide = joint.kind != JointKind::prismatic;
+        const bool coincide = joint.kind == JointKind::revolute || joint.kind == JointKind::weld;
         for (const SketchedJoint &sketch : ideal.initial.joints)
             if (sketch.joint == static_cast<int>(j) && (coincide || !is_first))
                 known.points.push_back({here.at, sketch.at});

@@ -65,6 +65,26 @@ void read_rigid_body(Fields &f, const Library &library, BodyDescription &body) {
     for (NamedPoint &point : body.points) point.at = point.at - center;
 }
 
+void read_disc(Fields &f, const Library &library, BodyDescription &body) {
+    const double radius = f.positive("radius");
+    if (f.has("material")) {
+        require(!f.has("mass"), f.source("mass"), "give either the mass or a material, not both");
+        const double density = named(library.materials, f.get("material"), "material").density;
+        body.mass = density * pi * radius * radius * f.positive("thickness");
+    } else {
+        body.mass = f.positive("mass");
+        require(!f.has("thickness"), f.source("thickness"), "only a disc with a material has a thickness");
+    }
+    body.inertia = 0.5 * body.mass * radius * radius;
+    const double rim = f.number("rim", 0.0);
+    body.points = {{"center", {0.0, 0.0}}, {"rim", {radius * std::cos(rim), radius * std::sin(rim)}}};
+    each_entry(f.find("points"), [&](const std::string &name, const Value &value) {
+        require(name != body.points[0].name && name != body.points[1].name, value.source,
+                "every disc has this point already");
+        body.points.push_back({name, read_place(value)});
+    });
+}
+
 void read_link_points(Fields &f, BodyDescription &body) {
     body.points = {{"start", {0.0, 0.0}}, {"end", {body.length, 0.0}}};
     each_entry(f.find("points"), [&](const std::string &name, const Value &value) {
@@ -110,7 +130,7 @@ void read_link(Fields &f, const Library &library, BodyDescription &body) {
 } // namespace
 
 BodyDescription read_body(const std::string &name, const Value &value, const Library &library, double duration) {
-    enum class Type { ground, moving, rigid_body, point_mass, link };
+    enum class Type { ground, moving, rigid_body, disc, point_mass, link };
     Fields f(value);
     BodyDescription body;
     body.name = name;
@@ -118,6 +138,7 @@ BodyDescription read_body(const std::string &name, const Value &value, const Lib
     switch (f.choice<Type>("type", {{"ground", Type::ground},
                                     {"moving", Type::moving},
                                     {"rigid_body", Type::rigid_body},
+                                    {"disc", Type::disc},
                                     {"point_mass", Type::point_mass},
                                     {"link", Type::link}})) {
     case Type::ground: read_points(f, body); break;
@@ -129,6 +150,10 @@ BodyDescription read_body(const std::string &name, const Value &value, const Lib
     case Type::rigid_body:
         body.kind = BodyKind::rigid_body;
         read_rigid_body(f, library, body);
+        break;
+    case Type::disc:
+        body.kind = BodyKind::rigid_body;
+        read_disc(f, library, body);
         break;
     case Type::point_mass:
         body.kind = BodyKind::point_mass;

@@ -64,14 +64,16 @@ ContactLaw read_contact(const Value &value, const Library &library) {
                                            {"hunt_crossley", Law::hunt_crossley},
                                            {"flores", Law::flores}});
     ContactLaw law{};
-    law.bearing_radius = f.positive("bearing_radius");
+    if (f.has("bearing_radius")) law.bearing_radius = f.positive("bearing_radius");
     law.clearance = f.positive("clearance");
-    require(law.clearance < law.bearing_radius, f.source("clearance"), "must be below bearing_radius");
+    require(!law.has_radii() || law.clearance < law.bearing_radius, f.source("clearance"),
+            "must be below bearing_radius");
     if (f.has("stiffness")) {
         law.stiffness = f.positive("stiffness");
         for (const char *key : {"bearing_material", "journal_material"})
             require(!f.has(key), f.source(key), "give either a stiffness or the materials, not both");
     } else { // eq. 25, with i the bearing and j the journal
+        require(law.has_radii(), f.source(), "without a bearing_radius it needs a stiffness");
         const double h_i = compliance(f.get("bearing_material"), library);
         const double h_j = compliance(f.get("journal_material"), library);
         law.stiffness = 4.0 / (3.0 * (h_i + h_j)) *
@@ -86,6 +88,7 @@ ContactLaw read_contact(const Value &value, const Library &library) {
     law.damping = damping_factor(kind, restitution);
     // without damping the impact velocity is without effect, but it tells a closed contact from an open one
     law.impact_velocity_floor = undamped ? 1.0 : f.positive("impact_velocity_floor");
+    law.material_slip = true;
     if (const Value *friction = f.find("friction")) read_friction(*friction, law);
     f.finish();
     return law;

@@ -16,12 +16,13 @@ int ground(const Scene &scene) {
 } // namespace
 
 void read_force(const std::string &name, const Value &value, const Library &library, Scene &scene) {
-    enum class Type { spring_damper, torsion_spring, force, torque };
+    enum class Type { spring_damper, torsion_spring, maxwell, force, torque };
     Fields f(value);
     auto point = [&](const char *key) { return read_point(f.get(key), scene, library); };
     auto function = [&](const char *key) { return read_function(f.get(key), scene.duration); };
     switch (f.choice<Type>("type", {{"spring_damper", Type::spring_damper},
                                     {"torsion_spring", Type::torsion_spring},
+                                    {"maxwell", Type::maxwell},
                                     {"force", Type::force},
                                     {"torque", Type::torque}})) {
     case Type::spring_damper:
@@ -32,6 +33,10 @@ void read_force(const std::string &name, const Value &value, const Library &libr
         scene.torsion_springs.push_back({name, value.source, read_turning_joint(f.get("joint"), scene, library),
                                          f.not_negative("stiffness"), f.not_negative("damping"),
                                          f.number("rest_angle")});
+        break;
+    case Type::maxwell:
+        scene.maxwells.push_back({name, value.source, point("from"), point("to"), f.positive("stiffness"),
+                                  f.positive("damping"), f.not_negative("rest_length"), f.number("elongation", 0.0)});
         break;
     case Type::force: {
         LoadDescription load{name, value.source, LoadKind::dead_force, point("point"), {}, function("x"), function("y")};

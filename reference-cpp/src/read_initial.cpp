@@ -81,6 +81,7 @@ Initial read_initial(const Value *value, const Scene &scene, const Library &libr
         require(!scene.inverse_kinematics, source, "is refused in a scene with inverse kinematics");
         for (const JointDescription &joint : scene.joints)
             require(!joint.law, source, "is refused in a scene with clearance");
+        require(scene.maxwells.empty(), source, "is refused in a scene with a Maxwell element");
     }
     f.finish();
     return initial;

@@ -50,6 +50,8 @@ void System::add_joint_rows(Joint &joint, const JointDescription &d) {
     if (joint.kind == JointKind::prismatic) {
         joint.rows[0] =
             add_row(slide_constraint(joint.bearing, joint.journal, d.direction), joint.name + ".line", d.source);
+    } else if (joint.kind == JointKind::rod) {
+        joint.rows[0] = add_row(distance_constraint(joint.bearing, joint.journal, d.length), joint.name + ".length", d.source);
     } else {
         for (int axis : {0, 1})
             joint.rows[axis] = add_row(coincide_constraint(joint.bearing, joint.journal, axis),

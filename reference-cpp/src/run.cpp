@@ -29,13 +29,14 @@ Handle allocated(Handle handle) {
 
 } // namespace
 
-Run::Run(const Model &model, double t, const VectorXd &q, const VectorXd &v, const ls_tolerances &tolerances)
+Run::Run(const Model &model, double t, const VectorXd &q, const VectorXd &v, const Memory &memory,
+         const ls_tolerances &tolerances)
     : model_(model), system_(model_.system), channels_(model_), tolerances_(tolerances), n_(system_.coordinates()),
-      m_(system_.constraints()), before_(t), t_(t), target_(t), q_(q), v_(v), memory_(system_.memory()),
+      m_(system_.constraints()), z_(system_.elongations()), before_(t), t_(t), target_(t), q_(q), v_(v), memory_(memory),
       angles_(continued(system_, starting_angles(model_), q)), watch_before_(system_.loose_joints().size()),
       clamped_(system_.loose_joints().size(), 0), deepest_(system_.loose_joints().size(), 0.0),
       acceleration_(system_), newton_(system_), inputs_time_(std::numeric_limits<double>::quiet_NaN()),
-      context_(&errors_), y_(allocated(N_VNew_Serial(2 * (n_ + m_), context_))), yp_(allocated(N_VClone(y_.get()))),
+      context_(&errors_), y_(allocated(N_VNew_Serial(unknowns(), context_))), yp_(allocated(N_VClone(y_.get()))),
       scratch_(allocated(N_VClone(y_.get()))), ida_(context_) {
     constexpr double consistent = 1e-6;
     if (!q.allFinite() || !v.allFinite()) throw Failure(LS_NOT_FINITE, "the initial state is not finite", t);
@@ -93,7 +94,7 @@ void Run::set_up_dense() {
 }
 
 void Run::set_up_sparse() {
-    const int size = 2 * (n_ + m_);
+    const int size = unknowns();
     const VectorXd lambda = VectorXd::Zero(m_);
     const auto entries = newton_matrix(system_, 1.0, inputs(t_), q_, v_, memory_, lambda).nonZeros();
     matrix_.reset(allocated(SUNSparseMatrix(size, size, entries, CSC_MAT, context_)));
@@ -141,6 +142,13 @@ const Inputs &Run::inputs(double t) {
     return inputs_;
 }
 
+const Memory &Run::memory_at(const double *y) {
+    if (z_ == 0) return memory_;
+    memory_at_ = memory_;
+    memory_at_.elongation = part(y, 2 * (n_ + m_), z_);
+    return memory_at_;
+}
+
 int Run::residual(double t, N_Vector yy, N_Vector yyp, N_Vector rr, void *user) {
     Run &run = *static_cast<Run *>(user);
     return run.guarded([&] {
@@ -153,7 +161,8 @@ int Run::residual(double t, N_Vector yy, N_Vector yyp, N_Vector rr, void *user) 
         const System &s = run.system_;
         const Inputs &inputs = run.inputs(t);
         s.constraint_rows(inputs, run.qs_, run.phi_, run.phi_q_, run.phi_t_);
-        s.force(inputs, run.qs_, run.vs_, run.memory_, run.f_);
+        const Memory &memory = run.memory_at(y);
+        s.force(inputs, run.qs_, run.vs_, memory, run.f_);
         auto r1 = part(r, 0, n), r2 = part(r, n, n);
         r1.noalias() = s.mass() * (part(yp, 0, n) - run.vs_);
         r1.noalias() += run.phi_q_.transpose() * mu;
@@ -162,7 +171,11 @@ int Run::residual(double t, N_Vector yy, N_Vector yyp, N_Vector rr, void *user) 
         r2.noalias() += run.phi_q_.transpose() * lambda;
         part(r, 2 * n, m) = run.phi_;
         part(r, 2 * n + m, m) = run.phi_t_ + run.phi_q_ * run.vs_;
-        if (!part(r, 0, 2 * (n + m)).allFinite())
+        VectorXd rates;
+        s.elongation_rates(run.qs_, memory, rates);
+        for (int i = 0, first = 2 * (n + m); i < run.z_; ++i)
+            r[first + i] = s.maxwells()[i].damping * (yp[first + i] - rates[i]);
+        if (!part(r, 0, run.unknowns()).allFinite())
             throw Failure(LS_NOT_FINITE, "the residual of the equations of motion is not finite", t);
     });
 }
@@ -173,17 +186,18 @@ int Run::jacobian(double t, double c, N_Vector yy, N_Vector, N_Vector, SUNMatrix
     return run.guarded([&] {
         const double *y = N_VGetArrayPointer(yy);
         const VectorXd q = part(y, 0, run.n_), v = part(y, run.n_, run.n_), lambda = part(y, 2 * run.n_, run.m_);
+        const Memory &memory = run.memory_at(y);
         if (run.tolerances_.linear_solver == LS_SPARSE)
-            run.fill_sparse(newton_matrix(run.system_, c, run.inputs(t), q, v, run.memory_, lambda));
+            run.fill_sparse(newton_matrix(run.system_, c, run.inputs(t), q, v, memory, lambda));
         else
-            run.newton_.assemble(c, run.inputs(t), q, v, run.memory_, lambda);
+            run.newton_.assemble(c, run.inputs(t), q, v, memory, lambda);
     });
 }
 
 int Run::solve_linear(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, double) {
     Run &run = *static_cast<Run *>(solver->content);
     return run.guarded([&] {
-        const int size = 2 * (run.n_ + run.m_);
+        const int size = run.unknowns();
         run.newton_.solve(part(static_cast<const double *>(N_VGetArrayPointer(b)), 0, size),
                           part(N_VGetArrayPointer(x), 0, size));
     });
@@ -200,7 +214,9 @@ int Run::weights(N_Vector yy, N_Vector ww, void *user) {
         w[i] = 1.0 / (tol.relative * std::abs(y[i]) + tol.position / levers[i]);
         w[run.n_ + i] = 1.0 / (tol.relative * std::abs(y[run.n_ + i]) + tol.velocity / levers[i]);
     }
-    std::fill(w + 2 * run.n_, w + 2 * (run.n_ + run.m_), 0.0);
+    const int z = 2 * (run.n_ + run.m_);
+    std::fill(w + 2 * run.n_, w + z, 0.0);
+    for (int i = z; i < run.unknowns(); ++i) w[i] = 1.0 / (tol.relative * std::abs(y[i]) + tol.position);
     return 0;
 }
 

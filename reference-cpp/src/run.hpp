@@ -14,7 +14,9 @@ using Ledger = Powers;
 
 class Run {
 public:
-    Run(const Model &model, double t, const VectorXd &q, const VectorXd &v, const ls_tolerances &tolerances);
+    // memory: all contacts open; the elongations of Maxwell elements at t
+    Run(const Model &model, double t, const VectorXd &q, const VectorXd &v, const Memory &memory,
+        const ls_tolerances &tolerances);
     Run(const Run &) = delete;
     Run &operator=(const Run &) = delete;
 
@@ -64,7 +66,9 @@ private:
     void watch_clamps();
     void watch_depth();
 
-    void state_at(double t, VectorXd &q, VectorXd &v);
+    int unknowns() const { return 2 * (n_ + m_) + z_; } // q, v, lambda, mu, z
+    const Memory &memory_at(const double *y);           // memory_ with the elongations of y
+    void state_at(double t, VectorXd &q, VectorXd &v, Memory &memory);
     Ledger integral(double to);
     std::vector<double> kinks(double to);
     void describe(double t);
@@ -74,13 +78,14 @@ private:
     const System &system_;
     Channels channels_;
     ls_tolerances tolerances_;
-    int n_, m_;
+    int n_, m_, z_; // numbers of coordinates, constraints, elongations
 
     // the last interval IDA has covered without a restart inside; t_ is reached, a restart may be pending there
     double before_, t_;
     double target_;                   // the time asked for
     VectorXd q_, v_;
-    Memory memory_;
+    Memory memory_;                   // its elongations: at t_
+    Memory memory_at_;                // of memory_at
     Angles angles_;                   // at t_
     double initial_energy_;
     Ledger ledger_before_, ledger_;

@@ -6,15 +6,17 @@
 #include "run_vectors.hpp"
 
 // Inside the last interval from IDA's interpolant, at its end as returned.
-void Run::state_at(double t, VectorXd &q, VectorXd &v) {
+void Run::state_at(double t, VectorXd &q, VectorXd &v, Memory &memory) {
     if (t == t_) {
         q = q_;
         v = v_;
+        memory = memory_;
         return;
     }
     check(IDAGetDky(ida_, t, 0, scratch_.get()));
     q = part(static_cast<const double *>(data(scratch_)), 0, n_);
     v = part(static_cast<const double *>(data(scratch_)), n_, n_);
+    memory = memory_at(data(scratch_));
 }
 
 // Gauss quadrature of the powers over the last interval up to `to`, piecewise between the kinks of the contact law. The
@@ -35,9 +37,10 @@ Ledger Run::integral(double to) {
             qs_ = part(static_cast<const double *>(data(scratch_)), 0, n_);
             vs_ = part(static_cast<const double *>(data(scratch_)), n_, n_);
             const double weight = g.weight * (end - from);
-            sum.add(weight, system_.powers(inputs(t), qs_, vs_, memory_));
+            const Memory &memory = memory_at(data(scratch_));
+            sum.add(weight, system_.powers(inputs(t), qs_, vs_, memory));
             if (!system_.prescribes_motion()) return;
-            acceleration_.solve(t, qs_, vs_, memory_, false);
+            acceleration_.solve(t, qs_, vs_, memory, false);
             sum.work += weight * acceleration_.prescribed_power();
         };
         if (system_.prescribes_motion() || system_.has_loads())
@@ -67,17 +70,16 @@ void Run::advance(double t) {
 void Run::describe(double t) {
     Snapshot &s = snapshot_;
     s.t = t;
-    state_at(t, s.q, s.v);
+    state_at(t, s.q, s.v, s.memory);
     s.ledger = t == t_ ? ledger_ : ledger_before_;
     if (t != t_) s.ledger.add(1.0, integral(t));
-    acceleration_.solve(t, s.q, s.v, memory_, true);
+    acceleration_.solve(t, s.q, s.v, s.memory, true);
     if (!acceleration_.a.allFinite() || !acceleration_.lambda.allFinite())
         throw Failure(LS_NOT_FINITE, "the acceleration is not finite", t);
     s.a = acceleration_.a;
     s.lambda = acceleration_.lambda;
     s.inputs = acceleration_.inputs;
     system_.check_left_out(s.inputs, s.q, t);
-    s.memory = memory_;
     s.angles = continued(system_, angles_, s.q);
     s.initial_energy = initial_energy_;
 }

@@ -39,18 +39,19 @@ struct PointReference {
     Vec<double> at; // as NamedPoint::at
 };
 
-enum class JointKind { revolute, prismatic, weld };
+enum class JointKind { revolute, prismatic, weld, rod };
 
 struct JointDescription {
     std::string name;
     Source source;
     JointKind kind = JointKind::revolute;
     PointReference first, second;  // bearing, guide; journal, slider
-    std::optional<ContactLaw> law; // revolute with clearance
+    std::optional<ContactLaw> law; // with clearance: revolute, or prismatic without locked rotation (a loose guide)
     double direction = 0.0;        // prismatic: angle of the line in the frame of the first body
     bool locked = false;           // prismatic
     double angle = 0.0;            // locked prismatic, weld
     bool slope_vector = false;     // weld
+    double length = 0.0;           // rod
 
     bool holds_angle() const { return locked || kind == JointKind::weld; }
 };
@@ -89,6 +90,14 @@ struct TorsionSpringDescription {
     Source source;
     int joint = 0;
     double stiffness = 0.0, damping = 0.0, rest_angle = 0.0;
+};
+
+struct MaxwellDescription {
+    std::string name;
+    Source source;
+    PointReference from, to;
+    double stiffness = 0.0, damping = 0.0, rest_length = 0.0;
+    double elongation = 0.0; // of the damper at t = 0
 };
 
 enum class LoadKind { dead_force, follower_force, torque };
@@ -153,6 +162,7 @@ struct Scene {
     std::optional<InverseKinematicsDrive> inverse_kinematics;
     std::vector<SpringDescription> springs;
     std::vector<TorsionSpringDescription> torsion_springs;
+    std::vector<MaxwellDescription> maxwells;
     std::vector<LoadDescription> loads;
     Initial initial;
 };

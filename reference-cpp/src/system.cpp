@@ -57,6 +57,11 @@ void System::add_forces(const Scene &scene) {
         const Joint &joint = joints_[s.joint];
         torsion_springs_.push_back({s.name, joint.bearing, joint.journal, s.stiffness, s.damping, s.rest_angle});
     }
+    elongation_.resize(static_cast<int>(scene.maxwells.size()));
+    for (const MaxwellDescription &m : scene.maxwells) {
+        elongation_[static_cast<int>(maxwells_.size())] = m.elongation;
+        maxwells_.push_back({m.name, attachment(m.from), attachment(m.to), m.stiffness, m.damping, m.rest_length});
+    }
     auto add_load_function = [&](const TimeFunction &f) {
         return add_function(f, scene.is_static && std::holds_alternative<Constant>(f));
     };
@@ -133,5 +138,6 @@ Inputs System::inputs(double t) const {
 }
 
 Memory System::memory() const {
-    return {VectorXd::Zero(static_cast<int>(joints_.size())), VectorXd::Zero(static_cast<int>(torsion_springs_.size()))};
+    return {VectorXd::Zero(static_cast<int>(joints_.size())), VectorXd::Zero(static_cast<int>(torsion_springs_.size())),
+            elongation_};
 }

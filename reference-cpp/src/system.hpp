@@ -11,7 +11,9 @@
 #include "constraint.hpp"
 #include "driven_angles.hpp"
 #include "load.hpp"
+#include "loose_guide.hpp"
 #include "loose_joint.hpp"
+#include "maxwell.hpp"
 #include "scene.hpp"
 #include "spring.hpp"
 
@@ -22,9 +24,9 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 struct Joint {
     std::string name;
     JointKind kind;
-    Attachment bearing, journal;      // also of the guide and the slider, and of the two sides of a weld
+    Attachment bearing, journal;      // also of the guide and the slider, and of the two sides of a weld or rod
     std::optional<ContactLaw> law;    // with clearance
-    std::array<int, 2> rows{-1, -1};  // that hold the points; prismatic: the first. -1: none, or left out
+    std::array<int, 2> rows{-1, -1};  // that hold the points; prismatic, rod: the first. -1: none, or left out
     std::array<int, 2> holds{-1, -1}; // that hold rotation or slope
     int drive = -1;                   // that prescribes the angle
     double direction = 0.0;           // prismatic: of the line
@@ -32,7 +34,7 @@ struct Joint {
 };
 
 struct Gap {
-    Vec<double> e, e_dot;
+    Vec<double> e, e_dot; // of a loose guide the part across the guide
     double clearance;
     double size() const { return std::sqrt(dot(e, e)); }
     double delta() const { return size() - clearance; }
@@ -50,6 +52,7 @@ struct Inputs {
 struct Memory {
     VectorXd impact_velocity; // by joint: of eq. 24 while its contact is closed, else 0
     VectorXd turn;            // by torsion spring: an angle phi - phi_0 within half a turn of the present one
+    VectorXd elongation;      // z by Maxwell element; an unknown of the motion, unlike the others
 };
 
 struct Energies {
@@ -74,6 +77,9 @@ public:
     const std::vector<Joint> &joints() const { return joints_; }
     const std::vector<Spring> &springs() const { return springs_; }
     const std::vector<TorsionSpring> &torsion_springs() const { return torsion_springs_; }
+    const std::vector<Maxwell> &maxwells() const { return maxwells_; }
+    // How many Maxwell elements act, each with an unknown z: none in a static analysis, where their pull is zero.
+    int elongations() const { return full_load_ > 0.0 ? 0 : static_cast<int>(maxwells_.size()); }
     const std::vector<Load> &loads() const { return loads_; }
     const std::vector<int> &loose_joints() const { return loose_; }
     const ContactLaw &law(int joint) const { return *joints_[joint].law; }
@@ -100,12 +106,16 @@ public:
     const std::vector<double> &breaks() const { return breaks_; }
 
     Inputs inputs(double t) const;
-    Memory memory() const; // all contacts open, torsion springs within half a turn of their rest
+    Memory memory() const; // all contacts open, torsion springs within half a turn of their rest, z of the scene
 
     void force(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory, VectorXd &f) const;
     // df/dq and df/dv, appended; entries of the same place add up
     void force_derivatives(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory,
                            Entries &by_q, Entries &by_v) const;
+
+    // dz/dt of the Maxwell elements, and dL/dq of their lengths, appended: one row an element
+    void elongation_rates(const VectorXd &q, const Memory &memory, VectorXd &rates) const;
+    void length_derivatives(const VectorXd &q, Entries &by_q) const;
 
     void constraint_rows(const Inputs &inputs, const VectorXd &q, VectorXd &phi, MatrixXd &phi_q, VectorXd &phi_t) const;
     // The coordinates that a row depends on are the first `size` of `index`.
@@ -156,6 +166,7 @@ private:
     std::shared_ptr<const DrivenAngles> driven_angles_;
     std::vector<Spring> springs_;
     std::vector<TorsionSpring> torsion_springs_;
+    std::vector<Maxwell> maxwells_;
     std::vector<Load> loads_;
     std::vector<Constraint> constraints_;
     struct LeftOut {
@@ -178,4 +189,5 @@ private:
     SparseMatrix inverse_mass_; // its columns of the coordinates that constraints depend on
     VectorXd weight_;          // the force of gravity, M g
     VectorXd levers_;
+    VectorXd elongation_;      // z at t = 0
 };

@@ -1,0 +1,409 @@
+#!/usr/bin/env python3
+"""Discs, rods, loose guides and Maxwell elements against closed forms, and scenes with them that must be refused:
+make && make build/libreference.so && python3 checks/additions.py"""
+import csv
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+DRIVER = HERE.parent / "build/reference"
+SPACE = tempfile.TemporaryDirectory()
+FOLDER = pathlib.Path(SPACE.name)
+TIGHT = ["--relative", "1e-11", "--position", "1e-12", "--velocity", "1e-10"]
+failures = 0
+
+
+def scene(duration, interval, body, gravity=(0.0, 0.0), clearance=False, analysis="dynamic"):
+    onset = ", onset_tolerance = 1e-12" if clearance else ""
+    return (f'format = 1\ntitle = "check"\n'
+            f'simulation = {{ duration = {duration}, gravity = {list(gravity)}, analysis = "{analysis}" }}\n'
+            f'integrator = {{ method = "bathe", step = {interval}, newton_tolerance = 1e-10{onset} }}\n'
+            f'output = {{ interval = {interval}, channels = ["*"] }}\n{body}')
+
+
+def path_of(name, text):
+    path = FOLDER / f"{name}.toml"
+    path.write_text(text)
+    return path
+
+
+def run(name, text, options=()):
+    """Channels as arrays by name, and the onsets as a list of dictionaries."""
+    out, onsets = FOLDER / "out.csv", FOLDER / "onsets.csv"
+    result = subprocess.run([DRIVER, path_of(name, text), "--out", out, "--onsets", onsets, "--all", *TIGHT, *options],
+                            capture_output=True, text=True)
+    if result.returncode:
+        raise RuntimeError(name + ": " + result.stderr)
+    with open(out) as file:
+        names = file.readline().strip().split(",")
+        rows = np.loadtxt(file, delimiter=",", ndmin=2)
+    with open(onsets) as file:
+        events = [{k: v if k == "joint" else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+    return dict(zip(names, rows.T)), events
+
+
+def expect(what, deviation, limit):
+    global failures
+    deviation = float(np.max(np.abs(deviation)))
+    good = deviation <= limit
+    failures += not good
+    print(f"{'ok    ' if good else 'WRONG '} {what}: {deviation:.1e} (at most {limit:.0e})")
+
+
+# ---- disc: a pendulum that hangs at its rim ---------------------------------------------------------------------------
+
+R, RIM, DENSITY, THICKNESS = 0.12, 0.7, 7850.0, 0.004
+MASS = DENSITY * math.pi * R * R * THICKNESS
+STATE = f"{{ x = {-R * math.cos(RIM + 0.4)}, y = {-R * math.sin(RIM + 0.4)}, theta = 0.4 }}"
+PENDULUM = """materials.steel = {{ density = 7850.0 }}
+bodies.ground = {{ type = "ground", points.o = [0.0, 0.0] }}
+bodies.wheel = {{ {wheel}, points.hub = [0.0, 0.03] }}
+joints.pin = {{ type = "revolute", bearing = "ground.o", journal = "wheel.rim", model = "ideal" }}
+initial.bodies.wheel = {state}
+"""
+rim = f"points.rim = [{R * math.cos(RIM)}, {R * math.sin(RIM)}], points.center = [0.0, 0.0]"
+variants = {
+    "disc": f'type = "disc", radius = {R}, thickness = {THICKNESS}, material = "steel", rim = {RIM}',
+    "disc by mass": f'type = "disc", radius = {R}, mass = {MASS!r}, rim = {RIM}',
+    "rigid body": f'type = "rigid_body", mass = {MASS!r}, inertia = {0.5 * MASS * R * R!r}, {rim}',
+}
+runs = {name: run("disc", scene(1.0, 0.01, PENDULUM.format(wheel=wheel, state=STATE), (0.0, -9.81)))[0]
+        for name, wheel in variants.items()}
+for name in ("disc", "disc by mass"):
+    other = runs["rigid body"]
+    expect(f"{name}: every channel as of the same rigid body",
+           [np.max(np.abs(runs[name][k] - other[k])) for k in other], 1e-11)
+assert set(runs["disc"]) == set(runs["rigid body"])
+
+# ---- rod: a point mass on a rod, and two bodies joined by one -----------------------------------------------------------
+
+L, M, G = 0.4, 0.3, 9.81
+ROD = """bodies.ground = {{ type = "ground", points.o = [0.0, 0.0] }}
+bodies.bob = {bob}
+joints.rod = {joint}
+initial.bodies.bob = {state}
+"""
+pose = f"x = {L * math.sin(1.0)}, y = {-L * math.cos(1.0)}"
+spin = 2.0
+speed = f"vx = {spin * L * math.cos(1.0)}, vy = {spin * L * math.sin(1.0)}"
+swing = scene(2.0, 0.01, ROD.format(bob=f'{{ type = "point_mass", mass = {M} }}', state=f"{{ {pose}, {speed} }}",
+              joint=f'{{ type = "rod", first = "ground.o", second = "bob.center", length = {L} }}'), (0.0, -G))
+rod, _ = run("rod", swing)
+stick, _ = run("stick", scene(2.0, 0.01, ROD.format(
+    bob=f'{{ type = "rigid_body", mass = {M}, inertia = 1e-9, points.pivot = [0.0, {L}] }}',
+    joint='{ type = "revolute", bearing = "ground.o", journal = "bob.pivot", model = "ideal" }',
+    state=f"{{ {pose}, theta = 1.0, {speed}, omega = {spin} }}"), (0.0, -G)))
+x, y, vx, vy = (rod["bob." + k] for k in ("x", "y", "vx", "vy"))
+expect("rod: distance of its ends", np.hypot(x, y) - L, 1e-10)
+expect("rod: path of a massless stick with inertia 1e-9", [x - stick["bob.x"], y - stick["bob.y"]], 1e-6)
+tension = M * (G * -y / L + (vx * vx + vy * vy) / L)
+expect("rod: tension m (g cos + v^2/l)", -(rod["rod.fx"] * x + rod["rod.fy"] * y) / L - tension, 1e-7)
+expect("rod: energy", rod["energy.numerical"], 1e-8)
+
+PAIR = """bodies.ground = { type = "ground" }
+bodies.a = { type = "rigid_body", mass = 0.5, inertia = 2e-3, points.p = [0.05, 0.02] }
+bodies.b = { type = "disc", radius = 0.06, mass = 0.8, rim = 2.0 }
+joints.rod = { type = "rod", first = "a.p", second = "b.rim", length = 0.3 }
+initial.bodies.a = { x = 0.0, y = 0.0, theta = 0.3, vx = 0.2, vy = -0.4, omega = 7.0 }
+initial.sketch.rod = [0.35, 0.05]
+initial.sketch.b = { center = [0.37, 0.0] }
+"""
+
+
+def momenta(c, bodies):
+    """Momentum in x and y and angular momentum about the origin; bodies: name, mass, inertia."""
+    px = sum(m * c[n + ".vx"] for n, m, _ in bodies)
+    py = sum(m * c[n + ".vy"] for n, m, _ in bodies)
+    spin = sum(m * (c[n + ".x"] * c[n + ".vy"] - c[n + ".y"] * c[n + ".vx"]) + j * c[n + ".omega"] for n, m, j in bodies)
+    return px, py, spin
+
+
+def conserved(what, c, bodies, limit):
+    for name, values in zip(("momentum x", "momentum y", "angular momentum"), momenta(c, bodies)):
+        expect(f"{what}: {name}", values - values[0], limit)
+
+
+pair, _ = run("pair", scene(2.0, 0.01, PAIR))
+conserved("rod between two bodies", pair, [("a", 0.5, 2e-3), ("b", 0.8, 0.5 * 0.8 * 0.06 ** 2)], 1e-8)
+expect("rod between two bodies: distance", np.hypot(pair["points.b.rim.x"] - pair["points.a.p.x"],
+                                                      pair["points.b.rim.y"] - pair["points.a.p.y"]) - 0.3, 1e-9)
+expect("rod between two bodies: energy", pair["energy.numerical"], 1e-8)
+
+# ---- loose guide: a pin between walls ---------------------------------------------------------------------------------------
+
+ANGLE, PLAY, K, PIN = 0.5, 1e-3, 1e6, 0.2
+WALLS = """contacts.wall = {{ law = "{law}", clearance = {play}, stiffness = {k}, exponent = {n}, restitution = {e}{floor}{friction} }}
+bodies.ground = {{ type = "ground", points.o = [0.1, 0.2] }}
+bodies.pin = {{ type = "point_mass", mass = {mass} }}
+joints.slot = {{ type = "loose_guide", guide = "ground.o", direction = [{dx}, {dy}], slider = "pin.center", contact = "wall" }}
+initial.bodies.pin = {{ x = {x}, y = {y}, vx = {vx}, vy = {vy} }}
+"""
+u, m = np.array([math.cos(ANGLE), math.sin(ANGLE)]), np.array([-math.sin(ANGLE), math.cos(ANGLE)])
+
+
+def walls(law, n, e, friction="", across=0.3, along=0.2):
+    place, velocity = np.array([0.1, 0.2]) + 0.05 * u, along * u + across * m
+    floor = "" if law == "hertz" else ", impact_velocity_floor = 1e-6"
+    return WALLS.format(law=law, play=PLAY, k=K, n=n, e=e, floor=floor, friction=friction, mass=PIN, dx=3 * u[0], dy=3 * u[1],
+                        x=place[0], y=place[1], vx=velocity[0], vy=velocity[1])
+
+
+# a linear spring without damping: half a sine in the wall, 2 c / v between the walls
+pin, events = run("linear-wall", scene(0.05, 1e-4, walls("hertz", 1.0, 1.0), clearance=True))
+in_wall, across = math.pi * math.sqrt(PIN / K), 2 * PLAY / 0.3
+onsets = [e for e in events if e["onset"] == 1]
+losses = [e for e in events if e["onset"] == 0]
+times = [PLAY / 0.3 + i * (in_wall + across) for i in range(len(onsets))]
+expect(f"linear wall: times of {len(onsets)} onsets", [e["t"] - t for e, t in zip(onsets, times)], 1e-8)
+expect("linear wall: duration of contact", [b["t"] - a["t"] - in_wall for a, b in zip(onsets, losses)], 1e-9)
+expect("linear wall: deepest penetration", [e["deepest_penetration"] - 0.3 * math.sqrt(PIN / K) for e in losses], 1e-10)
+expect("linear wall: sides in turn", [np.dot([e["ex"], e["ey"]], m) - (-1) ** i * PLAY for i, e in enumerate(onsets)], 1e-9)
+expect("linear wall: travel", pin["slot.travel"] - 0.05 - 0.2 * pin["t"], 1e-9)
+t = pin["t"]
+phase = np.mod(t - times[0], in_wall + across)
+offset = np.where(t < times[0], 0.3 * t, np.where(phase < in_wall, PLAY + 0.3 * math.sqrt(PIN / K) * np.sin(math.pi * phase / in_wall),
+                                                  PLAY - 0.3 * (phase - in_wall)))
+side = np.where(t < times[0], 1, (-1.0) ** np.floor((t - times[0]) / (in_wall + across)))
+expect("linear wall: ex, ey", [pin["slot.ex"] - side * offset * m[0], pin["slot.ey"] - side * offset * m[1]], 1e-8)
+force = np.where((t > times[0]) & (phase < in_wall), K * (offset - PLAY), 0.0)
+expect("linear wall: force of the guide on the pin", [pin["slot.fx"] + side * force * m[0], pin["slot.fy"] + side * force * m[1]], 2e-2)
+expect("linear wall: energy", pin["energy.numerical"], 1e-8)
+
+
+def delivered(chi):
+    """The restitution of a free impact (EQUATIONS.md, gap 5)."""
+    low, high = 0.0, 1.0
+    for _ in range(200):
+        e = 0.5 * (low + high)
+        low, high = (e, high) if chi * (1 + e) > math.log((1 + chi) / (1 - chi * e)) else (low, e)
+    return low
+
+
+# damped: every impact returns the delivered restitution; between impacts the offset is linear in t
+for law, chi in (("lankarani_nikravesh", 0.75 * (1 - 0.49)), ("hunt_crossley", 1.5 * 0.3), ("flores", 8 * 0.3 / 3.5)):
+    pin, events = run(law, scene(0.05, 1e-4, walls(law, 1.5, 0.7).replace("stiffness = 1000000.0", "stiffness = 1e8"), clearance=True))
+    onsets, losses = ([e for e in events if e["onset"] == k] for k in (1, 0))
+    expect(f"{law}: restitution of {len(losses)} impacts", [-b["velocity"] / a["velocity"] - delivered(chi) for a, b in zip(onsets, losses)], 1e-6)
+    expect(f"{law}: flight between the walls", [b["t"] - a["t"] - 2 * PLAY / -a["velocity"] for a, b in zip(losses, onsets[1:])], 1e-8)
+    expect(f"{law}: impact velocity kept in flight", [b["velocity"] + a["velocity"] for a, b in zip(losses, onsets[1:])], 1e-7)
+    expect(f"{law}: energy dissipated", pin["energy.kinetic"][-1] + pin["energy.contact"][-1] + pin["energy.contact_dissipated"][-1]
+           - pin["energy.kinetic"][0], 1e-8)
+    expect(f"{law}: energy", pin["energy.numerical"], 1e-8)
+
+# friction: full friction takes mu times the impulse of the normal force
+pin, events = run("friction", scene(0.02, 1e-4, walls("hunt_crossley", 1.5, 0.7, ', friction = { law = "ambrosio", coefficient = 0.1, v0 = 0.0, v1 = 1e-4 }')
+                  .replace("stiffness = 1000000.0", "stiffness = 1e8"), clearance=True))
+onsets, losses = ([e for e in events if e["onset"] == k] for k in (1, 0))
+impulse = PIN * sum(a["velocity"] - b["velocity"] for a, b in zip(onsets, losses))
+lost = 0.2 - pin["slot.travel_rate"][-1]
+expect(f"friction: speed along the guide after {len(losses)} impacts", lost - 0.1 * impulse / PIN, 1e-8)
+expect("friction: energy", pin["energy.numerical"], 1e-8)
+print(f"       friction dissipated {pin['energy.friction_dissipated'][-1]:.3e} J of {pin['energy.kinetic'][0]:.3e} J")
+
+# weight presses the pin on one wall, friction brakes it: mu times the impulse of that wall, bouncing or not
+level = WALLS.format(law="hunt_crossley", play=PLAY, k=1e7, n=1.5, e=0.7, floor=", impact_velocity_floor = 1e-6", mass=PIN, dx=1.0, dy=0.0,
+                     friction=', friction = {{ law = "ambrosio", coefficient = 0.1, v0 = 0.0, v1 = 1e-4 }}'.format(), x=0.1, y=0.2, vx=1.0, vy=0.0)
+rest, events = run("weight", scene(0.5, 1e-3, level, (0.0, -9.81), clearance=True))
+expect(f"weight and friction, {len(events)} events: speed", rest["pin.vx"] - 1.0 + 0.1 * (rest["pin.vy"] + 9.81 * rest["t"]), 1e-8)
+expect("weight and friction: energy", rest["energy.numerical"], 1e-7)
+
+# a guide that moves freely: momenta of both bodies
+FREE = """contacts.wall = {{ law = "lankarani_nikravesh", clearance = 1e-3, stiffness = 1e8, exponent = 1.5, restitution = 0.8, impact_velocity_floor = 1e-6, friction = {{ law = "ambrosio", coefficient = 0.2, v0 = 1e-3, v1 = 1e-2 }} }}
+bodies.ground = {{ type = "ground" }}
+bodies.frame = {{ type = "rigid_body", mass = 0.6, inertia = 3e-3, points.slot = [0.03, -0.02] }}
+bodies.pin = {pin}
+joints.slot = {{ type = "loose_guide", guide = "frame.slot", direction = [1.0, 0.4], slider = "pin.{point}", contact = "wall" }}
+[initial.bodies]
+frame = {{ x = 0.02, y = -0.05, theta = 0.6, vx = 0.05, vy = 0.0, omega = 2.0 }}
+pin = {state}
+"""
+c, s = math.cos(0.6), math.sin(0.6)
+guide = np.array([0.02 + c * 0.03 + s * 0.02, -0.05 + s * 0.03 - c * 0.02])
+line = np.array([c - 0.4 * s, s + 0.4 * c]) / math.hypot(1.0, 0.4)
+for name, point, body, inertia in (("point mass", "center", '{ type = "point_mass", mass = 0.2 }', 0.0),
+                                   ("disc", "rim", '{ type = "disc", mass = 0.2, radius = 0.03, rim = 1.0 }', 0.5 * 0.2 * 9e-4)):
+    place = guide + 0.04 * line
+    if point == "rim":
+        place = place - 0.03 * np.array([math.cos(1.2), math.sin(1.2)])
+    state = f"x = {float(place[0])}, y = {float(place[1])}, vx = 0.1, vy = 0.3" + (", theta = 0.2, omega = -3.0" if inertia else "")
+    free, events = run("free-" + point, scene(0.1, 1e-4, FREE.format(pin=body, point=point, state=f"{{ {state} }}"), clearance=True))
+    conserved(f"free guide, {name}, {len(events)} events", free, [("frame", 0.6, 3e-3), ("pin", 0.2, inertia)], 1e-9)
+    expect(f"free guide, {name}: energy", free["energy.numerical"], 1e-8)
+    print(f"       dissipated {free['energy.contact_dissipated'][-1]:.2e} J in contact, {free['energy.friction_dissipated'][-1]:.2e} J in friction")
+    for rate, of in (("ex_rate", "ex"), ("ey_rate", "ey"), ("travel_rate", "travel")):
+        quiet = free["slot.penetration"] < -1e-4
+        quiet = quiet & np.roll(quiet, 1) & np.roll(quiet, -1)
+        quiet[[0, -1]] = False
+        expect(f"free guide, {name}: {rate}", (np.gradient(free["slot." + of], free["t"]) - free["slot." + rate])[quiet], 1e-4)
+
+# guides on bodies of every kind, in soft walls so that the derivatives below meet a contact; the assembled start is in the middle of the guide
+AS_LINK = 'type = "link", length = 0.3, section = "strip", material = "steel", model = '
+for name, link in (("rigid link", AS_LINK + '"rigid"'), ("flexible link", AS_LINK + '"flexible", elements = 2, kelvin_voigt = 1e-4'),
+                   ("rigid body", 'type = "rigid_body", mass = 0.3, inertia = 2e-3, points.end = [0.15, 0.0]')):
+    text = (f"""materials.steel = {{ density = 7850.0, youngs_modulus = 2e9 }}
+sections.strip = {{ width = 0.006, height = 0.02 }}
+contacts.wall = {{ law = "hunt_crossley", clearance = 1e-5, stiffness = 2e3, exponent = 1.2, restitution = 0.8, impact_velocity_floor = 1e-6, friction = {{ law = "ambrosio", coefficient = 0.2, v0 = 1e-3, v1 = 1.0 }} }}
+bodies.ground = {{ type = "ground" }}
+bodies.link = {{ {link} }}
+bodies.plate = {{ type = "rigid_body", mass = 0.2, inertia = 1e-4, points.pin = [0.03, 0.01] }}
+joints.slot = {{ type = "loose_guide", guide = "link.end", direction = [-1.0, 0.3], slider = "plate.pin", contact = "wall" }}
+initial.velocities.link = {{ omega = 2.0 }}
+initial.velocities.plate = {{ vy = 0.3, vx = 0.2 }}
+initial.bodies.link = {{ x = 0.1, y = 0.0, theta = 0.3 }}
+initial.bodies.plate = {{ x = 0.17, y = 0.03, theta = 0.1 }}
+""")
+    # the given pose of the plate has to fit the middle of the guide: the end of the link plus 0.05 along it
+    end = np.array([0.1 + 0.15 * math.cos(0.3), 0.15 * math.sin(0.3)])
+    along = np.array([-math.cos(0.3) - 0.3 * math.sin(0.3), -math.sin(0.3) + 0.3 * math.cos(0.3)]) / math.hypot(1.0, 0.3)
+    spot = end + 0.05 * along
+    middle = spot - np.array([0.03 * math.cos(0.1) - 0.01 * math.sin(0.1), 0.03 * math.sin(0.1) + 0.01 * math.cos(0.1)])
+    text = text.replace("x = 0.17, y = 0.03, theta = 0.1", f"x = {float(middle[0])}, y = {float(middle[1])}, theta = 0.1")
+    link, events = run("guide-on-a-" + name.replace(" ", "-"), scene(0.02, 1e-4, text, clearance=True))
+    mass = 0.3 if name == "rigid body" else 7850.0 * 0.006 * 0.02 * 0.3
+    bodies = [("link", mass, 2e-3 if name == "rigid body" else mass * 0.09 / 12), ("plate", 0.2, 1e-4)]
+    for axis, total in zip("xy", momenta(link, bodies)[:2]):
+        expect(f"guide on a {name}, {len(events)} events: momentum {axis}", total - total[0], 1e-10)
+    if name != "flexible link":
+        spin = momenta(link, bodies)[2]
+        expect(f"guide on a {name}: angular momentum", spin - spin[0], 1e-9)
+    expect(f"guide on a {name}: start in the middle, at rest across it",
+           [link["slot.eccentricity"][0], link["slot.eccentricity_rate"][0]], 1e-11)
+    expect(f"guide on a {name}: energy", link["energy.numerical"], 1e-8)
+
+# ---- Maxwell element ------------------------------------------------------------------------------------------------------------
+
+STIFF, DAMP, REST, PACE = 50.0, 3.0, 0.2, 0.4
+MAXWELL = """bodies.ground = {{ type = "ground", points.o = [0.0, 0.0] }}
+bodies.bob = {{ type = "point_mass", mass = 0.5 }}
+forces.element = {{ type = "maxwell", from = "ground.o", to = "bob.center", stiffness = 50.0, damping = 3.0, rest_length = 0.2{z} }}
+{rest}"""
+
+
+def drive(coefficients):
+    return f'drives.draw = {{ type = "point", point = "bob.center", x = {{ type = "polynomial", coefficients = {coefficients} }}, y = 0.0 }}'
+
+
+for options in ([], ["--sparse"]):
+    name = "sparse" if options else "dense"
+    draw, _ = run("draw", scene(0.5, 0.01, MAXWELL.format(z="", rest=drive([REST, PACE]))), options)
+    t = draw["t"]
+    pull = DAMP * PACE * (1 - np.exp(-STIFF * t / DAMP))
+    expect(f"drawn at constant rate, {name}: N", draw["element.force"] - pull, 1e-8)
+    expect(f"drawn at constant rate, {name}: z", draw["element.elongation"] - (PACE * t - pull / STIFF), 1e-9)
+    tau = DAMP / STIFF
+    work = DAMP * PACE ** 2 * (t - tau * (1 - np.exp(-t / tau)))
+    expect(f"drawn at constant rate, {name}: work", draw["energy.work"] - work, 1e-8)
+    expect(f"drawn at constant rate, {name}: energy of the spring", draw["energy.springs"] - pull ** 2 / (2 * STIFF), 1e-9)
+    loss = DAMP * PACE ** 2 * (t - 2 * tau * (1 - np.exp(-t / tau)) + 0.5 * tau * (1 - np.exp(-2 * t / tau)))
+    expect(f"drawn at constant rate, {name}: dissipated", draw["energy.damping_dissipated"] - loss, 1e-8)
+    expect(f"drawn at constant rate, {name}: energy", draw["energy.numerical"], 1e-8)
+    relax, _ = run("relax", scene(0.5, 0.01, MAXWELL.format(z=", elongation = -0.01", rest=drive([REST + 0.02]))), options)
+    pull = STIFF * 0.03 * np.exp(-relax["t"] / tau)
+    expect(f"relaxation, {name}: N", relax["element.force"] - pull, 1e-8)
+    expect(f"relaxation, {name}: dissipated", relax["energy.damping_dissipated"] - (0.5 * STIFF * 0.03 ** 2 - pull ** 2 / (2 * STIFF)), 1e-9)
+
+    # a mass on the element beside a spring: x, v, z of a linear system
+    free = MAXWELL.format(z=", elongation = 0.004", rest='joints.line = { type = "prismatic", guide = "ground.o", direction = [1.0, 0.0], slider = "bob.center", rotation = "free" }\n'
+                          'forces.spring = { type = "spring_damper", from = "ground.o", to = "bob.center", stiffness = 80.0, damping = 0.0, rest_length = 0.2 }\n'
+                          "initial.bodies.bob = { x = 0.25, y = 0.0, vx = 0.3, vy = 0.0 }")
+    mass, _ = run("mass", scene(2.0, 0.01, free), options)
+    matrix = np.array([[0, 1, 0], [-(80 + STIFF) / 0.5, 0, STIFF / 0.5], [STIFF / DAMP, 0, -STIFF / DAMP]])
+    values, vectors = np.linalg.eig(matrix)
+    amplitude = np.linalg.solve(vectors, np.array([0.05, 0.3, 0.004], complex))
+    exact = (vectors @ (amplitude[:, None] * np.exp(np.outer(values, mass["t"])))).real
+    expect(f"mass on a Maxwell element, {name}: x", mass["bob.x"] - REST - exact[0], 1e-8)
+    expect(f"mass on a Maxwell element, {name}: z", mass["element.elongation"] - exact[2], 1e-8)
+    expect(f"mass on a Maxwell element, {name}: N", mass["element.force"] - STIFF * (exact[0] - exact[2]), 1e-6)
+    expect(f"mass on a Maxwell element, {name}: energy", mass["energy.numerical"], 1e-9)
+
+# everything at once: the element between points off the centres, impacts, friction; dense and sparse
+ALL = FREE.format(pin='{ type = "disc", mass = 0.2, radius = 0.03, rim = 1.0 }', point="rim", state=f"{{ {state} }}").replace(
+    "[initial.bodies]", 'forces.element = { type = "maxwell", from = "frame.tip", to = "pin.rim", stiffness = 400.0, damping = 0.5, rest_length = 0.1, elongation = 0.01 }\n'
+    'bodies.weight = { type = "point_mass", mass = 0.1 }\njoints.rope = { type = "rod", first = "pin.center", second = "weight.center", length = 0.2 }\n[initial.bodies]\n'
+    f"weight = {{ x = {float(place[0])}, y = {float(place[1]) - 0.2}, vx = 0.1, vy = 0.3 }}").replace("points.slot =", "points.tip = [0.1, 0.3], points.slot =")
+both = [run("all", scene(0.05, 1e-4, ALL, clearance=True), options) for options in ([], ["--sparse"])]
+for (c, events), name in zip(both, ("dense", "sparse")):
+    conserved(f"all together, {name}, {len(events)} events", c, [("frame", 0.6, 3e-3), ("pin", 0.2, inertia), ("weight", 0.1, 0.0)], 1e-8)
+    expect(f"all together, {name}: energy", c["energy.numerical"], 1e-8)
+expect("all together: dense and sparse", [both[0][0][k] - both[1][0][k] for k in ("pin.x", "frame.theta", "element.elongation")], 1e-7)
+
+# at rest the element carries nothing
+HOLD = MAXWELL.format(z="", rest='forces.spring = { type = "spring_damper", from = "ground.o", to = "bob.center", stiffness = 80.0, damping = 0.0, rest_length = 0.2 }\n'
+                      'joints.line = { type = "prismatic", guide = "ground.o", direction = [1.0, 0.0], slider = "bob.center", rotation = "free" }\n'
+                      'forces.load = { type = "force", point = "bob.center", x = 4.0, y = 0.0, frame = "ground" }\ninitial.bodies.bob = { x = 0.2, y = 0.0 }')
+held, _ = run("static", scene(1.0, 0.1, HOLD, analysis="static"))
+expect("static analysis: the spring alone carries the load", held["bob.x"] - REST - 4.0 * held["t"] / 80.0, 1e-12)
+expect("static analysis: N", held["element.force"], 0.0)
+
+# ---- refusals ---------------------------------------------------------------------------------------------------------------------
+
+disc = scene(1.0, 0.01, PENDULUM.format(wheel=variants["disc"], state=STATE))
+by_mass = scene(1.0, 0.01, PENDULUM.format(wheel=variants["disc by mass"], state=STATE))
+wall = scene(0.05, 1e-4, walls("hunt_crossley", 1.5, 0.7, ', friction = { law = "ambrosio", coefficient = 0.1, v0 = 0.0, v1 = 1e-4 }'), clearance=True)
+free = scene(0.1, 1e-4, FREE.format(pin='{ type = "point_mass", mass = 0.2 }', point="center", state="{ x = 0.0, y = 0.0, vx = 0.1, vy = 0.3 }"), clearance=True)
+draw = scene(0.5, 0.01, MAXWELL.format(z=", elongation = 0.1", rest=drive([REST, PACE])))
+held = scene(0.5, 0.01, HOLD)
+loose = ('joints.pin = { type = "revolute", bearing = "ground.o", journal = "wheel.rim", model = "clearance", contact = "wall" }\n'
+         'contacts.wall = { law = "hertz", clearance = 1e-3, stiffness = 1e8, exponent = 1.5 }\n')
+REFUSED = [
+    (disc, f"radius = {R}", "radius = 0.0", "must be positive"),
+    (disc, f"thickness = {THICKNESS}, ", "", "`thickness` is missing"),
+    (disc, f"radius = {R}, ", "", "`radius` is missing"),
+    (disc, 'material = "steel"', 'material = "wood"', "no material `wood`"),
+    (disc, 'material = "steel"', 'material = "steel", mass = 1.0', "not both"),
+    (disc, f"rim = {RIM}", "rims = 0.1", "`rims` has no meaning"),
+    (disc, "points.hub", "points.rim", "this point already"),
+    (by_mass, f"mass = {MASS!r}", "mass = -1.0", "must be positive"),
+    (by_mass, f"mass = {MASS!r}, ", "", "`mass` is missing"),
+    (by_mass, f"radius = {R}", f"radius = {R}, inertia = 1.0", "`inertia` has no meaning"),
+    (by_mass, f"radius = {R}", f"radius = {R}, thickness = 0.1", "only a disc with a material"),
+    (disc, "joints.pin = { type = \"revolute\", bearing = \"ground.o\", journal = \"wheel.rim\", model = \"ideal\" }\n", loose, "bearing_radius"),
+    (swing, f"length = {L}", "length = 0.0", "must be positive"),
+    (swing, f", length = {L}", "", "`length` is missing"),
+    (swing, f"length = {L}", f"length = {L}, angle = 0.0", "`angle` has no meaning"),
+    (swing, f"length = {L}", "length = 0.41", "rod.length"),
+    (swing, 'first = "ground.o"', 'first = "bob.center"', "same body"),
+    (wall, 'contact = "wall"', 'contact = "walls"', "no contact `walls`"),
+    (wall, ', contact = "wall"', "", "`contact` is missing"),
+    (wall, f"direction = [{3 * u[0]}, {3 * u[1]}]", "direction = [0.0, 0.0]", "must not be zero"),
+    (wall, 'type = "loose_guide"', 'type = "loose_guide", rotation = "free"', "`rotation` has no meaning"),
+    (wall, "v1 = 1e-4", 'v1 = 1e-4, slip = "paper"', 'slip "paper" is refused'),
+    (wall, f"stiffness = {K}, ", "", "needs a stiffness"),
+    (wall, f"clearance = {PLAY}", f"clearance = {PLAY}, bearing_radius = {PLAY}", "must be below bearing_radius"),
+    (wall, f"clearance = {PLAY}", f"clearance = {PLAY}, bearing_radius = -1.0", "must be positive"),
+    (wall, f"clearance = {PLAY}, ", "", "`clearance` is missing"),
+    (wall, ", onset_tolerance = 1e-12", "", "onset_tolerance"),
+    (wall, "onset_tolerance = 1e-12", "onset_tolerance = 1e-2", "below every clearance"),
+    (wall, 'analysis = "dynamic"', 'analysis = "static"', "refused in a static analysis"),
+    (wall, "initial.bodies.pin", "initial.equilibrium = true\ninitial.bodies.pin", "velocities"),
+    (free, 'guide = "frame.slot"', 'guide = "pin.center"', "both sides are on the same body"),
+    (free, 'guide = "frame.slot", direction = [1.0, 0.4], slider = "pin.center"', 'guide = "pin.center", direction = [1.0, 0.4], slider = "frame.slot"', "no direction"),
+    (free, "pin = { x = 0.0", "pin = { x = 1.0", "outside its guide"),
+    (draw, "stiffness = 50.0", "stiffness = 0.0", "must be positive"),
+    (draw, "damping = 3.0", "damping = 0.0", "must be positive"),
+    (draw, "rest_length = 0.2", "rest_length = -0.2", "must not be negative"),
+    (draw, "damping = 3.0, ", "", "`damping` is missing"),
+    (draw, "elongation = 0.1", "elongations = 0.1", "`elongations` has no meaning"),
+    (draw, "elongation = 0.1", 'elongation = "long"', "must be a number"),
+    (held, "initial.bodies.bob", "initial.equilibrium = true\ninitial.bodies.bob", "Maxwell element"),
+]
+for text, old, new, expected in REFUSED:
+    assert old in text, old
+    result = subprocess.run([DRIVER, path_of("refused", text.replace(old, new, 1)), "--start"], capture_output=True, text=True)
+    message = result.stderr.strip().replace(str(FOLDER) + "/", "")
+    good = result.returncode == 1 and expected in message
+    failures += not good
+    print(f"{'ok    ' if good else 'WRONG '} {message or 'accepted: ' + new}")
+(FOLDER / "refused.toml").unlink()
+
+# ---- derivatives of forces and rows -------------------------------------------------------------------------------------------------
+
+scenes = sorted(FOLDER.glob("*.toml"))
+failures += subprocess.run([sys.executable, HERE / "derivatives.py", *scenes]).returncode != 0
+print(f"{failures} failures")
+sys.exit(failures != 0)
