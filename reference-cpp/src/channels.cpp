@@ -185,10 +185,9 @@ void Channels::add_forces() {
     for (std::size_t i = 0; i < system_.maxwells().size(); ++i) {
         const Maxwell &m = system_.maxwells()[i];
         const int number = static_cast<int>(i);
-        const bool at_rest = model_.scene.is_static; // the damper has given way until the pull is zero
-        add(m.name + ".", {"length", "elongation", "force"}, [&m, number, at_rest](const Snapshot &s, double *out) {
+        add(m.name + ".", {"length", "elongation", "force"}, [&m, number](const Snapshot &s, double *out) {
             const double length = magnitude(position(m.to, part(s.q, m.to)) - position(m.from, part(s.q, m.from)));
-            const double z = at_rest ? length - m.rest_length : s.memory.elongation[number];
+            const double z = s.memory.elongation[number];
             put(out, {length, z, m.stiffness * (length - m.rest_length - z)});
         });
     }

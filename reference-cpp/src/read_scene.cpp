@@ -83,6 +83,7 @@ void read_output(const Value &value, Scene &scene) {
     }
     scene.patterns = as_texts(f.get("channels"));
     scene.patterns_source = f.source("channels");
+    if (f.has("format")) f.choice<int>("format", {{"csv", 0}, {"json_lines", 1}}); // of files that are not written here
     f.finish();
 }
 
@@ -160,6 +161,8 @@ Scene read_scene(const std::string &text, const std::vector<std::string> &overri
         names.add(name, value.source);
         read_force(name, value, library, scene);
     });
+    require(!scene.is_static || scene.maxwells.empty(), f.source("forces"),
+            "a Maxwell element is refused in a static analysis");
     read_integrator(f.get("integrator"), scene);
     read_output(f.get("output"), scene);
     scene.initial = read_initial(f.find("initial"), scene, library);

@@ -79,7 +79,7 @@ public:
     const std::vector<TorsionSpring> &torsion_springs() const { return torsion_springs_; }
     const std::vector<Maxwell> &maxwells() const { return maxwells_; }
     // How many Maxwell elements act, each with an unknown z: none in a static analysis, where their pull is zero.
-    int elongations() const { return full_load_ > 0.0 ? 0 : static_cast<int>(maxwells_.size()); }
+    int elongations() const { return static_cast<int>(maxwells_.size()); }
     const std::vector<Load> &loads() const { return loads_; }
     const std::vector<int> &loose_joints() const { return loose_; }
     const ContactLaw &law(int joint) const { return *joints_[joint].law; }

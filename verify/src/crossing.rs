@@ -4,7 +4,7 @@ const HEADER: &str = include_str!("../../reference-cpp/include/reference.h");
 
 /// What may go in: type, name, meaning.
 #[rustfmt::skip]
-pub const INPUTS: [(&str, &str, &str); 12] = [
+pub const INPUTS: [(&str, &str, &str); 13] = [
     ("const char *", "text", "the scene, as the user wrote it"),
     ("const char *const *", "overrides", "assignments `path=value`, as of `--set`"),
     ("size_t", "count", "their number"),
@@ -13,6 +13,7 @@ pub const INPUTS: [(&str, &str, &str); 12] = [
     ("const double *", "q", "coordinates of a state at which equations are compared"),
     ("const double *", "v", "its velocities"),
     ("const double *", "z", "its impact velocities"),
+    ("const double *", "elongations", "elongations of its Maxwell elements"),
     ("const ls_scene *", "scene", "the scene that the reference has read"),
     ("const ls_run *", "run", "the run that it has begun"),
     ("int32_t", "list", "which names are asked for"),

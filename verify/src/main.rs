@@ -108,7 +108,7 @@ fn own(path: &Path) -> Result<ExitCode> {
     } else if is_static {
         rows.extend(show("Equilibria at all loads", scenes::equilibrium(&plan)?));
     } else {
-        if equations::has_like_rows(&scene) {
+        if equations::are_comparable(&scene) {
             let equations = equations::agreements(&plan)?;
             rows.extend(show(
                 "Equations at 50 random states near the motion",

@@ -21,7 +21,7 @@ pub const CLASSES: [(&str, &[&str]); KINDS] = [
     ("rates of eccentricities", &["ex_rate", "ey_rate", "eccentricity_rate"]),
     ("forces", &["fx", "fy", "force"]),
     ("torques and couples", &["torque"]),
-    ("lengths of springs", &["length"]),
+    ("lengths of springs", &["length", "elongation"]),
     ("rates of lengths of springs", &["rate"]),
     ("kinetic energy and work", &["kinetic", "work"]),
     ("stored energies and dissipations",

@@ -60,15 +60,20 @@ pub fn plans() -> Result<Vec<Plan>> {
         journal,
     ];
     for plan in scenes::of(Analysis::Dynamic)? {
-        if has_like_rows(&plan.scene(None)?) {
+        if are_comparable(&plan.scene(None)?) {
             plans.push(plan);
         }
     }
     Ok(plans)
 }
 
-/// False if a weld holds the slope vector of its first side: the two programs write its rows in different frames.
-pub fn has_like_rows(scene: &Scene) -> bool {
+/// False if a weld holds the slope vector of its first side: the two programs write its rows in different frames. False also with
+/// internal states of forces, for which the reference has no rows in its equations of motion; their motion is compared.
+pub fn are_comparable(scene: &Scene) -> bool {
+    let mut forces = scene.forces.iter();
+    if forces.any(|force| !force.kind.states().is_empty()) {
+        return false;
+    }
     let is_link = |p: PointRef| scene.bodies[p.body].kind.link().is_some();
     !scene.joints.iter().any(|joint| {
         let weld = joint.model.get::<Weld>();
