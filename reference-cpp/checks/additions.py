@@ -334,6 +334,11 @@ expect("all together: dense and sparse", [both[0][0][k] - both[1][0][k] for k in
 
 # ---- refusals ---------------------------------------------------------------------------------------------------------------------
 
+# an internal state has no place in a static analysis
+HOLD = MAXWELL.format(z="", rest='forces.spring = { type = "spring_damper", from = "ground.o", to = "bob.center", stiffness = 80.0, damping = 0.0, rest_length = 0.2 }\n'
+                      'joints.line = { type = "prismatic", guide = "ground.o", direction = [1.0, 0.0], slider = "bob.center", rotation = "free" }\n'
+                      'forces.load = { type = "force", point = "bob.center", x = 4.0, y = 0.0, frame = "ground" }\ninitial.bodies.bob = { x = 0.2, y = 0.0 }')
+
 disc = scene(1.0, 0.01, PENDULUM.format(wheel=variants["disc"], state=STATE))
 by_mass = scene(1.0, 0.01, PENDULUM.format(wheel=variants["disc by mass"], state=STATE))
 wall = scene(0.05, 1e-4, walls("hunt_crossley", 1.5, 0.7, ', friction = { law = "ambrosio", coefficient = 0.1, v0 = 0.0, v1 = 1e-4 }'), clearance=True)
@@ -342,11 +347,6 @@ draw = scene(0.5, 0.01, MAXWELL.format(z=", elongation = 0.1", rest=drive([REST,
 held = scene(0.5, 0.01, HOLD)
 loose = ('joints.pin = { type = "revolute", bearing = "ground.o", journal = "wheel.rim", model = "clearance", contact = "wall" }\n'
          'contacts.wall = { law = "hertz", clearance = 1e-3, stiffness = 1e8, exponent = 1.5 }\n')
-# an internal state has no place in a static analysis
-HOLD = MAXWELL.format(z="", rest='forces.spring = { type = "spring_damper", from = "ground.o", to = "bob.center", stiffness = 80.0, damping = 0.0, rest_length = 0.2 }\n'
-                      'joints.line = { type = "prismatic", guide = "ground.o", direction = [1.0, 0.0], slider = "bob.center", rotation = "free" }\n'
-                      'forces.load = { type = "force", point = "bob.center", x = 4.0, y = 0.0, frame = "ground" }\ninitial.bodies.bob = { x = 0.2, y = 0.0 }')
-
 REFUSED = [
     (disc, f"radius = {R}", "radius = 0.0", "must be positive"),
     (disc, f"thickness = {THICKNESS}, ", "", "`thickness` is missing"),
