@@ -2,14 +2,13 @@
 //!
 //! `cargo run --release --example own_interaction` runs a scene with it and prints how often the pin has hit the walls.
 
-use looselink::constraint::Slide;
 use looselink::contact::At;
 use looselink::contact::geometry::{Gap, Geometry, Touch};
 use looselink::document::Key;
 use looselink::force::{LocalMatrix, WIDTH};
 use looselink::interaction::{Contact, JointEnds, JointKind, JointModel, Prismatic};
-use looselink::marker::{Marker, Spin};
-use looselink::math::plane::{Vec2, dot, perp, scale, sub};
+use looselink::marker::Separation;
+use looselink::math::plane::{Vec2, dot, perp, scale};
 use looselink::registry::Registry;
 use looselink::scene::Scene;
 use looselink::simulate::{Recording, Simulation};
@@ -68,22 +67,15 @@ impl JointModel for Slot {
 
     fn terms(&self, ends: &JointEnds, terms: &mut Terms) -> JointTerms {
         let (sine, cosine) = self.direction.sin_cos();
-        let [middle, pin] = ends.markers;
+        let slide = ends.slide(self.direction);
         let walls = Walls {
-            markers: ends.markers,
+            ends: slide.ends,
             u: [cosine, sine],
             play: self.contact.clearance,
         };
         terms.contacts.push(self.contact.pair(walls, ends.spins));
-        let line = Slide {
-            guide: middle,
-            spin: Spin::Fixed,
-            angle: self.direction,
-            scale: 1.0,
-            slider: pin,
-        };
         JointTerms {
-            slide: Some(line),
+            slide: Some(slide),
             ..JointTerms::of(ForceTerm::Contact(terms.contacts.len() - 1))
         }
     }
@@ -92,7 +84,8 @@ impl JointModel for Slot {
 /// The distance s = m . e of the pin from the middle line is a function of e alone, so every derivative is that of e.
 #[derive(Debug)]
 struct Walls {
-    markers: [Marker; 2],
+    /// From the middle line to the pin.
+    ends: Separation,
     u: Vec2,
     play: f64,
 }
@@ -101,50 +94,28 @@ impl Walls {
     /// x . de/dq for every local coordinate.
     fn along(&self, x: Vec2, q: &[f64]) -> [f64; WIDTH] {
         let mut values = [0.0; WIDTH];
-        let mut local = 0;
-        for (marker, sign) in self.markers.iter().zip([-1.0, 1.0]) {
-            for column in marker.columns(marker.arm(q)).iter() {
-                values[local] = sign * dot(x, *column);
-                local += 1;
-            }
+        for (value, column) in values.iter_mut().zip(self.ends.columns(q).iter()) {
+            *value = dot(x, *column);
         }
         values
-    }
-
-    /// The difference of the velocities of pin and middle line.
-    fn velocity(&self, q: &[f64], v: &[f64]) -> Vec2 {
-        let [middle, pin] = self.markers.map(|marker| marker.velocity(v, marker.arm(q)));
-        sub(pin, middle)
-    }
-
-    /// x . d2e/dtheta2 for both angles, with their local indices.
-    fn bends(&self, x: Vec2, q: &[f64]) -> [Option<(usize, usize, f64)>; 2] {
-        let first = self.markers[0].width();
-        [(0, -1.0, 2), (1, 1.0, first + 2)].map(|(side, sign, local)| match self.markers[side] {
-            Marker::OnBody { x: index, .. } => {
-                Some((local, index + 2, -sign * dot(x, self.markers[side].arm(q))))
-            }
-            _ => None,
-        })
     }
 }
 
 impl Geometry for Walls {
     fn coordinates(&self) -> Vec<usize> {
-        self.markers.iter().flat_map(Marker::coordinates).collect()
+        self.ends.sides().concat()
     }
 
     fn columns(&self) -> usize {
-        self.markers.iter().map(Marker::width).sum()
+        self.ends.width()
     }
 
     fn gap(&self, q: &[f64], v: &[f64]) -> Gap {
-        let [middle, pin] = self.markers.map(|marker| marker.position(q, marker.arm(q)));
         let m = perp(self.u);
-        let s = dot(m, sub(pin, middle));
+        let s = dot(m, self.ends.vector(q));
         Gap {
             e: scale(s, m),
-            e_dot: scale(dot(m, self.velocity(q, v)), m),
+            e_dot: scale(dot(m, self.ends.rate(q, v)), m),
             eccentricity: s.abs(),
             delta: s.abs() - self.play,
             ..Gap::default()
@@ -162,18 +133,14 @@ impl Geometry for Walls {
         let mut touch = Touch {
             n,
             t,
-            slip: dot(t, self.velocity(at.q, at.v)),
+            slip: dot(t, self.ends.rate(at.q, at.v)),
             normal: self.along(n, at.q),
             tangent: self.along(t, at.q),
             ..Touch::default()
         };
-        for (bends, rates) in [
-            (self.bends(n, at.q), &mut touch.rate_q),
-            (self.bends(t, at.q), &mut touch.slip_q),
-        ] {
-            for (local, theta, bend) in bends.into_iter().flatten() {
-                rates[local] = at.v[theta] * bend;
-            }
+        for (local, theta, bend) in self.ends.bends(at.q) {
+            touch.rate_q[local] = at.v[theta] * dot(n, bend);
+            touch.slip_q[local] = at.v[theta] * dot(t, bend);
         }
         touch
     }
@@ -187,10 +154,8 @@ impl Geometry for Walls {
         tangential: f64,
         k: &mut LocalMatrix,
     ) {
-        for (force, x) in [(normal, touch.n), (tangential, touch.t)] {
-            for (local, _, bend) in self.bends(x, at.q).into_iter().flatten() {
-                k[local][local] += force * bend;
-            }
+        for (local, _, bend) in self.ends.bends(at.q) {
+            k[local][local] += normal * dot(touch.n, bend) + tangential * dot(touch.t, bend);
         }
     }
 }

@@ -1,19 +1,19 @@
 //! A point or a rotation of a body as a function of the coordinates: what joints and forces act on.
 
-use crate::math::plane::{Vec2, add, cross, dot, perp, rotate, scale};
+use crate::math::plane::{Vec2, add, cross, dot, perp, rotate, scale, sub};
 
-/// Derivatives of a vector by the coordinates it depends on, four at most.
+const UNIT: [Vec2; 2] = [[1.0, 0.0], [0.0, 1.0]];
+
+/// Derivatives of a vector by the coordinates it depends on, N at most.
 #[derive(Debug, Clone, Copy)]
-pub struct Columns {
-    vectors: [Vec2; 4],
+pub struct Columns<const N: usize = 4> {
+    vectors: [Vec2; N],
     count: usize,
 }
 
-impl Columns {
-    const UNIT: [Vec2; 2] = [[1.0, 0.0], [0.0, 1.0]];
-
-    fn new(columns: &[Vec2]) -> Columns {
-        let mut vectors = [[0.0; 2]; 4];
+impl<const N: usize> Columns<N> {
+    fn new(columns: &[Vec2]) -> Columns<N> {
+        let mut vectors = [[0.0; 2]; N];
         vectors[..columns.len()].copy_from_slice(columns);
         Columns {
             vectors,
@@ -115,7 +115,7 @@ impl Marker {
     /// dr/dq in the order of the coordinates, given the arm.
     #[inline]
     pub fn columns(&self, arm: Vec2) -> Columns {
-        let [x, y] = Columns::UNIT;
+        let [x, y] = UNIT;
         match self {
             Marker::Node { .. } => Columns::new(&[x, y]),
             Marker::OnBody { .. } => Columns::new(&[x, y, perp(arm)]),
@@ -147,6 +147,72 @@ impl Marker {
             }
             Marker::OnChord { from, to, share } => between(a, from, to, share),
         }
+    }
+}
+
+/// The vector e from one marker to another. Its local coordinates are those of `from`, then those of `to`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Separation {
+    /// Where it begins.
+    pub from: Marker,
+    /// Where it ends.
+    pub to: Marker,
+}
+
+impl Separation {
+    /// The coordinates of both ends.
+    pub fn sides(&self) -> [Vec<usize>; 2] {
+        [self.from.coordinates(), self.to.coordinates()]
+    }
+
+    /// Number of local coordinates.
+    pub fn width(&self) -> usize {
+        self.from.width() + self.to.width()
+    }
+
+    /// Its ends, each with its sign and its first local index.
+    fn ends(&self) -> [(&Marker, f64, usize); 2] {
+        [(&self.from, -1.0, 0), (&self.to, 1.0, self.from.width())]
+    }
+
+    /// e \[m\].
+    pub fn vector(&self, q: &[f64]) -> Vec2 {
+        let point = |m: &Marker| m.position(q, m.arm(q));
+        sub(point(&self.to), point(&self.from))
+    }
+
+    /// de/dt \[m/s\].
+    pub fn rate(&self, q: &[f64], v: &[f64]) -> Vec2 {
+        let rate = |m: &Marker| m.velocity(v, m.arm(q));
+        sub(rate(&self.to), rate(&self.from))
+    }
+
+    /// d2e/dt2 \[m/s2\].
+    pub fn acceleration(&self, q: &[f64], v: &[f64], a: &[f64]) -> Vec2 {
+        let second = |m: &Marker| m.acceleration(v, a, m.arm(q));
+        sub(second(&self.to), second(&self.from))
+    }
+
+    /// de/dq.
+    pub fn columns(&self, q: &[f64]) -> Columns<8> {
+        let mut columns = Columns::new(&[]);
+        for (marker, sign, _) in self.ends() {
+            for column in marker.columns(marker.arm(q)).iter() {
+                columns.vectors[columns.count] = scale(sign, *column);
+                columns.count += 1;
+            }
+        }
+        columns
+    }
+
+    /// d2e/dtheta2 of the angles of rigid bodies, each with the local and the global index of theta. All other second
+    /// derivatives are zero.
+    pub fn bends(&self, q: &[f64]) -> impl Iterator<Item = (usize, usize, Vec2)> {
+        let bend = |(marker, sign, first): (&Marker, f64, usize)| match *marker {
+            Marker::OnBody { x, .. } => Some((first + 2, x + 2, scale(-sign, marker.arm(q)))),
+            Marker::Node { .. } | Marker::OnChord { .. } => None,
+        };
+        self.ends().map(bend).into_iter().flatten()
     }
 }
 
@@ -225,7 +291,7 @@ impl Spin {
 
     /// dd/dq in the order of [`Spin::coordinates`].
     pub fn columns(&self, q: &[f64]) -> Columns {
-        let [x, y] = Columns::UNIT;
+        let [x, y] = UNIT;
         match self {
             Spin::Fixed => Columns::new(&[]),
             Spin::Angle { .. } => Columns::new(&[perp(self.vector(q))]),

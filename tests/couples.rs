@@ -1,7 +1,7 @@
 //! Couples on bodies that are moved: they are work, and a part of what the drive must hold.
 
-use crate::support::{Recording, load, run_scene};
-use ladder::{Rung, Worst};
+use crate::support::{Recording, difference, load, run_scene};
+use ladder::Rung;
 use looselink::scene::Scene;
 
 /// A crank that is turned, with a torsional spring and a torque on it and a flexible antenna welded to its end.
@@ -43,15 +43,7 @@ fn a_drive_holds_the_couples_on_its_crank() {
         r#"{{ type = "rigid_body", mass = {mass:?}, inertia = {inertia:?}, points.start = [-0.15, 0.0], points.end = [0.15, 0.0] }}"#
     );
     let (link, body) = (crank(link), crank(&body));
-    let worst = Worst::new();
-    for name in link.names() {
-        let (a, b) = (link.get(name), body.get(name));
-        let size = a.iter().fold(1e-3_f64, |m, x| m.max(x.abs()));
-        worst.at(name);
-        for (a, b) in a.iter().zip(&b) {
-            worst.see((a - b) / size);
-        }
-    }
+    let worst = difference([&link, &body], link.names(), 1e-3);
     assert!(link.get("O.torque").iter().any(|m| m.abs() > 1.0));
     Rung::Routes
         .asks("Driven crank under couples, modelled as a link and as a rigid body: difference of all channels, relative to the largest value")

@@ -1,6 +1,6 @@
 //! Discs: mass and inertia from dimensions, points, and the pendulum on the rim.
 
-use crate::support::{load, run, run_scene};
+use crate::support::{difference, load, run, run_scene};
 use ladder::{Rung, Worst};
 use looselink::scene::Scene;
 use std::f64::consts::PI;
@@ -16,15 +16,7 @@ fn a_disc_is_a_rigid_body() {
         0.5 * mass * 0.01
     );
     let [disc, body] = [&[][..], &[&*typed]].map(|overrides| run(SCENE, overrides).0);
-    let worst = Worst::new();
-    for name in disc.names() {
-        let (a, b) = (disc.get(name), body.get(name));
-        let size = a.iter().fold(1e-3_f64, |m, x| m.max(x.abs()));
-        worst.at(name);
-        a.iter()
-            .zip(&b)
-            .for_each(|(a, b)| worst.see((a - b) / size));
-    }
+    let worst = difference([&disc, &body], disc.names(), 1e-3);
     Rung::Routes
         .asks("Disc given by radius, thickness and material, and as a rigid body: difference of all channels, relative to the largest value")
         .within(&worst, 1e-9, "rounding of mass and inertia, carried along for 3 s");

@@ -9,7 +9,7 @@ use looselink::contact::normal::damped_power::LANKARANI_NIKRAVESH;
 use looselink::contact::{At, ContactPair, Rough, Slip, Smooth};
 use looselink::force::WIDTH;
 use looselink::interaction::loose_guide::Walls;
-use looselink::marker::{Marker, Spin};
+use looselink::marker::{Marker, Separation, Spin};
 use looselink::system::Weights;
 
 /// Coordinates: a node and a second node, a body, another body, a slope. Sizes near one, so that differences resolve.
@@ -317,7 +317,15 @@ fn tangents_of_pins_between_walls() {
         ("on the ground", NODE, Spin::Fixed, BODY),
     ] {
         let surface = || Smooth {
-            geometry: Walls::new([guide, slider], spin, -0.6, 0.003),
+            geometry: Walls::new(
+                Separation {
+                    from: guide,
+                    to: slider,
+                },
+                spin,
+                -0.6,
+                0.003,
+            ),
             law: joint(NODE, BODY).law,
         };
         let smooth = surface();

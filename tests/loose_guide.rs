@@ -1,6 +1,6 @@
 //! Guides with play: impacts, momentum, dissipation, and what a scene must not say.
 
-use crate::support::{load, path, run, run_scene};
+use crate::support::{difference, load, path, run, run_scene};
 use ladder::{Rung, Worst};
 use looselink::scene::Scene;
 
@@ -10,8 +10,7 @@ fn a_wall_is_met_as_a_bearing() {
     let wall = r#"joints.pin={type="loose_guide",guide="ground.bearing",direction=[0.0,-1.0],slider="journal.center",contact="aluminium"}"#;
     let [bearing, guide] = [&[][..], &[wall]].map(|o| run("bouncing-journal.toml", o).0);
     assert!(bearing.onsets.len() > 3, "there are impacts on both sides");
-    let worst = Worst::new();
-    for name in [
+    let names = [
         "pin.penetration",
         "pin.fx",
         "pin.ex",
@@ -19,14 +18,8 @@ fn a_wall_is_met_as_a_bearing() {
         "pin.eccentricity_rate",
         "journal.x",
         "journal.vx",
-    ] {
-        let (a, b) = (bearing.get(name), guide.get(name));
-        let size = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        worst.at(name);
-        a.iter()
-            .zip(&b)
-            .for_each(|(a, b)| worst.see((a - b) / size));
-    }
+    ];
+    let worst = difference([&bearing, &guide], names, 0.0);
     Rung::Routes
         .asks("Pin between two walls and journal on a diameter of its bearing: difference of motion, force and penetration, relative to the largest value")
         .within(&worst, 1e-9, "rounding of the normal, times a stiffness of 1e11 and a dozen impacts");

@@ -1,6 +1,6 @@
 //! Massless rods: tension and path of a pendulum, and a linkage that must be that with a link of no mass.
 
-use crate::support::{run, run_scene};
+use crate::support::{difference, run, run_scene};
 use ladder::{Rung, Worst};
 use looselink::scene::Scene;
 
@@ -58,22 +58,15 @@ fn a_rod_is_a_link_without_mass() {
         "joints.other={type=\"revolute\",bearing=\"bar.end\",journal=\"large.rim\",model=\"ideal\"}",
     ];
     let [rod, link] = [&[][..], &link].map(|overrides| run("rod-linkage.toml", overrides).0);
-    let worst = Worst::new();
-    for name in [
+    let names = [
         "large.theta",
         "large.omega",
         "large.alpha",
         "axle.torque",
         "rod.fx",
         "rod.fy",
-    ] {
-        let (a, b) = (rod.get(name), link.get(name));
-        let size = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        worst.at(name);
-        a.iter()
-            .zip(&b)
-            .for_each(|(a, b)| worst.see((a - b) / size));
-    }
+    ];
+    let worst = difference([&rod, &link], names, 0.0);
     Rung::Routes
         .asks("Two discs joined by a rod, and by a rigid link of 1e-7 of their mass: difference of angle, rates, torque and force, relative to the largest value")
         .within(&worst, 1e-6, "the inertia of the link: 1.2e-7 of that of the discs, times accelerations up to a few times theirs");

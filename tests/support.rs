@@ -1,5 +1,6 @@
 //! Runs scenes of the project and keeps what they tell.
 
+use ladder::Worst;
 use looselink::scene::Scene;
 use looselink::simulate::{self, Impact, Report, Simulation};
 use std::path::{Path, PathBuf};
@@ -85,6 +86,25 @@ pub fn run_scene(scene: &Scene) -> (Recording, Report) {
     let onsets = kept.onsets.clone();
     let recording = Recording { kept, onsets };
     (recording, simulation.report())
+}
+
+/// The largest difference of channels of two recordings, relative to the largest value of each channel, or to `least` where
+/// that is larger.
+pub fn difference<N: AsRef<str>>(
+    [a, b]: [&Recording; 2],
+    names: impl IntoIterator<Item = N>,
+    least: f64,
+) -> Worst {
+    let worst = Worst::new();
+    for name in names {
+        let (a, b) = (a.get(name.as_ref()), b.get(name.as_ref()));
+        let size = a.iter().fold(least, |m, x| m.max(x.abs()));
+        worst.at(name.as_ref());
+        for (a, b) in a.iter().zip(&b) {
+            worst.see((a - b) / size);
+        }
+    }
+    worst
 }
 
 /// Root mean square of the difference of two series of the same length.

@@ -8,12 +8,16 @@ use looselink::constraint::{
 use looselink::force::{ElementDamping, Force, MassDamping, WIDTH};
 use looselink::interaction::rod::Distance;
 use looselink::interaction::{Maxwell, PointForce, SpringDamper, Torque, TorsionSpring};
-use looselink::marker::{Marker, Spin};
+use looselink::marker::{Marker, Separation, Spin};
 use looselink::motion::Function;
 use looselink::system::{INTEGRALS, Integral, Shape, State, Weights};
 
 /// Coordinates: two bodies (0..3, 3..6), nodes and slopes of an element (6..14), two more nodes (14..18).
 const COUNT: usize = 18;
+
+fn between(from: Marker, to: Marker) -> Separation {
+    Separation { from, to }
+}
 
 /// A smooth motion of all coordinates: state k is c + b sin(w t + p) with numbers that differ from one to the next.
 fn state(k: usize, t: f64) -> State {
@@ -127,40 +131,39 @@ fn constraints() -> Vec<(&'static str, Box<dyn Constraint>)> {
         (
             "slide on a body",
             Box::new(Slide {
-                guide: body(0, [0.1, 0.2]),
+                ends: between(body(0, [0.1, 0.2]), body(3, [-0.2, 0.3])),
                 spin: Spin::Angle { theta: 2 },
                 angle: 0.7,
                 scale: 1.0,
-                slider: body(3, [-0.2, 0.3]),
             }),
         ),
         (
             "slide on a chord",
             Box::new(Slide {
-                guide: Marker::Node { x: 14 },
+                ends: between(Marker::Node { x: 14 }, Marker::Node { x: 6 }),
                 spin: Spin::Chord { from: 14, to: 16 },
                 angle: 0.0,
                 scale: 1.2,
-                slider: Marker::Node { x: 6 },
             }),
         ),
         (
             "rod, bodies",
             Box::new(Distance {
-                first: body(0, [0.3, -0.1]),
-                second: body(3, [0.2, 0.4]),
+                ends: between(body(0, [0.3, -0.1]), body(3, [0.2, 0.4])),
                 length: 0.8,
             }),
         ),
         (
             "rod, chord and node",
             Box::new(Distance {
-                first: Marker::OnChord {
-                    from: 14,
-                    to: 16,
-                    share: 0.3,
-                },
-                second: Marker::Node { x: 6 },
+                ends: between(
+                    Marker::OnChord {
+                        from: 14,
+                        to: 16,
+                        share: 0.3,
+                    },
+                    Marker::Node { x: 6 },
+                ),
                 length: 0.8,
             }),
         ),
@@ -209,7 +212,6 @@ fn constraints_agree_with_their_differences() {
             let s = state(k, 0.0);
             let coordinates = c.coordinates();
             let rows = c.rows();
-            assert!(c.split() <= coordinates.len());
             let gradient = c.gradient(&s);
             let (mut touched, mut bent) = (false, false);
             for i in 0..COUNT {
@@ -313,18 +315,16 @@ fn reactions_are_conjugate_to_motions() {
     let body = |x, s| Marker::OnBody { x, s };
     let angle = Function::Polynomial(vec![0.3, 0.7, -0.2]);
     let slide = |slider| Slide {
-        guide: body(0, [0.1, 0.2]),
+        ends: between(body(0, [0.1, 0.2]), slider),
         spin: Spin::Angle { theta: 2 },
         angle: 0.7,
         scale: 1.0,
-        slider,
     };
     // each with the coordinates that move the second side along x and y
     let points: [(Box<dyn Constraint>, [usize; 2]); 5] = [
         (
             Box::new(Distance {
-                first: body(0, [0.3, -0.1]),
-                second: body(3, [0.2, 0.4]),
+                ends: between(body(0, [0.3, -0.1]), body(3, [0.2, 0.4])),
                 length: 0.8,
             }),
             [3, 4],
@@ -446,14 +446,16 @@ fn the_second_zero_of_an_angle_is_told() {
 #[test]
 fn travel_is_measured_along_the_line() {
     let slide = Slide {
-        guide: Marker::OnBody {
-            x: 0,
-            s: [0.1, 0.2],
-        },
+        ends: between(
+            Marker::OnBody {
+                x: 0,
+                s: [0.1, 0.2],
+            },
+            Marker::Node { x: 6 },
+        ),
         spin: Spin::Angle { theta: 2 },
         angle: 0.7,
         scale: 1.0,
-        slider: Marker::Node { x: 6 },
     };
     let h = 1e-5;
     for k in 0..8 {
@@ -606,7 +608,6 @@ fn forces_agree_with_their_differences() {
             let mut s = state(k, 0.0);
             term.remember(&mut s);
             let coordinates = term.coordinates();
-            assert!(term.split() <= coordinates.len());
             let force = |s: &State| {
                 let mut f = [0.0; WIDTH];
                 term.force(s, &mut f);
@@ -752,10 +753,10 @@ fn sides_are_split_behind_the_first() {
         _ => 0,
     };
     for (name, c) in constraints() {
-        assert_eq!(c.split(), splits(name), "{name}");
+        assert_eq!(c.sides()[0].len(), splits(name), "{name}");
     }
     for (name, f) in forces() {
-        assert_eq!(f.split(), splits(name), "{name}");
+        assert_eq!(f.sides()[0].len(), splits(name), "{name}");
     }
 }
 

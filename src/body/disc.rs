@@ -1,8 +1,8 @@
 //! `type = "disc"`: a rigid disc about its centre of mass, with a point on its rim.
 
-use super::{BodyKind, Point, RigidBody, points};
+use super::rigid_body::{MATERIAL, THICKNESS, disc, plate_mass};
+use super::{BodyKind, Materials, Point, RigidBody, points};
 use crate::document::{Fields, Key, SceneError, Takes, derived};
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 pub(super) static KIND: BodyKind = BodyKind {
@@ -11,13 +11,8 @@ pub(super) static KIND: BodyKind = BodyKind {
         Key::positive("radius", "m", "the radius"),
         Key::positive("mass", "kg", "the mass; or give `thickness` and `material`")
             .or("that of the material"),
-        Key::positive("thickness", "m", "the size normal to the plane").or("required without mass"),
-        Key::new(
-            "material",
-            Takes::Name("materials"),
-            "the name of a material",
-        )
-        .or("required without mass"),
+        THICKNESS.or("required without mass"),
+        MATERIAL.or("required without mass"),
         Key::number(
             "rim",
             "rad",
@@ -47,8 +42,13 @@ pub(super) static KIND: BodyKind = BodyKind {
             return Err(table.fault(message, "name the point otherwise"));
         }
         all.extend(named);
-        let mass = mass(table, known, PI * radius * radius)?;
-        let inertia = 0.5 * mass * radius * radius;
+        let mass = mass(table, known, radius)?;
+        let [_, gyration] = disc(radius);
+        let inertia = derived(
+            &table.field("radius")?,
+            "a moment of inertia",
+            mass * gyration,
+        )?;
         Ok(Arc::new(RigidBody {
             mass,
             inertia,
@@ -57,26 +57,19 @@ pub(super) static KIND: BodyKind = BodyKind {
     },
 };
 
-/// Mass \[kg\], typed or from thickness, material and area \[m2\].
-fn mass(table: &Fields, known: &crate::body::Materials, area: f64) -> Result<f64, SceneError> {
-    let plate = ["thickness", "material"].into_iter();
-    match (
-        table.optional_number("mass")?,
-        plate.filter_map(|key| table.optional(key)).next(),
-    ) {
+/// Mass \[kg\], typed or that of the material.
+fn mass(table: &Fields, known: &Materials, radius: f64) -> Result<f64, SceneError> {
+    let mut plate = ["thickness", "material"].into_iter();
+    let plate = plate.find_map(|key| table.optional(key));
+    match (table.optional_number("mass")?, plate) {
         (Some(_), Some(second)) => {
             let message = format!("`{}` cannot be combined with a given `mass`", second.path);
             Err(second.key_fault(message, "remove this or the mass"))
         }
         (Some(mass), None) => Ok(mass),
         (None, _) => {
-            let material = known.material(table, "material")?;
-            let thickness = table.number("thickness")?;
-            derived(
-                &table.field("thickness")?,
-                "a mass",
-                material.density * area * thickness,
-            )
+            let [area, _] = disc(radius);
+            plate_mass(table, known, area, &table.field("thickness")?)
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A flexible link: planar cubic ANCF elements (eqs. 6-15) between nodes with positions and slopes.
 
 use super::{
-    Body, Content, Frame, Levels, Link, Point, Pose, RigidLink, Slot, carried, rigid_link,
+    Body, Content, Frame, Levels, Link, Point, Pose, RigidLink, Slot, carried, pair, rigid_link,
 };
 use crate::force::{ElementDamping, MassDamping};
 use crate::link::{AncfCable, ElasticRoute};
@@ -35,12 +35,6 @@ pub struct Damping {
     pub strain: f64,
     /// Damping proportional to mass \[1/s\], the first half of Rayleigh's.
     pub mass: f64,
-}
-
-/// Two entries of an array.
-#[inline]
-fn pair(x: &[f64], i: usize) -> Vec2 {
-    [x[i], x[i + 1]]
 }
 
 impl FlexibleLink {

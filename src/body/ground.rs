@@ -3,7 +3,6 @@
 use super::{Body, BodyKind, Frame, Known, Levels, Point, Pose, Slot, points};
 use crate::document::{Key, Takes};
 use crate::marker::{Marker, Spin};
-use crate::terms::{Owner, Terms};
 use std::sync::Arc;
 
 pub(super) static KIND: BodyKind = BodyKind {
@@ -47,8 +46,6 @@ impl Body for Ground {
     fn spin(&self, _: usize, _: &[usize]) -> Spin {
         Spin::Fixed
     }
-
-    fn terms(&self, _: &[usize], _: Owner, _: &mut Terms) {}
 
     fn pose(&self, _: &[usize], _: Levels) -> Pose {
         Pose::default()

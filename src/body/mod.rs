@@ -8,7 +8,7 @@ mod materials;
 mod moving;
 mod point_mass;
 mod points;
-pub(crate) mod rigid_body;
+mod rigid_body;
 mod rigid_link;
 
 pub use flexible_link::{Damping, FlexibleLink};
@@ -23,7 +23,7 @@ pub use rigid_link::RigidLink;
 
 use crate::document::{Fields, Kind, SceneError};
 use crate::marker::{Marker, Spin};
-use crate::math::plane::{add, perp, scale};
+use crate::math::plane::{Vec2, add, perp, scale};
 use crate::motion::Path;
 use crate::terms::{Owner, Terms};
 use std::any::Any;
@@ -136,12 +136,27 @@ pub struct Frame {
     pub velocity: [f64; 3],
 }
 
-/// A body. Its coordinates come in slots; `x` is the index of the first coordinate of each.
+impl Pose {
+    /// The pose of x, y, theta from index `x`.
+    pub fn of(x: usize, levels: Levels) -> Pose {
+        let [position, velocity, acceleration] = levels.map(|l| [l[x], l[x + 1], l[x + 2]]);
+        Pose {
+            position,
+            velocity,
+            acceleration,
+        }
+    }
+}
+
+/// A body. Its coordinates come in slots; `x` is the index of the first coordinate of each. Without methods of its own it has the
+/// coordinates x, y, theta of a frame that carries its points.
 pub trait Body: Any + Debug + Send + Sync {
     /// Its points, in its frame.
     fn points(&self) -> &[Point];
     /// Its coordinates.
-    fn slots(&self) -> Vec<Slot>;
+    fn slots(&self) -> Vec<Slot> {
+        vec![Slot::own(String::new(), Content::Pose)]
+    }
     /// What its motion is known to be.
     fn known(&self) -> Option<Known<'_>> {
         None
@@ -167,9 +182,14 @@ pub trait Body: Any + Debug + Send + Sync {
         0.0
     }
     /// A point as a function of the coordinates.
-    fn marker(&self, point: usize, x: &[usize]) -> Marker;
+    fn marker(&self, point: usize, x: &[usize]) -> Marker {
+        let s = self.points()[point].at;
+        Marker::OnBody { x: x[0], s }
+    }
     /// The direction of the material at a point.
-    fn spin(&self, point: usize, x: &[usize]) -> Spin;
+    fn spin(&self, _point: usize, x: &[usize]) -> Spin {
+        Spin::Angle { theta: x[0] + 2 }
+    }
     /// Magnitude of its undeformed direction.
     fn direction_size(&self) -> f64 {
         1.0
@@ -183,19 +203,30 @@ pub trait Body: Any + Debug + Send + Sync {
         1.0
     }
     /// Adds its masses, elements, constraints and damping.
-    fn terms(&self, x: &[usize], owner: Owner, terms: &mut Terms);
+    fn terms(&self, _x: &[usize], _owner: Owner, _terms: &mut Terms) {}
     /// Pose of its centre of mass; angles of links in (-pi, pi].
-    fn pose(&self, x: &[usize], levels: Levels) -> Pose;
+    fn pose(&self, x: &[usize], levels: Levels) -> Pose {
+        Pose::of(x[0], levels)
+    }
     /// The frame of its points, undeformed, where its centre of mass has this position and velocity.
     fn frame(&self, position: [f64; 3], velocity: [f64; 3]) -> Frame {
         Frame { position, velocity }
     }
     /// The frame of its points in a state of the rigid mechanism.
-    fn frame_at(&self, x: &[usize], q: &[f64], v: &[f64]) -> Option<Frame>;
+    fn frame_at(&self, x: &[usize], q: &[f64], v: &[f64]) -> Option<Frame> {
+        let Pose {
+            position, velocity, ..
+        } = self.pose(x, [q, v, v]);
+        Some(Frame { position, velocity })
+    }
     /// The values of all slots of the undeformed body in a frame, and their rates.
-    fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]>;
+    fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]> {
+        vec![[frame.position, frame.velocity]]
+    }
     /// A velocity of the body (0, 1: of its centre of mass, 2: angular) as a sum of velocities of coordinates times factors.
-    fn velocity(&self, component: usize, x: &[usize], q: &[f64]) -> Option<Vec<(usize, f64)>>;
+    fn velocity(&self, component: usize, x: &[usize], _q: &[f64]) -> Option<Vec<(usize, f64)>> {
+        Some(vec![(x[0] + component, 1.0)])
+    }
     /// The body in the ideal mechanism, where it does not deform; none for a body that is the same there.
     fn rigid(&self) -> Option<Arc<dyn Body>> {
         None
@@ -220,6 +251,12 @@ impl dyn Body {
     pub fn length(&self) -> Option<f64> {
         self.link().map(|link| link.length)
     }
+}
+
+/// Two entries of an array.
+#[inline]
+fn pair(x: &[f64], i: usize) -> Vec2 {
+    [x[i], x[i + 1]]
 }
 
 /// Position and velocity of the point at this distance along the x axis of a frame.

@@ -1,11 +1,8 @@
 //! `type = "moving"`: a body without mass that follows a path.
 
-use super::rigid_body::pose;
-use super::{Body, BodyKind, Content, Frame, Known, Levels, Point, Pose, Slot, points};
+use super::{Body, BodyKind, Known, Point, points};
 use crate::document::{Key, Takes};
-use crate::marker::{Marker, Spin};
 use crate::motion::{Path, read_path};
-use crate::terms::{Owner, Terms};
 use std::sync::Arc;
 
 pub(super) static KIND: BodyKind = BodyKind {
@@ -44,41 +41,7 @@ impl Body for Moving {
         &self.points
     }
 
-    fn slots(&self) -> Vec<Slot> {
-        vec![Slot::own(String::new(), Content::Pose)]
-    }
-
     fn known(&self) -> Option<Known<'_>> {
         Some(Known::Path(&self.path))
-    }
-
-    fn marker(&self, point: usize, x: &[usize]) -> Marker {
-        let s = self.points[point].at;
-        Marker::OnBody { x: x[0], s }
-    }
-
-    fn spin(&self, _: usize, x: &[usize]) -> Spin {
-        Spin::Angle { theta: x[0] + 2 }
-    }
-
-    fn terms(&self, _: &[usize], _: Owner, _: &mut Terms) {}
-
-    fn pose(&self, x: &[usize], levels: Levels) -> Pose {
-        pose(x[0], levels)
-    }
-
-    fn frame_at(&self, x: &[usize], q: &[f64], v: &[f64]) -> Option<Frame> {
-        let Pose {
-            position, velocity, ..
-        } = pose(x[0], [q, v, v]);
-        Some(Frame { position, velocity })
-    }
-
-    fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]> {
-        vec![[frame.position, frame.velocity]]
-    }
-
-    fn velocity(&self, component: usize, x: &[usize], _: &[f64]) -> Option<Vec<(usize, f64)>> {
-        Some(vec![(x[0] + component, 1.0)])
     }
 }

@@ -1,6 +1,6 @@
 //! `type = "point_mass"`: x, y.
 
-use super::{Body, BodyKind, Frame, Levels, Point, Pose, Slot};
+use super::{Body, BodyKind, Levels, Point, Pose, Slot};
 use crate::document::Key;
 use crate::marker::{Marker, Spin};
 use crate::terms::{Inertia, Owner, Terms};
@@ -65,15 +65,6 @@ impl Body for PointMass {
             velocity,
             acceleration,
         }
-    }
-
-    fn frame_at(&self, x: &[usize], q: &[f64], v: &[f64]) -> Option<Frame> {
-        let [position, velocity] = [q, v].map(|l| [l[x[0]], l[x[0] + 1], 0.0]);
-        Some(Frame { position, velocity })
-    }
-
-    fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]> {
-        vec![[frame.position, frame.velocity]]
     }
 
     fn velocity(&self, component: usize, x: &[usize], _: &[f64]) -> Option<Vec<(usize, f64)>> {

@@ -1,10 +1,7 @@
 //! `type = "rigid_body"`: x, y of the centre of mass, theta.
 
-use super::{
-    Body, BodyKind, Content, Frame, Levels, Material, Materials, Point, Pose, Slot, points,
-};
-use crate::document::{Fields, Key, SceneError, Takes, derived};
-use crate::marker::{Marker, Spin};
+use super::{Body, BodyKind, Material, Materials, Point, points};
+use crate::document::{Field, Fields, Key, Kind, SceneError, Takes, derived};
 use crate::terms::{Inertia, Owner, Terms};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -70,10 +67,6 @@ impl Body for RigidBody {
         &self.points
     }
 
-    fn slots(&self) -> Vec<Slot> {
-        vec![Slot::own(String::new(), Content::Pose)]
-    }
-
     fn mass(&self) -> Option<f64> {
         Some(self.mass)
     }
@@ -87,15 +80,6 @@ impl Body for RigidBody {
         arms.fold(self.size(), f64::max)
     }
 
-    fn marker(&self, point: usize, x: &[usize]) -> Marker {
-        let s = self.points[point].at;
-        Marker::OnBody { x: x[0], s }
-    }
-
-    fn spin(&self, _: usize, x: &[usize]) -> Spin {
-        Spin::Angle { theta: x[0] + 2 }
-    }
-
     fn terms(&self, x: &[usize], _: Owner, terms: &mut Terms) {
         let (m, i, g) = (self.mass, self.inertia, terms.gravity);
         terms.inertia.push(Inertia {
@@ -104,70 +88,72 @@ impl Body for RigidBody {
             field: vec![g[0], g[1], 0.0],
         });
     }
-
-    fn pose(&self, x: &[usize], levels: Levels) -> Pose {
-        pose(x[0], levels)
-    }
-
-    fn frame_at(&self, x: &[usize], q: &[f64], v: &[f64]) -> Option<Frame> {
-        let [position, velocity] = [q, v].map(|level| three(level, x[0]));
-        Some(Frame { position, velocity })
-    }
-
-    fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]> {
-        vec![[frame.position, frame.velocity]]
-    }
-
-    fn velocity(&self, component: usize, x: &[usize], _: &[f64]) -> Option<Vec<(usize, f64)>> {
-        Some(vec![(x[0] + component, 1.0)])
-    }
 }
 
-fn three(level: &[f64], x: usize) -> [f64; 3] {
-    [level[x], level[x + 1], level[x + 2]]
-}
+/// A shape of a uniform plate. It gives the area \[m2\], and the moment of inertia over the mass \[m2\].
+pub type Plate = Kind<fn(&Fields) -> Result<[f64; 2], SceneError>>;
 
-/// The pose of x, y, theta from index `x`.
-pub(crate) fn pose(x: usize, levels: Levels) -> Pose {
-    let [position, velocity, acceleration] = levels.map(|level| three(level, x));
-    Pose {
-        position,
-        velocity,
-        acceleration,
-    }
-}
+pub(super) const THICKNESS: Key = Key::positive("thickness", "m", "the size normal to the plane");
+pub(super) const MATERIAL: Key = Key::name_in("material", "materials", "the name of a material");
 
-const THICKNESS: Key = Key::positive("thickness", "m", "the size normal to the plane");
-const PLATE: Key = Key::name_in("material", "materials", "the name of a material");
-
-/// The shapes of a uniform plate and their keys.
-pub static PLATES: [(&str, &[Key]); 3] = [
-    (
-        "equilateral_triangle",
-        &[
+/// The shapes of a uniform plate.
+pub static PLATES: [&Plate; 3] = [
+    &Plate {
+        name: "equilateral_triangle",
+        keys: &[
             Key::positive(
                 "circumradius",
                 "m",
                 "the distance from the centre to a corner",
             ),
             THICKNESS,
-            PLATE,
+            MATERIAL,
         ],
-    ),
-    (
-        "disc",
-        &[Key::positive("radius", "m", "the radius"), THICKNESS, PLATE],
-    ),
-    (
-        "rectangle",
-        &[
+        read: |table| {
+            let r = table.number("circumradius")?;
+            // side s = sqrt(3) r, I = m s^2/12
+            Ok([0.75 * 3f64.sqrt() * r * r, r * r / 4.0])
+        },
+    },
+    &Plate {
+        name: "disc",
+        keys: &[
+            Key::positive("radius", "m", "the radius"),
+            THICKNESS,
+            MATERIAL,
+        ],
+        read: |table| Ok(disc(table.number("radius")?)),
+    },
+    &Plate {
+        name: "rectangle",
+        keys: &[
             Key::positive("width", "m", "one side"),
             Key::positive("height", "m", "the other side"),
             THICKNESS,
-            PLATE,
+            MATERIAL,
         ],
-    ),
+        read: |table| {
+            let (w, h) = (table.number("width")?, table.number("height")?);
+            Ok([w * h, (w * w + h * h) / 12.0])
+        },
+    },
 ];
+
+/// Area \[m2\] and moment of inertia over mass \[m2\] of a disc.
+pub(super) fn disc(radius: f64) -> [f64; 2] {
+    [PI * radius * radius, radius * radius / 2.0]
+}
+
+/// Mass \[kg\] of a uniform plate: a faulty one is that of `place`.
+pub(super) fn plate_mass(
+    table: &Fields,
+    known: &Materials,
+    area: f64,
+    place: &Field,
+) -> Result<f64, SceneError> {
+    let Material { density, .. } = known.material(table, "material")?;
+    derived(place, "a mass", density * area * table.number("thickness")?)
+}
 
 /// Mass \[kg\] and moment of inertia \[kg m2\], typed or those of a uniform plate; a mass typed beside a plate
 /// replaces that of its material and scales the inertia with it.
@@ -180,35 +166,12 @@ fn inertia(table: &Fields, known: &Materials) -> Result<(f64, f64), SceneError> 
         return Err(typed.key_fault(message, "remove this or the plate"));
     }
     let mut fields = plate.fields()?;
-    let names: Vec<_> = PLATES.iter().map(|(name, _)| format!("{name:?}")).collect();
-    let shape = fields.required(
-        "shape",
-        &format!("the shape of the plate: {}", names.join(", ")),
-    )?;
-    fields.declare(&["shape"], shape.choice(&PLATES)?)?;
-    let size = |key| fields.number(key);
-    // area, and moment of inertia over mass
-    let (area, gyration) = match shape.text()? {
-        "equilateral_triangle" => {
-            let r = size("circumradius")?;
-            // side s = sqrt(3) r, I = m s^2/12
-            (0.75 * 3f64.sqrt() * r * r, r * r / 4.0)
-        }
-        "disc" => {
-            let r = size("radius")?;
-            (PI * r * r, r * r / 2.0)
-        }
-        _ => {
-            let (w, h) = (size("width")?, size("height")?);
-            (w * h, (w * w + h * h) / 12.0)
-        }
-    };
-    let thickness = size("thickness")?;
-    let Material { density, .. } = known.material(&fields, "material")?;
-    let mass = match table.optional_number("mass")? {
-        Some(typed) => typed,
-        None => derived(&plate, "a mass", density * area * thickness)?,
-    };
-    let inertia = derived(&plate, "a moment of inertia", mass * gyration)?;
-    Ok((mass, inertia))
+    let shape = Kind::by("shape", &mut fields, "the shape of the plate", &PLATES)?;
+    let [area, gyration] = (shape.read)(&fields)?;
+    let own = plate_mass(&fields, known, area, &plate)?;
+    let mass = table.optional_number("mass")?.unwrap_or(own);
+    Ok((
+        mass,
+        derived(&plate, "a moment of inertia", mass * gyration)?,
+    ))
 }

@@ -1,6 +1,6 @@
 //! A rigid link in natural coordinates (eqs. 1-5): the positions of its two ends, at a constant distance.
 
-use super::{Body, Frame, Levels, Link, Point, Pose, Slot, carried};
+use super::{Body, Frame, Levels, Link, Point, Pose, Slot, carried, pair};
 use crate::constraint::Length;
 use crate::link::natural_rigid;
 use crate::marker::{Marker, Spin};
@@ -12,12 +12,6 @@ use crate::terms::{ConstraintTerm, Inertia, Owner, Terms};
 pub struct RigidLink {
     /// Dimensions and points.
     pub link: Link,
-}
-
-/// Two entries of an array.
-#[inline]
-fn pair(x: &[f64], i: usize) -> Vec2 {
-    [x[i], x[i + 1]]
 }
 
 impl Body for RigidLink {

@@ -204,7 +204,8 @@ impl Places<'_> {
     fn constraints(&self, constraints: Vec<ConstraintRows>) -> Vec<PlacedConstraint> {
         let mut row = 0;
         let constraints = constraints.into_iter().map(|r| {
-            let coordinates = r.term.coordinates();
+            let sides = r.term.sides();
+            let (owners, coordinates) = (owners(&sides, r.sides), sides.concat());
             let rows = r.term.rows();
             let borders = |symbolic| {
                 let border = |d| Border::new(&coordinates, row + d, symbolic, self.unknowns);
@@ -213,7 +214,7 @@ impl Places<'_> {
             let placed = PlacedConstraint {
                 border: borders(self.tangent),
                 acceleration_border: borders(self.acceleration_level),
-                owners: owners(&coordinates, r.term.split(), r.sides),
+                owners,
                 block: self.block(coordinates),
                 row,
                 rows,
@@ -233,10 +234,10 @@ impl Places<'_> {
     ) -> Vec<PlacedForce> {
         let damping = damping.into_iter().map(|(term, body)| (term, [body, body]));
         let forces = forces.into_iter().chain(damping).map(|(term, sides)| {
-            let coordinates = term.coordinates();
+            let coordinates = term.sides();
             PlacedForce {
-                owners: owners(&coordinates, term.split(), sides),
-                block: self.block(coordinates),
+                owners: owners(&coordinates, sides),
+                block: self.block(coordinates.concat()),
                 counter: 0,
                 term,
             }
@@ -254,11 +255,11 @@ impl Places<'_> {
     }
 }
 
-/// The body of each local coordinate: the first `split` belong to the first side.
-fn owners(coordinates: &[usize], split: usize, sides: [usize; 2]) -> Vec<usize> {
-    (0..coordinates.len())
-        .map(|c| sides[usize::from(c >= split)])
-        .collect()
+/// The body of each local coordinate of a term.
+fn owners(coordinates: &[Vec<usize>; 2], bodies: [usize; 2]) -> Vec<usize> {
+    let sides = coordinates.iter().zip(bodies);
+    let owners = sides.flat_map(|(side, body)| vec![body; side.len()]);
+    owners.collect()
 }
 
 /// The unknown angles of rigid bodies.

@@ -63,12 +63,8 @@ impl Constraint for Align {
         1
     }
 
-    fn coordinates(&self) -> Vec<usize> {
-        [self.first.coordinates(), self.second.coordinates()].concat()
-    }
-
-    fn split(&self) -> usize {
-        self.first.width()
+    fn sides(&self) -> [Vec<usize>; 2] {
+        [self.first.coordinates(), self.second.coordinates()]
     }
 
     fn value(&self, at: &State) -> [f64; ROWS] {

@@ -49,14 +49,8 @@ impl Constraint for ClampSlope {
         2
     }
 
-    fn coordinates(&self) -> Vec<usize> {
-        let mut coordinates = self.first.coordinates();
-        coordinates.extend([self.slope, self.slope + 1]);
-        coordinates
-    }
-
-    fn split(&self) -> usize {
-        self.first.width()
+    fn sides(&self) -> [Vec<usize>; 2] {
+        [self.first.coordinates(), vec![self.slope, self.slope + 1]]
     }
 
     fn value(&self, at: &State) -> [f64; ROWS] {

@@ -24,12 +24,8 @@ impl Constraint for Coincide {
         2
     }
 
-    fn coordinates(&self) -> Vec<usize> {
-        [self.bearing.coordinates(), self.journal.coordinates()].concat()
-    }
-
-    fn split(&self) -> usize {
-        self.bearing.width()
+    fn sides(&self) -> [Vec<usize>; 2] {
+        [self.bearing.coordinates(), self.journal.coordinates()]
     }
 
     fn value(&self, at: &State) -> [f64; ROWS] {

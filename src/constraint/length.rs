@@ -35,12 +35,8 @@ impl Constraint for Length {
         1
     }
 
-    fn coordinates(&self) -> Vec<usize> {
-        vec![self.i, self.i + 1, self.j, self.j + 1]
-    }
-
-    fn split(&self) -> usize {
-        2
+    fn sides(&self) -> [Vec<usize>; 2] {
+        [self.i, self.j].map(|x| vec![x, x + 1])
     }
 
     fn value(&self, at: &State) -> [f64; ROWS] {

@@ -62,10 +62,12 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
     }
     /// Number of rows, 1 or 2.
     fn rows(&self) -> usize;
-    /// The coordinates in local order: those of the first side, then those of the second.
-    fn coordinates(&self) -> Vec<usize>;
-    /// How many of them belong to the first side.
-    fn split(&self) -> usize;
+    /// The coordinates in local order: those of its first side, then those of its second.
+    fn sides(&self) -> [Vec<usize>; 2];
+    /// The coordinates of both sides.
+    fn coordinates(&self) -> Vec<usize> {
+        self.sides().concat()
+    }
     /// Phi.
     fn value(&self, at: &State) -> [f64; ROWS];
     /// Phi_q.

@@ -28,12 +28,8 @@ impl Constraint for Place {
         1
     }
 
-    fn coordinates(&self) -> Vec<usize> {
-        self.marker.coordinates()
-    }
-
-    fn split(&self) -> usize {
-        0
+    fn sides(&self) -> [Vec<usize>; 2] {
+        [vec![], self.marker.coordinates()]
     }
 
     fn value(&self, at: &State) -> [f64; ROWS] {

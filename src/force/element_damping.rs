@@ -90,12 +90,8 @@ impl Force for ElementDamping {
         "element_damping"
     }
 
-    fn coordinates(&self) -> Vec<usize> {
-        self.coordinates.clone()
-    }
-
-    fn split(&self) -> usize {
-        0
+    fn sides(&self) -> [Vec<usize>; 2] {
+        [vec![], self.coordinates.clone()]
     }
 
     fn force(&self, at: &State, f: &mut [f64; WIDTH]) {

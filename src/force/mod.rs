@@ -19,10 +19,12 @@ pub type LocalMatrix = [[f64; WIDTH]; WIDTH];
 pub trait Force: std::fmt::Debug + Send + Sync {
     /// What it is counted as.
     fn effect(&self) -> Effect;
-    /// The coordinates in local order: those of the first side, then those of the second.
-    fn coordinates(&self) -> Vec<usize>;
-    /// How many of them belong to the first side.
-    fn split(&self) -> usize;
+    /// The coordinates in local order: those of its first side, then those of its second.
+    fn sides(&self) -> [Vec<usize>; 2];
+    /// The coordinates of both sides.
+    fn coordinates(&self) -> Vec<usize> {
+        self.sides().concat()
+    }
     /// Adds the local force f (left side of the equations of motion).
     fn force(&self, at: &State, f: &mut [f64; WIDTH]);
     /// Adds the local force and its tangent w.q df/dq + w.v df/dv.

@@ -2,8 +2,9 @@
 
 use super::Contact;
 use crate::body::PointRef;
+use crate::constraint::Slide;
 use crate::document::{Fields, Kind, SceneError, Span};
-use crate::marker::{Marker, Spin};
+use crate::marker::{Marker, Separation, Spin};
 use crate::terms::{JointTerms, Owner, Terms};
 use indexmap::IndexMap;
 use std::any::Any;
@@ -54,6 +55,19 @@ pub struct JointEnds<'a> {
     pub owner: Owner<'a>,
     /// True where shared or known coordinates keep its points together, so that no constraint is needed for it.
     pub eliminated: bool,
+}
+
+impl JointEnds<'_> {
+    /// The second point on a line through the first, whose direction is given in the frame of the first body \[rad\].
+    pub fn slide(&self, direction: f64) -> Slide {
+        let [from, to] = self.markers;
+        Slide {
+            ends: Separation { from, to },
+            spin: self.spins[0],
+            angle: direction,
+            scale: self.inverse_sizes[0],
+        }
+    }
 }
 
 /// What a joint allows.

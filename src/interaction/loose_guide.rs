@@ -12,7 +12,7 @@ use crate::contact::geometry::{Gap, Geometry, Touch};
 use crate::contact::{At, Slip};
 use crate::document::{Key, Takes};
 use crate::force::{LocalMatrix, WIDTH};
-use crate::marker::{Marker, Spin};
+use crate::marker::{Separation, Spin};
 use crate::math::plane::{Vec2, add, dot, perp, rotate, scale, sub};
 use crate::terms::{ForceTerm, JointTerms, Terms};
 use std::sync::Arc;
@@ -40,10 +40,10 @@ pub(super) static KIND: JointKind = JointKind {
             .is_some_and(|friction| friction.slip == Slip::Paper)
         {
             let message = format!(
-                "the friction of {} has slip \"paper\", which a guide does not know",
+                "the friction of {} has slip \"paper\", which only a bearing can have",
                 name.written()
             );
-            return Err(name.fault(message, "has a slip of eqs. 22-23, those of a bearing"));
+            return Err(name.fault(message, "its slip is that of eqs. 22-23, for a bearing"));
         }
         Ok(Arc::new(LooseGuide {
             direction: direction(table)?,
@@ -82,19 +82,11 @@ impl JointModel for LooseGuide {
     }
 
     fn terms(&self, ends: &JointEnds, terms: &mut Terms) -> JointTerms {
-        let slide = Slide {
-            guide: ends.markers[0],
-            spin: ends.spins[0],
-            angle: self.direction,
-            scale: ends.inverse_sizes[0],
-            slider: ends.markers[1],
-        };
-        let walls = Walls::new(
-            ends.markers,
-            ends.spins[0],
-            self.direction,
-            self.contact.clearance,
-        );
+        let slide = ends.slide(self.direction);
+        let Slide {
+            ends: pin, spin, ..
+        } = slide;
+        let walls = Walls::new(pin, spin, self.direction, self.contact.clearance);
         terms.contacts.push(self.contact.pair(walls, ends.spins));
         JointTerms {
             slide: Some(slide),
@@ -106,13 +98,14 @@ impl JointModel for LooseGuide {
 /// A pin between two walls.
 #[derive(Debug)]
 pub struct Walls {
-    markers: [Marker; 2],
+    /// From the guide's point to the pin.
+    ends: Separation,
     spin: Spin,
     direction: f64,
     clearance: f64,
     coordinates: Vec<usize>,
-    /// Local indices of the coordinates of both markers and of the spin.
-    places: [Vec<usize>; 3],
+    /// Local indices of the coordinates of both ends, and of the spin.
+    places: [Vec<usize>; 2],
 }
 
 /// Everything about a pin in a state, in local coordinates.
@@ -131,9 +124,9 @@ struct Pin {
 }
 
 impl Walls {
-    /// Walls along a direction \[rad\] from that of the spin through the first marker, at the distance `clearance` \[m\] on
-    /// either side of the second.
-    pub fn new(markers: [Marker; 2], spin: Spin, direction: f64, clearance: f64) -> Walls {
+    /// Walls along a direction \[rad\] from that of the spin, through the point where `ends` begins and at the distance
+    /// `clearance` \[m\] on either side of the one where it ends.
+    pub fn new(ends: Separation, spin: Spin, direction: f64, clearance: f64) -> Walls {
         let mut coordinates: Vec<usize> = Vec::new();
         let mut place = |own: Vec<usize>| -> Vec<usize> {
             let local = own.into_iter().map(|index| {
@@ -145,14 +138,9 @@ impl Walls {
             });
             local.collect()
         };
-        let [guide, slider] = markers;
-        let places = [
-            place(guide.coordinates()),
-            place(slider.coordinates()),
-            place(spin.coordinates()),
-        ];
+        let places = [place(ends.sides().concat()), place(spin.coordinates())];
         Walls {
-            markers,
+            ends,
             spin,
             direction,
             clearance,
@@ -162,10 +150,7 @@ impl Walls {
     }
 
     fn pin(&self, q: &[f64], v: &[f64]) -> Pin {
-        let arms = self.markers.map(|marker| marker.arm(q));
-        let [guide, slider] = &self.markers;
-        let e = sub(slider.position(q, arms[1]), guide.position(q, arms[0]));
-        let e_dot = sub(slider.velocity(v, arms[1]), guide.velocity(v, arms[0]));
+        let (e, e_dot) = (self.ends.vector(q), self.ends.rate(q, v));
         let (sine, cosine) = self.direction.sin_cos();
         let along = rotate(cosine, sine, self.spin.vector(q));
         let u = scale(1.0 / dot(along, along).sqrt(), along);
@@ -182,13 +167,10 @@ impl Walls {
             e_q: [[0.0; 2]; WIDTH],
             b: [0.0; WIDTH],
         };
-        for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
-            let columns = self.markers[side].columns(arms[side]);
-            for (&c, column) in self.places[side].iter().zip(columns.iter()) {
-                pin.e_q[c] = add(pin.e_q[c], scale(sign, *column));
-            }
+        for (&c, column) in self.places[0].iter().zip(self.ends.columns(q).iter()) {
+            pin.e_q[c] = add(pin.e_q[c], *column);
         }
-        for (&c, b) in self.places[2].iter().zip(self.spin.derivatives(q, v).b) {
+        for (&c, b) in self.places[1].iter().zip(self.spin.derivatives(q, v).b) {
             pin.b[c] = b;
         }
         pin
@@ -209,19 +191,16 @@ impl Walls {
             }
         }
         let turning = self.spin.derivatives(at.q, at.v).b_q;
-        for (&i, row) in self.places[2].iter().zip(turning) {
-            for (&j, bend) in self.places[2].iter().zip(row) {
+        for (&i, row) in self.places[1].iter().zip(turning) {
+            for (&j, bend) in self.places[1].iter().zip(row) {
                 second[0][i][j] -= p * bend;
                 second[1][i][j] += s * bend;
             }
         }
-        for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
-            if let Marker::OnBody { .. } = self.markers[side] {
-                let bend = scale(-sign, self.markers[side].arm(at.q));
-                let theta = self.places[side][2];
-                second[0][theta][theta] += dot(*m, bend);
-                second[1][theta][theta] += dot(*u, bend);
-            }
+        for (theta, _, bend) in self.ends.bends(at.q) {
+            let theta = self.places[0][theta];
+            second[0][theta][theta] += dot(*m, bend);
+            second[1][theta][theta] += dot(*u, bend);
         }
         second
     }

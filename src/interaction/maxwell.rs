@@ -1,6 +1,7 @@
 //! `type = "maxwell"`: a spring and a damper in series between two points.
 
-use super::{Ends, ForceKind, ForceModel, SpringDamper};
+use super::spring_damper::Line;
+use super::{Ends, ForceKind, ForceModel, SpringDamper, SpringDamperModel};
 use crate::body::PointRef;
 use crate::document::Key;
 use crate::effect::Effect;
@@ -29,12 +30,16 @@ pub(super) static KIND: ForceKind = ForceKind {
     ],
     read: |table, names| {
         let [from, to] = names.two_points(table)?;
-        Ok(Arc::new(MaxwellModel {
+        let spring = SpringDamper {
             from,
             to,
             stiffness: table.number("stiffness")?,
-            damping: table.number("damping")?,
+            damping: 0.0,
             rest_length: table.number("rest_length")?,
+        };
+        Ok(Arc::new(MaxwellModel {
+            spring,
+            damping: table.number("damping")?,
             elongation: table.optional_number("elongation")?.unwrap_or(0.0),
         }))
     },
@@ -43,23 +48,17 @@ pub(super) static KIND: ForceKind = ForceKind {
 /// A Maxwell element as a scene describes it.
 #[derive(Debug, Clone, Copy)]
 pub struct MaxwellModel {
-    /// One end.
-    pub from: PointRef,
-    /// The other.
-    pub to: PointRef,
-    /// Stiffness \[N/m\].
-    pub stiffness: f64,
-    /// Damping \[N s/m\].
+    /// The spring, with the rest length where the damper is pushed in.
+    pub spring: SpringDamperModel,
+    /// Damping of the damper \[N s/m\].
     pub damping: f64,
-    /// Rest length \[m\].
-    pub rest_length: f64,
     /// Elongation of the damper at the start \[m\].
     pub elongation: f64,
 }
 
 impl ForceModel for MaxwellModel {
     fn points(&self) -> Vec<PointRef> {
-        vec![self.from, self.to]
+        self.spring.points()
     }
 
     fn states(&self) -> &'static [&'static str] {
@@ -67,19 +66,14 @@ impl ForceModel for MaxwellModel {
     }
 
     fn term(&self, ends: &Ends) -> (Box<dyn Force>, [usize; 2]) {
+        let (spring, bodies) = self.spring.place(ends);
         let term = Maxwell {
-            spring: SpringDamper {
-                from: ends.marker(self.from),
-                to: ends.marker(self.to),
-                stiffness: self.stiffness,
-                damping: 0.0,
-                rest_length: self.rest_length,
-            },
+            spring,
             damping: self.damping,
             elongation: ends.states[0],
             start: self.elongation,
         };
-        (Box::new(term), [self.from.body, self.to.body])
+        (Box::new(term), bodies)
     }
 }
 
@@ -110,10 +104,11 @@ impl Maxwell {
         self.spring.from.width() + self.spring.to.width()
     }
 
-    /// N \[N\] and L \[m\].
-    fn pull(&self, at: &State) -> [f64; 2] {
-        let [pull, length, _] = self.at(at).measure(at);
-        [pull, length]
+    /// N \[N\] and the line it acts along.
+    fn pull(&self, at: &State) -> (f64, Line) {
+        let spring = self.at(at);
+        let line = spring.line(at);
+        (spring.pull(&line), line)
     }
 }
 
@@ -122,28 +117,26 @@ impl Force for Maxwell {
         "maxwell"
     }
 
-    fn coordinates(&self) -> Vec<usize> {
-        let mut coordinates = self.spring.coordinates();
-        coordinates.push(self.elongation);
-        coordinates
-    }
-
-    fn split(&self) -> usize {
-        self.spring.split()
+    fn sides(&self) -> [Vec<usize>; 2] {
+        let [from, mut to] = self.spring.sides();
+        to.push(self.elongation);
+        [from, to]
     }
 
     fn force(&self, at: &State, f: &mut [f64; WIDTH]) {
-        self.at(at).force(at, f);
-        f[self.place()] -= self.pull(at)[0] / self.damping;
+        let (pull, line) = self.pull(at);
+        SpringDamper::pull_ends(&line, pull, f);
+        f[self.place()] -= pull / self.damping;
     }
 
     fn force_and_tangent(&self, at: &State, w: Weights, f: &mut [f64; WIDTH], k: &mut LocalMatrix) {
-        let spring = self.at(at);
-        spring.force_and_tangent(at, w, f, k);
-        let (z, stiffness) = (self.place(), spring.stiffness);
-        f[z] -= self.pull(at)[0] / self.damping;
+        let (pull, line) = self.pull(at);
+        let (stiffness, z) = (self.spring.stiffness, self.place());
+        SpringDamper::pull_ends(&line, pull, f);
+        f[z] -= pull / self.damping;
+        self.at(at).tangent(at, w, &line, k);
         // N depends on q through L, whose gradient is n^T de/dq, and on z
-        for (c, along) in spring.line(at).along[..z].iter().enumerate() {
+        for (c, along) in line.along[..z].iter().enumerate() {
             k[c][z] -= w.v * stiffness * along;
             k[z][c] -= w.q * stiffness * along / self.damping;
         }
@@ -167,7 +160,7 @@ impl Force for Maxwell {
     }
 
     fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
-        let [pull, _] = self.pull(at);
+        let (pull, _) = self.pull(at);
         powers[Integral::DampingDissipated as usize] += pull * pull / self.damping;
     }
 
@@ -176,7 +169,7 @@ impl Force for Maxwell {
     }
 
     fn measure(&self, at: &State) -> [f64; 3] {
-        let [pull, length] = self.pull(at);
-        [pull, length, at.v[self.elongation]]
+        let (pull, line) = self.pull(at);
+        [pull, line.length, at.v[self.elongation]]
     }
 }

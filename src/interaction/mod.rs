@@ -17,7 +17,7 @@ pub mod weld;
 pub use contact::{Contact, Friction};
 pub use joint::{Joint, JointEnds, JointKind, JointModel};
 pub use maxwell::{Maxwell, MaxwellModel};
-pub use names::Names;
+pub use names::{NO_DIRECTION, Names};
 pub use point_force::{PointForce, PointForceModel};
 pub use prismatic::Prismatic;
 pub use revolute::Revolute;

@@ -6,6 +6,9 @@ use crate::document::{Field, Fields, SceneError};
 use indexmap::IndexMap;
 use std::sync::Arc;
 
+/// The label of a point without direction.
+pub const NO_DIRECTION: &str = "a point has no direction";
+
 /// The bodies and joints read so far.
 #[derive(Debug)]
 pub struct Names<'a> {
@@ -57,16 +60,20 @@ impl Names<'_> {
     /// # Errors
     /// The body is a point mass.
     pub fn check_turns(&self, field: &Field, point: PointRef) -> Result<(), SceneError> {
-        match self.bodies.get_index(point.body) {
-            Some((name, body)) if !body.turns() => {
-                let message = format!(
-                    "`{}` needs the direction of {name}, but a point mass has none",
-                    field.path
-                );
-                Err(field.fault(message, "a point has no direction"))
-            }
-            _ => Ok(()),
+        match self.directionless(field, point) {
+            Some(message) => Err(field.fault(message, NO_DIRECTION)),
+            None => Ok(()),
         }
+    }
+
+    /// What is wrong where a field needs the direction at a point that has none.
+    pub fn directionless(&self, field: &Field, point: PointRef) -> Option<String> {
+        let (name, body) = self.bodies.get_index(point.body)?;
+        let message = format!(
+            "`{}` needs the direction of {name}, but a point mass has none",
+            field.path
+        );
+        (!body.turns()).then_some(message)
     }
 
     /// The two ends of a force that acts along their line.

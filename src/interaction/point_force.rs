@@ -103,12 +103,9 @@ impl Force for PointForce {
         "applied_force"
     }
 
-    fn coordinates(&self) -> Vec<usize> {
-        [self.marker.coordinates(), self.spin.coordinates()].concat()
-    }
-
-    fn split(&self) -> usize {
-        0
+    fn sides(&self) -> [Vec<usize>; 2] {
+        let coordinates = [self.marker.coordinates(), self.spin.coordinates()];
+        [vec![], coordinates.concat()]
     }
 
     fn force(&self, at: &State, f: &mut [f64; WIDTH]) {

@@ -2,7 +2,6 @@
 
 use super::weld::alignment;
 use super::{JointEnds, JointKind, JointModel};
-use crate::constraint::Slide;
 use crate::document::{Fields, Key, SceneError};
 use crate::terms::{ConstraintTerm, ForceTerm, JointTerms, Terms};
 use std::sync::Arc;
@@ -81,13 +80,7 @@ impl JointModel for Prismatic {
     }
 
     fn terms(&self, ends: &JointEnds, terms: &mut Terms) -> JointTerms {
-        let slide = Slide {
-            guide: ends.markers[0],
-            spin: ends.spins[0],
-            angle: self.direction,
-            scale: ends.inverse_sizes[0],
-            slider: ends.markers[1],
-        };
+        let slide = ends.slide(self.direction);
         let term = ConstraintTerm::Other(Box::new(slide));
         let row = terms.constrain(term, ends.owner, &["line"]);
         JointTerms {

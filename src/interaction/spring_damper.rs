@@ -5,7 +5,7 @@ use crate::body::PointRef;
 use crate::document::{Fields, Key, SceneError};
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
-use crate::marker::Marker;
+use crate::marker::{Marker, Separation};
 use crate::math::plane::{Vec2, dot, norm, scale, sub};
 use crate::system::{INTEGRALS, Integral, State, Weights};
 use std::sync::Arc;
@@ -42,48 +42,17 @@ pub(super) fn rates(table: &Fields) -> Result<(f64, f64), SceneError> {
     Ok((stiffness, damping))
 }
 
-/// A spring and a damper as a scene describes them.
-#[derive(Debug, Clone, Copy)]
-pub struct SpringDamperModel {
-    /// One end.
-    pub from: PointRef,
-    /// The other.
-    pub to: PointRef,
-    /// Stiffness \[N/m\].
-    pub stiffness: f64,
-    /// Damping \[N s/m\].
-    pub damping: f64,
-    /// Rest length \[m\].
-    pub rest_length: f64,
-}
-
-impl ForceModel for SpringDamperModel {
-    fn points(&self) -> Vec<PointRef> {
-        vec![self.from, self.to]
-    }
-
-    fn term(&self, ends: &Ends) -> (Box<dyn Force>, [usize; 2]) {
-        let term = SpringDamper {
-            from: ends.marker(self.from),
-            to: ends.marker(self.to),
-            stiffness: self.stiffness,
-            damping: self.damping,
-            rest_length: self.rest_length,
-        };
-        (Box::new(term), [self.from.body, self.to.body])
-    }
-}
-
-/// Pull N = k (L - L_0) + c L_dot along the line between two points, L their distance.
+/// Pull N = k (L - L_0) + c L_dot along the line between two points, L their distance; its ends are points of a scene or
+/// markers.
 ///
 /// With a rest length of 0 the pull vanishes where the points meet, and the damper has no direction there and no force.
 /// With any other rest length points that meet leave the spring without a direction: the state is not finite.
 #[derive(Debug, Clone, Copy)]
-pub struct SpringDamper {
+pub struct SpringDamper<P = Marker> {
     /// One end.
-    pub from: Marker,
+    pub from: P,
     /// The other.
-    pub to: Marker,
+    pub to: P,
     /// k \[N/m\].
     pub stiffness: f64,
     /// c \[N s/m\].
@@ -92,12 +61,40 @@ pub struct SpringDamper {
     pub rest_length: f64,
 }
 
+/// A spring and a damper as a scene describes them.
+pub type SpringDamperModel = SpringDamper<PointRef>;
+
+impl SpringDamperModel {
+    /// The same between markers, and the bodies of its two sides.
+    pub(super) fn place(&self, ends: &Ends) -> (SpringDamper, [usize; 2]) {
+        let placed = SpringDamper {
+            from: ends.marker(self.from),
+            to: ends.marker(self.to),
+            stiffness: self.stiffness,
+            damping: self.damping,
+            rest_length: self.rest_length,
+        };
+        (placed, [self.from.body, self.to.body])
+    }
+}
+
+impl ForceModel for SpringDamperModel {
+    fn points(&self) -> Vec<PointRef> {
+        vec![self.from, self.to]
+    }
+
+    fn term(&self, ends: &Ends) -> (Box<dyn Force>, [usize; 2]) {
+        let (term, bodies) = self.place(ends);
+        (Box::new(term), bodies)
+    }
+}
+
 /// Ends at a smaller distance coincide \[m\]: the digits of typed positions.
 const MEETING: f64 = 1e-9;
 
 /// The line between the ends.
 pub(super) struct Line {
-    length: f64,
+    pub length: f64,
     /// Unit vector from one end to the other.
     n: Vec2,
     rate: f64,
@@ -106,50 +103,76 @@ pub(super) struct Line {
     e_dot: Vec2,
     /// n^T d(e)/dq
     pub along: [f64; WIDTH],
-    columns: [Vec2; WIDTH],
-    count: usize,
 }
 
 impl SpringDamper {
+    fn ends(&self) -> Separation {
+        Separation {
+            from: self.from,
+            to: self.to,
+        }
+    }
+
     pub(super) fn line(&self, at: &State) -> Line {
-        let arms = [self.from.arm(&at.q), self.to.arm(&at.q)];
-        let e = sub(
-            self.to.position(&at.q, arms[1]),
-            self.from.position(&at.q, arms[0]),
-        );
-        let e_dot = sub(
-            self.to.velocity(&at.v, arms[1]),
-            self.from.velocity(&at.v, arms[0]),
-        );
+        let ends = self.ends();
+        let (e, e_dot) = (ends.vector(&at.q), ends.rate(&at.q, &at.v));
         let length = norm(e);
         let meeting = length == 0.0 && self.rest_length == 0.0;
-        let n = if meeting {
-            [0.0; 2]
-        } else {
-            scale(1.0 / length, e)
-        };
-        let mut line = Line {
+        let inverse = if meeting { 0.0 } else { 1.0 / length };
+        let n = scale(inverse, e);
+        let mut along = [0.0; WIDTH];
+        for (along, column) in along.iter_mut().zip(ends.columns(&at.q).iter()) {
+            *along = dot(n, *column);
+        }
+        Line {
             length,
             n,
             rate: dot(n, e_dot),
-            inverse: if meeting { 0.0 } else { 1.0 / length },
+            inverse,
             e_dot,
-            along: [0.0; WIDTH],
-            columns: [[0.0; 2]; WIDTH],
-            count: 0,
-        };
-        for (marker, sign) in [(&self.from, -1.0), (&self.to, 1.0)] {
-            for column in marker.columns(marker.arm(&at.q)).iter() {
-                line.columns[line.count] = scale(sign, *column);
-                line.along[line.count] = sign * dot(n, *column);
-                line.count += 1;
-            }
+            along,
         }
-        line
     }
 
-    fn pull(&self, line: &Line) -> f64 {
+    pub(super) fn pull(&self, line: &Line) -> f64 {
         self.stiffness * (line.length - self.rest_length) + self.damping * line.rate
+    }
+
+    /// Adds the local force of a pull.
+    pub(super) fn pull_ends(line: &Line, pull: f64, f: &mut [f64; WIDTH]) {
+        for (f, along) in f.iter_mut().zip(line.along) {
+            *f += pull * along;
+        }
+    }
+
+    /// Adds the tangent.
+    pub(super) fn tangent(&self, at: &State, w: Weights, line: &Line, k: &mut LocalMatrix) {
+        let (ends, pull) = (self.ends(), self.pull(line));
+        // N/L, whose limit for a spring without rest length is k
+        let turning = if line.inverse == 0.0 {
+            self.stiffness
+        } else {
+            pull * line.inverse
+        };
+        // d(L_dot)/dq: n turns with e, and e_dot with the arms
+        let columns = ends.columns(&at.q);
+        let mut rate_q = [0.0; WIDTH];
+        for (c, column) in columns.iter().enumerate() {
+            let across = sub(*column, scale(line.along[c], line.n));
+            rate_q[c] = dot(line.e_dot, across) * line.inverse;
+        }
+        for (theta, x, bend) in ends.bends(&at.q) {
+            rate_q[theta] += at.v[x] * dot(line.n, bend);
+            k[theta][theta] += w.q * pull * dot(line.n, bend);
+        }
+        let by_length = w.q * self.stiffness + w.v * self.damping;
+        for (r, row) in columns.iter().enumerate() {
+            for (c, column) in columns.iter().enumerate() {
+                let gradient = by_length * line.along[c] + w.q * self.damping * rate_q[c];
+                let across = dot(*row, *column) - line.along[r] * line.along[c];
+                k[r][c] += line.along[r] * gradient + w.q * turning * across;
+            }
+        }
     }
 }
 
@@ -158,55 +181,19 @@ impl Force for SpringDamper {
         "spring_damper"
     }
 
-    fn coordinates(&self) -> Vec<usize> {
-        [self.from.coordinates(), self.to.coordinates()].concat()
-    }
-
-    fn split(&self) -> usize {
-        self.from.width()
+    fn sides(&self) -> [Vec<usize>; 2] {
+        self.ends().sides()
     }
 
     fn force(&self, at: &State, f: &mut [f64; WIDTH]) {
         let line = self.line(at);
-        let pull = self.pull(&line);
-        for (f, along) in f.iter_mut().zip(line.along) {
-            *f += pull * along;
-        }
+        Self::pull_ends(&line, self.pull(&line), f);
     }
 
     fn force_and_tangent(&self, at: &State, w: Weights, f: &mut [f64; WIDTH], k: &mut LocalMatrix) {
         let line = self.line(at);
-        let pull = self.pull(&line);
-        // N/L, whose limit for a spring without rest length is k
-        let turning = if line.inverse == 0.0 {
-            self.stiffness
-        } else {
-            pull * line.inverse
-        };
-        // d(L_dot)/dq: n turns with e, and e_dot with the arms
-        let arms = [self.from.arm(&at.q), self.to.arm(&at.q)];
-        let mut rate_q = [0.0; WIDTH];
-        for c in 0..line.count {
-            let across = sub(line.columns[c], scale(line.along[c], line.n));
-            rate_q[c] = dot(line.e_dot, across) * line.inverse;
-        }
-        let sides = [(&self.from, -1.0, 0), (&self.to, 1.0, self.from.width())];
-        for (side, (marker, sign, first)) in sides.into_iter().enumerate() {
-            if let Marker::OnBody { x, .. } = *marker {
-                let bend = scale(-sign, arms[side]);
-                rate_q[first + 2] += at.v[x + 2] * dot(line.n, bend);
-                k[first + 2][first + 2] += w.q * pull * dot(line.n, bend);
-            }
-        }
-        for r in 0..line.count {
-            f[r] += pull * line.along[r];
-            for c in 0..line.count {
-                let by_length = w.q * self.stiffness + w.v * self.damping;
-                let gradient = by_length * line.along[c] + w.q * self.damping * rate_q[c];
-                let across = dot(line.columns[r], line.columns[c]) - line.along[r] * line.along[c];
-                k[r][c] += line.along[r] * gradient + w.q * turning * across;
-            }
-        }
+        Self::pull_ends(&line, self.pull(&line), f);
+        self.tangent(at, w, &line, k);
     }
 
     fn stores_energy(&self) -> bool {

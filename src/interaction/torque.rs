@@ -84,7 +84,7 @@ pub struct Torque {
 }
 
 impl Torque {
-    fn sides(&self) -> [(f64, Spin, usize); 2] {
+    fn ends(&self) -> [(f64, Spin, usize); 2] {
         [
             (-1.0, self.first, 0),
             (1.0, self.second, self.first.width()),
@@ -97,17 +97,13 @@ impl Force for Torque {
         "applied_torque"
     }
 
-    fn coordinates(&self) -> Vec<usize> {
-        [self.first.coordinates(), self.second.coordinates()].concat()
-    }
-
-    fn split(&self) -> usize {
-        self.first.width()
+    fn sides(&self) -> [Vec<usize>; 2] {
+        [self.first.coordinates(), self.second.coordinates()]
     }
 
     fn force(&self, at: &State, f: &mut [f64; WIDTH]) {
         let torque = self.value.at(at.t)[0];
-        for (sign, spin, first) in self.sides() {
+        for (sign, spin, first) in self.ends() {
             let d = spin.derivatives(&at.q, &at.v);
             for i in 0..spin.width() {
                 f[first + i] -= sign * torque * d.b[i];
@@ -118,7 +114,7 @@ impl Force for Torque {
     fn force_and_tangent(&self, at: &State, w: Weights, f: &mut [f64; WIDTH], k: &mut LocalMatrix) {
         self.force(at, f);
         let torque = self.value.at(at.t)[0];
-        for (sign, spin, first) in self.sides() {
+        for (sign, spin, first) in self.ends() {
             let d = spin.derivatives(&at.q, &at.v);
             for i in 0..spin.width() {
                 for j in 0..spin.width() {

@@ -116,7 +116,7 @@ impl TorsionSpring {
     }
 
     /// Each side: sign, derivatives of its spin, its first local index and its number of coordinates.
-    fn sides(&self, at: &State) -> [(f64, SpinDerivatives, usize, usize); 2] {
+    fn ends(&self, at: &State) -> [(f64, SpinDerivatives, usize, usize); 2] {
         let derivatives = |s: &Spin| s.derivatives(&at.q, &at.v);
         let (m, n) = (self.first.width(), self.second.width());
         [
@@ -131,17 +131,13 @@ impl Force for TorsionSpring {
         "torsion_spring"
     }
 
-    fn coordinates(&self) -> Vec<usize> {
-        [self.first.coordinates(), self.second.coordinates()].concat()
-    }
-
-    fn split(&self) -> usize {
-        self.first.width()
+    fn sides(&self) -> [Vec<usize>; 2] {
+        [self.first.coordinates(), self.second.coordinates()]
     }
 
     fn force(&self, at: &State, f: &mut [f64; WIDTH]) {
         let [torque, ..] = self.state(at);
-        for (sign, d, first, count) in self.sides(at) {
+        for (sign, d, first, count) in self.ends(at) {
             for i in 0..count {
                 f[first + i] += torque * sign * d.b[i];
             }
@@ -150,7 +146,7 @@ impl Force for TorsionSpring {
 
     fn force_and_tangent(&self, at: &State, w: Weights, f: &mut [f64; WIDTH], k: &mut LocalMatrix) {
         let [torque, ..] = self.state(at);
-        let sides = self.sides(at);
+        let sides = self.ends(at);
         let (mut lever, mut by_stage) = ([0.0; WIDTH], [0.0; WIDTH]);
         for (sign, d, first, count) in &sides {
             for i in 0..*count {

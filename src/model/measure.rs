@@ -1,7 +1,7 @@
 //! Measured quantities of a model: poses, strains, energies, joint forces, drive torques.
 
 use super::{Actuator, ForceCarrier, Model, PlacedJoint};
-use crate::body::{Pose, rigid_body};
+use crate::body::Pose;
 use crate::contact;
 use crate::contact::geometry::Gap;
 use crate::marker::Marker;
@@ -68,7 +68,7 @@ impl Model {
     /// Pose that the drive prescribes for body `index`, if it does.
     pub fn prescribed(&self, index: usize, at: &State) -> Option<Pose> {
         let x = self.bodies[index].prescribed?;
-        Some(rigid_body::pose(x, [&at.q, &at.v, &at.a]))
+        Some(Pose::of(x, [&at.q, &at.v, &at.a]))
     }
 
     /// The axial strain of largest magnitude along a flexible link, sampled at eleven points of every element.

@@ -3,7 +3,7 @@
 use super::NamedBody;
 use crate::body::{Body, Known, Materials};
 use crate::document::{Field, Fields, Kind, RESERVED, SceneError, Span, check_name, named};
-use crate::interaction::{Contact, Joint, NamedForce, Names};
+use crate::interaction::{Contact, Joint, NO_DIRECTION, NamedForce, Names};
 use crate::registry::Registry;
 use indexmap::IndexMap;
 use std::sync::Arc;
@@ -131,16 +131,10 @@ fn joint(
         return Err(second.fault(message, label));
     }
     let model = (kind.read)(&table, contacts)?;
-    let turning = model.needs_direction().into_iter().zip([bearing, journal]);
-    for (_, p) in turning.filter(|(needs, _)| *needs) {
-        let (name, body) = names.bodies.get_index(p.body).expect("a point has a body");
-        if !body.turns() {
-            let message = format!(
-                "`{}` needs the direction of {name}, but a point mass has none",
-                field.path
-            );
-            return Err(field.key_fault(message, "a point has no direction"));
-        }
+    let sides = model.needs_direction().into_iter().zip([bearing, journal]);
+    let mut turning = sides.filter(|(needs, _)| *needs);
+    if let Some(message) = turning.find_map(|(_, p)| names.directionless(field, p)) {
+        return Err(field.key_fault(message, NO_DIRECTION));
     }
     Ok(Joint {
         name: field.name.clone(),

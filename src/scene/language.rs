@@ -53,13 +53,7 @@ pub fn language(registry: &Registry) -> Vec<Sheet> {
     plain("initial.bodies.NAME", &motion::STATE);
     plain("initial.bodies.NAME of a point mass", &motion::POINT_STATE);
     plain("initial.velocities.NAME", &motion::VELOCITIES);
-    for (shape, keys) in &PLATES {
-        sheets.push(Sheet {
-            table: "bodies.NAME.plate",
-            kind: Some(["shape", shape]),
-            keys: keys.to_vec(),
-        });
-    }
+    add_by("shape", &mut sheets, "bodies.NAME.plate", &PLATES);
     add(&mut sheets, "bodies.NAME", &registry.bodies);
     add(&mut sheets, "joints.NAME", &registry.joints);
     add(&mut sheets, "drives.NAME", &motion::KINDS);
@@ -70,9 +64,19 @@ pub fn language(registry: &Registry) -> Vec<Sheet> {
 }
 
 fn add<F>(sheets: &mut Vec<Sheet>, table: &'static str, kinds: &[&'static Kind<F>]) {
+    add_by("type", sheets, table, kinds);
+}
+
+/// Adds kinds that `key` tells apart.
+fn add_by<F>(
+    key: &'static str,
+    sheets: &mut Vec<Sheet>,
+    table: &'static str,
+    kinds: &[&'static Kind<F>],
+) {
     sheets.extend(kinds.iter().map(|kind| Sheet {
         table,
-        kind: Some(["type", kind.name]),
+        kind: Some([key, kind.name]),
         keys: kind.keys.to_vec(),
     }));
 }
