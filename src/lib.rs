@@ -56,7 +56,6 @@ pub mod record;
 pub mod registry;
 pub mod scene;
 pub mod simulate;
-pub mod statics;
 pub mod stepper;
 pub mod system;
 pub mod table;

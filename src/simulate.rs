@@ -36,7 +36,6 @@ use crate::model::Model;
 use crate::newton::Newton;
 use crate::record::Recorder;
 use crate::scene::{Analysis, Scene};
-use crate::statics::Statics;
 use crate::stepper::{LocalError, StepError, Stepper, look_ahead};
 use crate::system::{State, System, Work};
 use control::{Candidate, Verdict};
@@ -86,7 +85,6 @@ pub struct Simulation {
     stays_in_singular_pose: bool,
     /// True of a step that met a singular pose and was given another length.
     passes_singular_pose: bool,
-    statics: Option<Statics>,
     work: Work,
     state: State,
     trial: State,

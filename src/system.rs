@@ -219,3 +219,17 @@ pub trait System {
     /// The name of an unknown or of a multiplier, for messages.
     fn unknown_name(&self, index: usize) -> String;
 }
+
+/// A system whose equilibria can be found.
+pub trait Equilibrium: System {
+    /// The residual at rest, and its tangent without inertia: with K = d(f + Phi_q^T lambda)/dq and the largest s of its
+    /// diagonal, r = f + Phi_q^T (lambda + s Phi) and \[\[K + s Phi_q^T Phi_q, s Phi_q^T\], \[s Phi_q, 0\]\]. Returns s.
+    fn stiffness(
+        &self,
+        at: &State,
+        r: &mut [f64],
+        phi: &mut [f64],
+        k: &mut [f64],
+        work: &mut Work,
+    ) -> f64;
+}

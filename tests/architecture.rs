@@ -9,7 +9,7 @@ use syn::visit::Visit;
 use syn::{ItemUse, UseTree};
 
 /// Folders and files at the top of `src`, the lowest first: each uses those before it only.
-const LAYERS: [&str; 25] = [
+const LAYERS: [&str; 24] = [
     "math",
     "table",
     "effect",
@@ -30,7 +30,6 @@ const LAYERS: [&str; 25] = [
     "scene",
     "model",
     "kinematics",
-    "statics",
     "compile",
     "initial",
     "record",

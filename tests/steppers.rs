@@ -2,7 +2,7 @@
 
 use crate::chain::{Chain, bathe};
 use ladder::{Rung, Worst};
-use looselink::newton::{Counters, Newton};
+use looselink::newton::Newton;
 use looselink::stepper::bathe::splitting;
 use looselink::stepper::{Estimate, LocalError, Method, Stepper, look_ahead};
 use looselink::stepper::{
@@ -694,27 +694,4 @@ fn the_ratio_of_an_error_to_its_share_loses_an_order_or_half_of_one() {
     };
     assert_eq!(estimate(3.0, true).order_of_ratio(), 2.0);
     assert_eq!(estimate(5.0, false).order_of_ratio(), 4.5);
-}
-
-/// Counts of the static solver and of the motion add up, each to its own kind.
-#[test]
-fn counts_add_up() {
-    let counters = |first: u64| Counters {
-        stages: first,
-        newton_iterations: first + 1,
-        factorisations: first + 2,
-        fallbacks: first + 3,
-        stagnations: first + 4,
-        singular_poses: first + 5,
-    };
-    let sum = counters(10).with(&counters(20));
-    let expected = Counters {
-        stages: 30,
-        newton_iterations: 32,
-        factorisations: 34,
-        fallbacks: 36,
-        stagnations: 38,
-        singular_poses: 40,
-    };
-    assert_eq!(sum, expected);
 }

@@ -69,7 +69,7 @@ fn mass(table: &Fields, known: &Materials, radius: f64) -> Result<f64, SceneErro
         (Some(mass), None) => Ok(mass),
         (None, _) => {
             let [area, _] = disc(radius);
-            plate_mass(table, known, area, &table.field("thickness")?)
+            plate_mass(table, known, area)
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `type = "rigid_body"`: x, y of the centre of mass, theta.
 
 use super::{Body, BodyKind, Material, Materials, Point, points};
-use crate::document::{Field, Fields, Key, Kind, SceneError, Takes, derived};
+use crate::document::{Fields, Key, Kind, SceneError, Takes, derived};
 use crate::terms::{Inertia, Owner, Terms};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -144,15 +144,15 @@ pub(super) fn disc(radius: f64) -> [f64; 2] {
     [PI * radius * radius, radius * radius / 2.0]
 }
 
-/// Mass \[kg\] of a uniform plate: a faulty one is that of `place`.
-pub(super) fn plate_mass(
-    table: &Fields,
-    known: &Materials,
-    area: f64,
-    place: &Field,
-) -> Result<f64, SceneError> {
+/// Mass \[kg\] of a uniform plate of this area.
+pub(super) fn plate_mass(table: &Fields, known: &Materials, area: f64) -> Result<f64, SceneError> {
     let Material { density, .. } = known.material(table, "material")?;
-    derived(place, "a mass", density * area * table.number("thickness")?)
+    let thickness = table.field("thickness")?;
+    derived(
+        &thickness,
+        "a mass",
+        density * area * table.number("thickness")?,
+    )
 }
 
 /// Mass \[kg\] and moment of inertia \[kg m2\], typed or those of a uniform plate; a mass typed beside a plate
@@ -168,7 +168,7 @@ fn inertia(table: &Fields, known: &Materials) -> Result<(f64, f64), SceneError> 
     let mut fields = plate.fields()?;
     let shape = Kind::by("shape", &mut fields, "the shape of the plate", &PLATES)?;
     let [area, gyration] = (shape.read)(&fields)?;
-    let own = plate_mass(&fields, known, area, &plate)?;
+    let own = plate_mass(&fields, known, area)?;
     let mass = table.optional_number("mass")?.unwrap_or(own);
     Ok((
         mass,

@@ -9,6 +9,7 @@ mod series;
 
 use crate::math::plane::{norm, sub};
 use crate::model::Model;
+use crate::newton::{Factors, Failure, Update, iterate};
 use crate::system::{PrescribeError, Prescribed, State, System};
 use numbers::number;
 use series::Series;
@@ -55,7 +56,7 @@ pub struct Inner {
     /// Constraint values.
     phi: Vec<f64>,
     /// Matrix of the acceleration level.
-    k: Vec<f64>,
+    factors: Factors,
     /// Right side, unknowns and multipliers.
     b: Vec<f64>,
     /// Its motion over a span of time.
@@ -95,7 +96,7 @@ impl Kinematics {
         Inner {
             state: self.mechanism.blank_state(),
             phi: vec![0.0; shape.multipliers],
-            k: vec![0.0; self.mechanism.acceleration_symbolic().len()],
+            factors: Factors::new(self.mechanism.acceleration_symbolic()),
             b: vec![0.0; size],
             series: Series::new(self.moving.len(), self.period),
         }
@@ -173,25 +174,21 @@ impl Kinematics {
         mechanism.move_driven_nodes(&mut inner.state);
         inner.state.v[..n].fill(0.0);
         inner.state.a[..n].fill(0.0);
-        let mut last = f64::INFINITY;
-        for _ in 0..max_iterations {
+        let mut last = 0.0;
+        let closed = iterate(max_iterations, |_| {
             self.factor(inner)?;
             self.least_norm(inner);
-            last = 0.0;
             for (q, dq) in inner.state.q.iter_mut().zip(&inner.b[..n]) {
                 *q += dq;
-                // f64::max drops NaN
-                last = if dq.abs() <= last { last } else { dq.abs() };
             }
-            if last <= LAST_UPDATE || last.is_nan() {
-                break;
-            }
-        }
-        if last.is_nan() || last > LAST_UPDATE {
-            return Err(self.cannot_close(&inner.state));
-        }
+            let update = Update::largest(inner.b[..n].iter().copied());
+            last = update.size;
+            Ok((update, last <= LAST_UPDATE))
+        });
+        closed.map_err(|failure| self.explain(failure, inner))?;
         if last > SAME_POSE {
-            self.factor(inner)?;
+            let factored = self.factor(inner);
+            factored.map_err(|failure| self.explain(failure, inner))?;
         }
         mechanism.constraint_velocity(&inner.state, &mut inner.phi);
         self.least_norm(inner);
@@ -202,27 +199,27 @@ impl Kinematics {
         Ok(())
     }
 
-    /// Phi and the factors of \[\[I, Phi_q^T\], \[Phi_q, 0\]\] at the current coordinates.
-    fn factor(&self, inner: &mut Inner) -> Result<(), PrescribeError> {
-        let Inner { state, phi, k, .. } = inner;
-        self.mechanism.acceleration_level(state, phi, k);
-        self.mechanism
-            .acceleration_symbolic()
-            .factor(k)
-            .map_err(|weak| {
-                let name = self.mechanism.unknown_name(weak.index);
-                let closed = phi.iter().all(|x| x.abs() < LAST_UPDATE);
-                if closed {
-                    let message =
-                        format!("the ideal rigid mechanism is in a singular pose ({name})");
-                    PrescribeError {
-                        message,
-                        t: state.t,
-                    }
-                } else {
-                    self.cannot_close(state)
-                }
-            })
+    /// Phi and the factors of \[\[I, Phi_q^T\], \[Phi_q, 0\]\] at the current coordinates. A weak pivot is that of a singular pose,
+    /// which no exchange of rows removes.
+    fn factor(&self, inner: &mut Inner) -> Result<(), Failure> {
+        let (state, phi) = (&inner.state, &mut inner.phi);
+        let fill = |k: &mut [f64]| self.mechanism.acceleration_level(state, phi, k);
+        let symbolic = self.mechanism.acceleration_symbolic();
+        inner.factors.renew_in_order(symbolic, fill)
+    }
+
+    /// Why the mechanism has no pose.
+    fn explain(&self, failure: Failure, inner: &Inner) -> PrescribeError {
+        let closed = inner.phi.iter().all(|x| x.abs() < LAST_UPDATE);
+        match failure {
+            Failure::Singular { index } if closed => {
+                let name = self.mechanism.unknown_name(index);
+                let message = format!("the ideal rigid mechanism is in a singular pose ({name})");
+                let t = inner.state.t;
+                PrescribeError { message, t }
+            }
+            _ => self.cannot_close(&inner.state),
+        }
     }
 
     /// Solves Phi_q x = -phi for the x of least norm: the first entries of `inner.b`.
@@ -232,9 +229,8 @@ impl Kinematics {
         for (b, phi) in inner.b[n..].iter_mut().zip(&inner.phi) {
             *b = -phi;
         }
-        self.mechanism
-            .acceleration_symbolic()
-            .solve(&inner.k, &mut inner.b);
+        let symbolic = self.mechanism.acceleration_symbolic();
+        inner.factors.solve(symbolic, &mut inner.b);
     }
 
     /// Says which two links are too short or too long for the distance between their ends, if that is the reason.

@@ -262,7 +262,7 @@ const EQUILIBRATIONS: usize = 6;
 ///
 /// Rows and columns are scaled alike until their largest entries are near one (Ruiz 2001, RAL-TR-2001-034), so that a
 /// stiffness of 1e10 N/m beside a constraint of order one does not look singular.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct DenseLu {
     factors: PartialPivLu<f64>,
     scale: Vec<f64>,

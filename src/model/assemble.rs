@@ -7,7 +7,9 @@ use crate::force::WIDTH;
 use crate::link::ElasticRoute;
 use crate::math::lu::Symbolic;
 use crate::math::plane::{perp, rotate};
-use crate::system::{INTEGRALS, Integral, PrescribeError, Shape, State, System, Weights, Work};
+use crate::system::{
+    Equilibrium, INTEGRALS, Integral, PrescribeError, Shape, State, System, Weights, Work,
+};
 
 /// Local coordinates of an element.
 #[inline]
@@ -134,6 +136,41 @@ impl Model {
                 c.block.add_matrix(&tangent, 1.0, k);
             }
         }
+    }
+
+    /// Subtracts the masses from a tangent; the entries of dropped rows remain.
+    fn remove_mass(&self, k: &mut [f64]) {
+        for (k, m) in k.iter_mut().zip(&self.mass.tangent) {
+            *k -= m;
+        }
+        for p in &self.constraints {
+            for d in (0..p.rows).filter(|&d| p.kept[d] == 0.0) {
+                let m = self.shape.unknowns + p.row + d;
+                k[self.symbolic.slot(m, m) as usize] = 1.0;
+            }
+        }
+    }
+
+    /// Adds s Phi_q^T Phi_q to a tangent and s Phi_q^T Phi to the residual, where s is the largest entry on the diagonal of the
+    /// tangent, and multiplies the constraint rows and columns by s. Returns s.
+    fn augment(&self, at: &State, r: &mut [f64], k: &mut [f64]) -> f64 {
+        let diagonal = (0..self.shape.unknowns).map(|i| k[self.symbolic.slot(i, i) as usize].abs());
+        let s = diagonal.fold(f64::MIN_POSITIVE, f64::max);
+        for p in &self.constraints {
+            let (value, gradient) = (p.term.value(at), p.term.gradient(at));
+            let columns = p.block.coordinates.len();
+            for d in (0..p.rows).filter(|&d| p.kept[d] != 0.0) {
+                p.border[d].add(&gradient[d].map(|g| (s - 1.0) * g), k);
+                for i in 0..columns {
+                    r[p.block.coordinates[i]] += s * gradient[d][i] * value[d];
+                    for j in 0..columns {
+                        let slot = p.block.slots[i * columns + j] as usize;
+                        k[slot] += s * gradient[d][i] * gradient[d][j];
+                    }
+                }
+            }
+        }
+        s
     }
 
     fn count(&self, work: &mut Work) {
@@ -362,5 +399,20 @@ impl System for Model {
 
     fn unknown_name(&self, index: usize) -> String {
         self.names[index].clone()
+    }
+}
+
+impl Equilibrium for Model {
+    fn stiffness(
+        &self,
+        at: &State,
+        r: &mut [f64],
+        phi: &mut [f64],
+        k: &mut [f64],
+        work: &mut Work,
+    ) -> f64 {
+        self.linearise(at, Weights { q: 1.0, v: 0.0 }, r, phi, k, work);
+        self.remove_mass(k);
+        self.augment(at, r, k)
     }
 }

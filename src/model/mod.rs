@@ -307,41 +307,6 @@ impl Model {
         }
     }
 
-    /// Subtracts the masses from a tangent; the entries of dropped rows remain.
-    pub(crate) fn remove_mass(&self, k: &mut [f64]) {
-        for (k, m) in k.iter_mut().zip(&self.mass.tangent) {
-            *k -= m;
-        }
-        for p in &self.constraints {
-            for d in (0..p.rows).filter(|&d| p.kept[d] == 0.0) {
-                let m = self.shape.unknowns + p.row + d;
-                k[self.symbolic.slot(m, m) as usize] = 1.0;
-            }
-        }
-    }
-
-    /// Adds s Phi_q^T Phi_q to a tangent and s Phi_q^T Phi to the residual, where s is the largest entry on the diagonal of the
-    /// tangent, and multiplies the constraint rows and columns by s. Returns s.
-    pub(crate) fn augment(&self, at: &State, r: &mut [f64], k: &mut [f64]) -> f64 {
-        let diagonal = (0..self.shape.unknowns).map(|i| k[self.symbolic.slot(i, i) as usize].abs());
-        let s = diagonal.fold(f64::MIN_POSITIVE, f64::max);
-        for p in &self.constraints {
-            let (value, gradient) = (p.term.value(at), p.term.gradient(at));
-            let columns = p.block.coordinates.len();
-            for d in (0..p.rows).filter(|&d| p.kept[d] != 0.0) {
-                p.border[d].add(&gradient[d].map(|g| (s - 1.0) * g), k);
-                for i in 0..columns {
-                    r[p.block.coordinates[i]] += s * gradient[d][i] * value[d];
-                    for j in 0..columns {
-                        let slot = p.block.slots[i * columns + j] as usize;
-                        k[slot] += s * gradient[d][i] * gradient[d][j];
-                    }
-                }
-            }
-        }
-        s
-    }
-
     /// Collects the effects present, and how often each but contact is evaluated with every residual.
     pub(crate) fn count_effects(&mut self) {
         let mut effects: Vec<Effect> = Vec::new();

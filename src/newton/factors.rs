@@ -1,11 +1,11 @@
 //! A matrix of fixed pattern and its factors.
 
 use super::{Counters, Failure};
-use crate::math::lu::{DenseLu, Symbolic};
+use crate::math::lu::{DenseLu, Symbolic, WeakPivot};
 
 /// A matrix that is filled, factorised and solved many times.
-#[derive(Debug)]
-pub(super) struct Factors {
+#[derive(Debug, Clone)]
+pub(crate) struct Factors {
     pub values: Vec<f64>,
     /// Factors with row exchanges, where the fixed pivot order met a weak pivot.
     pub dense: Option<DenseLu>,
@@ -20,7 +20,25 @@ impl Factors {
         }
     }
 
-    /// Fills the matrix and factorises it; after a weak pivot, once more as a dense matrix with row exchanges.
+    /// Fills the matrix and factorises it in the fixed pivot order.
+    ///
+    /// # Errors
+    /// A weak pivot.
+    pub fn renew_in_order(
+        &mut self,
+        symbolic: &Symbolic,
+        mut fill: impl FnMut(&mut [f64]),
+    ) -> Result<(), Failure> {
+        self.dense = None;
+        fill(&mut self.values);
+        let singular = |weak: WeakPivot| Failure::Singular { index: weak.index };
+        symbolic.factor(&mut self.values).map_err(singular)
+    }
+
+    /// The same; after a weak pivot, once more as a dense matrix with row exchanges.
+    ///
+    /// # Errors
+    /// The matrix is singular to rounding.
     pub fn renew(
         &mut self,
         symbolic: &Symbolic,
@@ -28,14 +46,13 @@ impl Factors {
         mut fill: impl FnMut(&mut [f64]),
     ) -> Result<(), Failure> {
         counters.factorisations += 1;
-        self.dense = None;
-        fill(&mut self.values);
-        if let Err(weak) = symbolic.factor(&mut self.values) {
+        let in_order = self.renew_in_order(symbolic, &mut fill);
+        if in_order.is_err() {
             counters.fallbacks += 1;
             fill(&mut self.values);
             self.dense = DenseLu::factor(symbolic, &self.values);
             if self.dense.is_none() {
-                return Err(Failure::Singular { index: weak.index });
+                return in_order;
             }
         }
         Ok(())

@@ -1,19 +1,20 @@
-//! Newton's method on the equations of one stage, and the linear solves of the acceleration level.
+//! Newton's method: stages, projections and equilibria, and the linear solves of the acceleration level.
 
 mod factors;
+mod iteration;
 mod response;
 mod singular;
+mod statics;
 
+pub(crate) use factors::Factors;
+pub(crate) use iteration::{Update, iterate};
 pub use response::Response;
 
 use crate::system::{State, System, Weights, Work};
-use factors::Factors;
 use singular::{SINGULAR, Truncated};
 
 /// Largest number of iterations of a stage; a stage that converges needs far fewer.
 const MAX_ITERATIONS: usize = 15;
-/// The tangent is renewed when an update is larger than this part of the previous one.
-const SLOW: f64 = 0.1;
 /// Updates that no longer decrease count as rounding below this many tolerances.
 const ROUNDING_BAND: f64 = 1e4;
 /// A projection of positions ends when its update is below this part of the largest position: the error left is the square of
@@ -35,20 +36,6 @@ pub struct Counters {
     pub stagnations: u64,
     /// Stages that ended in a nearly singular pose, where the singular direction was left out.
     pub singular_poses: u64,
-}
-
-impl Counters {
-    /// The sum of both.
-    pub fn with(&self, other: &Counters) -> Counters {
-        Counters {
-            stages: self.stages + other.stages,
-            newton_iterations: self.newton_iterations + other.newton_iterations,
-            factorisations: self.factorisations + other.factorisations,
-            fallbacks: self.fallbacks + other.fallbacks,
-            stagnations: self.stagnations + other.stagnations,
-            singular_poses: self.singular_poses + other.singular_poses,
-        }
-    }
 }
 
 /// Why a stage has no solution.
@@ -174,18 +161,18 @@ impl Newton {
             let size = q_hat[..n].iter().fold(0.0_f64, |m, q| m.max(q.abs()));
             tolerance = tolerance.max(16.0 * f64::EPSILON * size * w.v / w.q);
         }
-        let (mut renew, mut last) = (true, f64::INFINITY);
-        let mut worst = 0;
-        for iteration in 0..MAX_ITERATIONS {
+        let move_to = |s: &mut State| {
             for i in 0..n {
                 s.q[i] = q_hat[i] + w.q * s.a[i];
                 s.v[i] = v_hat[i] + w.v * s.a[i];
             }
+        };
+        iterate(MAX_ITERATIONS, |iteration| {
+            move_to(s);
             self.counters.newton_iterations += 1;
-            if renew {
-                self.renew_stage(system, s, w, work)?;
-            } else {
-                system.residual(s, &mut self.r, &mut self.phi, work);
+            match iteration.renew {
+                true => self.renew_stage(system, s, w, work)?,
+                false => system.residual(s, &mut self.r, &mut self.phi, work),
             }
             for i in 0..n {
                 self.b[i] = -self.r[i];
@@ -194,44 +181,29 @@ impl Newton {
                 *b = -phi / w.q;
             }
             self.stage.solve(system.symbolic(), &mut self.b);
-            let mut update = 0.0;
-            for i in 0..n {
-                s.a[i] += self.b[i];
-                let size = w.v * self.b[i].abs();
-                if size.is_nan() || size > update {
-                    (update, worst) = (size, i);
-                }
+            for (x, d) in s.a[..n].iter_mut().zip(&self.b) {
+                *x += d;
             }
             for (lambda, d) in s.lambda.iter_mut().zip(&self.b[n..]) {
                 *lambda += d;
             }
-            if !update.is_finite() {
-                return Err(Failure::NotFinite { index: worst });
-            }
-            let rate = update / last;
-            let linear = if iteration == 0 || rate >= 1.0 {
-                update
+            let update = Update::largest(self.b[..n].iter().map(|d| w.v * d));
+            let rate = update.size / iteration.last;
+            let linear = if iteration.number == 0 || rate >= 1.0 {
+                update.size
             } else {
-                rate / (1.0 - rate) * update
+                rate / (1.0 - rate) * update.size
             };
             // after one large update the rate says nothing: this is its error for constraints with a curvature of 1/m
-            let error = linear.max(update * update * w.q / w.v);
-            let rounding = iteration >= 2 && rate > 0.3 && update < ROUNDING_BAND * tolerance;
-            if error <= tolerance || rounding {
-                self.counters.stagnations += u64::from(error > tolerance);
-                for i in 0..n {
-                    s.q[i] = q_hat[i] + w.q * s.a[i];
-                    s.v[i] = v_hat[i] + w.v * s.a[i];
-                }
-                return Ok(());
-            }
-            renew = rate > SLOW && iteration > 0;
-            last = update;
-        }
-        Err(Failure::NoConvergence {
-            index: worst,
-            update: last,
-        })
+            let error = linear.max(update.size * update.size * w.q / w.v);
+            let rounding =
+                iteration.number >= 2 && rate > 0.3 && update.size < ROUNDING_BAND * tolerance;
+            let converged = error <= tolerance || rounding;
+            self.counters.stagnations += u64::from(converged && error > tolerance);
+            Ok((update, converged))
+        })?;
+        move_to(s);
+        Ok(())
     }
 
     /// Makes a state consistent at its q: v is projected on Phi_q v + Phi_t = 0 with the change of least kinetic energy, then
@@ -344,32 +316,18 @@ impl Newton {
     pub fn project_positions(&mut self, system: &dyn System, s: &mut State) -> Result<(), Failure> {
         let n = system.shape().unknowns;
         let size = s.q[..n].iter().fold(0.0_f64, |m, q| m.max(q.abs()));
-        let mut worst = (0, f64::INFINITY);
-        for _ in 0..MAX_ITERATIONS {
+        iterate(MAX_ITERATIONS, |_| {
             self.renew_level(system, s)?;
             self.b[..n].fill(0.0);
             self.solve_for_phi(system);
-            worst = (0, 0.0);
             for i in 0..n {
                 let increment = self.b[i] + s.q_low[i];
                 let before = s.q[i];
                 s.q[i] = before + increment;
                 s.q_low[i] = increment - (s.q[i] - before);
-                let moved = self.b[i].abs();
-                if moved.is_nan() || moved > worst.1 {
-                    worst = (i, moved);
-                }
             }
-            if !worst.1.is_finite() {
-                return Err(Failure::NotFinite { index: worst.0 });
-            }
-            if worst.1 <= PROJECTED * size {
-                return Ok(());
-            }
-        }
-        Err(Failure::NoConvergence {
-            index: worst.0,
-            update: worst.1,
+            let update = Update::largest(self.b[..n].iter().copied());
+            Ok((update, update.size <= PROJECTED * size))
         })
     }
 

@@ -5,23 +5,23 @@ use super::{
     Control, GRID_ROUNDING, HALVINGS, Observer, Progress, RunError, Simulation, check_turns,
 };
 use crate::model::Model;
-use crate::newton::Failure;
+use crate::newton::{Failure, Newton};
 use crate::scene::{Analysis, Scene, SceneError};
-use crate::statics::Statics;
 use crate::stepper::StepError;
 use crate::system::{State, System, Work};
 
-/// The static solver, if the scene needs one; moves the start to its equilibrium where the scene asks for it.
+/// Refuses what has no equilibrium in a scene that needs one; moves the start to its equilibrium where the scene asks for it.
 pub(super) fn prepare(
     scene: &Scene,
     model: &Model,
+    newton: &mut Newton,
     state: &mut State,
     work: &mut Work,
-) -> Result<Option<Statics>, SceneError> {
+) -> Result<(), SceneError> {
     let start = scene.initial.equilibrium;
     let path = scene.simulation.analysis == Analysis::Static;
     if !start && !path {
-        return Ok(None);
+        return Ok(());
     }
     for joint in &scene.joints {
         if joint.contact().is_some() {
@@ -48,7 +48,6 @@ pub(super) fn prepare(
         let message = "a static analysis cannot have inverse kinematics";
         return Err(scene.error(drive.span, message, "remove this"));
     }
-    let mut statics = Statics::new(model);
     if start && path {
         let message =
             "a static analysis starts from the undeformed shape: it has no `initial.equilibrium`";
@@ -69,7 +68,7 @@ pub(super) fn prepare(
             state.v[known.clone()].to_vec(),
             state.a[known.clone()].to_vec(),
         );
-        statics.settle(model, state, work).map_err(|failure| {
+        newton.settle(model, state, work).map_err(|failure| {
             let (name, cause) = explain(model, &failure);
             let message = format!("no equilibrium was found to start from: {name}: {cause}");
             scene.error(scene.initial.span, message, "this start")
@@ -78,7 +77,7 @@ pub(super) fn prepare(
         state.a[known].copy_from_slice(&rates.1);
         model.remember_angles(state);
     }
-    Ok(Some(statics))
+    Ok(())
 }
 
 /// The unknown and the cause of a failure of a static solve, for the message.
@@ -174,7 +173,7 @@ impl Simulation {
             model,
             state,
             trial,
-            statics,
+            newton,
             work,
             scene,
             ..
@@ -183,10 +182,7 @@ impl Simulation {
         trial.t = t;
         trial.weight = t / scene.simulation.duration;
         model.prescribe(state, trial, work)?;
-        let statics = statics
-            .as_mut()
-            .expect("a static scene has a static solver");
-        statics.solve(model, trial, work)?;
+        newton.balance(model, trial, work)?;
         check_turns(model, state, trial)
     }
 }

@@ -212,10 +212,7 @@ impl Simulation {
 
     /// The report at this moment.
     pub fn report(&self) -> Report {
-        let newton = match &self.statics {
-            Some(statics) => self.newton.counters.with(&statics.counters),
-            None => self.newton.counters,
-        };
+        let newton = self.newton.counters;
         let dynamic = self.scene.simulation.analysis == Analysis::Dynamic;
         let bodies = self.model.bodies().iter().enumerate();
         let names = self.recorder.channels().iter().map(|c| c.name.clone());

@@ -48,7 +48,7 @@ impl Simulation {
             scene.integrator.onset_tolerance,
             &mut |c, v, d| started.push((c, v, d)),
         );
-        let statics = equilibrium::prepare(scene, &model, &mut state, &mut work)?;
+        equilibrium::prepare(scene, &model, &mut newton, &mut state, &mut work)?;
         if scene.simulation.analysis == Analysis::Dynamic {
             newton
                 .make_consistent(&model, &mut state, &mut work)
@@ -78,7 +78,6 @@ impl Simulation {
             newton,
             stays_in_singular_pose: false,
             passes_singular_pose: false,
-            statics,
             work,
             meter: Meter::new(scene, &model, &state),
             is_pilot: false,

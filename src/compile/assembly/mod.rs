@@ -14,6 +14,7 @@ use crate::body::PointRef;
 use crate::math::dense::Equations;
 use crate::math::plane::{norm, sub};
 use crate::model::Model;
+use crate::newton::{Update, iterate};
 use crate::scene::{Scene, SceneError, SketchPoint, Sketched};
 use crate::system::State;
 use crate::terms::ConstraintTerm;
@@ -80,7 +81,7 @@ pub(crate) fn row(model: &Model, state: &State, constraint: usize, d: usize) -> 
 }
 
 /// One step of Newton's method of least norm on Phi = 0 over the coordinates that are not held; returns the largest move.
-pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> f64 {
+pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> Update {
     let n = model.shape().unknowns;
     let mut equations = Equations::default();
     for (i, placed) in model.constraints.iter().enumerate() {
@@ -97,8 +98,7 @@ pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> f
     for (q, dq) in state.q.iter_mut().zip(&step) {
         *q += dq;
     }
-    step.iter()
-        .fold(0.0, |m, x| if x.abs() <= m { m } else { x.abs() })
+    Update::largest(step.iter().copied())
 }
 
 /// The constraint with the largest violation, and the violation.
@@ -111,13 +111,15 @@ fn widest(model: &Model, state: &State) -> Option<(f64, usize)> {
 /// Moves all coordinates that are not fixed until every constraint is satisfied; returns the one with the largest violation if
 /// that fails.
 fn close(model: &Model, state: &mut State, held: &[bool]) -> Option<(f64, usize)> {
-    for _ in 0..ITERATIONS {
-        let open = widest(model, state).map_or(0.0, |(x, _)| x);
-        if open <= CLOSED || !closing_step(model, state, held).is_finite() {
-            break;
-        }
+    let open = |state: &State| widest(model, state).filter(|(x, _)| x.is_nan() || *x > CLOSED);
+    if open(state).is_some() {
+        // how it fails does not matter: what stays open says more
+        let _ = iterate(ITERATIONS, |_| {
+            let update = closing_step(model, state, held);
+            Ok((update, open(state).is_none()))
+        });
     }
-    widest(model, state).filter(|(open, _)| open.is_nan() || *open > CLOSED)
+    open(state)
 }
 
 /// Checks that no prescribed angle was closed half a turn off.
