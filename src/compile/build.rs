@@ -2,7 +2,7 @@
 
 use super::mass::{mass, weight};
 use super::motions::motion_terms;
-use super::numbering::{Connection, Numbering, shifted};
+use super::numbering::{Numbering, shifted};
 use super::rules::rules;
 use super::{Compiler, Mode, Role, reactions};
 use crate::body::{Content, Point};
@@ -14,7 +14,7 @@ use crate::link::AncfCable;
 use crate::math::lu::Symbolic;
 use crate::model::{
     Block, Border, Element, Mass, Model, PlacedBody, PlacedConstraint, PlacedContact, PlacedForce,
-    PlacedJoint, PlacedPoint,
+    PlacedPoint,
 };
 use crate::scene::{Analysis, SceneError};
 use crate::system::Shape;
@@ -136,7 +136,9 @@ pub(super) fn build(
     model.bodies = bodies.collect();
     if c.mode == Mode::Real {
         model.driven = reactions::driven_forces(c, &model, kinematics.map(|k| &**k), &own);
-        model.joints = placed_joints(c, &model, &own)?;
+        let joints = 0..own.len();
+        let joints = joints.map(|j| reactions::joint(c, &model, &own, j));
+        model.joints = joints.collect::<Result<_, _>>()?;
     }
     Ok(model)
 }
@@ -159,26 +161,6 @@ fn placed_body(
         elements: parts.elements,
         placed,
     }
-}
-
-/// The joints, with the terms that carry their forces.
-fn placed_joints(
-    c: &Compiler,
-    model: &Model,
-    own: &[JointTerms],
-) -> Result<Vec<PlacedJoint>, SceneError> {
-    let joints = c.scene.joints.iter().enumerate().map(|(j, joint)| {
-        let (kind, actuator) = reactions::joint(c, model, own, j)?;
-        Ok(PlacedJoint {
-            name: joint.name.clone(),
-            kind,
-            actuator,
-            couple: own[j].couple,
-            turned: own[j].turned,
-            slide: own[j].slide,
-        })
-    });
-    joints.collect()
 }
 
 /// Finds the places of terms in the matrices.
@@ -358,7 +340,7 @@ fn joint_terms(
             sides: points.map(|p| p.body),
             span: joint.span,
         },
-        eliminated: numbering.connections[j] == Connection::Eliminated,
+        eliminated: numbering.eliminated[j],
     };
     Ok(c.joints[j].terms(&ends, terms))
 }

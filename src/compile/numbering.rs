@@ -8,17 +8,6 @@ use crate::model::{DrivenNode, Model};
 use crate::scene::{MotionKind, SceneError};
 use std::sync::Arc;
 
-/// How a joint of this mechanism connects its points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Connection {
-    /// By sharing or eliminating coordinates.
-    Eliminated,
-    /// By two constraint rows.
-    Constraint,
-    /// By contact forces.
-    Contact,
-}
-
 /// All coordinates of a mechanism.
 pub(crate) struct Numbering {
     pub unknowns: usize,
@@ -34,7 +23,8 @@ pub(crate) struct Numbering {
     /// Known coordinates that never change, with their values.
     pub fixed: Vec<(usize, f64)>,
     pub driven_nodes: Vec<DrivenNode>,
-    pub connections: Vec<Connection>,
+    /// For every joint, whether shared or known coordinates keep its points together.
+    pub eliminated: Vec<bool>,
 }
 
 /// Classes of slots that share a node (union-find); the slots of all bodies are counted one after the other.
@@ -62,8 +52,8 @@ impl Nodes {
     }
 }
 
-/// Shares and anchors the ends of free links.
-fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
+/// Shares and anchors the ends of free links; says of every joint whether this keeps its points together.
+fn connect(c: &Compiler) -> Result<(Nodes, Vec<bool>), SceneError> {
     let mut count = 0;
     let mut first = Vec::with_capacity(c.slots.len());
     for slots in &c.slots {
@@ -76,65 +66,58 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<Connection>), SceneError> {
         anchor: vec![None; count],
         x: vec![None; count],
     };
-    let mut connections = Vec::new();
-    for (j, joint) in c.scene.joints.iter().enumerate() {
-        let redundant = |what: &str| {
-            let message = format!("joint {} is redundant: {what}", joint.name);
-            c.joint_error(j, message, "redundant joint")
-        };
-        let (bearing, journal) = (joint.bearing, joint.journal);
-        let free_end = |p: PointRef| c.node(p).filter(|_| !c.is_known(p));
-        let ends = [bearing, journal].map(free_end);
-        let model = &c.joints[j];
-        connections.push(if model.contact().is_some() {
-            Connection::Contact
-        } else if !model.coincides() {
-            Connection::Constraint
-        } else if c.is_known(bearing) && c.is_known(journal) {
-            if !c.may_stay_closed(j) {
-                return Err(redundant("the motion of both of its bodies is prescribed"));
-            }
-            Connection::Eliminated
-        } else if let [Some(a), Some(b)] = ends {
-            let (a, b) = (nodes.class(bearing.body, a), nodes.class(journal.body, b));
-            if a == b {
-                return Err(redundant(
-                    "other joints already make its two points coincide",
-                ));
-            }
-            if nodes.anchor[a].is_some() && nodes.anchor[b].is_some() {
-                return Err(redundant("both of its points are already fixed"));
-            }
+    let joints = c.scene.joints.iter().enumerate();
+    let eliminated = joints.map(|(j, _)| connect_joint(c, &mut nodes, j));
+    let eliminated = eliminated.collect::<Result<_, _>>()?;
+    Ok((nodes, eliminated))
+}
+
+/// Makes the points of joint `j` one node or one of them known, where that is possible; true if it is.
+fn connect_joint(c: &Compiler, nodes: &mut Nodes, j: usize) -> Result<bool, SceneError> {
+    let joint = &c.scene.joints[j];
+    if c.joints[j].contact().is_some() || !c.joints[j].coincides() {
+        return Ok(false);
+    }
+    let redundant = |what: &str| {
+        let message = format!("joint {} is redundant: {what}", joint.name);
+        Err(c.joint_error(j, message, "redundant joint"))
+    };
+    let points = joint.points();
+    let known = points.map(|p| c.is_known(p));
+    if known == [true; 2] && !c.may_stay_closed(j) {
+        return redundant("the motion of both of its bodies is prescribed");
+    }
+    // the class of the node of a free end
+    let class = |p: PointRef| Some(nodes.class(p.body, c.node(p).filter(|_| !c.is_known(p))?));
+    match points.map(class) {
+        _ if known == [true; 2] => {}
+        [Some(a), Some(b)] if a == b => {
+            return redundant("other joints already make its two points coincide");
+        }
+        [Some(a), Some(b)] if nodes.anchor[a].is_some() && nodes.anchor[b].is_some() => {
+            return redundant("both of its points are already fixed");
+        }
+        [Some(a), Some(b)] => {
             nodes.parent[b] = a;
             // only the root of a class is fixed
             nodes.anchor[a] = nodes.anchor[a].or(nodes.anchor[b].take());
-            Connection::Eliminated
-        } else if let Some((class, known)) = match ends {
-            [Some(end), _] if c.is_known(journal) => {
-                Some((nodes.class(bearing.body, end), journal))
-            }
-            [_, Some(end)] if c.is_known(bearing) => {
-                Some((nodes.class(journal.body, end), bearing))
-            }
-            _ => None,
-        } {
+        }
+        [Some(class), None] | [None, Some(class)] if known.contains(&true) => {
             if nodes.anchor[class].is_some() {
-                return Err(redundant("the link end it joins is already fixed"));
+                return redundant("the link end it joins is already fixed");
             }
-            nodes.anchor[class] = Some(known);
-            Connection::Eliminated
-        } else {
-            Connection::Constraint
-        });
+            nodes.anchor[class] = Some(points[usize::from(known[1])]);
+        }
+        _ => return Ok(false),
     }
-    Ok((nodes, connections))
+    Ok(true)
 }
 
 /// Numbers all coordinates; `inner` is the ideal mechanism that drives this one. Known coordinates follow the unknown ones: the
 /// ground, bodies on paths, driven nodes, and last the inner mechanism.
 pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, SceneError> {
-    let (mut nodes, connections) = connect(c)?;
-    let mut numbering = number_unknowns(c, &mut nodes, connections);
+    let (mut nodes, eliminated) = connect(c)?;
+    let mut numbering = number_unknowns(c, &mut nodes, eliminated);
     for b in 0..c.bodies.len() {
         numbering.know(c, b);
     }
@@ -170,7 +153,7 @@ pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, S
 }
 
 /// The unknown coordinates, body by body in the order of the scene, then the internal states of forces.
-fn number_unknowns(c: &Compiler, nodes: &mut Nodes, connections: Vec<Connection>) -> Numbering {
+fn number_unknowns(c: &Compiler, nodes: &mut Nodes, eliminated: Vec<bool>) -> Numbering {
     let mut names = Vec::new();
     let mut take = |labels: &[String]| {
         names.extend_from_slice(labels);
@@ -218,7 +201,7 @@ fn number_unknowns(c: &Compiler, nodes: &mut Nodes, connections: Vec<Connection>
         states,
         fixed: Vec::new(),
         driven_nodes: Vec::new(),
-        connections,
+        eliminated,
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{Compiler, Role};
 use crate::body::{Content, PointRef};
 use crate::kinematics::Kinematics;
-use crate::model::{Actuator, DrivenForce, ForceCarrier, Model, Reaction, Share, Source};
+use crate::model::{Actuator, Grip, Model, PlacedJoint, Reaction, Share, Source};
 use crate::scene::{MotionKind, SceneError};
 use crate::terms::{ForceTerm, JointTerms};
 
@@ -69,49 +69,38 @@ fn runs(
     shares
 }
 
-/// The shares of all terms that belong to `point`: its body's own, and those of joints attached there.
-fn shares_of(c: &Compiler, model: &Model, own: &[JointTerms], point: PointRef) -> Vec<Share> {
-    let Some((x, width)) = place(model, point) else {
-        return Vec::new();
-    };
+/// The force of all terms that belong to `point`: its body's own, and those of joints attached there.
+fn grip(c: &Compiler, model: &Model, own: &[JointTerms], point: PointRef) -> Option<Grip> {
+    let (x, width) = place(model, point)?;
     let mut shares = Vec::new();
-    let mut add = |source: Source, coordinates: &[usize]| {
-        shares.extend(runs(source, coordinates, x, width, |_| true));
+    let mut add = |source: Source, coordinates: &[usize], owners: Option<&[usize]>| {
+        let counts = |local: usize| owners.is_none_or(|owners| owners[local] == point.body);
+        shares.extend(runs(source, coordinates, x, width, counts));
     };
     let body = &model.bodies()[point.body];
     for i in body.inertia.clone() {
-        add(Source::Inertia(i), &model.mass.parts[i].coordinates);
+        add(Source::Inertia(i), &model.mass.parts[i].coordinates, None);
     }
     for i in body.elements.clone() {
-        add(Source::Element(i), &model.elements[i].block.coordinates);
+        let coordinates = &model.elements[i].block.coordinates;
+        add(Source::Element(i), coordinates, None);
     }
-    let mut add_owned = |source: Source, coordinates: &[usize], owners: &[usize]| {
-        let own = |local: usize| owners[local] == point.body;
-        shares.extend(runs(source, coordinates, x, width, own));
-    };
-    for (i, placed) in model.constraints.iter().enumerate() {
-        add_owned(
-            Source::Constraint(i),
-            &placed.block.coordinates,
-            &placed.owners,
-        );
+    for (i, c) in model.constraints.iter().enumerate() {
+        add(Source::Constraint(i), &c.block.coordinates, Some(&c.owners));
     }
-    for (i, acting) in model.forces.iter().enumerate() {
-        add_owned(Source::Force(i), &acting.block.coordinates, &acting.owners);
+    for (i, f) in model.forces.iter().enumerate() {
+        add(Source::Force(i), &f.block.coordinates, Some(&f.owners));
     }
-    let mut add = |source: Source, coordinates: &[usize]| {
-        shares.extend(runs(source, coordinates, x, width, |_| true));
-    };
     for (joint, own) in c.scene.joints.iter().zip(own) {
         // the couple of a friction force on a rigid link acts on both ends
-        let ends = [joint.bearing, joint.journal].map(|p| attachment(model, p));
         if let ForceTerm::Contact(i) = own.force
-            && ends.iter().any(|end| end.body == point.body)
+            && joint.points().iter().any(|end| end.body == point.body)
         {
-            add(Source::Contact(i), &model.contacts[i].block.coordinates);
+            let coordinates = &model.contacts[i].block.coordinates;
+            add(Source::Contact(i), coordinates, None);
         }
     }
-    shares
+    Some(Grip { x, width, shares })
 }
 
 /// The points connected to `from` without joint `cut`, through eliminated joints and driven bodies. `None` if the ground is
@@ -154,64 +143,59 @@ fn hanging(
     Some(found)
 }
 
-/// Force and, where a drive acts on it, torque of joint `j`.
+/// Joint `j` with its force and, where a drive acts on it, its torque.
 pub(super) fn joint(
     c: &Compiler,
     model: &Model,
     own: &[JointTerms],
     j: usize,
-) -> Result<(ForceCarrier, Option<Actuator>), SceneError> {
-    let kind = match own[j].force {
-        ForceTerm::Constraint(i) => ForceCarrier::Constraint(i),
-        ForceTerm::Contact(i) => ForceCarrier::Contact(i),
-        ForceTerm::Eliminated => {
-            let joint = &c.scene.joints[j];
-            let journal_side = hanging(c, model, own, j, joint.journal).map(|side| (side, 1.0));
-            let side = journal_side
-                .or_else(|| hanging(c, model, own, j, joint.bearing).map(|side| (side, -1.0)));
-            let Some((side, sign)) = side else {
-                let message = format!(
-                    "the reaction force of joint {} is undetermined, because its bodies are held by other joints as well",
-                    joint.name
-                );
-                return Err(c.joint_error(j, message, "redundant joint"));
-            };
-            let mut all = Vec::new();
-            let mut outboard = Vec::new();
-            for &point in &side {
-                let shares = shares_of(c, model, own, point);
-                all.extend_from_slice(&shares);
-                if let Some((x, width)) = place(model, point) {
-                    outboard.push(DrivenForce {
-                        x,
-                        width,
-                        reaction: Reaction { shares, sign: 1.0 },
-                    });
-                }
-            }
-            let turned = |m: &usize| match c.scene.motions[*m].kind {
-                MotionKind::Angle { joint, .. } => joint == j,
-                MotionKind::Point { .. } => false,
-            };
-            let actuated = c.scene.drives.iter().any(|d| d.joints.contains(&j))
-                || c.roles
-                    .iter()
-                    .any(|r| matches!(r, Role::Turned(m) if turned(m)));
-            let actuator = actuated.then(|| Actuator {
-                bodies: [joint.bearing.body, joint.journal.body],
-                centre: model.bodies()[joint.bearing.body]
-                    .placed
-                    .marker(joint.bearing.point),
-                outboard,
-                sign,
-            });
-            return Ok((
-                ForceCarrier::Eliminated(Reaction { shares: all, sign }),
-                actuator,
-            ));
-        }
+) -> Result<PlacedJoint, SceneError> {
+    let joint = &c.scene.joints[j];
+    let mut placed = PlacedJoint {
+        name: joint.name.clone(),
+        terms: own[j],
+        reaction: None,
+        actuator: None,
     };
-    Ok((kind, None))
+    if !matches!(own[j].force, ForceTerm::Eliminated) {
+        return Ok(placed);
+    }
+    let side = |point, sign| Some((hanging(c, model, own, j, point)?, sign));
+    let Some((points, sign)) = side(joint.journal, 1.0).or_else(|| side(joint.bearing, -1.0))
+    else {
+        let message = format!(
+            "the reaction force of joint {} is undetermined, because its bodies are held by other joints as well",
+            joint.name
+        );
+        return Err(c.joint_error(j, message, "redundant joint"));
+    };
+    let points = points.into_iter();
+    let outboard: Vec<Grip> = points.filter_map(|p| grip(c, model, own, p)).collect();
+    let shares = outboard.iter().flat_map(|grip| &grip.shares);
+    let shares = shares.copied().collect();
+    placed.reaction = Some(Reaction { shares, sign });
+    if is_actuated(c, j) {
+        placed.actuator = Some(Actuator {
+            bodies: [joint.bearing.body, joint.journal.body],
+            centre: model.bodies()[joint.bearing.body]
+                .placed
+                .marker(joint.bearing.point),
+            outboard,
+            sign,
+        });
+    }
+    Ok(placed)
+}
+
+/// True of a joint that inverse kinematics or a prescribed angle moves.
+fn is_actuated(c: &Compiler, j: usize) -> bool {
+    let turned = |m: usize| match c.scene.motions[m].kind {
+        MotionKind::Angle { joint, .. } => joint == j,
+        MotionKind::Point { .. } => false,
+    };
+    let mut roles = c.roles.iter();
+    c.scene.drives.iter().any(|drive| drive.joints.contains(&j))
+        || roles.any(|role| matches!(role, Role::Turned(m) if turned(*m)))
 }
 
 /// Forces on all known coordinates that can move: those of driven bodies, and the nodes fixed to them.
@@ -220,33 +204,26 @@ pub(super) fn driven_forces(
     model: &Model,
     kinematics: Option<&Kinematics>,
     own: &[JointTerms],
-) -> Vec<DrivenForce> {
+) -> Vec<Grip> {
     let mut resting: Vec<usize> = model.fixed.iter().map(|&(x, _)| x).collect();
     if let Some(kinematics) = kinematics {
         let inner = kinematics.mechanism.fixed.iter();
         resting.extend(inner.map(|&(x, _)| x + kinematics.offset));
     }
-    let mut forces: Vec<DrivenForce> = Vec::new();
-    let all: Vec<PointRef> = (0..c.scene.bodies.len())
-        .flat_map(|b| attachments(c, model, b))
-        .collect();
-    for &point in &all {
-        let Some((x, width)) = place(model, point) else {
-            continue;
-        };
-        let known = x >= model.shape.unknowns && !resting.contains(&x);
-        if !known || forces.iter().any(|f| f.x == x) {
+    let mut grips: Vec<Grip> = Vec::new();
+    let bodies = 0..c.scene.bodies.len();
+    for point in bodies.flat_map(|b| attachments(c, model, b)) {
+        let known = |x: usize| x >= model.shape.unknowns && !resting.contains(&x);
+        if !place(model, point).is_some_and(|(x, _)| known(x)) {
             continue;
         }
-        let here = all
-            .iter()
-            .filter(|&&p| place(model, p).map(|(x, _)| x) == Some(x));
-        let shares = here.flat_map(|&p| shares_of(c, model, own, p)).collect();
-        forces.push(DrivenForce {
-            x,
-            width,
-            reaction: Reaction { shares, sign: 1.0 },
-        });
+        let Some(grip) = grip(c, model, own, point) else {
+            continue;
+        };
+        match grips.iter_mut().find(|other| other.x == grip.x) {
+            Some(other) => other.shares.extend(grip.shares),
+            None => grips.push(grip),
+        }
     }
-    forces
+    grips
 }

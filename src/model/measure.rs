@@ -1,12 +1,13 @@
 //! Measured quantities of a model: poses, strains, energies, joint forces, drive torques.
 
-use super::{Actuator, ForceCarrier, Model, PlacedJoint};
+use super::{Actuator, Model};
 use crate::body::Pose;
 use crate::contact;
 use crate::contact::geometry::Gap;
 use crate::marker::Marker;
-use crate::math::plane::{Vec2, cross, dot, norm, sub};
+use crate::math::plane::{Vec2, cross, dot, norm, scale, sub};
 use crate::system::{Integral, State, Work};
+use crate::terms::ForceTerm;
 use std::f64::consts::PI;
 
 /// Stored energies \[J\].
@@ -39,12 +40,6 @@ impl Energies {
         let work = at.integrals[Integral::Work as usize];
         (stored + gone - work, stored.abs() + gone.abs() + work.abs())
     }
-}
-
-/// Two entries of an array.
-#[inline]
-fn pair(x: &[f64], i: usize) -> Vec2 {
-    [x[i], x[i + 1]]
 }
 
 impl Model {
@@ -108,22 +103,23 @@ impl Model {
 
     /// Force of the bearing side on the journal side of joint `index` \[N\].
     pub fn joint_force(&self, index: usize, at: &State, work: &mut Work) -> Vec2 {
-        match &self.joints[index].kind {
-            ForceCarrier::Constraint(i) => {
-                let c = &self.constraints[*i];
+        let joint = &self.joints[index];
+        match joint.terms.force {
+            ForceTerm::Constraint(i) => {
+                let c = &self.constraints[i];
                 c.term.force(at, c.multipliers(at))
             }
-            ForceCarrier::Contact(i) => self.contacts[*i].pair.reaction(contact_state(at, *i)),
-            ForceCarrier::Eliminated(reaction) => {
-                let force = self.reaction(reaction, at, work);
-                [force[0], force[1]]
-            }
+            ForceTerm::Contact(i) => self.contacts[i].pair.reaction(contact_state(at, i)),
+            ForceTerm::Eliminated => joint.reaction.as_ref().map_or([0.0; 2], |reaction| {
+                let [x, y, _] = self.sum(&reaction.shares, at, work);
+                scale(reaction.sign, [x, y])
+            }),
         }
     }
 
     /// Couple of the first side on the second of a joint that holds an angle \[N m\].
     pub fn joint_couple(&self, index: usize, at: &State) -> f64 {
-        self.joints[index].couple.map_or(0.0, |i| {
+        self.joints[index].terms.couple.map_or(0.0, |i| {
             let c = &self.constraints[i];
             c.term.couple(at, c.multipliers(at))
         })
@@ -132,20 +128,18 @@ impl Model {
     /// Angle (up to full turns) and speed of the second side of a joint relative to the first, if a motion prescribes them by a
     /// constraint.
     pub fn turned(&self, index: usize, at: &State) -> [f64; 2] {
-        self.joints[index]
-            .turned
-            .map_or([0.0; 2], |[first, second]| {
-                let (a, b) = (first.vector(&at.q), second.vector(&at.q));
-                let speed = second.rate(&at.q, &at.v) - first.rate(&at.q, &at.v);
-                [cross(a, b).atan2(dot(a, b)), speed]
-            })
+        let turned = self.joints[index].terms.turned;
+        turned.map_or([0.0; 2], |[first, second]| {
+            let (a, b) = (first.vector(&at.q), second.vector(&at.q));
+            let speed = second.rate(&at.q, &at.v) - first.rate(&at.q, &at.v);
+            [cross(a, b).atan2(dot(a, b)), speed]
+        })
     }
 
     /// Distance along the line of a prismatic joint \[m\] and its rate \[m/s\].
     pub fn travel(&self, index: usize, at: &State) -> [f64; 2] {
-        self.joints[index]
-            .slide
-            .map_or([0.0; 2], |slide| slide.travel(at))
+        let slide = self.joints[index].terms.slide;
+        slide.map_or([0.0; 2], |slide| slide.travel(at))
     }
 
     /// Names of the forces of the scene and of their measured quantities.
@@ -168,12 +162,12 @@ impl Model {
 
     /// True for a joint with clearance.
     pub fn is_loose(&self, index: usize) -> bool {
-        matches!(self.joints[index].kind, ForceCarrier::Contact(_))
+        matches!(self.joints[index].terms.force, ForceTerm::Contact(_))
     }
 
     /// Where the surfaces of a joint with clearance are, the rate of its penetration \[m/s\], and whether the contact is closed.
     pub fn gap(&self, index: usize, at: &State) -> Option<(Gap, f64, bool)> {
-        let ForceCarrier::Contact(i) = self.joints[index].kind else {
+        let ForceTerm::Contact(i) = self.joints[index].terms.force else {
             return None;
         };
         let pair = &self.contacts[i].pair;
@@ -187,9 +181,10 @@ impl Model {
         let [bearing, journal] = actuator.bodies.map(|b| self.pose(b, at));
         let centre = actuator.centre.position(&at.q, actuator.centre.arm(&at.q));
         let mut torque = 0.0;
-        for driven in &actuator.outboard {
-            let force = self.reaction(&driven.reaction, at, work);
-            torque += cross(sub(pair(&at.q, driven.x), centre), [force[0], force[1]]) + force[2];
+        for grip in &actuator.outboard {
+            let [x, y, couple] = self.sum(&grip.shares, at, work);
+            let arm = sub([at.q[grip.x], at.q[grip.x + 1]], centre);
+            torque += cross(arm, [x, y]) + couple;
         }
         torque *= actuator.sign;
         [
@@ -201,9 +196,8 @@ impl Model {
 
     /// Index of the joint that owns contact memory `contact`.
     pub fn contact_joint(&self, contact: usize) -> Option<usize> {
-        let owns =
-            |joint: &PlacedJoint| matches!(joint.kind, ForceCarrier::Contact(i) if i == contact);
-        self.joints.iter().position(owns)
+        let mut joints = self.joints.iter().map(|joint| joint.terms.force);
+        joints.position(|force| matches!(force, ForceTerm::Contact(i) if i == contact))
     }
 
     /// Largest |Phi| \[m\], the joint or link it belongs to, and the largest |Phi_q v|.

@@ -8,22 +8,22 @@ mod reaction;
 pub use crate::body::Pose;
 pub use block::{Block, Border};
 pub use measure::Energies;
-pub(crate) use reaction::{DrivenForce, Source};
+pub(crate) use reaction::{Grip, Source};
 pub use reaction::{Reaction, Share};
 
 use crate::body::Content;
-use crate::constraint::{ROWS, Slide};
+use crate::constraint::ROWS;
 use crate::contact::ContactPair;
 use crate::effect::{self, Effect};
 use crate::force::Force;
 use crate::interaction::Placed;
 use crate::link::AncfCable;
-use crate::marker::{Marker, Spin};
+use crate::marker::Marker;
 use crate::math::lu::Symbolic;
 use crate::math::plane::Vec2;
 use crate::motion::{Function, Path};
 use crate::system::{Prescribed, Shape, State, Work};
-use crate::terms::{ConstraintTerm, Inertia};
+use crate::terms::{ConstraintTerm, Inertia, JointTerms};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -63,7 +63,7 @@ pub struct Model {
     /// Prescribed motions that need memory, before they start.
     pub(crate) prescribed: Vec<Box<dyn Prescribed>>,
     /// Forces on known coordinates that move.
-    pub(crate) driven: Vec<DrivenForce>,
+    pub(crate) driven: Vec<Grip>,
     /// Known nodes that are fixed to a known rigid body.
     pub(crate) driven_nodes: Vec<DrivenNode>,
     /// Bodies of the scene, in its order.
@@ -237,27 +237,12 @@ pub struct PlacedPoint {
 pub struct PlacedJoint {
     /// The name the user wrote.
     pub name: String,
-    /// How its force is computed.
-    pub kind: ForceCarrier,
+    /// Its terms, as indices into the lists of the model.
+    pub terms: JointTerms,
+    /// Its force, where it shares or eliminates coordinates: the sum over the terms on one side.
+    pub reaction: Option<Reaction>,
     /// Present if a drive actuates the joint and the joint moves a body.
     pub actuator: Option<Actuator>,
-    /// Constraint of directions that carries its couple: index into the constraints.
-    pub couple: Option<usize>,
-    /// The directions whose angle a motion prescribes by a constraint.
-    pub turned: Option<[Spin; 2]>,
-    /// The line of a prismatic joint.
-    pub slide: Option<Slide>,
-}
-
-/// How a joint appears in the equations.
-#[derive(Debug)]
-pub enum ForceCarrier {
-    /// By constraint rows: index into the constraints.
-    Constraint(usize),
-    /// By a contact: index into the contacts.
-    Contact(usize),
-    /// By shared or known coordinates: the force is a sum over the terms on one side.
-    Eliminated(Reaction),
 }
 
 /// An actuated joint: its centre, and the known coordinates that turn with it.
@@ -268,7 +253,7 @@ pub struct Actuator {
     /// Centre of the joint.
     pub centre: Marker,
     /// Forces on the coordinates outboard: nodes and rigid bodies.
-    pub(crate) outboard: Vec<DrivenForce>,
+    pub(crate) outboard: Vec<Grip>,
     /// -1 where the bearing is the side that the joint moves.
     pub sign: f64,
 }

@@ -39,12 +39,15 @@ pub struct Reaction {
     pub(crate) sign: f64,
 }
 
-/// The force on known coordinates that move: x, y of a node, or x, y, theta of a rigid body.
+/// What acts on the coordinates of a point: x, y of a node, or x, y, theta of a rigid body.
 #[derive(Debug, Clone)]
-pub(crate) struct DrivenForce {
+pub(crate) struct Grip {
+    /// The first coordinate.
     pub x: usize,
+    /// Number of coordinates.
     pub width: usize,
-    pub reaction: Reaction,
+    /// What the terms contribute to the force on them.
+    pub shares: Vec<Share>,
 }
 
 impl Model {
@@ -103,22 +106,21 @@ impl Model {
         }
     }
 
-    /// The sum of a reaction \[N\], and \[N m\] in the third place where the coordinates are those of rigid bodies.
-    pub(crate) fn reaction(&self, reaction: &Reaction, at: &State, work: &mut Work) -> [f64; 3] {
+    /// The sum of shares \[N\], and \[N m\] in the third place where the coordinates are those of rigid bodies.
+    pub(crate) fn sum(&self, shares: &[Share], at: &State, work: &mut Work) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for &share in &reaction.shares {
+        for &share in shares {
             self.add_share(share, at, work, &mut sum);
         }
-        sum.map(|x| reaction.sign * x)
+        sum
     }
 
     /// Power of the forces on known coordinates \[W\].
     pub(crate) fn drive_power(&self, at: &State, work: &mut Work) -> f64 {
-        let power = |driven: &DrivenForce| {
-            let force = self.reaction(&driven.reaction, at, work);
-            (0..driven.width)
-                .map(|i| force[i] * at.v[driven.x + i])
-                .sum::<f64>()
+        let power = |grip: &Grip| {
+            let force = self.sum(&grip.shares, at, work);
+            let rates = force.iter().zip(&at.v[grip.x..grip.x + grip.width]);
+            rates.map(|(f, v)| f * v).sum::<f64>()
         };
         self.driven.iter().map(power).sum()
     }

@@ -168,9 +168,12 @@ impl List {
             let quantities = [
                 &FORCE[..],
                 has(model.is_loose(j), &CLEARANCE),
-                has(joint.couple.is_some() && joint.turned.is_some(), &TURNED),
-                has(joint.couple.is_some(), &COUPLE),
-                has(joint.slide.is_some(), &LINE),
+                has(
+                    joint.terms.couple.is_some() && joint.terms.turned.is_some(),
+                    &TURNED,
+                ),
+                has(joint.terms.couple.is_some(), &COUPLE),
+                has(joint.terms.slide.is_some(), &LINE),
             ];
             for (name, unit, quantity) in quantities.into_iter().flatten() {
                 let name = format!("{}.{name}", joint.name);
