@@ -198,6 +198,7 @@ fn pace(tape: &mut Tape, m: &Mechanism, features: &mut Vec<&'static str>) -> Pac
         "hht",
         "backward_euler",
         "dormand_prince",
+        "esdirk3",
     ];
     let mut method = tape.pick(&methods);
     // velocity Verlet keeps no constraints
@@ -218,7 +219,8 @@ fn pace(tape: &mut Tape, m: &Mechanism, features: &mut Vec<&'static str>) -> Pac
     }
     let follows = tape.chance(0.3);
     let (digits, energy, horizon) = (tape.decades(-8.0, -3.0), tape.chance(0.2), tape.chance(0.5));
-    if follows && matches!(method, "bathe" | "trapezoidal" | "dormand_prince") {
+    let can_follow = ["bathe", "trapezoidal", "dormand_prince", "esdirk3"];
+    if follows && can_follow.contains(&method) {
         let horizon = if horizon { duration } else { 0.3 * duration };
         let energy = match energy {
             true => {
