@@ -34,7 +34,7 @@ pub use report::{Extreme, Inspection, Report, Status};
 
 use crate::model::Model;
 use crate::newton::Newton;
-use crate::record::Recorder;
+use crate::record::{Record, Recorder};
 use crate::scene::{Analysis, Scene};
 use crate::stepper::{LocalError, StepError, Stepper, look_ahead};
 use crate::system::{State, System, Work};
@@ -91,6 +91,8 @@ pub struct Simulation {
     /// The accepted state made consistent, for output.
     output: State,
     recorder: Recorder,
+    /// What was measured of it.
+    measured: Record,
     extremes: Vec<Extreme>,
     /// Axial strain of largest magnitude over the recorded rows, by body; 0 for bodies that do not deform.
     strains: Vec<f64>,
@@ -366,6 +368,7 @@ impl Simulation {
             newton,
             work,
             recorder,
+            measured,
             extremes,
             strains,
             meter,
@@ -377,21 +380,21 @@ impl Simulation {
         {
             return Err(self.failed(failure.into(), 0.0));
         }
+        measured.take(model, output);
         if self.scene.simulation.analysis == Analysis::Dynamic
-            && let Err(gain) = meter.row(model, output)
+            && let Err(gain) = meter.row(&measured.energies, output)
         {
             return Err(self.unstable(gain));
         }
-        let row = recorder.row(model, output, work);
+        let row = recorder.row(model, output, measured, work);
         // coordinates can be finite where their squares overflow
         if let Some(channel) = row.iter().position(|x| !x.is_finite()) {
             let channel = recorder.channels()[channel].name.clone();
             return Err(self.overflown(&channel));
         }
-        for (b, largest) in strains.iter_mut().enumerate() {
-            let strain = model.strain(b, output).unwrap_or_default();
+        for (largest, strain) in strains.iter_mut().zip(&measured.strains) {
             if strain.abs() > largest.abs() {
-                *largest = strain;
+                *largest = *strain;
             }
         }
         for (extreme, value) in extremes.iter_mut().zip(row) {

@@ -40,7 +40,7 @@ const LAYERS: [&str; 24] = [
 const ABOVE: &str = "output";
 
 /// Crates that the solver is made of.
-const CRATES: [&str; 12] = [
+const CRATES: [&str; 13] = [
     "cpu-time",
     "faer",
     "indexmap",
@@ -53,6 +53,7 @@ const CRATES: [&str; 12] = [
     "strsim",
     "thiserror",
     "toml",
+    "wildmatch",
 ];
 
 /// Paths of a module, such as `scene::joints`, with the text of its file.

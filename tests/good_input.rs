@@ -6,6 +6,7 @@ use looselink::body::{FlexibleLink, RigidBody};
 use looselink::contact::Slip;
 use looselink::contact::normal::damped_power::{HERTZ, LANKARANI_NIKRAVESH};
 use looselink::scene::Scene;
+use looselink::simulate::Simulation;
 use looselink::stepper::bathe::splitting;
 
 pub fn load(text: &str, overrides: &[&str]) -> Scene {
@@ -222,4 +223,25 @@ fn plates() {
 fn no_scene_needs_the_onset_tolerance_without_clearance() {
     let text = std::fs::read_to_string("scenes/3rrr/case1.toml").unwrap();
     load(&text.replacen("onset_tolerance = 1e-13", "", 1), &[]);
+}
+
+/// A pattern chooses all channels that it fits, and every channel is recorded once, behind the time.
+#[test]
+fn channels_are_chosen_by_patterns() {
+    for (patterns, expected) in [
+        (
+            r#"["B1.f*e", "*.fx", "B1.force"]"#,
+            "t B1.force A1.fx A2.fx A3.fx B1.fx B2.fx B3.fx C1.fx C2.fx C3.fx",
+        ),
+        (r#"["platform.theta", "t"]"#, "t platform.theta"),
+        (r#"["error.*"]"#, "t error.x error.y error.theta"),
+    ] {
+        let scene = load(CASE4, &[&format!("output.channels={patterns}")]);
+        let simulation = Simulation::new(&scene).unwrap();
+        let names = simulation.channels().iter().map(|c| c.name.as_str());
+        assert_eq!(names.collect::<Vec<_>>().join(" "), expected);
+    }
+    // a channel is not known by the beginning of its name
+    let scene = load(CASE4, &[r#"output.channels=["B1.f"]"#]);
+    assert!(Simulation::new(&scene).is_err());
 }

@@ -4,6 +4,7 @@ use super::{Actuator, Model};
 use crate::body::Pose;
 use crate::contact;
 use crate::contact::geometry::Gap;
+use crate::force::Force;
 use crate::marker::Marker;
 use crate::math::plane::{Vec2, cross, dot, norm, scale, sub};
 use crate::system::{Integral, State, Work};
@@ -136,28 +137,14 @@ impl Model {
         })
     }
 
-    /// Distance along the line of a prismatic joint \[m\] and its rate \[m/s\].
-    pub fn travel(&self, index: usize, at: &State) -> [f64; 2] {
-        let slide = self.joints[index].terms.slide;
-        slide.map_or([0.0; 2], |slide| slide.travel(at))
+    /// Forces of the scene by their names.
+    pub fn named_forces(&self) -> &[(String, usize)] {
+        &self.named_forces
     }
 
-    /// Names of the forces of the scene and of their measured quantities.
-    pub fn named_forces(
-        &self,
-    ) -> impl Iterator<Item = (&str, &'static [(&'static str, &'static str)])> {
-        let forces = self.named_forces.iter();
-        forces.map(|(name, i)| (name.as_str(), self.forces[*i].term.quantities()))
-    }
-
-    /// Measured quantities of the force `index` of the scene.
-    pub fn named_force(&self, index: usize, at: &State) -> [f64; 3] {
-        self.forces[self.named_forces[index].1].term.measure(at)
-    }
-
-    /// Why the force `index` of the scene is not defined in a state, if it is not.
-    pub fn force_fault(&self, index: usize, at: &State) -> Option<&'static str> {
-        self.forces[self.named_forces[index].1].term.fault(at)
+    /// The force `index` of the scene.
+    pub fn force(&self, index: usize) -> &dyn Force {
+        &*self.forces[self.named_forces[index].1].term
     }
 
     /// True for a joint with clearance.

@@ -1,8 +1,10 @@
-//! The names of all channels of a mechanism, and what each shows.
+//! The names of all channels of a mechanism, and the parts of it that they are measured from.
 
+use super::Ledger;
+use crate::math::plane::norm;
 use crate::model::Model;
 use crate::scene::Analysis;
-use crate::system::Integral;
+use crate::system::{State, Work};
 
 /// A recorded quantity.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,265 +15,232 @@ pub struct Channel {
     pub unit: &'static str,
 }
 
-/// What a channel shows.
+/// Names and units of quantities.
+type Quantities = [(&'static str, &'static str)];
+
+const POSE: [(&str, &str); 9] = [
+    ("x", "m"),
+    ("y", "m"),
+    ("theta", "rad"),
+    ("vx", "m/s"),
+    ("vy", "m/s"),
+    ("omega", "rad/s"),
+    ("ax", "m/s2"),
+    ("ay", "m/s2"),
+    ("alpha", "rad/s2"),
+];
+/// Of the quantities of a pose those that a point has.
+const POINT: [usize; 6] = [0, 1, 3, 4, 6, 7];
+const FORCE: &Quantities = &[("fx", "N"), ("fy", "N"), ("force", "N")];
+const GAP: &Quantities = &[
+    ("ex", "m"),
+    ("ey", "m"),
+    ("eccentricity", "m"),
+    ("penetration", "m"),
+    ("ex_rate", "m/s"),
+    ("ey_rate", "m/s"),
+    ("eccentricity_rate", "m/s"),
+    ("contact", "1"),
+];
+const TURNED: &Quantities = &[("angle", "rad"), ("speed", "rad/s")];
+const TRAVEL: &Quantities = &[("travel", "m"), ("travel_rate", "m/s")];
+const ACTUATOR: &Quantities = &[("angle", "rad"), ("speed", "rad/s"), ("torque", "N m")];
+
+/// What an energy is of a ledger.
+type Term = fn(&Ledger) -> f64;
+/// Energies that a state has.
+const STORED: [(&str, Term); 6] = [
+    ("kinetic", |l| l.kinetic),
+    ("axial", |l| l.axial),
+    ("bending", |l| l.bending),
+    ("contact", |l| l.contact),
+    ("gravity", |l| l.gravity),
+    ("springs", |l| l.springs),
+];
+/// Energies that a motion has: a load path has no balance of powers.
+const BALANCE: [(&str, Term); 6] = [
+    ("work", |l| l.work),
+    ("contact_dissipated", |l| l.contact_dissipated),
+    ("friction_dissipated", |l| l.friction_dissipated),
+    ("damping_dissipated", |l| l.damping_dissipated),
+    ("clamp", |l| l.clamp),
+    ("numerical", |l| l.numerical),
+];
+
+/// What is measured together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Quantity {
+pub(super) enum Part {
     Time,
-    /// Body, level (position, velocity, acceleration), component.
-    Pose(usize, usize, usize),
-    Joint(usize, JointQuantity),
-    /// Joint; angle, speed, torque.
-    Actuator(usize, usize),
+    /// Of a body.
+    Pose(usize),
     Strain(usize),
-    /// Body, point, level, component.
-    Point(usize, usize, usize, usize),
-    /// Body, point, component of the slope.
-    Slope(usize, usize, usize),
-    /// Named force, which of its quantities.
-    Force(usize, usize),
-    /// Driven body, component.
-    Error(usize, usize),
-    Energy(Energy),
+    /// Of a driven body: the distance from its prescribed pose.
+    Error(usize),
+    /// Of a joint.
+    Force(usize),
+    Gap(usize),
+    Turned(usize),
+    Couple(usize),
+    Travel(usize),
+    Actuator(usize),
+    /// Of a point of a body.
+    Point(usize, usize),
+    Slope(usize, usize),
+    /// A named force.
+    Applied(usize),
+    Stored,
+    Balance,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum JointQuantity {
-    Fx,
-    Fy,
-    Force,
-    Ex,
-    Ey,
-    Eccentricity,
-    ExRate,
-    EyRate,
-    EccentricityRate,
-    Penetration,
-    Contact,
-    /// Couple of the first side on the second.
-    Couple,
-    Angle,
-    Speed,
-    Travel,
-    TravelRate,
+/// All parts of a mechanism, in the order of their channels.
+pub(super) fn parts(model: &Model, analysis: Analysis) -> Vec<Part> {
+    let mut parts = vec![Part::Time];
+    let mut add = |present: bool, part: Part| parts.extend(present.then_some(part));
+    for (b, body) in model.bodies().iter().enumerate() {
+        add(body.moves, Part::Pose(b));
+        add(!body.placed.kind.is_rigid(), Part::Strain(b));
+        add(body.prescribed.is_some(), Part::Error(b));
+    }
+    for (j, joint) in model.joints().iter().enumerate() {
+        let couple = joint.terms.couple.is_some();
+        add(true, Part::Force(j));
+        add(model.is_loose(j), Part::Gap(j));
+        add(couple && joint.terms.turned.is_some(), Part::Turned(j));
+        add(couple, Part::Couple(j));
+        add(joint.terms.slide.is_some(), Part::Travel(j));
+        add(joint.actuator.is_some(), Part::Actuator(j));
+    }
+    for (b, body) in model.bodies().iter().enumerate() {
+        for (p, point) in body.points.iter().enumerate() {
+            add(true, Part::Point(b, p));
+            add(point.slope.is_some(), Part::Slope(b, p));
+        }
+    }
+    for f in 0..model.named_forces().len() {
+        add(true, Part::Applied(f));
+    }
+    add(true, Part::Stored);
+    add(analysis == Analysis::Dynamic, Part::Balance);
+    parts
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Energy {
-    Kinetic,
-    Axial,
-    Bending,
-    Contact,
-    Gravity,
-    Springs,
-    Integral(Integral),
-    Numerical,
-}
-
-/// Names and units of a pose at the levels of position, velocity and acceleration.
-const LEVELS: [[(&str, &str); 3]; 3] = [
-    [("x", "m"), ("y", "m"), ("theta", "rad")],
-    [("vx", "m/s"), ("vy", "m/s"), ("omega", "rad/s")],
-    [("ax", "m/s2"), ("ay", "m/s2"), ("alpha", "rad/s2")],
-];
-
-/// Quantities of every joint, of those with clearance, with a motion that is prescribed, and with a line.
-const FORCE: [(&str, &str, JointQuantity); 3] = [
-    ("fx", "N", JointQuantity::Fx),
-    ("fy", "N", JointQuantity::Fy),
-    ("force", "N", JointQuantity::Force),
-];
-const CLEARANCE: [(&str, &str, JointQuantity); 8] = [
-    ("ex", "m", JointQuantity::Ex),
-    ("ey", "m", JointQuantity::Ey),
-    ("eccentricity", "m", JointQuantity::Eccentricity),
-    ("penetration", "m", JointQuantity::Penetration),
-    ("ex_rate", "m/s", JointQuantity::ExRate),
-    ("ey_rate", "m/s", JointQuantity::EyRate),
-    ("eccentricity_rate", "m/s", JointQuantity::EccentricityRate),
-    ("contact", "1", JointQuantity::Contact),
-];
-const TURNED: [(&str, &str, JointQuantity); 2] = [
-    ("angle", "rad", JointQuantity::Angle),
-    ("speed", "rad/s", JointQuantity::Speed),
-];
-const COUPLE: [(&str, &str, JointQuantity); 1] = [("torque", "N m", JointQuantity::Couple)];
-const LINE: [(&str, &str, JointQuantity); 2] = [
-    ("travel", "m", JointQuantity::Travel),
-    ("travel_rate", "m/s", JointQuantity::TravelRate),
-];
-const ACTUATOR: [(&str, &str); 3] = [("angle", "rad"), ("speed", "rad/s"), ("torque", "N m")];
-
-const ENERGIES: [(&str, Energy); 12] = [
-    ("kinetic", Energy::Kinetic),
-    ("axial", Energy::Axial),
-    ("bending", Energy::Bending),
-    ("contact", Energy::Contact),
-    ("gravity", Energy::Gravity),
-    ("springs", Energy::Springs),
-    ("work", Energy::Integral(Integral::Work)),
-    (
-        "contact_dissipated",
-        Energy::Integral(Integral::ContactDissipated),
-    ),
-    (
-        "friction_dissipated",
-        Energy::Integral(Integral::FrictionDissipated),
-    ),
-    (
-        "damping_dissipated",
-        Energy::Integral(Integral::DampingDissipated),
-    ),
-    ("clamp", Energy::Integral(Integral::Clamp)),
-    ("numerical", Energy::Numerical),
-];
-
-/// A list of channels.
-#[derive(Default)]
-struct List(Vec<(Channel, Quantity)>);
-
-impl List {
-    fn add(&mut self, name: String, unit: &'static str, quantity: Quantity) {
-        self.0.push((Channel { name, unit }, quantity));
-    }
-
-    fn bodies(&mut self, model: &Model) {
-        for (b, body) in model
-            .bodies()
-            .iter()
-            .enumerate()
-            .filter(|(_, body)| body.moves)
-        {
-            for (l, level) in LEVELS.iter().enumerate() {
-                for (i, (name, unit)) in level.iter().enumerate() {
-                    self.add(
-                        format!("{}.{name}", body.name),
-                        unit,
-                        Quantity::Pose(b, l, i),
-                    );
-                }
-            }
-            if !body.placed.kind.is_rigid() {
-                self.add(format!("{}.strain", body.name), "1", Quantity::Strain(b));
-            }
-            if body.prescribed.is_some() {
-                for (i, (name, unit)) in LEVELS[0].iter().enumerate() {
-                    self.add(format!("error.{name}"), unit, Quantity::Error(b, i));
-                }
-            }
-        }
-    }
-
-    fn joints(&mut self, model: &Model) {
-        for (j, joint) in model.joints().iter().enumerate() {
-            let has =
-                |present: bool, quantities: &'static [_]| if present { quantities } else { &[] };
-            let quantities = [
-                &FORCE[..],
-                has(model.is_loose(j), &CLEARANCE),
-                has(
-                    joint.terms.couple.is_some() && joint.terms.turned.is_some(),
-                    &TURNED,
-                ),
-                has(joint.terms.couple.is_some(), &COUPLE),
-                has(joint.terms.slide.is_some(), &LINE),
-            ];
-            for (name, unit, quantity) in quantities.into_iter().flatten() {
-                let name = format!("{}.{name}", joint.name);
-                self.add(name, unit, Quantity::Joint(j, *quantity));
-            }
-            let actuator = joint.actuator.iter().flat_map(|_| ACTUATOR);
-            for (k, (name, unit)) in actuator.enumerate() {
-                self.add(
-                    format!("{}.{name}", joint.name),
-                    unit,
-                    Quantity::Actuator(j, k),
-                );
-            }
-        }
-    }
-
-    fn points(&mut self, model: &Model) {
-        for (b, body) in model.bodies().iter().enumerate() {
-            for (p, point) in body.points.iter().enumerate() {
-                let name =
-                    |quantity: &str| format!("points.{}.{}.{quantity}", body.name, point.name);
-                for (l, level) in LEVELS.iter().enumerate() {
-                    for (i, (quantity, unit)) in level[..2].iter().enumerate() {
-                        self.add(name(quantity), unit, Quantity::Point(b, p, l, i));
-                    }
-                }
-                let slope = point.slope.iter().flat_map(|_| ["slope_x", "slope_y"]);
-                for (i, quantity) in slope.enumerate() {
-                    self.add(name(quantity), "1", Quantity::Slope(b, p, i));
-                }
-            }
-        }
+/// Energies that a mechanism stores.
+fn stored(model: &Model) -> &'static [(&'static str, Term)] {
+    match model.has_springs() {
+        true => &STORED,
+        false => &STORED[..5],
     }
 }
 
-/// Everything a scene can record, in a fixed order.
-pub(super) fn available(model: &Model, analysis: Analysis) -> Vec<(Channel, Quantity)> {
-    let mut list = List::default();
-    list.add("t".to_owned(), "s", Quantity::Time);
-    list.bodies(model);
-    list.joints(model);
-    list.points(model);
-    for (f, (force, quantities)) in model.named_forces().enumerate() {
-        for (k, (name, unit)) in quantities.iter().enumerate() {
-            list.add(format!("{force}.{name}"), unit, Quantity::Force(f, k));
-        }
-    }
-    for (name, energy) in ENERGIES {
-        let present = match energy {
-            // a load path has no balance of powers
-            Energy::Integral(_) | Energy::Numerical => analysis == Analysis::Dynamic,
-            Energy::Springs => model.has_springs(),
-            _ => true,
+impl Part {
+    /// Its channels.
+    pub fn channels(self, model: &Model) -> Vec<Channel> {
+        let named = |owner: &str, quantities: &Quantities| {
+            let channels = quantities.iter().map(|(name, unit)| Channel {
+                name: format!("{owner}.{name}"),
+                unit,
+            });
+            channels.collect()
         };
-        if present {
-            list.add(format!("energy.{name}"), "J", Quantity::Energy(energy));
+        let body = |b: usize, quantities| named(&model.bodies()[b].name, quantities);
+        let joint = |j: usize, quantities| named(&model.joints()[j].name, quantities);
+        let point = |b: usize, p: usize, quantities: &Quantities| {
+            let body = &model.bodies()[b];
+            let owner = format!("points.{}.{}", body.name, body.points[p].name);
+            named(&owner, quantities)
+        };
+        let energies = |terms: &[(&'static str, Term)]| {
+            let quantities: Vec<_> = terms.iter().map(|(name, _)| (*name, "J")).collect();
+            named("energy", &quantities)
+        };
+        match self {
+            Part::Time => vec![Channel {
+                name: "t".to_owned(),
+                unit: "s",
+            }],
+            Part::Pose(b) => body(b, &POSE),
+            Part::Strain(b) => body(b, &[("strain", "1")]),
+            Part::Error(_) => named("error", &POSE[..3]),
+            Part::Force(j) => joint(j, FORCE),
+            Part::Gap(j) => joint(j, GAP),
+            Part::Turned(j) => joint(j, TURNED),
+            Part::Couple(j) => joint(j, &[("torque", "N m")]),
+            Part::Travel(j) => joint(j, TRAVEL),
+            Part::Actuator(j) => joint(j, ACTUATOR),
+            Part::Point(b, p) => point(b, p, &POINT.map(|i| POSE[i])),
+            Part::Slope(b, p) => point(b, p, &[("slope_x", "1"), ("slope_y", "1")]),
+            Part::Applied(f) => named(&model.named_forces()[f].0, model.force(f).quantities()),
+            Part::Stored => energies(stored(model)),
+            Part::Balance => energies(&BALANCE),
         }
     }
-    list.0
-}
 
-/// True where `name` has the form of `pattern`, in which `*` stands for any run of characters.
-pub(super) fn matches(pattern: &str, name: &str) -> bool {
-    let mut parts = pattern.split('*');
-    let first = parts.next().unwrap_or_default();
-    let Some(mut rest) = name.strip_prefix(first) else {
-        return false;
-    };
-    let parts: Vec<&str> = parts.collect();
-    let Some((last, middle)) = parts.split_last() else {
-        return rest.is_empty();
-    };
-    for part in middle {
-        match rest.find(part) {
-            Some(at) => rest = &rest[at + part.len()..],
-            None => return false,
+    /// Places of its angle, which is known up to full turns, and of the speed of it.
+    pub fn turning(self) -> Option<[usize; 2]> {
+        match self {
+            Part::Pose(_) => Some([2, 5]),
+            Part::Turned(_) | Part::Actuator(_) => Some([0, 1]),
+            _ => None,
         }
     }
-    rest.ends_with(last)
-}
 
-#[cfg(test)]
-mod tests {
-    use super::matches;
-
-    #[test]
-    fn patterns() {
-        for (pattern, name, expected) in [
-            ("platform.*", "platform.x", true),
-            ("platform.*", "error.x", false),
-            ("*.force", "B1.force", true),
-            ("*", "t", true),
-            ("B1.f*e", "B1.force", true),
-            ("B1.fx", "B1.fx", true),
-            ("B1.f", "B1.fx", false),
-            ("a*a", "a", false),
-        ] {
-            assert_eq!(matches(pattern, name), expected, "{pattern} {name}");
+    /// Appends its values at a consistent state, in the order of its channels.
+    pub fn measure(
+        self,
+        model: &Model,
+        at: &State,
+        ledger: &Ledger,
+        strains: &[f64],
+        work: &mut Work,
+        values: &mut Vec<f64>,
+    ) {
+        let joint = |j: usize| &model.joints()[j];
+        match self {
+            Part::Time => values.push(at.t),
+            Part::Pose(b) => {
+                let pose = model.pose(b, at);
+                let levels = [pose.position, pose.velocity, pose.acceleration];
+                values.extend(levels.as_flattened());
+            }
+            Part::Strain(b) => values.push(strains[b]),
+            Part::Error(b) => {
+                let prescribed = model.prescribed(b, at).unwrap_or_default().position;
+                let position = model.pose(b, at).position.into_iter();
+                values.extend(position.zip(prescribed).map(|(x, expected)| x - expected));
+            }
+            Part::Force(j) => {
+                let force = model.joint_force(j, at, work);
+                values.extend([force[0], force[1], norm(force)]);
+            }
+            Part::Gap(j) => {
+                let (gap, rate, closed) = model.gap(j, at).unwrap_or_default();
+                let touches = f64::from(u8::from(closed && gap.delta > 0.0));
+                values.extend(gap.e);
+                values.extend([gap.eccentricity, gap.delta]);
+                values.extend(gap.e_dot);
+                values.extend([rate, touches]);
+            }
+            Part::Turned(j) => values.extend(model.turned(j, at)),
+            Part::Couple(j) => values.push(model.joint_couple(j, at)),
+            Part::Travel(j) => {
+                let slide = joint(j).terms.slide.iter();
+                values.extend(slide.flat_map(|slide| slide.travel(at)));
+            }
+            Part::Actuator(j) => {
+                let actuator = joint(j).actuator.iter();
+                values.extend(actuator.flat_map(|actuator| model.actuator(actuator, at, work)));
+            }
+            Part::Point(b, p) => values.extend(model.point(b, p, at).as_flattened()),
+            Part::Slope(b, p) => {
+                let slope = model.bodies()[b].points[p].slope;
+                values.extend(slope.iter().flat_map(|x| [at.q[*x], at.q[x + 1]]));
+            }
+            Part::Applied(f) => {
+                let force = model.force(f);
+                values.extend(&force.measure(at)[..force.quantities().len()]);
+            }
+            Part::Stored => values.extend(stored(model).iter().map(|(_, term)| term(ledger))),
+            Part::Balance => values.extend(BALANCE.iter().map(|(_, term)| term(ledger))),
         }
     }
 }

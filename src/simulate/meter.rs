@@ -21,7 +21,7 @@
 //! the largest acceleration whose changes move points by more than rounding.
 
 use crate::body::Content;
-use crate::model::Model;
+use crate::model::{Energies, Model};
 use crate::scene::{Pace, Scene};
 use crate::stepper::LocalError;
 use crate::system::{Integral, State};
@@ -234,15 +234,14 @@ impl Meter {
         }
     }
 
-    /// A row is recorded.
+    /// A row is recorded, of a state with these energies.
     ///
     /// # Errors
     /// When the integrator has put far more energy into the motion than the scene supplies.
-    pub fn row(&mut self, model: &Model, at: &State) -> Result<(), Gain> {
+    pub fn row(&mut self, energies: &Energies, at: &State) -> Result<(), Gain> {
         for (range, (q, v)) in self.ranges.iter_mut().zip(at.q.iter().zip(&at.v)) {
             range.see(*q, *v);
         }
-        let energies = model.energies(at);
         let (balance, size) = energies.balance(at);
         let turnover = energies.total() - energies.gravity;
         let initial = *self.initial.get_or_insert(Initial {

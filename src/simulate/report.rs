@@ -257,7 +257,10 @@ impl Simulation {
             brief_contacts: self.closures.brief,
             chatter: self.closures.chatter.clone(),
             integration: dynamic.then(|| self.meter.report(&self.model)),
-            ledger: dynamic.then(|| self.recorder.ledger(&self.model, &self.state)),
+            ledger: dynamic.then(|| {
+                self.recorder
+                    .ledger(&self.model.energies(&self.state), &self.state)
+            }),
             redundant: self.model.redundant(),
             strain: bodies
                 .filter(|(_, p)| !p.placed.kind.is_rigid())

@@ -13,7 +13,7 @@ use crate::compile::compile;
 use crate::initial::{self, redundancy};
 use crate::model::Model;
 use crate::newton::Newton;
-use crate::record::Recorder;
+use crate::record::{Record, Recorder};
 use crate::scene::{Analysis, Pace, Scene, SceneError};
 use crate::stepper::{Estimate, LocalError};
 use crate::system::{State, System, Work};
@@ -85,6 +85,7 @@ impl Simulation {
             output: state.clone(),
             state,
             recorder,
+            measured: Record::default(),
             extremes,
             strains: vec![0.0; scene.bodies.len()],
             impacts,

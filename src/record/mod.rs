@@ -1,0 +1,258 @@
+//! Named channels with units: what a row of output contains.
+
+mod channels;
+
+use crate::model::{Energies, Model};
+use crate::scene::{MotionKind, Scene, SceneError};
+use crate::system::{State, Work};
+use channels::{Part, parts};
+use std::f64::consts::TAU;
+use wildmatch::WildMatchPattern;
+
+pub use channels::Channel;
+
+/// Fills rows.
+#[derive(Debug)]
+pub struct Recorder {
+    channels: Vec<Channel>,
+    /// The parts that have a channel.
+    parts: Vec<Part>,
+    /// Where the value of each channel stands among those of the parts.
+    places: Vec<usize>,
+    /// For channels that are angles known only to a full turn.
+    turning: Vec<Option<Turning>>,
+    /// Values of the parts.
+    values: Vec<f64>,
+    row: Vec<f64>,
+    /// Energy at t = 0 \[J\].
+    initial_energy: f64,
+}
+
+/// An angle that is followed over full turns.
+#[derive(Debug)]
+struct Turning {
+    /// Where its speed stands among the values of the parts.
+    speed: usize,
+    /// Last angle, its rate and its time.
+    last: Option<[f64; 3]>,
+}
+
+impl Turning {
+    /// The angle nearest to where the last recorded one and the speeds since lead.
+    fn follow(&mut self, angle: f64, speed: f64, t: f64) -> f64 {
+        let angle = match self.last {
+            None => angle,
+            Some([before, rate, then]) => {
+                let expected = before + 0.5 * (rate + speed) * (t - then);
+                angle + TAU * ((expected - angle) / TAU).round()
+            }
+        };
+        self.last = Some([angle, speed, t]);
+        angle
+    }
+}
+
+/// What is measured at every row, whether a channel shows it or not.
+#[derive(Debug, Clone, Default)]
+pub struct Record {
+    /// Stored energies.
+    pub energies: Energies,
+    /// Axial strain of largest magnitude by body; 0 for bodies that do not deform.
+    pub strains: Vec<f64>,
+}
+
+impl Record {
+    /// Measures a consistent state.
+    pub fn take(&mut self, model: &Model, at: &State) {
+        self.energies = model.energies(at);
+        let strains = (0..model.bodies().len()).map(|b| model.strain(b, at).unwrap_or_default());
+        self.strains.clear();
+        self.strains.extend(strains);
+    }
+}
+
+/// The terms of the energy ledger \[J\].
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[expect(missing_docs, reason = "the names are those of the channels")]
+pub struct Ledger {
+    pub initial: f64,
+    pub kinetic: f64,
+    pub axial: f64,
+    pub bending: f64,
+    pub contact: f64,
+    pub gravity: f64,
+    pub springs: f64,
+    pub work: f64,
+    pub contact_dissipated: f64,
+    pub friction_dissipated: f64,
+    pub damping_dissipated: f64,
+    pub clamp: f64,
+    pub numerical: f64,
+}
+
+impl Ledger {
+    /// Energy dissipated in contacts, by friction and by damping \[J\].
+    pub fn dissipated(&self) -> f64 {
+        self.contact_dissipated + self.friction_dissipated + self.damping_dissipated
+    }
+}
+
+impl Recorder {
+    /// The channels that the scene asks for, time first, each once, in the order of the scene.
+    ///
+    /// # Errors
+    /// A pattern that no channel has.
+    pub fn new(scene: &Scene, model: &Model, initial_energy: f64) -> Result<Recorder, SceneError> {
+        let all = parts(model, scene.simulation.analysis);
+        let mut available = Vec::new();
+        for (p, part) in all.iter().enumerate() {
+            let channels = part.channels(model).into_iter().enumerate();
+            available.extend(channels.map(|(place, channel)| Available {
+                channel,
+                part: p,
+                place,
+            }));
+        }
+        let chosen = choose(scene, &available)?;
+        // where the values of each part begin that has a chosen channel
+        let mut firsts = vec![None; all.len()];
+        for entry in &chosen {
+            firsts[entry.part] = Some(0);
+        }
+        let (mut parts, mut count) = (Vec::new(), 0);
+        for (first, part) in firsts.iter_mut().zip(&all).filter(|(f, _)| f.is_some()) {
+            *first = Some(count);
+            count += part.channels(model).len();
+            parts.push(*part);
+        }
+        let first = |entry: &Available| firsts[entry.part].unwrap_or_default();
+        let turning = |entry: &&Available| {
+            let [angle, speed] = all[entry.part].turning()?;
+            (entry.place == angle).then(|| Turning {
+                speed: first(entry) + speed,
+                last: given_angle(scene, all[entry.part]),
+            })
+        };
+        Ok(Recorder {
+            places: chosen.iter().map(|e| first(e) + e.place).collect(),
+            turning: chosen.iter().map(turning).collect(),
+            row: vec![0.0; chosen.len()],
+            channels: chosen.into_iter().map(|e| e.channel.clone()).collect(),
+            parts,
+            values: Vec::with_capacity(count),
+            initial_energy,
+        })
+    }
+
+    /// Names and units, in the order of a row.
+    pub fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    /// The ledger at a consistent state with these energies.
+    pub fn ledger(&self, e: &Energies, at: &State) -> Ledger {
+        let [
+            work,
+            contact_dissipated,
+            friction_dissipated,
+            damping_dissipated,
+            clamp,
+        ] = at.integrals;
+        let supplied = self.initial_energy + work;
+        Ledger {
+            initial: self.initial_energy,
+            kinetic: e.kinetic,
+            axial: e.axial,
+            bending: e.bending,
+            contact: e.contact,
+            gravity: e.gravity,
+            springs: e.springs,
+            work,
+            contact_dissipated,
+            friction_dissipated,
+            damping_dissipated,
+            clamp,
+            numerical: supplied
+                - contact_dissipated
+                - friction_dissipated
+                - damping_dissipated
+                - e.total(),
+        }
+    }
+
+    /// The row at a consistent state, of which `record` was taken.
+    pub fn row(&mut self, model: &Model, at: &State, record: &Record, work: &mut Work) -> &[f64] {
+        let ledger = self.ledger(&record.energies, at);
+        self.values.clear();
+        for part in &self.parts {
+            part.measure(model, at, &ledger, &record.strains, work, &mut self.values);
+        }
+        let angles = self.turning.iter_mut().zip(&self.places);
+        for (value, (turning, place)) in self.row.iter_mut().zip(angles) {
+            *value = self.values[*place];
+            if let Some(turning) = turning {
+                *value = turning.follow(*value, self.values[turning.speed], at.t);
+            }
+        }
+        &self.row
+    }
+}
+
+/// A channel that a scene can ask for.
+struct Available {
+    channel: Channel,
+    /// Index of its part, and its place among the values of the part.
+    part: usize,
+    place: usize,
+}
+
+/// The time, and the channels that fit a pattern of the scene, each once.
+fn choose<'a>(scene: &Scene, available: &'a [Available]) -> Result<Vec<&'a Available>, SceneError> {
+    let mut is_chosen = vec![false; available.len()];
+    is_chosen[0] = true;
+    let mut chosen = vec![&available[0]];
+    for wanted in &scene.output.channels {
+        let pattern = WildMatchPattern::<'*', '\0'>::new(&wanted.pattern);
+        let mut is_known = false;
+        for (entry, is_chosen) in available.iter().zip(&mut is_chosen) {
+            if pattern.matches(&entry.channel.name) {
+                is_known = true;
+                if !std::mem::replace(is_chosen, true) {
+                    chosen.push(entry);
+                }
+            }
+        }
+        if !is_known {
+            let likeness = |name: &str| strsim::jaro_winkler(name, &wanted.pattern);
+            let names = available.iter().map(|entry| entry.channel.name.as_str());
+            let nearest = names.max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+            let message = format!(
+                "no channel of this scene is named {:?}; the nearest is {:?}",
+                wanted.pattern,
+                nearest.unwrap_or_default()
+            );
+            return Err(scene.error(wanted.span, message, "unknown channel"));
+        }
+    }
+    Ok(chosen)
+}
+
+/// What an angle is nearest to at t = 0, with its rate and that time: the angle that a state of the body or the drive of the
+/// joint gives, and zero of a joint that follows inverse kinematics.
+fn given_angle(scene: &Scene, part: Part) -> Option<[f64; 3]> {
+    match part {
+        Part::Pose(b) => {
+            let given = scene.initial.bodies.iter().find(|s| s.body == b)?;
+            Some([given.position[2], given.velocity[2], 0.0])
+        }
+        Part::Turned(j) | Part::Actuator(j) => {
+            let driven = scene.motions.iter().find_map(|motion| match &motion.kind {
+                MotionKind::Angle { joint, angle } if *joint == j => Some(angle.at(0.0)),
+                _ => None,
+            });
+            let [angle, rate, _] = driven.unwrap_or_default();
+            Some([angle, rate, 0.0])
+        }
+        _ => None,
+    }
+}
