@@ -126,11 +126,11 @@ impl Kinematics {
         true
     }
 
-    /// Finds the series of a span from `from` on that holds time t.
+    /// Finds the series of a span from `from` on that holds time t. An earlier time is in no such span.
     fn renew_series(&self, from: &State, t: f64, inner: &mut Inner) -> bool {
         let shortest = STEPS * (t - from.t);
         let rest = self.duration - from.t;
-        if t < inner.series.rough_until || shortest > rest {
+        if t < from.t || t < inner.series.rough_until || shortest > rest {
             return false;
         }
         let mut span = inner.series.span.min(rest);
@@ -236,6 +236,34 @@ mod tests {
         assert!(share > 0.8 && share < 1.0, "{share}");
         for (difference, bound) in differences.iter().zip(BOUNDS) {
             assert!(*difference < bound, "{differences:?}");
+        }
+    }
+
+    /// A scheme may go back to an earlier stage, or repeat a step that was too long.
+    #[test]
+    fn times_before_a_span_are_solved_for() {
+        let scene = Scene::load(Path::new("scenes/3rrr/case3.toml"), &[]).unwrap();
+        let compiled = compile(&scene).unwrap();
+        let kinematics = compiled.kinematics.as_ref().unwrap();
+        let mut inner = kinematics.work();
+        let start = initial::start(&scene, &compiled).unwrap();
+        let (mut from, mut to, mut solved) = (start.clone(), start.clone(), start);
+        from.t = 1e-3;
+        kinematics
+            .solve_at(&to, &mut from, &mut kinematics.work())
+            .unwrap();
+        for t in [1.1e-3, 0.9e-3] {
+            (to.t, solved.t) = (t, t);
+            kinematics.prescribe(&from, &mut to, &mut inner).unwrap();
+            assert_eq!(inner.series.start, from.t);
+            kinematics
+                .solve_at(&from, &mut solved, &mut kinematics.work())
+                .unwrap();
+            let n = compiled.model.shape().unknowns;
+            for (x, y) in to.q[n..].iter().zip(&solved.q[n..]) {
+                // coordinates are of the order of a metre
+                assert!((x - y).abs() < BOUNDS[0], "{t}: {x} {y}");
+            }
         }
     }
 

@@ -92,7 +92,8 @@ impl Stepper for Esdirk3 {
             };
             now.copy_from(before[k]);
             now.t = if k == 2 { t } else { from.t + C[k + 1] * h };
-            system.prescribe(before[k], now, work)?;
+            // the stages are not in the order of time
+            system.prescribe(from, now, work)?;
             for i in 0..system.shape().unknowns {
                 let (mut change, mut increment) = (0.0, 0.0);
                 for (a, state) in row.iter().zip(before) {
