@@ -165,8 +165,7 @@ fn inertia(table: &Fields, known: &Materials) -> Result<(f64, f64), SceneError> 
         let message = format!("`{}` is already given by the plate", typed.path);
         return Err(typed.key_fault(message, "remove this or the plate"));
     }
-    let mut fields = plate.fields()?;
-    let shape = Kind::by("shape", &mut fields, "the shape of the plate", &PLATES)?;
+    let (shape, fields) = Kind::by("shape", &plate, "the shape of the plate", &PLATES)?;
     let [area, gyration] = (shape.read)(&fields)?;
     let own = plate_mass(&fields, known, area)?;
     let mass = table.optional_number("mass")?.unwrap_or(own);

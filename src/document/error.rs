@@ -97,16 +97,21 @@ pub struct SceneError {
 
 impl SceneError {
     /// A fault at `span`.
-    pub(crate) fn new(sources: &Sources, span: Span, message: String, label: String) -> SceneError {
+    pub(crate) fn new(
+        sources: &Sources,
+        span: Span,
+        message: impl Into<String>,
+        label: impl Into<String>,
+    ) -> SceneError {
         let written = sources.written(span);
         let underlined = match shortened(written) {
             // the first line of what is too long to be shown
             short if short.len() < written.len() => short.lines().next().map_or(0, str::len),
             whole => whole.len(),
         };
-        let label = LabeledSpan::new(Some(shown(label)), span.start as usize, underlined);
+        let label = LabeledSpan::new(Some(shown(label.into())), span.start as usize, underlined);
         SceneError {
-            message: shown(message),
+            message: shown(message.into()),
             help: None,
             text: sources.0.get(span.source as usize).cloned(),
             labels: vec![label],
@@ -115,8 +120,8 @@ impl SceneError {
 
     /// The same fault with a second place, which contradicts the first. Only one text can be shown: a place in another one
     /// is reported as advice.
-    pub(crate) fn against(mut self, sources: &Sources, span: Span, label: String) -> SceneError {
-        let mut other = SceneError::new(sources, span, String::new(), label);
+    pub(crate) fn against(mut self, sources: &Sources, span: Span, label: &str) -> SceneError {
+        let mut other = SceneError::new(sources, span, "", label);
         match (&self.text, &other.text) {
             (Some(one), Some(two)) if Arc::ptr_eq(one, two) => {
                 self.labels.append(&mut other.labels);
@@ -201,6 +206,12 @@ pub(crate) fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) 
 }
 
 /// The end of a message about an unknown name: a suggestion, or nothing.
-pub(crate) fn did_you_mean<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> String {
+pub(super) fn did_you_mean<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> String {
     nearest(name, known).map_or(String::new(), |k| format!("; did you mean `{k}`?"))
+}
+
+/// Words in double quotes, with commas between them.
+pub(crate) fn quoted<'w>(words: impl IntoIterator<Item = &'w str>) -> String {
+    let words: Vec<_> = words.into_iter().map(|w| format!("{w:?}")).collect();
+    words.join(", ")
 }

@@ -1,6 +1,7 @@
 //! Typed access to a value: every getter names the field and its place when something is wrong.
 
-use super::error::{SceneError, Sources, Span, did_you_mean};
+use super::error::{SceneError, Sources, Span, did_you_mean, quoted};
+use super::key::{Key, Range, Takes};
 use super::tree::{Node, Value};
 use indexmap::IndexMap;
 
@@ -8,20 +9,40 @@ use indexmap::IndexMap;
 #[derive(Clone)]
 pub struct Field<'a> {
     pub(crate) sources: &'a Sources,
-    /// Dotted path.
+    /// Dotted path; empty for the scene itself.
     pub path: String,
     /// Last part of the path.
     pub name: String,
-    /// Where the name stands.
-    pub key: Span,
     /// The value.
     pub(crate) node: &'a Node,
+    /// Its key, where that is declared as data.
+    pub(super) key: Option<&'static Key>,
 }
 
 impl<'a> Field<'a> {
+    /// A part of this value.
+    pub(super) fn part(&self, name: &str, node: &'a Node, key: Option<&'static Key>) -> Field<'a> {
+        let path = match self.path.as_str() {
+            "" => name.to_owned(),
+            path => format!("{path}.{name}"),
+        };
+        Field {
+            sources: self.sources,
+            path,
+            name: name.to_owned(),
+            node,
+            key,
+        }
+    }
+
     /// A fault of this value.
     pub fn fault(&self, message: impl Into<String>, label: impl Into<String>) -> SceneError {
-        SceneError::new(self.sources, self.node.span, message.into(), label.into())
+        SceneError::new(self.sources, self.node.span, message, label)
+    }
+
+    /// A fault of the key in front of this value.
+    pub fn key_fault(&self, message: impl Into<String>, label: impl Into<String>) -> SceneError {
+        SceneError::new(self.sources, self.node.key, message, label)
     }
 
     /// Where the value stands.
@@ -29,22 +50,7 @@ impl<'a> Field<'a> {
         self.node.span
     }
 
-    /// A fault of another place in the same scene.
-    pub(crate) fn fault_at(
-        &self,
-        span: Span,
-        message: impl Into<String>,
-        label: impl Into<String>,
-    ) -> SceneError {
-        SceneError::new(self.sources, span, message.into(), label.into())
-    }
-
-    /// A fault of the key in front of this value.
-    pub fn key_fault(&self, message: impl Into<String>, label: impl Into<String>) -> SceneError {
-        SceneError::new(self.sources, self.key, message.into(), label.into())
-    }
-
-    pub(crate) fn wrong_type(&self, wanted: &str) -> SceneError {
+    pub(super) fn wrong_type(&self, wanted: &str) -> SceneError {
         let kind = self.node.value.kind();
         self.fault(
             format!("`{}` must be {wanted}, not {kind}", self.path),
@@ -57,17 +63,22 @@ impl<'a> Field<'a> {
         self.sources.written(self.node.span).to_owned()
     }
 
-    /// A finite number.
+    /// A finite number, in the range of its key.
     pub fn number(&self) -> Result<f64, SceneError> {
         let x = match self.node.value {
             Value::Float(x) => x,
             Value::Integer(n) => n as f64,
             _ => return Err(self.wrong_type("a number")),
         };
-        if x.is_finite() {
-            Ok(x)
-        } else {
-            Err(self.must("be finite"))
+        let range = match self.key.map(|key| key.takes) {
+            Some(Takes::Number { range, .. }) => range,
+            _ => Range::Any,
+        };
+        match range {
+            _ if !x.is_finite() => Err(self.must("be finite")),
+            Range::Positive if x <= 0.0 => Err(self.must("be greater than zero")),
+            Range::NonNegative if x < 0.0 => Err(self.must("not be negative")),
+            _ => Ok(x),
         }
     }
 
@@ -77,26 +88,6 @@ impl<'a> Field<'a> {
             format!("`{}` must {requirement}, not {}", self.path, self.written()),
             format!("must {requirement}"),
         )
-    }
-
-    /// A number greater than zero.
-    pub fn positive(&self) -> Result<f64, SceneError> {
-        let x = self.number()?;
-        if x > 0.0 {
-            Ok(x)
-        } else {
-            Err(self.must("be greater than zero"))
-        }
-    }
-
-    /// A number not less than zero.
-    pub fn non_negative(&self) -> Result<f64, SceneError> {
-        let x = self.number()?;
-        if x >= 0.0 {
-            Ok(x)
-        } else {
-            Err(self.must("not be negative"))
-        }
     }
 
     /// A whole number.
@@ -132,19 +123,20 @@ impl<'a> Field<'a> {
         if let Some((_, value)) = choices.iter().find(|(word, _)| *word == text) {
             return Ok(*value);
         }
-        let words: Vec<_> = choices.iter().map(|(word, _)| *word).collect();
-        let hint = did_you_mean(text, words.iter().copied());
-        let list = words
-            .iter()
-            .map(|w| format!("\"{w}\""))
-            .collect::<Vec<_>>()
-            .join(", ");
-        Err(self
-            .fault(
-                format!("`{}` cannot be \"{text}\"{hint}", self.path),
-                "not known",
-            )
-            .with_help(format!("known: {list}")))
+        let words = choices.iter().map(|(word, _)| *word);
+        let hint = did_you_mean(text, words.clone());
+        let message = format!("`{}` cannot be \"{text}\"{hint}", self.path);
+        let error = self.fault(message, "not known");
+        Err(error.with_help(format!("known: {}", quoted(words))))
+    }
+
+    /// The place of a word among those of its key.
+    pub(super) fn word(&self) -> Result<usize, SceneError> {
+        let Some(Takes::Word(words)) = self.key.map(|key| key.takes) else {
+            panic!("`{}` takes no word", self.name);
+        };
+        let places = words.iter().enumerate();
+        self.choice(&places.map(|(i, word)| (*word, i)).collect::<Vec<_>>())
     }
 
     /// The thing of this name, and its index.
@@ -170,7 +162,7 @@ impl<'a> Field<'a> {
         name: &str,
         known: impl Iterator<Item = &'k str>,
     ) -> SceneError {
-        dangling(self.sources, self.node.span, kind, name, known)
+        self.missing(self.node.span, kind, name, known)
     }
 
     /// A fault: this key names something that does not exist.
@@ -179,7 +171,25 @@ impl<'a> Field<'a> {
         kind: &str,
         known: impl Iterator<Item = &'k str>,
     ) -> SceneError {
-        dangling(self.sources, self.key, kind, &self.name, known)
+        self.missing(self.node.key, kind, &self.name, known)
+    }
+
+    fn missing<'k>(
+        &self,
+        span: Span,
+        kind: &str,
+        name: &str,
+        known: impl Iterator<Item = &'k str>,
+    ) -> SceneError {
+        let known: Vec<&str> = known.collect();
+        let hint = did_you_mean(name, known.iter().copied());
+        let message = format!("there is no {kind} `{name}`{hint}");
+        let label = format!("no such {}", kind.split_whitespace().next().unwrap_or(kind));
+        let error = SceneError::new(self.sources, span, message, label);
+        error.with_help(match known.is_empty() {
+            true => format!("the scene has no {kind} at all"),
+            false => format!("known: {}", known.join(", ")),
+        })
     }
 
     /// The elements of an array.
@@ -187,14 +197,9 @@ impl<'a> Field<'a> {
         let Value::Array(items) = &self.node.value else {
             return Err(self.wrong_type("an array"));
         };
-        let item = |(index, node): (usize, &'a Node)| Field {
-            sources: self.sources,
-            path: format!("{}.{index}", self.path),
-            name: index.to_string(),
-            key: node.span,
-            node,
-        };
-        Ok(items.iter().enumerate().map(item).collect())
+        let items = items.iter().enumerate();
+        let items = items.map(|(index, node)| self.part(&index.to_string(), node, None));
+        Ok(items.collect())
     }
 
     /// An array of N numbers; `shape` shows them.
@@ -217,29 +222,16 @@ impl<'a> Field<'a> {
         Ok(result)
     }
 
+    /// What the numbers of its key are called, or those of each row.
+    pub(crate) fn shape(&self) -> &'static str {
+        match self.key.map(|key| key.takes) {
+            Some(Takes::Vector { shape, .. } | Takes::Rows { shape, .. }) => shape,
+            _ => panic!("`{}` takes no vector", self.name),
+        }
+    }
+
     /// True of a table.
     pub fn is_table(&self) -> bool {
         matches!(self.node.value, Value::Table(_))
-    }
-}
-
-fn dangling<'k>(
-    sources: &Sources,
-    span: Span,
-    kind: &str,
-    name: &str,
-    known: impl Iterator<Item = &'k str>,
-) -> SceneError {
-    let known: Vec<&str> = known.collect();
-    let hint = did_you_mean(name, known.iter().copied());
-    let error = SceneError::new(
-        sources,
-        span,
-        format!("there is no {kind} `{name}`{hint}"),
-        format!("no such {}", kind.split_whitespace().next().unwrap_or(kind)),
-    );
-    match known.is_empty() {
-        true => error.with_help(format!("the scene has no {kind} at all")),
-        false => error.with_help(format!("known: {}", known.join(", "))),
     }
 }

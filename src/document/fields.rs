@@ -1,19 +1,14 @@
 //! Access to a table: keys that must or may be there, and no others.
 
-use super::error::{SceneError, Sources, Span, did_you_mean, nearest};
+use super::error::{SceneError, Sources, did_you_mean, nearest};
 use super::field::Field;
-use super::key::{Key, Range, Takes};
+use super::key::Key;
 use super::tree::{Node, Table, Value};
 
 /// A table being read.
 pub struct Fields<'a> {
-    pub(crate) sources: &'a Sources,
-    /// Dotted path; empty for the scene itself.
-    pub(crate) path: String,
-    /// The header, or the braces of an inline table.
-    pub(crate) span: Span,
-    /// Where its name stands.
-    key: Span,
+    /// The table as a value: the header, or the braces of an inline table.
+    pub(crate) whole: Field<'a>,
     table: &'a Table,
     /// The keys it may have, once they are declared.
     known: Vec<&'static str>,
@@ -28,19 +23,10 @@ impl<'a> Fields<'a> {
             sources,
             path: String::new(),
             name: String::new(),
-            key: node.span,
             node,
+            key: None,
         };
         field.fields()
-    }
-
-    /// Declares the keys this table may have; any other is a fault.
-    pub(crate) fn only(&mut self, known: &[&'static str]) -> Result<(), SceneError> {
-        self.known = known.to_vec();
-        match self.table.keys().find(|key| !known.contains(&key.as_str())) {
-            Some(key) => Err(self.unknown(key, known.iter().copied())),
-            None => Ok(()),
-        }
     }
 
     /// Declares the keys of a kind, after those that say which kind it is.
@@ -54,24 +40,26 @@ impl<'a> Fields<'a> {
     ) -> Result<(), SceneError> {
         self.keys = keys;
         let own = keys.iter().map(|key| key.name);
-        let known: Vec<_> = before.iter().copied().chain(own).collect();
-        self.only(&known)
+        self.known = before.iter().copied().chain(own).collect();
+        let mut written = self.table.keys();
+        match written.find(|key| !self.known.contains(&key.as_str())) {
+            Some(key) => Err(self.unknown(key, &self.known)),
+            None => Ok(()),
+        }
     }
 
     /// The dotted path of the table.
     pub fn path(&self) -> &str {
-        &self.path
+        &self.whole.path
     }
 
     /// A fault of the table, at its name.
     pub fn fault(&self, message: impl Into<String>, label: impl Into<String>) -> SceneError {
-        SceneError::new(self.sources, self.key, message.into(), label.into())
+        self.whole.key_fault(message, label)
     }
 
-    fn key(&self, name: &'static str) -> &'static Key {
-        let mut keys = self.keys.iter();
-        keys.find(|key| key.name == name)
-            .unwrap_or_else(|| panic!("`{name}` is read but not declared"))
+    fn key(&self, name: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|key| key.name == name)
     }
 
     /// The value of a declared key that must be there.
@@ -79,7 +67,10 @@ impl<'a> Fields<'a> {
     /// # Errors
     /// It is missing.
     pub fn field(&self, name: &'static str) -> Result<Field<'a>, SceneError> {
-        self.required(name, &self.key(name).description())
+        let Some(key) = self.key(name) else {
+            panic!("`{name}` is read but not declared");
+        };
+        self.required(name, &key.description())
     }
 
     /// A declared number, in its range.
@@ -87,8 +78,7 @@ impl<'a> Fields<'a> {
     /// # Errors
     /// It is missing, no number, or out of its range.
     pub fn number(&self, name: &'static str) -> Result<f64, SceneError> {
-        self.field(name)
-            .and_then(|field| self.in_range(&field, name))
+        self.field(name)?.number()
     }
 
     /// A declared number that may be left out, in its range.
@@ -96,8 +86,7 @@ impl<'a> Fields<'a> {
     /// # Errors
     /// It is no number, or out of its range.
     pub fn optional_number(&self, name: &'static str) -> Result<Option<f64>, SceneError> {
-        let field = self.optional(name);
-        field.map(|field| self.in_range(&field, name)).transpose()
+        self.optional(name).map(|field| field.number()).transpose()
     }
 
     /// `true` or `false`, which may be left out.
@@ -113,7 +102,8 @@ impl<'a> Fields<'a> {
     /// # Errors
     /// It is missing, or no list of as many numbers.
     pub fn vector<const N: usize>(&self, name: &'static str) -> Result<[f64; N], SceneError> {
-        self.field(name)?.numbers(self.shape(name))
+        let field = self.field(name)?;
+        field.numbers(field.shape())
     }
 
     /// A declared vector that may be left out.
@@ -125,29 +115,7 @@ impl<'a> Fields<'a> {
         name: &'static str,
     ) -> Result<Option<[f64; N]>, SceneError> {
         let field = self.optional(name);
-        let numbers = field.map(|field| field.numbers(self.shape(name)));
-        numbers.transpose()
-    }
-
-    fn shape(&self, name: &'static str) -> &'static str {
-        match self.key(name).takes {
-            Takes::Vector { shape, .. } => shape,
-            _ => panic!("`{name}` takes no vector"),
-        }
-    }
-
-    fn in_range(&self, field: &Field, name: &'static str) -> Result<f64, SceneError> {
-        match self.key(name).takes {
-            Takes::Number {
-                range: Range::Positive,
-                ..
-            } => field.positive(),
-            Takes::Number {
-                range: Range::NonNegative,
-                ..
-            } => field.non_negative(),
-            _ => field.number(),
-        }
+        field.map(|field| field.numbers(field.shape())).transpose()
     }
 
     /// The place of a declared word among the words of its key.
@@ -155,8 +123,7 @@ impl<'a> Fields<'a> {
     /// # Errors
     /// It is missing, or another word.
     pub fn word(&self, name: &'static str) -> Result<usize, SceneError> {
-        self.field(name)
-            .and_then(|field| self.place_of_word(&field, name))
+        self.field(name)?.word()
     }
 
     /// As [`Fields::word`], for a word that may be left out.
@@ -164,46 +131,21 @@ impl<'a> Fields<'a> {
     /// # Errors
     /// It is another word.
     pub fn optional_word(&self, name: &'static str) -> Result<Option<usize>, SceneError> {
-        let field = self.optional(name);
-        field
-            .map(|field| self.place_of_word(&field, name))
-            .transpose()
+        self.optional(name).map(|field| field.word()).transpose()
     }
 
-    fn place_of_word(&self, field: &Field, name: &'static str) -> Result<usize, SceneError> {
-        let Takes::Word(words) = self.key(name).takes else {
-            panic!("`{name}` takes no word");
-        };
-        let choices: Vec<_> = words
-            .iter()
-            .enumerate()
-            .map(|(i, word)| (*word, i))
-            .collect();
-        field.choice(&choices)
-    }
-
-    fn unknown(
-        &self,
-        key: &str,
-        known: impl IntoIterator<Item = &'static str> + Clone,
-    ) -> SceneError {
-        let hint = did_you_mean(key, known.clone());
+    fn unknown(&self, key: &str, known: &[&str]) -> SceneError {
+        let hint = did_you_mean(key, known.iter().copied());
         let message = format!("unknown key `{key}` in {}{hint}", self.place());
-        let list: Vec<_> = known.into_iter().collect();
-        SceneError::new(
-            self.sources,
-            self.table[key].key,
-            message,
-            "unknown key".into(),
-        )
-        .with_help(format!("keys of this table: {}", list.join(", ")))
+        let place = self.table[key].key;
+        let error = SceneError::new(self.whole.sources, place, message, "unknown key");
+        error.with_help(format!("keys of this table: {}", known.join(", ")))
     }
 
     fn place(&self) -> &str {
-        if self.path.is_empty() {
-            "the scene"
-        } else {
-            &self.path
+        match self.path() {
+            "" => "the scene",
+            path => path,
         }
     }
 
@@ -216,51 +158,30 @@ impl<'a> Fields<'a> {
         if let Some(field) = self.optional(key) {
             return Ok(field);
         }
-        // Before `only` the table's keys are not declared yet: a misspelt discriminating key is reported as such.
-        let stranger = self
-            .table
-            .keys()
-            .find(|k| self.known.is_empty() && nearest(k, [key]).is_some());
-        if let Some(stranger) = stranger {
-            return Err(self.unknown(stranger, [key]));
+        // Before the table's keys are declared a misspelt discriminating key is reported as such.
+        let misspelt = |k: &&String| self.known.is_empty() && nearest(k, [key]).is_some();
+        if let Some(stranger) = self.table.keys().find(misspelt) {
+            return Err(self.unknown(stranger, &[key]));
         }
         let message = format!("missing key `{key}` in {}", self.place());
-        Err(
-            SceneError::new(self.sources, self.span, message, format!("needs `{key}`"))
-                .with_help(format!("`{key}` is {purpose}")),
-        )
+        let error = self.whole.fault(message, format!("needs `{key}`"));
+        Err(error.with_help(format!("`{key}` is {purpose}")))
     }
 
     /// The value of a key that may be left out.
-    pub fn optional(&self, key: &'static str) -> Option<Field<'a>> {
+    pub fn optional(&self, name: &'static str) -> Option<Field<'a>> {
         debug_assert!(
-            self.known.is_empty() || self.known.contains(&key),
-            "`{key}` is read but not declared"
+            self.known.is_empty() || self.known.contains(&name),
+            "`{name}` is read but not declared"
         );
-        let (name, entry) = self.table.get_key_value(key)?;
-        Some(self.entry(name, entry.key, &entry.node))
+        let node = self.table.get(name)?;
+        Some(self.whole.part(name, node, self.key(name)))
     }
 
     /// All entries, for tables whose keys the user chooses.
     pub(crate) fn entries(&self) -> impl Iterator<Item = Field<'a>> + use<'a, '_> {
-        self.table
-            .iter()
-            .map(|(name, entry)| self.entry(name, entry.key, &entry.node))
-    }
-
-    fn entry(&self, name: &str, key: Span, node: &'a Node) -> Field<'a> {
-        let path = if self.path.is_empty() {
-            name.to_owned()
-        } else {
-            format!("{}.{name}", self.path)
-        };
-        Field {
-            sources: self.sources,
-            path,
-            name: name.to_owned(),
-            key,
-            node,
-        }
+        let entries = self.table.iter();
+        entries.map(|(name, node)| self.whole.part(name, node, None))
     }
 }
 
@@ -271,10 +192,7 @@ impl<'a> Field<'a> {
             return Err(self.wrong_type("a table"));
         };
         Ok(Fields {
-            sources: self.sources,
-            path: self.path.clone(),
-            span: self.node.span,
-            key: self.key,
+            whole: self.clone(),
             table,
             known: Vec::new(),
             keys: &[],

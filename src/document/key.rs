@@ -1,5 +1,7 @@
 //! The keys of a table as data: the reader, its messages, the reference and the schema all come from them.
 
+use super::error::quoted;
+
 /// A key of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Key {
@@ -167,8 +169,7 @@ impl Key {
             Takes::Point => format!("{purpose}, as \"body.point\""),
             Takes::Function { unit } => format!("{purpose} as a function of time [{unit}]"),
             Takes::Word(words) => {
-                let words: Vec<_> = words.iter().map(|w| format!("{w:?}")).collect();
-                format!("{purpose}: {}", words.join(", "))
+                format!("{purpose}: {}", quoted(words.iter().copied()))
             }
             _ if self.unit().is_empty() => purpose.to_owned(),
             _ => format!("{purpose} [{}]", self.unit()),

@@ -11,7 +11,7 @@ mod text;
 mod tree;
 
 pub use error::{SceneError, Span};
-pub(crate) use error::{Sources, nearest};
+pub(crate) use error::{Sources, quoted};
 pub use field::Field;
 pub use fields::Fields;
 pub use key::{Key, Range, Takes};
@@ -19,4 +19,4 @@ pub use kind::Kind;
 pub use names::derived;
 pub(crate) use names::{RESERVED, check_name, named};
 pub(crate) use overrides::apply as apply_overrides;
-pub(crate) use tree::{Node, document};
+pub(crate) use tree::document;

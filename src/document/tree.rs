@@ -1,7 +1,8 @@
 //! TOML text as a small tree in which every key and every value knows where it stands.
 
-use super::error::{SceneError, Sources, Span};
+use super::error::{SceneError, Sources, Span, nearest};
 use indexmap::IndexMap;
+use std::borrow::Cow;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
@@ -9,6 +10,8 @@ use toml::de::{DeTable, DeValue, Error};
 /// A value and its place; a table that has a header stands at the header.
 #[derive(Debug)]
 pub(crate) struct Node {
+    /// Where its key stands; of what has none the value itself.
+    pub key: Span,
     pub span: Span,
     pub value: Value,
 }
@@ -26,14 +29,7 @@ pub(crate) enum Value {
 }
 
 /// Keys in the order of the text.
-pub(crate) type Table = IndexMap<String, Entry>;
-
-/// A value with the place of its key.
-#[derive(Debug)]
-pub(crate) struct Entry {
-    pub key: Span,
-    pub node: Node,
-}
+pub(crate) type Table = IndexMap<String, Node>;
 
 /// A scene needs five levels (`contacts.pin.friction.law`); the bound keeps every recursion shallow.
 const DEPTH: usize = 32;
@@ -57,42 +53,62 @@ impl Node {
     /// The child with this key or, of an array, this index.
     pub(crate) fn child(&self, key: &str) -> Option<&Node> {
         match &self.value {
-            Value::Table(table) => table.get(key).map(|entry| &entry.node),
+            Value::Table(table) => table.get(key),
             Value::Array(items) => items.get(key.parse::<usize>().ok()?),
             _ => None,
         }
     }
 
-    /// The keys of a table, none for anything else.
-    pub(crate) fn keys(&self) -> impl Iterator<Item = &str> {
-        let table = match &self.value {
-            Value::Table(table) => Some(table),
+    /// As [`Node::child`], to be changed.
+    pub(super) fn child_mut(&mut self, key: &str) -> Option<&mut Node> {
+        match &mut self.value {
+            Value::Table(table) => table.get_mut(key),
+            Value::Array(items) => items.get_mut(key.parse::<usize>().ok()?),
             _ => None,
-        };
-        table.into_iter().flat_map(|t| t.keys().map(String::as_str))
+        }
+    }
+
+    /// The keys of a table, none for anything else.
+    pub(super) fn keys(&self) -> Vec<&str> {
+        match &self.value {
+            Value::Table(table) => table.keys().map(String::as_str).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// What to say of a child that is not there; `above` is the path to it, with a dot at its end.
+    pub(crate) fn lacks(&self, above: &str, key: &str) -> String {
+        let near = nearest(key, self.keys());
+        let hint = near.map_or(String::new(), |near| {
+            format!("; did you mean `{above}{near}`?")
+        });
+        format!("the scene has no `{above}{key}`{hint}")
     }
 }
 
 /// Reads the scene text (source 0).
 pub(crate) fn document(sources: &Sources) -> Result<Node, SceneError> {
-    let text = sources.text(0);
     let place = Place {
         sources,
         source: 0,
         offset: 0,
     };
-    let root = DeTable::parse(text).map_err(|e| place.syntax(&e))?;
-    let node = place.table(root.into_inner(), 0..0, 0)?;
-    if node.keys().next().is_none() {
-        return Err(place
-            .error(0..0, "the scene is empty", "nothing here")
-            .with_help("a scene begins with `format = 1`"));
+    let root = DeTable::parse(sources.text(0)).map_err(|e| place.syntax(&e))?;
+    let table = place.table(root.into_inner(), 0)?;
+    let span = place.span(0..0);
+    if table.is_empty() {
+        let error = SceneError::new(sources, span, "the scene is empty", "nothing here");
+        return Err(error.with_help("a scene begins with `format = 1`"));
     }
-    Ok(node)
+    Ok(Node {
+        key: span,
+        span,
+        value: Value::Table(table),
+    })
 }
 
 /// Reads one value that stands at `offset` of source number `source`.
-pub(crate) fn value(
+pub(super) fn value(
     sources: &Sources,
     source: usize,
     offset: usize,
@@ -121,20 +137,20 @@ impl Place<'_> {
     }
 
     fn error(&self, range: Range<usize>, message: &str, label: &str) -> SceneError {
-        SceneError::new(self.sources, self.span(range), message.into(), label.into())
+        SceneError::new(self.sources, self.span(range), message, label)
     }
 
     fn syntax(&self, error: &Error) -> SceneError {
         let range = self.visible(error.span().unwrap_or(0..0));
         let written = self.sources.written(self.span(range.clone()));
-        match error.message() {
-            "duplicate key" => self.error(
-                range,
-                &format!("the key `{written}` is given twice"),
+        let (message, label) = match error.message() {
+            "duplicate key" => (
+                format!("the key `{written}` is given twice"),
                 "already given",
             ),
-            message => self.error(range, &format!("not valid TOML: {message}"), "here"),
-        }
+            message => (format!("not valid TOML: {message}"), "here"),
+        };
+        self.error(range, &message, label)
     }
 
     /// A fault between two characters is shown by the line it stands in or, at the end, follows.
@@ -154,67 +170,48 @@ impl Place<'_> {
 
     fn value(&self, spanned: Spanned<DeValue<'_>>, depth: usize) -> Result<Node, SceneError> {
         let range = spanned.span();
+        let fault = |message, label| Err(self.error(range.clone(), message, label));
         if depth > DEPTH {
-            return Err(self.error(range, "this is nested too deeply for a scene", "here"));
+            return fault("this is nested too deeply for a scene", "here");
         }
         let value = match spanned.into_inner() {
             DeValue::String(text) => Value::Text(text.into_owned()),
             DeValue::Integer(number) => {
                 match i64::from_str_radix(number.as_str(), number.radix()) {
                     Ok(n) => Value::Integer(n),
-                    Err(_) => {
-                        return Err(self.error(
-                            range,
-                            "this integer is too large",
-                            "does not fit 64 bits",
-                        ));
-                    }
+                    Err(_) => return fault("this integer is too large", "does not fit 64 bits"),
                 }
             }
             DeValue::Float(number) => match number.as_str().parse() {
                 Ok(x) => Value::Float(x),
-                Err(_) => return Err(self.error(range, "this is not a number", "here")),
+                Err(_) => return fault("this is not a number", "here"),
             },
             DeValue::Boolean(x) => Value::Boolean(x),
             DeValue::Datetime(_) => Value::Date,
-            DeValue::Array(mut items) => Value::Array(
-                items
-                    .iter_mut()
-                    .map(|item| {
-                        self.value(
-                            std::mem::replace(item, Spanned::new(0..0, DeValue::Boolean(false))),
-                            depth + 1,
-                        )
-                    })
-                    .collect::<Result<_, _>>()?,
-            ),
-            DeValue::Table(table) => return self.table(table, range, depth),
+            DeValue::Array(items) => {
+                let items = items.into_iter().map(|item| self.value(item, depth + 1));
+                Value::Array(items.collect::<Result<_, _>>()?)
+            }
+            DeValue::Table(table) => Value::Table(self.table(table, depth)?),
         };
+        let span = self.span(range);
         Ok(Node {
-            span: self.span(range),
+            key: span,
+            span,
             value,
         })
     }
 
-    fn table(
-        &self,
-        table: DeTable<'_>,
-        range: Range<usize>,
-        depth: usize,
-    ) -> Result<Node, SceneError> {
+    fn table(&self, table: DeTable<'_>, depth: usize) -> Result<Table, SceneError> {
         let mut entries: Vec<_> = table.into_iter().collect();
         entries.sort_by_key(|(key, _)| key.span().start);
-        let mut result = Table::with_capacity(entries.len());
-        for (key, item) in entries {
-            let entry = Entry {
+        let read = |(key, item): (Spanned<Cow<str>>, _)| {
+            let node = Node {
                 key: self.span(key.span()),
-                node: self.value(item, depth + 1)?,
+                ..self.value(item, depth + 1)?
             };
-            result.insert(key.into_inner().into_owned(), entry);
-        }
-        Ok(Node {
-            span: self.span(range),
-            value: Value::Table(result),
-        })
+            Ok((key.into_inner().into_owned(), node))
+        };
+        entries.into_iter().map(read).collect()
     }
 }

@@ -80,10 +80,8 @@ static RAMP: FunctionKind = FunctionKind {
                 "`{}` cannot follow a ramp: its speed would jump where the ramp begins",
                 table.path()
             );
-            let error = table.optional("type").map_or_else(
-                || table.fault(&message, "no acceleration"),
-                |kind| kind.fault(&message, "no acceleration"),
-            );
+            let kind = table.optional("type").expect("a kind is named");
+            let error = kind.fault(message, "no acceleration");
             return Err(error.with_help("use \"smooth_step\""));
         }
         Ok(Function::Ramp {
@@ -138,10 +136,7 @@ static TABLE: FunctionKind = FunctionKind {
         },
         ROWS,
     )],
-    read: |table, _, duration| {
-        let rows = rows(&table.field("rows")?, duration, "[t, value]")?;
-        Ok(Function::table(&rows))
-    },
+    read: |table, _, duration| Ok(Function::table(&rows(&table.field("rows")?, duration)?)),
 };
 
 /// Reads a function of time; `duration` is what a table must cover \[s\].
@@ -152,8 +147,7 @@ pub fn read_function(field: &Field, purpose: Use, duration: f64) -> Result<Funct
     if !field.is_table() {
         return Ok(Function::Constant(field.number()?));
     }
-    let mut table = field.fields()?;
-    let kind = Kind::of(&mut table, "function of time", &FUNCTIONS)?;
+    let (kind, table) = Kind::of(field, "function of time", &FUNCTIONS)?;
     (kind.read)(&table, purpose, duration)
 }
 
@@ -161,12 +155,11 @@ pub fn read_function(field: &Field, purpose: Use, duration: f64) -> Result<Funct
 pub(super) fn rows<const N: usize>(
     field: &Field,
     duration: f64,
-    shape: &str,
 ) -> Result<Vec<[f64; N]>, SceneError> {
     let items = field.items()?;
     let mut rows: Vec<[f64; N]> = Vec::with_capacity(items.len());
     for item in &items {
-        let row = item.numbers::<N>(shape)?;
+        let row = item.numbers::<N>(field.shape())?;
         if let Some(last) = rows.last().filter(|last| row[0] <= last[0]) {
             let message = format!(
                 "the times of `{}` must increase: {:?} after {:?}",
@@ -177,10 +170,8 @@ pub(super) fn rows<const N: usize>(
         rows.push(row);
     }
     let [first, .., last] = &rows[..] else {
-        return Err(field.fault(
-            format!("`{}` needs two rows or more", field.path),
-            "too short",
-        ));
+        let message = format!("`{}` needs two rows or more", field.path);
+        return Err(field.fault(message, "too short"));
     };
     if first[0] > 0.0 {
         let message = format!(

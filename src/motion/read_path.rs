@@ -66,7 +66,7 @@ static TABLE: PathKind = PathKind {
         ROWS,
     )],
     read: |fields, duration| {
-        let rows: Vec<[f64; 4]> = rows(&fields.field("rows")?, duration, "[t, x, y, theta]")?;
+        let rows: Vec<[f64; 4]> = rows(&fields.field("rows")?, duration)?;
         let times = rows.iter().map(|r| r[0]).collect();
         let poses = rows.iter().map(|r| [r[1], r[2], r[3]]).collect();
         Ok(Arc::new(Table::new(times, poses)))
@@ -89,7 +89,6 @@ static COORDINATES: PathKind = PathKind {
 
 /// Reads a path of a run of this duration.
 pub(crate) fn read_path(field: &Field, duration: f64) -> Result<Arc<dyn Path>, SceneError> {
-    let mut fields = field.fields()?;
-    let kind = Kind::of(&mut fields, "path", &PATHS)?;
+    let (kind, fields) = Kind::of(field, "path", &PATHS)?;
     (kind.read)(&fields, duration)
 }

@@ -1,10 +1,11 @@
 //! `[integrator]`: scheme, step or accuracy, tolerances.
 
 use super::{Accuracy, Analysis, Integrator, Method, Pace, Simulation};
-use crate::document::{Field, Fields, Key, SceneError, Takes};
+use crate::document::{Field, Fields, Key, SceneError, Takes, quoted};
 use crate::registry::Registry;
 use crate::stepper::{Parameter, Scheme};
 use numbers::number;
+use std::cmp::Ordering;
 
 /// More steps than this are a slip of the pen: a week of computing at 20 microseconds a step.
 const MOST_STEPS: f64 = 1e10;
@@ -93,12 +94,13 @@ pub(super) fn read(
 ) -> Result<Integrator, SceneError> {
     let mut table = root.field("integrator")?.fields()?;
     let schemes = &registry.schemes;
-    let parameters = parameters(schemes);
-    let parameters: Vec<_> = parameters.iter().map(|p| p.0.name).collect();
-    table.declare(&parameters, &INTEGRATOR)?;
-    let names: Vec<String> = schemes.iter().map(|s| format!("{:?}", s.name)).collect();
-    let purpose = format!("the integration scheme: {}", names.join(", "));
-    let named = table.required("method", &purpose)?;
+    let parameters = parameters(schemes).into_iter();
+    table.declare(
+        &parameters.map(|p| p.0.name).collect::<Vec<_>>(),
+        &INTEGRATOR,
+    )?;
+    let names = quoted(schemes.iter().map(|s| s.name));
+    let named = table.required("method", &format!("the integration scheme: {names}"))?;
     let choices: Vec<_> = schemes.iter().map(|s| (s.name, *s)).collect();
     let method = method(&table, named.choice(&choices)?, schemes)?;
     let paced = pace_field(&table)?;
@@ -130,12 +132,8 @@ fn method(
         if let Some(field) = table.optional(parameter.name)
             && !owners.iter().any(|owner| owner.name == scheme.name)
         {
-            let owners: Vec<String> = owners.iter().map(|s| format!("{:?}", s.name)).collect();
-            let message = format!(
-                "`{}` is a parameter of {} only",
-                field.path,
-                owners.join(", ")
-            );
+            let owners = quoted(owners.iter().map(|s| s.name));
+            let message = format!("`{}` is a parameter of {owners} only", field.path);
             return Err(field.key_fault(message, "remove this"));
         }
     }
@@ -168,28 +166,20 @@ fn value(field: &Field, parameter: &Parameter) -> Result<f64, SceneError> {
 
 /// `step` or `accuracy`; where both stand the one that comes from a later source, which is an override.
 fn pace_field<'a>(table: &Fields<'a>) -> Result<Field<'a>, SceneError> {
-    match (table.optional("step"), table.optional("accuracy")) {
-        (Some(step), Some(accuracy)) => match step.key.source().cmp(&accuracy.key.source()) {
-            std::cmp::Ordering::Less => Ok(accuracy),
-            std::cmp::Ordering::Greater => Ok(step),
-            std::cmp::Ordering::Equal => {
-                let message = "`integrator` has both `step` and `accuracy`: give only one of them";
-                Err(accuracy.key_fault(message, "remove this or `step`"))
-            }
-        },
-        (None, Some(accuracy)) => Ok(accuracy),
+    let source = |name| Some(table.optional(name)?.node.key.source());
+    let order = source("step").cmp(&source("accuracy"));
+    match (order, table.optional("accuracy")) {
+        (Ordering::Equal, Some(accuracy)) => {
+            let message = "`integrator` has both `step` and `accuracy`: give only one of them";
+            Err(accuracy.key_fault(message, "remove this or `step`"))
+        }
+        (Ordering::Less, Some(accuracy)) => Ok(accuracy),
         _ => table.field("step"),
     }
 }
 
 fn step(field: &Field, simulation: &Simulation) -> Result<f64, SceneError> {
-    let step = field.positive()?;
-    if step > simulation.duration {
-        return Err(field.must(&format!(
-            "not be longer than the duration of {} s",
-            simulation.duration
-        )));
-    }
+    let step = simulation.check_time(field)?;
     let steps = simulation.duration / step;
     if steps > MOST_STEPS {
         let message = format!(

@@ -18,7 +18,6 @@ pub use reader::read_file;
 
 use crate::body::Body;
 use crate::document::Sources;
-use crate::registry::Registry;
 use crate::table::Format;
 use serde::Serialize;
 use std::sync::Arc;
@@ -284,47 +283,6 @@ pub struct Assumption {
 }
 
 impl Scene {
-    /// Reads a scene file, applies `path=value` overrides in order, checks every field.
-    ///
-    /// # Errors
-    /// The first fault found, with the place it stands at.
-    pub fn load(path: &std::path::Path, overrides: &[String]) -> Result<Scene, SceneError> {
-        Scene::load_with(&Registry::standard(), path, overrides)
-    }
-
-    /// As [`Scene::load`], with the kinds of a registry.
-    ///
-    /// # Errors
-    /// The first fault found, with the place it stands at.
-    pub fn load_with(
-        registry: &Registry,
-        path: &std::path::Path,
-        overrides: &[String],
-    ) -> Result<Scene, SceneError> {
-        reader::load(registry, path, overrides)
-    }
-
-    /// Reads a scene from text; `name` stands for the file in errors.
-    ///
-    /// # Errors
-    /// The first fault found, with the place it stands at.
-    pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Scene, SceneError> {
-        Scene::parse_with(&Registry::standard(), name, text, overrides)
-    }
-
-    /// As [`Scene::parse`], with the kinds of a registry.
-    ///
-    /// # Errors
-    /// The first fault found, with the place it stands at.
-    pub fn parse_with(
-        registry: &Registry,
-        name: &str,
-        text: &str,
-        overrides: &[String],
-    ) -> Result<Scene, SceneError> {
-        reader::parse(registry, name, text, overrides)
-    }
-
     /// Hexadecimal SHA-256 of the scene text and the overrides.
     pub fn hash(&self) -> String {
         self.sources.hash()
@@ -347,7 +305,7 @@ impl Scene {
         message: impl Into<String>,
         label: impl Into<String>,
     ) -> SceneError {
-        SceneError::new(&self.sources, span, message.into(), label.into())
+        SceneError::new(&self.sources, span, message, label)
     }
 
     /// An error that points at two spans which contradict each other.
@@ -358,7 +316,7 @@ impl Scene {
         second: (Span, &str),
     ) -> SceneError {
         let error = self.error(first.0, message, first.1);
-        error.against(&self.sources, second.0, second.1.into())
+        error.against(&self.sources, second.0, second.1)
     }
 
     /// The smallest clearance of its joints \[m\]; none where no joint has clearance.

@@ -6,15 +6,20 @@ use crate::document::{Field, Fields, Key, Kind, SceneError, Takes, named};
 use crate::interaction::Names;
 use crate::motion::{Use, read_function, read_path};
 
-/// What a drive prescribes.
-pub(super) enum Driven {
-    Kinematics(Drive),
-    Motion(MotionKind),
+/// What drives prescribe.
+#[derive(Default)]
+pub(super) struct Drives {
+    /// By inverse kinematics.
+    pub kinematics: Vec<Drive>,
+    /// Directly.
+    pub motions: Vec<Motion>,
+    /// The joints that are driven already.
+    joints: Vec<usize>,
 }
 
-/// A kind of drive. It is read knowing the joints that are driven already.
+/// A kind of drive. It is read after others, to which it is added.
 pub(super) type DriveKind =
-    Kind<fn(&Field, &Fields, &Names, &mut Vec<usize>) -> Result<Driven, SceneError>>;
+    Kind<fn(&Field, &Fields, &Names, &mut Drives) -> Result<(), SceneError>>;
 
 /// The kinds of drive that a scene can name.
 pub(super) static KINDS: [&DriveKind; 3] = [&INVERSE_KINEMATICS, &ANGLE, &POINT];
@@ -38,9 +43,7 @@ static INVERSE_KINEMATICS: DriveKind = DriveKind {
             "the path of its centre of mass and its angle, see [Paths](#paths)",
         ),
     ],
-    read: |drive, table, names, driven| {
-        inverse_kinematics(drive, table, names, driven).map(Driven::Kinematics)
-    },
+    read: inverse_kinematics,
 };
 
 static ANGLE: DriveKind = DriveKind {
@@ -49,14 +52,15 @@ static ANGLE: DriveKind = DriveKind {
         Key::name_in("joint", "joints", "the name of a revolute joint"),
         Key::function("angle", "rad", "the angle (no ramp)"),
     ],
-    read: |_, table, names, driven| {
+    read: |drive, table, names, drives| {
         let name = table.field("joint")?;
-        let joint = actuated(&name, names, driven)?;
+        let joint = actuated(&name, names, &mut drives.joints)?;
         for side in names.joints[joint].points() {
             names.check_turns(&name, side)?;
         }
         let angle = read_function(&table.field("angle")?, Use::Motion, names.duration)?;
-        Ok(Driven::Motion(MotionKind::Angle { joint, angle }))
+        drives.prescribe(drive, MotionKind::Angle { joint, angle });
+        Ok(())
     },
 };
 
@@ -67,7 +71,7 @@ static POINT: DriveKind = DriveKind {
         Key::function("x", "m", "x (no ramp)").or("free"),
         Key::function("y", "m", "y (no ramp)").or("free; one of the two is needed"),
     ],
-    read: |drive, table, names, _| {
+    read: |drive, table, names, drives| {
         let point_field = table.field("point")?;
         let point = names.point(&point_field)?;
         let (name, body) = names.bodies.get_index(point.body).expect("it is there");
@@ -79,39 +83,38 @@ static POINT: DriveKind = DriveKind {
         }
         let coordinate = |key| {
             let field = table.optional(key);
-            field
-                .map(|f| read_function(&f, Use::Motion, names.duration))
-                .transpose()
+            let read = field.map(|f| read_function(&f, Use::Motion, names.duration));
+            read.transpose()
         };
         let coordinates = [coordinate("x")?, coordinate("y")?];
         if coordinates.iter().all(Option::is_none) {
             let message = format!("`{}` prescribes neither x nor y", drive.path);
             return Err(drive.key_fault(message, "needs `x`, `y` or both"));
         }
-        Ok(Driven::Motion(MotionKind::Point { point, coordinates }))
+        drives.prescribe(drive, MotionKind::Point { point, coordinates });
+        Ok(())
     },
 };
 
-/// `[drives]`: by inverse kinematics, and the others.
-pub(super) fn drives(
-    root: &Fields,
-    names: &Names,
-) -> Result<(Vec<Drive>, Vec<Motion>), SceneError> {
-    let (mut driven, mut kinematics, mut motions) = (Vec::new(), Vec::new(), Vec::new());
-    named(root.optional("drives"), |field| {
-        let mut table = field.fields()?;
-        let kind = Kind::of(&mut table, "drive", &KINDS)?;
-        match (kind.read)(field, &table, names, &mut driven)? {
-            Driven::Kinematics(drive) => kinematics.push(drive),
-            Driven::Motion(kind) => motions.push(Motion {
-                name: field.name.clone(),
-                span: field.span(),
-                kind,
-            }),
-        }
-        Ok(())
-    })?;
-    Ok((kinematics, motions))
+impl Drives {
+    /// `[drives]`
+    pub fn read(root: &Fields, names: &Names) -> Result<Drives, SceneError> {
+        let mut drives = Drives::default();
+        named(root.optional("drives"), |field| {
+            let (kind, table) = Kind::of(field, "drive", &KINDS)?;
+            (kind.read)(field, &table, names, &mut drives)
+        })?;
+        Ok(drives)
+    }
+
+    /// Adds a motion that is prescribed directly.
+    fn prescribe(&mut self, drive: &Field, kind: MotionKind) {
+        self.motions.push(Motion {
+            name: drive.name.clone(),
+            span: drive.span(),
+            kind,
+        });
+    }
 }
 
 /// The revolute joint that a field names, driven for the first time.
@@ -129,16 +132,14 @@ fn inverse_kinematics(
     field: &Field,
     table: &Fields,
     names: &Names,
-    driven: &mut Vec<usize>,
-) -> Result<Drive, SceneError> {
+    drives: &mut Drives,
+) -> Result<(), SceneError> {
     let list = table.field("joints")?;
-    let items = list.items()?;
-    let indices: Result<Vec<usize>, _> = items
-        .iter()
-        .map(|item| actuated(item, names, driven))
-        .collect();
-    let indices = indices?;
-    if indices.is_empty() {
+    let mut joints = Vec::new();
+    for item in list.items()? {
+        joints.push(actuated(&item, names, &mut drives.joints)?);
+    }
+    if joints.is_empty() {
         return Err(list.fault(format!("`{}` names no joint", list.path), "empty"));
     }
     let body_field = table.field("body")?;
@@ -151,14 +152,15 @@ fn inverse_kinematics(
         return Err(body_field.fault(message, "not a rigid body"));
     }
     let path_field = table.field("path")?;
-    Ok(Drive {
+    drives.kinematics.push(Drive {
         name: field.name.clone(),
         span: field.span(),
-        joints: indices,
+        joints,
         body,
         path: read_path(&path_field, names.duration)?,
         path_span: path_field.span(),
-    })
+    });
+    Ok(())
 }
 
 /// The keys of `[initial]`.
@@ -182,6 +184,8 @@ pub(super) static INITIAL: [Key; 4] = [
 const POSE: [&str; 3] = ["x", "y", "theta"];
 const RATES: [&str; 3] = ["vx", "vy", "omega"];
 const WITH_ONE: &str = "required with one of them";
+const VELOCITY: &str = "a velocity of the centre of mass";
+const ALL_THREE: &str = "a velocity of the centre of mass; give all three or none";
 
 /// The keys of a state of a body.
 pub(super) static STATE: [Key; 6] = [
@@ -192,18 +196,8 @@ pub(super) static STATE: [Key; 6] = [
         "rad",
         "the angle; of a link the direction from `start` to `end`",
     ),
-    Key::number(
-        "vx",
-        "m/s",
-        "a velocity of the centre of mass; give all three or none",
-    )
-    .or(WITH_ONE),
-    Key::number(
-        "vy",
-        "m/s",
-        "a velocity of the centre of mass; give all three or none",
-    )
-    .or(WITH_ONE),
+    Key::number("vx", "m/s", ALL_THREE).or(WITH_ONE),
+    Key::number("vy", "m/s", ALL_THREE).or(WITH_ONE),
     Key::number(
         "omega",
         "rad/s",
@@ -222,8 +216,8 @@ pub(super) static POINT_STATE: [Key; 4] = [
 
 /// The keys of an entry of `[initial.velocities]`.
 pub(super) static VELOCITIES: [Key; 3] = [
-    Key::number("vx", "m/s", "a velocity of the centre of mass").or("not given"),
-    Key::number("vy", "m/s", "a velocity of the centre of mass").or("not given"),
+    Key::number("vx", "m/s", VELOCITY).or("not given"),
+    Key::number("vy", "m/s", VELOCITY).or("not given"),
     Key::number(
         "omega",
         "rad/s",
@@ -239,7 +233,7 @@ pub(super) fn initial(root: &Fields, names: &Names) -> Result<Initial, SceneErro
             bodies: Vec::new(),
             velocities: Vec::new(),
             equilibrium: false,
-            span: root.span,
+            span: root.whole.span(),
         });
     };
     let mut table = field.fields()?;
@@ -263,7 +257,7 @@ pub(super) fn initial(root: &Fields, names: &Names) -> Result<Initial, SceneErro
         bodies: states.into_values().collect(),
         velocities,
         equilibrium: table.optional_boolean("equilibrium")?.unwrap_or(false),
-        span: table.span,
+        span: field.span(),
     })
 }
 

@@ -2,10 +2,13 @@
 
 use super::{Analysis, integrator, kinds, motion, smallest_clearance};
 use super::{Assumption, ChannelPattern, Integrator, Output, Scene, Simulation};
+use crate::body::Materials;
 use crate::document::{
-    Field, Fields, Key, Node, SceneError, Sources, Span, Takes, apply_overrides, document, nearest,
+    Field, Fields, Key, SceneError, Sources, Span, Takes, apply_overrides, document,
 };
+use crate::interaction::Names;
 use crate::registry::Registry;
+use indexmap::IndexMap;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -109,80 +112,122 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-pub(super) fn load(
-    registry: &Registry,
-    path: &Path,
-    overrides: &[String],
-) -> Result<Scene, SceneError> {
-    let name = path.display().to_string();
-    let unreadable =
-        |cause: String| SceneError::unreadable(format!("cannot read `{name}`: {cause}"));
-    if path.is_dir() {
-        let help = "give the path of a scene file such as scenes/3rrr/case4.toml";
-        return Err(unreadable("it is a directory".into()).with_help(help));
+impl Scene {
+    /// Reads a scene file, applies `path=value` overrides in order, checks every field.
+    ///
+    /// # Errors
+    /// The first fault found, with the place it stands at.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
+        Scene::load_with(&Registry::standard(), path, overrides)
     }
-    let bytes = read_file(path).map_err(|e| unreadable(e.to_string()))?;
-    match String::from_utf8(bytes) {
-        Ok(text) => parse(registry, &name, &text, overrides),
-        Err(error) => {
-            let at = error.utf8_error().valid_up_to();
-            let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
-            let sources = Sources::new(&name, &text, &[]);
-            // The replacement character takes three bytes at the same place.
-            let span = Span::new(0, at..at + char::REPLACEMENT_CHARACTER.len_utf8());
-            Err(SceneError::new(
-                &sources,
-                span,
-                "the scene is not UTF-8 text".into(),
-                "here".into(),
-            ))
+
+    /// As [`Scene::load`], with the kinds of a registry.
+    ///
+    /// # Errors
+    /// The first fault found, with the place it stands at.
+    pub fn load_with(
+        registry: &Registry,
+        path: &Path,
+        overrides: &[String],
+    ) -> Result<Scene, SceneError> {
+        let name = path.display().to_string();
+        let unreadable =
+            |cause: String| SceneError::unreadable(format!("cannot read `{name}`: {cause}"));
+        if path.is_dir() {
+            let help = "give the path of a scene file such as scenes/3rrr/case4.toml";
+            return Err(unreadable("it is a directory".into()).with_help(help));
         }
+        let bytes = read_file(path).map_err(|e| unreadable(e.to_string()))?;
+        String::from_utf8(bytes)
+            .map_err(|error| {
+                let at = error.utf8_error().valid_up_to();
+                let text = String::from_utf8_lossy(error.as_bytes());
+                let sources = Sources::new(&name, &text, &[]);
+                // The replacement character takes three bytes at the same place.
+                let span = Span::new(0, at..at + char::REPLACEMENT_CHARACTER.len_utf8());
+                SceneError::new(&sources, span, "the scene is not UTF-8 text", "here")
+            })
+            .and_then(|text| Scene::parse_with(registry, &name, &text, overrides))
+    }
+
+    /// Reads a scene from text; `name` stands for the file in errors.
+    ///
+    /// # Errors
+    /// The first fault found, with the place it stands at.
+    pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Scene, SceneError> {
+        Scene::parse_with(&Registry::standard(), name, text, overrides)
+    }
+
+    /// As [`Scene::parse`], with the kinds of a registry.
+    ///
+    /// # Errors
+    /// The first fault found, with the place it stands at.
+    pub fn parse_with(
+        registry: &Registry,
+        name: &str,
+        text: &str,
+        overrides: &[String],
+    ) -> Result<Scene, SceneError> {
+        let sources = Sources::new(name, text, overrides);
+        let mut tree = document(&sources)?;
+        apply_overrides(&sources, &mut tree)?;
+
+        let mut root = Fields::root(&sources, &tree)?;
+        let format = root.required("format", SCENE[0].purpose)?;
+        if format.integer()? != 1 {
+            let written = format.written();
+            let message = format!("this program reads scene format 1, not {written}");
+            return Err(format.fault(message, "unknown format"));
+        }
+        root.declare(&[], &SCENE)?;
+        let title = root.field("title")?.text()?.to_owned();
+        let simulation = simulation(&root)?;
+        let materials = Materials::read(&root, simulation.duration)?;
+        let bodies = kinds::bodies(&root, &materials, registry)?;
+        let by_name = bodies.iter().map(|b| (b.name.clone(), b.kind.clone()));
+        let by_name = by_name.collect();
+        let mut names = Names {
+            bodies: &by_name,
+            joints: &IndexMap::new(),
+            duration: simulation.duration,
+        };
+        let joints = kinds::joints(&root, &names, &materials, registry)?;
+        names.joints = &joints;
+        let forces = kinds::forces(&root, &names, registry)?;
+        let clearance = smallest_clearance(joints.values());
+        let integrator = integrator::read(&root, &simulation, clearance, registry)?;
+        let output = output(&root, &simulation, &integrator, registry)?;
+        let drives = motion::Drives::read(&root, &names)?;
+        let initial = motion::initial(&root, &names)?;
+        Ok(Scene {
+            assumptions: assumptions(&root)?,
+            title,
+            simulation,
+            integrator,
+            output,
+            joints: joints.into_values().collect(),
+            bodies,
+            drives: drives.kinematics,
+            motions: drives.motions,
+            forces,
+            initial,
+            sources,
+        })
     }
 }
 
-pub(super) fn parse(
-    registry: &Registry,
-    name: &str,
-    text: &str,
-    overrides: &[String],
-) -> Result<Scene, SceneError> {
-    let sources = Sources::new(name, text, overrides);
-    let mut tree = document(&sources)?;
-    apply_overrides(&sources, &mut tree)?;
-
-    let mut root = Fields::root(&sources, &tree)?;
-    let format = root.required("format", SCENE[0].purpose)?;
-    if format.integer()? != 1 {
-        let message = format!(
-            "this program reads scene format 1, not {}",
-            format.written()
-        );
-        return Err(format.fault(message, "unknown format"));
+impl Simulation {
+    /// A time of the run that a field gives \[s\].
+    pub(super) fn check_time(&self, field: &Field) -> Result<f64, SceneError> {
+        let time = field.number()?;
+        match time > self.duration {
+            true => Err(field.must(&format!(
+                "not be longer than the duration of {} s",
+                self.duration
+            ))),
+            false => Ok(time),
+        }
     }
-    root.declare(&[], &SCENE)?;
-    let title = root.field("title")?.text()?.to_owned();
-    let simulation = simulation(&root)?;
-    let things = kinds::read(&root, simulation.duration, registry)?;
-    let clearance = smallest_clearance(things.joints.values());
-    let integrator = integrator::read(&root, &simulation, clearance, registry)?;
-    let output = output(&root, &simulation, &integrator, registry)?;
-    let (drives, motions) = motion::drives(&root, &things.names())?;
-    let initial = motion::initial(&root, &things.names())?;
-    let assumptions = assumptions(&root, &tree)?;
-    Ok(Scene {
-        title,
-        simulation,
-        integrator,
-        output,
-        bodies: things.named_bodies(),
-        joints: things.joints.into_values().collect(),
-        drives,
-        motions,
-        forces: things.forces,
-        initial,
-        assumptions,
-        sources,
-    })
 }
 
 fn simulation(root: &Fields) -> Result<Simulation, SceneError> {
@@ -211,12 +256,7 @@ fn output(
     if let Some(step) = integrator.step() {
         check_interval(&field, interval, step)?;
     }
-    if interval > simulation.duration {
-        return Err(field.must(&format!(
-            "not be longer than the duration of {} s",
-            simulation.duration
-        )));
-    }
+    simulation.check_time(&field)?;
     let field = table.field("channels")?;
     let mut channels = Vec::new();
     for item in field.items()? {
@@ -254,9 +294,8 @@ fn check_interval(field: &Field, interval: f64, step: f64) -> Result<(), SceneEr
         field.path,
         field.written()
     );
-    Err(field
-        .fault(message, format!("{} steps", decimal(ratio)))
-        .with_help(format!("nearest valid: {near}")))
+    let error = field.fault(message, format!("{} steps", decimal(ratio)));
+    Err(error.with_help(format!("nearest valid: {near}")))
 }
 
 /// Ten significant digits, without the dust of binary fractions.
@@ -267,7 +306,7 @@ fn decimal(x: f64) -> String {
     }
 }
 
-fn assumptions(root: &Fields, tree: &Node) -> Result<Vec<Assumption>, SceneError> {
+fn assumptions(root: &Fields) -> Result<Vec<Assumption>, SceneError> {
     let mut result = Vec::new();
     let Some(table) = root.optional("assumptions") else {
         return Ok(result);
@@ -275,25 +314,20 @@ fn assumptions(root: &Fields, tree: &Node) -> Result<Vec<Assumption>, SceneError
     for field in table.fields()?.entries() {
         if field.is_table() {
             let error = field.key_fault(format!("`{}` is a table", field.path), "not a path");
-            return Err(
-                error.with_help("write the path in quotes: \"materials.steel.density\" = \"why\"")
-            );
+            let help = "write the path in quotes: \"materials.steel.density\" = \"why\"";
+            return Err(error.with_help(help));
         }
-        let mut node = tree;
-        let mut above = String::new();
+        let (mut node, mut above) = (root.whole.node, String::new());
         for part in field.name.split('.') {
             let Some(child) = node.child(part) else {
-                let near = nearest(part, node.keys());
-                let hint = near.map_or(String::new(), |n| format!("; did you mean `{above}{n}`?"));
-                let message = format!("the scene has no `{above}{part}`{hint}");
-                return Err(field.key_fault(message, "no such field"));
+                return Err(field.key_fault(node.lacks(&above, part), "no such field"));
             };
             node = child;
             above = format!("{above}{part}.");
         }
         result.push(Assumption {
             path: field.name.clone(),
-            value: root.sources.written(node.span).to_owned(),
+            value: root.whole.sources.written(node.span).to_owned(),
             reason: field.text()?.to_owned(),
         });
     }
