@@ -2,42 +2,16 @@
 
 pub(crate) mod redundancy;
 
-use crate::body::{Content, Frame};
+use crate::body::Frame;
 use crate::compile::Compiled;
 use crate::compile::assembly::{CENTRE, assemble, opening};
 use crate::math::plane::norm;
-use crate::model::{Model, PlacedConstraint};
-use crate::scene::{Analysis, BodyState, Scene, SceneError};
+use crate::model::{Model, PlacedBody, PlacedConstraint};
+use crate::scene::{Analysis, BodyState, NamedBody, Scene, SceneError};
 use crate::system::State;
 
 /// Largest violation of a constraint \[m\] or of its rate \[m/s\] at the start: the digits of a typed position.
 const START_TOLERANCE: f64 = 1e-9;
-
-/// Writes coordinates and remembers which were written, so that two bodies that share a node must agree on it.
-struct Writer<'a> {
-    state: &'a mut State,
-    unknowns: usize,
-    written: Vec<bool>,
-}
-
-impl Writer<'_> {
-    /// Sets coordinates from `x` and their rates; false if they are already known or written and differ.
-    fn slot(&mut self, x: usize, [position, velocity]: [[f64; 3]; 2], content: Content) -> bool {
-        let here = x..x + content.names().len();
-        if x >= self.unknowns || self.written[x] {
-            let agrees = |level: &[f64], values: [f64; 3]| {
-                let differences = level[here.clone()].iter().zip(values).map(|(a, b)| a - b);
-                differences.map(|d| d * d).sum::<f64>().sqrt() <= START_TOLERANCE
-            };
-            return agrees(&self.state.q, position) && agrees(&self.state.v, velocity);
-        }
-        self.written[x] = true;
-        let width = here.len();
-        self.state.q[here.clone()].copy_from_slice(&position[..width]);
-        self.state.v[here].copy_from_slice(&velocity[..width]);
-        true
-    }
-}
 
 /// The state at t = 0, accelerations and multipliers still to be found.
 ///
@@ -52,25 +26,18 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         inner.state.q.copy_from_slice(&kinematics.start);
         let solved = kinematics.solve(&mut inner, 20);
         solved.map_err(|e| scene.error(scene.initial.span, e.to_string(), "the start"))?;
-        let here = kinematics.offset..kinematics.offset + inner.state.q.len();
-        state.q[here.clone()].copy_from_slice(&inner.state.q);
-        state.v[here.clone()].copy_from_slice(&inner.state.v);
-        state.a[here].copy_from_slice(&inner.state.a);
+        kinematics.hand_over(&inner, &mut state);
     }
     model.move_driven_nodes(&mut state);
     let starts = starts(scene, compiled, &state)?;
 
-    let unknowns = model.shape().unknowns;
-    let mut writer = Writer {
-        written: vec![false; state.q.len()],
-        state: &mut state,
-        unknowns,
-    };
+    let mut written = vec![false; state.q.len()];
+    written[model.shape().unknowns..].fill(true);
     for (b, start) in starts.iter().enumerate() {
         let Some(start) = start else { continue };
         let body = &scene.bodies[b];
-        if !place(model, b, start, &mut writer) {
-            let given = scene.initial.bodies.iter().find(|s| s.body == b);
+        if !place(&model.bodies()[b], start, &mut state, &mut written) {
+            let given = scene.initial.state_of(b);
             let span = given.map_or(body.span, |g| g.span);
             let message = format!(
                 "the pose of {} does not fit the points that its ends are joined to",
@@ -80,19 +47,19 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
             return Err(error.with_help(CENTRE));
         }
     }
-    for j in 0..scene.joints.len() {
-        let Some(contact) = scene.joints[j].contact() else {
+    for (j, joint) in scene.joints.iter().enumerate() {
+        let Some(contact) = joint.contact() else {
             continue;
         };
         let delta = model.gap(j, &state).map_or(0.0, |(gap, ..)| gap.delta);
         if delta > contact.clearance {
             let message = format!(
                 "the journal of joint {} starts outside its bearing: the penetration of {} exceeds the clearance of {}",
-                scene.joints[j].name,
+                joint.name,
                 numbers::si(delta, "m"),
                 numbers::si(contact.clearance, "m")
             );
-            return Err(scene.error(scene.joints[j].span, message, "this joint"));
+            return Err(scene.error(joint.span, message, "this joint"));
         }
     }
     for (f, force) in scene.forces.iter().enumerate() {
@@ -152,13 +119,10 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
     let Some(first) = silent.first() else {
         return Err(scene.error(scene.initial.span, message, "this start"));
     };
-    let names: Vec<&str> = silent
-        .iter()
-        .map(|s| scene.bodies[s.body].name.as_str())
-        .collect();
+    let names = silent.iter().map(|s| scene.bodies[s.body].name.as_str());
     let message = format!(
         "{message}: the scene gives no velocity for {}, so zero was assumed",
-        names.join(", ")
+        names.collect::<Vec<_>>().join(", ")
     );
     let error = scene.error(first.span, message, "no velocity here");
     Err(error.with_help(if !model.prescribed.is_empty() {
@@ -176,13 +140,14 @@ fn starts(
     state: &State,
 ) -> Result<Vec<Option<Frame>>, SceneError> {
     let Compiled { model, kinematics } = compiled;
-    let free: Vec<bool> = (0..scene.bodies.len()).map(|b| is_free(model, b)).collect();
-    let given = |b: usize| scene.initial.bodies.iter().find(|s| s.body == b);
-    for (b, body) in scene.bodies.iter().enumerate() {
+    let unknown = |x: &usize| *x < model.shape().unknowns;
+    let is_free = |body: &PlacedBody| body.placed.x.iter().any(unknown);
+    let free: Vec<bool> = model.bodies().iter().map(is_free).collect();
+    let given = |b: usize| scene.initial.state_of(b);
+    for (b, NamedBody { name, .. }) in scene.bodies.iter().enumerate() {
         if let Some(given) = given(b).filter(|_| !free[b]) {
             let message = format!(
-                "the motion of {} is prescribed, so it cannot be given an initial state",
-                body.name
+                "the motion of {name} is prescribed, so it cannot be given an initial state"
             );
             return Err(scene.error(given.span, message, "remove this"));
         }
@@ -196,27 +161,21 @@ fn starts(
     }
     let exact = |b: usize| given(b).map(|g| scene.bodies[b].kind.frame(g.position, g.velocity));
     let incomplete = (0..scene.bodies.len()).any(|b| free[b] && given(b).is_none());
-    let assembled = kinematics.is_none()
-        && (incomplete || !scene.initial.sketch.is_empty() || !scene.initial.velocities.is_empty());
-    if assembled {
-        let assembly = assemble(scene)?;
-        let of = |b: usize| ideal_start(&assembly.mechanism, b, &assembly.state, 0);
-        return Ok((0..free.len())
-            .map(|b| free[b].then(|| of(b)).flatten())
-            .collect());
-    }
-    let ideal = |b: usize| {
-        let kinematics = kinematics.as_ref()?;
-        ideal_start(&kinematics.mechanism, b, state, kinematics.offset)
+    let asked = !scene.initial.sketch.is_empty() || !scene.initial.velocities.is_empty();
+    let assembly = match kinematics {
+        None if incomplete || asked => Some(assemble(scene)?),
+        _ => None,
     };
-    Ok((0..free.len())
-        .map(|b| free[b].then(|| exact(b).or_else(|| ideal(b))).flatten())
-        .collect())
-}
-
-fn is_free(model: &Model, b: usize) -> bool {
-    let unknowns = model.shape().unknowns;
-    model.bodies()[b].placed.x.iter().any(|&x| x < unknowns)
+    let start = |b: usize| match (&assembly, kinematics) {
+        _ if !free[b] => None,
+        (Some(assembly), _) => ideal_start(&assembly.mechanism, b, &assembly.state, 0),
+        (None, Some(kinematics)) => {
+            let ideal = || ideal_start(&kinematics.mechanism, b, state, kinematics.offset);
+            exact(b).or_else(ideal)
+        }
+        (None, None) => exact(b),
+    };
+    Ok((0..free.len()).map(start).collect())
 }
 
 /// Frame of a body in the ideal mechanism, whose coordinates begin at `offset` in `state`.
@@ -226,11 +185,24 @@ fn ideal_start(mechanism: &Model, b: usize, state: &State, offset: usize) -> Opt
     placed.kind.frame_at(&placed.x, q, v)
 }
 
-/// Writes the coordinates of body `b`, undeformed; false if a node differs from one already known or written.
-fn place(model: &Model, b: usize, start: &Frame, writer: &mut Writer) -> bool {
-    let body = &model.bodies()[b];
+/// Writes the coordinates of a body, undeformed, and remembers which were written; false if one of them is known or written
+/// already and differs: bodies that share a node must agree on it.
+fn place(body: &PlacedBody, start: &Frame, state: &mut State, written: &mut [bool]) -> bool {
     let values = body.placed.kind.place(start);
-    let slots = body.placed.x.iter().zip(values).zip(&body.contents);
-    let fits = slots.map(|((x, value), content)| writer.slot(*x, value, *content));
-    fits.fold(true, |all, fits| all & fits)
+    let mut fits = true;
+    for ((&x, values), content) in body.placed.x.iter().zip(values).zip(&body.contents) {
+        let here = x..x + content.names().len();
+        let levels = [&mut state.q[here.clone()], &mut state.v[here]];
+        for (level, values) in levels.into_iter().zip(values) {
+            if written[x] {
+                let differences = level.iter().zip(values).map(|(a, b)| a - b);
+                let distance = differences.map(|d| d * d).sum::<f64>().sqrt();
+                fits &= distance <= START_TOLERANCE;
+            } else {
+                level.copy_from_slice(&values[..level.len()]);
+            }
+        }
+        written[x] = true;
+    }
+    fits
 }

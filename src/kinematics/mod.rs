@@ -102,11 +102,6 @@ impl Kinematics {
         }
     }
 
-    /// Where its coordinates stand among those of the real mechanism.
-    fn place(&self) -> std::ops::Range<usize> {
-        self.offset..self.offset + self.mechanism.shape().coordinates
-    }
-
     /// Sets the coordinates of the ideal mechanism in `to` at `to.t`, near those in `from`: from a series over a span of
     /// time where the motion is smooth, else by solving for them.
     ///
@@ -136,16 +131,21 @@ impl Kinematics {
     ) -> Result<(), PrescribeError> {
         self.begin(from, inner);
         self.move_to(to.t, inner)?;
-        let here = self.place();
+        self.hand_over(inner, to);
+        Ok(())
+    }
+
+    /// Writes its coordinates and rates among those of the real mechanism.
+    pub(crate) fn hand_over(&self, inner: &Inner, to: &mut State) {
+        let here = self.offset..self.offset + inner.state.q.len();
         to.q[here.clone()].copy_from_slice(&inner.state.q);
         to.v[here.clone()].copy_from_slice(&inner.state.v);
         to.a[here].copy_from_slice(&inner.state.a);
-        Ok(())
     }
 
     /// Takes over the coordinates in `from`.
     fn begin(&self, from: &State, inner: &mut Inner) {
-        let here = self.place();
+        let here = self.offset..self.offset + inner.state.q.len();
         inner.state.t = from.t;
         inner.state.q.copy_from_slice(&from.q[here.clone()]);
         inner.state.v.copy_from_slice(&from.v[here.clone()]);
@@ -233,37 +233,36 @@ impl Kinematics {
         inner.factors.solve(symbolic, &mut inner.b);
     }
 
-    /// Says which two links are too short or too long for the distance between their ends, if that is the reason.
     fn cannot_close(&self, at: &State) -> PrescribeError {
         let t = at.t;
-        for dyad in &self.dyads {
-            let [(i, from), (j, to)] = &dyad.ends;
-            let distance = norm(sub([at.q[*i], at.q[i + 1]], [at.q[*j], at.q[j + 1]]));
-            let [(first, l1), (second, l2)] = &dyad.links;
-            let ends =
-                format!("{first} and {second} cannot close: |{from} {to}| = {distance:.6} m");
-            if distance > l1 + l2 {
-                let message = format!("{ends} exceeds {l1} m + {l2} m = {:.6} m", l1 + l2);
-                return PrescribeError { message, t };
-            }
-            if distance < (l1 - l2).abs() {
-                let message = format!(
-                    "{ends} is less than |{l1} m - {l2} m| = {:.6} m",
-                    (l1 - l2).abs()
-                );
-                return PrescribeError { message, t };
-            }
-        }
-        let worst = self.mechanism.worst_constraint(at);
-        let message = match worst {
+        let apart = self.dyads.iter().find_map(|dyad| dyad.apart(at));
+        let message = apart.unwrap_or_else(|| match self.mechanism.worst_constraint(at) {
             Some((value, _, name)) => {
-                format!(
-                    "the ideal rigid mechanism cannot close: {name} is off by {} m",
-                    number(value, 4)
-                )
+                let off = number(value, 4);
+                format!("the ideal rigid mechanism cannot close: {name} is off by {off} m")
             }
             None => "the ideal rigid mechanism cannot follow the path".to_owned(),
-        };
+        });
         PrescribeError { message, t }
+    }
+}
+
+impl Dyad {
+    /// Says that the two links are too short or too long for the distance between their ends, if they are.
+    fn apart(&self, at: &State) -> Option<String> {
+        let [(i, from), (j, to)] = &self.ends;
+        let distance = norm(sub([at.q[*i], at.q[i + 1]], [at.q[*j], at.q[j + 1]]));
+        let [(first, l1), (second, l2)] = &self.links;
+        let (sum, difference) = (l1 + l2, (l1 - l2).abs());
+        let why = match () {
+            () if distance > sum => format!("exceeds {l1} m + {l2} m = {sum:.6} m"),
+            () if distance < difference => {
+                format!("is less than |{l1} m - {l2} m| = {difference:.6} m")
+            }
+            () => return None,
+        };
+        Some(format!(
+            "{first} and {second} cannot close: |{from} {to}| = {distance:.6} m {why}"
+        ))
     }
 }

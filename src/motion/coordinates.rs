@@ -2,16 +2,10 @@
 
 use super::{Function, Motion, POSES, Path};
 
-/// x(t), y(t), theta(t).
-#[derive(Debug, Clone)]
-pub struct Coordinates {
-    /// x, y \[m\], theta \[rad\].
-    pub functions: [Function; 3],
-}
-
-impl Path for Coordinates {
+/// x(t), y(t) \[m\], theta(t) \[rad\].
+impl Path for [Function; 3] {
     fn at(&self, t: f64) -> Motion {
-        let values = self.functions.each_ref().map(|f| f.at(t));
+        let values = self.each_ref().map(|f| f.at(t));
         Motion {
             position: values.map(|v| v[0]),
             velocity: values.map(|v| v[1]),

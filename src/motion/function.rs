@@ -22,27 +22,9 @@ pub enum Function {
         phase: f64,
     },
     /// From one value to another, linear in time, constant before and after; its second derivative is left at zero.
-    Ramp {
-        /// Value before.
-        from: f64,
-        /// Value after.
-        to: f64,
-        /// When it begins \[s\].
-        start: f64,
-        /// How long it takes \[s\].
-        duration: f64,
-    },
+    Ramp(Step),
     /// From one value to another by the quintic 10 u^3 - 15 u^4 + 6 u^5, twice continuously differentiable.
-    SmoothStep {
-        /// Value before.
-        from: f64,
-        /// Value after.
-        to: f64,
-        /// When it begins \[s\].
-        start: f64,
-        /// How long it takes \[s\].
-        duration: f64,
-    },
+    SmoothStep(Step),
     /// start + speed/T (t^2/2 + (T/2 pi)^2 (cos(2 pi t/T) - 1)) up to T = `duration`, then at constant `speed`
     /// (Simo and Vu-Quoc 1986).
     SpinUp {
@@ -57,13 +39,23 @@ pub enum Function {
     Table(Table<1>),
 }
 
+/// From one value to another.
+#[derive(Debug, Clone, Copy)]
+pub struct Step {
+    /// Value before.
+    pub from: f64,
+    /// Value after.
+    pub to: f64,
+    /// When it begins \[s\].
+    pub start: f64,
+    /// How long it takes \[s\].
+    pub duration: f64,
+}
+
 impl Function {
     /// A spline through rows (t, value) with increasing times, two rows at least.
     pub fn table(rows: &[[f64; 2]]) -> Function {
-        Function::Table(Table::new(
-            rows.iter().map(|r| r[0]).collect(),
-            rows.iter().map(|r| [r[1]]).collect(),
-        ))
+        Function::Table(Table::new(rows.iter().map(|&[t, value]| (t, [value]))))
     }
 
     /// Value, first and second derivative at time t \[s\].
@@ -93,29 +85,23 @@ impl Function {
                     -amplitude * omega * omega * sine,
                 ]
             }
-            Function::Ramp {
-                from,
-                to,
-                start,
-                duration,
-            } => {
-                let u = (t - start) / duration;
+            Function::Ramp(step) => {
+                let (u, increment) = ((t - step.start) / step.duration, step.to - step.from);
                 let inside = (0.0..1.0).contains(&u);
-                let slope = if inside { (to - from) / duration } else { 0.0 };
-                [from + (to - from) * u.clamp(0.0, 1.0), slope, 0.0]
+                let slope = if inside {
+                    increment / step.duration
+                } else {
+                    0.0
+                };
+                [step.from + increment * u.clamp(0.0, 1.0), slope, 0.0]
             }
-            Function::SmoothStep {
-                from,
-                to,
-                start,
-                duration,
-            } => {
-                let [s, by_u, by_u2] = quintic((t - start) / duration);
-                let increment = to - from;
+            Function::SmoothStep(step) => {
+                let [s, by_u, by_u2] = quintic((t - step.start) / step.duration);
+                let increment = step.to - step.from;
                 [
-                    from + increment * s,
-                    increment * by_u / duration,
-                    increment * by_u2 / (duration * duration),
+                    step.from + increment * s,
+                    increment * by_u / step.duration,
+                    increment * by_u2 / (step.duration * step.duration),
                 ]
             }
             Function::SpinUp {
@@ -154,12 +140,12 @@ mod tests {
                 frequency: 0.8,
                 phase: 0.4,
             },
-            Function::SmoothStep {
+            Function::SmoothStep(Step {
                 from: 0.2,
                 to: -1.1,
                 start: 0.1,
                 duration: 1.7,
-            },
+            }),
             Function::SpinUp {
                 start: 0.1,
                 speed: 6.0,
@@ -180,23 +166,13 @@ mod tests {
 
     #[test]
     fn ramps_begin_and_end_where_they_should() {
-        for smooth in [false, true] {
-            let (from, to, start, duration) = (1.0, 3.0, 0.5, 2.0);
-            let f = if smooth {
-                Function::SmoothStep {
-                    from,
-                    to,
-                    start,
-                    duration,
-                }
-            } else {
-                Function::Ramp {
-                    from,
-                    to,
-                    start,
-                    duration,
-                }
-            };
+        let step = Step {
+            from: 1.0,
+            to: 3.0,
+            start: 0.5,
+            duration: 2.0,
+        };
+        for f in [Function::Ramp(step), Function::SmoothStep(step)] {
             for (t, value) in [(0.0, 1.0), (0.5, 1.0), (1.5, 2.0), (2.5, 3.0), (9.0, 3.0)] {
                 // exact in binary
                 assert_eq!(f.at(t)[0], value);

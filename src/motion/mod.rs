@@ -9,8 +9,7 @@ mod read_path;
 mod table;
 
 pub use circle::Circle;
-pub use coordinates::Coordinates;
-pub use function::Function;
+pub use function::{Function, Step};
 pub use line::Line;
 pub use read_function::{FUNCTIONS, FunctionKind, Use, read_function};
 pub(crate) use read_path::read_path;
@@ -52,8 +51,7 @@ mod tests {
     ];
 
     fn spline(rows: &[[f64; 4]]) -> Table<3> {
-        let times = rows.iter().map(|r| r[0]).collect();
-        Table::new(times, rows.iter().map(|r| [r[1], r[2], r[3]]).collect())
+        Table::new(rows.iter().map(|&[t, x, y, theta]| (t, [x, y, theta])))
     }
 
     #[test]
@@ -71,13 +69,11 @@ mod tests {
                 to: [1.0, -0.5, 0.7],
                 duration: 2.0,
             }),
-            Box::new(Coordinates {
-                functions: [
-                    Function::Polynomial(vec![0.2, 0.1, 0.7]),
-                    Function::Polynomial(vec![0.1, -0.4, 0.2, 0.3]),
-                    Function::Constant(0.4),
-                ],
-            }),
+            Box::new([
+                Function::Polynomial(vec![0.2, 0.1, 0.7]),
+                Function::Polynomial(vec![0.1, -0.4, 0.2, 0.3]),
+                Function::Constant(0.4),
+            ]),
             Box::new(spline(&ROWS)),
         ];
         for path in &paths {

@@ -1,6 +1,6 @@
 //! Functions of time: a number, or an inline table with a `type`.
 
-use super::Function;
+use super::{Function, Step};
 use crate::document::{Field, Fields, Key, Kind, SceneError, Takes};
 
 /// What the function is for: motions must have an acceleration, loads need not.
@@ -71,6 +71,15 @@ const STEP: [Key; 4] = [
     Key::positive("duration", "s", "how long it takes"),
 ];
 
+fn step(table: &Fields) -> Result<Step, SceneError> {
+    Ok(Step {
+        from: table.number("from")?,
+        to: table.number("to")?,
+        start: table.number("start")?,
+        duration: table.number("duration")?,
+    })
+}
+
 static RAMP: FunctionKind = FunctionKind {
     name: "ramp",
     keys: &STEP,
@@ -84,26 +93,14 @@ static RAMP: FunctionKind = FunctionKind {
             let error = kind.fault(message, "no acceleration");
             return Err(error.with_help("use \"smooth_step\""));
         }
-        Ok(Function::Ramp {
-            from: table.number("from")?,
-            to: table.number("to")?,
-            start: table.number("start")?,
-            duration: table.number("duration")?,
-        })
+        Ok(Function::Ramp(step(table)?))
     },
 };
 
 static SMOOTH_STEP: FunctionKind = FunctionKind {
     name: "smooth_step",
     keys: &STEP,
-    read: |table, _, _| {
-        Ok(Function::SmoothStep {
-            from: table.number("from")?,
-            to: table.number("to")?,
-            start: table.number("start")?,
-            duration: table.number("duration")?,
-        })
-    },
+    read: |table, _, _| Ok(Function::SmoothStep(step(table)?)),
 };
 
 static SPIN_UP: FunctionKind = FunctionKind {
@@ -122,20 +119,16 @@ static SPIN_UP: FunctionKind = FunctionKind {
     },
 };
 
-/// What rows of a table over time are.
-pub(super) const ROWS: &str =
-    "two rows or more; their times increase, from 0 or earlier to the end of the run or later";
+/// The key of the rows of a table over time.
+pub(super) const fn rows_key(unit: &'static str, shape: &'static str) -> Key {
+    let purpose =
+        "two rows or more; their times increase, from 0 or earlier to the end of the run or later";
+    Key::new("rows", Takes::Rows { unit, shape }, purpose)
+}
 
 static TABLE: FunctionKind = FunctionKind {
     name: "table",
-    keys: &[Key::new(
-        "rows",
-        Takes::Rows {
-            unit: "s, value",
-            shape: "[t, value]",
-        },
-        ROWS,
-    )],
+    keys: &[rows_key("s, value", "[t, value]")],
     read: |table, _, duration| Ok(Function::table(&rows(&table.field("rows")?, duration)?)),
 };
 

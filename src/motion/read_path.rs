@@ -1,8 +1,8 @@
 //! Paths of bodies: `type` and its keys.
 
-use super::read_function::{ROWS, Use, read_function, rows};
-use super::{Circle, Coordinates, Line, Path, Table};
-use crate::document::{Field, Fields, Key, Kind, SceneError, Takes};
+use super::read_function::{Use, read_function, rows, rows_key};
+use super::{Circle, Line, Path, Table};
+use crate::document::{Field, Fields, Key, Kind, SceneError};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -57,19 +57,12 @@ static LINE: PathKind = PathKind {
 
 static TABLE: PathKind = PathKind {
     name: "table",
-    keys: &[Key::new(
-        "rows",
-        Takes::Rows {
-            unit: "s, m, m, rad",
-            shape: "[t, x, y, theta]",
-        },
-        ROWS,
-    )],
+    keys: &[rows_key("s, m, m, rad", "[t, x, y, theta]")],
     read: |fields, duration| {
         let rows: Vec<[f64; 4]> = rows(&fields.field("rows")?, duration)?;
-        let times = rows.iter().map(|r| r[0]).collect();
-        let poses = rows.iter().map(|r| [r[1], r[2], r[3]]).collect();
-        Ok(Arc::new(Table::new(times, poses)))
+        let rows = rows.iter();
+        let rows = rows.map(|&[t, x, y, theta]| (t, [x, y, theta]));
+        Ok(Arc::new(Table::new(rows)))
     },
 };
 
@@ -83,7 +76,7 @@ static COORDINATES: PathKind = PathKind {
     read: |fields, duration| {
         let coordinate = |key| read_function(&fields.field(key)?, Use::Motion, duration);
         let functions = [coordinate("x")?, coordinate("y")?, coordinate("theta")?];
-        Ok(Arc::new(Coordinates { functions }))
+        Ok(Arc::new(functions))
     },
 };
 

@@ -13,7 +13,8 @@ pub struct Table<const N: usize> {
 
 impl<const N: usize> Table<N> {
     /// A spline through values at increasing times, two at least.
-    pub fn new(times: Vec<f64>, values: Vec<[f64; N]>) -> Table<N> {
+    pub fn new(rows: impl Iterator<Item = (f64, [f64; N])>) -> Table<N> {
+        let (times, values): (Vec<_>, Vec<_>) = rows.unzip();
         let n = times.len();
         let mut curvatures = vec![[0.0; N]; n];
         // tridiagonal system h_{k-1} m_{k-1} + 2 (h_{k-1} + h_k) m_k + h_k m_{k+1} = 6 (slope_k - slope_{k-1})
@@ -39,9 +40,7 @@ impl<const N: usize> Table<N> {
             curvatures,
         }
     }
-}
 
-impl<const N: usize> Table<N> {
     /// Values, first and second derivatives at time t.
     pub fn derivatives(&self, t: f64) -> [[f64; N]; 3] {
         let k = self

@@ -3,7 +3,7 @@
 mod channels;
 
 use crate::model::{Energies, Model};
-use crate::scene::{MotionKind, Scene, SceneError};
+use crate::scene::{Scene, SceneError};
 use crate::system::{State, Work};
 use channels::{Part, parts};
 use std::f64::consts::TAU;
@@ -242,14 +242,11 @@ fn choose<'a>(scene: &Scene, available: &'a [Available]) -> Result<Vec<&'a Avail
 fn given_angle(scene: &Scene, part: Part) -> Option<[f64; 3]> {
     match part {
         Part::Pose(b) => {
-            let given = scene.initial.bodies.iter().find(|s| s.body == b)?;
+            let given = scene.initial.state_of(b)?;
             Some([given.position[2], given.velocity[2], 0.0])
         }
         Part::Turned(j) | Part::Actuator(j) => {
-            let driven = scene.motions.iter().find_map(|motion| match &motion.kind {
-                MotionKind::Angle { joint, angle } if *joint == j => Some(angle.at(0.0)),
-                _ => None,
-            });
+            let driven = scene.prescribed_angle(j).map(|angle| angle.at(0.0));
             let [angle, rate, _] = driven.unwrap_or_default();
             Some([angle, rate, 0.0])
         }

@@ -223,6 +223,13 @@ pub struct Initial {
     pub span: Span,
 }
 
+impl Initial {
+    /// The state that the scene gives to a body.
+    pub(crate) fn state_of(&self, body: usize) -> Option<&BodyState> {
+        self.bodies.iter().find(|state| state.body == body)
+    }
+}
+
 /// The approximate position of a joint or a point at t = 0.
 #[derive(Debug, Clone)]
 pub struct SketchPoint {
@@ -322,6 +329,14 @@ impl Scene {
     /// The smallest clearance of its joints \[m\]; none where no joint has clearance.
     pub fn smallest_clearance(&self) -> Option<f64> {
         smallest_clearance(self.joints.iter())
+    }
+
+    /// The angle that a drive prescribes in a joint.
+    pub(crate) fn prescribed_angle(&self, joint: usize) -> Option<&Function> {
+        self.motions.iter().find_map(|motion| match &motion.kind {
+            MotionKind::Angle { joint: j, angle } if *j == joint => Some(angle),
+            _ => None,
+        })
     }
 
     /// Index of the body with this name.

@@ -223,7 +223,11 @@ fn unguarded(text: &str, overrides: &[String], guard: Option<Duration>) -> Resul
         Err(error) => stopped(&scene, &error)?,
     };
     run.open = simulation.model().worst_constraint(simulation.state());
-    bounded(&report, asked)?;
+    let stages = match scene.integrator.method.name() {
+        "esdirk3" => 3,
+        _ => 2,
+    };
+    bounded(&report, asked, stages)?;
     let coordinates = simulation.state().q.iter();
     run.reach = coordinates.fold(0.0, |m, q| m.max(q.abs()));
     run.rows = watch.rows;
@@ -287,15 +291,15 @@ fn remarks(report: &Report) -> Outcome {
     }
 }
 
-/// Every step and every stage has a reason that is counted: a step of the grid, one that ends where a contact changes (an
+/// Every step, of so many stages at most, has a reason that is counted: a step of the grid, one that ends where a contact changes (an
 /// onset and the loss after it, after each of which the grid begins again), one that was halved, or
 /// one that was tried with another length to pass a singular pose.
-fn bounded(report: &Report, asked: Option<u64>) -> Result<(), Breach> {
+fn bounded(report: &Report, asked: Option<u64>, stages: u64) -> Result<(), Breach> {
     let repeated = report.accuracy.as_ref().map_or(0, |a| a.rejected_steps);
     let trials = report.location_trials + report.singular_pose_trials;
     let tried = report.steps + report.rejected_steps + trials + repeated;
-    // two stages a step at most; a change may be tried at its end once more
-    let stages = 2 * (tried + 2 * report.steps);
+    // a change may be tried at its end once more
+    let stages = stages * (tried + 2 * report.steps);
     let changes = 2 * report.onsets + report.unlocated_changes;
     let cuts = 4 * changes + 2 * (report.rejected_steps + report.location_trials);
     let steps = asked.map(|n| n + cuts + 10);
