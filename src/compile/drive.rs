@@ -1,6 +1,7 @@
 //! The drive: compiles the ideal rigid mechanism, closes it at the start, and follows its path to the end.
 
-use super::sketch::{close, marker};
+use super::assembly::position;
+use super::sketch::close;
 use super::{Compiler, Mode, Role, build, numbering};
 use crate::body::{PointRef, RigidLink};
 use crate::kinematics::{Dyad, Kinematics};
@@ -31,22 +32,20 @@ pub(super) fn ideal_mechanism(
             "drive {}: the path of {body} does not determine the pose of the ideal mechanism, which has {} unknown coordinates and {} constraints",
             drive.name, shape.unknowns, shape.multipliers
         );
-        let label = if free > 0 {
-            "some bodies stay free to move"
-        } else {
-            "the mechanism is overdetermined"
+        let label = match free > 0 {
+            true => "some bodies stay free to move",
+            false => "the mechanism is overdetermined",
         };
         return Err(scene.error(drive.span, message, label));
     }
     let dyads = find_dyads(&compiler, &mechanism);
-    let moving = (0..shape.coordinates).filter(|i| mechanism.fixed.iter().all(|(j, _)| i != j));
-    let moving = moving.collect();
+    let moves = |i: &usize| mechanism.fixed.iter().all(|(j, _)| i != j);
     let mut kinematics = Kinematics {
+        moving: (0..shape.coordinates).filter(moves).collect(),
         mechanism: Box::new(mechanism),
         offset: 0,
         dyads,
         start: Vec::new(),
-        moving,
         period: drive.path.sweep(scene.simulation.duration).0,
         duration: scene.simulation.duration,
     };
@@ -63,23 +62,21 @@ fn sweep(
     kinematics: &Kinematics,
     start: &State,
 ) -> Result<(), SceneError> {
-    let mechanism = &*kinematics.mechanism;
     let mut inner = kinematics.work();
     let (mut from, mut to) = (start.clone(), start.clone());
     let (horizon, poses) = drive.path.sweep(c.scene.simulation.duration);
     for k in 0..=poses {
         to.t = horizon * k as f64 / poses as f64;
-        kinematics
-            .solve_at(&from, &mut to, &mut inner)
-            .map_err(|e| {
-                let message = format!("drive {}: {e}", drive.name);
-                c.scene
-                    .error(drive.path_span, message, "this path is out of reach")
-            })?;
+        let solved = kinematics.solve_at(&from, &mut to, &mut inner);
+        solved.map_err(|e| {
+            let message = format!("drive {}: {e}", drive.name);
+            let label = "this path is out of reach";
+            c.scene.error(drive.path_span, message, label)
+        })?;
         for (j, joint) in c.scene.joints.iter().enumerate() {
-            let points = [joint.bearing, joint.journal];
-            if points.iter().all(|&p| c.is_known(p)) {
-                let [a, b] = points.map(|p| mechanism.position(&marker(mechanism, p), &to));
+            if joint.points().iter().all(|&p| c.is_known(p)) {
+                let at = |p| position(&kinematics.mechanism, &to, p);
+                let [a, b] = joint.points().map(at);
                 let distance = norm(sub(a, b));
                 if distance > HELD_TOLERANCE {
                     let message = format!(
@@ -112,11 +109,8 @@ fn find_dyads(c: &Compiler, mechanism: &Model) -> Vec<Dyad> {
     };
     let joint_at = |body: usize, end: usize| {
         let point = PointRef { body, point: end };
-        let joint = c
-            .scene
-            .joints
-            .iter()
-            .find(|j| j.bearing == point || j.journal == point);
+        let mut joints = c.scene.joints.iter();
+        let joint = joints.find(|joint| joint.points().contains(&point));
         joint.map_or_else(|| c.point_name(point), |j| j.name.clone())
     };
     let mut dyads = Vec::new();
@@ -159,22 +153,16 @@ pub(super) fn mark_driven(
                 (false, false) => return true,
             };
             if !scene.bodies[moved].kind.is_rigid() {
-                fault = Some((
-                    j,
-                    "the body it moves is flexible; a driven body must be rigid",
-                ));
+                let why = "the body it moves is flexible; a driven body must be rigid";
+                fault = Some((j, why));
             } else if joint.contact().is_some() {
                 fault = Some((j, "it has clearance; an actuated joint must be ideal"));
             }
             roles[moved] = Role::Driven;
             false
         });
-        let stuck = (waiting.len() == before).then(|| {
-            (
-                waiting[0],
-                "no chain of actuated joints connects it to the ground",
-            )
-        });
+        let why = "no chain of actuated joints connects it to the ground";
+        let stuck = (waiting.len() == before).then(|| (waiting[0], why));
         if let Some((j, why)) = fault.or(stuck) {
             let message = format!(
                 "drive {} cannot actuate joint {}: {why}",

@@ -315,15 +315,18 @@ impl Scene {
         SceneError::new(&self.sources, span, message, label)
     }
 
-    /// An error that points at two spans which contradict each other.
+    /// An error that points at a span, and at another one that contradicts it, if there is one.
     pub(crate) fn contradiction(
         &self,
-        message: impl Into<String>,
-        first: (Span, &str),
-        second: (Span, &str),
+        message: String,
+        (span, label): (Span, &str),
+        other: Option<(Span, &str)>,
     ) -> SceneError {
-        let error = self.error(first.0, message, first.1);
-        error.against(&self.sources, second.0, second.1)
+        let error = self.error(span, message, label);
+        match other {
+            Some((span, label)) => error.against(&self.sources, span, label),
+            None => error,
+        }
     }
 
     /// The smallest clearance of its joints \[m\]; none where no joint has clearance.

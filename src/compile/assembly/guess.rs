@@ -1,7 +1,8 @@
 //! Initial guess of the assembly: given poses, sketched joints, and the bodies connected to them.
 
-use super::super::sketch::{fit, marker};
+use super::super::sketch::{Pair, fit};
 use super::super::{Compiler, Role};
+use super::position;
 use crate::body::{Frame, PointRef};
 use crate::math::plane::{rotate, sub};
 use crate::model::Model;
@@ -19,8 +20,16 @@ struct Placed<'a> {
 
 impl Placed<'_> {
     fn position(&self, point: PointRef, state: &State) -> [f64; 2] {
-        self.mechanism
-            .position(&marker(self.mechanism, point), state)
+        position(self.mechanism, state, point)
+    }
+
+    /// The points of a body whose positions are known.
+    fn known_points(&self, body: usize, state: &State) -> impl Iterator<Item = Pair> {
+        let points = self.c.bodies[body].points().iter().enumerate();
+        points.filter_map(move |(point, p)| {
+            let known = self.known(PointRef { body, point }, state)?;
+            Some((p.at, known))
+        })
     }
 
     /// Position of a point, if a placed body joined to it, the sketch or a drive gives it.
@@ -73,20 +82,8 @@ impl Placed<'_> {
 
     /// Places body `b` if two of its points are known, or its only one.
     fn place(&mut self, b: usize, state: &mut State) {
-        let known = |local: usize, at: [f64; 2]| {
-            self.known(
-                PointRef {
-                    body: b,
-                    point: local,
-                },
-                state,
-            )
-            .map(|r| (at, r))
-        };
-        let body = &self.c.bodies[b];
-        let points = body.points().iter().enumerate();
-        let pairs: Vec<_> = points.filter_map(|(i, p)| known(i, p.at)).collect();
-        let pose = match body.turns() {
+        let pairs: Vec<_> = self.known_points(b, state).collect();
+        let pose = match self.c.bodies[b].turns() {
             true => {
                 let apart = pairs.iter().any(|p| p.0 != pairs[0].0);
                 apart.then(|| fit(&pairs))
@@ -95,33 +92,23 @@ impl Placed<'_> {
         };
         if let Some(pose) = pose {
             self.write(b, pose, state);
-            self.done[b] = true;
         }
     }
 
     /// Places a body with one known point at the angle that follows from its joints with placed bodies: from a weld, a locked
     /// guide or a drive, or from the direction of a slot towards its pin. False if there is no such joint.
     fn place_at_point(&mut self, b: usize, state: &mut State) -> bool {
-        let body = &self.c.bodies[b];
-        if self.done[b] || !body.turns() {
+        if self.done[b] || !self.c.bodies[b].turns() {
             return false;
         }
-        let points = body.points();
-        let known = |point| self.known(PointRef { body: b, point }, state);
-        let mut known = points
-            .iter()
-            .enumerate()
-            .map(|(i, p)| Some((p.at, known(i)?)));
-        let Some((local, at)) = known.find_map(|known| known) else {
+        let Some((local, at)) = self.known_points(b, state).next() else {
             return false;
         };
         let Some(angle) = self.suggested_angle(b, at, state) else {
             return false;
         };
         let arm = rotate(angle.cos(), angle.sin(), local);
-        let pose = [at[0] - arm[0], at[1] - arm[1], angle];
-        self.write(b, pose, state);
-        self.done[b] = true;
+        self.write(b, [at[0] - arm[0], at[1] - arm[1], angle], state);
         true
     }
 
@@ -131,39 +118,31 @@ impl Placed<'_> {
             let frame = placed.kind.frame_at(&placed.x, &state.q, &state.v);
             frame.map_or(0.0, |frame| frame.position[2])
         };
-        let driven = |j: usize| {
-            self.c.scene.motions.iter().find_map(|m| match &m.kind {
-                MotionKind::Angle { joint, angle } if *joint == j => Some(angle.at(0.0)[0]),
-                _ => None,
-            })
-        };
-        self.c
-            .scene
-            .joints
-            .iter()
-            .enumerate()
-            .find_map(|(j, joint)| {
-                let (first, second) = (joint.bearing.body, joint.journal.body);
-                let model = &self.c.joints[j];
-                let driven = || driven(j).filter(|_| model.is_revolute());
-                match (model.angle().or_else(driven), model.line()) {
-                    (Some(angle), _) if second == b && self.done[first] => {
-                        Some(direction(first) + angle)
-                    }
-                    (Some(angle), _) if first == b && self.done[second] => {
-                        Some(direction(second) - angle)
-                    }
-                    (None, Some(direction)) if first == b && self.done[second] => {
-                        let to_pin = sub(self.position(joint.journal, state), at);
-                        Some(to_pin[1].atan2(to_pin[0]) - direction)
-                    }
-                    _ => None,
+        let scene = self.c.scene;
+        scene.joints.iter().enumerate().find_map(|(j, joint)| {
+            let (first, second) = (joint.bearing.body, joint.journal.body);
+            let model = &self.c.joints[j];
+            let driven = || scene.prescribed_angle(j).filter(|_| model.is_revolute());
+            let angle = model.angle().or_else(|| Some(driven()?.at(0.0)[0]));
+            match (angle, model.line()) {
+                (Some(angle), _) if second == b && self.done[first] => {
+                    Some(direction(first) + angle)
                 }
-            })
+                (Some(angle), _) if first == b && self.done[second] => {
+                    Some(direction(second) - angle)
+                }
+                (None, Some(direction)) if first == b && self.done[second] => {
+                    let to_pin = sub(self.position(joint.journal, state), at);
+                    Some(to_pin[1].atan2(to_pin[0]) - direction)
+                }
+                _ => None,
+            }
+        })
     }
 
-    /// Puts the frame of a body into those of its coordinates that are unknown and not fixed by a given pose.
-    fn write(&self, b: usize, position: [f64; 3], state: &mut State) {
+    /// Places a body: puts its frame into those of its coordinates that are unknown and not fixed by a given pose.
+    fn write(&mut self, b: usize, position: [f64; 3], state: &mut State) {
+        self.done[b] = true;
         let frame = Frame {
             position,
             velocity: [0.0; 3],
@@ -208,7 +187,6 @@ pub(super) fn guess(
         for i in coordinates(mechanism, given.body) {
             placed.held[i] = true;
         }
-        placed.done[given.body] = true;
     }
     loop {
         let before = placed.done.iter().filter(|d| **d).count();

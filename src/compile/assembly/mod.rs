@@ -13,7 +13,7 @@ use super::{Compiler, Mode, build, known_roles, numbering};
 use crate::body::PointRef;
 use crate::math::dense::Equations;
 use crate::math::plane::{norm, sub};
-use crate::model::Model;
+use crate::model::{Model, PlacedConstraint};
 use crate::newton::{Update, iterate};
 use crate::scene::{Scene, SceneError, SketchPoint, Sketched};
 use crate::system::State;
@@ -101,16 +101,20 @@ pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> U
     Update::largest(step.iter().copied())
 }
 
-/// The constraint with the largest violation, and the violation.
-fn widest(model: &Model, state: &State) -> Option<(f64, usize)> {
-    let opening = model.constraints.iter().map(|p| norm(p.term.value(state)));
-    let widest = opening.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-    widest.map(|(i, open)| (open, i))
+/// The largest violation of a constraint, and the constraint.
+fn widest<'m>(model: &'m Model, state: &State) -> Option<(f64, &'m PlacedConstraint)> {
+    let constraints = model.constraints.iter();
+    let opening = constraints.map(|p| (norm(p.term.value(state)), p));
+    opening.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// Moves all coordinates that are not fixed until every constraint is satisfied; returns the one with the largest violation if
 /// that fails.
-fn close(model: &Model, state: &mut State, held: &[bool]) -> Option<(f64, usize)> {
+fn close<'m>(
+    model: &'m Model,
+    state: &mut State,
+    held: &[bool],
+) -> Option<(f64, &'m PlacedConstraint)> {
     let open = |state: &State| widest(model, state).filter(|(x, _)| x.is_nan() || *x > CLOSED);
     if open(state).is_some() {
         // how it fails does not matter: what stays open says more
@@ -124,16 +128,15 @@ fn close(model: &Model, state: &mut State, held: &[bool]) -> Option<(f64, usize)
 
 /// Checks that no prescribed angle was closed half a turn off.
 fn check_turns(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneError> {
-    for (placed, name) in model.constraints.iter().zip(names(model)) {
-        if placed.term.half_turn(state) {
-            let message = format!("{name} closes half a turn away from the angle it holds");
-            let error = c
-                .scene
-                .error(c.scene.initial.span, message, "from this start");
-            return Err(error.with_help("draw the mechanism closer to the pose you mean"));
-        }
-    }
-    Ok(())
+    let turned = |placed: &&PlacedConstraint| placed.term.half_turn(state);
+    let Some(placed) = model.constraints.iter().find(turned) else {
+        return Ok(());
+    };
+    let name = name(model, placed);
+    let message = format!("{name} closes half a turn away from the angle it holds");
+    let start = c.scene.initial.span;
+    let error = c.scene.error(start, message, "from this start");
+    Err(error.with_help("draw the mechanism closer to the pose you mean"))
 }
 
 /// The violation of a constraint in words, or that of its rate with `per` = "/s".
@@ -146,7 +149,7 @@ pub(crate) fn opening(term: &ConstraintTerm, value: f64, per: &str) -> String {
 fn cannot_close(
     c: &Compiler,
     model: &Model,
-    (open, constraint): (f64, usize),
+    (open, placed): (f64, &PlacedConstraint),
     holds: bool,
 ) -> SceneError {
     let sizes: Vec<f64> = (0..c.scene.bodies.len()).map(|b| size(c, b)).collect();
@@ -160,20 +163,16 @@ fn cannot_close(
             numbers::exact(sizes[b]),
             number(total - sizes[b], 4)
         );
-        return c.scene.error(
-            body.span,
-            message,
-            "too large, or its unit is not the metre",
-        );
+        let label = "too large, or its unit is not the metre";
+        return c.scene.error(body.span, message, label);
     }
-    let name = &model.names[model.shape().unknowns + model.constraints[constraint].row];
     let message = format!(
-        "the mechanism cannot be assembled: {name} stays open by {}",
-        opening(&model.constraints[constraint].term, open, "")
+        "the mechanism cannot be assembled: {} stays open by {}",
+        name(model, placed),
+        opening(&placed.term, open, "")
     );
-    let error = c
-        .scene
-        .error(c.scene.initial.span, message, "from this start");
+    let start = c.scene.initial.span;
+    let error = c.scene.error(start, message, "from this start");
     error.with_help(format!(
         "check the given poses, the lengths{}, and that the sketch draws a mechanism that is closed",
         c.longest()
@@ -185,17 +184,14 @@ fn size(c: &Compiler, b: usize) -> f64 {
     if let Some(length) = c.bodies[b].length() {
         return length;
     }
-    let points = c.bodies[b].points();
-    let used = |i: usize| {
-        let point = PointRef { body: b, point: i };
-        let joints = c.scene.joints.iter();
-        joints
-            .into_iter()
-            .any(|j| j.bearing == point || j.journal == point)
+    let points = c.bodies[b].points().iter().enumerate();
+    let used = |point: usize| {
+        let point = PointRef { body: b, point };
+        let mut joints = c.scene.joints.iter();
+        joints.any(|joint| joint.points().contains(&point))
     };
-    let used: Vec<_> = (0..points.len())
-        .filter(|&i| used(i))
-        .map(|i| points[i].at)
+    let used: Vec<_> = points
+        .filter_map(|(i, point)| used(i).then_some(point.at))
         .collect();
     let pairs = used
         .iter()
@@ -203,25 +199,14 @@ fn size(c: &Compiler, b: usize) -> f64 {
     pairs.fold(0.0, f64::max)
 }
 
-fn names(model: &Model) -> impl Iterator<Item = &String> {
-    let first = model.shape().unknowns;
-    model
-        .constraints
-        .iter()
-        .map(move |p| &model.names[first + p.row])
+/// Name of a constraint: that of its first row.
+pub(crate) fn name<'m>(model: &'m Model, placed: &PlacedConstraint) -> &'m str {
+    &model.names[model.shape().unknowns + placed.row]
 }
 
 /// Position of a point of a body.
-fn position(model: &Model, state: &State, point: PointRef) -> [f64; 2] {
+pub(super) fn position(model: &Model, state: &State, point: PointRef) -> [f64; 2] {
     model.position(&marker(model, point), state)
-}
-
-/// True for the guide's point of a prismatic joint, which is not the position of the joint.
-fn is_guide(c: &Compiler, drawn: &SketchPoint, point: PointRef) -> bool {
-    let Sketched::Joint(j) = drawn.what else {
-        return false;
-    };
-    c.joints[j].line().is_some() && c.scene.joints[j].bearing == point
 }
 
 /// Largest permitted distance of a joint or point from its sketch \[m\].
@@ -243,15 +228,37 @@ fn reach(c: &Compiler, drawn: &SketchPoint) -> f64 {
     SKETCH * sizes.fold(f64::INFINITY, f64::min)
 }
 
-/// Checks that sketched joints and points are near their sketch.
-fn check_sketch(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneError> {
+/// Sketched points that are too far from their sketch, and where they are. The guide's point of a prismatic joint is not the
+/// position of the joint.
+fn strays<'c>(
+    c: &'c Compiler,
+    model: &Model,
+    state: &State,
+) -> Vec<(&'c SketchPoint, PointRef, [f64; 2])> {
+    let mut strays = Vec::new();
     for drawn in &c.scene.initial.sketch {
         for point in c.sketched_points(drawn) {
+            let is_guide = match drawn.what {
+                Sketched::Joint(j) => {
+                    c.joints[j].line().is_some() && c.scene.joints[j].bearing == point
+                }
+                Sketched::Point(_) => false,
+            };
             let at = position(model, state, point);
-            if !is_guide(c, drawn, point) && norm(sub(at, drawn.at)) > reach(c, drawn) {
-                return Err(c.far_from_sketch(drawn, at));
+            // a distance that is no number strays too
+            let near = norm(sub(at, drawn.at)) <= reach(c, drawn);
+            if !is_guide && !near {
+                strays.push((drawn, point, at));
             }
         }
     }
-    Ok(())
+    strays
+}
+
+/// Checks that sketched joints and points are near their sketch.
+fn check_sketch(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneError> {
+    match strays(c, model, state).first() {
+        Some((drawn, _, at)) => Err(c.far_from_sketch(drawn, *at)),
+        None => Ok(()),
+    }
 }

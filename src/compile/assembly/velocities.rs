@@ -4,9 +4,12 @@ use super::super::{Compiler, Role};
 use super::{AGREEING, opening, row};
 use crate::math::dense::{Added, Equations};
 use crate::model::Model;
-use crate::scene::{BodyState, SceneError};
+use crate::scene::SceneError;
 use crate::system::{State, System};
 use faer::Mat;
+
+/// The velocities that a scene can give, with their units.
+const RATES: [(&str, &str); 3] = [("vx", "m/s"), ("vy", "m/s"), ("omega", "rad/s")];
 
 /// Velocities of least kinetic energy under the constraints and the given ones.
 pub(super) fn velocities(
@@ -35,7 +38,7 @@ pub(super) fn velocities(
         }
     }
     for given in c.scene.initial.bodies.iter().filter(|g| g.velocity_given) {
-        for component in 0..3 {
+        for (component, (key, unit)) in RATES.into_iter().enumerate() {
             let Some((a, known)) = velocity_row(mechanism, state, given.body, component) else {
                 continue;
             };
@@ -43,13 +46,18 @@ pub(super) fn velocities(
             if let Added::Dependent(off) = added
                 && off.abs() > AGREEING
             {
-                return Err(contradiction(c, given, component, off));
+                let message = format!(
+                    "the given velocity of {} contradicts the joints and drives: {key} is off by {}",
+                    c.scene.bodies[given.body].name,
+                    numbers::si(off.abs(), unit)
+                );
+                return Err(c.scene.error(given.span, message, "this velocity"));
             }
         }
     }
     for given in &c.scene.initial.velocities {
         let body = &c.scene.bodies[given.body].name;
-        let key = ["vx", "vy", "omega"][given.component];
+        let (key, _) = RATES[given.component];
         if c.roles[given.body] != Role::Free {
             let message = format!("the motion of {body} is prescribed, so `{key}` cannot be given");
             return Err(c.scene.error(given.span, message, "remove this"));
@@ -58,16 +66,14 @@ pub(super) fn velocities(
             continue;
         };
         if let Added::Dependent(off) = equations.add(&a, given.value - known) {
-            let implied = given.value - off;
-            let message = if off.abs() > AGREEING {
-                format!(
-                    "{key} of {body} contradicts the joints, drives and velocities given before, which make it {implied:.6}"
-                )
-            } else {
-                format!(
-                    "{key} of {body} repeats the joints, drives and velocities given before, which make it {implied:.6}"
-                )
+            let verb = match off.abs() > AGREEING {
+                true => "contradicts",
+                false => "repeats",
             };
+            let implied = given.value - off;
+            let message = format!(
+                "{key} of {body} {verb} the joints, drives and velocities given before, which make it {implied:.6}"
+            );
             return Err(c.scene.error(given.span, message, "leave this out"));
         }
     }
@@ -76,16 +82,6 @@ pub(super) fn velocities(
     state.v[..n].copy_from_slice(&v);
     mechanism.move_driven_nodes(state);
     Ok(())
-}
-
-fn contradiction(c: &Compiler, given: &BodyState, component: usize, off: f64) -> SceneError {
-    let (key, unit) = [("vx", "m/s"), ("vy", "m/s"), ("omega", "rad/s")][component];
-    let message = format!(
-        "the given velocity of {} contradicts the joints and drives: {key} is off by {}",
-        c.scene.bodies[given.body].name,
-        numbers::si(off.abs(), unit)
-    );
-    c.scene.error(given.span, message, "this velocity")
 }
 
 /// A velocity of a body as a linear function of the unknown velocities, and the contribution of known ones. `None` for the
