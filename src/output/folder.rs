@@ -1,10 +1,20 @@
 //! A folder for files that belong together: a result that is whole or not there.
+//!
+//! An earlier result is linked, all of its files or none, into the folder `previous-result` before it is taken out of its place,
+//! and deleted when the new one is whole. Whatever ends the program, one of the two places holds a whole result.
 
-use super::earlier::{self, naming};
 use serde::Serialize;
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+
+const PREVIOUS: &str = "previous-result";
+const TEMPORARY: &str = ".previous-result.tmp";
+
+/// Where the earlier result of `folder` stands aside, if it does.
+pub fn earlier_result(folder: &Path) -> Option<PathBuf> {
+    Some(folder.join(PREVIOUS)).filter(|aside| aside.exists())
+}
 
 /// Why results could not be stored.
 #[derive(Debug, thiserror::Error)]
@@ -34,10 +44,12 @@ pub enum OutputError {
 /// A folder that may receive a result.
 #[derive(Debug)]
 pub struct Folder {
-    path: PathBuf,
+    /// Where it is.
+    pub(super) path: PathBuf,
     /// Names of the files of a result. The first of them closes it and comes last: without that there is none.
-    files: Vec<String>,
-    replaces: bool,
+    pub(super) files: Vec<String>,
+    /// True where an earlier result may be replaced.
+    pub(super) replaces: bool,
 }
 
 impl Folder {
@@ -67,8 +79,8 @@ impl Folder {
     pub fn prepare(&self) -> Result<(), OutputError> {
         self.make()?;
         let probe = self.path.join(".probe.tmp");
-        fs::write(&probe, "probe").map_err(|e| naming(&probe, e))?;
-        Ok(fs::remove_file(&probe).map_err(|e| naming(&probe, e))?)
+        fs::write(&probe, "probe").map_err(naming(&probe))?;
+        Ok(fs::remove_file(&probe).map_err(naming(&probe))?)
     }
 
     /// Writes a result that is made in one piece: the texts of its files, in their order.
@@ -89,34 +101,42 @@ impl Folder {
         Ok(())
     }
 
-    /// Where it is.
-    pub(super) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The names of its files.
-    pub(super) fn files(&self) -> &[String] {
-        &self.files
-    }
-
-    /// True where an earlier result may be replaced.
-    pub(super) fn replaces(&self) -> bool {
-        self.replaces
-    }
-
     /// Creates the folder.
     pub(super) fn make(&self) -> io::Result<()> {
-        fs::create_dir_all(&self.path).map_err(|e| naming(&self.path, e))
+        fs::create_dir_all(&self.path).map_err(naming(&self.path))
     }
 
-    /// Sets the earlier result aside; `whole` where it was complete.
+    /// Sets the earlier result aside. What stands aside already gives way to a `whole` result only: a run that was killed does
+    /// not push out the result that it was to replace.
     pub(super) fn set_aside(&self, whole: bool) -> io::Result<()> {
-        earlier::set_aside(&self.path, &self.files, whole)
+        let [aside, temporary] = [PREVIOUS, TEMPORARY].map(|name| self.path.join(name));
+        let is_there = |file: &&String| self.path.join(file).exists();
+        let present: Vec<_> = self.files.iter().filter(is_there).collect();
+        if !present.is_empty() && (whole || !aside.exists()) {
+            self.discard(&temporary)?;
+            fs::create_dir(&temporary).map_err(naming(&temporary))?;
+            for file in present {
+                link(&self.path.join(file), &temporary.join(file))?;
+            }
+            self.discard(&aside)?;
+            fs::rename(&temporary, &aside).map_err(naming(&aside))?;
+        }
+        let mut files = self.files.iter();
+        files.try_for_each(|file| remove(&self.path.join(file)))
     }
 
-    /// Deletes the earlier result.
+    /// Deletes what was set aside.
     pub(super) fn forget(&self) -> io::Result<()> {
-        earlier::forget(&self.path, &self.files)
+        self.discard(&self.path.join(PREVIOUS))
+    }
+
+    fn discard(&self, aside: &Path) -> io::Result<()> {
+        if !aside.exists() {
+            return Ok(());
+        }
+        let mut files = self.files.iter();
+        files.try_for_each(|file| remove(&aside.join(file)))?;
+        fs::remove_dir(aside).map_err(naming(aside))
     }
 
     /// Puts a whole file in its place at once: a reader sees the old one or the new one, never a part.
@@ -131,10 +151,10 @@ impl Folder {
         write().map_err(|e| {
             // What is left of it is of no use, and the first error is the one to report.
             let _ = fs::remove_file(&temporary);
-            naming(&temporary, e)
+            naming(&temporary)(e)
         })?;
         let path = self.path.join(name);
-        Ok(fs::rename(&temporary, &path).map_err(|e| naming(&path, e))?)
+        Ok(fs::rename(&temporary, &path).map_err(naming(&path))?)
     }
 
     /// Refuses a path that is no folder, a folder with a result unless it may be replaced, and what is no file.
@@ -159,6 +179,31 @@ impl Folder {
             }
         }
         Ok(())
+    }
+}
+
+/// A second name for a file or, where there are none, a copy; of a link what it points at, which may be relative.
+fn link(from: &Path, to: &Path) -> io::Result<()> {
+    let linked = match fs::symlink_metadata(from) {
+        Ok(file) if file.is_file() => fs::hard_link(from, to),
+        _ => Err(ErrorKind::Unsupported.into()),
+    };
+    let copied = linked.or_else(|_| fs::copy(from, to).map(drop));
+    copied.map_err(naming(to))
+}
+
+fn remove(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != ErrorKind::NotFound => Err(naming(path)(e)),
+        _ => Ok(()),
+    }
+}
+
+/// Makes an error of the system say which file it is about.
+pub(super) fn naming(path: &Path) -> impl FnOnce(io::Error) -> io::Error {
+    move |error| {
+        let message = format!("cannot write `{}`: {error}", path.display());
+        io::Error::new(error.kind(), message)
     }
 }
 

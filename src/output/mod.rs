@@ -14,7 +14,6 @@
 //!
 //! A result that is replaced stands in `previous-result` inside the folder until the new one is complete.
 
-mod earlier;
 mod folder;
 mod table_file;
 mod timing;
@@ -22,8 +21,7 @@ mod timing;
 use crate::scene::Scene;
 use crate::simulate::{Channel, Contact, Report, Status};
 use crate::table::{Cell, Format};
-pub use earlier::earlier_result;
-pub use folder::{Folder, OutputError, json};
+pub use folder::{Folder, OutputError, earlier_result, json};
 use serde::Serialize;
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -81,23 +79,25 @@ struct Header {
 }
 
 #[derive(Serialize)]
-struct Summary<'a, R> {
+struct Summary<'a> {
     #[serde(flatten)]
     header: &'a Header,
     #[serde(flatten)]
-    report: R,
+    state: RunState<'a>,
 }
 
+/// What the summary says of a run.
 #[derive(Serialize)]
-struct Pending {
-    status: Status,
-}
-
-#[derive(Serialize)]
-struct Ended<'a> {
-    #[serde(flatten)]
-    report: &'a Report,
-    warnings: Vec<String>,
+#[serde(untagged)]
+enum RunState<'a> {
+    Pending {
+        status: Status,
+    },
+    Ended {
+        #[serde(flatten)]
+        report: &'a Report,
+        warnings: Vec<String>,
+    },
 }
 
 impl Results {
@@ -111,9 +111,9 @@ impl Results {
         channels: &[Channel],
     ) -> Result<Results, OutputError> {
         folder.make()?;
-        if folder.replaces() {
+        if folder.replaces {
             refuse_busy(&folder)?;
-            folder.set_aside(is_complete(folder.path()))?;
+            folder.set_aside(is_complete(&folder.path))?;
         }
         let header = Header {
             title: scene.title.clone(),
@@ -124,17 +124,17 @@ impl Results {
         let names = channels.iter().map(|c| format!("{} [{}]", c.name, c.unit));
         // First of all and never over another: of two runs that start together one fails.
         let format = scene.output.format;
-        let table = |name| folder.path().join(format.file(name));
-        let channels =
-            TableFile::create(table(CHANNELS), format, names).map_err(|e| match e.kind() {
-                io::ErrorKind::AlreadyExists => OutputError::Occupied {
-                    folder: folder.path().to_owned(),
-                    file: format.file(CHANNELS),
-                },
-                _ => e.into(),
-            })?;
+        let table = |name| folder.path.join(format.file(name));
+        let channels = TableFile::create(table(CHANNELS), format, names);
+        let channels = channels.map_err(|e| match e.kind() {
+            io::ErrorKind::AlreadyExists => OutputError::Occupied {
+                folder: folder.path.clone(),
+                file: format.file(CHANNELS),
+            },
+            _ => e.into(),
+        })?;
         let status = Status::Incomplete;
-        write_summary(&folder, &header, Pending { status })?;
+        write_summary(&folder, &header, RunState::Pending { status })?;
         folder.replace(SCENE, scene.text().as_bytes())?;
         let onsets = TableFile::create(table(ONSETS), format, CONTACT.map(str::to_owned))?;
         Ok(Results {
@@ -203,8 +203,9 @@ impl Results {
         let timing = self.stopwatch.stop(report.t);
         self.folder.replace(TIMING, &json(&timing)?)?;
         let warnings = report.warnings();
-        write_summary(&self.folder, &self.header, Ended { report, warnings })?;
-        if self.folder.replaces() && report.status == Status::Complete {
+        let ended = RunState::Ended { report, warnings };
+        write_summary(&self.folder, &self.header, ended)?;
+        if self.folder.replaces && report.status == Status::Complete {
             self.folder.forget()?;
         }
         Ok(())
@@ -220,23 +221,17 @@ fn is_complete(folder: &Path) -> bool {
 
 /// Refuses a folder to which a run writes: it holds its channels locked.
 fn refuse_busy(folder: &Folder) -> Result<(), OutputError> {
-    for name in folder
-        .files()
-        .iter()
-        .filter(|name| name.starts_with(CHANNELS))
-    {
-        let locked = File::open(folder.path().join(name)).map(|file| file.try_lock());
-        if let Ok(Err(TryLockError::WouldBlock)) = locked {
-            return Err(OutputError::Busy(folder.path().to_owned()));
-        }
+    let mut files = folder.files.iter();
+    let busy = files.any(|name| {
+        let locked = || File::open(folder.path.join(name)).map(|file| file.try_lock());
+        name.starts_with(CHANNELS) && matches!(locked(), Ok(Err(TryLockError::WouldBlock)))
+    });
+    match busy {
+        true => Err(OutputError::Busy(folder.path.clone())),
+        false => Ok(()),
     }
-    Ok(())
 }
 
-fn write_summary(
-    folder: &Folder,
-    header: &Header,
-    report: impl Serialize,
-) -> Result<(), OutputError> {
-    folder.replace(SUMMARY, &json(&Summary { header, report })?)
+fn write_summary(folder: &Folder, header: &Header, state: RunState) -> Result<(), OutputError> {
+    folder.replace(SUMMARY, &json(&Summary { header, state })?)
 }

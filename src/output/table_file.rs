@@ -1,6 +1,6 @@
 //! A table that is written row by row.
 
-use super::earlier::naming;
+use super::folder::naming;
 use crate::table::{Cell, Format};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -23,7 +23,7 @@ impl TableFile {
         format: &'static Format,
         columns: impl IntoIterator<Item = String>,
     ) -> io::Result<TableFile> {
-        let file = File::create_new(&path).map_err(|e| naming(&path, e))?;
+        let file = File::create_new(&path).map_err(naming(&path))?;
         // Not on Windows, where a lock would keep readers out; where a file system has no locks, nobody is warned.
         if cfg!(unix) {
             let _ = file.try_lock();
@@ -49,17 +49,17 @@ impl TableFile {
     fn write(&mut self) -> io::Result<()> {
         let result = self.writer.write_all(&self.line);
         self.line.clear();
-        result.map_err(|e| naming(&self.path, e))
+        result.map_err(naming(&self.path))
     }
 
     pub(super) fn flush(&mut self) -> io::Result<()> {
-        self.writer.flush().map_err(|e| naming(&self.path, e))
+        self.writer.flush().map_err(naming(&self.path))
     }
 
     /// Ends the table, on disk before a summary tells of it.
     pub(super) fn close(&mut self) -> io::Result<()> {
         self.flush()?;
         let file = self.writer.get_ref();
-        file.sync_all().map_err(|e| naming(&self.path, e))
+        file.sync_all().map_err(naming(&self.path))
     }
 }
