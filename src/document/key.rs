@@ -137,6 +137,11 @@ impl Key {
         Key::new(name, Takes::Function { unit }, purpose)
     }
 
+    /// A required table.
+    pub const fn table(name: &'static str, purpose: &'static str) -> Key {
+        Key::new(name, Takes::Table, purpose)
+    }
+
     /// A required point.
     pub const fn point(name: &'static str, purpose: &'static str) -> Key {
         Key::new(name, Takes::Point, purpose)

@@ -168,7 +168,7 @@ fn starts(
     };
     let start = |b: usize| match (&assembly, kinematics) {
         _ if !free[b] => None,
-        (Some(assembly), _) => ideal_start(&assembly.mechanism, b, &assembly.state, 0),
+        (Some((mechanism, state)), _) => ideal_start(mechanism, b, state, 0),
         (None, Some(kinematics)) => {
             let ideal = || ideal_start(&kinematics.mechanism, b, state, kinematics.offset);
             exact(b).or_else(ideal)

@@ -1,9 +1,10 @@
 //! `[integrator]`: scheme, step or accuracy, tolerances.
 
 use super::{Accuracy, Analysis, Integrator, Method, Pace, Simulation};
-use crate::document::{Field, Fields, Key, SceneError, Takes, quoted};
+use crate::document::{Field, Fields, Key, SceneError, Span, Takes, quoted};
 use crate::registry::Registry;
 use crate::stepper::{Parameter, Scheme};
+use indexmap::IndexMap;
 use numbers::number;
 use std::cmp::Ordering;
 
@@ -19,9 +20,8 @@ pub(super) static INTEGRATOR: [Key; 6] = [
         "the time step, at most `duration`; of a static analysis the step of t",
     )
     .or("required without `accuracy`"),
-    Key::new(
+    Key::table(
         "accuracy",
-        Takes::Table,
         "the error that is allowed, instead of a step: `accuracy = { position = ... }`",
     )
     .or("required without `step`"),
@@ -66,20 +66,17 @@ pub(super) static ACCURACY: [Key; 3] = [
     .or("required with clearance, else `duration`"),
 ];
 
-/// Every parameter of a scheme once, with the schemes that have it.
-pub(super) fn parameters(
-    schemes: &[&'static Scheme],
-) -> Vec<(&'static Parameter, Vec<&'static Scheme>)> {
-    let mut parameters: Vec<(&Parameter, Vec<&Scheme>)> = Vec::new();
+/// Parameters by name, each with the schemes that have it.
+type Parameters = IndexMap<&'static str, (&'static Parameter, Vec<&'static Scheme>)>;
+
+/// Every parameter of a scheme once.
+pub(super) fn parameters(schemes: &[&'static Scheme]) -> Parameters {
+    let mut parameters = Parameters::new();
     for scheme in schemes {
         for parameter in scheme.parameters {
-            match parameters
-                .iter_mut()
-                .find(|(p, _)| p.name == parameter.name)
-            {
-                Some((_, owners)) => owners.push(scheme),
-                None => parameters.push((parameter, vec![scheme])),
-            }
+            let entry = parameters.entry(parameter.name);
+            let (_, owners) = entry.or_insert_with(|| (parameter, Vec::new()));
+            owners.push(scheme);
         }
     }
     parameters
@@ -94,20 +91,14 @@ pub(super) fn read(
 ) -> Result<Integrator, SceneError> {
     let mut table = root.field("integrator")?.fields()?;
     let schemes = &registry.schemes;
-    let parameters = parameters(schemes).into_iter();
-    table.declare(
-        &parameters.map(|p| p.0.name).collect::<Vec<_>>(),
-        &INTEGRATOR,
-    )?;
+    let parameters = parameters(schemes);
+    let before: Vec<_> = parameters.keys().copied().collect();
+    table.declare(&before, &INTEGRATOR)?;
     let names = quoted(schemes.iter().map(|s| s.name));
     let named = table.required("method", &format!("the integration scheme: {names}"))?;
     let choices: Vec<_> = schemes.iter().map(|s| (s.name, *s)).collect();
-    let method = method(&table, named.choice(&choices)?, schemes)?;
-    let paced = pace_field(&table)?;
-    let pace = match paced.name.as_str() {
-        "step" => Pace::Step(step(&paced, simulation)?),
-        _ => Pace::Accuracy(accuracy(&paced, simulation, clearance.is_some())?),
-    };
+    let method = method(&table, named.choice(&choices)?, &parameters)?;
+    let (pace, pace_span) = pace(&table, simulation, clearance.is_some())?;
     Ok(Integrator {
         method,
         pace,
@@ -118,7 +109,7 @@ pub(super) fn read(
         onset_tolerance: onset_tolerance(&table, clearance)?,
         locate_onsets: table.optional_boolean("locate_onsets")?.unwrap_or(true),
         method_span: named.node.span,
-        pace_span: paced.node.span,
+        pace_span,
     })
 }
 
@@ -126,10 +117,10 @@ pub(super) fn read(
 fn method(
     table: &Fields,
     scheme: &'static Scheme,
-    schemes: &[&'static Scheme],
+    parameters: &Parameters,
 ) -> Result<Method, SceneError> {
-    for (parameter, owners) in parameters(schemes) {
-        if let Some(field) = table.optional(parameter.name)
+    for (name, (_, owners)) in parameters {
+        if let Some(field) = table.optional(name)
             && !owners.iter().any(|owner| owner.name == scheme.name)
         {
             let owners = quoted(owners.iter().map(|s| s.name));
@@ -156,16 +147,16 @@ fn value(field: &Field, parameter: &Parameter) -> Result<f64, SceneError> {
     if parameter.closed && (least..=most).contains(&x) || x > least && x < most {
         return Ok(x);
     }
-    let ends = if parameter.closed {
-        ""
-    } else {
-        ", both excluded"
+    let ends = match parameter.closed {
+        true => "",
+        false => ", both excluded",
     };
     Err(field.must(&format!("lie between {least} and {most}{ends}")))
 }
 
-/// `step` or `accuracy`; where both stand the one that comes from a later source, which is an override.
-fn pace_field<'a>(table: &Fields<'a>) -> Result<Field<'a>, SceneError> {
+/// `step` or `accuracy`, and where it stands; where both stand the one that comes from a later source, which is an override.
+/// `loose` where a joint has clearance.
+fn pace(table: &Fields, simulation: &Simulation, loose: bool) -> Result<(Pace, Span), SceneError> {
     let source = |name| Some(table.optional(name)?.node.key.source());
     let order = source("step").cmp(&source("accuracy"));
     match (order, table.optional("accuracy")) {
@@ -173,8 +164,14 @@ fn pace_field<'a>(table: &Fields<'a>) -> Result<Field<'a>, SceneError> {
             let message = "`integrator` has both `step` and `accuracy`: give only one of them";
             Err(accuracy.key_fault(message, "remove this or `step`"))
         }
-        (Ordering::Less, Some(accuracy)) => Ok(accuracy),
-        _ => table.field("step"),
+        (Ordering::Less, Some(field)) => {
+            let accuracy = accuracy(&field, simulation, loose)?;
+            Ok((Pace::Accuracy(accuracy), field.span()))
+        }
+        _ => {
+            let field = table.field("step")?;
+            Ok((Pace::Step(step(&field, simulation)?), field.span()))
+        }
     }
 }
 
@@ -192,7 +189,6 @@ fn step(field: &Field, simulation: &Simulation) -> Result<f64, SceneError> {
     Ok(step)
 }
 
-/// `loose` where a joint has clearance.
 fn accuracy(field: &Field, simulation: &Simulation, loose: bool) -> Result<Accuracy, SceneError> {
     if simulation.analysis == Analysis::Static {
         let message = "a static analysis takes a `step`, not an `accuracy`";

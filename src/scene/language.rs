@@ -30,14 +30,12 @@ pub fn language(registry: &Registry) -> Vec<Sheet> {
     };
     let schemes = &registry.schemes;
     let mut settings = integrator::INTEGRATOR.to_vec();
-    let parameters = integrator::parameters(schemes).into_iter();
-    settings.splice(
-        1..1,
-        parameters.map(|(p, _)| Key {
-            default: p.default,
-            ..Key::number(p.name, "", p.purpose)
-        }),
-    );
+    let parameters = integrator::parameters(schemes).into_values();
+    let parameters = parameters.map(|(p, _)| Key {
+        default: p.default,
+        ..Key::number(p.name, "", p.purpose)
+    });
+    settings.splice(1..1, parameters);
     plain("", &reader::SCENE);
     plain("simulation", &reader::SIMULATION);
     plain("integrator", &settings);

@@ -165,14 +165,13 @@ fn inverse_kinematics(
 
 /// The keys of `[initial]`.
 pub(super) static INITIAL: [Key; 4] = [
-    Key::new(
+    Key::table(
         "sketch",
-        Takes::Table,
         "approximate positions of joints, `JOINT = [x, y]`, and of points, `BODY = { POINT = [x, y] }`: they choose the branch [m]",
     )
     .or("none"),
-    Key::new("bodies", Takes::Table, "states of bodies, `BODY = { ... }`").or("none"),
-    Key::new("velocities", Takes::Table, "single velocities, `BODY = { ... }`").or("none"),
+    Key::table("bodies", "states of bodies, `BODY = { ... }`").or("none"),
+    Key::table("velocities", "single velocities, `BODY = { ... }`").or("none"),
     Key::new(
         "equilibrium",
         Takes::Boolean,
@@ -238,39 +237,29 @@ pub(super) fn initial(root: &Fields, names: &Names) -> Result<Initial, SceneErro
     };
     let mut table = field.fields()?;
     table.declare(&[], &INITIAL)?;
-    let mut sketch = Vec::new();
-    named(table.optional("sketch"), |field| {
-        match names.joints.get_index_of(&field.name) {
-            Some(joint) => sketch.push(sketched(field, Sketched::Joint(joint))?),
-            None => sketch.extend(sketched_points(field, names)?),
-        }
-        Ok(())
-    })?;
+    let sketch = named(table.optional("sketch"), |field| sketched(field, names))?;
     let states = named(table.optional("bodies"), |field| state(field, names))?;
-    let mut velocities = Vec::new();
-    named(table.optional("velocities"), |field| {
-        velocities.extend(given_velocities(field, names)?);
-        Ok(())
+    let velocities = named(table.optional("velocities"), |field| {
+        velocities(field, names)
     })?;
     Ok(Initial {
-        sketch,
+        sketch: sketch.into_values().flatten().collect(),
         bodies: states.into_values().collect(),
-        velocities,
+        velocities: velocities.into_values().flatten().collect(),
         equilibrium: table.optional_boolean("equilibrium")?.unwrap_or(false),
         span: field.span(),
     })
 }
 
-fn sketched(field: &Field, what: Sketched) -> Result<SketchPoint, SceneError> {
-    Ok(SketchPoint {
-        what,
-        at: field.numbers("[x, y]")?,
-        span: field.span(),
-    })
-}
-
-/// `sketch.BODY = { POINT = [x, y], ... }`
-fn sketched_points(field: &Field, names: &Names) -> Result<Vec<SketchPoint>, SceneError> {
+/// `sketch.JOINT = [x, y]` or `sketch.BODY = { POINT = [x, y], ... }`
+fn sketched(field: &Field, names: &Names) -> Result<Vec<SketchPoint>, SceneError> {
+    let sketch = |field: &Field, what| {
+        let (at, span) = (field.numbers("[x, y]")?, field.span());
+        Ok(SketchPoint { what, at, span })
+    };
+    if let Some(joint) = names.joints.get_index_of(&field.name) {
+        return Ok(vec![sketch(field, Sketched::Joint(joint))?]);
+    }
     let Some((body, _, found)) = names.bodies.get_full(&field.name) else {
         let known = names.joints.keys().chain(names.bodies.keys());
         let known = known.map(String::as_str);
@@ -294,14 +283,13 @@ fn sketched_points(field: &Field, names: &Names) -> Result<Vec<SketchPoint>, Sce
             let kind = format!("point of `{}` called", field.name);
             return Err(point.dangling_key(&kind, own()));
         };
-        let what = Sketched::Point(PointRef { body, point: index });
-        sketched(point, what)
+        sketch(point, Sketched::Point(PointRef { body, point: index }))
     })?;
     Ok(points.into_values().collect())
 }
 
 /// `velocities.BODY = { vx, vy, omega }`, any of them.
-fn given_velocities(field: &Field, names: &Names) -> Result<Vec<GivenVelocity>, SceneError> {
+fn velocities(field: &Field, names: &Names) -> Result<Vec<GivenVelocity>, SceneError> {
     let body = moving_body(field, names)?;
     let mut table = field.fields()?;
     table.declare(&[], &VELOCITIES)?;
@@ -321,13 +309,9 @@ fn given_velocities(field: &Field, names: &Names) -> Result<Vec<GivenVelocity>, 
         }
     }
     if given.is_empty() {
-        return Err(field.key_fault(
-            format!(
-                "`{}` gives none of the velocities vx, vy and omega",
-                field.path
-            ),
-            "empty",
-        ));
+        let path = &field.path;
+        let message = format!("`{path}` gives none of the velocities vx, vy and omega");
+        return Err(field.key_fault(message, "empty"));
     }
     Ok(given)
 }

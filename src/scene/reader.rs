@@ -26,44 +26,28 @@ pub(super) static SCENE: [Key; 14] = [
         "the version of the scene language: `format = 1`",
     ),
     Key::new("title", Takes::Text, "one line that says what the scene is"),
-    Key::new(
+    Key::table(
         "assumptions",
-        Takes::Table,
         "values that the source of the scene does not give, see [Assumptions](#assumptions)",
     )
     .or("none"),
-    Key::new(
+    Key::table(
         "simulation",
-        Takes::Table,
         "the table of duration, gravity and kind of analysis",
     ),
-    Key::new(
-        "integrator",
-        Takes::Table,
-        "the table of method, step and tolerances",
-    ),
-    Key::new(
-        "output",
-        Takes::Table,
-        "the table of what is recorded, and how often",
-    ),
-    Key::new("materials", Takes::Table, "named materials").or("none"),
-    Key::new("sections", Takes::Table, "named cross-sections").or("none"),
-    Key::new(
-        "contacts",
-        Takes::Table,
-        "named contacts of joints with clearance",
-    )
-    .or("none"),
-    Key::new(
+    Key::table("integrator", "the table of method, step and tolerances"),
+    Key::table("output", "the table of what is recorded, and how often"),
+    Key::table("materials", "named materials").or("none"),
+    Key::table("sections", "named cross-sections").or("none"),
+    Key::table("contacts", "named contacts of joints with clearance").or("none"),
+    Key::table(
         "bodies",
-        Takes::Table,
         "named bodies, exactly one of them of type `\"ground\"`",
     ),
-    Key::new("joints", Takes::Table, "named joints").or("none"),
-    Key::new("drives", Takes::Table, "named prescribed motions").or("none"),
-    Key::new("forces", Takes::Table, "named springs and loads").or("none"),
-    Key::new("initial", Takes::Table, "where the motion starts").or("none"),
+    Key::table("joints", "named joints").or("none"),
+    Key::table("drives", "named prescribed motions").or("none"),
+    Key::table("forces", "named springs and loads").or("none"),
+    Key::table("initial", "where the motion starts").or("none"),
 ];
 
 /// The keys of `[simulation]`.

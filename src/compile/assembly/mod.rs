@@ -35,17 +35,11 @@ const SKETCH: f64 = 0.25;
 /// Largest difference between velocities that count as equal \[m/s, rad/s\]: the digits of typed numbers.
 const AGREEING: f64 = 1e-9;
 
-/// The ideal mechanism of a scene and its state at t = 0.
-pub(crate) struct Assembly {
-    pub mechanism: Model,
-    pub state: State,
-}
-
-/// Assembles the ideal mechanism of a scene.
+/// Assembles the ideal mechanism of a scene: the mechanism and its state at t = 0.
 ///
 /// # Errors
 /// A body without a place, a mechanism that cannot close, velocities that contradict or repeat each other.
-pub(crate) fn assemble(scene: &Scene) -> Result<Assembly, SceneError> {
+pub(crate) fn assemble(scene: &Scene) -> Result<(Model, State), SceneError> {
     let c = Compiler::new(scene, Mode::Ideal, known_roles(scene));
     let numbering = numbering::number(&c, None)?;
     let mechanism = build::build(&c, numbering, None)?;
@@ -63,7 +57,7 @@ pub(crate) fn assemble(scene: &Scene) -> Result<Assembly, SceneError> {
     check_turns(&c, &mechanism, &state)?;
     check_sketch(&c, &mechanism, &state)?;
     velocities(&c, &mechanism, &mut state)?;
-    Ok(Assembly { mechanism, state })
+    Ok((mechanism, state))
 }
 
 /// The gradient of one constraint row with respect to the unknown coordinates.
