@@ -77,25 +77,22 @@ impl Frame {
 mod tests {
     use super::*;
 
+    const FRAME: Frame = Frame {
+        low: (0.0, 0.0),
+        high: (10.0, 10.0),
+    };
+
     #[test]
     fn a_curve_that_leaves_and_returns_is_cut_in_two() {
-        let frame = Frame {
-            low: (0.0, 0.0),
-            high: (10.0, 10.0),
-        };
-        let parts = frame.clip(&[(1.0, 5.0), (4.0, 20.0), (8.0, 5.0), (9.0, 5.0)]);
+        let parts = FRAME.clip(&[(1.0, 5.0), (4.0, 20.0), (8.0, 5.0), (9.0, 5.0)]);
         assert_eq!(parts.len(), 2);
-        assert!(parts.iter().flatten().all(|&p| frame.contains(p)));
+        assert!(parts.iter().flatten().all(|&p| FRAME.contains(p)));
         assert_eq!(parts[1].last(), Some(&(9.0, 5.0)));
     }
 
     #[test]
     fn points_that_are_not_numbers_open_a_gap() {
-        let frame = Frame {
-            low: (0.0, 0.0),
-            high: (10.0, 10.0),
-        };
-        let parts = frame.clip(&[
+        let parts = FRAME.clip(&[
             (1.0, 1.0),
             (2.0, 2.0),
             (3.0, f64::NAN),

@@ -7,26 +7,14 @@ pub type Point = (f64, f64);
 /// in their order. No extreme value is lost and at most four points a column remain.
 pub fn envelope(points: &[Point]) -> Vec<Point> {
     let mut kept = Vec::new();
-    let mut start = 0;
-    while start < points.len() {
-        let column = points[start].0.floor();
-        let end = start
-            + points[start..]
-                .iter()
-                .take_while(|p| p.0.floor() == column)
-                .count();
-        let group = start..end;
-        let by = |a: &usize, b: &usize| points[*a].1.total_cmp(&points[*b].1);
-        let low = group.clone().min_by(by).unwrap_or(start);
-        let high = group.clone().max_by(by).unwrap_or(start);
-        let mut order = [start, low, high, end - 1];
+    for column in points.chunk_by(|a, b| a.0.floor() == b.0.floor()) {
+        let by = |a: &usize, b: &usize| column[*a].1.total_cmp(&column[*b].1);
+        let low = (0..column.len()).min_by(by).unwrap_or(0);
+        let high = (0..column.len()).max_by(by).unwrap_or(0);
+        let mut order = vec![0, low, high, column.len() - 1];
         order.sort_unstable();
-        for (i, &index) in order.iter().enumerate() {
-            if i == 0 || order[i - 1] != index {
-                kept.push(points[index]);
-            }
-        }
-        start = end;
+        order.dedup();
+        kept.extend(order.into_iter().map(|i| column[i]));
     }
     kept
 }
@@ -71,11 +59,8 @@ fn chords(points: &[Point], tolerance: f64) -> Vec<Point> {
             open.extend([(a, i), (i, b)]);
         }
     }
-    points
-        .iter()
-        .zip(keep)
-        .filter_map(|(&p, k)| k.then_some(p))
-        .collect()
+    let kept = points.iter().zip(keep).filter(|(_, keep)| *keep);
+    kept.map(|(point, _)| *point).collect()
 }
 
 /// Distance of a point from the segment a-b.

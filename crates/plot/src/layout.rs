@@ -1,7 +1,7 @@
 //! Where everything stands on the page, in pixels.
 
 use crate::ticks::Ticks;
-use crate::{Axis, Figure, Mark, Panel, Scale, Shape, text};
+use crate::{Axis, Figure, Panel, Scale, text};
 
 /// Width of every figure: 178 mm at 300 dpi.
 pub const WIDTH: i32 = 2100;
@@ -18,15 +18,19 @@ pub const LEGEND_LINE: i32 = 40;
 /// Height of a line of small text.
 pub const SMALL_LINE: i32 = 36;
 
-const MARGIN: i32 = 26;
-const TITLE_LINE: i32 = 52;
-const GAP: i32 = 14;
+/// Height of a line of titles.
+pub const TITLE_LINE: i32 = 52;
+/// Space between parts.
+pub const GAP: i32 = 14;
+/// Space at the edges of the page.
+pub const MARGIN: i32 = 26;
+
 const BELOW: i32 = 110;
 /// Height of a line of a chart of categories.
 const CATEGORY_LINE: i32 = 52;
 
 /// A panel with its axes and the place of its parts.
-pub struct PlacedConstraint<'a> {
+pub struct Placed<'a> {
     /// The panel.
     pub panel: &'a Panel,
     /// Horizontal axis.
@@ -37,54 +41,36 @@ pub struct PlacedConstraint<'a> {
     pub frame: [i32; 4],
     /// Left edge of the cell.
     pub cell_left: i32,
-    /// Baseline-centre of the title.
-    pub title_y: i32,
-    /// Note, broken to the width of the frame.
-    pub note: Vec<String>,
-    /// First line of the note.
-    pub note_y: i32,
-    /// Entries of the legend: index of the mark, left edge, vertical centre.
-    pub legend: Vec<(usize, i32, i32)>,
+    /// Upper edge of the cell.
+    pub top: i32,
+    /// What stands above the frame.
+    pub head: Head,
 }
 
-/// A figure laid out.
-pub struct Page<'a> {
-    /// Panels in reading order.
-    pub panels: Vec<PlacedConstraint<'a>>,
-    /// Caption broken to the width of the page.
-    pub caption: Vec<String>,
-    /// First line of the caption.
-    pub caption_y: i32,
-    /// Left edge of the caption.
-    pub caption_x: i32,
-    /// Height of the page.
-    pub height: i32,
-}
-
-/// Lays a figure out.
-pub fn page(figure: &Figure) -> Page<'_> {
+/// Panels in reading order, and the lower edge of the last row.
+pub fn place(figure: &Figure) -> (Vec<Placed<'_>>, i32) {
     let mut panels = Vec::new();
     let mut top = MARGIN;
     for row in &figure.rows {
         let height = height(row);
         let (columns, width) = columns(figure, row);
         let heads: Vec<Head> = row.iter().map(|panel| Head::new(panel, width)).collect();
-        let head = heads.iter().map(Head::height).max().unwrap_or(0);
-        for ((panel, parts), (cell_left, left)) in row.iter().zip(heads).zip(columns) {
-            let frame = [left, top + head, left + width, top + head + height];
-            panels.push(place(panel, parts, frame, cell_left, top));
+        let upper = top + heads.iter().map(Head::height).max().unwrap_or(0);
+        for ((panel, head), (cell_left, left)) in row.iter().zip(heads).zip(columns) {
+            let (across, up) = axes(panel, [width, height]);
+            panels.push(Placed {
+                panel,
+                x: horizontal(panel, &across, width),
+                y: Ticks::new(&up, extent(panel, &up, false), 6),
+                frame: [left, upper, left + width, upper + height],
+                cell_left,
+                top,
+                head,
+            });
         }
-        top += head + height + BELOW + 2 * GAP;
+        top = upper + height + BELOW + 2 * GAP;
     }
-    let caption = text::wrap(&figure.caption, SMALL, WIDTH - 4 * MARGIN);
-    let height = top + SMALL_LINE * caption.len() as i32 + MARGIN;
-    Page {
-        panels,
-        caption,
-        caption_y: top + GAP,
-        caption_x: 2 * MARGIN,
-        height,
-    }
+    (panels, top)
 }
 
 /// Height of the frames of a row.
@@ -123,58 +109,20 @@ fn columns(figure: &Figure, row: &[Panel]) -> (Vec<(i32, i32)>, i32) {
     ((0..count).map(edge).collect(), cell - left - right)
 }
 
-fn place(
-    panel: &Panel,
-    head: Head,
-    frame: [i32; 4],
-    cell_left: i32,
-    top: i32,
-) -> PlacedConstraint<'_> {
-    let note_y = top + TITLE_LINE + SMALL_LINE / 2;
-    let legend_top = frame[1] - GAP - LEGEND_LINE * head.legend.len() as i32;
-    let legend = head
-        .legend
-        .iter()
-        .enumerate()
-        .flat_map(|(line, entries)| {
-            let y = legend_top + LEGEND_LINE * line as i32 + LEGEND_LINE / 2;
-            entries
-                .iter()
-                .map(move |&(mark, x)| (mark, frame[0] + x, y))
-        })
-        .collect();
-    let (across, up) = axes(panel, [frame[2] - frame[0], frame[3] - frame[1]]);
-    let x = horizontal(panel, &across, frame[2] - frame[0]);
-    let y = Ticks::new(&up, extent(panel, &up, false), 6);
-    PlacedConstraint {
-        panel,
-        x,
-        y,
-        frame,
-        cell_left,
-        title_y: top + TITLE_LINE / 2,
-        note: head.note,
-        note_y,
-        legend,
-    }
-}
-
 /// What stands above the frame.
-struct Head {
-    note: Vec<String>,
-    legend: Vec<Vec<(usize, i32)>>,
+pub struct Head {
+    /// Note, broken to the width of the frame.
+    pub note: Vec<String>,
+    /// Lines of the legend: indices of marks, and where their entries begin.
+    pub legend: Vec<Vec<(usize, i32)>>,
 }
 
 impl Head {
     fn new(panel: &Panel, width: i32) -> Head {
         let mut legend: Vec<Vec<(usize, i32)>> = Vec::new();
         let mut right = 0;
-        for (index, mark) in panel
-            .marks
-            .iter()
-            .enumerate()
-            .filter(|(_, m)| !m.label.is_empty())
-        {
+        let marks = panel.marks.iter().enumerate();
+        for (index, mark) in marks.filter(|(_, mark)| !mark.label.is_empty()) {
             let needed = SAMPLE + 12 + text::width(&mark.label, SMALL);
             match legend.last_mut() {
                 Some(line) if right + 30 + needed <= width => {
@@ -224,30 +172,15 @@ fn axes(panel: &Panel, size: [i32; 2]) -> (Axis, Axis) {
 
 /// As many labels as fit with a clear gap between them.
 fn horizontal(panel: &Panel, axis: &Axis, width: i32) -> Ticks {
-    let data = extent(panel, axis, true);
-    let mut wanted = 7;
-    loop {
-        let ticks = Ticks::new(axis, data, wanted);
-        let needed: i32 = ticks
-            .major
-            .iter()
-            .map(|(_, t)| text::width(t, SMALL) + 44)
-            .sum();
-        if needed <= width || wanted == 2 {
-            return ticks;
-        }
-        wanted -= 1;
-    }
+    let ticks = |wanted| Ticks::new(axis, extent(panel, axis, true), wanted);
+    let fits = |ticks: &Ticks| ticks.widths().map(|label| label + 44).sum::<i32>() <= width;
+    let most = (3..=7).rev().map(ticks).find(fits);
+    most.unwrap_or_else(|| ticks(2))
 }
 
 fn left_margin(panel: &Panel) -> i32 {
     let ticks = Ticks::new(&panel.y, extent(panel, &panel.y, false), 6);
-    let widest = ticks
-        .major
-        .iter()
-        .map(|(_, t)| text::width(t, SMALL))
-        .max()
-        .unwrap_or(0);
+    let widest = ticks.widths().max().unwrap_or(0);
     match (panel.y.names.is_empty(), panel.x.equal) {
         // no axis label stands on the left of names
         (false, _) => widest + 24,
@@ -260,45 +193,25 @@ fn left_margin(panel: &Panel) -> i32 {
 fn right_margin(row: &[Panel]) -> i32 {
     let last = |panel: &Panel| {
         let ticks = Ticks::new(&panel.x, extent(panel, &panel.x, true), 5);
-        ticks
-            .major
-            .last()
-            .map_or(0, |(_, t)| text::width(t, SMALL) / 2)
+        ticks.widths().last().unwrap_or(0) / 2
     };
     row.iter().map(last).max().unwrap_or(0) + 10
 }
 
 /// Least and greatest datum of one axis over all marks.
 fn extent(panel: &Panel, axis: &Axis, horizontal: bool) -> (f64, f64) {
+    let marks = panel.marks.iter();
+    let values = marks.flat_map(|mark| if horizontal { &mark.x } else { &mark.y });
     let usable = |v: &&f64| v.is_finite() && (axis.scale == Scale::Linear || **v > 0.0);
-    let over = |values: &[f64]| {
-        let fold =
-            |f: fn(f64, f64) -> f64, start| values.iter().filter(usable).copied().fold(start, f);
-        (
-            fold(f64::min, f64::INFINITY),
-            fold(f64::max, f64::NEG_INFINITY),
-        )
-    };
-    let of = |mark: &Mark| match &mark.shape {
-        Shape::Series { x, y, .. } | Shape::Curve { x, y, .. } | Shape::Points { x, y, .. } => {
-            over(if horizontal { x } else { y })
-        }
-        Shape::Cross { at } => over(&[if horizontal { at.0 } else { at.1 }]),
-        Shape::Level { .. } if horizontal => over(&[]),
-        Shape::Level { y } => over(&[*y]),
-    };
-    panel
-        .marks
-        .iter()
-        .map(of)
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| {
-            (a.0.min(b.0), a.1.max(b.1))
-        })
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    let values = values.filter(usable);
+    values.fold(none, |(low, high), v| (low.min(*v), high.max(*v)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Mark;
 
     #[test]
     fn equal_axes_have_one_scale_and_hold_all_data() {

@@ -3,9 +3,9 @@
 //! The caller describes a [`Figure`] in data units; [`save`] lays it out, thins long series to what a pixel can
 //! show and writes both files. One drawing unit is one pixel of the PNG at 300 dpi.
 
+mod canvas;
 mod clip;
 mod decimate;
-mod label;
 mod layout;
 mod output;
 mod panel;
@@ -60,10 +60,12 @@ pub struct Figure {
 impl Figure {
     /// Panels one after the other, so many beside each other.
     pub fn grid(panels: Vec<Panel>, columns: usize, caption: String) -> Figure {
-        let (mut rows, mut left) = (Vec::new(), panels);
-        while !left.is_empty() {
-            let rest = left.split_off(left.len().min(columns));
-            rows.push(std::mem::replace(&mut left, rest));
+        let mut rows: Vec<Vec<Panel>> = Vec::new();
+        for panel in panels {
+            match rows.last_mut() {
+                Some(row) if row.len() < columns => row.push(panel),
+                _ => rows.push(vec![panel]),
+            }
         }
         Figure { rows, caption }
     }
@@ -119,49 +121,35 @@ pub struct Mark {
     pub label: String,
     /// Colour.
     pub color: Color,
-    /// Kind and data.
+    /// Kind.
     pub shape: Shape,
+    /// Abscissae; none for a level.
+    pub x: Vec<f64>,
+    /// Ordinates.
+    pub y: Vec<f64>,
 }
 
-/// The kinds of mark.
+/// The kinds of mark; widths and radii are in pixels.
 pub enum Shape {
-    /// y over an x that never decreases; thinned to the envelope of every pixel column. `width` in pixels.
+    /// y over an x that never decreases; thinned to the envelope of every pixel column.
     Series {
-        /// Abscissae.
-        x: Vec<f64>,
-        /// Ordinates.
-        y: Vec<f64>,
         /// Line width.
         width: u32,
     },
     /// A curve in the plane; points closer than a quarter pixel to the last one kept are dropped.
     Curve {
-        /// Abscissae.
-        x: Vec<f64>,
-        /// Ordinates.
-        y: Vec<f64>,
         /// Line width.
         width: u32,
     },
-    /// Separate points with this `radius` in pixels.
+    /// Separate points.
     Points {
-        /// Abscissae.
-        x: Vec<f64>,
-        /// Ordinates.
-        y: Vec<f64>,
         /// Radius of a dot.
         radius: u32,
     },
     /// A cross at one place.
-    Cross {
-        /// Abscissa and ordinate.
-        at: (f64, f64),
-    },
+    Cross,
     /// A horizontal dashed line over the width of the panel; it takes part in the automatic range.
-    Level {
-        /// Ordinate.
-        y: f64,
-    },
+    Level,
 }
 
 impl Axis {
@@ -221,69 +209,44 @@ impl Axis {
 }
 
 impl Mark {
-    /// A line over a monotonic abscissa.
-    pub fn series(label: &str, color: Color, x: &[f64], y: &[f64]) -> Mark {
-        let shape = Shape::Series {
-            x: x.to_vec(),
-            y: y.to_vec(),
-            width: 3,
-        };
+    fn new(label: &str, color: Color, shape: Shape, x: &[f64], y: &[f64]) -> Mark {
         Mark {
             label: label.into(),
             color,
             shape,
+            x: x.to_vec(),
+            y: y.to_vec(),
         }
+    }
+
+    /// A line over a monotonic abscissa.
+    pub fn series(label: &str, color: Color, x: &[f64], y: &[f64]) -> Mark {
+        Mark::new(label, color, Shape::Series { width: 3 }, x, y)
     }
 
     /// A curve in the plane.
     pub fn curve(label: &str, color: Color, x: &[f64], y: &[f64]) -> Mark {
-        let shape = Shape::Curve {
-            x: x.to_vec(),
-            y: y.to_vec(),
-            width: 2,
-        };
-        Mark {
-            label: label.into(),
-            color,
-            shape,
-        }
+        Mark::new(label, color, Shape::Curve { width: 2 }, x, y)
     }
 
     /// Dots.
     pub fn points(label: &str, color: Color, x: &[f64], y: &[f64], radius: u32) -> Mark {
-        let shape = Shape::Points {
-            x: x.to_vec(),
-            y: y.to_vec(),
-            radius,
-        };
-        Mark {
-            label: label.into(),
-            color,
-            shape,
-        }
+        Mark::new(label, color, Shape::Points { radius }, x, y)
     }
 
     /// A cross.
     pub fn cross(label: &str, color: Color, at: (f64, f64)) -> Mark {
-        Mark {
-            label: label.into(),
-            color,
-            shape: Shape::Cross { at },
-        }
+        Mark::new(label, color, Shape::Cross, &[at.0], &[at.1])
     }
 
     /// A dashed horizontal line.
     pub fn level(label: &str, color: Color, y: f64) -> Mark {
-        Mark {
-            label: label.into(),
-            color,
-            shape: Shape::Level { y },
-        }
+        Mark::new(label, color, Shape::Level, &[], &[y])
     }
 
     /// The same mark with another line width in pixels.
     pub fn width(mut self, pixels: u32) -> Mark {
-        if let Shape::Series { width, .. } | Shape::Curve { width, .. } = &mut self.shape {
+        if let Shape::Series { width } | Shape::Curve { width } = &mut self.shape {
             *width = pixels;
         }
         self

@@ -1,17 +1,13 @@
 //! Writes a figure as SVG and, rasterised from that SVG with the embedded font, as PNG.
 
-use crate::label::Label;
-use crate::layout::{SMALL, SMALL_LINE, WIDTH, page};
-use crate::{Figure, panel, text};
+use crate::canvas::Canvas;
+use crate::layout::{GAP, MARGIN, SMALL, SMALL_LINE, WIDTH, place};
+use crate::{Figure, text};
 use miette::{IntoDiagnostic, Result, WrapErr};
-use plotters::prelude::{IntoDrawingArea, SVGBackend, WHITE};
 use resvg::{tiny_skia, usvg};
 use std::fs;
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
-
-/// Dots an inch of the PNG; a drawing unit is one of them.
-const DPI: f64 = 300.0;
 
 static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
     let mut fonts = usvg::fontdb::Database::new();
@@ -42,47 +38,24 @@ pub fn save(figure: &Figure, folder: &Path, name: &str) -> Result<()> {
 /// # Errors
 /// A figure that cannot be drawn.
 pub fn render(figure: &Figure) -> Result<[Vec<u8>; 2]> {
-    let svg = svg(figure)?;
+    let svg = svg(figure);
     let png = png(&svg)?;
     Ok([svg.into_bytes(), png])
 }
 
 /// The SVG text of a figure.
-fn svg(figure: &Figure) -> Result<String> {
-    let page = page(figure);
-    let mut drawn = String::new();
-    {
-        let canvas = SVGBackend::with_string(&mut drawn, (WIDTH as u32, page.height as u32))
-            .into_drawing_area();
-        canvas.fill(&WHITE).into_diagnostic()?;
-        for placed in &page.panels {
-            panel::draw(&canvas, placed).into_diagnostic()?;
-        }
-        for (i, line) in page.caption.iter().enumerate() {
-            let at = (page.caption_x, page.caption_y + SMALL_LINE * i as i32);
-            Label::new(line, SMALL)
-                .draw(&canvas, at)
-                .into_diagnostic()?;
-        }
-        canvas.present().into_diagnostic()?;
+fn svg(figure: &Figure) -> String {
+    let (panels, bottom) = place(figure);
+    let caption = text::wrap(&figure.caption, SMALL, WIDTH - 4 * MARGIN);
+    let mut canvas = Canvas::new(bottom + SMALL_LINE * caption.len() as i32 + MARGIN);
+    for panel in panels {
+        panel.draw(&mut canvas);
     }
-    Ok(with_print_size(&drawn, page.height))
+    canvas.small_lines(&caption, (2 * MARGIN, bottom + GAP));
+    canvas.finish()
 }
 
-/// The size in millimetres in place of pixels, and joints of lines that do not overshoot at sharp peaks.
-fn with_print_size(svg: &str, height: i32) -> String {
-    let millimetres = |pixels: i32| f64::from(pixels) / DPI * 25.4;
-    let pixels = format!("<svg width=\"{WIDTH}\" height=\"{height}\"");
-    let size = format!(
-        "<svg width=\"{:.3}mm\" height=\"{:.3}mm\" stroke-linejoin=\"round\" font-family=\"{}\"",
-        millimetres(WIDTH),
-        millimetres(height),
-        text::FAMILY
-    );
-    svg.replacen(&pixels, &size, 1)
-}
-
-/// Rasterises at [`DPI`] on white.
+/// Rasterises at one pixel a drawing unit.
 fn png(svg: &str) -> Result<Vec<u8>> {
     let options = usvg::Options {
         fontdb: FONTS.clone(),
@@ -130,7 +103,7 @@ mod tests {
 
     #[test]
     fn long_series_give_a_small_svg_and_a_picture_of_the_stated_width() {
-        let svg = svg(&sample()).unwrap();
+        let svg = svg(&sample());
         assert!(svg.len() < 1_000_000);
         assert!(svg.contains("177.800mm") && svg.contains("h &lt; 2"));
         let image = tiny_skia::Pixmap::decode_png(&png(&svg).unwrap()).unwrap();

@@ -4,43 +4,28 @@
 use std::sync::LazyLock;
 use ttf_parser::Face;
 
-/// Families in the order a browser tries them.
-pub const FAMILY: &str = "DejaVu Sans, Arial, Helvetica, sans-serif";
-
 static FACE: LazyLock<Face<'static>> =
     LazyLock::new(|| Face::parse(dejavu::sans::regular(), 0).expect("the embedded font is a font"));
 
 /// Width of one line of text at a font size, both in pixels.
 pub fn width(text: &str, size: u32) -> i32 {
+    let advance = |c| FACE.glyph_hor_advance(FACE.glyph_index(c)?);
     let units: u32 = text
         .chars()
-        .map(|c| {
-            FACE.glyph_index(c)
-                .and_then(|g| FACE.glyph_hor_advance(g))
-                .map_or(600, u32::from)
-        })
+        .map(|c| advance(c).map_or(600, u32::from))
         .sum();
     (f64::from(units) * f64::from(size) / f64::from(FACE.units_per_em())).ceil() as i32
 }
 
 /// Lines of `text` no wider than `limit` pixels, broken at spaces; no-break spaces hold.
 pub fn wrap(text: &str, size: u32, limit: i32) -> Vec<String> {
-    let mut lines = Vec::new();
-    let mut line = String::new();
+    let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ').filter(|w| !w.is_empty()) {
-        let longer = if line.is_empty() {
-            word.to_string()
-        } else {
-            format!("{line} {word}")
-        };
-        if width(&longer, size) > limit && !line.is_empty() {
-            lines.push(std::mem::replace(&mut line, word.into()));
-        } else {
-            line = longer;
+        let longer = lines.last().map(|line| format!("{line} {word}"));
+        match (lines.last_mut(), longer) {
+            (Some(line), Some(longer)) if width(&longer, size) <= limit => *line = longer,
+            _ => lines.push(word.to_owned()),
         }
-    }
-    if !line.is_empty() {
-        lines.push(line);
     }
     lines
 }

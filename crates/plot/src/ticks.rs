@@ -1,6 +1,7 @@
 //! Where the ticks of an axis stand and what is written at them.
 
-use crate::{Axis, Scale};
+use crate::layout::SMALL;
+use crate::{Axis, Scale, text};
 use numbers::digits;
 
 /// A laid-out axis: the range in drawing values (after factor, power of ten and logarithm) and its ticks.
@@ -25,6 +26,12 @@ impl Ticks {
             Scale::Linear => linear(axis, data, wanted),
             Scale::Log => logarithmic(axis, data, wanted),
         }
+    }
+
+    /// Widths of the texts in pixels.
+    pub fn widths(&self) -> impl Iterator<Item = i32> {
+        let texts = self.major.iter().map(|(_, text)| text);
+        texts.map(|text| text::width(text, SMALL))
     }
 
     /// Drawing value of a datum in SI; NaN where it cannot be drawn.
@@ -73,18 +80,12 @@ fn linear(axis: &Axis, data: (f64, f64), wanted: usize) -> Ticks {
         + usize::from(is_quarter(step) && step < 100.0);
     let first = (low / step - 1e-9).ceil() as i64;
     let last = (high / step + 1e-9).floor() as i64;
-    let major = (first..=last)
-        .map(|k| {
-            (
-                k as f64 * step,
-                signed(&format!("{:.decimals$}", k as f64 * step)),
-            )
-        })
-        .collect();
+    let values = (first..=last).map(|k| k as f64 * step);
+    let major = values.map(|v| (v, signed(&format!("{v:.decimals$}"))));
     Ticks {
         label: label(axis, power),
         range: (low, high),
-        major,
+        major: major.collect(),
         minor: Vec::new(),
         factor: axis.factor * shift,
         scale: Scale::Linear,
@@ -92,38 +93,30 @@ fn linear(axis: &Axis, data: (f64, f64), wanted: usize) -> Ticks {
 }
 
 fn logarithmic(axis: &Axis, data: (f64, f64), wanted: usize) -> Ticks {
-    let (low, high) = axis.range.unwrap_or(data);
-    let (low, high) = if low > 0.0 && high >= low {
-        (low, high)
-    } else {
-        (0.1, 1.0)
+    let (low, high) = match axis.range.unwrap_or(data) {
+        (low, high) if low > 0.0 && high >= low => (low, high),
+        _ => (0.1, 1.0),
     };
     let (low, high) = ((low * axis.factor).log10(), (high * axis.factor).log10());
-    let pad = if axis.range.is_some() {
-        0.0
-    } else {
-        (0.06 * (high - low)).max(0.08)
+    let pad = match axis.range {
+        Some(_) => 0.0,
+        None => (0.06 * (high - low)).max(0.08),
     };
     let (low, high) = (low - pad, high + pad);
-    let decades = low.floor() as i32..=high.ceil() as i32;
     let inside = |v: f64| v >= low - 1e-9 && v <= high + 1e-9;
     let stride = ((high - low) / wanted as f64).ceil().max(1.0) as i32;
     // one or two powers of ten in sight: label 1, 2 and 5 of every decade, if there is room
     let powers = high.floor() - low.ceil() + 1.0;
     let room = 3.0 * (high - low) <= wanted as f64;
-    let multiples: &[u32] = if powers <= 2.0 && room {
-        &[1, 2, 5]
-    } else {
-        &[1]
-    };
+    let labelled = |m: u32| m == 1 || (powers <= 2.0 && room && [2, 5].contains(&m));
     let (mut major, mut minor) = (Vec::new(), Vec::new());
-    for decade in decades {
+    for decade in low.floor() as i32..=high.ceil() as i32 {
         for m in 1..10u32 {
             let at = f64::from(decade) + f64::from(m).log10();
             if !inside(at) {
                 continue;
             }
-            if multiples.contains(&m) && decade.rem_euclid(stride) == 0 {
+            if labelled(m) && decade.rem_euclid(stride) == 0 {
                 major.push((at, power_label(m, decade)));
             } else {
                 minor.push(at);
@@ -150,10 +143,9 @@ fn logarithmic(axis: &Axis, data: (f64, f64), wanted: usize) -> Ticks {
 
 /// The power of ten (a multiple of three) that leaves tick labels of few digits.
 fn power_of_ten(size: f64) -> i32 {
-    if (1e-2..1e4).contains(&size) || size == 0.0 {
-        0
-    } else {
-        3 * (size.log10() / 3.0).floor() as i32
+    match (1e-2..1e4).contains(&size) || size == 0.0 {
+        true => 0,
+        false => 3 * (size.log10() / 3.0).floor() as i32,
     }
 }
 
@@ -172,16 +164,13 @@ fn is_quarter(step: f64) -> bool {
 }
 
 fn label(axis: &Axis, power: i32) -> String {
-    let scale = if power == 0 {
-        String::new()
-    } else {
-        format!("10{}", numbers::superscript(power))
+    let scale = match power {
+        0 => String::new(),
+        power => format!("10{}", numbers::superscript(power)),
     };
-    match (scale.is_empty(), axis.unit.is_empty()) {
-        (true, true) => axis.label.clone(),
-        (true, false) => format!("{} ({})", axis.label, axis.unit),
-        (false, true) => format!("{} ({scale})", axis.label),
-        (false, false) => format!("{} ({scale} {})", axis.label, axis.unit),
+    match [&scale, axis.unit].join(" ").trim() {
+        "" => axis.label.clone(),
+        unit => format!("{} ({unit})", axis.label),
     }
 }
 
@@ -210,11 +199,8 @@ mod tests {
     use super::*;
 
     fn texts(axis: &Axis, data: (f64, f64)) -> Vec<String> {
-        Ticks::new(axis, data, 5)
-            .major
-            .into_iter()
-            .map(|(_, t)| t)
-            .collect()
+        let major = Ticks::new(axis, data, 5).major;
+        major.into_iter().map(|(_, text)| text).collect()
     }
 
     #[test]

@@ -164,8 +164,8 @@ fn against_pace(outcome: &Outcome, asked: bool) -> Panel {
     }
     let top = marks
         .iter()
-        .fold(f64::MIN_POSITIVE, |top, mark| match &mark.shape {
-            plot::Shape::Points { y, .. } => y.iter().copied().fold(top, f64::max),
+        .fold(f64::MIN_POSITIVE, |top, mark| match mark.shape {
+            plot::Shape::Points { .. } => mark.y.iter().copied().fold(top, f64::max),
             _ => top,
         });
     for (i, run) in outcome.runs.iter().enumerate() {

@@ -1,0 +1,109 @@
+//! A drawing as SVG text.
+
+use crate::layout::{SMALL, SMALL_LINE, WIDTH};
+use crate::{Color, palette};
+
+/// Families in the order a browser tries them.
+const FAMILIES: &str = "DejaVu Sans, Arial, Helvetica, sans-serif";
+/// Dots an inch of the PNG; a drawing unit is one of them.
+const DPI: f64 = 300.0;
+
+/// An SVG document in the making; places are in pixels.
+pub struct Canvas(String);
+
+impl Canvas {
+    /// A white page.
+    pub fn new(height: i32) -> Canvas {
+        let [across, down] = [WIDTH, height].map(|pixels| f64::from(pixels) / DPI * 25.4);
+        // joints are round, so that lines do not overshoot at sharp peaks
+        Canvas(format!(
+            "<svg width=\"{across:.3}mm\" height=\"{down:.3}mm\" stroke-linejoin=\"round\" font-family=\"{FAMILIES}\" \
+             viewBox=\"0 0 {WIDTH} {height}\" xmlns=\"http://www.w3.org/2000/svg\">\n\
+             <rect x=\"0\" y=\"0\" width=\"{WIDTH}\" height=\"{height}\" opacity=\"1\" fill=\"#FFFFFF\" stroke=\"none\"/>\n"
+        ))
+    }
+
+    /// The whole document.
+    pub fn finish(self) -> String {
+        self.0 + "</svg>\n"
+    }
+
+    /// A line through points.
+    pub fn line(&mut self, points: &[(i32, i32)], color: Color, width: u32) {
+        let color = code(color);
+        let points = points.iter().map(|(x, y)| format!("{x},{y} "));
+        self.0 += &format!(
+            "<polyline fill=\"none\" opacity=\"1\" stroke=\"{color}\" stroke-width=\"{width}\" points=\"{}\"/>\n",
+            points.collect::<String>()
+        );
+    }
+
+    /// A dashed horizontal line.
+    pub fn dashes(&mut self, from: i32, to: i32, y: i32, color: Color) {
+        for x in (from..to).step_by(24) {
+            self.line(&[(x, y), ((x + 14).min(to), y)], color, 3);
+        }
+    }
+
+    /// Two short lines across each other.
+    pub fn cross(&mut self, (x, y): (i32, i32), color: Color) {
+        self.line(&[(x - 12, y - 12), (x + 12, y + 12)], color, 4);
+        self.line(&[(x - 12, y + 12), (x + 12, y - 12)], color, 4);
+    }
+
+    /// A dot.
+    pub fn dot(&mut self, (x, y): (i32, i32), radius: u32, color: Color) {
+        let color = code(color);
+        self.0 += &format!(
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" opacity=\"1\" fill=\"{color}\" stroke=\"none\" stroke-width=\"1\"/>\n"
+        );
+    }
+
+    /// A line of text around its vertical centre; `anchor` is what stands at x: `start`, `middle` or `end`.
+    pub fn text(&mut self, text: &str, at: (i32, i32), size: u32, anchor: &str) {
+        self.text_with(text, at, size, anchor, "");
+    }
+
+    /// Lines of small text below each other.
+    pub fn small_lines(&mut self, lines: &[String], (x, mut y): (i32, i32)) {
+        for line in lines {
+            self.text(line, (x, y), SMALL, "start");
+            y += SMALL_LINE;
+        }
+    }
+
+    /// A line of bold text.
+    pub fn bold(&mut self, text: &str, at: (i32, i32), size: u32) {
+        self.text_with(text, at, size, "start", " font-weight=\"bold\"");
+    }
+
+    /// A line of text that is read upwards.
+    pub fn upright(&mut self, text: &str, at: (i32, i32), size: u32) {
+        let turned = format!(" transform=\"rotate(270, {}, {})\"", at.0, at.1);
+        self.text_with(text, at, size, "middle", &turned);
+    }
+
+    fn text_with(
+        &mut self,
+        text: &str,
+        (x, y): (i32, i32),
+        size: u32,
+        anchor: &str,
+        attributes: &str,
+    ) {
+        // the sizes that all figures were drawn with, to the last digit
+        let size = f64::from(size) * 1.24 / 1.24;
+        let color = code(palette::BLACK);
+        let text = text.replace('&', "&amp;").replace('<', "&lt;");
+        let text = text.replace('>', "&gt;").replace('"', "&quot;");
+        let text = text.replace('\'', "&apos;");
+        self.0 += &format!(
+            "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-family=\"{FAMILIES}\" font-size=\"{size}\" \
+             opacity=\"1\" fill=\"{color}\"{attributes}>\n{text}\n</text>\n"
+        );
+    }
+}
+
+fn code((r, g, b): Color) -> String {
+    format!("#{r:02X}{g:02X}{b:02X}")
+}
