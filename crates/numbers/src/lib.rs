@@ -2,24 +2,14 @@
 
 /// A value with three significant digits and an SI prefix, such as `23.1 µm`, and a no-break space.
 pub fn si(value: f64, unit: &str) -> String {
-    const PREFIXES: [(f64, &str); 8] = [
-        (1e9, "G"),
-        (1e6, "M"),
-        (1e3, "k"),
-        (1.0, ""),
-        (1e-3, "m"),
-        (1e-6, "µ"),
-        (1e-9, "n"),
-        (1e-12, "p"),
-    ];
+    const PREFIXES: [&str; 8] = ["p", "n", "µ", "m", "", "k", "M", "G"];
+    const FACTORS: [f64; 8] = [1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9];
     if value == 0.0 || !value.is_finite() {
         return format!("{}\u{a0}{unit}", plain(value));
     }
-    let size = rounded(value.abs());
-    let (factor, prefix) = PREFIXES
-        .into_iter()
-        .find(|(f, _)| size >= *f * 0.9999)
-        .unwrap_or(PREFIXES[7]);
+    let thousands = magnitude(value, 3).div_euclid(3);
+    let place = (thousands + 4).clamp(0, 7) as usize;
+    let (factor, prefix) = (FACTORS[place], PREFIXES[place]);
     format!("{}\u{a0}{prefix}{unit}", digits(value / factor))
 }
 
@@ -36,10 +26,10 @@ pub fn digits(value: f64) -> String {
     let text = format!("{value:.*}", (2 - magnitude).max(0) as usize);
     // a step of 2 µs is not 2.00 µs; the tolerance is that of a few products
     let short = without_zeros(&text);
-    let exact = short
-        .parse::<f64>()
-        .is_ok_and(|v| (v - value).abs() <= 1e-14 * value.abs());
-    if exact { short.into() } else { text }
+    match short.parse::<f64>() {
+        Ok(v) if (v - value).abs() <= 1e-14 * value.abs() => short.to_owned(),
+        _ => text,
+    }
 }
 
 /// A value with at most so many significant digits; powers of ten as in a file, such as `1.25e-8`. For messages, and for
@@ -99,14 +89,8 @@ pub fn percent(value: f64) -> String {
 /// An integer as superscript characters.
 pub fn superscript(n: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    n.to_string()
-        .chars()
-        .map(|c| c.to_digit(10).map_or('⁻', |d| DIGITS[d as usize]))
-        .collect()
-}
-
-fn rounded(size: f64) -> f64 {
-    format!("{size:.2e}").parse().unwrap_or(size)
+    let raised = |c: char| c.to_digit(10).map_or('⁻', |d| DIGITS[d as usize]);
+    n.to_string().chars().map(raised).collect()
 }
 
 #[cfg(test)]
