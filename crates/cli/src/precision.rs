@@ -5,10 +5,9 @@ use super::print;
 use super::progress::show;
 use clap::Args;
 use looselink::output::Folder;
-use looselink::simulate::Notice;
 use std::path::PathBuf;
 use studies::machine::machine;
-use studies::precision::{Effort, FILES, Study, Survey, page, run};
+use studies::precision::{Compared, Effort, FILES, Found, Motion, Statistics, Study};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -36,27 +35,22 @@ pub fn precision(arguments: &Arguments) -> Result<(), Failure> {
     let folder = Folder::new(&arguments.out, &FILES, arguments.force)?;
     let study = Study::load(&arguments.study)?;
     folder.prepare()?;
+    match study.statistics {
+        Some(_) => make::<Statistics>(arguments, &study, &folder),
+        None => make::<Motion>(arguments, &study, &folder),
+    }
+}
+
+fn make<C: Compared>(arguments: &Arguments, study: &Study, folder: &Folder) -> Result<(), Failure> {
+    let smoke = arguments.smoke;
     let effort = Effort {
-        repeats: if arguments.smoke {
-            1
-        } else {
-            arguments.repeats.into()
-        },
-        smoke: arguments.smoke,
+        repeats: if smoke { 1 } else { arguments.repeats.into() },
+        smoke,
     };
-    let mut tell = |notice: Notice| show(notice, arguments.quiet);
+    let found: Found<C> = Found::run(study, effort, &mut |notice| show(notice, arguments.quiet))?;
     let machine = machine();
-    let (page, stored) = match study.statistics {
-        Some(_) => {
-            let survey = Survey::run(&study, effort, &mut tell)?;
-            (survey.page(&study, &machine), survey.write(&study, &folder))
-        }
-        None => {
-            let outcome = run(&study, effort, &mut tell)?;
-            (page(&outcome, &machine), outcome.write(&study, &folder))
-        }
-    };
+    let stored = found.write(study, &machine, folder);
     // What was measured is shown also where it cannot be stored.
-    print(&page)?;
+    print(&found.page(study, &machine))?;
     Ok(stored?)
 }

@@ -3,7 +3,6 @@
 #![forbid(unsafe_code)]
 
 pub mod ablation;
-pub mod instructions;
 pub mod machine;
 pub mod precision;
 

@@ -1,4 +1,5 @@
-//! Processor times of repeated runs: where they were measured, with what, and their middle.
+//! Processor times of repeated runs: where they were measured, with what, and their middle; counts of instructions, where the
+//! machine has them.
 
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -22,11 +23,7 @@ pub struct Machine {
 impl fmt::Display for Machine {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let [commit, lock] = [&self.commit, &self.lock].map(|x| x.as_deref().unwrap_or("unknown"));
-        let Machine {
-            processor,
-            compiler,
-            ..
-        } = self;
+        let (processor, compiler) = (&self.processor, self.compiler);
         write!(
             f,
             "{processor}; {compiler}; commit {commit}, Cargo.lock {lock}"
@@ -37,38 +34,51 @@ impl fmt::Display for Machine {
 /// This machine and this program.
 pub fn machine() -> Machine {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let git = |arguments: &[&str]| {
-        let output = Command::new("git")
-            .arg("-C")
-            .arg(root)
-            .args(arguments)
-            .output()
-            .ok()?;
-        let text = String::from_utf8(output.stdout).ok()?;
-        output.status.success().then(|| text.trim().to_owned())
-    };
-    let commit = git(&["rev-parse", "--short=12", "HEAD"]).map(|commit| {
-        let changed = git(&["status", "--porcelain", "--untracked-files=no"]);
-        let mark = if changed.is_some_and(|c| !c.is_empty()) {
-            "+"
-        } else {
-            ""
-        };
-        commit + mark
-    });
-    let lock = std::fs::read(root.join("Cargo.lock")).ok().map(|bytes| {
-        let digest = Sha256::digest(&bytes);
-        digest[..8]
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect()
-    });
+    let describe = [
+        "describe",
+        "--always",
+        "--abbrev=12",
+        "--dirty=+",
+        "--exclude=*",
+    ];
+    let commit = Command::new("git")
+        .arg("-C")
+        .arg(root)
+        .args(describe)
+        .output();
+    let commit = commit.ok().filter(|output| output.status.success());
+    let digest = |bytes: Vec<u8>| Sha256::digest(&bytes);
+    let digest = std::fs::read(root.join("Cargo.lock")).ok().map(digest);
+    let hex = |byte: &u8| format!("{byte:02x}");
     Machine {
         processor: looselink::output::machine(),
         compiler: env!("LOOSELINK_COMPILER"),
-        commit,
-        lock,
+        commit: commit.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()),
+        lock: digest.map(|digest| digest[..8].iter().map(hex).collect()),
     }
+}
+
+/// Counts the instructions of this thread from now on. What is returned gives their number so far; nothing where the system or
+/// the processor gives no counts.
+#[cfg(target_os = "linux")]
+pub fn count_instructions() -> impl FnMut() -> Option<u64> {
+    let begin = || {
+        let mut counter = perf_event::Builder::new().build()?;
+        counter.enable()?;
+        Ok::<_, std::io::Error>(counter)
+    };
+    let mut counter = begin().ok();
+    move || {
+        let count = counter.as_mut()?.read().ok()?;
+        // virtual machines may have a counter that stays at zero
+        (count > 0).then_some(count)
+    }
+}
+
+/// There is nothing to count with.
+#[cfg(not(target_os = "linux"))]
+pub fn count_instructions() -> impl FnMut() -> Option<u64> {
+    || None
 }
 
 /// Processor time of a run that was made several times \[s\].

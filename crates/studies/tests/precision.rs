@@ -1,7 +1,7 @@
 //! Studies of precision against time: those of the project work, faults are reported, failures are part of the outcome.
 
 use std::path::{Path, PathBuf};
-use studies::precision::{Effort, Outcome, Pace, Study, Survey, figure, run, table};
+use studies::precision::{Compared, Effort, Motion, Outcome, Pace, Statistics, Study, Survey};
 
 const SMOKE: Effort = Effort {
     repeats: 1,
@@ -13,7 +13,7 @@ fn folder() -> PathBuf {
 }
 
 fn outcome(study: &Study) -> Outcome {
-    run(study, SMOKE, &mut |_| {}).unwrap_or_else(|e| panic!("{}: {e}", study.title))
+    Outcome::run(study, SMOKE, &mut |_| {}).unwrap_or_else(|e| panic!("{}: {e}", study.title))
 }
 
 /// Every study of the project, the coarsest point of every curve: none fails, the reference is far finer than what is
@@ -36,7 +36,10 @@ fn studies_of_the_project_work() {
                 .as_ref()
                 .unwrap_or_else(|e| panic!("{name}: {e}"));
             let errors = measured.errors;
-            assert!(errors.position > 100.0 * outcome.floor.position, "{name}");
+            assert!(
+                errors.position > 100.0 * outcome.reference.floor.position,
+                "{name}"
+            );
             assert!(
                 errors.energy.is_finite() && measured.work.steps > 100,
                 "{name}"
@@ -46,7 +49,12 @@ fn studies_of_the_project_work() {
             }
         }
         assert!(outcome.timings.iter().flatten().all(|t| t.least > 0.0));
-        assert_eq!(figure(&study, &outcome).rows.len(), 3, "{}", study.title);
+        assert_eq!(
+            Motion::figure(&outcome, &study).rows.len(),
+            3,
+            "{}",
+            study.title
+        );
         count += 1;
     }
     assert_eq!(count, 9);
@@ -59,7 +67,7 @@ fn studies_of_statistics_work() {
         let study = Study::load(&folder().join(name)).unwrap_or_else(|e| panic!("{e}"));
         let survey = Survey::run(&study, SMOKE, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(survey.runs.len(), study.curves.len());
-        let [_, exact] = &survey.reference;
+        let [_, exact] = &survey.reference.runs;
         for run in &survey.runs {
             let (measures, work) = run.result.as_ref().unwrap_or_else(|e| panic!("{e}"));
             // 20 ms of impacts, each run a sample of its own
@@ -69,8 +77,8 @@ fn studies_of_statistics_work() {
             assert_eq!(measures.loss(), measures.numerical / measures.dissipated);
             assert!(measures.loss().is_finite() && work.steps > 100);
         }
-        assert!(survey.table(study.duration).lines().count() > study.curves.len() + 3);
-        assert_eq!(survey.figure(&study).rows.len(), 2);
+        assert!(Statistics::table(&survey, &study).lines().count() > study.curves.len() + 3);
+        assert_eq!(Statistics::figure(&survey, &study).rows.len(), 2);
     }
     let wrong = "[statistics]\nfrom = 1.0\ncontact = [\"B1.contact\"]\n[[curves]]\nname = \"x\"\nsteps = [1e-3]\n";
     let error = study(wrong).unwrap_err();
@@ -135,8 +143,8 @@ steps = [1e-3]
     assert!(failed(1).starts_with("the accuracy of 1e-20 m over 0.5 s cannot be reached at t = "));
     assert!(first.runs[2].result.is_ok());
     assert_eq!(first.timings.iter().flatten().count(), 1);
-    assert!(table(&first).contains("| Verlet | step 1\u{a0}ms | failed: method"));
-    let caption = figure(&study, &first).caption;
+    assert!(Motion::table(&first, &study).contains("| Verlet | step 1\u{a0}ms | failed: method"));
+    let caption = Motion::figure(&first, &study).caption;
     assert!(
         caption.contains("Failed: Verlet at step 1\u{a0}ms; too much at accuracy"),
         "{caption}"
@@ -168,7 +176,8 @@ fn faults_of_a_study_are_told() {
     }
     let mut wrong = study("[[curves]]\nname = \"x\"\nsteps = [1e-3]\n").unwrap();
     wrong.position = vec!["bob.x".into()];
-    let error = run(&wrong, SMOKE, &mut |_| {}).unwrap_err().to_string();
+    let error = Outcome::run(&wrong, SMOKE, &mut |_| {});
+    let error = error.unwrap_err().to_string();
     assert!(
         error.starts_with("no channel of this scene is named \"bob.x\""),
         "{error}"

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use studies::ablation::figure as figure_of_effects;
 use studies::machine::machine;
-use studies::precision::{Effort, Outcome, Study, Survey, figure, run};
+use studies::precision::{Compared, Effort, Motion, Outcome, Statistics, Study, Survey};
 
 /// Runs all studies of precision against time and writes ACCURACY.md.
 #[derive(Debug, Parser)]
@@ -116,7 +116,7 @@ fn studied(repeats: u16) -> Result<()> {
             ida::points(&study, tolerances, repeats, &mut tell, &mut |pace, made| {
                 survey.add(&study, ida::NAME, pace, made)
             })?;
-            plot::save(&survey.figure(&study), &pictures, &name)?;
+            plot::save(&Statistics::figure(&survey, &study), &pictures, &name)?;
             surveyed.push(Surveyed {
                 name,
                 study,
@@ -124,7 +124,8 @@ fn studied(repeats: u16) -> Result<()> {
             });
             continue;
         }
-        let mut outcome = run(&study, effort, &mut tell).map_err(|e| miette!("{e}"))?;
+        let outcome = Outcome::run(&study, effort, &mut tell);
+        let mut outcome = outcome.map_err(|e| miette!("{e}"))?;
         // IDA is a rival to methods; a mesh has none
         if !study.compares_elements() {
             ida::points(
@@ -135,7 +136,7 @@ fn studied(repeats: u16) -> Result<()> {
                 &mut |pace, made| outcome.add(&study, ida::NAME, pace, made),
             )?;
         }
-        plot::save(&figure(&study, &outcome), &pictures, &name)?;
+        plot::save(&Motion::figure(&outcome, &study), &pictures, &name)?;
         made.push(Made {
             name,
             study,

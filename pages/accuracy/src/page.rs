@@ -4,7 +4,7 @@ use crate::{Made, Surveyed, effects};
 use std::fmt::Write;
 use studies::ablation::Ablation;
 use studies::machine::{Machine, median};
-use studies::precision::{Outcome, Pace};
+use studies::precision::{Compared, Measures, Motion, Outcome, Pace, Run, Statistics, Work};
 
 /// Errors of position at which curves are compared \[m\].
 const LEVELS: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
@@ -36,7 +36,7 @@ pub fn page(
             one.study.title,
             one.study.title,
             one.name,
-            studies::precision::table(&one.outcome),
+            Motion::table(&one.outcome, &one.study),
             folded(&one.outcome.warnings())
         );
     }
@@ -47,7 +47,7 @@ pub fn page(
             one.study.title,
             one.name,
             long_runs(one),
-            one.survey.table(one.study.duration),
+            Statistics::table(&one.survey, &one.study),
             folded(&one.survey.warnings())
         );
     }
@@ -77,7 +77,7 @@ fn asked(made: &[Made]) -> String {
     for one in made {
         for run in &one.outcome.runs {
             if let (Pace::Accuracy { position, .. }, Ok(measured)) = (run.pace, &run.result)
-                && measured.errors.position > 2.0 * one.outcome.floor.position
+                && measured.errors.position > 2.0 * one.outcome.reference.floor.position
             {
                 let name = format!("{}, {}", one.name, run.curve);
                 rows.push((position, measured.errors.position / position, name));
@@ -275,7 +275,7 @@ const CONVERGED: [f64; 3] = [0.01, 0.03, 0.05];
 
 /// Which run is the fastest whose statistics are converged.
 fn long_runs(one: &Surveyed) -> String {
-    let [_, exact] = &one.survey.reference;
+    let [_, exact] = &one.survey.reference.runs;
     let runs = one.survey.runs.iter().zip(&one.survey.timings);
     let good = runs.filter_map(|(run, timing)| {
         let (measures, _) = run.result.as_ref().ok()?;
@@ -287,7 +287,7 @@ fn long_runs(one: &Surveyed) -> String {
     });
     let mut good: Vec<_> = good.collect();
     good.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let reported = |(run, time): &(&studies::precision::Sampled, f64)| {
+    let reported = |(run, time): &(&Run<(Measures, Work)>, f64)| {
         format!(
             "{} with {} ({} times real time)",
             run.curve,
@@ -304,9 +304,8 @@ fn long_runs(one: &Surveyed) -> String {
     );
     if let Some(first) = good.first() {
         text += &format!(" The fastest of these is {}", reported(first));
-        let controlled = |(run, _): &&(&studies::precision::Sampled, f64)| {
-            matches!(run.pace, Pace::Accuracy { .. })
-        };
+        let controlled =
+            |(run, _): &&(&Run<(Measures, Work)>, f64)| matches!(run.pace, Pace::Accuracy { .. });
         text += &match good.iter().find(controlled) {
             Some(other) if other.1 > first.1 => {
                 format!(

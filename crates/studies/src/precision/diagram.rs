@@ -2,7 +2,7 @@
 
 use super::elements::Meshes;
 use super::errors::NORMS;
-use super::{Outcome, Pace, Study};
+use super::{Compared, Errors, Found, Outcome, Pace, Run, Study};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
 /// Curves that several studies have, each with the same colour in all of them.
@@ -21,7 +21,7 @@ const NAMED: [(&str, Color); 12] = [
     ("IDA (second implementation)", palette::BLACK),
 ];
 
-/// The colour of a curve; those not named above take the colours that are left, in turn.
+/// The colour of one of these curves; those not named above take the colours that are left, in turn.
 pub(super) fn color(curves: &[&str], curve: &str) -> Color {
     let named = |name: &str| NAMED.iter().find(|(n, _)| *n == name);
     if let Some((_, color)) = named(curve) {
@@ -36,7 +36,7 @@ pub(super) fn color(curves: &[&str], curve: &str) -> Color {
 }
 
 /// Errors against processor time, one panel a norm, and the error of position against the step or the accuracy.
-pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
+pub(super) fn figure(study: &Study, outcome: &Outcome) -> Figure {
     let mut panels = Vec::new();
     for (name, unit, of) in NORMS {
         let asked = match name {
@@ -57,13 +57,9 @@ pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
     panels.push(against_pace(outcome, false));
     panels.push(against_pace(outcome, true));
     panels.retain(|panel| !panel.marks.is_empty());
-    let failed: Vec<String> = outcome
-        .runs
-        .iter()
-        .filter(|run| run.result.is_err())
-        .map(|run| format!("{} at {}", run.curve, run.pace))
-        .collect();
-    let failures = match failed.as_slice() {
+    let failed = outcome.runs.iter().filter(|run| run.result.is_err());
+    let failed = failed.map(|run| format!("{} at {}", run.curve, run.pace));
+    let failures = match failed.collect::<Vec<String>>().as_slice() {
         [] => "No run failed.".to_owned(),
         list => format!("Failed: {} (crosses).", list.join("; ")),
     };
@@ -75,16 +71,11 @@ pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
         false => "",
     };
     let [coarse, fine] = study.reference.paces();
-    let scene = study
-        .scene
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy();
     let caption = format!(
         "{}. Scene {}, the first {}; errors are the largest over rows every {}. Reference: {}, {coarse} and {fine}; dashed: \
              the difference between the two, below which errors are not distinguished.{kept} {failures}",
-        outcome.title,
-        with(&scene, &study.set, None),
+        study.title,
+        with(&study.scene_name(), &study.set, None),
         numbers::si(study.duration, "s"),
         numbers::si(study.interval, "s"),
         with("", &study.reference.set, study.reference.elements),
@@ -94,33 +85,44 @@ pub fn figure(study: &Study, outcome: &Outcome) -> Figure {
 
 /// A name, what is changed in it and how many elements its flexible links have.
 fn with(name: &str, set: &[String], elements: Option<usize>) -> String {
-    let name = Some(name.to_owned()).filter(|name| !name.is_empty());
-    let elements = elements.map(|n| format!("{n} elements per flexible link"));
-    let parts = name.into_iter().chain(set.iter().cloned()).chain(elements);
-    parts.collect::<Vec<String>>().join(", ")
+    let mut parts = vec![name.to_owned()];
+    parts.extend_from_slice(set);
+    parts.extend(elements.map(|n| format!("{n} elements per flexible link")));
+    parts.retain(|part| !part.is_empty());
+    parts.join(", ")
 }
 
-/// Points of a curve that reached the end, as (abscissa, error).
-fn points(
-    outcome: &Outcome,
-    curve: &str,
-    abscissa: impl Fn(usize) -> Option<f64>,
-    of: fn(&super::Errors) -> f64,
-) -> (Vec<f64>, Vec<f64>) {
-    let runs = outcome.runs.iter().enumerate();
-    runs.filter(|(_, run)| run.curve == curve)
-        .filter_map(|(i, run)| Some((abscissa(i)?, of(&run.result.as_ref().ok()?.errors))))
-        .filter(|(x, error)| *x > 0.0 && *error > 0.0)
-        .unzip()
-}
-
-fn lines(label: &str, color: Color, (x, y): (Vec<f64>, Vec<f64>)) -> Vec<Mark> {
-    if x.is_empty() {
-        return Vec::new();
+impl<C: Compared> Found<C> {
+    /// The marks of every curve in its colour: `draw` makes them from the points that are there and positive.
+    pub(super) fn marks(
+        &self,
+        point: impl Fn(usize, &Run<C::Measured>) -> Option<(f64, f64)>,
+        draw: impl Fn(&str, Color, &[f64], &[f64]) -> Vec<Mark>,
+    ) -> Vec<Mark> {
+        let mut marks = Vec::new();
+        let curves = self.curves();
+        for curve in &curves {
+            let runs = self.runs.iter().enumerate();
+            let points = runs.filter(|(_, run)| run.curve == *curve);
+            let points = points.filter_map(|(i, run)| point(i, run));
+            let (x, y): (Vec<f64>, Vec<f64>) = points.filter(|(x, y)| *x > 0.0 && *y > 0.0).unzip();
+            if !x.is_empty() {
+                marks.extend(draw(curve, color(&curves, curve), &x, &y));
+            }
+        }
+        marks
     }
+
+    /// Processor time of a run.
+    pub(super) fn seconds(&self, run: usize) -> Option<f64> {
+        Some(self.timings[run].as_ref()?.median)
+    }
+}
+
+fn lines(label: &str, color: Color, x: &[f64], y: &[f64]) -> Vec<Mark> {
     vec![
-        Mark::curve("", color, &x, &y),
-        Mark::points(label, color, &x, &y, 8),
+        Mark::curve("", color, x, y),
+        Mark::points(label, color, x, y, 8),
     ]
 }
 
@@ -128,15 +130,13 @@ fn against_time(
     outcome: &Outcome,
     name: &str,
     unit: &'static str,
-    of: fn(&super::Errors) -> f64,
+    of: fn(&Errors) -> f64,
 ) -> Panel {
-    let seconds = |i: usize| outcome.timings[i].as_ref().map(|t| t.median);
-    let mut marks = Vec::new();
-    for curve in outcome.curves() {
-        let color = color(&outcome.curves(), curve);
-        marks.extend(lines(curve, color, points(outcome, curve, seconds, of)));
-    }
-    let floor = of(&outcome.floor);
+    let mut marks = outcome.marks(
+        |i, run| Some((outcome.seconds(i)?, of(&run.result.as_ref().ok()?.errors))),
+        lines,
+    );
+    let floor = of(&outcome.reference.floor);
     if floor > 0.0 && name != "energy" {
         marks.push(Mark::level("", palette::BLACK, floor));
     }
@@ -151,41 +151,38 @@ fn against_time(
 
 /// Against the accuracies asked for with `asked`, else against steps.
 fn against_pace(outcome: &Outcome, asked: bool) -> Panel {
-    let abscissa = |i: usize| match (outcome.runs[i].pace, asked) {
+    let abscissa = |pace: Pace| match (pace, asked) {
         (Pace::Step(step), false) => Some(step),
         (Pace::Accuracy { position, .. }, true) => Some(position),
         _ => None,
     };
-    let mut marks = Vec::new();
-    for curve in outcome.curves() {
-        let color = color(&outcome.curves(), curve);
-        let found = points(outcome, curve, abscissa, |e| e.position);
-        marks.extend(lines(curve, color, found));
-    }
-    let top = marks
-        .iter()
-        .fold(f64::MIN_POSITIVE, |top, mark| match mark.shape {
-            plot::Shape::Points { .. } => mark.y.iter().copied().fold(top, f64::max),
-            _ => top,
-        });
-    for (i, run) in outcome.runs.iter().enumerate() {
-        if let (Err(_), Some(x)) = (&run.result, abscissa(i)) {
+    let mut marks = outcome.marks(
+        |_, run| {
+            Some((
+                abscissa(run.pace)?,
+                run.result.as_ref().ok()?.errors.position,
+            ))
+        },
+        lines,
+    );
+    let heights = marks.iter().flat_map(|mark| &mark.y);
+    let top = heights.copied().fold(f64::MIN_POSITIVE, f64::max);
+    let all = outcome.runs.iter();
+    let all: Vec<_> = all
+        .filter_map(|run| Some((run, abscissa(run.pace)?)))
+        .collect();
+    for (run, x) in &all {
+        if run.result.is_err() {
             let color = color(&outcome.curves(), &run.curve);
-            marks.push(Mark::cross("", color, (x, top)));
+            marks.push(Mark::cross("", color, (*x, top)));
         }
     }
     if asked && !marks.is_empty() {
-        let all: Vec<f64> = (0..outcome.runs.len()).filter_map(abscissa).collect();
-        let low = all.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = all.iter().copied().fold(0.0, f64::max);
-        let ends = [low, high];
+        let fold = |f: fn(f64, f64) -> f64, from| all.iter().map(|(_, x)| *x).fold(from, f);
+        let ends = [fold(f64::min, f64::INFINITY), fold(f64::max, 0.0)];
+        let tenfold = ends.map(|x| 10.0 * x);
         marks.push(Mark::curve("as asked", palette::GREY, &ends, &ends));
-        marks.push(Mark::curve(
-            "ten times",
-            palette::BLACK,
-            &ends,
-            &ends.map(|x| 10.0 * x),
-        ));
+        marks.push(Mark::curve("ten times", palette::BLACK, &ends, &tenfold));
     }
     let (title, label, unit) = match asked {
         true => (

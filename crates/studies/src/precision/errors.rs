@@ -1,6 +1,9 @@
 //! How far two runs are apart, in several norms.
 
-use super::{Columns, Study, StudyError};
+use super::diagram::figure;
+use super::table::table;
+use super::{Columns, Compared, Found, Study, StudyError, Work, column};
+use plot::Figure;
 use serde::Serialize;
 
 /// The distance of a run from the reference.
@@ -27,9 +30,68 @@ pub const NORMS: [Norm; 4] = [
     ("energy", "J", |e| e.energy),
 ];
 
+/// The reference of a study of errors.
+#[derive(Debug, Serialize)]
+pub struct Motion {
+    /// Difference between the two runs of the reference: nothing below it is distinguished.
+    pub floor: Errors,
+    /// What the fine one recorded.
+    #[serde(skip)]
+    exact: Series,
+}
+
+/// What a run that reached its end gave.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measured {
+    /// Against the reference.
+    pub errors: Errors,
+    /// Work done.
+    pub work: Work,
+}
+
+impl Compared for Motion {
+    type Kept = Series;
+    type Measured = Measured;
+    const FIGURE: &str = "Work and precision";
+
+    fn keep(study: &Study, get: Columns) -> Result<Series, StudyError> {
+        let columns = |names: &[String]| {
+            let columns = names.iter().map(|name| Ok(column(get, name)?.to_vec()));
+            columns.collect::<Result<Vec<_>, StudyError>>()
+        };
+        Ok(Series {
+            interval: study.interval,
+            position: columns(&study.position)?,
+            acceleration: columns(&study.acceleration)?,
+            force: columns(&study.force)?,
+            energy: column(get, "energy.numerical")?.to_vec(),
+        })
+    }
+
+    fn new(coarse: Series, fine: Series) -> Motion {
+        Motion {
+            floor: coarse.errors(&fine),
+            exact: fine,
+        }
+    }
+
+    fn measure(&self, kept: Series, work: Work) -> Measured {
+        let errors = kept.errors(&self.exact);
+        Measured { errors, work }
+    }
+
+    fn table(found: &Found<Motion>, _: &Study) -> String {
+        table(found)
+    }
+
+    fn figure(found: &Found<Motion>, study: &Study) -> Figure {
+        figure(study, found)
+    }
+}
+
 /// What a run recorded of what is compared.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Series {
+#[derive(Debug)]
+pub struct Series {
     interval: f64,
     position: Vec<Vec<f64>>,
     acceleration: Vec<Vec<f64>>,
@@ -38,25 +100,7 @@ pub(super) struct Series {
 }
 
 impl Series {
-    /// From the columns of a run by the names of their channels.
-    pub fn of(study: &Study, get: Columns) -> Result<Series, StudyError> {
-        let column = |name: &String| match get(name) {
-            Some(column) => Ok(column.to_vec()),
-            None => Err(StudyError::plain(format!(
-                "the scene has no channel {name:?}"
-            ))),
-        };
-        let columns = |names: &[String]| names.iter().map(column).collect::<Result<_, _>>();
-        Ok(Series {
-            interval: study.interval,
-            position: columns(&study.position)?,
-            acceleration: columns(&study.acceleration)?,
-            force: columns(&study.force)?,
-            energy: column(&"energy.numerical".to_owned())?,
-        })
-    }
-
-    pub fn errors(&self, exact: &Series) -> Errors {
+    fn errors(&self, exact: &Series) -> Errors {
         Errors {
             position: largest(&self.position, &exact.position),
             acceleration: largest(&self.acceleration, &exact.acceleration),

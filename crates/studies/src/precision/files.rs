@@ -10,8 +10,9 @@
 //! The first is the same bytes when the study is repeated. It comes last: without it there is no result. A result that is
 //! replaced stands in `previous-result` inside the folder until then.
 
-use super::{Outcome, Pace, Study, Survey, Timing, figure, page};
-use crate::machine::{Machine, machine};
+use super::{Compared, Found, Pace, Study, Timing};
+use crate::machine::Machine;
+use crate::warning_list;
 use looselink::output::{Folder, OutputError, TIMING, json};
 use serde::Serialize;
 use std::io;
@@ -24,6 +25,10 @@ pub const FILES: [&str; 5] = [
     "precision.svg",
     "precision.png",
 ];
+
+/// What the processor times of a table are.
+const TIMES: &str = "Processor time of the integration on one core, without reading and compiling \
+    the scene: the median over the number of runs in column `runs`, after one that is not timed; `timing.json` has every single time.";
 
 #[derive(Serialize)]
 struct Times<'a> {
@@ -40,59 +45,44 @@ pub struct Time<'a> {
     timing: Option<&'a Timing>,
 }
 
-impl<'a> Time<'a> {
-    pub(super) fn of(
-        runs: impl Iterator<Item = (&'a str, Pace)>,
-        timings: &'a [Option<Timing>],
-    ) -> Vec<Time<'a>> {
-        let times = runs.zip(timings).map(|((curve, pace), timing)| Time {
-            curve,
-            pace,
+impl<C: Compared> Found<C> {
+    /// The time of every point.
+    pub fn times(&self) -> Vec<Time<'_>> {
+        let runs = self.runs.iter().zip(&self.timings);
+        let times = runs.map(|(run, timing)| Time {
+            curve: &run.curve,
+            pace: run.pace,
             timing: timing.as_ref(),
         });
         times.collect()
     }
-}
 
-impl Outcome {
+    /// A page with the diagrams and the table, and where it was measured.
+    pub fn page(&self, study: &Study, machine: &Machine) -> String {
+        format!(
+            "# {}\n\n![{}](precision.png)\n\n{}\n{TIMES} {machine}.\n{}",
+            self.title,
+            C::FIGURE,
+            C::table(self, study),
+            warning_list(&self.warnings())
+        )
+    }
+
     /// Writes all files, `precision.json` last.
     ///
     /// # Errors
     /// When a file cannot be written.
-    pub fn write(&self, study: &Study, folder: &Folder) -> Result<(), OutputError> {
-        let machine = machine();
-        let times = Times {
-            machine: &machine,
-            runs: self.times(),
-        };
-        let page = page(self, &machine);
-        write(folder, self, page, &times, &figure(study, self))
+    pub fn write(
+        &self,
+        study: &Study,
+        machine: &Machine,
+        folder: &Folder,
+    ) -> Result<(), OutputError> {
+        let figure = plot::render(&C::figure(self, study));
+        let [svg, png] = figure.map_err(|e| io::Error::other(e.to_string()))?;
+        let page = self.page(study, machine).into_bytes();
+        let runs = self.times();
+        let times = json(&Times { machine, runs })?;
+        folder.write(&[json(self)?, page, times, svg, png])
     }
-}
-
-impl Survey {
-    /// Writes all files, `precision.json` last.
-    ///
-    /// # Errors
-    /// When a file cannot be written.
-    pub fn write(&self, study: &Study, folder: &Folder) -> Result<(), OutputError> {
-        let machine = machine();
-        let times = Times {
-            machine: &machine,
-            runs: self.times(),
-        };
-        let page = self.page(study, &machine);
-        write(folder, self, page, &times, &self.figure(study))
-    }
-}
-
-fn write(
-    folder: &Folder,
-    found: &impl Serialize,
-    page: String,
-    times: &Times,
-    figure: &plot::Figure,
-) -> Result<(), OutputError> {
-    let [svg, png] = plot::render(figure).map_err(|e| io::Error::other(e.to_string()))?;
-    folder.write(&[json(found)?, page.into_bytes(), json(times)?, svg, png])
 }

@@ -1,8 +1,9 @@
 //! What accuracy costs in time: a scene with several methods and steps, against a reference of its own.
 //!
-//! A [`Study`] names a scene, channels, a reference and curves; [`run`] makes all runs one after the other, each recorded
-//! once and then timed several times without recording, and gives an [`Outcome`]. What it found is in [`Outcome::runs`] and
-//! does not differ when the study is repeated; what it took is in [`Outcome::timings`].
+//! A [`Study`] names a scene, channels, a reference and curves; [`Found::run`] makes all runs one after the other, each recorded
+//! once and then timed several times without recording. What it found is in [`Found::runs`] and does not differ when the study
+//! is repeated; what it took is in [`Found::timings`]. Short runs are compared in their [`Motion`], long ones in their
+//! [`Statistics`].
 
 mod diagram;
 mod elements;
@@ -13,19 +14,18 @@ mod study;
 mod table;
 
 pub use crate::machine::Timing;
-pub use diagram::figure;
-pub use errors::Errors;
+pub use errors::{Errors, Measured, Motion};
 pub use files::{FILES, Time};
-pub use statistics::{Measures, Sampled, Survey};
-pub use study::{Curve, Pace, Reference, Statistics, Study, StudyError};
-pub use table::{page, table};
+pub use statistics::{Measures, Statistics};
+pub use study::{Curve, Pace, Reference, Sampling, Study, StudyError};
 
-use crate::instructions::Instructions;
+use crate::machine::count_instructions;
 use cpu_time::ThreadTime;
-use errors::Series;
-use looselink::scene::{Scene, SceneError};
-use looselink::simulate::{Notice, Recording, Report, RunError, Simulation};
+use looselink::scene::Scene;
+use looselink::simulate::{Notice, Recording, Report, Simulation};
+use plot::Figure;
 use serde::Serialize;
+use std::error::Error;
 
 /// How thoroughly a study is made.
 #[derive(Debug, Clone, Copy)]
@@ -36,102 +36,64 @@ pub struct Effort {
     pub smoke: bool,
 }
 
+/// What was recorded, by the names of channels.
+type Columns<'a> = &'a dyn Fn(&str) -> Option<&'a [f64]>;
+
+/// A recorded column.
+fn column<'a>(get: Columns<'a>, name: &str) -> Result<&'a [f64], StudyError> {
+    let missing = || StudyError::Plain(format!("the scene has no channel {name:?}"));
+    get(name).ok_or_else(missing)
+}
+
+/// What of the runs of a study is compared with what of its reference.
+pub trait Compared: Serialize + Sized {
+    /// What is kept of a run to compare it.
+    type Kept;
+    /// What a run that reached its end gave.
+    type Measured: Serialize;
+    /// What the figure shows, in words.
+    const FIGURE: &str;
+
+    /// What is kept of a run, from its columns.
+    ///
+    /// # Errors
+    /// A channel that it does not have.
+    fn keep(study: &Study, get: Columns) -> Result<Self::Kept, StudyError>;
+
+    /// From the coarse and the fine run of the reference.
+    fn new(coarse: Self::Kept, fine: Self::Kept) -> Self;
+
+    /// A run against the reference.
+    fn measure(&self, kept: Self::Kept, work: Work) -> Self::Measured;
+
+    /// What was found and what it took, a line a run, in Markdown.
+    fn table(found: &Found<Self>, study: &Study) -> String;
+
+    /// The diagrams.
+    fn figure(found: &Found<Self>, study: &Study) -> Figure;
+}
+
 /// All runs of a study.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Outcome {
+#[derive(Debug, Serialize)]
+pub struct Found<C: Compared> {
     /// The study's title.
     pub title: String,
-    /// Difference between the two runs of the reference: nothing below it is distinguished.
-    pub floor: Errors,
+    /// What the runs are compared with.
+    #[serde(flatten)]
+    pub reference: C,
     /// Warnings of the two runs of the reference, coarse and fine.
     pub reference_warnings: [Vec<String>; 2],
     /// All points, curve by curve.
-    pub runs: Vec<Run>,
+    pub runs: Vec<Run<C::Measured>>,
     /// Their times, in the same order.
     #[serde(skip)]
     pub timings: Vec<Option<Timing>>,
-    /// What the reference recorded.
-    #[serde(skip)]
-    exact: Series,
 }
 
-impl Outcome {
-    /// Adds a point of another program, which has recorded the channels of the study at the same instants.
-    ///
-    /// # Errors
-    /// A channel that it did not record.
-    pub fn add(
-        &mut self,
-        study: &Study,
-        curve: &str,
-        pace: Pace,
-        made: Result<Made, String>,
-    ) -> Result<(), StudyError> {
-        let (result, warnings, timing) = match made {
-            Ok(made) => {
-                let errors = Series::of(study, made.columns)?.errors(&self.exact);
-                let work = made.work;
-                let measured = Measured { errors, work };
-                (Ok(measured), made.warnings, Some(made.timing))
-            }
-            Err(error) => (Err(error), Vec::new(), None),
-        };
-        self.runs.push(Run {
-            curve: curve.to_owned(),
-            pace,
-            result,
-            warnings,
-        });
-        self.timings.push(timing);
-        Ok(())
-    }
-
-    /// Names of the curves in the order of their first points.
-    pub fn curves(&self) -> Vec<&str> {
-        distinct(self.runs.iter().map(|run| &*run.curve))
-    }
-
-    /// The time of every point.
-    pub fn times(&self) -> Vec<Time<'_>> {
-        let runs = self.runs.iter().map(|run| (&*run.curve, run.pace));
-        Time::of(runs, &self.timings)
-    }
-
-    /// All warnings, each after the name of its run.
-    pub fn warnings(&self) -> Vec<String> {
-        let runs = self.runs.iter();
-        let runs = runs.map(|run| (&*run.curve, run.pace, &*run.warnings));
-        named_warnings(&self.reference_warnings, runs)
-    }
-}
-
-fn named_warnings<'a>(
-    reference: &[Vec<String>; 2],
-    runs: impl Iterator<Item = (&'a str, Pace, &'a [String])>,
-) -> Vec<String> {
-    let mut all = Vec::new();
-    let mut add = |name: &str, warnings: &[String]| {
-        all.extend(warnings.iter().map(|warning| format!("{name}: {warning}")));
-    };
-    for (name, warnings) in ["coarse reference", "fine reference"].iter().zip(reference) {
-        add(name, warnings);
-    }
-    for (curve, pace, warnings) in runs {
-        add(&format!("{curve}, {pace}"), warnings);
-    }
-    all
-}
-
-/// Names without those that came before.
-fn distinct<'a>(all: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut names = Vec::new();
-    for name in all {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
-    names
-}
+/// Errors of motions.
+pub type Outcome = Found<Motion>;
+/// Statistics of long runs.
+pub type Survey = Found<Statistics>;
 
 /// A run that reached its end.
 #[derive(Clone)]
@@ -148,24 +110,15 @@ pub struct Made<'a> {
 
 /// One point of a curve.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Run {
+pub struct Run<T> {
     /// Name of the curve.
     pub curve: String,
     /// Step or accuracy.
     pub pace: Pace,
     /// What came of it.
-    pub result: Result<Measured, String>,
+    pub result: Result<T, String>,
     /// What a run that reached its end warns of.
     pub warnings: Vec<String>,
-}
-
-/// What a run that reached its end gave.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Measured {
-    /// Against the reference.
-    pub errors: Errors,
-    /// Work done.
-    pub work: Work,
 }
 
 /// Counts of work.
@@ -194,68 +147,128 @@ impl Work {
     }
 }
 
-/// A scene run to its end, with what it recorded.
-fn record(scene: &Scene) -> Result<(Recording, Report), Failed> {
-    let mut simulation = Simulation::new(scene)?;
-    let mut recording = Recording::new(&simulation);
-    simulation.run(&mut recording)?;
-    Ok((recording, simulation.report()))
-}
-
-/// Processor times of repeated runs, without recording.
-fn time(scene: &Scene, repeats: usize) -> Result<Timing, Failed> {
-    let (mut seconds, mut counts) = (Vec::new(), Vec::new());
-    for _ in 0..repeats {
-        let mut simulation = Simulation::new(scene)?;
-        let (clock, mut instructions) = (ThreadTime::now(), Instructions::start());
-        simulation.run(&mut ())?;
-        seconds.push(clock.elapsed().as_secs_f64());
-        counts.push(instructions.count());
+impl<C: Compared> Found<C> {
+    /// Makes all runs of a study; `tell` is called before each with its name, and with its warnings.
+    ///
+    /// # Errors
+    /// A study that cannot be made: a faulty scene, a channel that the scene does not have, a reference that fails. A point of
+    /// a curve that fails is part of what is found.
+    pub fn run(
+        study: &Study,
+        effort: Effort,
+        tell: &mut dyn FnMut(Notice),
+    ) -> Result<Found<C>, StudyError> {
+        let shorter = effort.smoke && study.statistics.is_some();
+        let study = &if shorter {
+            study.brief()
+        } else {
+            study.clone()
+        };
+        let [(coarse, of_coarse), (fine, of_fine)] = {
+            let [coarse, fine] = study.reference.paces();
+            [
+                reference::<C>(study, coarse, tell)?,
+                reference::<C>(study, fine, tell)?,
+            ]
+        };
+        let mut found = Found {
+            title: study.title.clone(),
+            reference: C::new(coarse, fine),
+            reference_warnings: [of_coarse, of_fine],
+            runs: Vec::new(),
+            timings: Vec::new(),
+        };
+        let count = if effort.smoke { 1 } else { usize::MAX };
+        for curve in &study.curves {
+            for pace in curve.paces().into_iter().take(count) {
+                let name = format!("{}, {pace}", curve.name);
+                tell(Notice::Begun(&name));
+                let scene = study.scene(&curve.set, curve.elements, pace)?;
+                match record_and_time(&scene, effort.repeats) {
+                    Ok((recording, report, timing)) => {
+                        let made = Made {
+                            columns: &|name| recording.get(name),
+                            work: Work::of(&report),
+                            warnings: warnings(&report, &name, tell),
+                            timing,
+                        };
+                        found.add(study, &curve.name, pace, Ok(made))?;
+                    }
+                    Err(error) => found.add(study, &curve.name, pace, Err(error.to_string()))?,
+                }
+            }
+        }
+        Ok(found)
     }
-    Ok(Timing::of(seconds).with_instructions(&counts))
+
+    /// Adds a point, which may come from another program that has recorded the channels of the study at the same instants.
+    ///
+    /// # Errors
+    /// A channel that it did not record.
+    pub fn add(
+        &mut self,
+        study: &Study,
+        curve: &str,
+        pace: Pace,
+        made: Result<Made, String>,
+    ) -> Result<(), StudyError> {
+        let (result, warnings, timing) = match made {
+            Ok(made) => {
+                let kept = C::keep(study, made.columns)?;
+                let measured = self.reference.measure(kept, made.work);
+                (Ok(measured), made.warnings, Some(made.timing))
+            }
+            Err(error) => (Err(error), Vec::new(), None),
+        };
+        self.runs.push(Run {
+            curve: curve.to_owned(),
+            pace,
+            result,
+            warnings,
+        });
+        self.timings.push(timing);
+        Ok(())
+    }
+
+    /// Names of the curves in the order of their first points.
+    pub fn curves(&self) -> Vec<&str> {
+        let mut names = Vec::new();
+        for run in &self.runs {
+            if !names.contains(&&*run.curve) {
+                names.push(&*run.curve);
+            }
+        }
+        names
+    }
+
+    /// All warnings, each after the name of its run.
+    pub fn warnings(&self) -> Vec<String> {
+        let names = ["coarse reference", "fine reference"].map(str::to_owned);
+        let of_reference = names.into_iter().zip(&self.reference_warnings);
+        let runs = self.runs.iter();
+        let of_runs = runs.map(|run| (format!("{}, {}", run.curve, run.pace), &run.warnings));
+        let all = of_reference.chain(of_runs);
+        all.flat_map(|(name, warnings)| warnings.iter().map(move |w| format!("{name}: {w}")))
+            .collect()
+    }
 }
 
-/// Why a point of a curve is missing.
-#[derive(Debug, thiserror::Error)]
-enum Failed {
-    /// The method does not take the scene.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The run ended early.
-    #[error(transparent)]
-    Run(#[from] RunError),
-}
-
-/// Makes all runs of a study; `tell` is called before each with its name, and with its warnings.
-///
-/// # Errors
-/// A study that cannot be made: a faulty scene, a channel that the scene does not have, a reference that fails. A point of a
-/// curve that fails is part of the outcome.
-pub fn run(
+/// One run of the reference, and its warnings.
+fn reference<C: Compared>(
     study: &Study,
-    effort: Effort,
+    pace: Pace,
     tell: &mut dyn FnMut(Notice),
-) -> Result<Outcome, StudyError> {
-    let ([rough, exact], reference_warnings) = references(study, tell, Series::of)?;
-    let mut outcome = Outcome {
-        title: study.title.clone(),
-        floor: rough.errors(&exact),
-        reference_warnings,
-        runs: Vec::new(),
-        timings: Vec::new(),
-        exact,
-    };
-    points(study, effort, tell, &mut |curve, pace, made| {
-        outcome.add(study, curve, pace, made)
-    })?;
-    Ok(outcome)
+) -> Result<(C::Kept, Vec<String>), StudyError> {
+    let name = format!("reference, {pace}");
+    tell(Notice::Begun(&name));
+    let scene = study.scene(&study.reference.set, study.reference.elements, pace)?;
+    let mut simulation = Simulation::new(&scene)?;
+    let mut recording = Recording::new(&simulation);
+    let ended = simulation.run(&mut recording);
+    ended.map_err(|e| StudyError::Plain(format!("the reference with {pace} fails: {e}")))?;
+    let kept = C::keep(study, &|name| recording.get(name))?;
+    Ok((kept, warnings(&simulation.report(), &name, tell)))
 }
-
-/// What was recorded, by the names of channels.
-type Columns<'a> = &'a dyn Fn(&str) -> Option<&'a [f64]>;
-
-/// Takes a point of a curve.
-type Add<'a> = &'a mut dyn FnMut(&str, Pace, Result<Made, String>) -> Result<(), StudyError>;
 
 /// Tells the warnings of a run and gives them back.
 fn warnings(report: &Report, run: &str, tell: &mut dyn FnMut(Notice)) -> Vec<String> {
@@ -266,58 +279,22 @@ fn warnings(report: &Report, run: &str, tell: &mut dyn FnMut(Notice)) -> Vec<Str
     warnings
 }
 
-/// Coarse and fine run of the reference, and their warnings.
-fn references<T>(
-    study: &Study,
-    tell: &mut dyn FnMut(Notice),
-    of: fn(&Study, Columns) -> Result<T, StudyError>,
-) -> Result<([T; 2], [Vec<String>; 2]), StudyError> {
-    let mut run = |pace: Pace| {
-        let name = format!("reference, {pace}");
-        tell(Notice::Begun(&name));
-        let scene = study.scene(&study.reference.set, study.reference.elements, pace)?;
-        let failed = |e: Failed| match e {
-            Failed::Scene(e) => StudyError::Scene(e),
-            Failed::Run(e) => StudyError::plain(format!("the reference with {pace} fails: {e}")),
-        };
-        let (recording, report) = record(&scene).map_err(failed)?;
-        let found = of(study, &|name| recording.get(name))?;
-        Ok::<_, StudyError>((found, warnings(&report, &name, tell)))
-    };
-    let [coarse, fine] = study.reference.paces();
-    let ((coarse, of_coarse), (fine, of_fine)) = (run(coarse)?, run(fine)?);
-    Ok(([coarse, fine], [of_coarse, of_fine]))
-}
-
-/// Makes all points of all curves and gives each to `add`.
-fn points(
-    study: &Study,
-    effort: Effort,
-    tell: &mut dyn FnMut(Notice),
-    add: Add,
-) -> Result<(), StudyError> {
-    let count = if effort.smoke { 1 } else { usize::MAX };
-    for curve in &study.curves {
-        for pace in curve.paces().into_iter().take(count) {
-            let name = format!("{}, {pace}", curve.name);
-            tell(Notice::Begun(&name));
-            let scene = study.scene(&curve.set, curve.elements, pace)?;
-            let made = record(&scene).and_then(|(recording, report)| {
-                Ok((recording, report, time(&scene, effort.repeats)?))
-            });
-            match made {
-                Ok((recording, report, timing)) => {
-                    let made = Made {
-                        columns: &|name| recording.get(name),
-                        work: Work::of(&report),
-                        warnings: warnings(&report, &name, tell),
-                        timing,
-                    };
-                    add(&curve.name, pace, Ok(made))?;
-                }
-                Err(error) => add(&curve.name, pace, Err(error.to_string()))?,
-            }
-        }
+/// Runs a scene to its end, and again without recording for the processor times.
+fn record_and_time(
+    scene: &Scene,
+    repeats: usize,
+) -> Result<(Recording, Report, Timing), Box<dyn Error>> {
+    let mut simulation = Simulation::new(scene)?;
+    let mut recording = Recording::new(&simulation);
+    simulation.run(&mut recording)?;
+    let (mut seconds, mut counts) = (Vec::new(), Vec::new());
+    for _ in 0..repeats {
+        let mut simulation = Simulation::new(scene)?;
+        let (clock, mut instructions) = (ThreadTime::now(), count_instructions());
+        simulation.run(&mut ())?;
+        seconds.push(clock.elapsed().as_secs_f64());
+        counts.push(instructions());
     }
-    Ok(())
+    let timing = Timing::of(seconds).with_instructions(&counts);
+    Ok((recording, simulation.report(), timing))
 }

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+/// A smoke test of a study of statistics simulates this part of the time.
+const SMOKE: f64 = 0.02;
+
 /// Why a study cannot be made.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum StudyError {
@@ -14,12 +17,6 @@ pub enum StudyError {
     /// A fault of its scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
-}
-
-impl StudyError {
-    pub(super) fn plain(message: String) -> StudyError {
-        StudyError::Plain(message)
-    }
 }
 
 /// A scene, a reference and the curves that are compared with it.
@@ -48,15 +45,15 @@ pub struct Study {
     /// What the curves are compared with.
     pub reference: Reference,
     /// Present where not the motion is compared, which chaos has taken apart, but its statistics.
-    pub statistics: Option<Statistics>,
+    pub statistics: Option<Sampling>,
     /// Methods with their steps or accuracies.
     pub curves: Vec<Curve>,
 }
 
-/// Statistics of the second part of a run.
+/// Which part of a run statistics are of.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Statistics {
+pub struct Sampling {
     /// Start of that part \[s\].
     pub from: f64,
     /// Channels that are 1 in contact and 0 out of it.
@@ -161,7 +158,7 @@ impl Study {
     /// A file that cannot be read, or a fault with its line.
     pub fn load(path: &Path) -> Result<Study, StudyError> {
         let unreadable = |cause: &dyn fmt::Display| {
-            StudyError::plain(format!("cannot read `{}`: {cause}", path.display()))
+            StudyError::Plain(format!("cannot read `{}`: {cause}", path.display()))
         };
         let bytes = read_file(path).map_err(|e| unreadable(&e))?;
         let text = String::from_utf8(bytes).map_err(|e| unreadable(&e))?;
@@ -175,8 +172,8 @@ impl Study {
     pub fn parse(path: &Path, text: &str) -> Result<Study, StudyError> {
         let name = path.display();
         let mut study: Study = toml::from_str(text)
-            .map_err(|e| StudyError::plain(format!("`{name}`: {}", e.to_string().trim_end())))?;
-        let fault = |message: String| Err(StudyError::plain(format!("`{name}`: {message}")));
+            .map_err(|e| StudyError::Plain(format!("`{name}`: {}", e.to_string().trim_end())))?;
+        let fault = |message: String| Err(StudyError::Plain(format!("`{name}`: {message}")));
         for (key, value) in [("duration", study.duration), ("interval", study.interval)] {
             if !(value > 0.0 && value.is_finite()) {
                 return fault(format!("`{key}` must be greater than zero, not {value}"));
@@ -200,7 +197,7 @@ impl Study {
             }
             curve.horizon = curve.horizon.or(Some(study.duration));
         }
-        if let Some(Statistics { from, contact }) = &study.statistics
+        if let Some(Sampling { from, contact }) = &study.statistics
             && !(*from >= 0.0 && *from < study.duration && !contact.is_empty())
         {
             return fault(
@@ -209,6 +206,23 @@ impl Study {
         }
         study.scene = path.with_file_name(&study.scene);
         Ok(study)
+    }
+
+    /// Name of the scene's file without the extension.
+    pub(super) fn scene_name(&self) -> String {
+        let stem = self.scene.file_stem().unwrap_or_default();
+        stem.to_string_lossy().into_owned()
+    }
+
+    /// The same, much shorter, to see that it works.
+    pub(super) fn brief(&self) -> Study {
+        let mut study = self.clone();
+        let rows = (SMOKE * study.duration / study.interval).round();
+        study.duration = rows * study.interval;
+        if let Some(statistics) = &mut study.statistics {
+            statistics.from = (0.5 * rows).round() * study.interval;
+        }
+        study
     }
 
     /// True of a study whose curves are numbers of elements: it compares meshes, not methods.
@@ -226,18 +240,14 @@ impl Study {
         elements: Option<usize>,
         pace: Pace,
     ) -> Result<Scene, SceneError> {
-        let contact = self.statistics.iter().flat_map(|s| s.contact.clone());
-        let energies = match self.statistics {
-            Some(_) => &["energy.numerical", "energy.contact_dissipated"][..],
-            None => &["energy.numerical"],
-        };
-        let channels: Vec<String> = [&self.position[..], &self.acceleration, &self.force]
-            .concat()
-            .into_iter()
-            .chain(contact)
-            .chain(energies.iter().map(|e| (*e).to_owned()))
-            .map(|c| format!("{c:?}"))
-            .collect();
+        let mut channels = [&self.position[..], &self.acceleration, &self.force].concat();
+        if let Some(statistics) = &self.statistics {
+            channels.extend_from_slice(&statistics.contact);
+        }
+        channels.push("energy.numerical".to_owned());
+        if self.statistics.is_some() {
+            channels.push("energy.contact_dissipated".to_owned());
+        }
         let mut overrides = self.set.clone();
         overrides.extend_from_slice(set);
         if let Some(elements) = elements {
@@ -248,7 +258,7 @@ impl Study {
         overrides.extend([
             format!("simulation.duration={:?}", self.duration),
             format!("output.interval={:?}", self.interval),
-            format!("output.channels=[{}]", channels.join(", ")),
+            format!("output.channels={channels:?}"),
             match pace {
                 Pace::Step(step) => format!("integrator.step={step:?}"),
                 Pace::Accuracy {
