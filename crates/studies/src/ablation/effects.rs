@@ -96,38 +96,29 @@ impl Effect {
                 continue;
             };
             let mut link = link.clone();
-            body.kind = match self {
-                Effect::Flexibility => Arc::new(link.rigid_link()),
-                Effect::Elements => {
-                    link.elements = 1;
-                    link.nodes = vec![0, 1];
-                    Arc::new(link)
+            match self {
+                Effect::Flexibility => {
+                    body.kind = Arc::new(link.rigid_link());
+                    continue;
                 }
-                Effect::StructuralDamping => {
-                    link.damping = None;
-                    Arc::new(link)
-                }
+                Effect::Elements => (link.elements, link.nodes) = (1, vec![0, 1]),
+                Effect::StructuralDamping => link.damping = None,
                 _ => continue,
-            };
+            }
+            body.kind = Arc::new(link);
         }
         for joint in &mut scene.joints {
             let Some(contact) = joint.contact() else {
                 continue;
             };
             let mut contact = contact.clone();
-            let changed = match self {
-                Effect::Clearance => None,
-                Effect::ContactDamping => {
-                    contact.law = &HERTZ;
-                    contact.restitution = 1.0;
-                    Some(contact)
-                }
-                Effect::Friction => {
-                    contact.friction = None;
-                    Some(contact)
-                }
+            match self {
+                Effect::Clearance => {}
+                Effect::ContactDamping => (contact.law, contact.restitution) = (&HERTZ, 1.0),
+                Effect::Friction => contact.friction = None,
                 _ => continue,
-            };
+            }
+            let changed = (self != Effect::Clearance).then_some(contact);
             if let Some(model) = joint.model.with_contact(changed) {
                 joint.model = model;
             }
@@ -160,8 +151,8 @@ fn links(scene: &Scene) -> impl Iterator<Item = (usize, &FlexibleLink)> {
 fn drop_inner_points(scene: &mut Scene, why: &str) -> Result<(), SceneError> {
     for (b, link) in links(scene) {
         let inner = |point: &PointRef| point.body == b && point.point > 1;
-        let user = fastenings(scene).into_iter().find(|f| inner(&f.point));
-        if let Some(Fastening { name, span, point }) = user {
+        let mut users = fastenings(scene).into_iter();
+        if let Some((name, span, point)) = users.find(|(.., point)| inner(point)) {
             let message = format!(
                 "{name} uses the inner node {}.{}, but {why}",
                 scene.bodies[b].name, link.link.points[point.point].name
@@ -177,17 +168,10 @@ fn drop_inner_points(scene: &mut Scene, why: &str) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// What is fastened to a point.
-struct Fastening {
-    name: String,
-    span: Span,
-    point: PointRef,
-}
-
-/// Everything that names a point of a body.
-fn fastenings(scene: &Scene) -> Vec<Fastening> {
+/// Everything that names a point of a body, by its name.
+fn fastenings(scene: &Scene) -> Vec<(String, Span, PointRef)> {
     let mut list = Vec::new();
-    let mut add = |name: String, span, point| list.push(Fastening { name, span, point });
+    let mut add = |name: String, span, point| list.push((name, span, point));
     for joint in &scene.joints {
         for point in [joint.bearing, joint.journal] {
             add(format!("joint {}", joint.name), joint.span, point);

@@ -3,11 +3,12 @@
 //! Physics is measured at the rows of the output interval and repeats to the last bit. Processor time does not: it is
 //! taken of runs that record nothing, as the median of several.
 
+use super::variants::{Role, Variant};
 use crate::machine::Timing;
 use cpu_time::ThreadTime;
 use looselink::body::Known;
 use looselink::scene::{ChannelPattern, Scene};
-use looselink::simulate::{Recording, Report, Simulation};
+use looselink::simulate::{Recording, Simulation};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 
@@ -77,26 +78,24 @@ impl Observed {
             let kind = &scene.bodies[*b].kind;
             kind.known().is_none() && kind.turns()
         };
-        let moving: Vec<usize> = (0..scene.bodies.len()).filter(moves).collect();
+        let mut moving = (0..scene.bodies.len()).filter(moves);
+        let name_of = |b: usize| scene.bodies[b].name.clone();
         let driven = scene.drives.first().map(|drive| drive.body);
         let body = match name {
             Some(name) => {
-                let found = moving.iter().find(|b| scene.bodies[**b].name == name);
-                *found.ok_or_else(|| CannotObserve::Unknown {
+                let found = moving.clone().find(|b| scene.bodies[*b].name == name);
+                found.ok_or_else(|| CannotObserve::Unknown {
                     name: name.to_owned(),
-                    moving: moving
-                        .iter()
-                        .map(|b| scene.bodies[*b].name.clone())
-                        .collect(),
+                    moving: moving.map(name_of).collect(),
                 })?
             }
             None => driven
-                .or_else(|| moving.iter().copied().rfind(extended))
-                .or_else(|| moving.last().copied())
+                .or_else(|| moving.clone().rfind(extended))
+                .or_else(|| moving.next_back())
                 .ok_or(CannotObserve::NothingMoves)?,
         };
         Ok(Observed {
-            name: scene.bodies[body].name.clone(),
+            name: name_of(body),
             error_from: match driven == Some(body) {
                 true => Origin::Prescribed,
                 false => Origin::Ideal,
@@ -122,39 +121,35 @@ pub struct Physics {
     pub contact_fraction: Option<f64>,
 }
 
+/// A quantity: name, unit, how to take it.
+pub type Quantity = (&'static str, &'static str, fn(&Physics) -> Option<f64>);
+
 impl Physics {
-    /// What is measured, and its unit.
-    pub const QUANTITIES: [(&str, &str); 6] = [
-        ("rms error", "m"),
-        ("largest error", "m"),
-        ("rms acceleration", "m/s²"),
-        ("peak acceleration", "m/s²"),
-        ("peak joint force", "N"),
-        ("contact fraction", ""),
+    /// What is measured, its unit, its value.
+    pub const QUANTITIES: [Quantity; 6] = [
+        ("rms error", "m", |p| p.rms_error),
+        ("largest error", "m", |p| p.largest_error),
+        ("rms acceleration", "m/s²", |p| p.rms_acceleration),
+        ("peak acceleration", "m/s²", |p| p.peak_acceleration),
+        ("peak joint force", "N", |p| p.peak_joint_force),
+        ("contact fraction", "", |p| p.contact_fraction),
     ];
 
     /// The values in the order of [`Physics::QUANTITIES`].
     pub fn values(&self) -> [Option<f64>; 6] {
-        [
-            self.rms_error,
-            self.largest_error,
-            self.rms_acceleration,
-            self.peak_acceleration,
-            self.peak_joint_force,
-            self.contact_fraction,
-        ]
+        Physics::QUANTITIES.map(|(_, _, value)| value(self))
     }
 
     /// The difference of every quantity that both have.
     pub fn less(&self, other: &Physics) -> Physics {
-        let difference = |a: Option<f64>, b: Option<f64>| Some(a? - b?);
+        let less = |value: fn(&Physics) -> Option<f64>| Some(value(self)? - value(other)?);
         Physics {
-            rms_error: difference(self.rms_error, other.rms_error),
-            largest_error: difference(self.largest_error, other.largest_error),
-            rms_acceleration: difference(self.rms_acceleration, other.rms_acceleration),
-            peak_acceleration: difference(self.peak_acceleration, other.peak_acceleration),
-            peak_joint_force: difference(self.peak_joint_force, other.peak_joint_force),
-            contact_fraction: difference(self.contact_fraction, other.contact_fraction),
+            rms_error: less(|p| p.rms_error),
+            largest_error: less(|p| p.largest_error),
+            rms_acceleration: less(|p| p.rms_acceleration),
+            peak_acceleration: less(|p| p.peak_acceleration),
+            peak_joint_force: less(|p| p.peak_joint_force),
+            contact_fraction: less(|p| p.contact_fraction),
         }
     }
 }
@@ -193,22 +188,8 @@ pub struct Cost {
     pub real_time_factor: f64,
 }
 
-/// Where a body is, row by row \[m\].
-pub(super) struct Path {
-    x: Vec<f64>,
-    y: Vec<f64>,
-}
-
-/// What the path of an undriven body is compared with.
-#[derive(Clone, Copy)]
-pub(super) enum Reference<'a> {
-    /// Itself: the run is that of the rigid ideal mechanism.
-    Itself,
-    /// The path in the rigid ideal mechanism.
-    Path(&'a Path),
-    /// Nothing: there is no rigid ideal mechanism.
-    Nothing,
-}
+/// Where a body is, row by row: x and y \[m\].
+pub(super) type Path = [Vec<f64>; 2];
 
 /// A variant that has run.
 pub(super) struct Run {
@@ -220,39 +201,39 @@ pub(super) struct Run {
     pub path: Path,
 }
 
-/// Runs a scene and measures what it does.
-pub(super) fn run(scene: &Scene, body: &Observed, reference: Reference) -> Result<Run, String> {
+/// Runs a variant and measures what it does. `ideal` is the path of the body in the rigid ideal mechanism, where that has run.
+pub(super) fn run(variant: &Variant, body: &Observed, ideal: Option<&Path>) -> Result<Run, String> {
+    let scene = variant.scene.as_ref();
+    let scene = scene.map_err(|error| format!("not possible: {error}"))?;
     let mut simulation = simulation(scene, &["*"])?;
     let mut recording = Recording::new(&simulation);
     let ended = simulation.run(&mut recording);
     ended.map_err(|error| format!("cannot go on: {error}"))?;
     let channel = |name: String| recording.get(&name).unwrap_or_default();
     let of_body = |quantity: &str| channel(format!("{}.{quantity}", body.name));
-    let path = Path {
-        x: of_body("x").to_vec(),
-        y: of_body("y").to_vec(),
-    };
-    let from = |other: &Path| lengths(&less(&path.x, &other.x), &less(&path.y, &other.y));
-    let errors = match (body.error_from, reference) {
+    let path = ["x", "y"].map(|name| of_body(name).to_vec());
+    let errors = match (body.error_from, variant.role) {
         (Origin::Prescribed, _) => {
             let [x, y] = ["error.x", "error.y"].map(|name| channel(name.to_owned()));
             Some(lengths(x, y))
         }
-        (Origin::Ideal, Reference::Itself) => Some(from(&path)),
-        (Origin::Ideal, Reference::Path(ideal)) => Some(from(ideal)),
-        (Origin::Ideal, Reference::Nothing) => None,
+        (Origin::Ideal, Role::Ideal) => Some(distances(&path, &path)),
+        (Origin::Ideal, _) => ideal.map(|ideal| distances(&path, ideal)),
     };
     let accelerations = lengths(of_body("ax"), of_body("ay"));
     let forces = scene.joints.iter().map(|joint| {
         let force = largest(channel(format!("{}.force", joint.name)));
-        (joint, force)
+        (&joint.name, force)
     });
     let peak = forces.max_by(|(_, a), (_, b)| a.total_cmp(b));
-    let contacts = scene.joints.iter().filter_map(|joint| {
-        let contact = recording.get(&format!("{}.contact", joint.name))?;
-        Some(mean(contact))
-    });
-    let contacts: Vec<f64> = contacts.collect();
+    let shape = simulation.model().shape();
+    let names = scene
+        .joints
+        .iter()
+        .map(|joint| format!("{}.contact", joint.name));
+    let contacts: Vec<f64> = names
+        .filter_map(|name| Some(mean(recording.get(&name)?)))
+        .collect();
     let report = simulation.report();
     Ok(Run {
         rows: recording.rows(),
@@ -266,9 +247,16 @@ pub(super) fn run(scene: &Scene, body: &Observed, reference: Reference) -> Resul
         },
         peak_joint: peak
             .filter(|(_, force)| *force > 0.0)
-            .map(|(joint, _)| joint.name.clone()),
+            .map(|(name, _)| name.clone()),
         warnings: report.warnings(),
-        counts: counts(&simulation, report),
+        counts: Counts {
+            unknowns: shape.unknowns,
+            multipliers: shape.multipliers,
+            contacts: shape.contacts,
+            steps: report.steps,
+            newton_iterations: report.newton_iterations,
+            evaluations: report.effects,
+        },
         path,
     })
 }
@@ -318,29 +306,17 @@ impl Cost {
 /// The scene with these channels, ready to run.
 fn simulation(scene: &Scene, channels: &[&str]) -> Result<Simulation, String> {
     let mut scene = scene.clone();
-    let span = scene.initial.span;
-    let pattern = |pattern: &&str| ChannelPattern {
+    let patterns = channels.iter().map(|pattern| ChannelPattern {
         pattern: (*pattern).to_owned(),
-        span,
-    };
-    scene.output.channels = channels.iter().map(pattern).collect();
+        span: scene.initial.span,
+    });
+    scene.output.channels = patterns.collect();
     Simulation::new(&scene).map_err(|error| format!("not possible: {error}"))
 }
 
-fn counts(simulation: &Simulation, report: Report) -> Counts {
-    let shape = simulation.model().shape();
-    Counts {
-        unknowns: shape.unknowns,
-        multipliers: shape.multipliers,
-        contacts: shape.contacts,
-        steps: report.steps,
-        newton_iterations: report.newton_iterations,
-        evaluations: report.effects,
-    }
-}
-
-fn less(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
+fn distances([x, y]: &Path, [x0, y0]: &Path) -> Vec<f64> {
+    let less = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>();
+    lengths(&less(x, x0), &less(y, y0))
 }
 
 fn lengths(x: &[f64], y: &[f64]) -> Vec<f64> {
@@ -352,7 +328,8 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 fn rms(values: &[f64]) -> f64 {
-    mean(&values.iter().map(|v| v * v).collect::<Vec<f64>>()).sqrt()
+    let squares: Vec<f64> = values.iter().map(|v| v * v).collect();
+    mean(&squares).sqrt()
 }
 
 fn largest(values: &[f64]) -> f64 {

@@ -13,14 +13,14 @@ mod variants;
 
 pub use effects::{Effect, effects};
 pub use files::FILES;
-pub use measure::{CannotObserve, Cost, Counts, Observed, Origin, Physics};
+pub use measure::{CannotObserve, Cost, Counts, Observed, Origin, Physics, Quantity};
 pub use picture::figure;
 pub use report::{Repeatable, Timing};
 pub use variants::{Role, Variant, variants};
 
 use looselink::scene::Scene;
 use looselink::simulate::Notice;
-use measure::{Reference, Run, run, time};
+use measure::{Run, run, time};
 use serde::Serialize;
 
 /// A scene, effect by effect.
@@ -90,15 +90,8 @@ pub fn ablate(
         }
         let name = variant.name();
         tell(Notice::Begun(&name));
-        let reference = match (variant.role, distinct.first()) {
-            (Role::Ideal, _) => Reference::Itself,
-            (_, Some((_, Ok(ideal)))) => Reference::Path(&ideal.path),
-            _ => Reference::Nothing,
-        };
-        let measured = match &variant.scene {
-            Ok(scene) => run(scene, &body, reference),
-            Err(error) => Err(format!("not possible: {error}")),
-        };
+        let ideal = distinct.first().and_then(|(_, run)| run.as_ref().ok());
+        let measured = run(variant, &body, ideal.map(|run| &run.path));
         for warning in measured.iter().flat_map(|run| &run.warnings) {
             tell(Notice::Warned {
                 run: &name,
@@ -124,16 +117,15 @@ pub fn ablate(
         }
     };
     let outcomes = distinct.into_iter();
-    let outcomes: Vec<(&Variant, Result<Outcome, String>)> = outcomes
-        .map(|(variant, run)| (variant, run.map(&mut outcome)))
+    let outcomes: Vec<_> = outcomes
+        .map(|(variant, run)| (&variant.effects, run.map(&mut outcome)))
         .collect();
     let rows = variants.iter().filter_map(|variant| {
-        let same = outcomes
-            .iter()
-            .find(|(v, _)| v.effects == variant.effects)?;
+        let mut outcomes = outcomes.iter();
+        let (_, outcome) = outcomes.find(|(effects, _)| **effects == variant.effects)?;
         Some(Row {
             variant: variant.clone(),
-            outcome: same.1.clone(),
+            outcome: outcome.clone(),
         })
     });
     Ablation {

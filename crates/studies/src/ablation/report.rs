@@ -1,7 +1,7 @@
 //! The report of an ablation: what repeats in one form, processor times in another, and both as tables.
 
 use super::effects::Effect;
-use super::measure::{Cost, Counts, Physics};
+use super::measure::{Cost, Counts, Physics, Quantity};
 use super::table::Table;
 use super::variants::Role;
 use super::{Ablation, Header, Outcome, Row};
@@ -48,25 +48,6 @@ struct RepeatableRow<'a> {
     warnings: Option<&'a [String]>,
 }
 
-impl<'a> RepeatableRow<'a> {
-    fn new(row: &'a Row, ideal: Option<&Outcome>, full: Option<&Outcome>) -> RepeatableRow<'a> {
-        let outcome = row.outcome.as_ref().ok();
-        let less = |other: Option<&Outcome>| Some(outcome?.physics.less(&other?.physics));
-        RepeatableRow {
-            variant: row.variant.name(),
-            effects: &row.variant.effects,
-            removed: &row.variant.removed,
-            error: row.outcome.as_ref().err().map(String::as_str),
-            physics: outcome.map(|o| &o.physics),
-            peak_joint: outcome.and_then(|o| o.peak_joint.as_deref()),
-            less_rigid_ideal_mechanism: less(ideal),
-            less_full_scene: less(full),
-            counts: outcome.map(|o| &o.counts),
-            warnings: outcome.map(|o| &*o.warnings),
-        }
-    }
-}
-
 /// What of an ablation differs when it is repeated: `timing.json`.
 #[derive(Debug, Serialize)]
 pub struct Timing {
@@ -85,7 +66,22 @@ impl Ablation {
     /// What repeats.
     pub fn repeatable(&self) -> Repeatable<'_> {
         let [ideal, full] = [Role::Ideal, Role::Full].map(|role| self.outcome(role));
-        let rows = self.rows.iter();
+        let variants = self.rows.iter().map(|row| {
+            let outcome = row.outcome.as_ref().ok();
+            let less = |other: Option<&Outcome>| Some(outcome?.physics.less(&other?.physics));
+            RepeatableRow {
+                variant: row.variant.name(),
+                effects: &row.variant.effects,
+                removed: &row.variant.removed,
+                error: row.outcome.as_ref().err().map(String::as_str),
+                physics: outcome.map(|o| &o.physics),
+                peak_joint: outcome.and_then(|o| o.peak_joint.as_deref()),
+                less_rigid_ideal_mechanism: less(ideal),
+                less_full_scene: less(full),
+                counts: outcome.map(|o| &o.counts),
+                warnings: outcome.map(|o| &*o.warnings),
+            }
+        });
         Repeatable {
             header: &self.header,
             units: BTreeMap::from([
@@ -95,9 +91,7 @@ impl Ablation {
                 ("force", "N"),
                 ("time", "s"),
             ]),
-            variants: rows
-                .map(|row| RepeatableRow::new(row, ideal, full))
-                .collect(),
+            variants: variants.collect(),
         }
     }
 
@@ -144,12 +138,12 @@ impl Ablation {
 
     /// All warnings, each after the name of its variant.
     pub fn warnings(&self) -> Vec<String> {
-        let warnings = self.measured().flat_map(|(row, outcome)| {
+        let named = |row: &Row| {
             let name = row.variant.name();
-            let warnings = outcome.warnings.iter();
-            warnings.map(move |warning| format!("{name}: {warning}"))
-        });
-        warnings.collect()
+            let warnings = row.outcome.iter().flat_map(|outcome| &outcome.warnings);
+            warnings.map(|w| format!("{name}: {w}")).collect::<Vec<_>>()
+        };
+        self.rows.iter().flat_map(named).collect()
     }
 
     /// What every variant does and what it costs as Markdown without headings, for a page of more than this.
@@ -196,91 +190,78 @@ impl Ablation {
     }
 
     fn physics(&self) -> Table {
-        let mut head = quantity_names();
-        head.insert(JOINT + 1, "in joint");
-        let mut table = Table::new(&head);
-        for row in &self.rows {
-            let numbers = row.outcome.clone().map(|outcome| {
-                let mut cells = quantities(&outcome.physics, "");
-                cells.insert(JOINT, outcome.peak_joint.unwrap_or_else(|| NONE.to_owned()));
-                cells
-            });
-            table.row(row.variant.name(), numbers);
-        }
-        table
+        let mut heads = Physics::QUANTITIES.map(|(name, ..)| name).to_vec();
+        heads.insert(JOINT, "in joint");
+        let cells = |outcome: &Outcome| {
+            let mut cells = quantities(&outcome.physics, "");
+            let joint = outcome.peak_joint.as_deref();
+            cells.insert(JOINT, joint.unwrap_or(NONE).to_owned());
+            cells
+        };
+        self.table(&heads, |_| true, cells)
     }
 
     fn less(&self, role: Role, reference: &Physics) -> Table {
-        let mut table = Table::new(&quantity_names());
-        let others = self.measured().filter(|(row, _)| row.variant.role != role);
-        for (row, outcome) in others {
-            let less = outcome.physics.less(reference);
-            table.row(row.variant.name(), Ok(quantities(&less, "+")));
-        }
-        table
+        let heads = Physics::QUANTITIES.map(|(name, ..)| name);
+        let other = |row: &Row| row.outcome.is_ok() && row.variant.role != role;
+        let cells = |outcome: &Outcome| quantities(&outcome.physics.less(reference), "+");
+        self.table(&heads, other, cells)
     }
 
     fn work(&self) -> Table {
-        let mut table = Table::new(&[
-            "variant",
+        let heads = [
             "unknowns",
             "multipliers",
             "contacts",
             "steps",
             "Newton iterations",
-        ]);
-        for (row, outcome) in self.measured() {
+        ];
+        let cells = |outcome: &Outcome| {
             let c = &outcome.counts;
-            let cells = [
-                c.unknowns as u64,
-                c.multipliers as u64,
-                c.contacts as u64,
-                c.steps,
-                c.newton_iterations,
-            ];
-            table.row(
-                row.variant.name(),
-                Ok(cells.map(|n| n.to_string()).to_vec()),
-            );
-        }
-        table
+            vec![
+                c.unknowns.to_string(),
+                c.multipliers.to_string(),
+                c.contacts.to_string(),
+                c.steps.to_string(),
+                c.newton_iterations.to_string(),
+            ]
+        };
+        self.table(&heads, |row| row.outcome.is_ok(), cells)
     }
 
     fn costs(&self) -> Table {
-        let mut table = Table::new(&[
-            "variant",
-            "a step",
-            "a simulated second",
-            "real-time factor",
-            "runs",
-        ]);
-        for (row, outcome) in self.measured() {
+        let heads = ["a step", "a simulated second", "real-time factor", "runs"];
+        let cells = |outcome: &Outcome| {
             let cost = &outcome.cost;
-            let cells = vec![
+            vec![
                 si(1e-6 * cost.microseconds_a_step, "s"),
                 si(cost.cpu_seconds_a_simulated_second, "s"),
                 digits(cost.real_time_factor),
                 cost.runs.to_string(),
-            ];
-            table.row(row.variant.name(), Ok(cells));
+            ]
+        };
+        self.table(&heads, |row| row.outcome.is_ok(), cells)
+    }
+
+    /// A table of some of the rows.
+    fn table(
+        &self,
+        heads: &[&str],
+        shown: impl Fn(&Row) -> bool,
+        cells: impl Fn(&Outcome) -> Vec<String>,
+    ) -> Table {
+        let mut table = Table::new(&[&["variant"], heads].concat());
+        for row in self.rows.iter().filter(|row| shown(row)) {
+            let numbers = row.outcome.as_ref().map(&cells);
+            table.row(row.variant.name(), numbers.map_err(String::clone));
         }
         table
     }
-
-    fn measured(&self) -> impl Iterator<Item = (&Row, &Outcome)> {
-        let rows = self.rows.iter();
-        rows.filter_map(|row| Some((row, row.outcome.as_ref().ok()?)))
-    }
-}
-
-fn quantity_names() -> Vec<&'static str> {
-    let names = Physics::QUANTITIES.map(|(name, _)| name);
-    std::iter::once("variant").chain(names).collect()
 }
 
 /// The quantities with their units; `plus` stands before those that are not negative.
 fn quantities(physics: &Physics, plus: &str) -> Vec<String> {
-    let cell = |(value, (_, unit)): (Option<f64>, (&str, &str))| match value {
+    let cell = |(_, unit, value): Quantity| match value(physics) {
         None => NONE.to_owned(),
         Some(value) => {
             let text = match unit {
@@ -296,6 +277,5 @@ fn quantities(physics: &Physics, plus: &str) -> Vec<String> {
             }
         }
     };
-    let values = physics.values().into_iter();
-    values.zip(Physics::QUANTITIES).map(cell).collect()
+    Physics::QUANTITIES.map(cell).to_vec()
 }

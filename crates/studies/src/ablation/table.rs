@@ -1,92 +1,60 @@
 //! Tables as aligned text and as Markdown.
 
-use std::fmt::Write;
-
 /// Names in the first column, numbers in the others.
 #[derive(Debug, Clone)]
 pub(super) struct Table {
-    head: Vec<String>,
-    rows: Vec<(String, Cells)>,
-}
-
-/// What stands behind the name of a row.
-#[derive(Debug, Clone)]
-enum Cells {
-    Numbers(Vec<String>),
-    Note(String),
+    /// The heads, then the rows; one that is shorter than the heads is a name and a remark.
+    lines: Vec<Vec<String>>,
 }
 
 impl Table {
     /// A table with these columns, the first that of the names.
     pub fn new(head: &[&str]) -> Table {
-        Table {
-            head: head.iter().map(|h| (*h).to_owned()).collect(),
-            rows: Vec::new(),
-        }
+        let head = head.iter().map(|h| (*h).to_owned()).collect();
+        Table { lines: vec![head] }
     }
 
     /// Adds a row of numbers, or of one remark in their place.
     pub fn row(&mut self, name: String, numbers: Result<Vec<String>, String>) {
-        let cells = match numbers {
-            Ok(numbers) => Cells::Numbers(numbers),
-            Err(note) => Cells::Note(note),
-        };
-        self.rows.push((name, cells));
+        let mut line = numbers.unwrap_or_else(|remark| vec![remark]);
+        line.insert(0, name);
+        self.lines.push(line);
     }
 
     /// Columns of equal width for a terminal, names to the left, numbers to the right.
     pub fn text(&self) -> String {
-        let width = |text: &str| text.chars().count();
-        let mut widths: Vec<usize> = self.head.iter().map(|h| width(h)).collect();
-        for (name, cells) in &self.rows {
-            widths[0] = widths[0].max(width(name));
-            if let Cells::Numbers(numbers) = cells {
-                for (w, number) in widths[1..].iter_mut().zip(numbers) {
-                    *w = (*w).max(width(number));
-                }
+        let columns = self.lines[0].len();
+        let mut widths = vec![0; columns];
+        for line in &self.lines {
+            // a remark may be longer than its column
+            let cells = if line.len() < columns { 1 } else { columns };
+            for (width, cell) in widths.iter_mut().zip(&line[..cells]) {
+                *width = cell.chars().count().max(*width);
             }
         }
         let mut out = String::new();
-        let mut line = |name: &str, numbers: &[String]| {
-            let mut text = format!("  {name:<0$}", widths[0]);
-            for (number, w) in numbers.iter().zip(&widths[1..]) {
-                write!(text, "  {number:>w$}").expect("a string takes any text");
+        for line in &self.lines {
+            let mut text = format!("  {:<1$}", line[0], widths[0]);
+            for (cell, width) in line.iter().zip(&widths).skip(1) {
+                text += &format!("  {cell:>width$}");
             }
-            out.push_str(text.trim_end());
-            out.push('\n');
-        };
-        line(&self.head[0], &self.head[1..]);
-        for (name, cells) in &self.rows {
-            match cells {
-                Cells::Numbers(numbers) => line(name, numbers),
-                Cells::Note(note) => line(name, std::slice::from_ref(note)),
-            }
+            out += &format!("{}\n", text.trim_end());
         }
         out
     }
 
     /// A table for a page; a remark stands in the second column.
     pub fn markdown(&self) -> String {
-        let rule: Vec<String> = (0..self.head.len())
-            .map(|column| if column == 0 { "---" } else { "---:" }.to_owned())
-            .collect();
-        let mut out = markdown_row(&self.head) + &markdown_row(&rule);
-        for (name, cells) in &self.rows {
-            let mut row = vec![name.clone()];
-            match cells {
-                Cells::Numbers(numbers) => row.extend(numbers.iter().cloned()),
-                Cells::Note(note) => row.push(note.clone()),
-            }
-            row.resize(self.head.len(), String::new());
-            out += &markdown_row(&row);
-        }
-        out
+        let columns = self.lines[0].len();
+        let rows = self.lines.iter().map(|line| {
+            let mut cells: Vec<String> = line.iter().map(|c| c.replace('|', "\\|")).collect();
+            cells.resize(columns, String::new());
+            format!("| {} |\n", cells.join(" | "))
+        });
+        let mut rows: Vec<String> = rows.collect();
+        rows.insert(1, format!("| ---{} |\n", " | ---:".repeat(columns - 1)));
+        rows.concat()
     }
-}
-
-fn markdown_row(cells: &[String]) -> String {
-    let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|")).collect();
-    format!("| {} |\n", cells.join(" | "))
 }
 
 #[cfg(test)]
