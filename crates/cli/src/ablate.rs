@@ -1,13 +1,13 @@
 //! `looselink ablate`
 
 use super::failure::Failure;
-use super::progress::show as tell;
+use super::progress::show;
 use super::{SceneArguments, print};
 use clap::Args;
-use looselink::output::Folder;
+use looselink::output::{Folder, json};
 use serde::Serialize;
 use std::path::PathBuf;
-use studies::ablation::{Ablation, FILES, Observed, Repeatable, Timing, ablate as measure};
+use studies::ablation::{FILES, Observed, Repeatable, Timing, ablate as measure};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -41,34 +41,24 @@ struct Both<'a> {
 
 /// Runs all variants of the scene; one that cannot be built is a row that says why.
 pub fn ablate(arguments: &Arguments) -> Result<(), Failure> {
-    let folder = arguments.out.as_ref();
-    let folder = folder
-        .map(|out| Folder::new(out, &FILES, arguments.force))
-        .transpose()?;
+    let new = |out: &PathBuf| Folder::new(out, &FILES, arguments.force);
+    let folder = arguments.out.as_ref().map(new).transpose()?;
     let (scene, _) = arguments.scene.load()?;
-    let body = Observed::choose(&scene, arguments.body.as_deref())
-        .map_err(|e| Failure::bad_input(e.to_string()))?;
+    let body = Observed::choose(&scene, arguments.body.as_deref()).map_err(Failure::bad_input)?;
     folder.iter().try_for_each(Folder::prepare)?;
     let runs = arguments.runs.map(|runs| runs as usize);
     let ablation = measure(&scene, body, runs, &mut |notice| {
-        tell(notice, arguments.quiet)
+        show(notice, arguments.quiet)
     });
     // What was measured is shown also where it cannot be stored.
     let stored = folder.map_or(Ok(()), |folder| ablation.write(&folder));
-    show(arguments, &ablation)?;
+    if arguments.json {
+        print(json(&Both {
+            ablation: ablation.repeatable(),
+            timing: ablation.timing(),
+        })?)?;
+    } else {
+        print(ablation.text())?;
+    }
     Ok(stored?)
-}
-
-fn show(arguments: &Arguments, ablation: &Ablation) -> Result<(), Failure> {
-    if !arguments.json {
-        return print(&ablation.text());
-    }
-    let both = Both {
-        ablation: ablation.repeatable(),
-        timing: ablation.timing(),
-    };
-    match serde_json::to_string_pretty(&both) {
-        Ok(json) => print(&format!("{json}\n")),
-        Err(e) => Err(Failure::system(e.to_string())),
-    }
 }

@@ -4,6 +4,7 @@ use looselink::output::OutputError;
 use looselink::scene::SceneError;
 use looselink::simulate::RunError;
 use miette::MietteHandlerOpts;
+use std::fmt::Display;
 use std::io::Write;
 use std::process::ExitCode;
 use studies::precision::StudyError;
@@ -18,30 +19,25 @@ pub const INTERRUPTED: u8 = 130;
 #[derive(Debug)]
 pub struct Failure {
     code: u8,
-    message: Message,
-}
-
-#[derive(Debug)]
-enum Message {
-    Scene(SceneError),
-    Plain(String),
+    text: String,
 }
 
 impl Failure {
-    /// Input or output failed.
-    pub fn system(message: String) -> Failure {
+    fn new(code: u8, message: impl Display) -> Failure {
         Failure {
-            code: SYSTEM,
-            message: Message::Plain(message),
+            code,
+            text: format!("error: {message}"),
         }
     }
 
+    /// Input or output failed.
+    pub fn system(message: impl Display) -> Failure {
+        Failure::new(SYSTEM, message)
+    }
+
     /// What the command line asks for cannot be done.
-    pub fn bad_input(message: String) -> Failure {
-        Failure {
-            code: BAD_INPUT,
-            message: Message::Plain(message),
-        }
+    pub fn bad_input(message: impl Display) -> Failure {
+        Failure::new(BAD_INPUT, message)
     }
 
     /// A run that ended early.
@@ -57,44 +53,32 @@ impl Failure {
             ),
             _ => (CANNOT_GO_ON, format!("the run cannot go on: {error}")),
         };
-        Failure {
-            code,
-            message: Message::Plain(message),
-        }
+        Failure::new(code, message)
     }
 
     /// The same failure with more to say.
     pub fn and(mut self, more: &str) -> Failure {
-        if let Message::Plain(message) = &mut self.message {
-            message.push_str(more);
-        }
+        self.text += more;
         self
     }
 
     /// Tells the user on standard error.
     pub fn show(&self) -> ExitCode {
-        let text = match &self.message {
-            Message::Plain(message) => format!("error: {message}"),
-            Message::Scene(error) => {
-                // Whole lines: a message that is cut in two cannot be searched for.
-                let hook =
-                    |_: &_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build()) as _;
-                // Fails only when a hook is there already.
-                let _ = miette::set_hook(Box::new(hook));
-                format!("{:?}", miette::Report::new(error.clone()))
-            }
-        };
         // Standard error is closed: nobody can read this.
-        let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
+        let _ = writeln!(std::io::stderr(), "{}", self.text.trim_end());
         ExitCode::from(self.code)
     }
 }
 
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Failure {
+        // Whole lines: a message that is cut in two cannot be searched for.
+        let hook = |_: &_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build()) as _;
+        // Fails only when a hook is there already.
+        let _ = miette::set_hook(Box::new(hook));
         Failure {
             code: BAD_INPUT,
-            message: Message::Scene(error),
+            text: format!("{:?}", miette::Report::new(error)),
         }
     }
 }
@@ -110,19 +94,14 @@ impl From<StudyError> for Failure {
 
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Failure {
-        let (code, hint) = match error {
-            OutputError::Io(_) => (SYSTEM, ""),
+        match error {
+            OutputError::Io(_) => Failure::system(error),
             OutputError::NotADirectory(_) | OutputError::NotAFile(_) | OutputError::Busy(_) => {
-                (BAD_INPUT, "")
+                Failure::bad_input(error)
             }
-            OutputError::Occupied { .. } => (
-                BAD_INPUT,
-                "; choose another folder, or replace it with --force",
-            ),
-        };
-        Failure {
-            code,
-            message: Message::Plain(format!("{error}{hint}")),
+            OutputError::Occupied { .. } => {
+                Failure::bad_input(error).and("; choose another folder, or replace it with --force")
+            }
         }
     }
 }

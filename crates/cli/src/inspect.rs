@@ -3,10 +3,10 @@
 use super::failure::Failure;
 use super::{SceneArguments, print};
 use clap::Args;
+use looselink::output::json;
 use looselink::scene::{Analysis, Pace, Scene};
 use looselink::simulate::{Inspection, Simulation};
 use numbers::{exact, number};
-use std::fmt::Write;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -21,12 +21,9 @@ pub struct Arguments {
 pub fn inspect(arguments: &Arguments) -> Result<(), Failure> {
     let (scene, simulation) = arguments.scene.load()?;
     let inspection = simulation.inspect();
-    if !arguments.json {
-        return print(&text(&scene, &simulation, &inspection));
-    }
-    match serde_json::to_string_pretty(&inspection) {
-        Ok(json) => print(&format!("{json}\n")),
-        Err(e) => Err(Failure::system(e.to_string())),
+    match arguments.json {
+        true => print(json(&inspection)?),
+        false => print(text(&scene, &simulation, &inspection)),
     }
 }
 
@@ -70,22 +67,25 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
         ("method", scene.integrator.method.name().to_owned()),
         ("scene hash", scene.hash()),
     ] {
-        line(&mut out, &format!("  {name:<22}{value}"));
+        out += &format!("  {name:<22}{value}\n");
     }
-    list(
-        &mut out,
-        "Masses and poses at the start",
-        &bodies(scene, simulation),
-    );
-    list(&mut out, "Joints with clearance", &clearances(scene));
-    list(&mut out, "Assumptions and notes", &inspection.assumptions);
-    list(&mut out, "Unknown coordinates", &inspection.coordinates);
-    list(&mut out, "Constraints", &inspection.constraints);
-    let channels = simulation
-        .channels()
-        .iter()
-        .map(|c| format!("{} [{}]", c.name, c.unit));
-    list(&mut out, "Channels", &channels.collect::<Vec<_>>());
+    let channels = simulation.channels().iter();
+    let channels = channels.map(|c| format!("{} [{}]", c.name, c.unit));
+    for (title, entries) in [
+        ("Masses and poses at the start", &bodies(scene, simulation)),
+        ("Joints with clearance", &clearances(scene)),
+        ("Assumptions and notes", &inspection.assumptions),
+        ("Unknown coordinates", &inspection.coordinates),
+        ("Constraints", &inspection.constraints),
+        ("Channels", &channels.collect()),
+    ] {
+        if !entries.is_empty() {
+            out += &format!("\n{title}\n");
+        }
+        for entry in entries {
+            out += &format!("  {entry}\n");
+        }
+    }
     out
 }
 
@@ -128,18 +128,4 @@ fn clearances(scene: &Scene) -> Vec<String> {
         }
     }
     lines
-}
-
-fn list(out: &mut String, title: &str, entries: &[String]) {
-    if entries.is_empty() {
-        return;
-    }
-    line(out, &format!("\n{title}"));
-    entries
-        .iter()
-        .for_each(|entry| line(out, &format!("  {entry}")));
-}
-
-fn line(out: &mut String, text: &str) {
-    writeln!(out, "{text}").expect("a string takes any text");
 }

@@ -74,11 +74,9 @@ struct SceneArguments {
 /// Checks the keys and numbers of an accuracy. A number alone is the position.
 fn accuracy(text: &str) -> Result<String, String> {
     const EXAMPLE: &str = "for example `position=1e-9,horizon=0.01`";
-    let alone = text.parse::<f64>().is_ok();
-    let text = if alone {
-        format!("position={text}")
-    } else {
-        text.to_owned()
+    let text = match text.parse::<f64>() {
+        Ok(_) => format!("position={text}"),
+        Err(_) => text.to_owned(),
     };
     for part in text.split(',') {
         let Some((key, number)) = part.split_once('=') else {
@@ -128,13 +126,13 @@ fn main() -> ExitCode {
 
 fn check(arguments: &SceneArguments) -> Result<(), Failure> {
     let (scene, _) = arguments.load()?;
-    print(&format!("{}: no error found\n", scene.title))
+    print(format!("{}: no error found\n", scene.title))
 }
 
 /// Writes to standard output; a reader that has gone away is no fault.
-fn print(text: &str) -> Result<(), Failure> {
+fn print(text: impl AsRef<[u8]>) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(text.as_ref()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::system(format!(
             "cannot write to standard output: {e}"
         ))),

@@ -51,6 +51,6 @@ fn make<C: Compared>(arguments: &Arguments, study: &Study, folder: &Folder) -> R
     let machine = machine();
     let stored = found.write(study, &machine, folder);
     // What was measured is shown also where it cannot be stored.
-    print(&found.page(study, &machine))?;
+    print(found.page(study, &machine))?;
     Ok(stored?)
 }

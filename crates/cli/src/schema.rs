@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 
 /// Prints the schema.
 pub fn show() -> Result<(), Failure> {
-    print(&format!("{:#}\n", schema(&Registry::standard())))
+    print(format!("{:#}\n", schema(&Registry::standard())))
 }
 
 /// The schema of scenes with the kinds of a registry.
