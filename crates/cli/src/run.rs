@@ -57,10 +57,9 @@ impl Observer for Watch {
             self.flushed = Instant::now();
         }
         self.display.show(progress, tick);
-        Ok(if self.stop.load(Ordering::Relaxed) {
-            Control::Stop
-        } else {
-            Control::Continue
+        Ok(match self.stop.load(Ordering::Relaxed) {
+            true => Control::Stop,
+            false => Control::Continue,
         })
     }
 }
@@ -88,31 +87,25 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let report = simulation.report();
     let out = arguments.out.display();
     let stored = watch.results.finish(&report);
-    match ended {
-        Ok(()) => {
-            watch.display.finish("");
-            stored.map_err(not_stored)?;
-            let wall = started.elapsed().as_secs_f64();
-            watch.display.finish(&format!(
-                "{} steps in {wall:.2} s, results in `{out}`",
-                report.steps
-            ));
-            for line in closing::lines(&report) {
-                watch.display.finish(&line);
-            }
-            report.warnings().iter().for_each(|warning| warn(warning));
-            Ok(())
-        }
-        Err(error) => {
-            watch.display.finish("");
-            report.warnings().iter().for_each(|warning| warn(warning));
-            let kept = match stored {
-                Ok(()) => format!("; the results up to that time are in `{out}`"),
-                Err(second) => format!("; the result in `{out}` could not be completed: {second}"),
-            };
-            Err(Failure::run(&error).and(&kept).and(&earlier(arguments)))
-        }
+    let warn_of_all = || report.warnings().iter().for_each(|warning| warn(warning));
+    watch.display.finish("");
+    if let Err(error) = ended {
+        warn_of_all();
+        let kept = match stored {
+            Ok(()) => format!("; the results up to that time are in `{out}`"),
+            Err(second) => format!("; the result in `{out}` could not be completed: {second}"),
+        };
+        return Err(Failure::run(&error).and(&kept).and(&earlier(arguments)));
     }
+    stored.map_err(not_stored)?;
+    let (steps, wall) = (report.steps, started.elapsed().as_secs_f64());
+    let done = format!("{steps} steps in {wall:.2} s, results in `{out}`");
+    watch.display.finish(&done);
+    for line in closing::lines(&report) {
+        watch.display.finish(&line);
+    }
+    warn_of_all();
+    Ok(())
 }
 
 /// Where a result is that the run was to replace.

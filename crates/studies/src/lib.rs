@@ -6,6 +6,15 @@ pub mod ablation;
 pub mod machine;
 pub mod precision;
 
+use looselink::output::OutputError;
+use plot::Figure;
+use std::io;
+
+/// A figure as the bytes of an SVG and a PNG file.
+pub(crate) fn pictures(figure: &Figure) -> Result<[Vec<u8>; 2], OutputError> {
+    plot::render(figure).map_err(|e| io::Error::other(e.to_string()).into())
+}
+
 /// Warnings of several runs as a part of a page in Markdown; empty where no run warns.
 pub(crate) fn warning_list(warnings: &[String]) -> String {
     let lines = warnings.iter().map(|warning| format!("* {warning}\n"));

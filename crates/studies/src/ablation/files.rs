@@ -12,8 +12,8 @@
 
 use super::Ablation;
 use super::picture::figure;
+use crate::pictures;
 use looselink::output::{Folder, OutputError, TIMING, json};
-use std::io;
 
 /// Names of the files.
 pub const FILES: [&str; 5] = [
@@ -30,8 +30,7 @@ impl Ablation {
     /// # Errors
     /// When a file cannot be written.
     pub fn write(&self, folder: &Folder) -> Result<(), OutputError> {
-        let [svg, png] =
-            plot::render(&figure(self)).map_err(|e| io::Error::other(e.to_string()))?;
+        let [svg, png] = pictures(&figure(self))?;
         folder.write(&[
             json(&self.repeatable())?,
             self.markdown().into_bytes(),

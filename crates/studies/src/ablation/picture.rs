@@ -38,18 +38,14 @@ const SHOWN: [Shown; 3] = [
 pub fn figure(ablation: &Ablation) -> Figure {
     let mut left_out = Vec::new();
     let present = |(_, _, _, quantity): &&Shown| {
-        let outcomes = ablation
-            .rows
-            .iter()
-            .filter_map(|row| row.outcome.as_ref().ok());
+        let outcomes = ablation.rows.iter().flat_map(|row| &row.outcome);
         outcomes.filter_map(quantity).any(|value| value > 0.0)
     };
     // processor time is drawn even where nothing runs, so that there is a picture
     let (last, others) = SHOWN.split_last().expect("there are three");
     let panels = others.iter().filter(present).chain([last]);
-    let panels = panels
-        .enumerate()
-        .map(|(k, shown)| panel(ablation, shown, k, &mut left_out));
+    let panels = panels.enumerate();
+    let panels = panels.map(|(k, shown)| panel(ablation, shown, k, &mut left_out));
     Figure {
         rows: vec![panels.collect()],
         caption: caption(ablation, &left_out),

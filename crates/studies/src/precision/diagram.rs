@@ -21,20 +21,6 @@ const NAMED: [(&str, Color); 12] = [
     ("IDA (second implementation)", palette::BLACK),
 ];
 
-/// The colour of one of these curves; those not named above take the colours that are left, in turn.
-pub(super) fn color(curves: &[&str], curve: &str) -> Color {
-    let named = |name: &str| NAMED.iter().find(|(n, _)| *n == name);
-    if let Some((_, color)) = named(curve) {
-        return *color;
-    }
-    let mut others = curves.iter().filter(|name| named(name).is_none());
-    let place = others.position(|name| *name == curve).unwrap_or(0);
-    let mut left = NAMED.iter().filter(|(name, _)| !curves.contains(name));
-    let count = left.clone().count();
-    let color = left.nth(place % count.max(1));
-    color.map_or(palette::GREY, |(_, color)| *color)
-}
-
 /// Errors against processor time, one panel a norm, and the error of position against the step or the accuracy.
 pub(super) fn figure(study: &Study, outcome: &Outcome) -> Figure {
     let mut panels = Vec::new();
@@ -93,6 +79,21 @@ fn with(name: &str, set: &[String], elements: Option<usize>) -> String {
 }
 
 impl<C: Compared> Found<C> {
+    /// The colour of a curve; those not named above take the colours that are left, in turn.
+    pub(super) fn color(&self, curve: &str) -> Color {
+        let named = |name: &str| NAMED.iter().find(|(n, _)| *n == name);
+        if let Some((_, color)) = named(curve) {
+            return *color;
+        }
+        let curves = self.curves();
+        let mut others = curves.iter().filter(|name| named(name).is_none());
+        let place = others.position(|name| *name == curve).unwrap_or(0);
+        let mut left = NAMED.iter().filter(|(name, _)| !curves.contains(name));
+        let count = left.clone().count();
+        let color = left.nth(place % count.max(1));
+        color.map_or(palette::GREY, |(_, color)| *color)
+    }
+
     /// The marks of every curve in its colour: `draw` makes them from the points that are there and positive.
     pub(super) fn marks(
         &self,
@@ -100,14 +101,13 @@ impl<C: Compared> Found<C> {
         draw: impl Fn(&str, Color, &[f64], &[f64]) -> Vec<Mark>,
     ) -> Vec<Mark> {
         let mut marks = Vec::new();
-        let curves = self.curves();
-        for curve in &curves {
+        for curve in self.curves() {
             let runs = self.runs.iter().enumerate();
-            let points = runs.filter(|(_, run)| run.curve == *curve);
+            let points = runs.filter(|(_, run)| run.curve == curve);
             let points = points.filter_map(|(i, run)| point(i, run));
             let (x, y): (Vec<f64>, Vec<f64>) = points.filter(|(x, y)| *x > 0.0 && *y > 0.0).unzip();
             if !x.is_empty() {
-                marks.extend(draw(curve, color(&curves, curve), &x, &y));
+                marks.extend(draw(curve, self.color(curve), &x, &y));
             }
         }
         marks
@@ -173,8 +173,7 @@ fn against_pace(outcome: &Outcome, asked: bool) -> Panel {
         .collect();
     for (run, x) in &all {
         if run.result.is_err() {
-            let color = color(&outcome.curves(), &run.curve);
-            marks.push(Mark::cross("", color, (*x, top)));
+            marks.push(Mark::cross("", outcome.color(&run.curve), (*x, top)));
         }
     }
     if asked && !marks.is_empty() {

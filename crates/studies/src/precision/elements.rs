@@ -4,7 +4,6 @@
 //! luck. So a point keeps an error only when all finer points of its curve keep it too, and what the finest point keeps is
 //! the floor of the mesh.
 
-use super::diagram::color;
 use super::{Outcome, Pace, Study};
 use numbers::si;
 use plot::{Axis, Color, Mark, Panel, palette};
@@ -56,7 +55,7 @@ impl Meshes {
             }
             Some(Mesh {
                 elements: curve.elements?,
-                color: color(&outcome.curves(), &curve.name),
+                color: outcome.color(&curve.name),
                 points,
             })
         });
@@ -70,7 +69,7 @@ impl Meshes {
             .flat_map(|mesh| mesh.points.iter().map(|point| (mesh.elements, point)))
             .collect();
         points.sort_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds));
-        let mut stairs: (Vec<f64>, Vec<f64>) = Default::default();
+        let (mut x, mut y) = (Vec::new(), Vec::new());
         let mut ranges: Vec<(usize, f64)> = Vec::new();
         let mut least = f64::INFINITY;
         for (elements, point) in points {
@@ -78,18 +77,18 @@ impl Meshes {
                 continue;
             }
             if least.is_finite() {
-                stairs.0.push(point.seconds);
-                stairs.1.push(least);
+                x.push(point.seconds);
+                y.push(least);
             }
-            stairs.0.push(point.seconds);
-            stairs.1.push(point.kept);
+            x.push(point.seconds);
+            y.push(point.kept);
             least = point.kept;
             match ranges.last_mut() {
                 Some((last, error)) if *last == elements => *error = least,
                 _ => ranges.push((elements, least)),
             }
         }
-        let cheapest = Mark::curve("least time for an error", LIGHT, &stairs.0, &stairs.1);
+        let cheapest = Mark::curve("least time for an error", LIGHT, &x, &y);
         panel.marks.insert(0, cheapest.width(14));
         let ranges = ranges
             .iter()
@@ -177,10 +176,6 @@ fn shade(depth: f64) -> Color {
     let mix = |light: u8, dark: u8| {
         (f64::from(light) + depth * (f64::from(dark) - f64::from(light))).round() as u8
     };
-    let dark = palette::BLACK;
-    (
-        mix(LIGHT.0, dark.0),
-        mix(LIGHT.1, dark.1),
-        mix(LIGHT.2, dark.2),
-    )
+    let ((r, g, b), dark) = (LIGHT, palette::BLACK);
+    (mix(r, dark.0), mix(g, dark.1), mix(b, dark.2))
 }

@@ -12,10 +12,9 @@
 
 use super::{Compared, Found, Pace, Study, Timing};
 use crate::machine::Machine;
-use crate::warning_list;
+use crate::{pictures, warning_list};
 use looselink::output::{Folder, OutputError, TIMING, json};
 use serde::Serialize;
-use std::io;
 
 /// Names of the files.
 pub const FILES: [&str; 5] = [
@@ -78,8 +77,7 @@ impl<C: Compared> Found<C> {
         machine: &Machine,
         folder: &Folder,
     ) -> Result<(), OutputError> {
-        let figure = plot::render(&C::figure(self, study));
-        let [svg, png] = figure.map_err(|e| io::Error::other(e.to_string()))?;
+        let [svg, png] = pictures(&C::figure(self, study))?;
         let page = self.page(study, machine).into_bytes();
         let runs = self.times();
         let times = json(&Times { machine, runs })?;

@@ -164,13 +164,9 @@ impl<C: Compared> Found<C> {
         } else {
             study.clone()
         };
-        let [(coarse, of_coarse), (fine, of_fine)] = {
-            let [coarse, fine] = study.reference.paces();
-            [
-                reference::<C>(study, coarse, tell)?,
-                reference::<C>(study, fine, tell)?,
-            ]
-        };
+        let [coarse, fine] = study.reference.paces();
+        let (coarse, of_coarse) = reference::<C>(study, coarse, tell)?;
+        let (fine, of_fine) = reference::<C>(study, fine, tell)?;
         let mut found = Found {
             title: study.title.clone(),
             reference: C::new(coarse, fine),
