@@ -91,8 +91,6 @@ impl Canvas {
         anchor: &str,
         attributes: &str,
     ) {
-        // the sizes that all figures were drawn with, to the last digit
-        let size = f64::from(size) * 1.24 / 1.24;
         let color = code(palette::BLACK);
         let text = text.replace('&', "&amp;").replace('<', "&lt;");
         let text = text.replace('>', "&gt;").replace('"', "&quot;");

@@ -33,7 +33,12 @@ impl fmt::Display for Machine {
 
 /// This machine and this program.
 pub fn machine() -> Machine {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    // the lock of the workspace stands above this package
+    let root = own
+        .ancestors()
+        .find(|folder| folder.join("Cargo.lock").exists());
+    let root = root.unwrap_or(own);
     let describe = [
         "describe",
         "--always",
