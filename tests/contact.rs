@@ -16,6 +16,7 @@ fn law(kind: &NormalLawKind, restitution: f64, impact_velocity_floor: f64) -> Bo
         exponent: 1.5,
         restitution,
         impact_velocity_floor,
+        own: &[],
     })
 }
 
@@ -25,6 +26,7 @@ fn laws(restitution: f64) -> Vec<Box<dyn NormalLaw>> {
         exponent: 1.2,
         restitution,
         impact_velocity_floor: 1e-6,
+        own: &[],
     };
     let registered = LAWS.iter().map(|kind| law(kind, restitution, 1e-6));
     let others = LAWS.iter().map(|kind| (kind.build)(&other_exponent));
@@ -154,6 +156,7 @@ fn laws_are_built_from_contacts() {
         exponent: 1.3,
         restitution: 0.6,
         impact_velocity_floor: 0.02,
+        own: Vec::new(),
         friction: None,
     };
     let (delta, rate, impact) = (2e-6, 0.03, 0.05);

@@ -39,6 +39,7 @@ fn joint(bearing: Marker, journal: Marker) -> Smooth<CircleInCircle> {
         exponent: 1.5,
         restitution: 0.7,
         impact_velocity_floor: 1e-6,
+        own: &[],
     };
     Smooth {
         geometry: CircleInCircle {

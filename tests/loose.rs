@@ -45,6 +45,7 @@ fn a_bouncing_journal_delivers_the_restitution_of_the_formula() {
             exponent: 1.5,
             restitution: typed,
             impact_velocity_floor: 1e-9,
+            own: &[],
         });
         let exact = law.delivered_restitution();
         let errors: Vec<(f64, f64)> = [50.0, 71.0, 100.0, 141.0, 200.0]

@@ -2,6 +2,7 @@
 
 use crate::support::run_scene;
 use looselink::contact::normal::{NormalForce, NormalLaw, NormalLawKind, NormalParameters};
+use looselink::document::Key;
 use looselink::registry::Registry;
 use looselink::scene::Scene;
 use looselink::simulate::{Recording, Simulation};
@@ -42,7 +43,12 @@ impl NormalLaw for Constant {
 static CONSTANT: NormalLawKind = NormalLawKind {
     name: "constant",
     is_damped: false,
-    build: |p: &NormalParameters| Box::new(Constant(p.stiffness)),
+    keys: &[Key::positive(
+        "force",
+        "N",
+        "of `\"constant\"`: the force of every penetration",
+    )],
+    build: |p: &NormalParameters| Box::new(Constant(p.own[0])),
 };
 
 /// The scheme of the example, with a parameter that it does not use.
@@ -78,7 +84,7 @@ fn a_scene_names_a_law_and_a_scheme_of_the_user() {
         "integrator={method=\"symplectic_euler\",step=1e-7,onset_tolerance=1e-13}",
         "simulation.duration=0.004",
         "output={interval=1e-5,channels=[\"journal.vx\",\"pin.*\"]}",
-        "contacts.aluminium={law=\"constant\",bearing_radius=0.01,clearance=2e-5,stiffness=50.0,exponent=1.0}",
+        "contacts.aluminium={law=\"constant\",bearing_radius=0.01,clearance=2e-5,stiffness=1.0,exponent=1.0,force=50.0}",
     ]);
     let mut simulation = Simulation::new(&scene.unwrap()).unwrap();
     let mut recording = Recording::new(&simulation);
@@ -109,6 +115,14 @@ fn parameters_and_names_of_the_user_are_checked_as_all_others() {
         (
             ["contacts.aluminium.law=konstant", "integrator.step=1e-6"],
             "did you mean `constant`?",
+        ),
+        (
+            ["contacts.aluminium.law=constant", "integrator.step=1e-6"],
+            "missing key `force` in contacts.aluminium",
+        ),
+        (
+            ["contacts.aluminium.force=1.0", "integrator.step=1e-6"],
+            "unknown key `force` in contacts.aluminium",
         ),
     ] {
         let error = scene(&overrides).unwrap_err().to_string();

@@ -13,7 +13,7 @@ pub struct Fields<'a> {
     /// The keys it may have, once they are declared.
     known: Vec<&'static str>,
     /// Those of them that are declared as data.
-    keys: &'static [Key],
+    keys: Vec<&'static Key>,
 }
 
 impl<'a> Fields<'a> {
@@ -36,10 +36,10 @@ impl<'a> Fields<'a> {
     pub(crate) fn declare(
         &mut self,
         before: &[&'static str],
-        keys: &'static [Key],
+        keys: impl IntoIterator<Item = &'static Key>,
     ) -> Result<(), SceneError> {
-        self.keys = keys;
-        let own = keys.iter().map(|key| key.name);
+        self.keys = keys.into_iter().collect();
+        let own = self.keys.iter().map(|key| key.name);
         self.known = before.iter().copied().chain(own).collect();
         let mut written = self.table.keys();
         match written.find(|key| !self.known.contains(&key.as_str())) {
@@ -59,7 +59,7 @@ impl<'a> Fields<'a> {
     }
 
     fn key(&self, name: &str) -> Option<&'static Key> {
-        self.keys.iter().find(|key| key.name == name)
+        self.keys.iter().find(|key| key.name == name).copied()
     }
 
     /// The value of a declared key that must be there.
@@ -195,7 +195,7 @@ impl<'a> Field<'a> {
             whole: self.clone(),
             table,
             known: Vec::new(),
-            keys: &[],
+            keys: Vec::new(),
         })
     }
 }

@@ -81,6 +81,8 @@ pub struct Contact {
     pub restitution: f64,
     /// Smallest impact velocity that the damping term divides by \[m/s\].
     pub impact_velocity_floor: f64,
+    /// Values of the keys that the law alone has.
+    pub own: Vec<f64>,
     /// Friction, absent when the scene names none.
     pub friction: Option<Friction>,
 }
@@ -106,6 +108,7 @@ impl Contact {
             exponent: self.exponent,
             restitution: self.restitution,
             impact_velocity_floor: self.impact_velocity_floor,
+            own: &self.own,
         })
     }
 
@@ -135,9 +138,10 @@ impl Contact {
         laws: &[&'static NormalLawKind],
     ) -> Result<Contact, SceneError> {
         let mut table = field.fields()?;
-        table.declare(&[], &KEYS)?;
         let choices: Vec<_> = laws.iter().map(|k| (k.name, *k)).collect();
-        let law = table.field("law")?.choice(&choices)?;
+        let law = table.required("law", &KEYS[0].description())?;
+        let law = law.choice(&choices)?;
+        table.declare(&[], KEYS.iter().chain(law.keys))?;
         let bearing_radius = table.optional_number("bearing_radius")?;
         let clearance = table.number("clearance")?;
         if bearing_radius.is_some_and(|radius| clearance >= radius) {
@@ -150,7 +154,9 @@ impl Contact {
             return Err(field.must("be at least 1, or the stiffness is infinite at first touch"));
         }
         let friction = table.optional("friction");
+        let own = law.keys.iter().map(|key| table.number(key.name));
         Ok(Contact {
+            own: own.collect::<Result<_, _>>()?,
             bearing_radius,
             clearance,
             law,

@@ -43,7 +43,10 @@ pub fn language(registry: &Registry) -> Vec<Sheet> {
     plain("output", &reader::OUTPUT);
     plain("materials.NAME", &MATERIAL);
     plain("sections.NAME", &SECTION);
-    plain("contacts.NAME", &contact::KEYS);
+    let own = registry.laws.iter().flat_map(|law| law.keys);
+    let own = own.map(|key| key.or("required by its law"));
+    let contact: Vec<Key> = contact::KEYS.into_iter().chain(own).collect();
+    plain("contacts.NAME", &contact);
     plain("contacts.NAME.friction", &contact::FRICTION);
     plain("bodies.NAME.points.NAME", &POLAR);
     plain("bodies.NAME.rayleigh", &RAYLEIGH);

@@ -340,7 +340,8 @@ fn state(field: &Field, names: &Names) -> Result<BodyState, SceneError> {
     let body = moving_body(field, names)?;
     let turns = names.bodies[body].turns();
     let mut table = field.fields()?;
-    table.declare(&[], if turns { &STATE } else { &POINT_STATE })?;
+    let keys: &[Key] = if turns { &STATE } else { &POINT_STATE };
+    table.declare(&[], keys)?;
     let components = if turns { 3 } else { 2 };
     let velocity_given = RATES[..components]
         .iter()

@@ -7,6 +7,7 @@ use super::{NormalForce, NormalLaw, NormalLawKind, NormalParameters};
 pub static HERTZ: NormalLawKind = NormalLawKind {
     name: "hertz",
     is_damped: false,
+    keys: &[],
     build: |p| {
         // nothing is divided by the impact velocity
         let impact_velocity_floor = f64::MIN_POSITIVE;
@@ -22,6 +23,7 @@ pub static HERTZ: NormalLawKind = NormalLawKind {
 pub static LANKARANI_NIKRAVESH: NormalLawKind = NormalLawKind {
     name: "lankarani_nikravesh",
     is_damped: true,
+    keys: &[],
     build: |p| {
         Box::new(DampedPower::new(
             p,
@@ -34,6 +36,7 @@ pub static LANKARANI_NIKRAVESH: NormalLawKind = NormalLawKind {
 pub static HUNT_CROSSLEY: NormalLawKind = NormalLawKind {
     name: "hunt_crossley",
     is_damped: true,
+    keys: &[],
     build: |p| Box::new(DampedPower::new(p, 1.5 * (1.0 - p.restitution))),
 };
 
@@ -41,6 +44,7 @@ pub static HUNT_CROSSLEY: NormalLawKind = NormalLawKind {
 pub static FLORES: NormalLawKind = NormalLawKind {
     name: "flores",
     is_damped: true,
+    keys: &[],
     build: |p| {
         let damping = 8.0 * (1.0 - p.restitution) / (5.0 * p.restitution);
         Box::new(DampedPower::new(p, damping))

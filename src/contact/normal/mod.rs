@@ -4,6 +4,8 @@ pub mod damped_power;
 
 pub use damped_power::DampedPower;
 
+use crate::document::Key;
+
 /// A normal force with its slopes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalForce {
@@ -31,7 +33,7 @@ pub trait NormalLaw: std::fmt::Debug + Send + Sync {
 
 /// What a scene gives a law.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NormalParameters {
+pub struct NormalParameters<'a> {
     /// Contact stiffness K \[N/m^exponent\].
     pub stiffness: f64,
     /// Exponent n.
@@ -40,6 +42,8 @@ pub struct NormalParameters {
     pub restitution: f64,
     /// Smallest impact velocity that the damping term divides by \[m/s\]: at a grazing onset eq. 24 would divide by zero.
     pub impact_velocity_floor: f64,
+    /// Values of the keys that the law alone has, in their order.
+    pub own: &'a [f64],
 }
 
 /// A kind of normal law.
@@ -49,6 +53,8 @@ pub struct NormalLawKind {
     pub name: &'static str,
     /// False for a law without restitution coefficient and impact velocity.
     pub is_damped: bool,
+    /// Keys of a contact that this law alone has; all are numbers that it needs.
+    pub keys: &'static [Key],
     /// Builds the law.
     pub build: fn(&NormalParameters) -> Box<dyn NormalLaw>,
 }
