@@ -191,18 +191,12 @@ pub(crate) fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) 
     }
     // A third of the letters may differ: `lenght` finds `length`, `mass` does not find `model`.
     let limit = ((letters + 1) / 3).max(1);
-    known
-        .into_iter()
-        .filter(|k| k.chars().count() <= LONGEST)
-        .map(|k| {
-            (
-                strsim::damerau_levenshtein(&name.to_lowercase(), &k.to_lowercase()),
-                k,
-            )
-        })
-        .filter(|(distance, _)| *distance <= limit)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, k)| k)
+    let name = name.to_lowercase();
+    let distance = |k: &&str| strsim::damerau_levenshtein(&name, &k.to_lowercase());
+    let known = known.into_iter();
+    let nearest = known.filter(|k| k.chars().count() <= LONGEST);
+    let nearest = nearest.min_by_key(distance);
+    nearest.filter(|k| distance(k) <= limit)
 }
 
 /// The end of a message about an unknown name: a suggestion, or nothing.

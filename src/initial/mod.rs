@@ -4,7 +4,7 @@ pub(crate) mod redundancy;
 
 use crate::body::Frame;
 use crate::compile::Compiled;
-use crate::compile::assembly::{CENTRE, assemble, opening};
+use crate::compile::assembly::{CENTRE, assemble, name, opening, whole_name};
 use crate::math::plane::norm;
 use crate::model::{Model, PlacedBody, PlacedConstraint};
 use crate::scene::{Analysis, BodyState, NamedBody, Scene, SceneError};
@@ -85,13 +85,10 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
         let worst = all.max_by(|a, b| a.0.total_cmp(&b.0));
         worst.filter(|(x, _)| x.is_nan() || *x > START_TOLERANCE)
     };
-    let name = |p: &PlacedConstraint| {
-        let row = model.names[model.shape().unknowns + p.row].as_str();
-        // the violation is measured over all rows together, so no single row can be named
-        match p.rows {
-            1 => row,
-            _ => row.split(" (").next().unwrap_or(row),
-        }
+    // the violation is measured over all rows together, so no single row can be named
+    let name = |p: &PlacedConstraint| match p.rows {
+        1 => name(model, p),
+        _ => whole_name(model, p),
     };
     if let Some((open, placed)) = worst(|p, at| norm(p.term.value(at))) {
         let message = format!(

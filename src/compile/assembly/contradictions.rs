@@ -2,7 +2,7 @@
 
 use super::super::{Compiler, Role};
 use super::guess::coordinates;
-use super::{CENTRE, CLOSED, check_sketch, close, name, opening, strays};
+use super::{CENTRE, CLOSED, check_sketch, close, name, opening, strays, whole_name};
 use crate::math::plane::norm;
 use crate::model::{Model, PlacedConstraint};
 use crate::scene::{SceneError, SketchPoint};
@@ -48,7 +48,7 @@ pub(super) fn check_given(
         if fixed && open > CLOSED {
             let error = match placed.term {
                 ConstraintTerm::Length(_) => wrong_length(c, placed, state),
-                _ => misfit(c, placed, name(model, placed), open),
+                _ => misfit(c, placed, whole_name(model, placed), open),
             };
             if let Some(error) = error {
                 return Err(error.with_help(CENTRE));
@@ -92,10 +92,9 @@ fn wrong_length(c: &Compiler, placed: &PlacedConstraint, state: &State) -> Optio
 }
 
 /// An error for a joint or a drive that a given pose violates, if there is one.
-fn misfit(c: &Compiler, placed: &PlacedConstraint, name: &str, open: f64) -> Option<SceneError> {
+fn misfit(c: &Compiler, placed: &PlacedConstraint, whole: &str, open: f64) -> Option<SceneError> {
     let mut poses = c.scene.initial.bodies.iter();
     let pose = poses.find(|s| placed.owners.contains(&s.body))?;
-    let whole = name.split(" (").next().unwrap_or(name);
     let message = format!(
         "the given pose of {} does not fit {whole}, which stays open by {}",
         c.scene.bodies[pose.body].name,

@@ -198,6 +198,12 @@ pub(crate) fn name<'m>(model: &'m Model, placed: &PlacedConstraint) -> &'m str {
     &model.names[model.shape().unknowns + placed.row]
 }
 
+/// Name of a constraint without that of the row.
+pub(crate) fn whole_name<'m>(model: &'m Model, placed: &PlacedConstraint) -> &'m str {
+    let name = name(model, placed);
+    name.split(" (").next().unwrap_or(name)
+}
+
 /// Position of a point of a body.
 pub(super) fn position(model: &Model, state: &State, point: PointRef) -> [f64; 2] {
     model.position(&marker(model, point), state)
