@@ -16,12 +16,17 @@ pub struct Field<'a> {
     /// The value.
     pub(crate) node: &'a Node,
     /// Its key, where that is declared as data.
-    pub(super) key: Option<&'static Key>,
+    pub(super) declared: Option<&'static Key>,
 }
 
 impl<'a> Field<'a> {
     /// A part of this value.
-    pub(super) fn part(&self, name: &str, node: &'a Node, key: Option<&'static Key>) -> Field<'a> {
+    pub(super) fn part(
+        &self,
+        name: &str,
+        node: &'a Node,
+        declared: Option<&'static Key>,
+    ) -> Field<'a> {
         let path = match self.path.as_str() {
             "" => name.to_owned(),
             path => format!("{path}.{name}"),
@@ -31,7 +36,7 @@ impl<'a> Field<'a> {
             path,
             name: name.to_owned(),
             node,
-            key,
+            declared,
         }
     }
 
@@ -70,7 +75,7 @@ impl<'a> Field<'a> {
             Value::Integer(n) => n as f64,
             _ => return Err(self.wrong_type("a number")),
         };
-        let range = match self.key.map(|key| key.takes) {
+        let range = match self.declared.map(|key| key.takes) {
             Some(Takes::Number { range, .. }) => range,
             _ => Range::Any,
         };
@@ -132,7 +137,7 @@ impl<'a> Field<'a> {
 
     /// The place of a word among those of its key.
     pub(super) fn word(&self) -> Result<usize, SceneError> {
-        let Some(Takes::Word(words)) = self.key.map(|key| key.takes) else {
+        let Some(Takes::Word(words)) = self.declared.map(|key| key.takes) else {
             panic!("`{}` takes no word", self.name);
         };
         let places = words.iter().enumerate();
@@ -224,7 +229,7 @@ impl<'a> Field<'a> {
 
     /// What the numbers of its key are called, or those of each row.
     pub(crate) fn shape(&self) -> &'static str {
-        match self.key.map(|key| key.takes) {
+        match self.declared.map(|key| key.takes) {
             Some(Takes::Vector { shape, .. } | Takes::Rows { shape, .. }) => shape,
             _ => panic!("`{}` takes no vector", self.name),
         }

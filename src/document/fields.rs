@@ -24,7 +24,7 @@ impl<'a> Fields<'a> {
             path: String::new(),
             name: String::new(),
             node,
-            key: None,
+            declared: None,
         };
         field.fields()
     }
