@@ -23,6 +23,7 @@ use crate::simulate::{Channel, Contact, Report, Status};
 use crate::table::{Cell, Format};
 pub use folder::{Folder, OutputError, earlier_result, json};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::Path;
@@ -79,25 +80,18 @@ struct Header {
 }
 
 #[derive(Serialize)]
-struct Summary<'a> {
+struct Summary<'a, R> {
     #[serde(flatten)]
     header: &'a Header,
     #[serde(flatten)]
-    state: RunState<'a>,
+    report: R,
 }
 
-/// What the summary says of a run.
 #[derive(Serialize)]
-#[serde(untagged)]
-enum RunState<'a> {
-    Pending {
-        status: Status,
-    },
-    Ended {
-        #[serde(flatten)]
-        report: &'a Report,
-        warnings: Vec<String>,
-    },
+struct Ended<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    warnings: Vec<String>,
 }
 
 impl Results {
@@ -133,8 +127,8 @@ impl Results {
             },
             _ => e.into(),
         })?;
-        let status = Status::Incomplete;
-        write_summary(&folder, &header, RunState::Pending { status })?;
+        let pending = BTreeMap::from([("status", Status::Incomplete)]);
+        write_summary(&folder, &header, pending)?;
         folder.replace(SCENE, scene.text().as_bytes())?;
         let onsets = TableFile::create(table(ONSETS), format, CONTACT.map(str::to_owned))?;
         Ok(Results {
@@ -203,8 +197,7 @@ impl Results {
         let timing = self.stopwatch.stop(report.t);
         self.folder.replace(TIMING, &json(&timing)?)?;
         let warnings = report.warnings();
-        let ended = RunState::Ended { report, warnings };
-        write_summary(&self.folder, &self.header, ended)?;
+        write_summary(&self.folder, &self.header, Ended { report, warnings })?;
         if self.folder.replaces && report.status == Status::Complete {
             self.folder.forget()?;
         }
@@ -232,6 +225,10 @@ fn refuse_busy(folder: &Folder) -> Result<(), OutputError> {
     }
 }
 
-fn write_summary(folder: &Folder, header: &Header, state: RunState) -> Result<(), OutputError> {
-    folder.replace(SUMMARY, &json(&Summary { header, state })?)
+fn write_summary(
+    folder: &Folder,
+    header: &Header,
+    report: impl Serialize,
+) -> Result<(), OutputError> {
+    folder.replace(SUMMARY, &json(&Summary { header, report })?)
 }

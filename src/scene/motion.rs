@@ -18,8 +18,7 @@ pub(super) struct Drives {
 }
 
 /// A kind of drive. It is read after others, to which it is added.
-pub(super) type DriveKind =
-    Kind<fn(&Field, &Fields, &Names, &mut Drives) -> Result<(), SceneError>>;
+pub(super) type DriveKind = Kind<fn(&Fields, &Names, &mut Drives) -> Result<(), SceneError>>;
 
 /// The kinds of drive that a scene can name.
 pub(super) static KINDS: [&DriveKind; 3] = [&INVERSE_KINEMATICS, &ANGLE, &POINT];
@@ -52,14 +51,14 @@ static ANGLE: DriveKind = DriveKind {
         Key::name_in("joint", "joints", "the name of a revolute joint"),
         Key::function("angle", "rad", "the angle (no ramp)"),
     ],
-    read: |drive, table, names, drives| {
+    read: |table, names, drives| {
         let name = table.field("joint")?;
         let joint = actuated(&name, names, &mut drives.joints)?;
         for side in names.joints[joint].points() {
             names.check_turns(&name, side)?;
         }
         let angle = read_function(&table.field("angle")?, Use::Motion, names.duration)?;
-        drives.prescribe(drive, MotionKind::Angle { joint, angle });
+        drives.prescribe(table, MotionKind::Angle { joint, angle });
         Ok(())
     },
 };
@@ -71,7 +70,7 @@ static POINT: DriveKind = DriveKind {
         Key::function("x", "m", "x (no ramp)").or("free"),
         Key::function("y", "m", "y (no ramp)").or("free; one of the two is needed"),
     ],
-    read: |drive, table, names, drives| {
+    read: |table, names, drives| {
         let point_field = table.field("point")?;
         let point = names.point(&point_field)?;
         let (name, body) = names.bodies.get_index(point.body).expect("it is there");
@@ -88,10 +87,10 @@ static POINT: DriveKind = DriveKind {
         };
         let coordinates = [coordinate("x")?, coordinate("y")?];
         if coordinates.iter().all(Option::is_none) {
-            let message = format!("`{}` prescribes neither x nor y", drive.path);
-            return Err(drive.key_fault(message, "needs `x`, `y` or both"));
+            let message = format!("`{}` prescribes neither x nor y", table.path());
+            return Err(table.fault(message, "needs `x`, `y` or both"));
         }
-        drives.prescribe(drive, MotionKind::Point { point, coordinates });
+        drives.prescribe(table, MotionKind::Point { point, coordinates });
         Ok(())
     },
 };
@@ -102,16 +101,16 @@ impl Drives {
         let mut drives = Drives::default();
         named(root.optional("drives"), |field| {
             let (kind, table) = Kind::of(field, "drive", &KINDS)?;
-            (kind.read)(field, &table, names, &mut drives)
+            (kind.read)(&table, names, &mut drives)
         })?;
         Ok(drives)
     }
 
     /// Adds a motion that is prescribed directly.
-    fn prescribe(&mut self, drive: &Field, kind: MotionKind) {
+    fn prescribe(&mut self, drive: &Fields, kind: MotionKind) {
         self.motions.push(Motion {
-            name: drive.name.clone(),
-            span: drive.span(),
+            name: drive.whole.name.clone(),
+            span: drive.whole.span(),
             kind,
         });
     }
@@ -129,7 +128,6 @@ fn actuated(field: &Field, names: &Names, driven: &mut Vec<usize>) -> Result<usi
 }
 
 fn inverse_kinematics(
-    field: &Field,
     table: &Fields,
     names: &Names,
     drives: &mut Drives,
@@ -145,16 +143,14 @@ fn inverse_kinematics(
     let body_field = table.field("body")?;
     let (body, found) = body_field.lookup("body", names.bodies)?;
     if found.get::<RigidBody>().is_none() {
-        let message = format!(
-            "`{}` must be a body of type \"rigid_body\"",
-            body_field.path
-        );
+        let path = &body_field.path;
+        let message = format!("`{path}` must be a body of type \"rigid_body\"");
         return Err(body_field.fault(message, "not a rigid body"));
     }
     let path_field = table.field("path")?;
     drives.kinematics.push(Drive {
-        name: field.name.clone(),
-        span: field.span(),
+        name: table.whole.name.clone(),
+        span: table.whole.span(),
         joints,
         body,
         path: read_path(&path_field, names.duration)?,
