@@ -8,7 +8,7 @@ use looselink::document::Key;
 use looselink::force::{LocalMatrix, WIDTH};
 use looselink::interaction::{Contact, JointEnds, JointKind, JointModel, Prismatic};
 use looselink::marker::Separation;
-use looselink::math::plane::{Vec2, dot, perp, scale};
+use looselink::math::plane::{Vec2, quarter_turn, unit};
 use looselink::registry::Registry;
 use looselink::scene::Scene;
 use looselink::simulate::{Recording, Simulation};
@@ -66,11 +66,10 @@ impl JointModel for Slot {
     }
 
     fn terms(&self, ends: &JointEnds, terms: &mut Terms) -> JointTerms {
-        let (sine, cosine) = self.direction.sin_cos();
         let slide = ends.slide(self.direction);
         let walls = Walls {
             ends: slide.ends,
-            u: [cosine, sine],
+            u: unit(self.direction),
             play: self.contact.clearance,
         };
         terms.contacts.push(self.contact.pair(walls, ends.spins));
@@ -95,7 +94,7 @@ impl Walls {
     fn along(&self, x: Vec2, q: &[f64]) -> [f64; WIDTH] {
         let mut values = [0.0; WIDTH];
         for (value, column) in values.iter_mut().zip(self.ends.columns(q).iter()) {
-            *value = dot(x, *column);
+            *value = x.dot(column);
         }
         values
     }
@@ -111,11 +110,11 @@ impl Geometry for Walls {
     }
 
     fn gap(&self, q: &[f64], v: &[f64]) -> Gap {
-        let m = perp(self.u);
-        let s = dot(m, self.ends.vector(q));
+        let m = quarter_turn(self.u);
+        let s = m.dot(&self.ends.vector(q));
         Gap {
-            e: scale(s, m),
-            e_dot: scale(dot(m, self.ends.rate(q, v)), m),
+            e: s * m,
+            e_dot: m.dot(&self.ends.rate(q, v)) * m,
             eccentricity: s.abs(),
             delta: s.abs() - self.play,
             ..Gap::default()
@@ -129,18 +128,18 @@ impl Geometry for Walls {
 
     fn touch(&self, at: At, gap: &Gap) -> Touch {
         let n = self.along_normal(gap, 1.0);
-        let t = perp(n);
+        let t = quarter_turn(n);
         let mut touch = Touch {
             n,
             t,
-            slip: dot(t, self.ends.rate(at.q, at.v)),
+            slip: t.dot(&self.ends.rate(at.q, at.v)),
             normal: self.along(n, at.q),
             tangent: self.along(t, at.q),
             ..Touch::default()
         };
         for (local, theta, bend) in self.ends.bends(at.q) {
-            touch.rate_q[local] = at.v[theta] * dot(n, bend);
-            touch.slip_q[local] = at.v[theta] * dot(t, bend);
+            touch.rate_q[local] = at.v[theta] * n.dot(&bend);
+            touch.slip_q[local] = at.v[theta] * t.dot(&bend);
         }
         touch
     }
@@ -155,7 +154,7 @@ impl Geometry for Walls {
         k: &mut LocalMatrix,
     ) {
         for (local, _, bend) in self.ends.bends(at.q) {
-            k[local][local] += normal * dot(touch.n, bend) + tangential * dot(touch.t, bend);
+            k[local][local] += normal * touch.n.dot(&bend) + tangential * touch.t.dot(&bend);
         }
     }
 }

@@ -1,8 +1,8 @@
 //! A point or a rotation of a body as a function of the coordinates: what joints and forces act on.
 
-use crate::math::plane::{Vec2, add, cross, dot, perp, rotate, scale, sub};
+use crate::math::plane::{Rotation, Vec2, pair, quarter_turn, unit};
 
-const UNIT: [Vec2; 2] = [[1.0, 0.0], [0.0, 1.0]];
+const UNIT: [Vec2; 2] = [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)];
 
 /// Derivatives of a vector by the coordinates it depends on, N at most.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +13,7 @@ pub struct Columns<const N: usize = 4> {
 
 impl<const N: usize> Columns<N> {
     fn new(columns: &[Vec2]) -> Columns<N> {
-        let mut vectors = [[0.0; 2]; N];
+        let mut vectors = [Vec2::zeros(); N];
         vectors[..columns.len()].copy_from_slice(columns);
         Columns {
             vectors,
@@ -95,11 +95,8 @@ impl Marker {
     #[inline]
     pub fn arm(&self, q: &[f64]) -> Vec2 {
         match *self {
-            Marker::Node { .. } | Marker::OnChord { .. } => [0.0; 2],
-            Marker::OnBody { x, s } => {
-                let (sine, cosine) = q[x + 2].sin_cos();
-                rotate(cosine, sine, s)
-            }
+            Marker::Node { .. } | Marker::OnChord { .. } => Vec2::zeros(),
+            Marker::OnBody { x, s } => Rotation::new(q[x + 2]) * s,
         }
     }
 
@@ -107,7 +104,7 @@ impl Marker {
     #[inline]
     pub fn position(&self, q: &[f64], arm: Vec2) -> Vec2 {
         match *self {
-            Marker::Node { x } | Marker::OnBody { x, .. } => add([q[x], q[x + 1]], arm),
+            Marker::Node { x } | Marker::OnBody { x, .. } => pair(q, x) + arm,
             Marker::OnChord { from, to, share } => between(q, from, to, share),
         }
     }
@@ -118,10 +115,10 @@ impl Marker {
         let [x, y] = UNIT;
         match self {
             Marker::Node { .. } => Columns::new(&[x, y]),
-            Marker::OnBody { .. } => Columns::new(&[x, y, perp(arm)]),
+            Marker::OnBody { .. } => Columns::new(&[x, y, quarter_turn(arm)]),
             Marker::OnChord { share, .. } => {
                 let (far, near) = (*share, 1.0 - share);
-                Columns::new(&[scale(near, x), scale(near, y), scale(far, x), scale(far, y)])
+                Columns::new(&[near * x, near * y, far * x, far * y])
             }
         }
     }
@@ -130,8 +127,8 @@ impl Marker {
     #[inline]
     pub fn velocity(&self, v: &[f64], arm: Vec2) -> Vec2 {
         match *self {
-            Marker::Node { x } => [v[x], v[x + 1]],
-            Marker::OnBody { x, .. } => add([v[x], v[x + 1]], scale(v[x + 2], perp(arm))),
+            Marker::Node { x } => pair(v, x),
+            Marker::OnBody { x, .. } => pair(v, x) + v[x + 2] * quarter_turn(arm),
             Marker::OnChord { from, to, share } => between(v, from, to, share),
         }
     }
@@ -140,10 +137,10 @@ impl Marker {
     #[inline]
     pub fn acceleration(&self, v: &[f64], a: &[f64], arm: Vec2) -> Vec2 {
         match *self {
-            Marker::Node { x } => [a[x], a[x + 1]],
+            Marker::Node { x } => pair(a, x),
             Marker::OnBody { x, .. } => {
-                let turning = add(scale(a[x + 2], perp(arm)), scale(-v[x + 2] * v[x + 2], arm));
-                add([a[x], a[x + 1]], turning)
+                let turning = a[x + 2] * quarter_turn(arm) - v[x + 2] * v[x + 2] * arm;
+                pair(a, x) + turning
             }
             Marker::OnChord { from, to, share } => between(a, from, to, share),
         }
@@ -178,19 +175,19 @@ impl Separation {
     /// e \[m\].
     pub fn vector(&self, q: &[f64]) -> Vec2 {
         let point = |m: &Marker| m.position(q, m.arm(q));
-        sub(point(&self.to), point(&self.from))
+        point(&self.to) - point(&self.from)
     }
 
     /// de/dt \[m/s\].
     pub fn rate(&self, q: &[f64], v: &[f64]) -> Vec2 {
         let rate = |m: &Marker| m.velocity(v, m.arm(q));
-        sub(rate(&self.to), rate(&self.from))
+        rate(&self.to) - rate(&self.from)
     }
 
     /// d2e/dt2 \[m/s2\].
     pub fn acceleration(&self, q: &[f64], v: &[f64], a: &[f64]) -> Vec2 {
         let second = |m: &Marker| m.acceleration(v, a, m.arm(q));
-        sub(second(&self.to), second(&self.from))
+        second(&self.to) - second(&self.from)
     }
 
     /// de/dq.
@@ -198,7 +195,7 @@ impl Separation {
         let mut columns = Columns::new(&[]);
         for (marker, sign, _) in self.ends() {
             for column in marker.columns(marker.arm(q)).iter() {
-                columns.vectors[columns.count] = scale(sign, *column);
+                columns.vectors[columns.count] = sign * column;
                 columns.count += 1;
             }
         }
@@ -209,7 +206,7 @@ impl Separation {
     /// derivatives are zero.
     pub fn bends(&self, q: &[f64]) -> impl Iterator<Item = (usize, usize, Vec2)> {
         let bend = |(marker, sign, first): (&Marker, f64, usize)| match *marker {
-            Marker::OnBody { x, .. } => Some((first + 2, x + 2, scale(-sign, marker.arm(q)))),
+            Marker::OnBody { x, .. } => Some((first + 2, x + 2, -sign * marker.arm(q))),
             Marker::Node { .. } | Marker::OnChord { .. } => None,
         };
         self.ends().map(bend).into_iter().flatten()
@@ -219,10 +216,7 @@ impl Separation {
 /// (1 - share) of one pair of entries, and `share` of another.
 #[inline]
 fn between(x: &[f64], from: usize, to: usize, share: f64) -> Vec2 {
-    add(
-        scale(1.0 - share, [x[from], x[from + 1]]),
-        scale(share, [x[to], x[to + 1]]),
-    )
+    (1.0 - share) * pair(x, from) + share * pair(x, to)
 }
 
 /// The rotation of the material at a marker: its rate omega = b(q) . v and b itself.
@@ -261,18 +255,18 @@ impl Spin {
     /// The direction d that turns with the material: (1, 0) of the ground, (cos theta, sin theta), the chord, the slope.
     pub fn vector(&self, q: &[f64]) -> Vec2 {
         match *self {
-            Spin::Fixed => [1.0, 0.0],
-            Spin::Angle { theta } => [q[theta].cos(), q[theta].sin()],
-            Spin::Chord { from, to } => [q[to] - q[from], q[to + 1] - q[from + 1]],
-            Spin::Slope { x } => [q[x], q[x + 1]],
+            Spin::Fixed => Vec2::x(),
+            Spin::Angle { theta } => unit(q[theta]),
+            Spin::Chord { from, to } => pair(q, to) - pair(q, from),
+            Spin::Slope { x } => pair(q, x),
         }
     }
 
     /// dd/dt.
     pub fn vector_rate(&self, q: &[f64], v: &[f64]) -> Vec2 {
         match *self {
-            Spin::Fixed => [0.0; 2],
-            Spin::Angle { theta } => scale(v[theta], perp(self.vector(q))),
+            Spin::Fixed => Vec2::zeros(),
+            Spin::Angle { theta } => v[theta] * quarter_turn(self.vector(q)),
             Spin::Chord { .. } | Spin::Slope { .. } => self.vector(v),
         }
     }
@@ -280,10 +274,10 @@ impl Spin {
     /// d2d/dt2.
     pub fn vector_acceleration(&self, q: &[f64], v: &[f64], a: &[f64]) -> Vec2 {
         match *self {
-            Spin::Fixed => [0.0; 2],
+            Spin::Fixed => Vec2::zeros(),
             Spin::Angle { theta } => {
                 let d = self.vector(q);
-                add(scale(a[theta], perp(d)), scale(-v[theta] * v[theta], d))
+                a[theta] * quarter_turn(d) - v[theta] * v[theta] * d
             }
             Spin::Chord { .. } | Spin::Slope { .. } => self.vector(a),
         }
@@ -294,8 +288,8 @@ impl Spin {
         let [x, y] = UNIT;
         match self {
             Spin::Fixed => Columns::new(&[]),
-            Spin::Angle { .. } => Columns::new(&[perp(self.vector(q))]),
-            Spin::Chord { .. } => Columns::new(&[[-1.0, 0.0], [0.0, -1.0], x, y]),
+            Spin::Angle { .. } => Columns::new(&[quarter_turn(self.vector(q))]),
+            Spin::Chord { .. } => Columns::new(&[Vec2::new(-1.0, 0.0), Vec2::new(0.0, -1.0), x, y]),
             Spin::Slope { .. } => Columns::new(&[x, y]),
         }
     }
@@ -304,7 +298,7 @@ impl Spin {
     pub fn rate(&self, q: &[f64], v: &[f64]) -> f64 {
         match (*self, self.direction(q, v)) {
             (Spin::Angle { theta }, _) => v[theta],
-            (_, Some((d, d_dot))) => cross(d, d_dot) / dot(d, d),
+            (_, Some((d, d_dot))) => d.perp(&d_dot) / d.dot(&d),
             _ => 0.0,
         }
     }
@@ -336,9 +330,9 @@ impl Spin {
         match (*self, self.direction(q, v)) {
             (Spin::Angle { .. }, _) => out.b[0] = 1.0,
             (_, Some((d, d_dot))) => {
-                let square = dot(d, d);
-                let b = scale(1.0 / square, perp(d));
-                // d(b_i)/d(d_j) = J_ij/|d|^2 - 2 perp(d)_i d_j/|d|^4 with J the quarter turn
+                let square = d.dot(&d);
+                let b = 1.0 / square * quarter_turn(d);
+                // d(b_i)/d(d_j) = J_ij/|d|^2 - 2 (J d)_i d_j/|d|^4 with J the quarter turn
                 let quarter = [[0.0, -1.0], [1.0, 0.0]];
                 let signs: &[f64] = if matches!(self, Spin::Chord { .. }) {
                     &[-1.0, 1.0]

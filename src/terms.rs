@@ -7,14 +7,13 @@ use crate::effect::Effect;
 use crate::force::Force;
 use crate::link::AncfCable;
 use crate::marker::Spin;
-use crate::math::plane::Vec2;
 use crate::system::State;
 
 /// The terms of a mechanism, by kind.
 #[derive(Debug, Default)]
 pub struct Terms {
     /// Gravity \[m/s2\].
-    pub gravity: Vec2,
+    pub gravity: [f64; 2],
     /// Masses.
     pub inertia: Vec<Inertia>,
     /// Elements and their coordinates.
@@ -140,7 +139,7 @@ impl Inertia {
         m: [[f64; N]; N],
         firsts: [usize; N],
         positions: [bool; N],
-        g: Vec2,
+        g: [f64; 2],
     ) -> Inertia {
         let coordinates = firsts.iter().flat_map(|&x| [x, x + 1]).collect();
         let mut values = vec![0.0; 4 * N * N];

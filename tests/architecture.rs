@@ -40,11 +40,12 @@ const LAYERS: [&str; 24] = [
 const ABOVE: &str = "output";
 
 /// Crates that the solver is made of.
-const CRATES: [&str; 13] = [
+const CRATES: [&str; 14] = [
     "cpu-time",
     "faer",
     "indexmap",
     "miette",
+    "nalgebra",
     "numbers",
     "ryu",
     "serde",

@@ -61,7 +61,7 @@ fn check(worst: &Worst, scene: &Scene, run: &Recording) {
                 scale += force[0].abs() + force[1].abs();
                 if let Some(rigid) = body.kind.get::<RigidBody>() {
                     let (s, c) = run.get(&format!("{}.theta", body.name))[k].sin_cos();
-                    let [x, y] = rigid.points[*point].at;
+                    let [x, y]: [f64; 2] = rigid.points[*point].at.into();
                     moment += (c * x - s * y) * force[1] - (s * x + c * y) * force[0];
                 }
             }

@@ -10,6 +10,7 @@ use looselink::contact::{At, ContactPair, Rough, Slip, Smooth};
 use looselink::force::WIDTH;
 use looselink::interaction::loose_guide::Walls;
 use looselink::marker::{Marker, Separation, Spin};
+use looselink::math::plane::Vec2;
 use looselink::system::Weights;
 
 /// Coordinates: a node and a second node, a body, another body, a slope. Sizes near one, so that differences resolve.
@@ -26,11 +27,11 @@ fn coordinates() -> (Vec<f64>, Vec<f64>) {
 const NODE: Marker = Marker::Node { x: 0 };
 const BODY: Marker = Marker::OnBody {
     x: 4,
-    s: [0.02, 0.05],
+    s: Vec2::new(0.02, 0.05),
 };
 const OTHER: Marker = Marker::OnBody {
     x: 7,
-    s: [-0.03, 0.01],
+    s: Vec2::new(-0.03, 0.01),
 };
 
 fn joint(bearing: Marker, journal: Marker) -> Smooth<CircleInCircle> {

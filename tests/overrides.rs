@@ -53,7 +53,7 @@ fn overrides() {
             "bodies.ground.points.A1.1=0.3",
         ],
     );
-    assert_eq!(scene.bodies[0].kind.points()[0].at, [0.1, 0.3]);
+    assert_eq!(scene.bodies[0].kind.points()[0].at.as_slice(), [0.1, 0.3]);
     // A missing optional key is created; the last override of a key wins.
     let scene = load(
         CASE4,

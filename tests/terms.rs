@@ -9,11 +9,16 @@ use looselink::force::{ElementDamping, Force, MassDamping, WIDTH};
 use looselink::interaction::rod::Distance;
 use looselink::interaction::{Maxwell, PointForce, SpringDamper, Torque, TorsionSpring};
 use looselink::marker::{Marker, Separation, Spin};
+use looselink::math::plane::Vec2;
 use looselink::motion::Function;
 use looselink::system::{INTEGRALS, Integral, Shape, State, Weights};
 
 /// Coordinates: two bodies (0..3, 3..6), nodes and slopes of an element (6..14), two more nodes (14..18).
 const COUNT: usize = 18;
+
+fn body(x: usize, s: [f64; 2]) -> Marker {
+    Marker::OnBody { x, s: s.into() }
+}
 
 fn between(from: Marker, to: Marker) -> Separation {
     Separation { from, to }
@@ -52,7 +57,6 @@ fn state(k: usize, t: f64) -> State {
 }
 
 fn constraints() -> Vec<(&'static str, Box<dyn Constraint>)> {
-    let body = |x, s| Marker::OnBody { x, s };
     let angle = Function::Polynomial(vec![0.3, 0.7, -0.2]);
     vec![
         (
@@ -171,7 +175,7 @@ fn constraints() -> Vec<(&'static str, Box<dyn Constraint>)> {
             "place",
             Box::new(Place {
                 marker: body(3, [0.4, 0.1]),
-                direction: [0.6, 0.8],
+                direction: Vec2::new(0.6, 0.8),
                 value: Function::Harmonic {
                     mean: 0.1,
                     amplitude: 0.4,
@@ -312,7 +316,6 @@ fn constraints_agree_with_their_differences() {
 /// moved alone.
 #[test]
 fn reactions_are_conjugate_to_motions() {
-    let body = |x, s| Marker::OnBody { x, s };
     let angle = Function::Polynomial(vec![0.3, 0.7, -0.2]);
     let slide = |slider| Slide {
         ends: between(body(0, [0.1, 0.2]), slider),
@@ -341,7 +344,7 @@ fn reactions_are_conjugate_to_motions() {
         (
             Box::new(Place {
                 marker: body(3, [0.4, 0.1]),
-                direction: [0.6, 0.8],
+                direction: Vec2::new(0.6, 0.8),
                 value: Function::Constant(0.1),
             }),
             [3, 4],
@@ -415,7 +418,7 @@ fn reactions_are_conjugate_to_motions() {
                 _ => unreachable!("second sides are angles and slopes"),
             }
             worst.see(power(&**c, &v) - c.couple(&s, lambda));
-            assert_eq!(c.force(&s, lambda), [0.0; 2]);
+            assert_eq!(c.force(&s, lambda), Vec2::zeros());
         }
     }
     Rung::Identities
@@ -446,13 +449,7 @@ fn the_second_zero_of_an_angle_is_told() {
 #[test]
 fn travel_is_measured_along_the_line() {
     let slide = Slide {
-        ends: between(
-            Marker::OnBody {
-                x: 0,
-                s: [0.1, 0.2],
-            },
-            Marker::Node { x: 6 },
-        ),
+        ends: between(body(0, [0.1, 0.2]), Marker::Node { x: 6 }),
         spin: Spin::Angle { theta: 2 },
         angle: 0.7,
         scale: 1.0,
@@ -477,7 +474,6 @@ fn travel_is_measured_along_the_line() {
 }
 
 fn forces() -> Vec<(&'static str, Box<dyn Force>)> {
-    let body = |x, s| Marker::OnBody { x, s };
     let element: Vec<usize> = (6..14).collect();
     vec![
         (

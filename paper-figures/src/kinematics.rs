@@ -184,14 +184,14 @@ fn end_on(scene: &Scene, joint: &str, body: &str) -> Result<Vector> {
         .into_iter()
         .find(on)
         .ok_or_else(missing)?;
-    Ok(scene.bodies[body].kind.points()[end.point].at)
+    Ok(scene.bodies[body].kind.points()[end.point].at.into())
 }
 
 fn sketched(scene: &Scene, joint: &str) -> Result<Vector> {
     let place = scene.joint(joint).map(Sketched::Joint);
     let point = scene.initial.sketch.iter().find(|p| Some(p.what) == place);
     point
-        .map(|p| p.at)
+        .map(|p| p.at.into())
         .ok_or_else(|| miette!("the scene does not sketch the joint {joint}"))
 }
 

@@ -3,6 +3,7 @@
 use super::rigid_body::{MATERIAL, THICKNESS, disc, plate_mass};
 use super::{BodyKind, Materials, Point, RigidBody, points};
 use crate::document::{Fields, Key, SceneError, Takes, derived};
+use crate::math::plane::{Vec2, unit};
 use std::sync::Arc;
 
 pub(super) static KIND: BodyKind = BodyKind {
@@ -28,10 +29,10 @@ pub(super) static KIND: BodyKind = BodyKind {
     ],
     read: |table, known| {
         let radius = table.number("radius")?;
-        let (sin, cos) = table.optional_number("rim")?.unwrap_or(0.0).sin_cos();
+        let rim = table.optional_number("rim")?.unwrap_or(0.0);
         let mut all = vec![
-            Point::new("center", [0.0; 2]),
-            Point::new("rim", [radius * cos, radius * sin]),
+            Point::new("center", Vec2::zeros()),
+            Point::new("rim", radius * unit(rim)),
         ];
         let named = points::read(table)?;
         if let Some(double) = named

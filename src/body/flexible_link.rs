@@ -1,12 +1,12 @@
 //! A flexible link: planar cubic ANCF elements (eqs. 6-15) between nodes with positions and slopes.
 
 use super::{
-    Body, Content, Frame, Levels, Link, Point, Pose, RigidLink, Slot, carried, pair, rigid_link,
+    Body, Content, Frame, Levels, Link, Point, Pose, RigidLink, Slot, carried, rigid_link,
 };
 use crate::force::{ElementDamping, MassDamping};
 use crate::link::{AncfCable, ElasticRoute};
 use crate::marker::{Marker, Spin};
-use crate::math::plane::{Vec2, add, perp, scale, sub};
+use crate::math::plane::{Vec2, pair, quarter_turn, unit};
 use crate::terms::{Inertia, Owner, Terms};
 use std::sync::Arc;
 
@@ -165,7 +165,7 @@ impl Body for FlexibleLink {
         let last = x[x.len() - 2];
         rigid_link::pose(
             levels.map(|l| mean(l, x, self.element_length())),
-            levels.map(|l| sub(pair(l, last), pair(l, x[0]))),
+            levels.map(|l| pair(l, last) - pair(l, x[0])),
         )
     }
 
@@ -179,9 +179,8 @@ impl Body for FlexibleLink {
 
     fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]> {
         let ([.., theta], [.., omega]) = (frame.position, frame.velocity);
-        let [x, y] = [theta.cos(), theta.sin()];
-        let [vx, vy] = scale(omega, perp([x, y]));
-        let slope = [[x, y, 0.0], [vx, vy, 0.0]];
+        let slope = [unit(theta), omega * quarter_turn(unit(theta))];
+        let slope = slope.map(|x| x.push(0.0).into());
         let node = |k: usize| carried(frame, self.link.length * k as f64 / self.elements as f64);
         (0..=self.elements).flat_map(|k| [node(k), slope]).collect()
     }
@@ -216,11 +215,11 @@ impl Body for FlexibleLink {
 
 /// Mean over the length: sum over the elements of the integrals of the shape functions.
 fn mean(level: &[f64], x: &[usize], element_length: f64) -> Vec2 {
-    let mut sum = [0.0; 2];
+    let mut sum = Vec2::zeros();
     for element in x.windows(4).step_by(2) {
         let [r_i, s_i, r_j, s_j] = [0, 1, 2, 3].map(|i| pair(level, element[i]));
-        sum = add(sum, scale(0.5, add(r_i, r_j)));
-        sum = add(sum, scale(element_length / 12.0, sub(s_i, s_j)));
+        sum += 0.5 * (r_i + r_j);
+        sum += element_length / 12.0 * (s_i - s_j);
     }
-    scale(1.0 / (x.len() / 2 - 1) as f64, sum)
+    1.0 / (x.len() / 2 - 1) as f64 * sum
 }

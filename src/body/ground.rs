@@ -56,7 +56,7 @@ impl Body for Ground {
     }
 
     fn place(&self, _: &Frame) -> Vec<[[f64; 3]; 2]> {
-        let at = |p: &Point| [[p.at[0], p.at[1], 0.0], [0.0; 3]];
+        let at = |p: &Point| [p.at.push(0.0).into(), [0.0; 3]];
         self.points.iter().map(at).collect()
     }
 

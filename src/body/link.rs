@@ -2,6 +2,7 @@
 
 use super::{BodyKind, Damping, FlexibleLink, Point, RigidLink};
 use crate::document::{Fields, Key, SceneError, Takes, named};
+use crate::math::plane::Vec2;
 use std::sync::Arc;
 
 /// More elements in one link than any convergence study needs.
@@ -62,7 +63,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             second_moment: section.second_moment,
             density: material.density,
             points: points
-                .map(|(name, share)| Point::new(&name, [share * length, 0.0]))
+                .map(|(name, share)| Point::new(&name, Vec2::new(share * length, 0.0)))
                 .collect(),
             shares,
         };

@@ -23,7 +23,7 @@ pub use rigid_link::RigidLink;
 
 use crate::document::{Fields, Kind, SceneError};
 use crate::marker::{Marker, Spin};
-use crate::math::plane::{Vec2, add, perp, scale};
+use crate::math::plane::{pair, quarter_turn, unit};
 use crate::motion::Path;
 use crate::terms::{Owner, Terms};
 use std::any::Any;
@@ -253,18 +253,12 @@ impl dyn Body {
     }
 }
 
-/// Two entries of an array.
-#[inline]
-fn pair(x: &[f64], i: usize) -> Vec2 {
-    [x[i], x[i + 1]]
-}
-
 /// Position and velocity of the point at this distance along the x axis of a frame.
 fn carried(frame: &Frame, along: f64) -> [[f64; 3]; 2] {
-    let ([x, y, theta], [vx, vy, omega]) = (frame.position, frame.velocity);
-    let direction = [theta.cos(), theta.sin()];
-    let turning = scale(omega, perp(direction));
-    let [px, py] = add([x, y], scale(along, direction));
-    let [ux, uy] = add([vx, vy], scale(along, turning));
-    [[px, py, 0.0], [ux, uy, 0.0]]
+    let ([.., theta], [.., omega]) = (frame.position, frame.velocity);
+    let direction = unit(theta);
+    let turning = omega * quarter_turn(direction);
+    let position = pair(&frame.position, 0) + along * direction;
+    let velocity = pair(&frame.velocity, 0) + along * turning;
+    [position, velocity].map(|x| x.push(0.0).into())
 }

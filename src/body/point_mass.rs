@@ -3,6 +3,7 @@
 use super::{Body, BodyKind, Levels, Point, Pose, Slot};
 use crate::document::Key;
 use crate::marker::{Marker, Spin};
+use crate::math::plane::Vec2;
 use crate::terms::{Inertia, Owner, Terms};
 use std::sync::Arc;
 
@@ -22,7 +23,7 @@ pub struct PointMass {
 
 impl PointMass {
     fn new(mass: f64) -> PointMass {
-        let center = [Point::new("center", [0.0; 2])];
+        let center = [Point::new("center", Vec2::zeros())];
         PointMass { mass, center }
     }
 }

@@ -1,6 +1,7 @@
 //! Named points of a body: `points.NAME = [x, y]` or `{ radius, degrees }`.
 
 use crate::document::{Field, Fields, Key, SceneError, named};
+use crate::math::plane::{Vec2, unit};
 
 /// A named point.
 #[derive(Debug, Clone, PartialEq)]
@@ -8,11 +9,11 @@ pub struct Point {
     /// The name the user wrote.
     pub name: String,
     /// Coordinates in the frame of the body \[m\].
-    pub at: [f64; 2],
+    pub at: Vec2,
 }
 
 impl Point {
-    pub(super) fn new(name: &str, at: [f64; 2]) -> Point {
+    pub(super) fn new(name: &str, at: Vec2) -> Point {
         let name = name.to_owned();
         Point { name, at }
     }
@@ -33,17 +34,16 @@ pub(super) fn read(table: &Fields) -> Result<Vec<Point>, SceneError> {
     let points = named(table.optional("points"), |field| {
         let at = match field.is_table() {
             true => polar(field)?,
-            false => field.numbers("[x, y]")?,
+            false => field.numbers::<2>("[x, y]")?.into(),
         };
         Ok(Point::new(&field.name, at))
     })?;
     Ok(points.into_values().collect())
 }
 
-fn polar(field: &Field) -> Result<[f64; 2], SceneError> {
+fn polar(field: &Field) -> Result<Vec2, SceneError> {
     let mut table = field.fields()?;
     table.declare(&[], &POLAR)?;
     let (radius, degrees) = (table.number("radius")?, table.number("degrees")?);
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    Ok([radius * cos, radius * sin])
+    Ok(radius * unit(degrees.to_radians()))
 }

@@ -2,6 +2,7 @@
 
 use super::{Body, BodyKind, Material, Materials, Point, points};
 use crate::document::{Fields, Key, Kind, SceneError, Takes, derived};
+use crate::math::plane::Vec2;
 use crate::terms::{Inertia, Owner, Terms};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -38,10 +39,11 @@ pub(super) static KIND: BodyKind = BodyKind {
     ],
     read: |table, known| {
         let (mass, inertia) = inertia(table, known)?;
-        let center = table.optional_vector("center_of_mass")?.unwrap_or([0.0; 2]);
+        let center = table.optional_vector::<2>("center_of_mass")?;
+        let center = Vec2::from(center.unwrap_or_default());
         let mut points = points::read(table)?;
         for point in &mut points {
-            point.at = [point.at[0] - center[0], point.at[1] - center[1]];
+            point.at -= center;
         }
         Ok(Arc::new(RigidBody {
             mass,
@@ -76,7 +78,7 @@ impl Body for RigidBody {
     }
 
     fn lever(&self, _: usize) -> f64 {
-        let arms = self.points.iter().map(|p| p.at[0].hypot(p.at[1]));
+        let arms = self.points.iter().map(|p| p.at.x.hypot(p.at.y));
         arms.fold(self.size(), f64::max)
     }
 

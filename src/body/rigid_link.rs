@@ -1,10 +1,10 @@
 //! A rigid link in natural coordinates (eqs. 1-5): the positions of its two ends, at a constant distance.
 
-use super::{Body, Frame, Levels, Link, Point, Pose, Slot, carried, pair};
+use super::{Body, Frame, Levels, Link, Point, Pose, Slot, carried};
 use crate::constraint::Length;
 use crate::link::natural_rigid;
 use crate::marker::{Marker, Spin};
-use crate::math::plane::{Vec2, add, cross, dot, perp, scale, sub};
+use crate::math::plane::{Vec2, pair, quarter_turn, unit};
 use crate::terms::{ConstraintTerm, Inertia, Owner, Terms};
 
 /// A link that does not deform.
@@ -79,8 +79,8 @@ impl Body for RigidLink {
     fn pose(&self, x: &[usize], levels: Levels) -> Pose {
         let [i, j] = [x[0], x[1]];
         pose(
-            levels.map(|l| scale(0.5, add(pair(l, i), pair(l, j)))),
-            levels.map(|l| sub(pair(l, j), pair(l, i))),
+            levels.map(|l| 0.5 * (pair(l, i) + pair(l, j))),
+            levels.map(|l| pair(l, j) - pair(l, i)),
         )
     }
 
@@ -90,11 +90,11 @@ impl Body for RigidLink {
 
     fn frame_at(&self, x: &[usize], q: &[f64], v: &[f64]) -> Option<Frame> {
         let (from, from_rate) = (pair(q, x[0]), pair(v, x[0]));
-        let (d, d_dot) = (sub(pair(q, x[1]), from), sub(pair(v, x[1]), from_rate));
-        let omega = cross(d, d_dot) / dot(d, d);
+        let (d, d_dot) = (pair(q, x[1]) - from, pair(v, x[1]) - from_rate);
+        let omega = d.perp(&d_dot) / d.dot(&d);
         Some(Frame {
-            position: [from[0], from[1], d[1].atan2(d[0])],
-            velocity: [from_rate[0], from_rate[1], omega],
+            position: from.push(d.y.atan2(d.x)).into(),
+            velocity: from_rate.push(omega).into(),
         })
     }
 
@@ -107,33 +107,33 @@ impl Body for RigidLink {
         if component < 2 {
             return Some(vec![(i + component, 0.5), (j + component, 0.5)]);
         }
-        let d = sub(pair(q, j), pair(q, i));
-        let b = scale(1.0 / dot(d, d), perp(d));
-        Some(vec![(i, -b[0]), (i + 1, -b[1]), (j, b[0]), (j + 1, b[1])])
+        let d = pair(q, j) - pair(q, i);
+        let b = 1.0 / d.dot(&d) * quarter_turn(d);
+        Some(vec![(i, -b.x), (i + 1, -b.y), (j, b.x), (j + 1, b.y)])
     }
 }
 
 /// The frame at the start of a link, from its centre of mass.
 pub(super) fn frame(length: f64, position: [f64; 3], velocity: [f64; 3]) -> Frame {
-    let ([x, y, theta], [vx, vy, omega]) = (position, velocity);
-    let half = scale(0.5 * length, [theta.cos(), theta.sin()]);
-    let start = sub([x, y], half);
-    let rate = sub([vx, vy], scale(omega, perp(half)));
+    let ([.., theta], [.., omega]) = (position, velocity);
+    let half = 0.5 * length * unit(theta);
+    let start = pair(&position, 0) - half;
+    let rate = pair(&velocity, 0) - omega * quarter_turn(half);
     Frame {
-        position: [start[0], start[1], theta],
-        velocity: [rate[0], rate[1], omega],
+        position: start.push(theta).into(),
+        velocity: rate.push(omega).into(),
     }
 }
 
 /// Pose of a link from its centre and its chord, each as (position, velocity, acceleration).
 pub(super) fn pose(centre: [Vec2; 3], chord: [Vec2; 3]) -> Pose {
     let [d, d_dot, d_ddot] = chord;
-    let square = dot(d, d);
-    let omega = cross(d, d_dot) / square;
-    let alpha = (cross(d, d_ddot) - 2.0 * omega * dot(d, d_dot)) / square;
+    let square = d.dot(&d);
+    let omega = d.perp(&d_dot) / square;
+    let alpha = (d.perp(&d_ddot) - 2.0 * omega * d.dot(&d_dot)) / square;
     Pose {
-        position: [centre[0][0], centre[0][1], d[1].atan2(d[0])],
-        velocity: [centre[1][0], centre[1][1], omega],
-        acceleration: [centre[2][0], centre[2][1], alpha],
+        position: centre[0].push(d.y.atan2(d.x)).into(),
+        velocity: centre[1].push(omega).into(),
+        acceleration: centre[2].push(alpha).into(),
     }
 }

@@ -5,7 +5,6 @@ use super::sketch::close;
 use super::{Compiler, Mode, Role, build, numbering};
 use crate::body::{PointRef, RigidLink};
 use crate::kinematics::{Dyad, Kinematics};
-use crate::math::plane::{norm, sub};
 use crate::model::Model;
 use crate::scene::{Drive, Scene, SceneError};
 use crate::system::State;
@@ -77,7 +76,7 @@ fn sweep(
             if joint.points().iter().all(|&p| c.is_known(p)) {
                 let at = |p| position(&kinematics.mechanism, &to, p);
                 let [a, b] = joint.points().map(at);
-                let distance = norm(sub(a, b));
+                let distance = (a - b).norm();
                 if distance > HELD_TOLERANCE {
                     let message = format!(
                         "drive {}: the path pulls joint {} apart, by {} at t = {} s",

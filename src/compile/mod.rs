@@ -13,6 +13,7 @@ mod sketch;
 use crate::body::{Body, Known, PointRef, Slot};
 use crate::interaction::JointModel;
 use crate::kinematics::Kinematics;
+use crate::math::plane::Vec2;
 use crate::model::Model;
 use crate::scene::{MotionKind, NamedBody, Scene, SceneError, SketchPoint, Sketched};
 use std::sync::Arc;
@@ -124,18 +125,18 @@ impl Compiler<'_> {
     }
 
     /// Position of a joint or a point in the sketch.
-    pub fn drawn(&self, what: Sketched) -> Option<[f64; 2]> {
+    pub fn drawn(&self, what: Sketched) -> Option<Vec2> {
         let mut sketch = self.scene.initial.sketch.iter();
         sketch.find(|s| s.what == what).map(|s| s.at)
     }
 
     /// The error for a sketch that is too far from the closed mechanism.
-    pub fn far_from_sketch(&self, sketch: &SketchPoint, at: [f64; 2]) -> SceneError {
+    pub fn far_from_sketch(&self, sketch: &SketchPoint, at: Vec2) -> SceneError {
         let message = format!(
             "{} closes at ({:.4}, {:.4}) m, far from its sketch: draw it closer to the branch you mean",
             self.sketched_name(sketch),
-            at[0],
-            at[1]
+            at.x,
+            at.y
         );
         let error = self.scene.error(sketch.span, message, "the sketch");
         error.with_help(format!("or check the lengths{}", self.longest()))

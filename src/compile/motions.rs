@@ -3,6 +3,7 @@
 use super::numbering::Numbering;
 use super::{Compiler, Role};
 use crate::constraint::{Align, Place};
+use crate::math::plane::Vec2;
 use crate::scene::MotionKind;
 use crate::terms::{ConstraintTerm, JointTerms, Owner, Terms};
 
@@ -40,7 +41,7 @@ pub(super) fn motion_terms(
                     if let Some(value) = value {
                         let place = Place {
                             marker: numbering.bodies[point.body].marker(point.point),
-                            direction: [[1.0, 0.0], [0.0, 1.0]][i],
+                            direction: [Vec2::x(), Vec2::y()][i],
                             value: value.clone(),
                         };
                         let part = [["x"], ["y"]][i];

@@ -229,7 +229,7 @@ impl Numbering {
             (Some(Known::Fixed), _) => {
                 for (s, point) in c.bodies[b].points().iter().enumerate() {
                     let x = self.known(2);
-                    self.fixed.extend([(x, point.at[0]), (x + 1, point.at[1])]);
+                    self.fixed.extend([(x, point.at.x), (x + 1, point.at.y)]);
                     self.bodies[b].x[s] = x;
                 }
             }

@@ -3,6 +3,7 @@
 use super::numbering::Numbering;
 use super::{Compiler, Role};
 use crate::body::{Content, Known};
+use crate::math::plane::Vec2;
 use crate::model::Rule;
 use crate::scene::MotionKind;
 
@@ -43,10 +44,10 @@ fn turn(c: &Compiler, numbering: &Numbering, b: usize, m: usize) -> Option<Rule>
     let at = points[own.point].at;
     let pivot = numbering.bodies[ground.body].x[ground.point];
     let (point, theta) = match c.slots[b][0].content {
-        Content::Pose => ((x[0], [-at[0], -at[1]]), Some(x[0] + 2)),
+        Content::Pose => ((x[0], -at), Some(x[0] + 2)),
         _ => {
             let other = 1 - own.point;
-            ((x[other], [points[other].at[0] - at[0], 0.0]), None)
+            ((x[other], Vec2::new(points[other].at.x - at.x, 0.0)), None)
         }
     };
     Some(Rule::Turn {

@@ -4,7 +4,7 @@ use super::Compiler;
 use crate::body::{Content, PointRef};
 use crate::kinematics::Kinematics;
 use crate::marker::Marker;
-use crate::math::plane::{cross, dot, norm, sub};
+use crate::math::plane::{Rotation, Vec2, pair};
 use crate::model::Model;
 use crate::scene::{Drive, SceneError, Sketched};
 use crate::system::State;
@@ -28,11 +28,11 @@ pub(super) fn close(
         )
     })?;
     for (x, sketch) in guessed {
-        let found = [inner.state.q[x], inner.state.q[x + 1]];
+        let found = pair(&inner.state.q, x);
         let drawn = &c.scene.initial.sketch[sketch];
         let points = c.sketched_points(drawn).into_iter();
         let lengths = points.map(|p| c.bodies[p.body].length().unwrap_or(f64::INFINITY));
-        if norm(sub(found, drawn.at)) > 0.25 * lengths.fold(f64::INFINITY, f64::min) {
+        if (found - drawn.at).norm() > 0.25 * lengths.fold(f64::INFINITY, f64::min) {
             return Err(c.far_from_sketch(drawn, found));
         }
     }
@@ -58,7 +58,7 @@ fn guess(
         for point in c.sketched_points(sketch) {
             if let Marker::Node { x } = marker(mechanism, point) {
                 if x < n {
-                    state.q[x..x + 2].copy_from_slice(&sketch.at);
+                    state.q[x..x + 2].copy_from_slice(sketch.at.as_slice());
                 }
                 guessed.push((x, k));
                 known[x] = true;
@@ -121,26 +121,20 @@ fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) ->
 }
 
 /// A point in the frame of its body and its approximate position.
-pub(super) type Pair = ([f64; 2], [f64; 2]);
+pub(super) type Pair = (Vec2, Vec2);
 
 /// The pose (x, y, theta) that carries points of a body closest to given positions.
 pub(super) fn fit(pairs: &[Pair]) -> [f64; 3] {
     let count = pairs.len() as f64;
-    let mean = |pick: fn(&Pair) -> [f64; 2]| {
-        let sum = pairs
-            .iter()
-            .map(pick)
-            .fold([0.0; 2], |s, p| [s[0] + p[0], s[1] + p[1]]);
-        [sum[0] / count, sum[1] / count]
-    };
+    let mean = |pick: fn(&Pair) -> Vec2| pairs.iter().map(pick).sum::<Vec2>() / count;
     let (local, global) = (mean(|p| p.0), mean(|p| p.1));
     let (mut sine, mut cosine) = (0.0, 0.0);
     for (s, r) in pairs {
-        let (s, r) = (sub(*s, local), sub(*r, global));
-        sine += cross(s, r);
-        cosine += dot(s, r);
+        let (s, r) = (s - local, r - global);
+        sine += s.perp(&r);
+        cosine += s.dot(&r);
     }
     let theta = f64::atan2(sine, cosine);
-    let turned = crate::math::plane::rotate(theta.cos(), theta.sin(), local);
-    [global[0] - turned[0], global[1] - turned[1], theta]
+    let origin = global - Rotation::new(theta) * local;
+    origin.push(theta).into()
 }

@@ -3,7 +3,7 @@
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
 use crate::effect::Effect;
 use crate::marker::Spin;
-use crate::math::plane::{Vec2, add, cross, dot, perp, rotate, scale};
+use crate::math::plane::{Rotation, Vec2, quarter_turn};
 use crate::motion::Function;
 use crate::system::State;
 
@@ -26,27 +26,24 @@ pub struct Align {
 
 /// Everything about both directions at one instant.
 struct Directions {
-    cosine: f64,
-    sine: f64,
+    /// R.
+    turn: Rotation,
     /// R d_1 and d_2.
     d: [Vec2; 2],
 }
 
 impl Align {
     fn directions(&self, at: &State) -> Directions {
-        let (sine, cosine) = self.angle.at(at.t)[0].sin_cos();
-        let first = rotate(cosine, sine, self.first.vector(&at.q));
-        Directions {
-            cosine,
-            sine,
-            d: [first, self.second.vector(&at.q)],
-        }
+        let turn = Rotation::new(self.angle.at(at.t)[0]);
+        let first = turn * self.first.vector(&at.q);
+        let d = [first, self.second.vector(&at.q)];
+        Directions { turn, d }
     }
 
     /// cos of the angle error times |d_1| |d_2|.
     fn along(&self, at: &State) -> f64 {
         let Directions { d, .. } = self.directions(at);
-        dot(d[0], d[1])
+        d[0].dot(&d[1])
     }
 }
 
@@ -69,35 +66,35 @@ impl Constraint for Align {
 
     fn value(&self, at: &State) -> [f64; ROWS] {
         let Directions { d, .. } = self.directions(at);
-        [self.scale * cross(d[0], d[1]), 0.0]
+        [self.scale * d[0].perp(&d[1]), 0.0]
     }
 
     fn gradient(&self, at: &State) -> Gradient {
-        let Directions { cosine, sine, d } = self.directions(at);
+        let Directions { turn, d } = self.directions(at);
         let (first, second) = (self.first.columns(&at.q), self.second.columns(&at.q));
         let mut gradient = [[0.0; WIDTH]; ROWS];
         for (g, column) in gradient[0].iter_mut().zip(first.iter()) {
-            *g = self.scale * cross(rotate(cosine, sine, *column), d[1]);
+            *g = self.scale * (turn * column).perp(&d[1]);
         }
         for (g, column) in gradient[0][first.len()..].iter_mut().zip(second.iter()) {
-            *g = self.scale * cross(d[0], *column);
+            *g = self.scale * d[0].perp(column);
         }
         gradient
     }
 
     fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {
-        let Directions { cosine, sine, d } = self.directions(at);
+        let Directions { turn, d } = self.directions(at);
         let (first, second) = (self.first.columns(&at.q), self.second.columns(&at.q));
         let s = lambda[0] * self.scale;
         for (i, a) in first.iter().enumerate() {
             for (j, b) in second.iter().enumerate() {
-                let mixed = s * cross(rotate(cosine, sine, *a), *b);
+                let mixed = s * (turn * a).perp(b);
                 out.add(i, first.len() + j, mixed);
                 out.add(first.len() + j, i, mixed);
             }
         }
         // the second derivative of a unit direction by its angle is minus itself
-        let bend = -s * cross(d[0], d[1]);
+        let bend = -s * d[0].perp(&d[1]);
         if let Spin::Angle { .. } = self.first {
             out.add(0, 0, bend);
         }
@@ -107,12 +104,11 @@ impl Constraint for Align {
     }
 
     fn velocity(&self, at: &State) -> [f64; ROWS] {
-        let Directions { cosine, sine, d } = self.directions(at);
+        let Directions { turn, d } = self.directions(at);
         let turning = self.angle.at(at.t)[1];
-        let first = rotate(cosine, sine, self.first.vector_rate(&at.q, &at.v));
-        let first = add(first, scale(turning, perp(d[0])));
+        let first = turn * self.first.vector_rate(&at.q, &at.v) + turning * quarter_turn(d[0]);
         let second = self.second.vector_rate(&at.q, &at.v);
-        [self.scale * (cross(first, d[1]) + cross(d[0], second)), 0.0]
+        [self.scale * (first.perp(&d[1]) + d[0].perp(&second)), 0.0]
     }
 
     /// s phi_t (perp(R d_1) x d_2).
@@ -121,19 +117,18 @@ impl Constraint for Align {
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
-        let Directions { cosine, sine, d } = self.directions(at);
+        let Directions { turn, d } = self.directions(at);
         let [_, turning, growing] = self.angle.at(at.t);
-        let turned = |x: Vec2| rotate(cosine, sine, x);
-        let rate = turned(self.first.vector_rate(&at.q, &at.v));
-        let first_dot = add(rate, scale(turning, perp(d[0])));
-        let mut first_ddot = turned(self.first.vector_acceleration(&at.q, &at.v, &at.a));
-        first_ddot = add(first_ddot, scale(2.0 * turning, perp(rate)));
-        first_ddot = add(first_ddot, scale(growing, perp(d[0])));
-        first_ddot = add(first_ddot, scale(-turning * turning, d[0]));
+        let rate = turn * self.first.vector_rate(&at.q, &at.v);
+        let first_dot = rate + turning * quarter_turn(d[0]);
+        let first_ddot = turn * self.first.vector_acceleration(&at.q, &at.v, &at.a)
+            + 2.0 * turning * quarter_turn(rate)
+            + growing * quarter_turn(d[0])
+            - turning * turning * d[0];
         let second_dot = self.second.vector_rate(&at.q, &at.v);
         let second_ddot = self.second.vector_acceleration(&at.q, &at.v, &at.a);
         let sum =
-            cross(first_ddot, d[1]) + 2.0 * cross(first_dot, second_dot) + cross(d[0], second_ddot);
+            first_ddot.perp(&d[1]) + 2.0 * first_dot.perp(&second_dot) + d[0].perp(&second_ddot);
         [self.scale * sum, 0.0]
     }
 

@@ -3,7 +3,7 @@
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
 use crate::effect::Effect;
 use crate::marker::Spin;
-use crate::math::plane::{Vec2, cross, rotate, scale, sub};
+use crate::math::plane::{Rotation, Vec2, pair};
 use crate::system::State;
 
 /// Phi = r' - s R d_1, two rows: direction and stretch of the slope r' of the second side follow the direction d_1 of the
@@ -27,12 +27,11 @@ pub struct ClampSlope {
 
 impl ClampSlope {
     fn turned(&self, x: Vec2) -> Vec2 {
-        let (sine, cosine) = self.angle.sin_cos();
-        scale(self.scale, rotate(cosine, sine, x))
+        self.scale * (Rotation::new(self.angle) * x)
     }
 
     fn slope(&self, x: &[f64]) -> Vec2 {
-        [x[self.slope], x[self.slope + 1]]
+        pair(x, self.slope)
     }
 }
 
@@ -54,7 +53,7 @@ impl Constraint for ClampSlope {
     }
 
     fn value(&self, at: &State) -> [f64; ROWS] {
-        sub(self.slope(&at.q), self.turned(self.first.vector(&at.q)))
+        (self.slope(&at.q) - self.turned(self.first.vector(&at.q))).into()
     }
 
     fn gradient(&self, at: &State) -> Gradient {
@@ -62,8 +61,8 @@ impl Constraint for ClampSlope {
         let mut gradient = [[0.0; WIDTH]; ROWS];
         for (c, column) in columns.iter().enumerate() {
             let turned = self.turned(*column);
-            gradient[0][c] = -turned[0];
-            gradient[1][c] = -turned[1];
+            gradient[0][c] = -turned.x;
+            gradient[1][c] = -turned.y;
         }
         gradient[0][columns.len()] = 1.0;
         gradient[1][columns.len() + 1] = 1.0;
@@ -73,22 +72,22 @@ impl Constraint for ClampSlope {
     fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {
         if let Spin::Angle { .. } = self.first {
             let d = self.turned(self.first.vector(&at.q));
-            out.add(0, 0, lambda[0] * d[0] + lambda[1] * d[1]);
+            out.add(0, 0, Vec2::from(lambda).dot(&d));
         }
     }
 
     fn velocity(&self, at: &State) -> [f64; ROWS] {
         let first = self.first.vector_rate(&at.q, &at.v);
-        sub(self.slope(&at.v), self.turned(first))
+        (self.slope(&at.v) - self.turned(first)).into()
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
         let first = self.first.vector_acceleration(&at.q, &at.v, &at.a);
-        sub(self.slope(&at.a), self.turned(first))
+        (self.slope(&at.a) - self.turned(first)).into()
     }
 
     /// -lambda . dr'/d(angle) with r' turned as a whole; the part of lambda along r' holds the stretch and has none.
     fn couple(&self, at: &State, lambda: [f64; ROWS]) -> f64 {
-        -self.sign * cross(self.slope(&at.q), lambda)
+        -self.sign * self.slope(&at.q).perp(&Vec2::from(lambda))
     }
 }

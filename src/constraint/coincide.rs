@@ -3,7 +3,7 @@
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
 use crate::effect::Effect;
 use crate::marker::Marker;
-use crate::math::plane::{Vec2, dot, sub};
+use crate::math::plane::Vec2;
 use crate::system::State;
 
 /// Phi = r_bearing - r_journal, two rows; the multiplier is the force of the bearing on the journal \[N\].
@@ -30,7 +30,7 @@ impl Constraint for Coincide {
 
     fn value(&self, at: &State) -> [f64; ROWS] {
         let point = |m: &Marker| m.position(&at.q, m.arm(&at.q));
-        sub(point(&self.bearing), point(&self.journal))
+        (point(&self.bearing) - point(&self.journal)).into()
     }
 
     fn gradient(&self, at: &State) -> Gradient {
@@ -41,7 +41,7 @@ impl Constraint for Coincide {
 
     #[inline]
     fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
-        let mut value = [0.0; ROWS];
+        let mut value = Vec2::zeros();
         let mut first = 0;
         for (marker, sign) in [(&self.bearing, 1.0), (&self.journal, -1.0)] {
             let arm = marker.arm(&at.q);
@@ -57,7 +57,7 @@ impl Constraint for Coincide {
                 Marker::OnBody { .. } => {
                     put(0, 1.0, 0.0);
                     put(1, 0.0, 1.0);
-                    put(2, -arm[1], arm[0]);
+                    put(2, -arm.y, arm.x);
                 }
                 Marker::OnChord { share, .. } => {
                     put(0, 1.0 - share, 0.0);
@@ -66,11 +66,10 @@ impl Constraint for Coincide {
                     put(3, 0.0, share);
                 }
             }
-            let position = marker.position(&at.q, arm);
-            value = [value[0] + sign * position[0], value[1] + sign * position[1]];
+            value += sign * marker.position(&at.q, arm);
             first += marker.width();
         }
-        value
+        value.into()
     }
 
     #[inline]
@@ -81,7 +80,7 @@ impl Constraint for Coincide {
         ];
         for (marker, sign, first) in sides {
             if let Marker::OnBody { .. } = marker {
-                let bend = -sign * dot(marker.arm(&at.q), lambda);
+                let bend = -sign * marker.arm(&at.q).dot(&Vec2::from(lambda));
                 out.add(first + 2, first + 2, bend);
             }
         }
@@ -89,15 +88,15 @@ impl Constraint for Coincide {
 
     fn velocity(&self, at: &State) -> [f64; ROWS] {
         let rate = |m: &Marker| m.velocity(&at.v, m.arm(&at.q));
-        sub(rate(&self.bearing), rate(&self.journal))
+        (rate(&self.bearing) - rate(&self.journal)).into()
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
         let second = |m: &Marker| m.acceleration(&at.v, &at.a, m.arm(&at.q));
-        sub(second(&self.bearing), second(&self.journal))
+        (second(&self.bearing) - second(&self.journal)).into()
     }
 
     fn force(&self, _: &State, lambda: [f64; ROWS]) -> Vec2 {
-        lambda
+        lambda.into()
     }
 }

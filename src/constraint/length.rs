@@ -2,7 +2,7 @@
 
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
 use crate::effect::Effect;
-use crate::math::plane::{Vec2, dot, scale};
+use crate::math::plane::{Vec2, pair};
 use crate::system::State;
 
 /// Phi = (|r_j - r_i|^2 - l^2)/(2 l).
@@ -22,7 +22,7 @@ pub struct Length {
 impl Length {
     #[inline]
     fn difference(&self, x: &[f64]) -> Vec2 {
-        [x[self.j] - x[self.i], x[self.j + 1] - x[self.i + 1]]
+        pair(x, self.j) - pair(x, self.i)
     }
 }
 
@@ -52,11 +52,10 @@ impl Constraint for Length {
     #[inline]
     fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
         let d = self.difference(&at.q);
-        let inverse = 1.0 / self.length;
-        let [x, y] = scale(inverse, d);
-        gradient[0][..4].copy_from_slice(&[-x, -y, x, y]);
+        let u = 1.0 / self.length * d;
+        gradient[0][..4].copy_from_slice(&[-u.x, -u.y, u.x, u.y]);
         // (|d|^2 - l^2) as a product of nearly equal numbers' difference: |d| - l is what matters
-        let distance = dot(d, d).sqrt();
+        let distance = d.norm();
         [
             (distance - self.length) * (distance + self.length) / (2.0 * self.length),
             0.0,
@@ -74,13 +73,12 @@ impl Constraint for Length {
     }
 
     fn velocity(&self, at: &State) -> [f64; ROWS] {
-        let rate = dot(self.difference(&at.q), self.difference(&at.v));
+        let rate = self.difference(&at.q).dot(&self.difference(&at.v));
         [rate / self.length, 0.0]
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
-        let rate = self.difference(&at.v);
-        let second = dot(self.difference(&at.q), self.difference(&at.a)) + dot(rate, rate);
-        [second / self.length, 0.0]
+        let [d, rate, second] = [&at.q, &at.v, &at.a].map(|x| self.difference(x));
+        [(d.dot(&second) + rate.dot(&rate)) / self.length, 0.0]
     }
 }

@@ -94,7 +94,7 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
     }
     /// Force of the first side on the second \[N\]; zero for a constraint of directions.
     fn force(&self, _at: &State, _lambda: [f64; ROWS]) -> Vec2 {
-        [0.0; 2]
+        Vec2::zeros()
     }
     /// Couple of the first side on the second \[N m\]; zero for a constraint of points.
     fn couple(&self, _at: &State, _lambda: [f64; ROWS]) -> f64 {

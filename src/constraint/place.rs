@@ -3,7 +3,7 @@
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
 use crate::effect::Effect;
 use crate::marker::Marker;
-use crate::math::plane::{Vec2, dot, scale};
+use crate::math::plane::Vec2;
 use crate::motion::Function;
 use crate::system::State;
 
@@ -34,7 +34,7 @@ impl Constraint for Place {
 
     fn value(&self, at: &State) -> [f64; ROWS] {
         let position = self.marker.position(&at.q, self.marker.arm(&at.q));
-        [dot(self.direction, position) - self.value.at(at.t)[0], 0.0]
+        [self.direction.dot(&position) - self.value.at(at.t)[0], 0.0]
     }
 
     fn gradient(&self, at: &State) -> Gradient {
@@ -43,21 +43,21 @@ impl Constraint for Place {
             .iter_mut()
             .zip(self.marker.columns(self.marker.arm(&at.q)).iter())
         {
-            *g = dot(self.direction, *column);
+            *g = self.direction.dot(column);
         }
         gradient
     }
 
     fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {
         if let Marker::OnBody { .. } = self.marker {
-            let bend = -dot(self.direction, self.marker.arm(&at.q));
+            let bend = -self.direction.dot(&self.marker.arm(&at.q));
             out.add(2, 2, lambda[0] * bend);
         }
     }
 
     fn velocity(&self, at: &State) -> [f64; ROWS] {
         let velocity = self.marker.velocity(&at.v, self.marker.arm(&at.q));
-        [dot(self.direction, velocity) - self.value.at(at.t)[1], 0.0]
+        [self.direction.dot(&velocity) - self.value.at(at.t)[1], 0.0]
     }
 
     fn drift(&self, at: &State) -> f64 {
@@ -68,12 +68,12 @@ impl Constraint for Place {
         let arm = self.marker.arm(&at.q);
         let acceleration = self.marker.acceleration(&at.v, &at.a, arm);
         [
-            dot(self.direction, acceleration) - self.value.at(at.t)[2],
+            self.direction.dot(&acceleration) - self.value.at(at.t)[2],
             0.0,
         ]
     }
 
     fn force(&self, _: &State, lambda: [f64; ROWS]) -> Vec2 {
-        scale(-lambda[0], self.direction)
+        -lambda[0] * self.direction
     }
 }

@@ -3,7 +3,7 @@
 use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
 use crate::effect::Effect;
 use crate::marker::{Separation, Spin};
-use crate::math::plane::{Vec2, cross, dot, norm, perp, rotate, scale};
+use crate::math::plane::{Rotation, Vec2, quarter_turn};
 use crate::system::State;
 
 /// Phi = u x e with e from the guide's point to the slider and the unit direction u of the line, one row: the distance of the
@@ -30,8 +30,7 @@ struct Geometry {
 
 impl Slide {
     fn turned(&self, x: Vec2) -> Vec2 {
-        let (sine, cosine) = self.angle.sin_cos();
-        scale(self.scale, rotate(cosine, sine, x))
+        self.scale * (Rotation::new(self.angle) * x)
     }
 
     /// u and e.
@@ -54,11 +53,11 @@ impl Slide {
     pub fn travel(&self, at: &State) -> [f64; 2] {
         let Geometry { u, e, u_dot, e_dot } = self.geometry(at);
         // the slope of a flexible guide is longer than 1 where the link is stretched
-        let (size, along) = (norm(u), dot(u, e));
-        let stretching = dot(u, u_dot) / (size * size);
+        let (size, along) = (u.norm(), u.dot(&e));
+        let stretching = u.dot(&u_dot) / (size * size);
         [
             along / size,
-            (dot(u, e_dot) + dot(u_dot, e) - along * stretching) / size,
+            (u.dot(&e_dot) + u_dot.dot(&e) - along * stretching) / size,
         ]
     }
 }
@@ -80,14 +79,14 @@ impl Constraint for Slide {
 
     fn value(&self, at: &State) -> [f64; ROWS] {
         let (u, e) = self.at(at);
-        [cross(u, e), 0.0]
+        [u.perp(&e), 0.0]
     }
 
     fn gradient(&self, at: &State) -> Gradient {
         let (u, e) = self.at(at);
         let (turning, moving) = (self.spin.columns(&at.q), self.ends.columns(&at.q));
-        let turning = turning.iter().map(|d| cross(self.turned(*d), e));
-        let moving = moving.iter().map(|column| cross(u, *column));
+        let turning = turning.iter().map(|d| self.turned(*d).perp(&e));
+        let moving = moving.iter().map(|column| u.perp(column));
         let mut gradient = [[0.0; WIDTH]; ROWS];
         for (g, x) in gradient[0].iter_mut().zip(turning.chain(moving)) {
             *g = x;
@@ -101,34 +100,34 @@ impl Constraint for Slide {
         for (i, d) in self.spin.columns(&at.q).iter().enumerate() {
             let d = self.turned(*d);
             for (j, column) in self.ends.columns(&at.q).iter().enumerate() {
-                let mixed = s * cross(d, *column);
+                let mixed = s * d.perp(column);
                 out.add(i, first + j, mixed);
                 out.add(first + j, i, mixed);
             }
         }
         if let Spin::Angle { .. } = self.spin {
-            out.add(0, 0, -s * cross(u, e));
+            out.add(0, 0, -s * u.perp(&e));
         }
         for (theta, _, bend) in self.ends.bends(&at.q) {
-            out.add(first + theta, first + theta, s * cross(u, bend));
+            out.add(first + theta, first + theta, s * u.perp(&bend));
         }
     }
 
     fn velocity(&self, at: &State) -> [f64; ROWS] {
         let Geometry { u, e, u_dot, e_dot } = self.geometry(at);
-        [cross(u_dot, e) + cross(u, e_dot), 0.0]
+        [u_dot.perp(&e) + u.perp(&e_dot), 0.0]
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
         let Geometry { u, e, u_dot, e_dot } = self.geometry(at);
         let u_ddot = self.turned(self.spin.vector_acceleration(&at.q, &at.v, &at.a));
         let e_ddot = self.ends.acceleration(&at.q, &at.v, &at.a);
-        let sum = cross(u_ddot, e) + 2.0 * cross(u_dot, e_dot) + cross(u, e_ddot);
+        let sum = u_ddot.perp(&e) + 2.0 * u_dot.perp(&e_dot) + u.perp(&e_ddot);
         [sum, 0.0]
     }
 
     fn force(&self, at: &State, lambda: [f64; ROWS]) -> Vec2 {
         let (u, _) = self.at(at);
-        scale(-lambda[0], perp(u))
+        -lambda[0] * quarter_turn(u)
     }
 }

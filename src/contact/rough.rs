@@ -12,7 +12,7 @@ use super::{At, ContactPair, Smooth};
 use crate::effect::{self, Effect};
 use crate::force::{LocalMatrix, WIDTH};
 use crate::marker::{Spin, SpinDerivatives};
-use crate::math::plane::{Vec2, add, scale};
+use crate::math::plane::Vec2;
 use crate::system::{INTEGRALS, Integral, Weights};
 
 /// Which slip velocity friction acts against.
@@ -225,9 +225,8 @@ impl<G: Geometry> ContactPair for Rough<G> {
     }
 
     fn reaction(&self, at: At) -> Vec2 {
-        self.sliding(at).map_or([0.0; 2], |s| {
-            let normal = scale(s.normal.value, s.touch.n);
-            scale(-1.0, add(normal, scale(s.tangential.value, s.touch.t)))
+        self.sliding(at).map_or(Vec2::zeros(), |s| {
+            -(s.normal.value * s.touch.n + s.tangential.value * s.touch.t)
         })
     }
 

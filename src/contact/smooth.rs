@@ -5,7 +5,7 @@ use super::normal::{NormalForce, NormalLaw};
 use super::{At, ContactPair};
 use crate::effect::{self, Effect};
 use crate::force::{LocalMatrix, WIDTH};
-use crate::math::plane::{Vec2, scale};
+use crate::math::plane::Vec2;
 use crate::system::{INTEGRALS, Integral, Weights};
 
 /// A geometry and a normal law.
@@ -107,8 +107,8 @@ impl<G: Geometry> ContactPair for Smooth<G> {
     fn reaction(&self, at: At) -> Vec2 {
         let gap = self.geometry.gap(at.q, at.v);
         let force = self.normal_force(&gap, at.z);
-        force.map_or([0.0; 2], |force| {
-            scale(-1.0, self.geometry.along_normal(&gap, force.value))
+        force.map_or(Vec2::zeros(), |force| {
+            -self.geometry.along_normal(&gap, force.value)
         })
     }
 

@@ -3,7 +3,7 @@
 use super::{Force, LocalMatrix, WIDTH};
 use crate::effect::Effect;
 use crate::link::shape_derivatives;
-use crate::math::plane::{Vec2, cross, dot, perp};
+use crate::math::plane::{Vec2, pair, quarter_turn};
 use crate::math::quadrature::GAUSS5;
 use crate::system::{INTEGRALS, Integral, State, Weights};
 
@@ -59,13 +59,13 @@ impl ElementDamping {
     fn rates(first: &[f64; 4], second: &[f64; 4], [q, v]: &[[f64; NODAL]; 2]) -> Rates {
         // sum_a s_a x_a over the four local vectors
         let combine = |s: &[f64; 4], x: &[f64; NODAL]| {
-            [0, 1].map(|i| s[0] * x[i] + s[1] * x[2 + i] + s[2] * x[4 + i] + s[3] * x[6 + i])
+            s[0] * pair(x, 0) + s[1] * pair(x, 2) + s[2] * pair(x, 4) + s[3] * pair(x, 6)
         };
         let r = [combine(first, q), combine(second, q)];
         let v = [combine(first, v), combine(second, v)];
         Rates {
-            eps: dot(r[0], v[0]),
-            kappa: cross(v[0], r[1]) + cross(r[0], v[1]),
+            eps: r[0].dot(&v[0]),
+            kappa: v[0].perp(&r[1]) + r[0].perp(&v[1]),
             r,
             v,
         }
@@ -74,7 +74,7 @@ impl ElementDamping {
     /// deps/dq and dkappa/dq, or their rates where `r` are the rates of r' and r''.
     fn slopes(first: &[f64; 4], second: &[f64; 4], r: &[Vec2; 2]) -> [[f64; NODAL]; 2] {
         let (mut eps, mut kappa) = ([0.0; NODAL], [0.0; NODAL]);
-        let turned = [perp(r[0]), perp(r[1])];
+        let turned = r.map(quarter_turn);
         for a in 0..4 {
             for i in 0..2 {
                 eps[2 * a + i] = first[a] * r[0][i];

@@ -5,7 +5,7 @@ pub(crate) mod redundancy;
 use crate::body::Frame;
 use crate::compile::Compiled;
 use crate::compile::assembly::{CENTRE, assemble, name, opening, whole_name};
-use crate::math::plane::norm;
+use crate::math::plane::Vec2;
 use crate::model::{Model, PlacedBody, PlacedConstraint};
 use crate::scene::{Analysis, BodyState, NamedBody, Scene, SceneError};
 use crate::system::State;
@@ -90,7 +90,7 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
         1 => name(model, p),
         _ => whole_name(model, p),
     };
-    if let Some((open, placed)) = worst(|p, at| norm(p.term.value(at))) {
+    if let Some((open, placed)) = worst(|p, at| Vec2::from(p.term.value(at)).norm()) {
         let message = format!(
             "the start violates {}: it is open by {}",
             name(placed),
@@ -103,7 +103,7 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
     if scene.simulation.analysis == Analysis::Static {
         return Ok(());
     }
-    let Some((off, placed)) = worst(|p, at| norm(p.term.velocity(at))) else {
+    let Some((off, placed)) = worst(|p, at| Vec2::from(p.term.velocity(at)).norm()) else {
         return Ok(());
     };
     let message = format!(

@@ -13,7 +13,7 @@ use crate::contact::{At, Slip};
 use crate::document::{Key, Takes};
 use crate::force::{LocalMatrix, WIDTH};
 use crate::marker::{Separation, Spin};
-use crate::math::plane::{Vec2, add, dot, perp, rotate, scale, sub};
+use crate::math::plane::{Rotation, Vec2, quarter_turn};
 use crate::terms::{ForceTerm, JointTerms, Terms};
 use std::sync::Arc;
 
@@ -151,24 +151,23 @@ impl Walls {
 
     fn pin(&self, q: &[f64], v: &[f64]) -> Pin {
         let (e, e_dot) = (self.ends.vector(q), self.ends.rate(q, v));
-        let (sine, cosine) = self.direction.sin_cos();
-        let along = rotate(cosine, sine, self.spin.vector(q));
-        let u = scale(1.0 / dot(along, along).sqrt(), along);
-        let m = perp(u);
-        let (s, p) = (dot(m, e), dot(u, e));
+        let along = Rotation::new(self.direction) * self.spin.vector(q);
+        let u = 1.0 / along.norm() * along;
+        let m = quarter_turn(u);
+        let (s, p) = (m.dot(&e), u.dot(&e));
         let omega = self.spin.rate(q, v);
         let mut pin = Pin {
             u,
             m,
             s,
             p,
-            rates: [dot(m, e_dot) - omega * p, dot(u, e_dot) + omega * s],
+            rates: [m.dot(&e_dot) - omega * p, u.dot(&e_dot) + omega * s],
             omega,
-            e_q: [[0.0; 2]; WIDTH],
+            e_q: [Vec2::zeros(); WIDTH],
             b: [0.0; WIDTH],
         };
         for (&c, column) in self.places[0].iter().zip(self.ends.columns(q).iter()) {
-            pin.e_q[c] = add(pin.e_q[c], *column);
+            pin.e_q[c] += column;
         }
         for (&c, b) in self.places[1].iter().zip(self.spin.derivatives(q, v).b) {
             pin.b[c] = b;
@@ -185,7 +184,7 @@ impl Walls {
         let count = self.coordinates.len();
         for i in 0..count {
             for j in 0..count {
-                let mixed = |x: &Vec2| dot(*x, e_q[i]) * b[j] + dot(*x, e_q[j]) * b[i];
+                let mixed = |x: &Vec2| x.dot(&e_q[i]) * b[j] + x.dot(&e_q[j]) * b[i];
                 second[0][i][j] = -mixed(u) - s * b[i] * b[j];
                 second[1][i][j] = mixed(m) - p * b[i] * b[j];
             }
@@ -199,8 +198,8 @@ impl Walls {
         }
         for (theta, _, bend) in self.ends.bends(at.q) {
             let theta = self.places[0][theta];
-            second[0][theta][theta] += dot(*m, bend);
-            second[1][theta][theta] += dot(*u, bend);
+            second[0][theta][theta] += m.dot(&bend);
+            second[1][theta][theta] += u.dot(&bend);
         }
         second
     }
@@ -209,8 +208,8 @@ impl Walls {
 impl Pin {
     /// ds/dq and dp/dq.
     fn first(&self) -> [[f64; WIDTH]; 2] {
-        let s_q = std::array::from_fn(|c| dot(self.m, self.e_q[c]) - self.p * self.b[c]);
-        let p_q = std::array::from_fn(|c| dot(self.u, self.e_q[c]) + self.s * self.b[c]);
+        let s_q = std::array::from_fn(|c| self.m.dot(&self.e_q[c]) - self.p * self.b[c]);
+        let p_q = std::array::from_fn(|c| self.u.dot(&self.e_q[c]) + self.s * self.b[c]);
         [s_q, p_q]
     }
 }
@@ -234,8 +233,8 @@ impl Geometry for Walls {
             ..
         } = self.pin(q, v);
         Gap {
-            e: scale(s, m),
-            e_dot: sub(scale(rates[0], m), scale(s * omega, u)),
+            e: s * m,
+            e_dot: rates[0] * m - s * omega * u,
             eccentricity: s.abs(),
             delta: s.abs() - self.clearance,
             ..Gap::default()
@@ -262,8 +261,8 @@ impl Geometry for Walls {
             })
         };
         Touch {
-            n: scale(side, pin.m),
-            t: scale(-side, pin.u),
+            n: side * pin.m,
+            t: -side * pin.u,
             slip: -side * pin.rates[1],
             normal: s_q.map(|x| side * x),
             tangent: p_q.map(|x| -side * x),

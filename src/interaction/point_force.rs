@@ -6,7 +6,7 @@ use crate::document::Key;
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
 use crate::marker::{Marker, Spin};
-use crate::math::plane::{Vec2, add, dot, perp, scale};
+use crate::math::plane::{Vec2, quarter_turn};
 use crate::motion::{Function, Use, read_function};
 use crate::system::{INTEGRALS, Integral, State, Weights};
 use std::sync::Arc;
@@ -70,7 +70,7 @@ impl ForceModel for PointForceModel {
 }
 
 /// F = (F_x(t), F_y(t)) in the frame of the ground (dead) or of the material (follower): there F = F_x d/|d| + F_y
-/// perp(d)/|d| with the direction d of the body.
+/// J d/|d| with the direction d of the body and the quarter turn J.
 #[derive(Debug)]
 pub struct PointForce {
     /// Where it acts.
@@ -82,19 +82,12 @@ pub struct PointForce {
 }
 
 impl PointForce {
-    fn components(&self, at: &State) -> Vec2 {
-        [
-            self.components[0].at(at.t)[0],
-            self.components[1].at(at.t)[0],
-        ]
-    }
-
     /// F \[N\].
     fn value(&self, at: &State) -> Vec2 {
-        let [along, across] = self.components(at);
+        let [along, across] = self.components.each_ref().map(|f| f.at(at.t)[0]);
         let d = self.spin.vector(&at.q);
-        let unit = scale(1.0 / dot(d, d).sqrt(), d);
-        add(scale(along, unit), scale(across, perp(unit)))
+        let unit = 1.0 / d.norm() * d;
+        along * unit + across * quarter_turn(unit)
     }
 }
 
@@ -114,7 +107,7 @@ impl Force for PointForce {
             .iter_mut()
             .zip(self.marker.columns(self.marker.arm(&at.q)).iter())
         {
-            *f -= dot(value, *column);
+            *f -= value.dot(column);
         }
     }
 
@@ -122,9 +115,9 @@ impl Force for PointForce {
         self.force(at, f);
         let value = self.value(at);
         if let Marker::OnBody { .. } = self.marker {
-            k[2][2] += w.q * dot(value, self.marker.arm(&at.q));
+            k[2][2] += w.q * value.dot(&self.marker.arm(&at.q));
         }
-        // F turns with the body: dF = perp(F) d(angle)
+        // F turns with the body: dF = J F d(angle)
         let spin = self.spin.derivatives(&at.q, &at.v);
         let first = self.marker.width();
         for (r, column) in self
@@ -134,14 +127,14 @@ impl Force for PointForce {
             .enumerate()
         {
             for c in 0..self.spin.width() {
-                k[r][first + c] -= w.q * dot(perp(value), *column) * spin.b[c];
+                k[r][first + c] -= w.q * quarter_turn(value).dot(column) * spin.b[c];
             }
         }
     }
 
     fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
         let velocity = self.marker.velocity(&at.v, self.marker.arm(&at.q));
-        powers[Integral::Work as usize] += dot(self.value(at), velocity);
+        powers[Integral::Work as usize] += self.value(at).dot(&velocity);
     }
 
     fn quantities(&self) -> &'static [(&'static str, &'static str)] {
@@ -149,7 +142,7 @@ impl Force for PointForce {
     }
 
     fn measure(&self, at: &State) -> [f64; 3] {
-        let [x, y] = self.value(at);
-        [x, y, 0.0]
+        let value = self.value(at);
+        [value.x, value.y, 0.0]
     }
 }

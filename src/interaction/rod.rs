@@ -5,7 +5,7 @@ use crate::constraint::{Constraint, Curvature, Gradient, ROWS, WIDTH};
 use crate::document::Key;
 use crate::effect::Effect;
 use crate::marker::Separation;
-use crate::math::plane::{Vec2, dot, norm, scale};
+use crate::math::plane::Vec2;
 use crate::system::State;
 use crate::terms::{ConstraintTerm, ForceTerm, JointTerms, Terms};
 use std::sync::Arc;
@@ -67,15 +67,15 @@ impl Constraint for Distance {
 
     fn value(&self, at: &State) -> [f64; ROWS] {
         // (|e| - l)(|e| + l): no digits are lost in a difference of squares
-        let (distance, l) = (norm(self.ends.vector(&at.q)), self.length);
+        let (distance, l) = (self.ends.vector(&at.q).norm(), self.length);
         [(distance - l) * (distance + l) / (2.0 * l), 0.0]
     }
 
     fn gradient(&self, at: &State) -> Gradient {
-        let direction = scale(1.0 / self.length, self.ends.vector(&at.q));
+        let direction = 1.0 / self.length * self.ends.vector(&at.q);
         let mut gradient = [[0.0; WIDTH]; ROWS];
         for (g, column) in gradient[0].iter_mut().zip(self.ends.columns(&at.q).iter()) {
-            *g = dot(direction, *column);
+            *g = direction.dot(column);
         }
         gradient
     }
@@ -85,26 +85,26 @@ impl Constraint for Distance {
         let columns = self.ends.columns(&at.q);
         for (i, row) in columns.iter().enumerate() {
             for (j, column) in columns.iter().enumerate() {
-                out.add(i, j, s * dot(*row, *column));
+                out.add(i, j, s * row.dot(column));
             }
         }
         for (theta, _, bend) in self.ends.bends(&at.q) {
-            out.add(theta, theta, s * dot(e, bend));
+            out.add(theta, theta, s * e.dot(&bend));
         }
     }
 
     fn velocity(&self, at: &State) -> [f64; ROWS] {
         let (e, rate) = (self.ends.vector(&at.q), self.ends.rate(&at.q, &at.v));
-        [dot(e, rate) / self.length, 0.0]
+        [e.dot(&rate) / self.length, 0.0]
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
         let (e, rate) = (self.ends.vector(&at.q), self.ends.rate(&at.q, &at.v));
         let second = self.ends.acceleration(&at.q, &at.v, &at.a);
-        [(dot(e, second) + dot(rate, rate)) / self.length, 0.0]
+        [(e.dot(&second) + rate.dot(&rate)) / self.length, 0.0]
     }
 
     fn force(&self, at: &State, lambda: [f64; ROWS]) -> Vec2 {
-        scale(-lambda[0] / self.length, self.ends.vector(&at.q))
+        -lambda[0] / self.length * self.ends.vector(&at.q)
     }
 }

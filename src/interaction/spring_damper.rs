@@ -6,7 +6,7 @@ use crate::document::{Fields, Key, SceneError};
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
 use crate::marker::{Marker, Separation};
-use crate::math::plane::{Vec2, dot, norm, scale, sub};
+use crate::math::plane::Vec2;
 use crate::system::{INTEGRALS, Integral, State, Weights};
 use std::sync::Arc;
 
@@ -116,18 +116,18 @@ impl SpringDamper {
     pub(super) fn line(&self, at: &State) -> Line {
         let ends = self.ends();
         let (e, e_dot) = (ends.vector(&at.q), ends.rate(&at.q, &at.v));
-        let length = norm(e);
+        let length = e.norm();
         let meeting = length == 0.0 && self.rest_length == 0.0;
         let inverse = if meeting { 0.0 } else { 1.0 / length };
-        let n = scale(inverse, e);
+        let n = inverse * e;
         let mut along = [0.0; WIDTH];
         for (along, column) in along.iter_mut().zip(ends.columns(&at.q).iter()) {
-            *along = dot(n, *column);
+            *along = n.dot(column);
         }
         Line {
             length,
             n,
-            rate: dot(n, e_dot),
+            rate: n.dot(&e_dot),
             inverse,
             e_dot,
             along,
@@ -158,18 +158,18 @@ impl SpringDamper {
         let columns = ends.columns(&at.q);
         let mut rate_q = [0.0; WIDTH];
         for (c, column) in columns.iter().enumerate() {
-            let across = sub(*column, scale(line.along[c], line.n));
-            rate_q[c] = dot(line.e_dot, across) * line.inverse;
+            let across = column - line.along[c] * line.n;
+            rate_q[c] = line.e_dot.dot(&across) * line.inverse;
         }
         for (theta, x, bend) in ends.bends(&at.q) {
-            rate_q[theta] += at.v[x] * dot(line.n, bend);
-            k[theta][theta] += w.q * pull * dot(line.n, bend);
+            rate_q[theta] += at.v[x] * line.n.dot(&bend);
+            k[theta][theta] += w.q * pull * line.n.dot(&bend);
         }
         let by_length = w.q * self.stiffness + w.v * self.damping;
         for (r, row) in columns.iter().enumerate() {
             for (c, column) in columns.iter().enumerate() {
                 let gradient = by_length * line.along[c] + w.q * self.damping * rate_q[c];
-                let across = dot(*row, *column) - line.along[r] * line.along[c];
+                let across = row.dot(column) - line.along[r] * line.along[c];
                 k[r][c] += line.along[r] * gradient + w.q * turning * across;
             }
         }
@@ -224,7 +224,7 @@ impl Force for SpringDamper {
         let line = self.line(at);
         // ends that meet part at the magnitude of their relative velocity, in whatever direction
         let rate = match line.length {
-            0.0 => norm(line.e_dot),
+            0.0 => line.e_dot.norm(),
             _ => line.rate,
         };
         [self.pull(&line), line.length, rate]

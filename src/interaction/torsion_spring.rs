@@ -7,7 +7,6 @@ use crate::document::Key;
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
 use crate::marker::{Spin, SpinDerivatives};
-use crate::math::plane::{cross, dot};
 use crate::system::{INTEGRALS, Integral, State, Weights};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -100,7 +99,7 @@ impl TorsionSpring {
     fn angle(&self, at: &State) -> f64 {
         let (a, b) = (self.first.vector(&at.q), self.second.vector(&at.q));
         let last = at.angles[self.memory];
-        let change = cross(a, b).atan2(dot(a, b)) - last;
+        let change = a.perp(&b).atan2(a.dot(&b)) - last;
         last + change - TAU * (change / TAU).round()
     }
 

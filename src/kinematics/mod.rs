@@ -7,7 +7,7 @@
 
 mod series;
 
-use crate::math::plane::{norm, sub};
+use crate::math::plane::pair;
 use crate::model::Model;
 use crate::newton::{Factors, Failure, Update, iterate};
 use crate::system::{PrescribeError, Prescribed, State, System};
@@ -251,7 +251,7 @@ impl Dyad {
     /// Says that the two links are too short or too long for the distance between their ends, if they are.
     fn apart(&self, at: &State) -> Option<String> {
         let [(i, from), (j, to)] = &self.ends;
-        let distance = norm(sub([at.q[*i], at.q[i + 1]], [at.q[*j], at.q[j + 1]]));
+        let distance = (pair(&at.q, *i) - pair(&at.q, *j)).norm();
         let [(first, l1), (second, l2)] = &self.links;
         let (sum, difference) = (l1 + l2, (l1 - l2).abs());
         let why = match () {

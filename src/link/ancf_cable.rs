@@ -21,7 +21,7 @@
 //! while the axial strain is small.
 
 use super::ElasticRoute;
-use crate::math::plane::{Vec2, add, dot, scale, sub};
+use crate::math::plane::{Vec2, pair};
 
 /// Index pairs (a, b) of a symmetric 3 x 3 matrix, in storage order.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
@@ -79,43 +79,43 @@ impl AncfCable {
     /// u = ((r_j - r_i)/l, r_i', r_j').
     #[inline]
     fn slopes(&self, q: &[f64; 8]) -> [Vec2; 3] {
-        let chord = scale(1.0 / self.length, sub([q[4], q[5]], [q[0], q[1]]));
-        [chord, [q[2], q[3]], [q[6], q[7]]]
+        let chord = 1.0 / self.length * (pair(q, 4) - pair(q, 0));
+        [chord, pair(q, 2), pair(q, 6)]
     }
 
     /// u_a . u_b - 1 for the six pairs: twice the strain that each pair stands for.
     #[inline]
     fn stretches(u: &[Vec2; 3]) -> [f64; 6] {
-        PAIRS.map(|(a, b)| dot(u[a], u[b]) - 1.0)
+        PAIRS.map(|(a, b)| u[a].dot(&u[b]) - 1.0)
     }
 
     /// u_2 - u_1 and u_3 - u_1. B annihilates equal vectors, so bending depends on these alone: a straight element has
     /// none to the last digit.
     #[inline]
     fn bends(u: &[Vec2; 3]) -> [Vec2; 2] {
-        [sub(u[1], u[0]), sub(u[2], u[0])]
+        [u[1] - u[0], u[2] - u[0]]
     }
 
     /// Adds the force conjugate to u, given the axial coefficients W.
     #[inline]
     fn add_force(&self, u: &[Vec2; 3], w: &[f64; 6], f: &mut [f64; 8]) {
         let axial = self.axial_stiffness * self.length;
-        let mut g = [[0.0; 2]; 3];
+        let mut g = [Vec2::zeros(); 3];
         for a in 0..3 {
             for b in 0..3 {
-                g[a] = add(g[a], scale(axial * w[PAIR_OF[a][b]], u[b]));
+                g[a] += axial * w[PAIR_OF[a][b]] * u[b];
             }
         }
         let [start, end] = Self::bends(u);
         let bending = self.bending_stiffness / self.length;
         let moments = [
-            scale(bending, add(scale(B[1][1], start), scale(B[1][2], end))),
-            scale(bending, add(scale(B[2][1], start), scale(B[2][2], end))),
+            bending * (B[1][1] * start + B[1][2] * end),
+            bending * (B[2][1] * start + B[2][2] * end),
         ];
-        g[0] = sub(g[0], add(moments[0], moments[1]));
-        g[1] = add(g[1], moments[0]);
-        g[2] = add(g[2], moments[1]);
-        let chord = scale(1.0 / self.length, g[0]);
+        g[0] -= moments[0] + moments[1];
+        g[1] += moments[0];
+        g[2] += moments[1];
+        let chord = 1.0 / self.length * g[0];
         for i in 0..2 {
             f[i] -= chord[i];
             f[2 + i] += g[1][i];
@@ -132,9 +132,9 @@ impl AncfCable {
         let weights = [1.0, 2.0, 2.0, 1.0, 2.0, 1.0];
         let axial: f64 = (0..6).map(|p| weights[p] * d[p] * w[p]).sum();
         let [start, end] = Self::bends(&u);
-        let bending = B[1][1] * dot(start, start)
-            + (B[1][2] + B[2][1]) * dot(start, end)
-            + B[2][2] * dot(end, end);
+        let bending = B[1][1] * start.dot(&start)
+            + (B[1][2] + B[2][1]) * start.dot(&end)
+            + B[2][2] * end.dot(&end);
         (
             0.125 * self.axial_stiffness * self.length * axial,
             0.5 * self.bending_stiffness / self.length * bending,

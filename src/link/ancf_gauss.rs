@@ -4,7 +4,7 @@
 //! degree 8, the bending integrand degree 2: five points are exact for both.
 
 use super::{ElasticRoute, shape_derivatives};
-use crate::math::plane::{Vec2, add, dot, scale};
+use crate::math::plane::{Vec2, pair};
 use crate::math::quadrature::GAUSS5;
 
 /// An element that integrates numerically.
@@ -18,9 +18,7 @@ pub struct GaussCable {
 
 impl GaussCable {
     fn derivative(s: &[f64; 4], q: &[f64; 8]) -> Vec2 {
-        (0..4).fold([0.0; 2], |sum, a| {
-            add(sum, scale(s[a], [q[2 * a], q[2 * a + 1]]))
-        })
+        (0..4).map(|a| s[a] * pair(q, 2 * a)).sum()
     }
 }
 
@@ -41,7 +39,7 @@ impl ElasticRoute for GaussCable {
     fn force(&self, q: &[f64; 8], f: &mut [f64; 8]) {
         for (weight, first, second) in &self.points {
             let (slope, bend) = (Self::derivative(first, q), Self::derivative(second, q));
-            let tension = weight * self.axial_stiffness * 0.5 * (dot(slope, slope) - 1.0);
+            let tension = weight * self.axial_stiffness * 0.5 * (slope.dot(&slope) - 1.0);
             let moment = weight * self.bending_stiffness;
             for a in 0..4 {
                 for i in 0..2 {
@@ -55,7 +53,7 @@ impl ElasticRoute for GaussCable {
         self.force(q, f);
         for (weight, first, second) in &self.points {
             let slope = Self::derivative(first, q);
-            let tension = weight * self.axial_stiffness * 0.5 * (dot(slope, slope) - 1.0);
+            let tension = weight * self.axial_stiffness * 0.5 * (slope.dot(&slope) - 1.0);
             let axial = weight * self.axial_stiffness;
             let moment = weight * self.bending_stiffness;
             for a in 0..4 {

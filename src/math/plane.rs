@@ -1,52 +1,27 @@
-//! Vectors of the plane as `[f64; 2]`.
+//! Vectors of the plane: those of nalgebra, and what it does not have. Its `a.perp(&b)` is the out-of-plane component of a x b.
+
+use nalgebra::{UnitComplex, Vector2};
 
 /// A vector of the plane.
-pub type Vec2 = [f64; 2];
+pub type Vec2 = Vector2<f64>;
 
-/// a + b
+/// A rotation of the plane by an angle.
+pub type Rotation = UnitComplex<f64>;
+
+/// a turned by +90 degrees, to the last digit.
 #[inline]
-pub fn add(a: Vec2, b: Vec2) -> Vec2 {
-    [a[0] + b[0], a[1] + b[1]]
+pub fn quarter_turn(a: Vec2) -> Vec2 {
+    Vec2::new(-a.y, a.x)
 }
 
-/// a - b
+/// The unit vector at an angle from the x axis.
 #[inline]
-pub fn sub(a: Vec2, b: Vec2) -> Vec2 {
-    [a[0] - b[0], a[1] - b[1]]
+pub fn unit(angle: f64) -> Vec2 {
+    Vec2::new(angle.cos(), angle.sin())
 }
 
-/// s a
+/// The entries `i` and `i + 1` of x.
 #[inline]
-pub fn scale(s: f64, a: Vec2) -> Vec2 {
-    [s * a[0], s * a[1]]
-}
-
-/// a . b
-#[inline]
-pub fn dot(a: Vec2, b: Vec2) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-/// a turned by +90 degrees.
-#[inline]
-pub fn perp(a: Vec2) -> Vec2 {
-    [-a[1], a[0]]
-}
-
-/// Out-of-plane component of a x b.
-#[inline]
-pub fn cross(a: Vec2, b: Vec2) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-/// |a|; a plain square root, because no length of a mechanism comes near the range of `f64`.
-#[inline]
-pub fn norm(a: Vec2) -> f64 {
-    dot(a, a).sqrt()
-}
-
-/// a turned by the angle whose cosine and sine are given.
-#[inline]
-pub fn rotate(cosine: f64, sine: f64, a: Vec2) -> Vec2 {
-    [cosine * a[0] - sine * a[1], sine * a[0] + cosine * a[1]]
+pub fn pair(x: &[f64], i: usize) -> Vec2 {
+    Vec2::new(x[i], x[i + 1])
 }

@@ -6,7 +6,7 @@ use crate::contact;
 use crate::force::WIDTH;
 use crate::link::ElasticRoute;
 use crate::math::lu::Symbolic;
-use crate::math::plane::{perp, rotate};
+use crate::math::plane::{Rotation, quarter_turn};
 use crate::system::{
     Equilibrium, INTEGRALS, Integral, PrescribeError, Shape, State, System, Weights, Work,
 };
@@ -197,9 +197,8 @@ impl Model {
                     sign,
                 } => {
                     let [phi, rate, growth] = angle.at(to.t).map(|x| sign * x);
-                    let (sine, cosine) = phi.sin_cos();
-                    let arm = rotate(cosine, sine, *s);
-                    let turn = perp(arm);
+                    let arm = Rotation::new(phi) * s;
+                    let turn = quarter_turn(arm);
                     for i in 0..2 {
                         to.q[x + i] = to.q[pivot + i] + arm[i];
                         to.v[x + i] = rate * turn[i];

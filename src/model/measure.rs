@@ -6,7 +6,7 @@ use crate::contact;
 use crate::contact::geometry::Gap;
 use crate::force::Force;
 use crate::marker::Marker;
-use crate::math::plane::{Vec2, cross, dot, norm, scale, sub};
+use crate::math::plane::{Vec2, pair};
 use crate::system::{Integral, State, Work};
 use crate::terms::ForceTerm;
 use std::f64::consts::PI;
@@ -111,9 +111,8 @@ impl Model {
                 c.term.force(at, c.multipliers(at))
             }
             ForceTerm::Contact(i) => self.contacts[i].pair.reaction(contact_state(at, i)),
-            ForceTerm::Eliminated => joint.reaction.as_ref().map_or([0.0; 2], |reaction| {
-                let [x, y, _] = self.sum(&reaction.shares, at, work);
-                scale(reaction.sign, [x, y])
+            ForceTerm::Eliminated => joint.reaction.as_ref().map_or(Vec2::zeros(), |reaction| {
+                reaction.sign * pair(&self.sum(&reaction.shares, at, work), 0)
             }),
         }
     }
@@ -133,7 +132,7 @@ impl Model {
         turned.map_or([0.0; 2], |[first, second]| {
             let (a, b) = (first.vector(&at.q), second.vector(&at.q));
             let speed = second.rate(&at.q, &at.v) - first.rate(&at.q, &at.v);
-            [cross(a, b).atan2(dot(a, b)), speed]
+            [a.perp(&b).atan2(a.dot(&b)), speed]
         })
     }
 
@@ -170,8 +169,8 @@ impl Model {
         let mut torque = 0.0;
         for grip in &actuator.outboard {
             let [x, y, couple] = self.sum(&grip.shares, at, work);
-            let arm = sub([at.q[grip.x], at.q[grip.x + 1]], centre);
-            torque += cross(arm, [x, y]) + couple;
+            let arm = pair(&at.q, grip.x) - centre;
+            torque += arm.perp(&Vec2::new(x, y)) + couple;
         }
         torque *= actuator.sign;
         [
@@ -204,7 +203,8 @@ impl Model {
             }
         };
         for c in &self.constraints {
-            see(norm(c.term.value(at)), norm(c.term.velocity(at)), c.row);
+            let [value, rate] = [c.term.value(at), c.term.velocity(at)].map(Vec2::from);
+            see(value.norm(), rate.norm(), c.row);
         }
         worst
     }

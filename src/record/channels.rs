@@ -1,7 +1,6 @@
 //! The names of all channels of a mechanism, and the parts of it that they are measured from.
 
 use super::Ledger;
-use crate::math::plane::norm;
 use crate::model::Model;
 use crate::scene::Analysis;
 use crate::system::{State, Work};
@@ -210,14 +209,14 @@ impl Part {
             }
             Part::Force(j) => {
                 let force = model.joint_force(j, at, work);
-                values.extend([force[0], force[1], norm(force)]);
+                values.extend([force.x, force.y, force.norm()]);
             }
             Part::Gap(j) => {
                 let (gap, rate, closed) = model.gap(j, at).unwrap_or_default();
                 let touches = f64::from(u8::from(closed && gap.delta > 0.0));
-                values.extend(gap.e);
+                values.extend(&gap.e);
                 values.extend([gap.eccentricity, gap.delta]);
-                values.extend(gap.e_dot);
+                values.extend(&gap.e_dot);
                 values.extend([rate, touches]);
             }
             Part::Turned(j) => values.extend(model.turned(j, at)),
@@ -230,7 +229,7 @@ impl Part {
                 let actuator = joint(j).actuator.iter();
                 values.extend(actuator.flat_map(|actuator| model.actuator(actuator, at, work)));
             }
-            Part::Point(b, p) => values.extend(model.point(b, p, at).as_flattened()),
+            Part::Point(b, p) => values.extend(model.point(b, p, at).iter().flatten()),
             Part::Slope(b, p) => {
                 let slope = model.bodies()[b].points[p].slope;
                 values.extend(slope.iter().flat_map(|x| [at.q[*x], at.q[x + 1]]));

@@ -12,7 +12,8 @@ mod reader;
 pub use crate::body::PointRef;
 pub use crate::document::{SceneError, Span};
 pub use crate::interaction::{Contact, Friction, Joint, NamedForce};
-pub use crate::motion::{Function, Path};
+pub use crate::math::plane::Vec2;
+use crate::motion::{Function, Path};
 pub use crate::stepper::Method;
 pub use reader::read_file;
 
@@ -236,7 +237,7 @@ pub struct SketchPoint {
     /// What is sketched.
     pub what: Sketched,
     /// Approximate position \[m\].
-    pub at: [f64; 2],
+    pub at: Vec2,
     /// Where it stands.
     pub span: Span,
 }

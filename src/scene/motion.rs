@@ -250,7 +250,7 @@ pub(super) fn initial(root: &Fields, names: &Names) -> Result<Initial, SceneErro
 /// `sketch.JOINT = [x, y]` or `sketch.BODY = { POINT = [x, y], ... }`
 fn sketched(field: &Field, names: &Names) -> Result<Vec<SketchPoint>, SceneError> {
     let sketch = |field: &Field, what| {
-        let (at, span) = (field.numbers("[x, y]")?, field.span());
+        let (at, span) = (field.numbers::<2>("[x, y]")?.into(), field.span());
         Ok(SketchPoint { what, at, span })
     };
     if let Some(joint) = names.joints.get_index_of(&field.name) {

@@ -172,7 +172,7 @@ fn place(run: &Run, point: PointRef, row: usize) -> Option<[f64; 2]> {
     let body = &run.scene.bodies[point.body];
     let own = &body.kind.points()[point.point];
     match body.kind.known() {
-        Some(Known::Fixed) => Some(own.at),
+        Some(Known::Fixed) => Some(own.at.into()),
         _ => pair(run, body, &own.name, ["x", "y"], row),
     }
 }
@@ -273,7 +273,7 @@ fn grounds(run: &Run) -> Vec<Mark> {
     let mut marks = Vec::new();
     for body in &run.scene.bodies {
         if let Some(Ground { points }) = body.kind.get() {
-            let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.at[0], p.at[1])).unzip();
+            let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.at.x, p.at.y)).unzip();
             marks.push(Mark::points("", palette::BLACK, &x, &y, 9));
         }
     }

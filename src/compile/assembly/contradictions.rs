@@ -3,7 +3,7 @@
 use super::super::{Compiler, Role};
 use super::guess::coordinates;
 use super::{CENTRE, CLOSED, check_sketch, close, name, opening, strays, whole_name};
-use crate::math::plane::norm;
+use crate::math::plane::Vec2;
 use crate::model::{Model, PlacedConstraint};
 use crate::scene::{SceneError, SketchPoint};
 use crate::system::State;
@@ -44,7 +44,7 @@ pub(super) fn check_given(
     let n = model.shape().unknowns;
     for placed in &model.constraints {
         let fixed = placed.block.coordinates.iter().all(|&i| i >= n || held[i]);
-        let open = norm(placed.term.value(state));
+        let open = Vec2::from(placed.term.value(state)).norm();
         if fixed && open > CLOSED {
             let error = match placed.term {
                 ConstraintTerm::Length(_) => wrong_length(c, placed, state),

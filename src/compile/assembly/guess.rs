@@ -4,7 +4,7 @@ use super::super::sketch::{Pair, fit};
 use super::super::{Compiler, Role};
 use super::position;
 use crate::body::{Frame, PointRef};
-use crate::math::plane::{rotate, sub};
+use crate::math::plane::{Rotation, Vec2};
 use crate::model::Model;
 use crate::scene::{MotionKind, SceneError, Sketched};
 use crate::system::State;
@@ -19,7 +19,7 @@ struct Placed<'a> {
 }
 
 impl Placed<'_> {
-    fn position(&self, point: PointRef, state: &State) -> [f64; 2] {
+    fn position(&self, point: PointRef, state: &State) -> Vec2 {
         position(self.mechanism, state, point)
     }
 
@@ -33,7 +33,7 @@ impl Placed<'_> {
     }
 
     /// Position of a point, if a placed body joined to it, the sketch or a drive gives it.
-    fn known(&self, point: PointRef, state: &State) -> Option<[f64; 2]> {
+    fn known(&self, point: PointRef, state: &State) -> Option<Vec2> {
         if self.done[point.body] {
             return Some(self.position(point, state));
         }
@@ -41,8 +41,8 @@ impl Placed<'_> {
         let drawn = met.or_else(|| self.c.drawn(Sketched::Point(point)));
         let [x, y] = self.driven(point);
         match (drawn, x, y) {
-            (_, Some(x), Some(y)) => Some([x, y]),
-            (Some(at), ..) => Some([x.unwrap_or(at[0]), y.unwrap_or(at[1])]),
+            (_, Some(x), Some(y)) => Some(Vec2::new(x, y)),
+            (Some(at), ..) => Some(Vec2::new(x.unwrap_or(at.x), y.unwrap_or(at.y))),
             (None, ..) => None,
         }
     }
@@ -66,7 +66,7 @@ impl Placed<'_> {
     }
 
     /// Position of a point that a joint connects to a placed body, or whose joint is sketched.
-    fn met(&self, point: PointRef, state: &State) -> Option<[f64; 2]> {
+    fn met(&self, point: PointRef, state: &State) -> Option<Vec2> {
         let mut joints = self.c.scene.joints.iter().enumerate();
         joints.find_map(|(j, joint)| {
             let partner = match () {
@@ -88,7 +88,7 @@ impl Placed<'_> {
                 let apart = pairs.iter().any(|p| p.0 != pairs[0].0);
                 apart.then(|| fit(&pairs))
             }
-            false => pairs.first().map(|(_, [x, y])| [*x, *y, 0.0]),
+            false => pairs.first().map(|(_, r)| r.push(0.0).into()),
         };
         if let Some(pose) = pose {
             self.write(b, pose, state);
@@ -107,12 +107,12 @@ impl Placed<'_> {
         let Some(angle) = self.suggested_angle(b, at, state) else {
             return false;
         };
-        let arm = rotate(angle.cos(), angle.sin(), local);
-        self.write(b, [at[0] - arm[0], at[1] - arm[1], angle], state);
+        let origin = at - Rotation::new(angle) * local;
+        self.write(b, origin.push(angle).into(), state);
         true
     }
 
-    fn suggested_angle(&self, b: usize, at: [f64; 2], state: &State) -> Option<f64> {
+    fn suggested_angle(&self, b: usize, at: Vec2, state: &State) -> Option<f64> {
         let direction = |body: usize| {
             let placed = &self.mechanism.bodies()[body].placed;
             let frame = placed.kind.frame_at(&placed.x, &state.q, &state.v);
@@ -132,8 +132,8 @@ impl Placed<'_> {
                     Some(direction(second) - angle)
                 }
                 (None, Some(direction)) if first == b && self.done[second] => {
-                    let to_pin = sub(self.position(joint.journal, state), at);
-                    Some(to_pin[1].atan2(to_pin[0]) - direction)
+                    let to_pin = self.position(joint.journal, state) - at;
+                    Some(to_pin.y.atan2(to_pin.x) - direction)
                 }
                 _ => None,
             }

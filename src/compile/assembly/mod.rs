@@ -12,7 +12,7 @@ use super::sketch::marker;
 use super::{Compiler, Mode, build, known_roles, numbering};
 use crate::body::PointRef;
 use crate::math::dense::Equations;
-use crate::math::plane::{norm, sub};
+use crate::math::plane::Vec2;
 use crate::model::{Model, PlacedConstraint};
 use crate::newton::{Update, iterate};
 use crate::scene::{Scene, SceneError, SketchPoint, Sketched};
@@ -98,7 +98,7 @@ pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> U
 /// The largest violation of a constraint, and the constraint.
 fn widest<'m>(model: &'m Model, state: &State) -> Option<(f64, &'m PlacedConstraint)> {
     let constraints = model.constraints.iter();
-    let opening = constraints.map(|p| (norm(p.term.value(state)), p));
+    let opening = constraints.map(|p| (Vec2::from(p.term.value(state)).norm(), p));
     opening.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
@@ -189,7 +189,7 @@ fn size(c: &Compiler, b: usize) -> f64 {
         .collect();
     let pairs = used
         .iter()
-        .flat_map(|p| used.iter().map(move |q| norm(sub(*p, *q))));
+        .flat_map(|p| used.iter().map(move |q| (p - q).norm()));
     pairs.fold(0.0, f64::max)
 }
 
@@ -205,7 +205,7 @@ pub(crate) fn whole_name<'m>(model: &'m Model, placed: &PlacedConstraint) -> &'m
 }
 
 /// Position of a point of a body.
-pub(super) fn position(model: &Model, state: &State, point: PointRef) -> [f64; 2] {
+pub(super) fn position(model: &Model, state: &State, point: PointRef) -> Vec2 {
     model.position(&marker(model, point), state)
 }
 
@@ -214,7 +214,7 @@ fn reach(c: &Compiler, drawn: &SketchPoint) -> f64 {
     let size = |p: PointRef| {
         let body = &c.bodies[p.body];
         let points = body.points();
-        let far = points.iter().map(|q| norm(sub(q.at, points[p.point].at)));
+        let far = points.iter().map(|q| (q.at - points[p.point].at).norm());
         match (body.known(), body.length()) {
             (Some(_), _) => f64::INFINITY,
             (None, Some(length)) => length,
@@ -234,7 +234,7 @@ fn strays<'c>(
     c: &'c Compiler,
     model: &Model,
     state: &State,
-) -> Vec<(&'c SketchPoint, PointRef, [f64; 2])> {
+) -> Vec<(&'c SketchPoint, PointRef, Vec2)> {
     let mut strays = Vec::new();
     for drawn in &c.scene.initial.sketch {
         for point in c.sketched_points(drawn) {
@@ -246,7 +246,7 @@ fn strays<'c>(
             };
             let at = position(model, state, point);
             // a distance that is no number strays too
-            let near = norm(sub(at, drawn.at)) <= reach(c, drawn);
+            let near = (at - drawn.at).norm() <= reach(c, drawn);
             if !is_guide && !near {
                 strays.push((drawn, point, at));
             }

@@ -8,7 +8,7 @@ use super::{Gap, Geometry, Touch};
 use crate::contact::At;
 use crate::force::{LocalMatrix, WIDTH};
 use crate::marker::Marker;
-use crate::math::plane::{cross, dot, norm, perp, scale, sub};
+use crate::math::plane::quarter_turn;
 
 /// A journal in a bearing.
 #[derive(Debug)]
@@ -36,15 +36,9 @@ impl Geometry for CircleInCircle {
     #[inline]
     fn gap(&self, q: &[f64], v: &[f64]) -> Gap {
         let arms = [self.bearing.arm(q), self.journal.arm(q)];
-        let e = sub(
-            self.journal.position(q, arms[1]),
-            self.bearing.position(q, arms[0]),
-        );
-        let e_dot = sub(
-            self.journal.velocity(v, arms[1]),
-            self.bearing.velocity(v, arms[0]),
-        );
-        let eccentricity = norm(e);
+        let e = self.journal.position(q, arms[1]) - self.bearing.position(q, arms[0]);
+        let e_dot = self.journal.velocity(v, arms[1]) - self.bearing.velocity(v, arms[0]);
+        let eccentricity = e.norm();
         Gap {
             e,
             e_dot,
@@ -66,16 +60,16 @@ impl Geometry for CircleInCircle {
                 f[column + i] += sign * push[i];
             }
             if let Marker::OnBody { .. } = marker {
-                f[column + 2] += sign * cross(arm, push);
+                f[column + 2] += sign * arm.perp(&push);
             }
             column += marker.width();
         }
     }
 
     fn touch(&self, at: At, gap: &Gap) -> Touch {
-        let n = scale(1.0 / gap.eccentricity, gap.e);
-        let t = perp(n);
-        let (rate, slip) = (dot(gap.e_dot, n), dot(gap.e_dot, t));
+        let n = 1.0 / gap.eccentricity * gap.e;
+        let t = quarter_turn(n);
+        let (rate, slip) = (gap.e_dot.dot(&n), gap.e_dot.dot(&t));
         let mut touch = Touch {
             n,
             t,
@@ -100,13 +94,13 @@ impl Geometry for CircleInCircle {
             }
             if let Marker::OnBody { x, .. } = *marker {
                 let arm = gap.arms[side];
-                let turn = scale(sign, perp(arm));
-                touch.normal[column + 2] = dot(n, turn);
-                touch.tangent[column + 2] = dot(t, turn);
+                let turn = sign * quarter_turn(arm);
+                touch.normal[column + 2] = n.dot(&turn);
+                touch.tangent[column + 2] = t.dot(&turn);
                 // e_dot depends on theta through the direction of the arm
-                let bend = scale(-sign, arm);
-                touch.rate_q[column + 2] = at.v[x + 2] * dot(n, bend);
-                touch.slip_q[column + 2] = at.v[x + 2] * dot(t, bend);
+                let bend = -sign * arm;
+                touch.rate_q[column + 2] = at.v[x + 2] * n.dot(&bend);
+                touch.slip_q[column + 2] = at.v[x + 2] * t.dot(&bend);
                 touch.bends[side] = Some((column + 2, bend));
             }
             column += marker.width();
@@ -138,7 +132,7 @@ impl Geometry for CircleInCircle {
             }
         }
         for (c, bend) in touch.bends.iter().flatten() {
-            k[*c][*c] += normal * dot(touch.n, *bend) + tangential * dot(touch.t, *bend);
+            k[*c][*c] += normal * touch.n.dot(bend) + tangential * touch.t.dot(bend);
         }
     }
 

@@ -6,7 +6,7 @@ pub use circle_in_circle::CircleInCircle;
 
 use super::At;
 use crate::force::{LocalMatrix, WIDTH};
-use crate::math::plane::{Vec2, dot, norm, scale};
+use crate::math::plane::Vec2;
 
 /// Where the surfaces of a contact are.
 #[derive(Debug, Clone, Copy, Default)]
@@ -56,15 +56,15 @@ pub trait Geometry: std::fmt::Debug + Send + Sync {
     #[inline]
     fn rate(&self, gap: &Gap) -> f64 {
         if gap.eccentricity > 0.0 {
-            dot(gap.e, gap.e_dot) / gap.eccentricity
+            gap.e.dot(&gap.e_dot) / gap.eccentricity
         } else {
-            norm(gap.e_dot)
+            gap.e_dot.norm()
         }
     }
     /// `force` along the normal n = e/|e| \[N\].
     #[inline]
     fn along_normal(&self, gap: &Gap, force: f64) -> Vec2 {
-        scale(force / gap.eccentricity, gap.e)
+        force / gap.eccentricity * gap.e
     }
     /// Adds `force` d(delta)/dq to `f`.
     fn push(&self, at: At, gap: &Gap, force: f64, f: &mut [f64; WIDTH]);

@@ -1,7 +1,7 @@
 //! Clearance to nothing.
 
 use super::{Check, apart, column, order, run};
-use looselink::math::plane::{Vec2, norm, scale, sub};
+use looselink::math::plane::Vec2;
 use looselink::simulate::Recording;
 
 const SETTINGS: [&str; 5] = [
@@ -19,19 +19,19 @@ fn over_bound(loose: &Recording, ideal: &Recording, clearance: f64) -> f64 {
     let mut worst = 0.0_f64;
     for k in 0..rows {
         let at = |r: &Recording, name: &str| column(r, name)[k];
-        let point = |name: &str| -> Vec2 {
-            ["x", "y"].map(|axis| at(ideal, &format!("points.{name}.{axis}")))
+        let point = |name: &str| {
+            let of = |axis: &str| at(ideal, &format!("points.{name}.{axis}"));
+            Vec2::new(of("x"), of("y"))
         };
-        let centre = [at(ideal, "platform.x"), at(ideal, "platform.y")];
+        let centre = Vec2::new(at(ideal, "platform.x"), at(ideal, "platform.y"));
         let rows = [1, 2, 3].map(|i| {
             let (b, c) = (
                 point(&format!("link{i}.start")),
                 point(&format!("link{i}.end")),
             );
-            let along = sub(c, b);
-            let u = scale(1.0 / norm(along), along);
-            let arm = sub(c, centre);
-            [u[0], u[1], arm[0] * u[1] - arm[1] * u[0]]
+            let along = c - b;
+            let u = 1.0 / along.norm() * along;
+            [u.x, u.y, (c - centre).perp(&u)]
         });
         // x of the inverse by Cramer's rule: cofactors of the first column
         let cofactor = |i: usize| {

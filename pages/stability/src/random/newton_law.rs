@@ -63,7 +63,7 @@ pub(super) fn point(scene: &Scene, rows: &Rows, at: PointRef, row: usize) -> [f6
     let body = &scene.bodies[at.body];
     let own = &body.kind.points()[at.point];
     if let Some(Known::Fixed) = body.kind.known() {
-        return own.at;
+        return own.at.into();
     }
     let name = &own.name;
     let of = |axis: &str| rows.get(&format!("points.{}.{name}.{axis}", body.name), row);
