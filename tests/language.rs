@@ -240,7 +240,8 @@ fn the_tables_of_the_language_are_those_of_the_reader() {
 fn every_choice_stands_in_the_language() {
     let (document, choices) = (document(), choices());
     for word in &choices {
-        assert!(document.contains(&format!("`\"{word}\"`")), "{word}");
+        let stands = document.contains(&format!("`\"{word}\"`"));
+        assert!(stands, "docs/scene.md does not describe {word:?}");
     }
     assert!(choices.len() > 40, "{} choices: {choices:?}", choices.len());
 }
@@ -256,7 +257,7 @@ fn every_choice_has_an_example() {
         let is_example = examples.contains(&format!("\"{word}\"")) || word == "dynamic";
         assert!(
             is_example || schemes.iter().any(|s| s.name == word),
-            "{word}"
+            "docs/scene.md has no example with {word:?}"
         );
     }
 }

@@ -47,7 +47,7 @@ pub static KEYS: [Key; 10] = [
         "m/s",
         "the lower bound of v in the formula below",
     )
-    .or("required; not for `\"hertz\"`"),
+    .or("required; `\"hertz\"` does not use it"),
     Key::new("friction", Takes::Table, "the table of the friction law").or("none"),
 ];
 

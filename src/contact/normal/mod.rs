@@ -51,7 +51,7 @@ pub struct NormalParameters<'a> {
 pub struct NormalLawKind {
     /// Its name in a scene.
     pub name: &'static str,
-    /// False for a law without restitution coefficient and impact velocity.
+    /// False for a law without damping: its restitution is 1, and it does not use the impact velocity.
     pub is_damped: bool,
     /// Keys of a contact that this law alone has; all are numbers that it needs.
     pub keys: &'static [Key],

@@ -25,8 +25,8 @@ const COORDINATES: f64 = 1e-4;
 /// Span of central differences of the rows: coordinates in m, angles in rad.
 const SPAN: f64 = 1e-5;
 
-/// Scenes whose equations are compared: all that move; an element of every stiffness; every law of contact and friction; the
-/// paper's cases with more elements, other paths and friction; and a scene with every other element.
+/// Scenes whose equations are compared: all that move; an element of every stiffness; every law of contact and friction that both
+/// have; the paper's cases with more elements, other paths and friction; and a scene with every other element.
 pub fn plans() -> Result<Vec<Plan>> {
     let table =
         "{type=\"table\",rows=[[0.0,0.1,0.0,0.0],[0.04,0.08,0.02,0.1],[0.1,0.05,0.01,0.0]]}";

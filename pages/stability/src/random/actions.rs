@@ -3,6 +3,7 @@
 use super::genes::Tape;
 use super::mechanism::{Form, Kind, Mechanism, Pin, Point, Topology, add, norm, scale, sub};
 use super::text::{Scales, joint_name, member_name, point_name};
+use looselink::contact::normal::LAWS;
 
 /// The contact of a loose joint.
 pub struct Contact {
@@ -21,9 +22,8 @@ pub fn contact(
 ) -> Contact {
     let clearance = scales.length * tape.decades(-4.0, -2.0);
     let radius = clearance * tape.decades(0.5, 2.0);
-    let laws = ["hertz", "lankarani_nikravesh", "hunt_crossley", "flores"];
-    let law = tape.pick(&laws);
-    features.push(law);
+    let law = tape.pick(&LAWS);
+    features.push(law.name);
     let exponent = tape.pick(&[1.5, 1.0, 2.0]);
     // the stiffness at which an impact at the speed of the scene lasts from a few tenths of a step to many
     let depth = (scales.speed() * scales.step * tape.decades(-0.5, 2.0)).min(clearance);
@@ -32,9 +32,10 @@ pub fn contact(
     let restitution = tape.between(0.2, 1.0);
     let floor = scales.speed() * tape.decades(-8.0, -3.0);
     let mut text = format!(
-        "[contacts.c{index}]\nlaw = {law:?}\nbearing_radius = {radius:?}\nclearance = {clearance:?}\nstiffness = {stiffness:?}\nexponent = {exponent:?}\n"
+        "[contacts.c{index}]\nlaw = {:?}\nbearing_radius = {radius:?}\nclearance = {clearance:?}\nstiffness = {stiffness:?}\nexponent = {exponent:?}\n",
+        law.name
     );
-    if law != "hertz" {
+    if law.is_damped {
         text += &format!("restitution = {restitution:?}\nimpact_velocity_floor = {floor:?}\n");
     }
     let (friction, coefficient) = (tape.chance(0.4), tape.decades(-2.0, 0.0));
