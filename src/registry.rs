@@ -2,7 +2,7 @@
 
 use crate::body::{self, BodyKind};
 use crate::contact::normal::{LAWS, NormalLawKind};
-use crate::interaction::{FORCES, ForceKind, JOINTS, JointKind};
+use crate::interaction::{FORCES, ForceKind, JOINTS, JointKind, contact};
 use crate::stepper::{SCHEMES, Scheme};
 use crate::table::{FORMATS, Format};
 
@@ -59,8 +59,16 @@ impl Registry {
     }
 
     /// The same with a normal contact law.
+    ///
+    /// # Panics
+    /// A key of the law has the name of one that every contact or another law has.
     #[must_use]
     pub fn with_law(mut self, law: &'static NormalLawKind) -> Registry {
+        let known = self.laws.iter().flat_map(|law| law.keys);
+        for key in known.chain(&contact::KEYS) {
+            let taken = law.keys.iter().any(|own| own.name == key.name);
+            assert!(!taken, "`{}` of {} is taken", key.name, law.name);
+        }
         self.laws.push(law);
         self
     }

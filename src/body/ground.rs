@@ -3,6 +3,7 @@
 use super::{Body, BodyKind, Frame, Known, Levels, Point, Pose, Slot, points};
 use crate::document::{Key, Takes};
 use crate::marker::{Marker, Spin};
+use crate::terms::{Owner, Terms};
 use std::sync::Arc;
 
 pub(super) static KIND: BodyKind = BodyKind {
@@ -30,6 +31,8 @@ impl Body for Ground {
         let points = self.points.iter().enumerate();
         points.map(|(i, p)| Slot::node(&p.name, i)).collect()
     }
+
+    fn terms(&self, _: &[usize], _: Owner, _: &mut Terms) {}
 
     fn known(&self) -> Option<Known<'_>> {
         Some(Known::Fixed)

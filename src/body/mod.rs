@@ -203,7 +203,7 @@ pub trait Body: Any + Debug + Send + Sync {
         1.0
     }
     /// Adds its masses, elements, constraints and damping.
-    fn terms(&self, _x: &[usize], _owner: Owner, _terms: &mut Terms) {}
+    fn terms(&self, x: &[usize], owner: Owner, terms: &mut Terms);
     /// Pose of its centre of mass; angles of links in (-pi, pi].
     fn pose(&self, x: &[usize], levels: Levels) -> Pose {
         Pose::of(x[0], levels)

@@ -3,6 +3,7 @@
 use super::{Body, BodyKind, Known, Point, points};
 use crate::document::{Key, Takes};
 use crate::motion::{Path, read_path};
+use crate::terms::{Owner, Terms};
 use std::sync::Arc;
 
 pub(super) static KIND: BodyKind = BodyKind {
@@ -40,6 +41,8 @@ impl Body for Moving {
     fn points(&self) -> &[Point] {
         &self.points
     }
+
+    fn terms(&self, _: &[usize], _: Owner, _: &mut Terms) {}
 
     fn known(&self) -> Option<Known<'_>> {
         Some(Known::Path(&self.path))

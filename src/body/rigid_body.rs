@@ -92,7 +92,7 @@ impl Body for RigidBody {
     }
 }
 
-/// A shape of a uniform plate. It gives the area \[m2\], and the moment of inertia over the mass \[m2\].
+/// A shape of a uniform plate. `read` gives the area \[m2\], and the moment of inertia over the mass \[m2\].
 pub type Plate = Kind<fn(&Fields) -> Result<[f64; 2], SceneError>>;
 
 pub(super) const THICKNESS: Key = Key::positive("thickness", "m", "the size normal to the plane");
@@ -169,8 +169,11 @@ fn inertia(table: &Fields, known: &Materials) -> Result<(f64, f64), SceneError> 
     }
     let (shape, fields) = Kind::by("shape", &plate, "the shape of the plate", &PLATES)?;
     let [area, gyration] = (shape.read)(&fields)?;
-    let own = plate_mass(&fields, known, area)?;
-    let mass = table.optional_number("mass")?.unwrap_or(own);
+    let own = plate_mass(&fields, known, area);
+    let mass = match table.optional_number("mass")? {
+        Some(typed) => typed,
+        None => own?,
+    };
     Ok((
         mass,
         derived(&plate, "a moment of inertia", mass * gyration)?,

@@ -66,8 +66,8 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<bool>), SceneError> {
         anchor: vec![None; count],
         x: vec![None; count],
     };
-    let joints = c.scene.joints.iter().enumerate();
-    let eliminated = joints.map(|(j, _)| connect_joint(c, &mut nodes, j));
+    let joints = 0..c.scene.joints.len();
+    let eliminated = joints.map(|j| connect_joint(c, &mut nodes, j));
     let eliminated = eliminated.collect::<Result<_, _>>()?;
     Ok((nodes, eliminated))
 }

@@ -111,7 +111,7 @@ impl Constraint for Align {
         [self.scale * (first.perp(&d[1]) + d[0].perp(&second)), 0.0]
     }
 
-    /// s phi_t (perp(R d_1) x d_2).
+    /// s phi_t (J R d_1 x d_2), J the quarter turn.
     fn drift(&self, at: &State) -> f64 {
         -self.scale * self.angle.at(at.t)[1] * self.along(at)
     }

@@ -10,7 +10,7 @@ use crate::system::State;
 /// slider from the line \[m\].
 #[derive(Debug, Clone, Copy)]
 pub struct Slide {
-    /// From a point of the line to the point on it.
+    /// From the guide's point to the slider.
     pub ends: Separation,
     /// The body that carries the line.
     pub spin: Spin,

@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue, Error};
 /// A value and its place; a table that has a header stands at the header.
 #[derive(Debug)]
 pub(crate) struct Node {
-    /// Where its key stands; of what has none the value itself.
+    /// Where its key stands; the place of the value where there is no key, as in an array.
     pub key: Span,
     pub span: Span,
     pub value: Value,

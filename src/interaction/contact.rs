@@ -8,9 +8,11 @@ use crate::contact::{ContactPair, Rough, Slip, Smooth};
 use crate::document::{Field, Fields, Key, SceneError, Takes, derived};
 use crate::marker::Spin;
 
-/// The keys of a contact.
+const LAW: Key = Key::name_in("law", "normal laws", "the normal law, see below");
+
+/// The keys of a contact, beside those that its law alone has.
 pub static KEYS: [Key; 10] = [
-    Key::name_in("law", "normal laws", "the normal law, see below"),
+    LAW,
     Key::positive("bearing_radius", "m", "the radius R_i of the bearing")
         .or("required in a revolute joint"),
     Key::positive(
@@ -139,7 +141,7 @@ impl Contact {
     ) -> Result<Contact, SceneError> {
         let mut table = field.fields()?;
         let choices: Vec<_> = laws.iter().map(|k| (k.name, *k)).collect();
-        let law = table.required("law", &KEYS[0].description())?;
+        let law = table.required("law", &LAW.description())?;
         let law = law.choice(&choices)?;
         table.declare(&[], KEYS.iter().chain(law.keys))?;
         let bearing_radius = table.optional_number("bearing_radius")?;

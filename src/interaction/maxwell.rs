@@ -101,7 +101,7 @@ impl Maxwell {
 
     /// Local index of the internal state.
     fn place(&self) -> usize {
-        self.spring.from.width() + self.spring.to.width()
+        self.spring.ends().width()
     }
 
     /// N \[N\] and the line it acts along.

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use std::sync::Arc;
 
 /// The label of a point without direction.
-pub const NO_DIRECTION: &str = "a point has no direction";
+pub(crate) const NO_DIRECTION: &str = "a point has no direction";
 
 /// The bodies and joints read so far.
 #[derive(Debug)]
@@ -67,7 +67,7 @@ impl Names<'_> {
     }
 
     /// What is wrong where a field needs the direction at a point that has none.
-    pub fn directionless(&self, field: &Field, point: PointRef) -> Option<String> {
+    pub(crate) fn directionless(&self, field: &Field, point: PointRef) -> Option<String> {
         let (name, body) = self.bodies.get_index(point.body)?;
         let message = format!(
             "`{}` needs the direction of {name}, but a point mass has none",

@@ -106,7 +106,7 @@ pub(super) struct Line {
 }
 
 impl SpringDamper {
-    fn ends(&self) -> Separation {
+    pub(super) fn ends(&self) -> Separation {
         Separation {
             from: self.from,
             to: self.to,

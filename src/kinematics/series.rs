@@ -130,7 +130,7 @@ impl Kinematics {
     fn renew_series(&self, from: &State, t: f64, inner: &mut Inner) -> bool {
         let shortest = STEPS * (t - from.t);
         let rest = self.duration - from.t;
-        if t < from.t || t < inner.series.rough_until || shortest > rest {
+        if t <= from.t || t < inner.series.rough_until || shortest > rest {
             return false;
         }
         let mut span = inner.series.span.min(rest);

@@ -1,4 +1,4 @@
-//! Vectors of the plane: those of nalgebra, and what it does not have. Its `a.perp(&b)` is the out-of-plane component of a x b.
+//! Vectors of the plane: those of nalgebra, and what it does not have. nalgebra's `a.perp(&b)` is the out-of-plane component of a x b.
 
 use nalgebra::{UnitComplex, Vector2};
 
@@ -8,7 +8,7 @@ pub type Vec2 = Vector2<f64>;
 /// A rotation of the plane by an angle.
 pub type Rotation = UnitComplex<f64>;
 
-/// a turned by +90 degrees, to the last digit.
+/// a turned by +90 degrees, exactly.
 #[inline]
 pub fn quarter_turn(a: Vec2) -> Vec2 {
     Vec2::new(-a.y, a.x)

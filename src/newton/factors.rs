@@ -35,7 +35,7 @@ impl Factors {
         symbolic.factor(&mut self.values).map_err(singular)
     }
 
-    /// The same; after a weak pivot, once more as a dense matrix with row exchanges.
+    /// As [`Factors::renew_in_order`]; after a weak pivot, once more as a dense matrix with row exchanges.
     ///
     /// # Errors
     /// The matrix is singular to rounding.

@@ -24,7 +24,7 @@ const PROJECTED: f64 = 1e-10;
 /// Counts of the work done.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Stages solved.
+    /// Stages and load steps solved.
     pub stages: u64,
     /// Newton iterations.
     pub newton_iterations: u64,
@@ -38,10 +38,11 @@ pub struct Counters {
     pub singular_poses: u64,
 }
 
-/// Why a stage has no solution.
+/// Why there is no solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Failure {
-    /// Newton's method does not converge; the unknown with the largest last update and its size in velocity \[m/s\].
+    /// Newton's method does not converge; the unknown with the largest last update and its size: in velocity \[m/s\] for a
+    /// stage, otherwise in units of the coordinates.
     NoConvergence {
         /// Unknown.
         index: usize,

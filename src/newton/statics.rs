@@ -31,7 +31,7 @@ impl Newton {
         self.balance_against(system, &[], s, work)
     }
 
-    /// The same with a residual of the unknown coordinates that is left; an empty one is zero.
+    /// As [`Newton::balance`], but the residual of the unknown coordinates becomes `left`; an empty `left` is zero.
     fn balance_against(
         &mut self,
         system: &dyn Equilibrium,

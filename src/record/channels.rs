@@ -28,7 +28,7 @@ const POSE: [(&str, &str); 9] = [
     ("ay", "m/s2"),
     ("alpha", "rad/s2"),
 ];
-/// Of the quantities of a pose those that a point has.
+/// Indices of the quantities of a pose that a point has.
 const POINT: [usize; 6] = [0, 1, 3, 4, 6, 7];
 const FORCE: &Quantities = &[("fx", "N"), ("fy", "N"), ("force", "N")];
 const GAP: &Quantities = &[
@@ -45,7 +45,7 @@ const TURNED: &Quantities = &[("angle", "rad"), ("speed", "rad/s")];
 const TRAVEL: &Quantities = &[("travel", "m"), ("travel_rate", "m/s")];
 const ACTUATOR: &Quantities = &[("angle", "rad"), ("speed", "rad/s"), ("torque", "N m")];
 
-/// What an energy is of a ledger.
+/// How an energy is read from a ledger.
 type Term = fn(&Ledger) -> f64;
 /// Energies that a state has.
 const STORED: [(&str, Term); 6] = [
@@ -174,7 +174,7 @@ impl Part {
         }
     }
 
-    /// Places of its angle, which is known up to full turns, and of the speed of it.
+    /// Places of its angle, which is known up to full turns, and of its speed.
     pub fn turning(self) -> Option<[usize; 2]> {
         match self {
             Part::Pose(_) => Some([2, 5]),

@@ -12,7 +12,7 @@ mod reader;
 pub use crate::body::PointRef;
 pub use crate::document::{SceneError, Span};
 pub use crate::interaction::{Contact, Friction, Joint, NamedForce};
-pub use crate::math::plane::Vec2;
+use crate::math::plane::Vec2;
 use crate::motion::{Function, Path};
 pub use crate::stepper::Method;
 pub use reader::read_file;

@@ -17,7 +17,7 @@ pub(super) struct Drives {
     joints: Vec<usize>,
 }
 
-/// A kind of drive. It is read after others, to which it is added.
+/// A kind of drive. `read` adds the drive to those read before.
 pub(super) type DriveKind = Kind<fn(&Fields, &Names, &mut Drives) -> Result<(), SceneError>>;
 
 /// The kinds of drive that a scene can name.

@@ -201,7 +201,7 @@ impl Scene {
 }
 
 impl Simulation {
-    /// A time of the run that a field gives \[s\].
+    /// The time that a field gives, refused where it exceeds the duration \[s\].
     pub(super) fn check_time(&self, field: &Field) -> Result<f64, SceneError> {
         let time = field.number()?;
         match time > self.duration {

@@ -114,7 +114,10 @@ impl Effect {
             let mut contact = contact.clone();
             match self {
                 Effect::Clearance => {}
-                Effect::ContactDamping => (contact.law, contact.restitution) = (&HERTZ, 1.0),
+                Effect::ContactDamping => {
+                    (contact.law, contact.restitution) = (&HERTZ, 1.0);
+                    contact.own.clear();
+                }
                 Effect::Friction => contact.friction = None,
                 _ => continue,
             }
@@ -168,7 +171,7 @@ fn drop_inner_points(scene: &mut Scene, why: &str) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Everything that names a point of a body, by its name.
+/// Everything that is fastened to a point of a body: its name, its place in the scene, and the point.
 fn fastenings(scene: &Scene) -> Vec<(String, Span, PointRef)> {
     let mut list = Vec::new();
     let mut add = |name: String, span, point| list.push((name, span, point));

@@ -291,7 +291,7 @@ fn remarks(report: &Report) -> Outcome {
     }
 }
 
-/// Every step, of so many stages at most, has a reason that is counted: a step of the grid, one that ends where a contact changes (an
+/// Every step has a reason that is counted, and at most `stages` stages: a step of the grid, one that ends where a contact changes (an
 /// onset and the loss after it, after each of which the grid begins again), one that was halved, or
 /// one that was tried with another length to pass a singular pose.
 fn bounded(report: &Report, asked: Option<u64>, stages: u64) -> Result<(), Breach> {
