@@ -169,11 +169,8 @@ fn inertia(table: &Fields, known: &Materials) -> Result<(f64, f64), SceneError> 
     }
     let (shape, fields) = Kind::by("shape", &plate, "the shape of the plate", &PLATES)?;
     let [area, gyration] = (shape.read)(&fields)?;
-    let own = plate_mass(&fields, known, area);
-    let mass = match table.optional_number("mass")? {
-        Some(typed) => typed,
-        None => own?,
-    };
+    let own = plate_mass(&fields, known, area)?;
+    let mass = table.optional_number("mass")?.unwrap_or(own);
     Ok((
         mass,
         derived(&plate, "a moment of inertia", mass * gyration)?,
