@@ -197,7 +197,7 @@ fn spin_up() {
     Rung::Balance
         .asks("Scene of the spin-up: numerical loss of energy over the kinetic energy")
         .within(
-            ledger.numerical / ledger.kinetic,
+            ledger.numerical / ledger.stored.kinetic,
             1e-4,
             "the relative accuracy that the extension is asked for",
         );

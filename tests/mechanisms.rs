@@ -366,7 +366,7 @@ bodies.body = { x = 0.5, y = 0.3, theta = 0.0 }
         assert!(
             ledger.damping_dissipated > 0.0
                 && ledger.contact_dissipated > 0.0
-                && ledger.springs > 0.0
+                && ledger.stored.springs > 0.0
         );
         (
             ledger.numerical.abs(),

@@ -105,11 +105,7 @@ fn guess(
 fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) -> Option<Pair> {
     let local = c.bodies[point.body].points()[point.point].at;
     let of_joint = c.scene.joints.iter().enumerate().find_map(|(j, joint)| {
-        let partner = match () {
-            () if joint.bearing == point => joint.journal,
-            () if joint.journal == point => joint.bearing,
-            () => return None,
-        };
+        let partner = joint.partner(point)?;
         let known = || {
             c.is_known(partner)
                 .then(|| mechanism.position(&marker(mechanism, partner), state))

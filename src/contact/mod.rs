@@ -27,6 +27,18 @@ pub struct At<'a> {
     pub z: f64,
 }
 
+/// Local indices of some coordinates; those that are not in the list yet are appended to it.
+pub(crate) fn local_indices(own: Vec<usize>, coordinates: &mut Vec<usize>) -> Vec<usize> {
+    let local = own.into_iter().map(|index| {
+        let known = coordinates.iter().position(|&x| x == index);
+        known.unwrap_or_else(|| {
+            coordinates.push(index);
+            coordinates.len() - 1
+        })
+    });
+    local.collect()
+}
+
 /// A pair of surfaces that can touch.
 pub trait ContactPair: std::fmt::Debug + Send + Sync {
     /// The coordinates in local order. None occurs twice.

@@ -8,7 +8,7 @@
 use super::friction::{FrictionLaw, TangentialForce};
 use super::geometry::{Gap, Geometry, Touch};
 use super::normal::NormalForce;
-use super::{At, ContactPair, Smooth};
+use super::{At, ContactPair, Smooth, local_indices};
 use crate::effect::{self, Effect};
 use crate::force::{LocalMatrix, WIDTH};
 use crate::marker::{Spin, SpinDerivatives};
@@ -69,16 +69,7 @@ impl<G: Geometry> Rough<G> {
         if slip == Slip::Material {
             let sides = surface.geometry.radii().into_iter().zip(spins);
             for (radius, spin) in sides.filter(|(radius, _)| *radius != 0.0) {
-                let local = spin.coordinates().into_iter().map(|index| {
-                    coordinates
-                        .iter()
-                        .position(|&known| known == index)
-                        .unwrap_or_else(|| {
-                            coordinates.push(index);
-                            coordinates.len() - 1
-                        })
-                });
-                let local = local.collect();
+                let local = local_indices(spin.coordinates(), &mut coordinates);
                 rims.push((radius, spin, local));
             }
         }

@@ -63,7 +63,7 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         }
     }
     for (f, force) in scene.forces.iter().enumerate() {
-        if let Some(fault) = model.force(f).fault(&state) {
+        if let Some(fault) = model.named_force(f).1.fault(&state) {
             let message = format!("force {} is not defined at the start: {fault}", force.name);
             return Err(scene.error(force.span, message, "this force"));
         }

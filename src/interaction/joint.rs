@@ -36,6 +36,15 @@ impl Joint {
         [self.bearing, self.journal]
     }
 
+    /// The point that it joins to this one, if this is one of its two.
+    pub fn partner(&self, point: PointRef) -> Option<PointRef> {
+        match point {
+            _ if point == self.bearing => Some(self.journal),
+            _ if point == self.journal => Some(self.bearing),
+            _ => None,
+        }
+    }
+
     /// Geometry and laws of its contact, where it has clearance.
     pub fn contact(&self) -> Option<&Contact> {
         self.model.contact()

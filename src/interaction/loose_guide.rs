@@ -9,7 +9,7 @@ use super::prismatic::{DIRECTION, Prismatic, direction};
 use super::{Contact, JointEnds, JointKind, JointModel};
 use crate::constraint::Slide;
 use crate::contact::geometry::{Gap, Geometry, Touch};
-use crate::contact::{At, Slip};
+use crate::contact::{At, Slip, local_indices};
 use crate::document::{Key, Takes};
 use crate::force::{LocalMatrix, WIDTH};
 use crate::marker::{Separation, Spin};
@@ -127,18 +127,9 @@ impl Walls {
     /// Walls along a direction \[rad\] from that of the spin, through the point where `ends` begins and at the distance
     /// `clearance` \[m\] on either side of the one where it ends.
     pub fn new(ends: Separation, spin: Spin, direction: f64, clearance: f64) -> Walls {
-        let mut coordinates: Vec<usize> = Vec::new();
-        let mut place = |own: Vec<usize>| -> Vec<usize> {
-            let local = own.into_iter().map(|index| {
-                let known = coordinates.iter().position(|&x| x == index);
-                known.unwrap_or_else(|| {
-                    coordinates.push(index);
-                    coordinates.len() - 1
-                })
-            });
-            local.collect()
-        };
-        let places = [place(ends.sides().concat()), place(spin.coordinates())];
+        let mut coordinates = Vec::new();
+        let places = [ends.sides().concat(), spin.coordinates()];
+        let places = places.map(|own| local_indices(own, &mut coordinates));
         Walls {
             ends,
             spin,

@@ -10,9 +10,10 @@ use crate::math::plane::{Vec2, pair};
 use crate::system::{Integral, State, Work};
 use crate::terms::ForceTerm;
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Stored energies \[J\].
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
 pub struct Energies {
     /// 1/2 v^T M v, driven bodies included.
     pub kinetic: f64,
@@ -136,14 +137,15 @@ impl Model {
         })
     }
 
-    /// Forces of the scene by their names.
-    pub fn named_forces(&self) -> &[(String, usize)] {
-        &self.named_forces
+    /// Indices of the forces of the scene.
+    pub fn named_forces(&self) -> Range<usize> {
+        0..self.named_forces.len()
     }
 
-    /// The force `index` of the scene.
-    pub fn force(&self, index: usize) -> &dyn Force {
-        &*self.forces[self.named_forces[index].1].term
+    /// A force of the scene and its name.
+    pub fn named_force(&self, index: usize) -> (&str, &dyn Force) {
+        let (name, place) = &self.named_forces[index];
+        (name, &*self.forces[*place].term)
     }
 
     /// True for a joint with clearance.

@@ -48,7 +48,10 @@ impl Newton {
             self.counters.newton_iterations += 1;
             let scale = self.renew_stiffness(system, s, work)?;
             for i in 0..n {
-                self.b[i] = left.get(i).unwrap_or(&0.0) - self.r[i];
+                self.b[i] = -self.r[i];
+            }
+            for (b, left) in self.b.iter_mut().zip(left) {
+                *b += left;
             }
             for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
                 *b = -scale * phi;

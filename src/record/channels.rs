@@ -49,12 +49,12 @@ const ACTUATOR: &Quantities = &[("angle", "rad"), ("speed", "rad/s"), ("torque",
 type Term = fn(&Ledger) -> f64;
 /// Energies that a state has.
 const STORED: [(&str, Term); 6] = [
-    ("kinetic", |l| l.kinetic),
-    ("axial", |l| l.axial),
-    ("bending", |l| l.bending),
-    ("contact", |l| l.contact),
-    ("gravity", |l| l.gravity),
-    ("springs", |l| l.springs),
+    ("kinetic", |l| l.stored.kinetic),
+    ("axial", |l| l.stored.axial),
+    ("bending", |l| l.stored.bending),
+    ("contact", |l| l.stored.contact),
+    ("gravity", |l| l.stored.gravity),
+    ("springs", |l| l.stored.springs),
 ];
 /// Energies that a motion has: a load path has no balance of powers.
 const BALANCE: [(&str, Term); 6] = [
@@ -115,7 +115,7 @@ pub(super) fn parts(model: &Model, analysis: Analysis) -> Vec<Part> {
             add(point.slope.is_some(), Part::Slope(b, p));
         }
     }
-    for f in 0..model.named_forces().len() {
+    for f in model.named_forces() {
         add(true, Part::Applied(f));
     }
     add(true, Part::Stored);
@@ -168,7 +168,10 @@ impl Part {
             Part::Actuator(j) => joint(j, ACTUATOR),
             Part::Point(b, p) => point(b, p, &POINT.map(|i| POSE[i])),
             Part::Slope(b, p) => point(b, p, &[("slope_x", "1"), ("slope_y", "1")]),
-            Part::Applied(f) => named(&model.named_forces()[f].0, model.force(f).quantities()),
+            Part::Applied(f) => {
+                let (name, force) = model.named_force(f);
+                named(name, force.quantities())
+            }
             Part::Stored => energies(stored(model)),
             Part::Balance => energies(&BALANCE),
         }
@@ -235,7 +238,7 @@ impl Part {
                 values.extend(slope.iter().flat_map(|x| [at.q[*x], at.q[x + 1]]));
             }
             Part::Applied(f) => {
-                let force = model.force(f);
+                let (_, force) = model.named_force(f);
                 values.extend(&force.measure(at)[..force.quantities().len()]);
             }
             Part::Stored => values.extend(stored(model).iter().map(|(_, term)| term(ledger))),

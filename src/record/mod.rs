@@ -76,12 +76,8 @@ impl Record {
 #[expect(missing_docs, reason = "the names are those of the channels")]
 pub struct Ledger {
     pub initial: f64,
-    pub kinetic: f64,
-    pub axial: f64,
-    pub bending: f64,
-    pub contact: f64,
-    pub gravity: f64,
-    pub springs: f64,
+    #[serde(flatten)]
+    pub stored: Energies,
     pub work: f64,
     pub contact_dissipated: f64,
     pub friction_dissipated: f64,
@@ -116,14 +112,13 @@ impl Recorder {
         let chosen = choose(scene, &available)?;
         // where the values of each part begin that has a chosen channel
         let mut firsts = vec![None; all.len()];
-        for entry in &chosen {
-            firsts[entry.part] = Some(0);
-        }
         let (mut parts, mut count) = (Vec::new(), 0);
-        for (first, part) in firsts.iter_mut().zip(&all).filter(|(f, _)| f.is_some()) {
-            *first = Some(count);
-            count += part.channels(model).len();
-            parts.push(*part);
+        for entry in &chosen {
+            if firsts[entry.part].is_none() {
+                firsts[entry.part] = Some(count);
+                count += all[entry.part].channels(model).len();
+                parts.push(all[entry.part]);
+            }
         }
         let first = |entry: &Available| firsts[entry.part].unwrap_or_default();
         let turning = |entry: &&Available| {
@@ -150,7 +145,7 @@ impl Recorder {
     }
 
     /// The ledger at a consistent state with these energies.
-    pub fn ledger(&self, e: &Energies, at: &State) -> Ledger {
+    pub fn ledger(&self, stored: &Energies, at: &State) -> Ledger {
         let [
             work,
             contact_dissipated,
@@ -161,12 +156,7 @@ impl Recorder {
         let supplied = self.initial_energy + work;
         Ledger {
             initial: self.initial_energy,
-            kinetic: e.kinetic,
-            axial: e.axial,
-            bending: e.bending,
-            contact: e.contact,
-            gravity: e.gravity,
-            springs: e.springs,
+            stored: *stored,
             work,
             contact_dissipated,
             friction_dissipated,
@@ -176,7 +166,7 @@ impl Recorder {
                 - contact_dissipated
                 - friction_dissipated
                 - damping_dissipated
-                - e.total(),
+                - stored.total(),
         }
     }
 

@@ -69,11 +69,7 @@ impl Placed<'_> {
     fn met(&self, point: PointRef, state: &State) -> Option<Vec2> {
         let mut joints = self.c.scene.joints.iter().enumerate();
         joints.find_map(|(j, joint)| {
-            let partner = match () {
-                () if joint.bearing == point => joint.journal,
-                () if joint.journal == point => joint.bearing,
-                () => return None,
-            };
+            let partner = joint.partner(point)?;
             let partner = (self.done[partner.body] && self.c.joints[j].coincides())
                 .then(|| self.position(partner, state));
             partner.or_else(|| self.c.drawn(Sketched::Joint(j)))

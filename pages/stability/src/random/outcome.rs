@@ -267,7 +267,7 @@ fn stopped(scene: &Scene, error: &RunError) -> Result<Outcome, Breach> {
 fn blown_up(report: &Report) -> bool {
     let ledger = report.ledger.as_ref();
     ledger.is_some_and(|l| {
-        -l.numerical > 0.5 * l.kinetic && l.kinetic > l.initial.abs() + l.work.abs()
+        -l.numerical > 0.5 * l.stored.kinetic && l.stored.kinetic > l.initial.abs() + l.work.abs()
     })
 }
 
