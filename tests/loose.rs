@@ -5,7 +5,9 @@ use crate::support::{load, run};
 use ladder::{Rung, Worst};
 use looselink::contact::normal::NormalParameters;
 use looselink::contact::normal::damped_power::LANKARANI_NIKRAVESH;
-use looselink::simulate::{Contact, Control, Impact, Observer, Progress, RunError, Simulation};
+use looselink::simulate::{
+    Contact, Control, Impact, Observer, Progress, Recording, RunError, Simulation,
+};
 
 /// Velocity of the journal after its first rebound over the velocity before, at a step that is a fraction of the
 /// contact time.
@@ -304,6 +306,16 @@ fn a_run_that_is_stopped_tells_the_contacts_that_are_closed() {
     assert_eq!(reported.0, simulation.report().impacts);
     assert_eq!((reported.0.len(), reported.0[0].end), (1, None));
     assert!(reported.0[0].deepest_penetration > 1e-7);
+}
+
+#[test]
+fn a_recording_stops_a_run_after_its_most_steps() {
+    let mut simulation = Simulation::new(&load("bouncing-journal.toml", &[])).unwrap();
+    let mut recording = Recording::new(&simulation);
+    recording.most_steps = 7;
+    let ended = simulation.run(&mut recording);
+    assert!(matches!(ended, Err(RunError::Interrupted { .. })));
+    assert_eq!(simulation.report().steps, 7);
 }
 
 /// The rates of the eccentricity are the derivatives of the eccentricity, in the flight of six journals before any closes.

@@ -25,6 +25,7 @@ use crate::document::{Fields, Kind, SceneError};
 use crate::marker::{Marker, Spin};
 use crate::math::plane::{pair, quarter_turn, unit};
 use crate::motion::Path;
+pub use crate::motion::Pose;
 use crate::terms::{Owner, Terms};
 use std::any::Any;
 use std::fmt::Debug;
@@ -115,17 +116,6 @@ impl Slot {
 
 /// Positions, velocities and accelerations of all coordinates.
 pub type Levels<'a> = [&'a [f64]; 3];
-
-/// Position, velocity and acceleration of a body: centre of mass, and angle (of a link: of its chord).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Pose {
-    /// x, y \[m\], theta \[rad\].
-    pub position: [f64; 3],
-    /// vx, vy, omega.
-    pub velocity: [f64; 3],
-    /// ax, ay, alpha.
-    pub acceleration: [f64; 3],
-}
 
 /// Position and velocity of the frame in which the points of a body are given.
 #[derive(Debug, Clone, Copy, PartialEq)]

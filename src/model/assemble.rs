@@ -184,10 +184,10 @@ impl Model {
         for rule in &self.rules {
             match rule {
                 Rule::Path { x, path } => {
-                    let motion = path.at(to.t);
-                    to.q[*x..x + 3].copy_from_slice(&motion.position);
-                    to.v[*x..x + 3].copy_from_slice(&motion.velocity);
-                    to.a[*x..x + 3].copy_from_slice(&motion.acceleration);
+                    let pose = path.at(to.t);
+                    to.q[*x..x + 3].copy_from_slice(&pose.position);
+                    to.v[*x..x + 3].copy_from_slice(&pose.velocity);
+                    to.a[*x..x + 3].copy_from_slice(&pose.acceleration);
                 }
                 Rule::Turn {
                     pivot,

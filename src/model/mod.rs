@@ -5,7 +5,7 @@ mod block;
 mod measure;
 mod reaction;
 
-pub use crate::body::Pose;
+pub use crate::motion::Pose;
 pub use block::{Block, Border};
 pub use measure::Energies;
 pub(crate) use reaction::{Grip, Source};

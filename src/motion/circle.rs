@@ -1,6 +1,6 @@
 //! Uniform motion on a circle with constant orientation (eq. 27).
 
-use super::{Motion, POSES, Path};
+use super::{POSES, Path, Pose};
 
 /// (x, y) = center + radius (cos, sin)(rate t + phase).
 #[derive(Debug, Clone, Copy)]
@@ -18,11 +18,11 @@ pub struct Circle {
 }
 
 impl Path for Circle {
-    fn at(&self, t: f64) -> Motion {
+    fn at(&self, t: f64) -> Pose {
         let (sine, cosine) = (self.rate * t + self.phase).sin_cos();
         let (x, y) = (self.radius * cosine, self.radius * sine);
         let w = self.rate;
-        Motion {
+        Pose {
             position: [self.center[0] + x, self.center[1] + y, self.theta],
             velocity: [-w * y, w * x, 0.0],
             acceleration: [-w * w * x, -w * w * y, 0.0],

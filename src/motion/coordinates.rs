@@ -1,12 +1,12 @@
 //! A path whose coordinates are functions of time each.
 
-use super::{Function, Motion, POSES, Path};
+use super::{Function, POSES, Path, Pose};
 
 /// x(t), y(t) \[m\], theta(t) \[rad\].
 impl Path for [Function; 3] {
-    fn at(&self, t: f64) -> Motion {
+    fn at(&self, t: f64) -> Pose {
         let values = self.each_ref().map(|f| f.at(t));
-        Motion {
+        Pose {
             position: values.map(|v| v[0]),
             velocity: values.map(|v| v[1]),
             acceleration: values.map(|v| v[2]),

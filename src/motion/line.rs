@@ -1,6 +1,6 @@
 //! A straight line from pose to pose, from rest to rest.
 
-use super::{Motion, POSES, Path};
+use super::{POSES, Path, Pose};
 
 /// p = from + (to - from) s(t/duration), s = 10 u^3 - 15 u^4 + 6 u^5, at rest before and after.
 #[derive(Debug, Clone, Copy)]
@@ -24,18 +24,18 @@ pub(super) fn quintic(u: f64) -> [f64; 3] {
 }
 
 impl Path for Line {
-    fn at(&self, t: f64) -> Motion {
+    fn at(&self, t: f64) -> Pose {
         let [s, by_u, by_u2] = quintic(t / self.duration);
         let s_dot = by_u / self.duration;
         let s_ddot = by_u2 / (self.duration * self.duration);
-        let mut motion = Motion::default();
+        let mut pose = Pose::default();
         for i in 0..3 {
             let increment = self.to[i] - self.from[i];
-            motion.position[i] = self.from[i] + increment * s;
-            motion.velocity[i] = increment * s_dot;
-            motion.acceleration[i] = increment * s_ddot;
+            pose.position[i] = self.from[i] + increment * s;
+            pose.velocity[i] = increment * s_dot;
+            pose.acceleration[i] = increment * s_ddot;
         }
-        motion
+        pose
     }
 
     fn sweep(&self, duration: f64) -> (f64, usize) {

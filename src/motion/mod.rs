@@ -16,21 +16,22 @@ pub(crate) use read_path::read_path;
 pub use read_path::{PATHS, PathKind};
 pub use table::Table;
 
-/// Position, velocity and acceleration of (x, y, theta).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Motion {
+/// Position, velocity and acceleration of a body: of its centre of mass or reference point, and its angle (of a link: of its
+/// chord).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Pose {
     /// x, y \[m\], theta \[rad\].
     pub position: [f64; 3],
-    /// First derivatives.
+    /// vx, vy, omega.
     pub velocity: [f64; 3],
-    /// Second derivatives.
+    /// ax, ay, alpha.
     pub acceleration: [f64; 3],
 }
 
 /// A path as a function of time. It can be downcast to its kind.
 pub trait Path: std::any::Any + std::fmt::Debug + Send + Sync {
-    /// The motion at time t \[s\].
-    fn at(&self, t: f64) -> Motion;
+    /// The pose at time t \[s\].
+    fn at(&self, t: f64) -> Pose;
     /// How to see all poses of the first `duration` seconds: the time after which none is new, and a number of poses
     /// up to there that lie close together.
     fn sweep(&self, duration: f64) -> (f64, usize);

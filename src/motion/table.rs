@@ -1,6 +1,6 @@
 //! A natural cubic spline through a table.
 
-use super::{Motion, POSES, Path};
+use super::{POSES, Path, Pose};
 
 /// Twice continuously differentiable, with zero second derivatives at both ends.
 #[derive(Debug, Clone)]
@@ -64,9 +64,9 @@ impl<const N: usize> Table<N> {
 }
 
 impl Path for Table<3> {
-    fn at(&self, t: f64) -> Motion {
+    fn at(&self, t: f64) -> Pose {
         let [position, velocity, acceleration] = self.derivatives(t);
-        Motion {
+        Pose {
             position,
             velocity,
             acceleration,

@@ -12,6 +12,9 @@ pub struct Recording {
     pub onsets: Vec<Impact>,
     /// The run is stopped after this many onsets.
     pub most_onsets: usize,
+    /// The run is stopped after this many steps.
+    pub most_steps: u64,
+    steps: u64,
 }
 
 impl Recording {
@@ -24,6 +27,8 @@ impl Recording {
             names,
             onsets: Vec::new(),
             most_onsets: usize::MAX,
+            most_steps: u64::MAX,
+            steps: 0,
         }
     }
 
@@ -75,7 +80,9 @@ impl Observer for Recording {
     }
 
     fn step(&mut self, _: &Progress) -> Result<Control> {
-        Ok(if self.onsets.len() >= self.most_onsets {
+        self.steps += 1;
+        let enough = self.onsets.len() >= self.most_onsets || self.steps >= self.most_steps;
+        Ok(if enough {
             Control::Stop
         } else {
             Control::Continue

@@ -6,9 +6,9 @@
 //! more than [`BROUGHT_BACK`] d is brought back to d along the line between the two, and the factors are multiplied
 //! (Benettin et al. 1980, DOI 10.1007/BF02128236).
 
-use crate::guarantee::{ROWS, Rows, loose, simulation};
+use crate::guarantee::{ROWS, loose, simulation};
 use looselink::scene::Scene;
-use looselink::simulate::{RunError, Simulation};
+use looselink::simulate::{Recording, RunError, Simulation};
 use looselink::system::State;
 
 /// Neighbouring motions of a scene without and with loose joints, every other one displaced in position. Each has another
@@ -55,13 +55,15 @@ fn largest(
     steps: u64,
 ) -> Result<f64, RunError> {
     let horizon = scene.simulation.duration;
-    let mut watch = Rows::limited(MORE_STEPS * steps * (1 + neighbours.len() as u64));
+    // it bounds the steps of all motions together
+    let mut limit = Recording::new(&motion);
+    limit.most_steps = MORE_STEPS * steps * (1 + neighbours.len() as u64);
     let mut largest = 0.0_f64;
     for row in 0..=ROWS {
         let t = horizon * row as f64 / ROWS as f64;
-        motion.advance_to(t, &mut watch)?;
+        motion.advance_to(t, &mut limit)?;
         for neighbour in &mut neighbours {
-            neighbour.simulation.advance_to(t, &mut watch)?;
+            neighbour.simulation.advance_to(t, &mut limit)?;
             if row == neighbour.leaves {
                 neighbour.leave(&motion, displacement / horizon)?;
                 let left = horizon * neighbour.distance(|i| neighbour.faster(&motion, i));

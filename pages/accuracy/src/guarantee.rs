@@ -6,7 +6,7 @@
 
 use crate::amplification::amplification;
 use looselink::scene::{Analysis, Scene};
-use looselink::simulate::{Control, Observer, Progress, RunError, Simulation};
+use looselink::simulate::{Recording, RunError, Simulation};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use records::Digests;
 use serde::{Deserialize, Serialize};
@@ -229,7 +229,7 @@ pub fn run(only: &[String], threads: usize) -> Result<(Vec<Entry>, bool)> {
     Ok((entries, complete))
 }
 
-/// Recorded positions, by row.
+/// Recorded positions, by channel.
 type Table = Vec<Vec<f64>>;
 /// The facts and the reference, or why the scene cannot start.
 type Common = std::result::Result<(Facts, Table), String>;
@@ -269,36 +269,6 @@ fn work(jobs: &[Job], threads: usize) -> Result<Vec<Entry>> {
         .into_inner()
         .map_err(|_| miette!("a thread has ended"))?
         .1)
-}
-
-/// Keeps the rows, and stops after so many steps.
-pub struct Rows {
-    rows: Table,
-    left: u64,
-}
-
-impl Rows {
-    /// Stops after so many steps.
-    pub fn limited(left: u64) -> Rows {
-        let rows = Vec::new();
-        Rows { rows, left }
-    }
-}
-
-impl Observer for Rows {
-    fn row(&mut self, values: &[f64]) -> std::io::Result<()> {
-        self.rows.push(values.to_vec());
-        Ok(())
-    }
-
-    fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
-        self.left = self.left.saturating_sub(1);
-        Ok(if self.left == 0 {
-            Control::Stop
-        } else {
-            Control::Continue
-        })
-    }
 }
 
 /// A scene, and what its methods have in common once it is measured.
@@ -375,12 +345,14 @@ impl Mechanism {
             Ok(simulation) => simulation,
             Err(error) => return Ok(not_made(position, End::Stopped(error.to_string()))),
         };
-        let (ended, rows) = observe(&mut simulation, STEPS);
+        let (ended, positions) = observe(&mut simulation, STEPS);
         let report = simulation.report();
         Ok(Asked {
             position,
             end: match ended {
-                Ok(()) => End::Complete((!exact.is_empty()).then(|| kept(distance(&rows, exact)))),
+                Ok(()) => {
+                    End::Complete((!exact.is_empty()).then(|| kept(distance(&positions, exact))))
+                }
                 Err(RunError::Interrupted { .. }) => End::TooLong,
                 Err(error) => End::Stopped(error.to_string()),
             },
@@ -389,19 +361,21 @@ impl Mechanism {
         })
     }
 
-    /// The reference, its floor and the amplification; no rows where there is no reference.
+    /// The reference, its floor and the amplification; no positions where there is no reference.
     fn measure(&self) -> Result<(Facts, Table)> {
         let mut best: Option<(f64, Table)> = None;
         let (mut floor, mut steps) = (None, 0);
         for position in REFERENCES {
             let mut simulation = simulation(&self.scene(METHODS[0], position)?)?;
-            let (Ok(()), rows) = observe(&mut simulation, REFERENCE_STEPS) else {
+            let (Ok(()), positions) = observe(&mut simulation, REFERENCE_STEPS) else {
                 break;
             };
-            let apart = best.as_ref().map(|(_, looser)| distance(&rows, looser));
+            let apart = best
+                .as_ref()
+                .map(|(_, looser)| distance(&positions, looser));
             floor = apart.map(|apart| kept(apart.max(position)));
             steps = steps.max(simulation.report().steps);
-            best = Some((position, rows));
+            best = Some((position, positions));
             let tightest = !loose(&self.scene) && position <= GOOD;
             if tightest || floor.is_some_and(|floor| floor <= 1.001 * GOOD) {
                 break;
@@ -412,7 +386,7 @@ impl Mechanism {
             reference: None,
             amplification: None,
         };
-        let (Some((position, rows)), Some(floor)) = (best, floor) else {
+        let (Some((position, positions)), Some(floor)) = (best, floor) else {
             return Ok((facts, Vec::new()));
         };
         facts.reference = Some([position, floor]);
@@ -422,7 +396,7 @@ impl Mechanism {
             false => REFERENCES[0],
         };
         facts.amplification = amplification(&self.scene(METHODS[0], pace)?, pace, steps)?.map(kept);
-        Ok((facts, rows))
+        Ok((facts, positions))
     }
 }
 
@@ -448,19 +422,17 @@ pub fn simulation(scene: &Scene) -> Result<Simulation> {
     Simulation::new(scene).map_err(|e| miette!("{e}"))
 }
 
-/// Runs to the end; the rows of the positions.
+/// Runs to the end; the positions up to there.
 fn observe(simulation: &mut Simulation, steps: u64) -> (std::result::Result<(), RunError>, Table) {
-    let mut watch = Rows::limited(steps);
-    let ended = simulation.run(&mut watch);
+    let mut recording = Recording::new(simulation);
+    recording.most_steps = steps;
+    let ended = simulation.run(&mut recording);
     let channels = simulation.channels().iter();
-    let position: Vec<bool> = channels
-        .map(|c| c.unit == "m" && !c.name.starts_with("error."))
-        .collect();
-    for row in &mut watch.rows {
-        let mut keep = position.iter();
-        row.retain(|_| *keep.next().unwrap_or(&false));
-    }
-    (ended, watch.rows)
+    let positions = channels
+        .zip(recording.into_columns())
+        .filter(|(c, _)| c.unit == "m" && !c.name.starts_with("error."))
+        .map(|(_, (_, column))| column);
+    (ended, positions.collect())
 }
 
 /// The largest difference; what is not a number is larger than all.

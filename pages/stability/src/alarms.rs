@@ -13,7 +13,7 @@
 //! shown, or the first false or undecided one.
 
 use looselink::scene::{Analysis, Scene};
-use looselink::simulate::{Control, Observer, Progress, Recording, RunError, Simulation};
+use looselink::simulate::{Recording, RunError, Simulation};
 use looselink::system::State;
 use miette::{Result, miette};
 use rayon::prelude::*;
@@ -77,26 +77,6 @@ struct Alarm {
     stops: usize,
     verdict: Verdict,
     line: String,
-}
-
-/// Keeps the rows of a run, and stops it after so many steps.
-struct Watch {
-    rows: Recording,
-    left: u64,
-}
-
-impl Observer for Watch {
-    fn row(&mut self, values: &[f64]) -> std::io::Result<()> {
-        self.rows.row(values)
-    }
-
-    fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
-        self.left = self.left.saturating_sub(1);
-        Ok(match self.left {
-            0 => Control::Stop,
-            _ => Control::Continue,
-        })
-    }
 }
 
 /// A run that has ended.
@@ -171,15 +151,13 @@ impl Case<'_> {
         let scene = Scene::load(self.path, overrides).ok()?;
         let mut simulation = Simulation::new(&scene).ok()?;
         let start = simulation.state().clone();
-        let mut watch = Watch {
-            rows: Recording::new(&simulation),
-            left: steps,
-        };
-        let end = simulation.run(&mut watch);
+        let mut rows = Recording::new(&simulation);
+        rows.most_steps = steps;
+        let end = simulation.run(&mut rows);
         Some(Run {
             simulation,
             start,
-            rows: watch.rows,
+            rows,
             end,
         })
     }

@@ -1,12 +1,9 @@
 //! What becomes of a run of a hard case, and what it is called.
 
 use looselink::scene::Scene;
-use looselink::simulate::{
-    Contact, Control, Observer, Onset, Progress, Recording, Report, RunError, Simulation,
-};
+use looselink::simulate::{Recording, Report, RunError, Simulation};
 use plot::{Color, palette};
 use serde::Serialize;
-use std::io;
 
 /// A run may take this many times the steps that its duration and step ask for.
 const PATIENCE: f64 = 100.0;
@@ -80,35 +77,6 @@ pub enum Stopped {
     Endless(u64),
 }
 
-/// Keeps what a run tells, and stops one that does not end.
-struct Watch {
-    recording: Recording,
-    steps: u64,
-    most_steps: u64,
-}
-
-impl Observer for Watch {
-    fn row(&mut self, values: &[f64]) -> io::Result<()> {
-        self.recording.row(values)
-    }
-
-    fn onset(&mut self, onset: &Onset) -> io::Result<()> {
-        self.recording.onset(onset)
-    }
-
-    fn contact(&mut self, contact: &Contact) -> io::Result<()> {
-        self.recording.contact(contact)
-    }
-
-    fn step(&mut self, _: &Progress) -> io::Result<Control> {
-        self.steps += 1;
-        Ok(match self.steps > self.most_steps {
-            true => Control::Stop,
-            false => Control::Continue,
-        })
-    }
-}
-
 /// Runs a scene to its end.
 ///
 /// # Errors
@@ -118,15 +86,11 @@ pub fn record(scene: &Scene) -> Result<(Recording, Report), Stopped> {
         Simulation::new(scene).map_err(|e| Stopped::Refused(e.to_string(), 0.0))?;
     let step = scene.integrator.step();
     let asked = step.map_or(1e6, |step| scene.simulation.duration / step);
-    let mut watch = Watch {
-        recording: Recording::new(&simulation),
-        steps: 0,
-        most_steps: (PATIENCE * asked.max(1000.0)) as u64,
-    };
-    let most = watch.most_steps;
-    match simulation.run(&mut watch) {
-        Ok(()) => Ok((watch.recording, simulation.report())),
-        Err(RunError::Interrupted { .. }) => Err(Stopped::Endless(most)),
+    let mut recording = Recording::new(&simulation);
+    recording.most_steps = (PATIENCE * asked.max(1000.0)) as u64;
+    match simulation.run(&mut recording) {
+        Ok(()) => Ok((recording, simulation.report())),
+        Err(RunError::Interrupted { .. }) => Err(Stopped::Endless(recording.most_steps)),
         Err(error) => Err(Stopped::Refused(
             error.to_string(),
             changes(&simulation.report())[0],
