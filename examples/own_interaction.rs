@@ -31,7 +31,7 @@ pub static KIND: JointKind = JointKind {
     read: |table, contacts| {
         let [dx, dy] = table.vector("direction")?;
         let (_, contact) = table.field("contact")?.lookup("contact", contacts)?;
-        Ok(Arc::new(Slot {
+        Ok(Arc::new(StraightSlot {
             direction: dy.atan2(dx),
             contact: contact.clone(),
         }))
@@ -39,12 +39,12 @@ pub static KIND: JointKind = JointKind {
 };
 
 #[derive(Debug)]
-struct Slot {
+struct StraightSlot {
     direction: f64,
     contact: Contact,
 }
 
-impl JointModel for Slot {
+impl JointModel for StraightSlot {
     fn line(&self) -> Option<f64> {
         Some(self.direction)
     }
@@ -57,7 +57,7 @@ impl JointModel for Slot {
     fn with_contact(&self, contact: Option<Contact>) -> Option<Arc<dyn JointModel>> {
         let direction = self.direction;
         Some(match contact {
-            Some(contact) => Arc::new(Slot { direction, contact }),
+            Some(contact) => Arc::new(StraightSlot { direction, contact }),
             None => Arc::new(Prismatic {
                 direction,
                 locked: None,
@@ -67,7 +67,7 @@ impl JointModel for Slot {
 
     fn terms(&self, ends: &JointEnds, terms: &mut Terms) -> JointTerms {
         let slide = ends.slide(self.direction);
-        let walls = Walls {
+        let walls = SlotWalls {
             ends: slide.ends,
             u: unit(self.direction),
             play: self.contact.clearance,
@@ -82,14 +82,14 @@ impl JointModel for Slot {
 
 /// The distance s = m . e of the pin from the middle line is a function of e alone, so every derivative is that of e.
 #[derive(Debug)]
-struct Walls {
+struct SlotWalls {
     /// From the middle line to the pin.
     ends: Separation,
     u: Vec2,
     play: f64,
 }
 
-impl Walls {
+impl SlotWalls {
     /// x . de/dq for every local coordinate.
     fn along(&self, x: Vec2, q: &[f64]) -> [f64; WIDTH] {
         let mut values = [0.0; WIDTH];
@@ -100,7 +100,7 @@ impl Walls {
     }
 }
 
-impl Geometry for Walls {
+impl Geometry for SlotWalls {
     fn coordinates(&self) -> Vec<usize> {
         self.ends.sides().concat()
     }

@@ -28,7 +28,7 @@ use impacts::Impacts;
 pub use impacts::{Impact, Overrun};
 pub use meter::Integration;
 use meter::Meter;
-pub use observer::{Contact, Control, End, Notice, Observer, Onset, Progress};
+pub use observer::{ContactEnd, ContactEvent, Control, Notice, Observer, Onset, Progress};
 pub use recording::Recording;
 pub use report::{Extreme, Inspection, Report, Status};
 

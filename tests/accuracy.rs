@@ -1,6 +1,6 @@
 //! Steps that follow an accuracy: what is achieved, what is counted, what is refused.
 
-use crate::support::{Recording, load, run, run_scene};
+use crate::support::{TestRecording, load, run, run_scene};
 use ladder::{Rung, Worst};
 use looselink::newton::Response;
 use looselink::scene::Scene;
@@ -32,7 +32,7 @@ fn settings(duration: f64, interval: f64, method: &str, pace: &str) -> Vec<Strin
     ]
 }
 
-fn runs(scene: &str, settings: &[String]) -> Recording {
+fn runs(scene: &str, settings: &[String]) -> TestRecording {
     let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
     run(&format!("{scene}.toml"), &settings).0
 }
@@ -40,8 +40,8 @@ fn runs(scene: &str, settings: &[String]) -> Recording {
 /// Errors of all rows of some channels, over the accuracy asked for.
 fn see_errors(
     worst: &Worst,
-    found: &Recording,
-    exact: &Recording,
+    found: &TestRecording,
+    exact: &TestRecording,
     channels: &[&str],
     accuracy: f64,
 ) {
@@ -163,7 +163,7 @@ fn rejections_are_counted_and_repeatable() {
     let (second, again) = run_scene(&scene);
     assert_eq!(report, again);
     for name in first.names() {
-        let bits = |r: &Recording| r.get(name).iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        let bits = |r: &TestRecording| r.get(name).iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&first), bits(&second), "{name}");
     }
     let control = report.accuracy.unwrap();

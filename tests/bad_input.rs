@@ -6,7 +6,7 @@ use miette::{GraphicalReportHandler, GraphicalTheme};
 pub const CASE4: &str = include_str!("../scenes/3rrr/case4-friction.toml");
 
 /// Text in the scene, what it is replaced by, a part of the message, the underlined text.
-type Case = (&'static str, &'static str, &'static str, &'static str);
+type BadInput = (&'static str, &'static str, &'static str, &'static str);
 
 fn edited(from: &str, to: &str) -> String {
     assert!(CASE4.contains(from), "`{from}` is not in the scene");
@@ -47,7 +47,7 @@ pub fn check(error: &SceneError, case: &str, message: &str, underlined: &str) {
     );
 }
 
-pub fn check_all(cases: &[Case]) {
+pub fn check_all(cases: &[BadInput]) {
     for (from, to, message, underlined) in cases {
         check(
             &fault(&edited(from, to), &[]),

@@ -15,13 +15,13 @@ fn fault(text: &str, overrides: &[&str]) -> SceneError {
 }
 
 /// Overrides, parts of the message, the underlined text.
-type Case = (
+type BadMechanism = (
     &'static [&'static str],
     &'static [&'static str],
     &'static str,
 );
 
-const CASES: [Case; 11] = [
+const CASES: [BadMechanism; 11] = [
     (
         &[
             "initial.sketch.B1=[-0.228, 0.015]",

@@ -1,7 +1,7 @@
 //! Newton's law from the outside: the recorded joint forces on every body add up to its mass times its recorded
 //! acceleration, whatever the joints are made of.
 
-use crate::support::{Recording, load, run_scene};
+use crate::support::{TestRecording, load, run_scene};
 use ladder::{Rung, Worst};
 use looselink::body::RigidBody;
 use looselink::scene::Scene;
@@ -34,7 +34,7 @@ bob = { x = 0.5655165123780746, y = 0.24588510772084061, theta = 0.0, vx = 0.0, 
 
 /// What is left of Newton's law for every body, and of Euler's about the centre of mass of rigid bodies, relative to the
 /// largest forces.
-fn check(worst: &Worst, scene: &Scene, run: &Recording) {
+fn check(worst: &Worst, scene: &Scene, run: &TestRecording) {
     let gravity = scene.simulation.gravity.unwrap_or([0.0; 2]);
     for (b, body) in scene.bodies.iter().enumerate() {
         let m = body.kind.mass().unwrap_or(0.0);

@@ -3,7 +3,9 @@
 use crate::support::load;
 use looselink::output::{Folder, Results, files};
 use looselink::scene::Scene;
-use looselink::simulate::{Contact, Control, Observer, Onset, Progress, Recording, Simulation};
+use looselink::simulate::{
+    ContactEvent, Control, Observer, Onset, Progress, Recording, Simulation,
+};
 use looselink::table::FORMATS;
 use proptest::prelude::*;
 use serde_json::Value;
@@ -95,12 +97,12 @@ proptest! {
 }
 
 /// Writes a run to disk and keeps it in memory.
-struct Both {
+struct StoredRecording {
     results: Results,
     recording: Recording,
 }
 
-impl Observer for Both {
+impl Observer for StoredRecording {
     fn row(&mut self, values: &[f64]) -> io::Result<()> {
         self.recording.row(values)?;
         self.results.row(values)
@@ -108,7 +110,7 @@ impl Observer for Both {
     fn onset(&mut self, onset: &Onset) -> io::Result<()> {
         self.recording.onset(onset)
     }
-    fn contact(&mut self, contact: &Contact) -> io::Result<()> {
+    fn contact(&mut self, contact: &ContactEvent) -> io::Result<()> {
         self.recording.contact(contact)?;
         self.results.contact(contact)
     }
@@ -128,12 +130,12 @@ fn every_number_of_a_run_reads_back_to_the_same_bits() {
     ];
     let (mut simulation, results) = begin(&load("3rrr/case4.toml", &overrides), folder.path());
     let recording = Recording::new(&simulation);
-    let mut both = Both { results, recording };
-    simulation.run(&mut both).unwrap();
-    both.results.finish(&simulation.report()).unwrap();
+    let mut stored = StoredRecording { results, recording };
+    simulation.run(&mut stored).unwrap();
+    stored.results.finish(&simulation.report()).unwrap();
 
     let rows = cells(folder.path(), "channels.csv");
-    let recording = both.recording;
+    let recording = stored.recording;
     assert_eq!((rows.len(), recording.rows()), (1001, 1001));
     assert!(rows.iter().all(|row| row.len() == recording.names().len()));
     let contacts = cells(folder.path(), "onsets.csv");
@@ -179,9 +181,9 @@ fn lines_of_json_hold_the_same_numbers() {
         );
         let (mut simulation, results) = begin(&scene, folder.path());
         let recording = Recording::new(&simulation);
-        let mut both = Both { results, recording };
-        simulation.run(&mut both).unwrap();
-        both.results.finish(&simulation.report()).unwrap();
+        let mut stored = StoredRecording { results, recording };
+        simulation.run(&mut stored).unwrap();
+        stored.results.finish(&simulation.report()).unwrap();
         folder
     });
     for table in ["channels", "onsets"] {

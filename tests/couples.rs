@@ -1,6 +1,6 @@
 //! Couples on bodies that are moved: they are work, and a part of what the drive must hold.
 
-use crate::support::{Recording, difference, load, run_scene};
+use crate::support::{TestRecording, difference, load, run_scene};
 use ladder::Rung;
 use looselink::scene::Scene;
 
@@ -25,7 +25,7 @@ initial.sketch = { tip = [0.39, 0.26] }
 initial.bodies.antenna = { x = 0.4561809701794389, y = 0.33793349020126673, theta = 0.9 }
 "#;
 
-fn crank(body: &str) -> Recording {
+fn crank(body: &str) -> TestRecording {
     let text = CRANK.replace("= CRANK", &format!("= {body}"));
     let scene =
         Scene::parse("crank", &text, &[]).unwrap_or_else(|e| panic!("{e} at {:?}", e.place()));

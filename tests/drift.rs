@@ -111,7 +111,7 @@ fn beams(strain: std::ops::Range<f64>) -> impl Strategy<Value = Beam> {
 
 /// A mechanism at its start.
 #[derive(Debug)]
-struct Drawn {
+struct DrawnMechanism {
     /// Its bodies, joints and initial state, as lines of a scene.
     text: String,
     gravity: [f64; 2],
@@ -121,7 +121,7 @@ struct Drawn {
     coarsest: f64,
 }
 
-impl Drawn {
+impl DrawnMechanism {
     /// Largest energy that the integrator lost or gained over a run, over the energy in play, with steps `refined` times as
     /// short as the coarsest.
     fn drift(&self, method: &str, refined: f64) -> f64 {
@@ -169,7 +169,7 @@ output = {{ interval = {interval:?}, channels = ["energy.*"] }}
 /// halves it, which takes up to a tenth from the order, or twice that where the leading term is small itself.
 const ORDER_TOLERANCE: f64 = 0.2;
 
-fn holds(name: &str, strategy: impl Strategy<Value = Drawn>) {
+fn holds(name: &str, strategy: impl Strategy<Value = DrawnMechanism>) {
     let (used, off) = (Worst::new(), Worst::new());
     proptest!(ProptestConfig::with_cases(CASES), |(drawn in strategy)| {
         let (drift, orders) = drawn.falls("bathe");
@@ -209,7 +209,7 @@ fn flexible_pendulums_keep_their_energy_to_second_order() {
             let (sine, cosine) = angle.sin_cos();
             let [x, y] = [0.5 * beam.length * cosine, 0.5 * beam.length * sine];
             let [vx, vy] = [-omega * y, omega * x];
-            Drawn {
+            DrawnMechanism {
                 text: format!(
                     r#"{}
 bodies.ground = {{ type = "ground", points.O = [0, 0] }}
@@ -237,7 +237,7 @@ fn closed_loops_keep_their_energy_to_second_order() {
             let wrist = [base + rocker * beta.cos(), rocker * beta.sin()];
             let length = (wrist[0] - knee[0]).hypot(wrist[1] - knee[1]);
             let beam = Beam { length, ..beam };
-            Drawn {
+            DrawnMechanism {
                 text: format!(
                     r#"{}
 materials.heavy = {{ density = 2000.0 }}
@@ -277,7 +277,7 @@ fn resting_contacts_keep_their_energy_to_second_order() {
             let eccentricity = clearance + rest * (1.0 + swing);
             let speed = slide * (GRAVITY * clearance).sqrt();
             let (s, c) = angle.sin_cos();
-            Drawn {
+            DrawnMechanism {
                 text: format!(
                     r#"
 contacts.soft = {{ law = "hertz", bearing_radius = 0.01, clearance = {clearance:?}, stiffness = {stiffness:?}, exponent = 1.5 }}

@@ -1,7 +1,7 @@
 //! Cases 1 and 2: ideal joints.
 
 use crate::rrr;
-use crate::support::{Recording, load, rms_difference, run};
+use crate::support::{TestRecording, load, rms_difference, run};
 use ladder::{Rung, Worst};
 use looselink::simulate::Simulation;
 
@@ -149,7 +149,7 @@ fn case_2_converges_at_order_two() {
     let runs: Vec<_> = steps.iter().map(|&h| at(h)).collect();
     let errors = |name: &str, from: usize| -> Vec<(f64, f64)> {
         let exact = reference.get(name);
-        let error = |(h, run): (&f64, &Recording)| (*h, rms_difference(&run.get(name), &exact));
+        let error = |(h, run): (&f64, &TestRecording)| (*h, rms_difference(&run.get(name), &exact));
         steps.iter().zip(&runs).skip(from).map(error).collect()
     };
     let smooth = "order 2 of Bathe's scheme; against a step of 6.25e-8 s";

@@ -1,7 +1,7 @@
 //! The reference of the scene language, docs/scene.md, speaks of the language that the program reads.
 
 use crate::support::run_scene;
-use looselink::document::{Range, Takes};
+use looselink::document::{NumberRange, Takes};
 use looselink::registry::Registry;
 use looselink::scene::Scene;
 use looselink::scene::language::{self, language};
@@ -76,14 +76,14 @@ fn parse(line: usize, scene: &Table) -> Scene {
 }
 
 /// A table of the document: its heading and its rows, cell by cell.
-struct Sheet {
+struct DocumentSheet {
     line: usize,
     heading: Vec<String>,
     rows: Vec<Vec<String>>,
 }
 
-fn sheets(document: &str) -> Vec<Sheet> {
-    let mut sheets: Vec<Sheet> = Vec::new();
+fn sheets(document: &str) -> Vec<DocumentSheet> {
+    let mut sheets: Vec<DocumentSheet> = Vec::new();
     let mut inside = false;
     for (number, line) in document.lines().enumerate() {
         let Some(cells) = line.strip_prefix("| ").and_then(|l| l.strip_suffix(" |")) else {
@@ -96,7 +96,7 @@ fn sheets(document: &str) -> Vec<Sheet> {
                 assert_eq!(sheet.heading.len(), Vec::len(&cells), "line {}", number + 1);
                 sheet.rows.push(cells);
             }
-            _ => sheets.push(Sheet {
+            _ => sheets.push(DocumentSheet {
                 line: number + 1,
                 heading: cells,
                 rows: Vec::new(),
@@ -142,7 +142,7 @@ fn table(sheet: &language::Sheet) -> String {
             Takes::Function { .. } => ", a [function of time](#functions-of-time)".to_owned(),
             Takes::Vector { shape, .. } | Takes::Rows { shape, .. } => format!(", as {shape}"),
             Takes::Number {
-                range: Range::NonNegative,
+                range: NumberRange::NonNegative,
                 ..
             } => ", not negative".to_owned(),
             _ => String::new(),
@@ -297,8 +297,8 @@ fn channels_of_the_language_are_those_recorded() {
 }
 
 /// The sheet that describes a table of a scene: the smallest one that has all of its keys and the kind that it names.
-fn sheet_of<'a>(sheets: &'a [Sheet], table: &Table) -> Option<&'a Sheet> {
-    let describes = |sheet: &&Sheet| {
+fn sheet_of<'a>(sheets: &'a [DocumentSheet], table: &Table) -> Option<&'a DocumentSheet> {
+    let describes = |sheet: &&DocumentSheet| {
         let known = |key: &String| sheet.rows.iter().any(|r| quoted(r) == key);
         let first = &sheet.rows[0];
         let kind = table.get(quoted(first)).and_then(Value::as_str);
@@ -314,8 +314,8 @@ fn sheet_of<'a>(sheets: &'a [Sheet], table: &Table) -> Option<&'a Sheet> {
 fn walk<'a>(
     table: &Table,
     path: &mut Vec<String>,
-    sheets: &'a [Sheet],
-    found: &mut Vec<(Vec<String>, &'a Sheet)>,
+    sheets: &'a [DocumentSheet],
+    found: &mut Vec<(Vec<String>, &'a DocumentSheet)>,
 ) {
     found.extend(sheet_of(sheets, table).map(|sheet| (path.clone(), sheet)));
     for (key, value) in table {
@@ -334,7 +334,7 @@ fn required_keys_are_required_and_others_are_not() {
     let sheets = sheets(&document);
     let (mut required, mut optional) = (BTreeSet::new(), BTreeSet::new());
     // a path and a function of time may both be a table of rows
-    let keys = |sheet: &Sheet| -> BTreeSet<String> {
+    let keys = |sheet: &DocumentSheet| -> BTreeSet<String> {
         sheet.rows.iter().map(|r| quoted(r).to_owned()).collect()
     };
     let mut used = BTreeSet::new();

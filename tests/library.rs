@@ -1,6 +1,6 @@
 //! The scenes with published or exact answers, run as they stand in the folder.
 
-use crate::support::{Recording, load, run};
+use crate::support::{TestRecording, load, run};
 use ladder::{Rung, Worst};
 
 /// Errors of order 2 are 4/3 of the change that half the step makes.
@@ -8,7 +8,7 @@ const HALF_STEP: &str =
     "twice the change that half the step makes: an error of order 2 is 4/3 of it";
 
 /// Errors of a run at some times in units of twice the change that half the step of its scene makes.
-fn in_changes(scene: &str, coarse: &Recording, expected: &[(f64, &[(&str, f64)])]) -> Worst {
+fn in_changes(scene: &str, coarse: &TestRecording, expected: &[(f64, &[(&str, f64)])]) -> Worst {
     let step = load(scene, &[]).integrator.step().unwrap();
     let (fine, _) = run(scene, &[&format!("integrator.step={:e}", 0.5 * step)]);
     let worst = Worst::new();
@@ -22,7 +22,7 @@ fn in_changes(scene: &str, coarse: &Recording, expected: &[(f64, &[(&str, f64)])
 }
 
 /// Largest difference of channels from the given values at `t`.
-fn error(run: &Recording, t: f64, expected: &[(&str, f64)]) -> f64 {
+fn error(run: &TestRecording, t: f64, expected: &[(&str, f64)]) -> f64 {
     let row = run.row(t);
     let worst = Worst::new();
     for (name, value) in expected {

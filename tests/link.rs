@@ -13,24 +13,24 @@ const ROUNDINGS: f64 = 100.0 * f64::EPSILON;
 
 /// Length \[m\], EA \[N\] and EI \[N m2\].
 #[derive(Debug, Clone, Copy)]
-struct Element {
+struct ElementProperties {
     length: f64,
     ea: f64,
     ei: f64,
 }
 
-impl Element {
+impl ElementProperties {
     /// A passive link of the 3-RRR scenes.
-    const LINK: Element = Element {
+    const LINK: ElementProperties = ElementProperties {
         length: 0.242,
         ea: 1.05e6,
         ei: 2.1875,
     };
 
     /// With a given EI/(EA l^2).
-    fn with_ratio(length: f64, ea: f64, ratio: f64) -> Element {
+    fn with_ratio(length: f64, ea: f64, ratio: f64) -> ElementProperties {
         let ei = ratio * ea * length * length;
-        Element { length, ea, ei }
+        ElementProperties { length, ea, ei }
     }
 
     fn cable(&self) -> AncfCable {
@@ -53,9 +53,9 @@ impl Element {
 }
 
 /// Elements of 0.01 to 10 m with EI/(EA l^2) from 1e-8 to 1.
-fn elements() -> impl Strategy<Value = Element> {
+fn elements() -> impl Strategy<Value = ElementProperties> {
     (-2.0..1.0_f64, 0.0..8.0_f64, -8.0..0.0_f64).prop_map(|(length, ea, ratio)| {
-        Element::with_ratio(
+        ElementProperties::with_ratio(
             10.0_f64.powf(length),
             10.0_f64.powf(ea),
             10.0_f64.powf(ratio),
@@ -85,10 +85,12 @@ fn shapes() -> impl Strategy<Value = [f64; 8]> {
 
 /// Holds `check` against the straight undeformed element, along x and turned, slender and thick, and then against elements
 /// and shapes that proptest generates.
-fn straight_and_generated(check: impl Fn(&Element, &[f64; 8]) -> Result<(), TestCaseError>) {
+fn straight_and_generated(
+    check: impl Fn(&ElementProperties, &[f64; 8]) -> Result<(), TestCaseError>,
+) {
     for ratio in [1e-8, 1e-4, 1.0] {
         for angle in [0.0, 2.2] {
-            let element = Element::with_ratio(0.242, 1.05e6, ratio);
+            let element = ElementProperties::with_ratio(0.242, 1.05e6, ratio);
             let checked = check(&element, &element.place(&straight(angle)));
             checked.unwrap_or_else(|e| panic!("straight at {angle}, {element:?}: {e}"));
         }
@@ -154,8 +156,8 @@ struct Elastic {
 ///
 /// `of` is what is taken of each number: with `f64::abs` every sum is that of the magnitudes of its terms, which
 /// [`ROUNDINGS`] multiplies.
-fn eq_11(element: &Element, q: &[f64; 8], of: fn(f64) -> f64) -> Elastic {
-    let Element { length, ea, ei } = *element;
+fn eq_11(element: &ElementProperties, q: &[f64; 8], of: fn(f64) -> f64) -> Elastic {
+    let ElementProperties { length, ea, ei } = *element;
     let mut sum = Elastic {
         energy: 0.0,
         force: [0.0; 8],
@@ -185,7 +187,7 @@ fn eq_11(element: &Element, q: &[f64; 8], of: fn(f64) -> f64) -> Elastic {
 }
 
 /// Rounding of the elastic force, in the coordinates (r/l, r'), all of them newtons times metres.
-fn rounding(element: &Element, q: &[f64; 8]) -> f64 {
+fn rounding(element: &ElementProperties, q: &[f64; 8]) -> f64 {
     let terms = eq_11(element, q, f64::abs).force;
     let scaled = (0..8).map(|i| element.unit(i) * terms[i]);
     ROUNDINGS * scaled.fold(0.0, f64::max)
@@ -367,18 +369,18 @@ fn jacobian_of_every_route_is_the_derivative_of_its_force_and_both_are_those_of_
 #[test]
 fn rigid_motion_stores_nothing_and_needs_no_force() {
     let (energies, forces) = (Worst::new(), Worst::new());
-    let Element { length, ea, ei } = Element::LINK;
+    let ElementProperties { length, ea, ei } = ElementProperties::LINK;
     proptest!(|(angle in -10.0..10.0_f64, x in -1.0..1.0_f64)| {
-        let mut q = Element::LINK.place(&straight(angle));
+        let mut q = ElementProperties::LINK.place(&straight(angle));
         q[0] += x;
         q[4] += x;
-        let cable = Element::LINK.cable();
+        let cable = ElementProperties::LINK.cable();
         let (axial, bending) = cable.energy(&q);
         energies.see(axial / (ea * length * 1e-29));
         energies.see(bending / (ei / length * 1e-28));
         let mut f = [0.0; 8];
         cable.force(&q, &mut f);
-        f.iter().enumerate().for_each(|(i, f)| forces.see(f * Element::LINK.unit(i) / rounding(&Element::LINK, &q)));
+        f.iter().enumerate().for_each(|(i, f)| forces.see(f * ElementProperties::LINK.unit(i) / rounding(&ElementProperties::LINK, &q)));
     });
     Rung::Identities
         .asks("Does a rigid motion of an undeformed element store no energy?")

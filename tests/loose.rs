@@ -6,7 +6,7 @@ use ladder::{Rung, Worst};
 use looselink::contact::normal::NormalParameters;
 use looselink::contact::normal::damped_power::LANKARANI_NIKRAVESH;
 use looselink::simulate::{
-    Contact, Control, Impact, Observer, Progress, Recording, RunError, Simulation,
+    ContactEvent, Control, Impact, Observer, Progress, Recording, RunError, Simulation,
 };
 
 /// Velocity of the journal after its first rebound over the velocity before, at a step that is a fraction of the
@@ -281,12 +281,12 @@ fn a_contact_of_hertz_has_the_depth_and_the_duration_of_the_closed_form() {
 #[test]
 fn a_run_that_is_stopped_tells_the_contacts_that_are_closed() {
     #[derive(Default)]
-    struct Stop(Vec<Impact>);
-    impl Observer for Stop {
+    struct StopInContact(Vec<Impact>);
+    impl Observer for StopInContact {
         fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
             Ok(())
         }
-        fn contact(&mut self, contact: &Contact) -> std::io::Result<()> {
+        fn contact(&mut self, contact: &ContactEvent) -> std::io::Result<()> {
             self.0.push(contact.into());
             Ok(())
         }
@@ -299,7 +299,7 @@ fn a_run_that_is_stopped_tells_the_contacts_that_are_closed() {
             })
         }
     }
-    let mut reported = Stop::default();
+    let mut reported = StopInContact::default();
     let mut simulation = Simulation::new(&load("bouncing-journal.toml", &[])).unwrap();
     let ended = simulation.run(&mut reported);
     assert!(matches!(ended, Err(RunError::Interrupted { .. })));

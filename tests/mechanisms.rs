@@ -1,12 +1,12 @@
 //! Mechanisms with every kind of joint, force and drive, against closed forms and balances.
 
-use crate::support::{Recording, run_scene};
+use crate::support::{TestRecording, run_scene};
 use ladder::{Rung, Worst};
 use looselink::scene::Scene;
 use looselink::simulate::Report;
 use std::f64::consts::TAU;
 
-fn run(text: &str) -> (Recording, Report) {
+fn run(text: &str) -> (TestRecording, Report) {
     let scene =
         Scene::parse("mechanism", text, &[]).unwrap_or_else(|e| panic!("{e} at {:?}", e.place()));
     run_scene(&scene)
@@ -399,7 +399,7 @@ bodies.beam = { x = 0.0, y = 0.0, theta = 0.3, vx = 1.0, vy = -0.4, omega = 0.0 
 "#
     };
     let (mass, report) = run(&text("rayleigh = { mass = 0.7, stiffness = 0.0 }"));
-    let last = |run: &Recording, name: &str| run.get(name)[1];
+    let last = |run: &TestRecording, name: &str| run.get(name)[1];
     let worst = Worst::new();
     worst.see(last(&mass, "beam.vx") - (-0.35_f64).exp());
     worst.see(last(&mass, "beam.vy") + 0.4 * (-0.35_f64).exp());

@@ -1,7 +1,7 @@
 //! Every method on mechanisms: its order in positions, accelerations and forces, and the scenes it refuses.
 
 use crate::bad_input::check;
-use crate::support::{Recording, load, run};
+use crate::support::{TestRecording, load, run};
 use ladder::{Rung, Worst};
 use looselink::scene::Scene;
 use looselink::simulate::Simulation;
@@ -51,7 +51,7 @@ const METHODS: [(&[&str], &str, f64); 8] = [
 
 /// A scene, its duration, the time between rows, the coarsest step of methods of order 1, 2, 3 and 5, and channels that are
 /// compared.
-struct Smooth {
+struct SmoothScene {
     scene: &'static str,
     duration: f64,
     interval: f64,
@@ -59,22 +59,22 @@ struct Smooth {
     channels: &'static [&'static str],
 }
 
-const SMOOTH: [Smooth; 3] = [
-    Smooth {
+const SMOOTH: [SmoothScene; 3] = [
+    SmoothScene {
         scene: "pendulum",
         duration: 0.96,
         interval: 0.04,
         coarse: [1e-3, 4e-3, 8e-3, 0.02],
         channels: &["points.rod.bob.y", "points.rod.bob.ay", "pivot.force"],
     },
-    Smooth {
+    SmoothScene {
         scene: "soft-pendulum",
         duration: 0.2,
         interval: 4e-3,
         coarse: [1e-4, 4e-4, 8e-4, 2e-3],
         channels: &["points.rod.end.y", "points.rod.end.vy"],
     },
-    Smooth {
+    SmoothScene {
         scene: "3rrr/case2",
         duration: 8e-4,
         interval: 1.6e-5,
@@ -83,8 +83,8 @@ const SMOOTH: [Smooth; 3] = [
     },
 ];
 
-impl Smooth {
-    fn run(&self, method: &[&str], step: f64) -> Recording {
+impl SmoothScene {
+    fn run(&self, method: &[&str], step: f64) -> TestRecording {
         let settings = [
             format!("simulation.duration={}", self.duration),
             format!("output.interval={:e}", self.interval),
@@ -97,7 +97,7 @@ impl Smooth {
         run(&format!("{}.toml", self.scene), &all).0
     }
 
-    fn error(&self, run: &Recording, exact: &Recording, channel: &str) -> f64 {
+    fn error(&self, run: &TestRecording, exact: &TestRecording, channel: &str) -> f64 {
         let worst = Worst::new();
         for (a, b) in run.get(channel).iter().zip(&exact.get(channel)) {
             worst.see(a - b);

@@ -1,7 +1,7 @@
 //! Where a motion starts: what the poses, velocities and angles of `[initial]` mean.
 
 use crate::bad_input::rendered;
-use crate::support::{Recording, load, run_scene};
+use crate::support::{TestRecording, load, run_scene};
 use ladder::{Rung, Worst};
 use looselink::scene::{Scene, SceneError};
 use looselink::simulate::Simulation;
@@ -23,7 +23,7 @@ fn scene(text: &str) -> Scene {
     Scene::parse("start", &text, &[]).unwrap_or_else(|e| panic!("{e} at {:?}", e.place()))
 }
 
-fn run(text: &str) -> Recording {
+fn run(text: &str) -> TestRecording {
     run_scene(&scene(text)).0
 }
 

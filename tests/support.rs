@@ -2,17 +2,17 @@
 
 use ladder::Worst;
 use looselink::scene::Scene;
-use looselink::simulate::{self, Impact, Report, Simulation};
+use looselink::simulate::{Impact, Recording, Report, Simulation};
 use std::path::{Path, PathBuf};
 
 /// All rows and onsets of a run.
 #[derive(Debug)]
-pub struct Recording {
-    kept: simulate::Recording,
+pub struct TestRecording {
+    kept: Recording,
     pub onsets: Vec<Impact>,
 }
 
-impl Recording {
+impl TestRecording {
     /// A channel over time.
     pub fn get(&self, name: &str) -> Vec<f64> {
         let column = self.kept.get(name);
@@ -74,24 +74,24 @@ pub fn load(scene: &str, overrides: &[&str]) -> Scene {
 }
 
 /// Runs a scene of the project to its end.
-pub fn run(scene: &str, overrides: &[&str]) -> (Recording, Report) {
+pub fn run(scene: &str, overrides: &[&str]) -> (TestRecording, Report) {
     run_scene(&load(scene, overrides))
 }
 
 /// Runs a scene to its end.
-pub fn run_scene(scene: &Scene) -> (Recording, Report) {
+pub fn run_scene(scene: &Scene) -> (TestRecording, Report) {
     let mut simulation = Simulation::new(scene).unwrap_or_else(|e| panic!("{e}"));
-    let mut kept = simulate::Recording::new(&simulation);
+    let mut kept = Recording::new(&simulation);
     simulation.run(&mut kept).unwrap_or_else(|e| panic!("{e}"));
     let onsets = kept.onsets.clone();
-    let recording = Recording { kept, onsets };
+    let recording = TestRecording { kept, onsets };
     (recording, simulation.report())
 }
 
 /// The largest difference of channels of two recordings, relative to the largest value of each channel, or to `least` where
 /// that is larger.
 pub fn difference<N: AsRef<str>>(
-    [a, b]: [&Recording; 2],
+    [a, b]: [&TestRecording; 2],
     names: impl IntoIterator<Item = N>,
     least: f64,
 ) -> Worst {

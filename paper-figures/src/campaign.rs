@@ -1,7 +1,7 @@
 //! The runs behind Figs. 5 to 9 and the reproduction report.
 
-use crate::kinematics::Geometry;
-use crate::runs::{Pace, Plan, Recording, each};
+use crate::kinematics::MechanismGeometry;
+use crate::runs::{CaseRecording, RunPace, RunPlan, each};
 use looselink::body::FlexibleLink;
 use miette::{Result, miette};
 
@@ -40,8 +40,8 @@ pub const ROWS_A_PERIOD: u32 = 100;
 pub const FROM: f64 = 1.0;
 
 /// Three cycles of a case with controlled steps.
-pub fn controlled(case: u32, interval: f64) -> Plan {
-    Plan::new(case, Pace::Controlled, interval, DURATION)
+pub fn controlled(case: u32, interval: f64) -> RunPlan {
+    RunPlan::new(case, RunPace::Controlled, interval, DURATION)
 }
 
 /// All recordings; their numbers are those of the table of runs.
@@ -49,22 +49,22 @@ pub struct Campaign {
     /// How they were made.
     pub settings: Settings,
     /// Geometry of the scene of case 3.
-    pub geometry: Geometry,
+    pub geometry: MechanismGeometry,
     /// Case 1, coarse.
-    pub ideal: Recording,
+    pub ideal: CaseRecording,
     /// Case 2, fine.
-    pub flexible: Recording,
+    pub flexible: CaseRecording,
     /// Case 2, coarse.
-    pub flexible_coarse: Recording,
+    pub flexible_coarse: CaseRecording,
     /// Case 3, fine.
-    pub loose: Recording,
+    pub loose: CaseRecording,
     /// Case 4, fine.
-    pub both: Recording,
+    pub both: CaseRecording,
     /// Case 2 with ten times the Young's modulus. With 100 us the integrator gains up to nine times the largest elastic
     /// energy, with 20 us it changes it by up to 24 %, with 5 us by 1.6 %.
-    pub stiffer: Recording,
+    pub stiffer: CaseRecording,
     /// Many periods: case 2 with twice the step, then cases 2, 3 and 4.
-    pub sections: [Recording; 4],
+    pub sections: [CaseRecording; 4],
 }
 
 impl Campaign {
@@ -76,14 +76,14 @@ impl Campaign {
         let s = &settings;
         let short = |case, step: f64| {
             let interval = s.interval.max(step);
-            Plan::new(case, Pace::bathe(step), interval, DURATION)
+            RunPlan::new(case, RunPace::bathe(step), interval, DURATION)
         };
-        let geometry = Geometry::of(&short(3, s.fine).scene()?)?;
+        let geometry = MechanismGeometry::of(&short(3, s.fine).scene()?)?;
         let modulus = youngs_modulus(&short(2, s.fine))?;
         let period = 1.0 / geometry.frequency;
         let periods = f64::from(s.periods + s.skipped) * period;
         let rows = period / f64::from(ROWS_A_PERIOD);
-        let long = |case, pace| Plan::new(case, pace, rows, periods);
+        let long = |case, pace| RunPlan::new(case, pace, rows, periods);
         let passive = "materials.passive.youngs_modulus";
         let plans = [
             short(1, s.coarse),
@@ -92,20 +92,20 @@ impl Campaign {
             short(3, s.fine),
             short(4, s.fine),
             short(2, s.stiffer_step).with(passive, format!("{:e}", 10.0 * modulus)),
-            long(2, Pace::bathe(2.0 * s.section_step)),
-            long(2, Pace::bathe(s.section_step)),
-            long(3, Pace::Controlled),
-            long(4, Pace::Controlled),
+            long(2, RunPace::bathe(2.0 * s.section_step)),
+            long(2, RunPace::bathe(s.section_step)),
+            long(3, RunPace::Controlled),
+            long(4, RunPace::Controlled),
         ];
         // the longest first, so that no core is left with one of them at the end
-        let backwards: Vec<Plan> = plans.iter().rev().cloned().collect();
-        let done = each(&backwards, Plan::run).into_iter().rev();
-        let done: Result<Vec<Recording>> = done.collect();
+        let backwards: Vec<RunPlan> = plans.iter().rev().cloned().collect();
+        let done = each(&backwards, RunPlan::run).into_iter().rev();
+        let done: Result<Vec<CaseRecording>> = done.collect();
         let mut done = done?;
         for (run, number) in done.iter_mut().zip(1..) {
             run.number = number;
         }
-        let done: [Recording; 10] = done.try_into().map_err(|_| miette!("a run is missing"))?;
+        let done: [CaseRecording; 10] = done.try_into().map_err(|_| miette!("a run is missing"))?;
         let [
             ideal,
             flexible,
@@ -132,7 +132,7 @@ impl Campaign {
     }
 
     /// All of them in the order of their numbers.
-    pub fn runs(&self) -> impl Iterator<Item = &Recording> {
+    pub fn runs(&self) -> impl Iterator<Item = &CaseRecording> {
         [
             &self.ideal,
             &self.flexible,
@@ -147,7 +147,7 @@ impl Campaign {
 }
 
 /// Young's modulus of the passive links of a scene \[Pa\].
-fn youngs_modulus(plan: &Plan) -> Result<f64> {
+fn youngs_modulus(plan: &RunPlan) -> Result<f64> {
     let scene = plan.scene()?;
     let link = scene.body("link1").and_then(|b| scene.bodies[b].kind.get());
     let link: Option<&FlexibleLink> = link;

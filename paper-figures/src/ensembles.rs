@@ -2,10 +2,10 @@
 
 use crate::campaign::{DURATION, FROM, controlled};
 use crate::interval::STARTS;
-use crate::kinematics::Geometry;
+use crate::kinematics::MechanismGeometry;
 use crate::measures::Measures;
-use crate::record::{Ensemble, Member, Record, Single};
-use crate::runs::{Pace, Plan, Recording, each};
+use crate::record::{Ensemble, EnsembleMember, EnsembleRecord, Single};
+use crate::runs::{CaseRecording, RunPace, RunPlan, each};
 use crate::signal::{rms, smooth};
 use crate::{exponents, methods};
 use miette::Result;
@@ -33,15 +33,15 @@ pub const RETARDATIONS: [f64; 2] = [1e-6, 1e-5];
 ///
 /// # Errors
 /// The first run that fails.
-pub fn run() -> Result<Record> {
-    let geometry = Geometry::of(&controlled(3, INTERVAL).scene()?)?;
+pub fn run() -> Result<EnsembleRecord> {
+    let geometry = MechanismGeometry::of(&controlled(3, INTERVAL).scene()?)?;
     let work = methods::work()?;
     let long = methods::long(&geometry);
     let singles = singles(&geometry)?;
     let exponents = exponents::run(&geometry)?;
     let mut ensembles = list(&geometry);
     fill(&mut ensembles, &geometry)?;
-    Ok(Record {
+    Ok(EnsembleRecord {
         ensembles,
         exponents,
         singles,
@@ -51,7 +51,7 @@ pub fn run() -> Result<Record> {
 }
 
 /// The ensembles, their runs not yet made.
-fn list(g: &Geometry) -> Vec<Ensemble> {
+fn list(g: &MechanismGeometry) -> Vec<Ensemble> {
     let sizes = [MOVED].into_iter().chain(MOVED_OTHERWISE);
     let sizes = sizes.flat_map(|moved| [3, 4].map(|case| (case, moved, String::new())));
     let mut wanted: Vec<(u32, f64, String)> = sizes.clone().collect();
@@ -69,7 +69,7 @@ fn list(g: &Geometry) -> Vec<Ensemble> {
             moved,
             first,
             changed,
-            how: Pace::Controlled.label(),
+            how: RunPace::Controlled.label(),
             members: Vec::new(),
         })
         .collect()
@@ -83,7 +83,7 @@ fn mesh(elements: usize) -> [String; 3] {
 /// lie between those.
 ///
 /// The velocity is that of the ideal mechanism, which the scene has without this override.
-pub fn moved(g: &Geometry, moved: f64, start: usize) -> String {
+pub fn moved(g: &MechanismGeometry, moved: f64, start: usize) -> String {
     let direction = (start % STARTS) as f64 + 0.5 * (start / STARTS) as f64;
     let (sin, cos) = (TAU * direction / STARTS as f64).sin_cos();
     let [x, y, theta] = g.pose(0.0);
@@ -97,14 +97,14 @@ pub fn moved(g: &Geometry, moved: f64, start: usize) -> String {
 
 /// A run of an ensemble and the means of its error over [`AVERAGED`], one a millisecond.
 struct Done {
-    member: Member,
+    member: EnsembleMember,
     slow_error: Vec<f64>,
 }
 
 impl Done {
-    fn of(g: &Geometry, recording: &Recording) -> Done {
+    fn of(g: &MechanismGeometry, recording: &CaseRecording) -> Done {
         Done {
-            member: Member {
+            member: EnsembleMember {
                 measures: Measures::of(g, recording),
                 warnings: recording.warnings.clone(),
             },
@@ -113,7 +113,7 @@ impl Done {
     }
 }
 
-fn slow_error(recording: &Recording) -> Vec<f64> {
+fn slow_error(recording: &CaseRecording) -> Vec<f64> {
     let width = (AVERAGED / recording.plan.interval) as usize;
     let every = (1e-3 / recording.plan.interval) as usize;
     let error = smooth(recording.between("error.x", FROM, DURATION).1, width);
@@ -121,7 +121,7 @@ fn slow_error(recording: &Recording) -> Vec<f64> {
 }
 
 /// Makes the runs of all ensembles, one a thread.
-fn fill(ensembles: &mut [Ensemble], geometry: &Geometry) -> Result<()> {
+fn fill(ensembles: &mut [Ensemble], geometry: &MechanismGeometry) -> Result<()> {
     // the longest first, so that no core is left with one of them at the end
     let jobs: Vec<(usize, usize)> = (0..ensembles.len())
         .rev()
@@ -136,7 +136,10 @@ fn fill(ensembles: &mut [Ensemble], geometry: &Geometry) -> Result<()> {
         plan.overrides.extend(changed.map(String::from));
         let recording = plan.run()?;
         // a changed clearance changes the bound
-        Ok(Done::of(&Geometry::of(&recording.scene)?, &recording))
+        Ok(Done::of(
+            &MechanismGeometry::of(&recording.scene)?,
+            &recording,
+        ))
     };
     let done = each(&jobs, run)
         .into_iter()
@@ -164,8 +167,8 @@ fn fill(ensembles: &mut [Ensemble], geometry: &Geometry) -> Result<()> {
 }
 
 /// Case 2 with finer meshes, with a start that leaves no vibration, and with damping.
-fn singles(g: &Geometry) -> Result<Vec<Single>> {
-    let mut wanted: Vec<(String, Plan)> = MESHES
+fn singles(g: &MechanismGeometry) -> Result<Vec<Single>> {
+    let mut wanted: Vec<(String, RunPlan)> = MESHES
         .iter()
         .map(|n| {
             let mut plan = controlled(2, INTERVAL);
@@ -180,10 +183,10 @@ fn singles(g: &Geometry) -> Result<Vec<Single>> {
         plan.overrides.extend(damped);
         wanted.push((damped_name(time), plan));
     }
-    let plans: Vec<Plan> = wanted.iter().map(|(_, plan)| plan.clone()).collect();
+    let plans: Vec<RunPlan> = wanted.iter().map(|(_, plan)| plan.clone()).collect();
     wanted
         .into_iter()
-        .zip(each(&plans, Plan::run))
+        .zip(each(&plans, RunPlan::run))
         .map(|((name, plan), recording)| {
             let recording = recording?;
             Ok(Single {
@@ -205,7 +208,7 @@ pub fn damped_name(time: f64) -> String {
 /// deformation, and is where the printed motion is from [`SPIN_UP`] on.
 ///
 /// The angle is phi = pi T + 2 pi T R(t/T), its rate a polynomial with three vanishing derivatives at both ends.
-fn spun_up(g: &Geometry) -> Plan {
+fn spun_up(g: &MechanismGeometry) -> RunPlan {
     let angle = |t: f64| {
         let u = (t / SPIN_UP).min(1.0);
         let ramp = u.powi(5) * (7.0 - u * (14.0 - u * (10.0 - 2.5 * u)));
@@ -244,7 +247,7 @@ mod tests {
 
     #[test]
     fn starts_of_an_ensemble_differ() -> Result<()> {
-        let geometry = Geometry::of(&controlled(3, INTERVAL).scene()?)?;
+        let geometry = MechanismGeometry::of(&controlled(3, INTERVAL).scene()?)?;
         for size in [MOVED].into_iter().chain(MOVED_OTHERWISE) {
             let all = (0..2 * STARTS).map(|k| moved(&geometry, size, k));
             let starts: HashSet<String> = all.collect();
@@ -257,7 +260,7 @@ mod tests {
 
     #[test]
     fn spun_up_path_ends_on_the_printed_one() -> Result<()> {
-        let geometry = Geometry::of(&controlled(3, INTERVAL).scene()?)?;
+        let geometry = MechanismGeometry::of(&controlled(3, INTERVAL).scene()?)?;
         let path = spun_up(&geometry).overrides[0].clone();
         let row = path.split("[1.0, ").nth(1).unwrap_or_default();
         let x: f64 = row

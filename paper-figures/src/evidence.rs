@@ -1,12 +1,12 @@
 //! Everything that the statements are decided by.
 
 use crate::campaign::Campaign;
-use crate::interval::Verdict;
+use crate::interval::CriterionVerdict;
 use crate::measures::Measures;
-use crate::record::{Ensemble, Record, Timings};
-use crate::runs::Recording;
+use crate::record::{Ensemble, EnsembleRecord, KernelTimings};
+use crate::runs::CaseRecording;
 use crate::statement::{Basis, Statement};
-use crate::warned::Source;
+use crate::warned::WarningSource;
 
 /// The runs of the main job, what they measure, and the records of `ensembles`.
 #[derive(Clone)]
@@ -14,9 +14,9 @@ pub struct Evidence<'a> {
     /// The runs of the figures.
     pub c: &'a Campaign,
     /// The record of the ensembles.
-    pub e: &'a Record,
+    pub e: &'a EnsembleRecord,
     /// The record of times.
-    pub t: &'a Timings,
+    pub t: &'a KernelTimings,
     loose: Ensemble,
     both: Ensemble,
     /// Case 1.
@@ -29,8 +29,8 @@ pub struct Evidence<'a> {
 
 impl<'a> Evidence<'a> {
     /// Measures the runs that are not chaotic.
-    pub fn of(c: &'a Campaign, e: &'a Record, t: &'a Timings) -> Evidence<'a> {
-        let measure = |r: &Recording| Measures::of(&c.geometry, r);
+    pub fn of(c: &'a Campaign, e: &'a EnsembleRecord, t: &'a KernelTimings) -> Evidence<'a> {
+        let measure = |r: &CaseRecording| Measures::of(&c.geometry, r);
         Evidence {
             c,
             e,
@@ -65,19 +65,19 @@ impl<'a> Evidence<'a> {
     }
 
     /// The ensembles of cases 3 and 4.
-    pub fn ensembles(&self) -> Vec<Source> {
+    pub fn ensembles(&self) -> Vec<WarningSource> {
         vec![self.loose().source(), self.both().source()]
     }
 
     /// Both runs of case 2, and the ensembles of cases 3 and 4.
-    pub fn all_cases(&self) -> Vec<Source> {
+    pub fn all_cases(&self) -> Vec<WarningSource> {
         let mut sources = self.case_2();
         sources.extend(self.ensembles());
         sources
     }
 
     /// Both runs of case 2.
-    pub fn case_2(&self) -> Vec<Source> {
+    pub fn case_2(&self) -> Vec<WarningSource> {
         vec![self.c.flexible.source(), self.c.flexible_coarse.source()]
     }
 }
@@ -90,7 +90,7 @@ pub fn statement(key: &'static str, place: &'static str, says: &'static str) -> 
         says,
         measured: String::new(),
         criterion: "",
-        verdict: Verdict::Undecided,
+        verdict: CriterionVerdict::Undecided,
         basis: Basis::Measurement,
         factor: None,
         why: String::new(),

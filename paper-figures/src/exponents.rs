@@ -13,9 +13,9 @@
 
 use crate::ensembles::{MOVED, moved};
 use crate::interval::STARTS;
-use crate::kinematics::Geometry;
+use crate::kinematics::MechanismGeometry;
 use crate::record::Exponents;
-use crate::runs::{Pace, Plan, each};
+use crate::runs::{RunPace, RunPlan, each};
 use looselink::simulate::Simulation;
 use looselink::system::State;
 use miette::{IntoDiagnostic, Result};
@@ -34,10 +34,10 @@ const KEPT_EVERY: usize = 20;
 ///
 /// With loose joints a distance has to be far below a penetration, some 1e-8 m. In case 2 nothing magnifies it, so that
 /// what rounding and Newton's tolerance add to it shows: measured 4/s at a distance of 1e-12 and 0.3/s at 1e-10.
-const MOTIONS: [(u32, Pace, [f64; 2]); 3] = [
-    (4, Pace::Steps("trapezoidal", 2.5e-6), [1e-10, 1e-12]),
-    (3, Pace::Steps("trapezoidal", 5e-6), [1e-10, 1e-12]),
-    (2, Pace::Steps("trapezoidal", 2e-5), [1e-8, 1e-10]),
+const MOTIONS: [(u32, RunPace, [f64; 2]); 3] = [
+    (4, RunPace::Steps("trapezoidal", 2.5e-6), [1e-10, 1e-12]),
+    (3, RunPace::Steps("trapezoidal", 5e-6), [1e-10, 1e-12]),
+    (2, RunPace::Steps("trapezoidal", 2e-5), [1e-8, 1e-10]),
 ];
 
 /// Time between two kept values of the growth \[s\].
@@ -47,14 +47,15 @@ pub const KEPT_INTERVAL: f64 = RETURN * KEPT_EVERY as f64;
 ///
 /// # Errors
 /// The first run that fails.
-pub fn run(g: &Geometry) -> Result<Vec<Exponents>> {
-    let jobs: Vec<(u32, Pace, f64, usize)> = MOTIONS
+pub fn run(g: &MechanismGeometry) -> Result<Vec<Exponents>> {
+    let jobs: Vec<(u32, RunPace, f64, usize)> = MOTIONS
         .iter()
         .flat_map(|&(case, pace, distances)| distances.map(|distance| (case, pace, distance)))
         .flat_map(|(case, pace, distance)| (0..STARTS).map(move |k| (case, pace, distance, k)))
         .collect();
-    let run =
-        |&(case, pace, distance, k): &(u32, Pace, f64, usize)| growth(g, case, pace, distance, k);
+    let run = |&(case, pace, distance, k): &(u32, RunPace, f64, usize)| {
+        growth(g, case, pace, distance, k)
+    };
     let done = each(&jobs, run)
         .into_iter()
         .collect::<Result<Vec<Growth>>>()?;
@@ -69,7 +70,7 @@ struct Growth {
     warnings: Vec<String>,
 }
 
-fn together((case, pace, distance, _): (u32, Pace, f64, usize), done: &[Growth]) -> Exponents {
+fn together((case, pace, distance, _): (u32, RunPace, f64, usize), done: &[Growth]) -> Exponents {
     let from = (LEFT_OUT / RETURN) as usize;
     let counted = |sums: &[f64]| {
         let (first, last) = (sums[from - 1], sums[sums.len() - 1]);
@@ -87,8 +88,14 @@ fn together((case, pace, distance, _): (u32, Pace, f64, usize), done: &[Growth])
     }
 }
 
-fn growth(g: &Geometry, case: u32, pace: Pace, distance: f64, k: usize) -> Result<Growth> {
-    let mut plan = Plan::new(case, pace, RETURN, DURATION);
+fn growth(
+    g: &MechanismGeometry,
+    case: u32,
+    pace: RunPace,
+    distance: f64,
+    k: usize,
+) -> Result<Growth> {
+    let mut plan = RunPlan::new(case, pace, RETURN, DURATION);
     // the starts of an ensemble; case 2 has no loose joint that would let the platform start elsewhere
     if case > 2 {
         plan.overrides.push(moved(g, MOVED, k));
@@ -97,7 +104,7 @@ fn growth(g: &Geometry, case: u32, pace: Pace, distance: f64, k: usize) -> Resul
     let mut motion = Simulation::new(&scene)?;
     let mut neighbour = Simulation::new(&scene)?;
     let unknowns = motion.model().shape().unknowns;
-    let mut pair = Pair {
+    let mut pair = StatePair {
         unknowns,
         next: motion.state().clone(),
     };
@@ -126,12 +133,12 @@ fn growth(g: &Geometry, case: u32, pace: Pace, distance: f64, k: usize) -> Resul
 }
 
 /// Two neighbouring states.
-struct Pair {
+struct StatePair {
     unknowns: usize,
     next: State,
 }
 
-impl Pair {
+impl StatePair {
     fn distance(&self, one: &State, other: &State) -> f64 {
         let squares = (0..self.unknowns).map(|i| {
             let q = (other.q[i] - one.q[i]) + (other.q_low[i] - one.q_low[i]);

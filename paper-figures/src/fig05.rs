@@ -4,7 +4,7 @@ use crate::campaign::{Campaign, DURATION, FROM};
 use crate::figures::{caption, step_label, time_axis};
 use crate::measures::bound;
 use crate::numbers::Numbers;
-use crate::runs::Recording;
+use crate::runs::CaseRecording;
 use crate::signal::peak;
 use numbers::{digits, si};
 use plot::{Axis, Figure, Mark, Panel, palette};
@@ -14,7 +14,7 @@ pub const CLAIMED: f64 = 2e-4;
 
 /// Draws the figure.
 pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
-    let error = |r: &Recording| peak(r.between("error.x", FROM, DURATION).1);
+    let error = |r: &CaseRecording| peak(r.between("error.x", FROM, DURATION).1);
     let mut note = |name: &str, value: f64| {
         numbers.put(format!("fig5.{name}.largest_error_x"), value);
         format!(
@@ -30,7 +30,7 @@ pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
         y: Axis::new("Displacement error eₓ", "µm", 1e6),
         marks,
     };
-    let series = |r: &Recording, color| {
+    let series = |r: &CaseRecording, color| {
         let (t, e) = r.between("error.x", FROM, DURATION);
         Mark::series(&step_label(r), color, t, e)
     };
@@ -38,7 +38,7 @@ pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
         series(&c.flexible, palette::BLUE),
         series(&c.flexible_coarse, palette::VERMILION),
     ];
-    let loose = |r: &Recording| {
+    let loose = |r: &CaseRecording| {
         let bound = bound(&c.geometry, r);
         let below: Vec<f64> = bound.iter().map(|b| -b).collect();
         let t = &r.t[r.rows(FROM, DURATION)];

@@ -4,7 +4,7 @@ use crate::campaign::{Campaign, DURATION, FROM};
 use crate::figures::{caption, step_label, time_axis};
 use crate::measures::deviation;
 use crate::numbers::Numbers;
-use crate::runs::Recording;
+use crate::runs::CaseRecording;
 use crate::signal::{peak, rms};
 use numbers::digits;
 use plot::{Axis, Figure, Mark, Panel, palette};
@@ -12,7 +12,7 @@ use plot::{Axis, Figure, Mark, Panel, palette};
 /// Draws the figure.
 pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
     let (t, a) = c.ideal.between("platform.ax", FROM, DURATION);
-    let mut panel = |title: &str, name: &str, shown: &[(&Recording, plot::Color)]| {
+    let mut panel = |title: &str, name: &str, shown: &[(&CaseRecording, plot::Color)]| {
         let first = shown[0].0;
         let largest = numbers.put(
             format!("fig6.{name}.peak"),

@@ -3,18 +3,18 @@
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::figures::{caption, step_label, time_axis};
 use crate::numbers::Numbers;
-use crate::runs::Recording;
+use crate::runs::CaseRecording;
 use crate::signal::{mean, peak};
 use numbers::si;
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
 /// Draws the figure.
 pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
-    let mut panel = |title: &str, name: &str, quantity: &str, shown: &[(&Recording, Color)]| {
+    let mut panel = |title: &str, name: &str, quantity: &str, shown: &[(&CaseRecording, Color)]| {
         let force = shown[0].0.between("B1.force", FROM, DURATION).1;
         let largest = numbers.put(format!("fig7.{name}.peak_force"), peak(force));
         let average = numbers.put(format!("fig7.{name}.mean_force"), mean(force));
-        let series = |&(r, color): &(&Recording, Color)| {
+        let series = |&(r, color): &(&CaseRecording, Color)| {
             let (t, f) = r.between("B1.force", FROM, DURATION);
             Mark::series(&step_label(r), color, t, f).width(2)
         };

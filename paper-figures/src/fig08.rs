@@ -4,14 +4,14 @@
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::figures::{caption, step_label, time_axis};
 use crate::numbers::Numbers;
-use crate::runs::Recording;
+use crate::runs::CaseRecording;
 use crate::signal::fraction;
 use numbers::{percent, si};
 use plot::{Axis, Figure, Mark, Panel, palette};
 
 /// Draws the figure.
 pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
-    let mut whole = |title: &str, name: &str, r: &Recording| {
+    let mut whole = |title: &str, name: &str, r: &CaseRecording| {
         let (t, delta) = r.between("B1.penetration", FROM, DURATION);
         let deepest = delta.iter().copied().fold(f64::MIN, f64::max);
         let contact = numbers.put(
@@ -39,7 +39,7 @@ pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
         whole("a) Case 3", "case3", &c.loose),
         whole("b) Case 4", "case4", &c.both),
     ];
-    let close = |title: &str, r: &Recording| {
+    let close = |title: &str, r: &CaseRecording| {
         let (t, delta) = r.between("B1.penetration", FROM, DURATION);
         let deepest = delta.iter().copied().fold(0.0, f64::max);
         let range = if deepest > 0.0 {

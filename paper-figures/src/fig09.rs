@@ -4,14 +4,14 @@
 use crate::campaign::{Campaign, DURATION, FROM, ROWS_A_PERIOD};
 use crate::figures::{caption, step_label};
 use crate::numbers::Numbers;
-use crate::runs::Recording;
+use crate::runs::CaseRecording;
 use crate::signal::{mean, rms};
 use numbers::digits;
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
 /// Draws the figure.
 pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
-    let portrait = |title: &str, shown: &[(&Recording, Color)]| {
+    let portrait = |title: &str, shown: &[(&CaseRecording, Color)]| {
         let (_, v) = c.ideal.between("platform.vx", FROM, DURATION);
         let (_, a) = c.ideal.between("platform.ax", FROM, DURATION);
         let mut marks: Vec<Mark> = shown
@@ -47,7 +47,7 @@ pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
         portrait("b) Case 3", &[(&c.loose, palette::BLUE)]),
         portrait("c) Case 4", &[(&c.both, palette::BLUE)]),
     ];
-    let mut section = |title: &str, name: &str, shown: &[(&Recording, Color)]| {
+    let mut section = |title: &str, name: &str, shown: &[(&CaseRecording, Color)]| {
         let points: Vec<(Vec<f64>, Vec<f64>)> = shown.iter().map(|(r, _)| section(c, r)).collect();
         let spread = numbers.put(
             format!("fig9.{name}.section_spread_acceleration"),
@@ -115,7 +115,7 @@ pub fn figure(c: &Campaign, numbers: &mut Numbers) -> Figure {
 }
 
 /// Deviation of velocity and acceleration from the ideal ones once a period, after the periods left out.
-pub fn section(c: &Campaign, recording: &Recording) -> (Vec<f64>, Vec<f64>) {
+pub fn section(c: &Campaign, recording: &CaseRecording) -> (Vec<f64>, Vec<f64>) {
     let from = f64::from(c.settings.skipped + 1) / c.geometry.frequency;
     let (t, v) = recording.between("platform.vx", from, f64::MAX);
     let (_, a) = recording.between("platform.ax", from, f64::MAX);

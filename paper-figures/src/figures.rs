@@ -2,7 +2,7 @@
 
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::numbers::Numbers;
-use crate::runs::Recording;
+use crate::runs::CaseRecording;
 use crate::{fig05, fig06, fig07, fig08, fig09};
 use miette::Result;
 use numbers::si;
@@ -47,12 +47,12 @@ pub fn time_axis() -> Axis {
 }
 
 /// Legend entry of a recording.
-pub fn step_label(recording: &Recording) -> String {
+pub fn step_label(recording: &CaseRecording) -> String {
     recording.plan.pace.label()
 }
 
 /// A caption: what is seen, then the scenes it was made with, and what every run warns of.
-pub fn caption(text: &str, made_with: &[&Recording]) -> String {
+pub fn caption(text: &str, made_with: &[&CaseRecording]) -> String {
     let scenes: BTreeSet<String> = made_with.iter().map(|r| r.plan.scene_name()).collect();
     let scenes: Vec<String> = scenes.into_iter().collect();
     let warned: Vec<String> = made_with

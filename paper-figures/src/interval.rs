@@ -13,7 +13,7 @@ const STUDENT_OF_TWO: f64 = 2.042_272_456;
 
 /// How a criterion comes out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum CriterionVerdict {
     /// Met.
     Holds,
     /// Missed.
@@ -22,40 +22,40 @@ pub enum Verdict {
     Undecided,
 }
 
-impl Verdict {
+impl CriterionVerdict {
     /// Of a quantity that is known.
-    pub fn of(holds: bool) -> Verdict {
+    pub fn of(holds: bool) -> CriterionVerdict {
         if holds {
-            Verdict::Holds
+            CriterionVerdict::Holds
         } else {
-            Verdict::Fails
+            CriterionVerdict::Fails
         }
     }
 
     /// Both are met; one missed is enough to miss.
-    pub fn and(self, other: Verdict) -> Verdict {
+    pub fn and(self, other: CriterionVerdict) -> CriterionVerdict {
         match (self, other) {
-            (Verdict::Fails, _) | (_, Verdict::Fails) => Verdict::Fails,
-            (Verdict::Holds, Verdict::Holds) => Verdict::Holds,
-            _ => Verdict::Undecided,
+            (CriterionVerdict::Fails, _) | (_, CriterionVerdict::Fails) => CriterionVerdict::Fails,
+            (CriterionVerdict::Holds, CriterionVerdict::Holds) => CriterionVerdict::Holds,
+            _ => CriterionVerdict::Undecided,
         }
     }
 
     /// The opposite.
-    pub fn not(self) -> Verdict {
+    pub fn not(self) -> CriterionVerdict {
         match self {
-            Verdict::Holds => Verdict::Fails,
-            Verdict::Fails => Verdict::Holds,
-            Verdict::Undecided => Verdict::Undecided,
+            CriterionVerdict::Holds => CriterionVerdict::Fails,
+            CriterionVerdict::Fails => CriterionVerdict::Holds,
+            CriterionVerdict::Undecided => CriterionVerdict::Undecided,
         }
     }
 
     /// One is met at least.
-    pub fn or(self, other: Verdict) -> Verdict {
+    pub fn or(self, other: CriterionVerdict) -> CriterionVerdict {
         match (self, other) {
-            (Verdict::Holds, _) | (_, Verdict::Holds) => Verdict::Holds,
-            (Verdict::Fails, Verdict::Fails) => Verdict::Fails,
-            _ => Verdict::Undecided,
+            (CriterionVerdict::Holds, _) | (_, CriterionVerdict::Holds) => CriterionVerdict::Holds,
+            (CriterionVerdict::Fails, CriterionVerdict::Fails) => CriterionVerdict::Fails,
+            _ => CriterionVerdict::Undecided,
         }
     }
 }
@@ -88,24 +88,24 @@ impl Interval {
     }
 
     /// Whether the mean lies between two limits.
-    pub fn within(&self, low: f64, high: f64) -> Verdict {
+    pub fn within(&self, low: f64, high: f64) -> CriterionVerdict {
         let (least, largest) = (self.mean - self.half, self.mean + self.half);
         if least >= low && largest <= high {
-            Verdict::Holds
+            CriterionVerdict::Holds
         } else if largest < low || least > high {
-            Verdict::Fails
+            CriterionVerdict::Fails
         } else {
-            Verdict::Undecided
+            CriterionVerdict::Undecided
         }
     }
 
     /// Whether the mean lies above a limit.
-    pub fn above(&self, limit: f64) -> Verdict {
+    pub fn above(&self, limit: f64) -> CriterionVerdict {
         self.within(limit, f64::INFINITY)
     }
 
     /// Whether the mean lies below a limit.
-    pub fn below(&self, limit: f64) -> Verdict {
+    pub fn below(&self, limit: f64) -> CriterionVerdict {
         self.within(f64::NEG_INFINITY, limit)
     }
 
@@ -143,11 +143,11 @@ mod tests {
         // variance of 0..15: n (n + 1) / 12 = 22.667
         let half = 2.131_449_546 * (272.0 / 12.0 / 16.0_f64).sqrt();
         assert!((interval.mean - 7.5).abs() < 1e-12 && (interval.half - half).abs() < 1e-12);
-        assert_eq!(interval.above(8.0), Verdict::Undecided);
-        assert_eq!(interval.above(1.0), Verdict::Holds);
-        assert_eq!(interval.below(1.0), Verdict::Fails);
-        assert_eq!(interval.within(9.0, 20.0), Verdict::Undecided);
-        assert_eq!(interval.within(0.0, 20.0), Verdict::Holds);
+        assert_eq!(interval.above(8.0), CriterionVerdict::Undecided);
+        assert_eq!(interval.above(1.0), CriterionVerdict::Holds);
+        assert_eq!(interval.below(1.0), CriterionVerdict::Fails);
+        assert_eq!(interval.within(9.0, 20.0), CriterionVerdict::Undecided);
+        assert_eq!(interval.within(0.0, 20.0), CriterionVerdict::Holds);
     }
 
     #[test]

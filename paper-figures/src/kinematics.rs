@@ -20,11 +20,11 @@ use std::f64::consts::TAU;
 pub type Vector = [f64; 2];
 
 /// By rows.
-type Matrix = [[f64; 3]; 3];
+type Jacobian = [[f64; 3]; 3];
 
 /// Dimensions of a 3-RRR and the circle its platform is meant to follow.
 #[derive(Debug, Clone)]
-pub struct Geometry {
+pub struct MechanismGeometry {
     /// A_i \[m\].
     pub base: [Vector; 3],
     /// C_i in the frame of the platform \[m\].
@@ -43,12 +43,12 @@ pub struct Geometry {
     pub clearance: f64,
 }
 
-impl Geometry {
+impl MechanismGeometry {
     /// Reads the geometry of a scene with the names of the paper (A1, B1, C1, crank1, link1, platform).
     ///
     /// # Errors
     /// When the scene is not such a mechanism.
-    pub fn of(scene: &Scene) -> Result<Geometry> {
+    pub fn of(scene: &Scene) -> Result<MechanismGeometry> {
         let drive = scene
             .drives
             .first()
@@ -75,7 +75,7 @@ impl Geometry {
         let contact = scene.joint("B1").and_then(|j| scene.joints[j].contact());
         let clearance = contact.map_or(0.0, |contact| contact.clearance);
         let (crank, link) = (link_length(scene, "crank1")?, link_length(scene, "link1")?);
-        Ok(Geometry {
+        Ok(MechanismGeometry {
             base,
             platform,
             crank,
@@ -124,7 +124,7 @@ impl Geometry {
     }
 
     /// The velocity Jacobian J of the three lengths by (x, y, theta), with the pins held.
-    fn jacobian(&self, pose: [f64; 3]) -> Matrix {
+    fn jacobian(&self, pose: [f64; 3]) -> Jacobian {
         std::array::from_fn(|leg| {
             let d = minus(self.corner(leg, pose), self.pin(leg, pose));
             let u = [d[0] / self.link, d[1] / self.link];
@@ -164,7 +164,7 @@ fn cross(a: Vector, b: Vector) -> f64 {
 }
 
 /// Inverse by cofactors; none where the determinant vanishes.
-fn inverse(m: Matrix) -> Option<Matrix> {
+fn inverse(m: Jacobian) -> Option<Jacobian> {
     let minor = |r: usize, c: usize| {
         let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
         m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
@@ -205,7 +205,7 @@ mod tests {
     use super::*;
 
     /// The mechanism of Table 1 with a circumradius `fixed` of the fixed platform.
-    fn table_1(fixed: f64, elbow: [f64; 3]) -> Geometry {
+    fn table_1(fixed: f64, elbow: [f64; 3]) -> MechanismGeometry {
         let at = |radius: f64| {
             [210.0_f64, 330.0, 90.0]
                 .map(|a| a.to_radians())
@@ -213,7 +213,7 @@ mod tests {
         };
         let (base, platform) = (at(fixed), at(0.112));
         let (crank, link, radius, frequency, clearance) = (0.245, 0.242, 0.1, 1.0, 2e-5);
-        Geometry {
+        MechanismGeometry {
             base,
             platform,
             crank,

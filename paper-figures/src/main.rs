@@ -40,8 +40,8 @@ use evidence::Evidence;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use numbers::Numbers;
 use plot::Figure;
-use record::Record;
-use records::Run;
+use record::EnsembleRecord;
+use records::RunningCampaign;
 use std::fs;
 use std::path::Path;
 
@@ -87,7 +87,7 @@ const ENSEMBLES: &str = "ensembles.json";
 const TIMINGS: &str = "timings.json";
 
 fn reproduce(settings: Settings) -> Result<()> {
-    let run = Run::begin("reproduction")?;
+    let running = RunningCampaign::begin("reproduction")?;
     // before the runs, so that a missing record is reported at once
     let (record, timings) = (record::load(ENSEMBLES)?, record::load(TIMINGS)?);
     let mut numbers = Numbers::default();
@@ -97,26 +97,26 @@ fn reproduce(settings: Settings) -> Result<()> {
     let page = reproduction::page(&evidence, &mut numbers);
     write(&figures, "REPRODUCTION.md", &page)?;
     numbers.save(&record::file("numbers.json"))?;
-    run.finish()
+    running.finish()
 }
 
 fn gather() -> Result<()> {
-    let run = Run::begin("ensembles")?;
+    let running = RunningCampaign::begin("ensembles")?;
     let timings = timings::run()?;
     let record = ensembles::run()?;
     record::save(&record, ENSEMBLES)?;
     record::save(&timings, TIMINGS)?;
     show(&record)?;
-    run.finish()
+    running.finish()
 }
 
-fn show(record: &Record) -> Result<()> {
+fn show(record: &EnsembleRecord) -> Result<()> {
     let figures = ensembles_page::figures(record);
     write(&figures, "ENSEMBLES.md", &ensembles_page::page(record))
 }
 
 fn scan() -> Result<()> {
-    let run = Run::begin("scans")?;
+    let running = RunningCampaign::begin("scans")?;
     let record = record::load(ENSEMBLES)?;
     let mut numbers = Numbers::default();
     let scans = scans::run()?;
@@ -129,7 +129,7 @@ fn scan() -> Result<()> {
     let page = scans_page::page(&scans, &record, &mut numbers);
     write(&figures, "SCANS.md", &page)?;
     numbers.save(&record::file("scans.json"))?;
-    run.finish()
+    running.finish()
 }
 
 /// Writes figures and a page.

@@ -1,8 +1,8 @@
 //! The quantities that the statements of the paper are decided by, over the last two of three cycles.
 
 use crate::campaign::{DURATION, FROM};
-use crate::kinematics::Geometry;
-use crate::runs::Recording;
+use crate::kinematics::MechanismGeometry;
+use crate::runs::CaseRecording;
 use crate::signal::{
     coincidence, cycle_distance, fraction, mean, median_frequency, peak, peaks, rms,
 };
@@ -42,7 +42,7 @@ impl Measures {
     }
 
     /// Measures a run of [`DURATION`].
-    pub fn of(g: &Geometry, recording: &Recording) -> Measures {
+    pub fn of(g: &MechanismGeometry, recording: &CaseRecording) -> Measures {
         let mut m = Measures::default();
         let between = |channel: &str| recording.between(channel, FROM, DURATION).1;
         let (error, acceleration, force) = (
@@ -98,7 +98,7 @@ impl Measures {
     }
 
     /// What only loose joints have.
-    fn contacts(&mut self, g: &Geometry, recording: &Recording, deviation: &[f64]) {
+    fn contacts(&mut self, g: &MechanismGeometry, recording: &CaseRecording, deviation: &[f64]) {
         let t = &recording.t[recording.rows(FROM, DURATION)];
         let between = |channel: &str| recording.between(channel, FROM, DURATION).1;
         let share = JOINTS.map(|joint| {
@@ -160,7 +160,7 @@ impl Measures {
 }
 
 /// Deviation of the platform acceleration along x from the ideal one \[m/s2\].
-pub fn deviation(g: &Geometry, recording: &Recording, from: f64, to: f64) -> Vec<f64> {
+pub fn deviation(g: &MechanismGeometry, recording: &CaseRecording, from: f64, to: f64) -> Vec<f64> {
     let (t, a) = recording.between("platform.ax", from, to);
     let pairs = t.iter().zip(a);
     pairs.map(|(&t, a)| a - g.acceleration_x(t)).collect()
@@ -168,7 +168,7 @@ pub fn deviation(g: &Geometry, recording: &Recording, from: f64, to: f64) -> Vec
 
 /// Largest energy that the integrator has lost (positive) or gained by any row, over that dissipated in contacts; where
 /// nothing dissipates, over the largest elastic energy of the links.
-pub fn energy_lost(recording: &Recording) -> f64 {
+pub fn energy_lost(recording: &CaseRecording) -> f64 {
     let report = &recording.report;
     let (Some(ledger), Some(integration)) = (&report.ledger, &report.integration) else {
         return f64::NAN;
@@ -187,7 +187,7 @@ pub fn energy_lost(recording: &Recording) -> f64 {
 
 /// The bound of the error along x over the last two cycles \[m\]: sum_i |J^-1|_{xi} s_i, where the slack s_i of a
 /// leg is 2 c, the penetrations of its two joints and, of a flexible link, its length times its strain.
-pub fn bound(g: &Geometry, recording: &Recording) -> Vec<f64> {
+pub fn bound(g: &MechanismGeometry, recording: &CaseRecording) -> Vec<f64> {
     let rows = recording.rows(FROM, DURATION);
     let column = |kind: &str, leg: usize, name: &str| {
         &recording.column(&format!("{kind}{}.{name}", leg + 1))[rows.clone()]

@@ -2,10 +2,10 @@
 
 use crate::ensembles::{MOVED, moved};
 use crate::interval::STARTS;
-use crate::kinematics::Geometry;
+use crate::kinematics::MechanismGeometry;
 use crate::measures::deviation;
-use crate::record::{Long, Work};
-use crate::runs::{Pace, Plan, Recording, causes, each};
+use crate::record::{Long, MethodWork};
+use crate::runs::{CaseRecording, RunPace, RunPlan, causes, each};
 use crate::signal::{peak, rms};
 use miette::Result;
 
@@ -42,8 +42,8 @@ pub fn explicit(method: &str) -> bool {
     method == "dormand_prince" || method == "velocity_verlet"
 }
 
-fn plan(case: u32, method: &'static str, step: f64, interval: f64, duration: f64) -> Plan {
-    let plan = Plan::new(case, Pace::Steps(method, step), interval, duration);
+fn plan(case: u32, method: &'static str, step: f64, interval: f64, duration: f64) -> RunPlan {
+    let plan = RunPlan::new(case, RunPace::Steps(method, step), interval, duration);
     if method == "generalized_alpha" || method == "hht" {
         plan.with("integrator.spectral_radius", RADIUS)
     } else {
@@ -55,7 +55,7 @@ fn plan(case: u32, method: &'static str, step: f64, interval: f64, duration: f64
 ///
 /// # Errors
 /// When the reference fails; a run that stops is a result.
-pub fn work() -> Result<Vec<Work>> {
+pub fn work() -> Result<Vec<MethodWork>> {
     let mut all = Vec::new();
     for case in [2, 4] {
         let reference = plan(case, "dormand_prince", REFERENCE, ROWS, HORIZON).run()?;
@@ -68,7 +68,7 @@ pub fn work() -> Result<Vec<Work>> {
             .flat_map(|m| PARTS.map(|parts| (*m, ROWS / f64::from(parts))))
             .collect();
         let run = |&(method, step): &(&'static str, f64)| {
-            let mut work = Work {
+            let mut work = MethodWork {
                 case,
                 method: method.into(),
                 step,
@@ -95,13 +95,13 @@ pub fn work() -> Result<Vec<Work>> {
 }
 
 /// How often the elastic force of an element was evaluated; implicit methods evaluate its tangent with it.
-pub fn evaluations(recording: &Recording) -> u64 {
+pub fn evaluations(recording: &CaseRecording) -> u64 {
     let effects = &recording.report.effects;
     effects.get("ancf_elastic_force").copied().unwrap_or(0)
 }
 
 /// The implicit methods over many cycles. A run that stops is a result.
-pub fn long(g: &Geometry) -> Vec<Long> {
+pub fn long(g: &MechanismGeometry) -> Vec<Long> {
     let methods = METHODS.iter().filter(|m| !explicit(m));
     let groups: Vec<(&'static str, u32, f64, f64, usize)> = methods
         .flat_map(|m| LONG.map(|(case, step, cycles, starts)| (*m, case, step, cycles, starts)))

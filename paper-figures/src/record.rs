@@ -1,9 +1,9 @@
 //! What `ensembles` leaves for the reproduction report, as JSON.
 
-use crate::interval::{Interval, STARTS, Verdict};
+use crate::interval::{CriterionVerdict, Interval, STARTS};
 use crate::measures::Measures;
 use crate::runs::words;
-use crate::warned::{Source, merged};
+use crate::warned::{WarningSource, merged};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use numbers::{digits, si};
 use serde::de::DeserializeOwned;
@@ -18,7 +18,7 @@ pub const TIGHTER: &str = "G";
 
 /// Everything; a rerun gives the same bytes.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Record {
+pub struct EnsembleRecord {
     /// Runs of chaotic cases that differ by a tiny displacement at the start.
     pub ensembles: Vec<Ensemble>,
     /// Largest Lyapunov exponents.
@@ -26,7 +26,7 @@ pub struct Record {
     /// Runs of case 2, which is not chaotic.
     pub singles: Vec<Single>,
     /// Work and error of explicit and implicit methods.
-    pub work: Vec<Work>,
+    pub work: Vec<MethodWork>,
     /// Runs over many cycles.
     pub long: Vec<Long>,
 }
@@ -48,12 +48,12 @@ pub struct Ensemble {
     /// Method and step.
     pub how: String,
     /// One for each start.
-    pub members: Vec<Member>,
+    pub members: Vec<EnsembleMember>,
 }
 
 /// One run of an ensemble.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Member {
+pub struct EnsembleMember {
     /// What was measured.
     pub measures: Measures,
     /// What the run warns of.
@@ -92,7 +92,7 @@ pub struct Single {
 
 /// One run of a comparison of methods.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Work {
+pub struct MethodWork {
     /// Case of Table 2.
     pub case: u32,
     /// Method as in the scene.
@@ -140,19 +140,19 @@ impl Long {
     }
 
     /// Whether the motion has not grown by more than a factor.
-    pub fn stays(&self, factor: f64) -> Verdict {
+    pub fn stays(&self, factor: f64) -> CriterionVerdict {
         match self.growth.as_slice() {
-            _ if self.stopped > 0 => Verdict::Fails,
-            [one] => Verdict::of(*one <= factor),
+            _ if self.stopped > 0 => CriterionVerdict::Fails,
+            [one] => CriterionVerdict::of(*one <= factor),
             all => Interval::of(all).below(factor),
         }
     }
 
     /// Method, step and warnings.
-    pub fn source(&self) -> Source {
+    pub fn source(&self) -> WarningSource {
         let (case, step) = (self.case, si(self.step, "s"));
         let all: Vec<&[String]> = self.warnings.iter().map(Vec::as_slice).collect();
-        Source {
+        WarningSource {
             name: format!(
                 "case {case}, {} with h = {step} over {} cycles",
                 words(&self.method),
@@ -166,7 +166,7 @@ impl Long {
     }
 }
 
-impl Record {
+impl EnsembleRecord {
     /// The ensemble of this name.
     ///
     /// # Panics
@@ -233,9 +233,9 @@ impl Ensemble {
     }
 
     /// The name and what its runs warn of.
-    pub fn source(&self) -> Source {
+    pub fn source(&self) -> WarningSource {
         let all: Vec<&[String]> = self.members.iter().map(|m| m.warnings.as_slice()).collect();
-        Source {
+        WarningSource {
             name: format!("ensemble {}", self.name),
             warnings: merged(&all),
         }
@@ -249,9 +249,9 @@ impl Exponents {
     }
 
     /// What its runs warn of.
-    pub fn source(&self) -> Source {
+    pub fn source(&self) -> WarningSource {
         let all: Vec<&[String]> = self.warnings.iter().map(Vec::as_slice).collect();
-        Source {
+        WarningSource {
             name: format!(
                 "exponents of case {} at d₀ = {:e}",
                 self.case, self.distance
@@ -263,8 +263,8 @@ impl Exponents {
 
 impl Single {
     /// The name and what it warns of.
-    pub fn source(&self) -> Source {
-        Source {
+    pub fn source(&self) -> WarningSource {
+        WarningSource {
             name: format!("case 2, {}", self.name),
             warnings: self.warnings.clone(),
         }
@@ -273,7 +273,7 @@ impl Single {
 
 /// What was timed, with the day: times differ from run to run, so they are kept apart from the record.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Timings {
+pub struct KernelTimings {
     /// Day of the measurement.
     pub day: String,
     /// Elastic force and tangent of an element by the transcription of eqs. 14 and 15 \[s\].

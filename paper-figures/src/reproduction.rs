@@ -3,8 +3,8 @@
 use crate::campaign::{Campaign, DURATION, FROM};
 use crate::evidence::Evidence;
 use crate::fig05::CLAIMED;
-use crate::interval::{OF_THREE, STARTS, Verdict};
-use crate::kinematics::Geometry;
+use crate::interval::{CriterionVerdict, OF_THREE, STARTS};
+use crate::kinematics::MechanismGeometry;
 use crate::measures::energy_lost;
 use crate::numbers::Numbers;
 use crate::signal::peak;
@@ -133,13 +133,13 @@ fn sizes_alone(e: &Evidence, together: &[Statement]) -> String {
 
 /// How many statements came out how, in words.
 fn count(statements: &[Statement], numbers: &mut Numbers) -> String {
-    let of = |basis: Basis, verdict: Verdict| {
+    let of = |basis: Basis, verdict: CriterionVerdict| {
         let found = statements.iter().filter(|s| s.verdict == verdict);
         found.filter(|s| s.basis == basis).count()
     };
     let undecided = statements
         .iter()
-        .filter(|s| s.verdict == Verdict::Undecided)
+        .filter(|s| s.verdict == CriterionVerdict::Undecided)
         .count();
     numbers.put("statements", statements.len() as f64);
     numbers.put("statements.undecided", undecided as f64);
@@ -150,7 +150,10 @@ fn count(statements: &[Statement], numbers: &mut Numbers) -> String {
     ]
     .into_iter()
     .map(|(basis, name)| {
-        let (holds, fails) = (of(basis, Verdict::Holds), of(basis, Verdict::Fails));
+        let (holds, fails) = (
+            of(basis, CriterionVerdict::Holds),
+            of(basis, CriterionVerdict::Fails),
+        );
         numbers.put(format!("statements.by_{name}.hold"), holds as f64);
         numbers.put(format!("statements.by_{name}.do_not_hold"), fails as f64);
         format!("| by {name} | {holds} | {fails} |\n")
@@ -193,7 +196,7 @@ fn bound_argument(e: &Evidence, numbers: &mut Numbers) -> String {
     let slack = 2.0 * g.clearance;
     let printed = numbers.put("bound.printed", g.largest_bound_x(slack));
     let shrink = |p: [f64; 2]| p.map(|v| v / 3f64.sqrt());
-    let side = Geometry {
+    let side = MechanismGeometry {
         base: g.base.map(shrink),
         ..g.clone()
     };
@@ -202,7 +205,7 @@ fn bound_argument(e: &Evidence, numbers: &mut Numbers) -> String {
         .flat_map(|leg| {
             [1.0, -1.0].map(|sign| std::array::from_fn(|i| if i == leg { -sign } else { sign }))
         })
-        .map(|elbow| Geometry { elbow, ..g.clone() }.largest_bound_x(slack))
+        .map(|elbow| MechanismGeometry { elbow, ..g.clone() }.largest_bound_x(slack))
         .collect();
     let least = numbers.put(
         "bound.mixed_least",

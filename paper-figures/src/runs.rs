@@ -1,8 +1,8 @@
 //! Runs scenes through the library, one a thread, and keeps their channels in memory.
 
-use crate::warned::Source;
+use crate::warned::WarningSource;
 use looselink::scene::Scene;
-use looselink::simulate::{self, Report, Simulation};
+use looselink::simulate::{Recording, Report, Simulation};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use numbers::si;
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// How a run integrates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Pace {
+pub enum RunPace {
     /// A method with equal steps \[s\].
     Steps(&'static str, f64),
     /// The trapezoidal rule with steps that keep what its errors add up to within 10 ms below 1 µm and 100 nJ: the
@@ -20,28 +20,28 @@ pub enum Pace {
     Controlled,
 }
 
-impl Pace {
+impl RunPace {
     /// The paper's method.
-    pub fn bathe(step: f64) -> Pace {
-        Pace::Steps("bathe", step)
+    pub fn bathe(step: f64) -> RunPace {
+        RunPace::Steps("bathe", step)
     }
 
     /// Legend entry.
     pub fn label(self) -> String {
         match self {
-            Pace::Steps("bathe", step) => format!("h = {}", si(step, "s")),
-            Pace::Steps(method, step) => format!("{}, h = {}", words(method), si(step, "s")),
-            Pace::Controlled => "trapezoidal, controlled".into(),
+            RunPace::Steps("bathe", step) => format!("h = {}", si(step, "s")),
+            RunPace::Steps(method, step) => format!("{}, h = {}", words(method), si(step, "s")),
+            RunPace::Controlled => "trapezoidal, controlled".into(),
         }
     }
 
     fn overrides(self) -> Vec<String> {
         match self {
-            Pace::Steps(method, step) => vec![
+            RunPace::Steps(method, step) => vec![
                 format!("integrator.method={method}"),
                 format!("integrator.step={step:e}"),
             ],
-            Pace::Controlled => vec![
+            RunPace::Controlled => vec![
                 "integrator.method=trapezoidal".into(),
                 "integrator.accuracy={ position = 1e-6, energy = 1e-7, horizon = 0.01 }".into(),
             ],
@@ -63,11 +63,11 @@ pub fn words(method: &str) -> &str {
 
 /// One run to make: a case of the paper and what is changed in its scene.
 #[derive(Debug, Clone)]
-pub struct Plan {
+pub struct RunPlan {
     /// Case 1 to 4 of Table 2.
     pub case: u32,
     /// Method and step.
-    pub pace: Pace,
+    pub pace: RunPace,
     /// Time between recorded rows \[s\].
     pub interval: f64,
     /// Simulated time \[s\].
@@ -77,11 +77,11 @@ pub struct Plan {
 }
 
 /// What a run left behind.
-pub struct Recording {
+pub struct CaseRecording {
     /// Its number in the report; 0 for a run that has none.
     pub number: usize,
     /// The run.
-    pub plan: Plan,
+    pub plan: RunPlan,
     /// The scene with the overrides applied.
     pub scene: Scene,
     /// Time \[s\].
@@ -112,10 +112,10 @@ pub fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-impl Plan {
+impl RunPlan {
     /// A case as its scene has it.
-    pub fn new(case: u32, pace: Pace, interval: f64, duration: f64) -> Plan {
-        Plan {
+    pub fn new(case: u32, pace: RunPace, interval: f64, duration: f64) -> RunPlan {
+        RunPlan {
             case,
             pace,
             interval,
@@ -130,7 +130,7 @@ impl Plan {
     }
 
     /// The same plan with one more override.
-    pub fn with(mut self, path: &str, value: impl std::fmt::Display) -> Plan {
+    pub fn with(mut self, path: &str, value: impl std::fmt::Display) -> RunPlan {
         self.overrides.push(format!("{path}={value}"));
         self
     }
@@ -138,8 +138,8 @@ impl Plan {
     /// How long the run takes, roughly: Bathe's method counts its steps, the controlled steps are some microseconds.
     pub fn effort(&self) -> u64 {
         let step = match self.pace {
-            Pace::Steps(_, step) => step,
-            Pace::Controlled => 5e-6,
+            RunPace::Steps(_, step) => step,
+            RunPace::Controlled => 5e-6,
         };
         u64::from(self.case) * (self.duration / step) as u64
     }
@@ -166,10 +166,10 @@ impl Plan {
     ///
     /// # Errors
     /// What the library says about the scene or the run.
-    pub fn run(&self) -> Result<Recording> {
+    pub fn run(&self) -> Result<CaseRecording> {
         let scene = self.scene()?;
         let mut simulation = Simulation::new(&scene)?;
-        let mut recorder = simulate::Recording::new(&simulation);
+        let mut recorder = Recording::new(&simulation);
         simulation
             .run(&mut recorder)
             .into_diagnostic()
@@ -180,7 +180,7 @@ impl Plan {
         let t = columns
             .remove("t")
             .ok_or_else(|| miette!("the recording has no time channel"))?;
-        Ok(Recording {
+        Ok(CaseRecording {
             number: 0,
             plan: self.clone(),
             scene,
@@ -205,10 +205,10 @@ pub fn causes(error: &miette::Report) -> String {
     causes.join(": ")
 }
 
-impl Recording {
+impl CaseRecording {
     /// The number and the warnings.
-    pub fn source(&self) -> Source {
-        Source {
+    pub fn source(&self) -> WarningSource {
+        WarningSource {
             name: format!("run {}", self.number),
             warnings: self.warnings.clone(),
         }
@@ -244,15 +244,15 @@ mod tests {
     #[test]
     fn number_of_threads_changes_no_bit() -> Result<()> {
         // both chaotic cases over their first impacts, of which the least difference would grow
-        let plan = |case| Plan::new(case, Pace::Controlled, 1e-4, 0.02);
+        let plan = |case| RunPlan::new(case, RunPace::Controlled, 1e-4, 0.02);
         let plans = [3, 4, 3, 4].map(plan);
         let made = |threads: usize| -> Result<Vec<Vec<u64>>> {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             let done = pool
                 .build()
                 .into_diagnostic()?
-                .install(|| each(&plans, Plan::run));
-            let bits = |done: Result<Recording>| {
+                .install(|| each(&plans, RunPlan::run));
+            let bits = |done: Result<CaseRecording>| {
                 let done = done?;
                 let numbers = done.onsets.iter().chain(done.column("B1.force"));
                 let numbers = numbers.chain(done.column("error.x"));

@@ -1,9 +1,9 @@
 //! Makes the parameter scans and reads off the numbers that are compared.
 
 use crate::campaign::{DURATION, FROM, controlled};
-use crate::kinematics::Geometry;
+use crate::kinematics::MechanismGeometry;
 use crate::measures::{deviation, energy_lost};
-use crate::runs::{Plan, Recording, causes, each};
+use crate::runs::{CaseRecording, RunPlan, causes, each};
 use crate::scans_list::{INTERVAL, all};
 use crate::signal::{fraction, mean, peak, rms};
 use miette::Result;
@@ -20,11 +20,11 @@ pub struct Scan {
     /// Horizontal axis of the plots.
     pub axis: Axis,
     /// The runs.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<ScanEntry>,
 }
 
 /// One run of a scan.
-pub struct Entry {
+pub struct ScanEntry {
     /// The value as written in tables.
     pub label: String,
     /// Its place on the axis.
@@ -32,7 +32,7 @@ pub struct Entry {
     /// Whether it is the printed or assumed value.
     pub baseline: bool,
     /// The run.
-    pub plan: Plan,
+    pub plan: RunPlan,
     /// What came out, or why it failed.
     pub outcome: Result<Values, String>,
 }
@@ -62,8 +62,8 @@ pub struct Values {
 }
 
 impl Values {
-    fn of(recording: &Recording) -> Result<Values> {
-        let geometry = Geometry::of(&recording.scene)?;
+    fn of(recording: &CaseRecording) -> Result<Values> {
+        let geometry = MechanismGeometry::of(&recording.scene)?;
         let between = |name: &str| recording.between(name, FROM, DURATION);
         let (error, force) = (between("error.x").1, between("B1.force").1);
         Ok(Values {
@@ -86,18 +86,18 @@ impl Values {
 /// # Errors
 /// When the baseline scene cannot be read; runs that fail are kept with their message.
 pub fn run() -> Result<Vec<Scan>> {
-    let geometry = Geometry::of(&controlled(3, INTERVAL).scene()?)?;
+    let geometry = MechanismGeometry::of(&controlled(3, INTERVAL).scene()?)?;
     let mut scans = all(&geometry);
-    let mut unique: HashMap<String, Plan> = HashMap::new();
+    let mut unique: HashMap<String, RunPlan> = HashMap::new();
     for entry in scans.iter().flat_map(|s| &s.entries) {
         unique
             .entry(key(&entry.plan))
             .or_insert_with(|| entry.plan.clone());
     }
-    let mut plans: Vec<(String, Plan)> = unique.into_iter().collect();
+    let mut plans: Vec<(String, RunPlan)> = unique.into_iter().collect();
     // the longest first, so that no core is left with one of them at the end
     plans.sort_by_key(|(key, plan)| (Reverse(plan.effort()), key.clone()));
-    let run = |(key, plan): &(String, Plan)| (key.clone(), measure(plan));
+    let run = |(key, plan): &(String, RunPlan)| (key.clone(), measure(plan));
     let outcomes: HashMap<_, _> = each(&plans, run).into_iter().collect();
     for entry in scans.iter_mut().flat_map(|s| &mut s.entries) {
         entry.outcome = outcomes[&key(&entry.plan)].clone();
@@ -105,12 +105,12 @@ pub fn run() -> Result<Vec<Scan>> {
     Ok(scans)
 }
 
-fn measure(plan: &Plan) -> Result<Values, String> {
+fn measure(plan: &RunPlan) -> Result<Values, String> {
     plan.run()
         .and_then(|recording| Values::of(&recording))
         .map_err(|error| causes(&error))
 }
 
-fn key(plan: &Plan) -> String {
+fn key(plan: &RunPlan) -> String {
     format!("{plan:?}")
 }

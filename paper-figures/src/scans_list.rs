@@ -1,9 +1,9 @@
 //! The list of parameter scans, one at a time around the printed and assumed values.
 
 use crate::campaign::controlled;
-use crate::kinematics::Geometry;
-use crate::runs::{Pace, Plan};
-use crate::scans::{Entry, Scan};
+use crate::kinematics::MechanismGeometry;
+use crate::runs::{RunPace, RunPlan};
+use crate::scans::{Scan, ScanEntry};
 use numbers::{digits, si};
 use plot::Axis;
 
@@ -19,15 +19,15 @@ fn entries(
     values: &[(f64, String)],
     base: f64,
     change: impl Fn(f64) -> Vec<String>,
-) -> Vec<Entry> {
+) -> Vec<ScanEntry> {
     let mut entries = Vec::new();
     for &case in cases {
         for (value, label) in values {
-            entries.push(Entry {
+            entries.push(ScanEntry {
                 label: label.clone(),
                 at: *value,
                 baseline: *value == base,
-                plan: Plan {
+                plan: RunPlan {
                     overrides: change(*value),
                     ..controlled(case, INTERVAL)
                 },
@@ -39,7 +39,7 @@ fn entries(
 }
 
 /// All scans, their runs not yet made.
-pub fn all(geometry: &Geometry) -> Vec<Scan> {
+pub fn all(geometry: &MechanismGeometry) -> Vec<Scan> {
     let with = |values: &[f64], unit: &str| {
         values
             .iter()
@@ -163,13 +163,13 @@ pub fn all(geometry: &Geometry) -> Vec<Scan> {
 }
 
 /// The step changes nothing else, so its plans carry no override.
-fn steps() -> Vec<Entry> {
-    let step = |case, h: f64| Entry {
+fn steps() -> Vec<ScanEntry> {
+    let step = |case, h: f64| ScanEntry {
         label: si(h, "s"),
         at: h,
         baseline: false,
-        plan: Plan {
-            pace: Pace::bathe(h),
+        plan: RunPlan {
+            pace: RunPace::bathe(h),
             ..controlled(case, INTERVAL)
         },
         outcome: Err("not run".into()),
@@ -181,15 +181,15 @@ fn steps() -> Vec<Entry> {
 }
 
 /// Readings of "0.4 m" and of the elbow branch.
-fn readings(printed: &Geometry) -> Vec<Entry> {
+fn readings(printed: &MechanismGeometry) -> Vec<ScanEntry> {
     let flipped = |legs: [f64; 3]| {
         let elbow = std::array::from_fn(|i| printed.elbow[i] * legs[i]);
-        Geometry {
+        MechanismGeometry {
             elbow,
             ..printed.clone()
         }
     };
-    let side = Geometry {
+    let side = MechanismGeometry {
         base: printed.base.map(|p| p.map(|v| v / 3f64.sqrt())),
         ..printed.clone()
     };

@@ -5,8 +5,8 @@ use crate::fig05::CLAIMED;
 use crate::figures::case_color;
 use crate::interval::OF_THREE;
 use crate::numbers::Numbers;
-use crate::record::Record;
-use crate::scans::{Entry, Scan, Values};
+use crate::record::EnsembleRecord;
+use crate::scans::{Scan, ScanEntry, Values};
 use crate::warned::reported;
 use numbers::{digits, percent, si};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// What a panel shows: title, axis, main and secondary value.
-struct Quantity {
+struct ScanQuantity {
     title: &'static str,
     label: &'static str,
     unit: &'static str,
@@ -23,8 +23,8 @@ struct Quantity {
     second: fn(&Values) -> Option<f64>,
 }
 
-const QUANTITIES: [Quantity; 4] = [
-    Quantity {
+const QUANTITIES: [ScanQuantity; 4] = [
+    ScanQuantity {
         title: "Displacement error",
         label: "|eₓ|: largest, rms",
         unit: "mm",
@@ -32,7 +32,7 @@ const QUANTITIES: [Quantity; 4] = [
         main: |v| Some(v.error_peak),
         second: |v| Some(v.error_rms),
     },
-    Quantity {
+    ScanQuantity {
         title: "Acceleration",
         label: "ẍ: peak, rms deviation",
         unit: "m/s²",
@@ -40,7 +40,7 @@ const QUANTITIES: [Quantity; 4] = [
         main: |v| Some(v.acceleration_peak),
         second: |v| Some(v.deviation_rms),
     },
-    Quantity {
+    ScanQuantity {
         title: "Force in joint B1",
         label: "Force: peak, mean",
         unit: "N",
@@ -48,7 +48,7 @@ const QUANTITIES: [Quantity; 4] = [
         main: |v| Some(v.force_peak),
         second: |v| Some(v.force_mean),
     },
-    Quantity {
+    ScanQuantity {
         title: "Contact of joint B1",
         label: "Time in contact",
         unit: "%",
@@ -118,7 +118,7 @@ fn made_with(scan: &Scan) -> String {
 }
 
 /// How far one run of a chaotic case scatters, from the ensembles of the record.
-fn scatter(record: &Record) -> String {
+fn scatter(record: &EnsembleRecord) -> String {
     let mut text = format!(
         "No verdict of the reproduction rests on these single runs. By how much they scatter at the printed and assumed values \
          is known from the ensembles, {OF_THREE} runs a case that differ in the start by at most 1e-10 m. Two runs of the same \
@@ -142,7 +142,7 @@ fn scatter(record: &Record) -> String {
     text + "\n"
 }
 
-fn panel(scan: &Scan, quantity: &Quantity, letter: &str) -> Panel {
+fn panel(scan: &Scan, quantity: &ScanQuantity, letter: &str) -> Panel {
     let mut marks = Vec::new();
     for case in [2, 3, 4] {
         let of = |read: fn(&Values) -> Option<f64>| -> (Vec<f64>, Vec<f64>) {
@@ -198,12 +198,12 @@ fn size(case: u32) -> u32 {
     if case == 3 { 9 } else { 6 }
 }
 
-fn warns(entry: &Entry) -> bool {
+fn warns(entry: &ScanEntry) -> bool {
     entry.outcome.as_ref().is_ok_and(|v| !v.warnings.is_empty())
 }
 
 /// The page.
-pub fn page(scans: &[Scan], record: &Record, numbers: &mut Numbers) -> String {
+pub fn page(scans: &[Scan], record: &EnsembleRecord, numbers: &mut Numbers) -> String {
     let mut page = format!(
         "# Parameter scans\n\n{}\n\
          `cargo run --release -p paper-figures -- scans` writes this page. One parameter at a time is varied about its printed \
@@ -272,7 +272,7 @@ fn cells(v: &Values) -> String {
     )
 }
 
-fn keep(scan: &Scan, entry: &Entry, numbers: &mut Numbers) {
+fn keep(scan: &Scan, entry: &ScanEntry, numbers: &mut Numbers) {
     let name = format!("{}.case{}.{}", scan.slug, entry.plan.case, entry.label);
     match &entry.outcome {
         Err(message) => numbers.put_value(format!("{name}.failed"), message.as_str().into()),
@@ -323,7 +323,7 @@ mod tests {
     #[test]
     fn a_failed_run_is_shown_with_its_message() {
         let outcome = Err("no convergence | t = 0.1 s".into());
-        let entries = vec![Entry {
+        let entries = vec![ScanEntry {
             label: "1".into(),
             at: 1.0,
             baseline: false,

@@ -1,7 +1,7 @@
 //! One statement of the paper and what decides it.
 
-use crate::interval::Verdict;
-use crate::warned::Source;
+use crate::interval::CriterionVerdict;
+use crate::warned::WarningSource;
 use std::fmt::Write;
 
 /// What a verdict rests on.
@@ -39,7 +39,7 @@ pub struct Statement {
     /// The condition under which the statement counts as holding.
     pub criterion: &'static str,
     /// How that condition comes out.
-    pub verdict: Verdict,
+    pub verdict: CriterionVerdict,
     /// What the verdict rests on.
     pub basis: Basis,
     /// Measured over claimed, where the paper gives a number.
@@ -47,23 +47,23 @@ pub struct Statement {
     /// What is behind it.
     pub why: String,
     /// The runs it comes from, with their warnings.
-    pub sources: Vec<Source>,
+    pub sources: Vec<WarningSource>,
 }
 
 impl Statement {
     /// The verdict in words.
     pub fn verdict(&self) -> &'static str {
         match self.verdict {
-            Verdict::Holds => "holds",
-            Verdict::Fails => "**does not hold**",
-            Verdict::Undecided => "undecided",
+            CriterionVerdict::Holds => "holds",
+            CriterionVerdict::Fails => "**does not hold**",
+            CriterionVerdict::Undecided => "undecided",
         }
     }
 
     /// The verdict and what it rests on.
     pub fn decided(&self) -> String {
         match self.verdict {
-            Verdict::Undecided => "undecided".into(),
+            CriterionVerdict::Undecided => "undecided".into(),
             _ => format!("{}, {}", self.verdict(), self.basis.words()),
         }
     }
@@ -101,7 +101,7 @@ impl Statement {
 }
 
 /// The runs, each once, those without warnings together.
-fn from(sources: &[Source]) -> String {
+fn from(sources: &[WarningSource]) -> String {
     let mut reported: Vec<String> = Vec::new();
     let silent = sources.iter().filter(|s| s.warnings.is_empty());
     let mut names: Vec<&str> = silent.map(|s| s.name.as_str()).collect();
@@ -134,11 +134,11 @@ mod tests {
             says: "|e| is small",
             measured: "|e| = 1.".into(),
             criterion: "|e| < 2",
-            verdict: Verdict::Fails,
+            verdict: CriterionVerdict::Fails,
             basis: Basis::Measurement,
             factor: Some(0.5),
             why: "Because.".into(),
-            sources: vec![Source {
+            sources: vec![WarningSource {
                 name: "run 4".into(),
                 warnings: vec!["clamps: 2".into()],
             }],

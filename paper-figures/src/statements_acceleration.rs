@@ -1,7 +1,7 @@
 //! Statements about Fig. 6: the acceleration of the platform.
 
 use crate::evidence::{Evidence, statement};
-use crate::interval::{Interval, Verdict};
+use crate::interval::{CriterionVerdict, Interval};
 use crate::measures::{AFTER_ONSET, PEAKS};
 use crate::statement::Statement;
 use numbers::{digits, percent, si};
@@ -44,7 +44,7 @@ fn very_different(e: &Evidence) -> Statement {
             share[1].reported(percent)
         ),
         criterion: "above 25 % in cases 2 (finer step), 3 and 4",
-        verdict: Verdict::of(fine > 0.25).and(share[0].above(0.25)).and(share[1].above(0.25)),
+        verdict: CriterionVerdict::of(fine > 0.25).and(share[0].above(0.25)).and(share[1].above(0.25)),
         why: "A displacement of a micrometre at hundreds of hertz is an acceleration of metres per second squared.".into(),
         sources: e.all_cases(),
         ..statement("very different", "Sect. 6, Fig. 6", "The accelerations are very different from their ideal values.")
@@ -60,7 +60,7 @@ fn slightly_vibrated(e: &Evidence) -> Statement {
             percent(share[1])
         ),
         criterion: "between 1 % and 25 % at both steps",
-        verdict: Verdict::of(share.iter().all(|s| (0.01..=0.25).contains(s))),
+        verdict: CriterionVerdict::of(share.iter().all(|s| (0.01..=0.25).contains(s))),
         why: "The unstrained start excites this vibration; how much of it is left after one cycle depends on the step.".into(),
         sources: e.case_2(),
         ..statement("slightly", "Sect. 6, Fig. 6a", "Case 2: the acceleration is slightly vibrated.")

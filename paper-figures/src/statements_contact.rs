@@ -4,11 +4,11 @@ use crate::campaign::{DURATION, FROM};
 use crate::ensembles::{RETARDATIONS, damped_name};
 use crate::evidence::{Evidence, statement};
 use crate::fig09;
-use crate::interval::{Interval, Verdict};
+use crate::interval::{CriterionVerdict, Interval};
 use crate::measures::{PEAKS, SIMULTANEOUS};
-use crate::runs::Recording;
+use crate::runs::CaseRecording;
 use crate::statement::{Basis, Statement};
-use crate::warned::Source;
+use crate::warned::WarningSource;
 use numbers::{digits, percent, si};
 
 /// Cycles further apart than this fraction of their amplitude do not repeat.
@@ -44,7 +44,7 @@ fn acceleration(value: f64) -> String {
 
 fn same_phenomena(e: &Evidence) -> Statement {
     let mut text = Vec::new();
-    let mut verdict = Verdict::Holds;
+    let mut verdict = CriterionVerdict::Holds;
     let mut compare = |name: &str, words: &str, show: fn(f64) -> String| {
         let two = e.flexible.get(name);
         let three = e.loose().mean(name);
@@ -115,7 +115,7 @@ fn enlarged_forces(e: &Evidence) -> Statement {
             flexible[1].reported(digits)
         ),
         criterion: "above 1.5 times the forces of cases 1 and 2, in cases 3 and 4",
-        verdict: verdict.fold(Verdict::Holds, Verdict::and),
+        verdict: verdict.fold(CriterionVerdict::Holds, CriterionVerdict::and),
         why: "After a loss of contact, the stiff contact stops the returning journal in a fraction of a millisecond.".into(),
         sources: with_ideal(e),
         ..statement("enlarged", "Sect. 6, 7, Fig. 7", "The contact forces are enlarged by the clearance.")
@@ -123,7 +123,7 @@ fn enlarged_forces(e: &Evidence) -> Statement {
 }
 
 /// Run 1, the fine run of case 2, and the ensembles.
-fn with_ideal(e: &Evidence) -> Vec<Source> {
+fn with_ideal(e: &Evidence) -> Vec<WarningSource> {
     let mut sources = vec![e.c.ideal.source(), e.c.flexible.source()];
     sources.extend(e.ensembles());
     sources
@@ -146,7 +146,7 @@ fn service_life(e: &Evidence) -> Statement {
             flexible[1].reported(percent)
         ),
         criterion: "life ~ (cubic-mean load)⁻³, as for rolling bearings, is below 90 % of that of case 1 and of case 2, in cases 3 and 4",
-        verdict: verdict.fold(Verdict::Holds, Verdict::and),
+        verdict: verdict.fold(CriterionVerdict::Holds, CriterionVerdict::and),
         why: "Case 1 has no vibration; case 2 has the undamped vibration of its start. Wear and strength are not part of the model, so only the load spectrum can be compared.".into(),
         sources: with_ideal(e),
         ..statement("service life", "Sect. 1, 6, 7", "The enlarged contact forces decrease the service life of the components, or even lead to failure.")
@@ -162,7 +162,7 @@ fn sign_of_penetration(e: &Evidence) -> Statement {
             percent(share)
         ),
         criterion: "100 %",
-        verdict: Verdict::of(share == 1.0),
+        verdict: CriterionVerdict::of(share == 1.0),
         basis: Basis::Construction,
         why: "The contact law is evaluated for positive penetration only. The text writes \"passive\" for negative.".into(),
         sources: e.ensembles(),
@@ -189,7 +189,7 @@ fn mostly_in_contact(e: &Evidence) -> Statement {
     }
 }
 
-fn spread(e: &Evidence, r: &Recording) -> f64 {
+fn spread(e: &Evidence, r: &CaseRecording) -> f64 {
     fig09::spread(&fig09::section(e.c, r).1)
 }
 
@@ -218,7 +218,7 @@ fn periodic_flexible(e: &Evidence) -> Statement {
             si(RETARDATIONS[1], "s")
         ),
         criterion: "the distance is below 1 % of the amplitude at both steps",
-        verdict: Verdict::of(repetition.iter().all(|r| *r < REPEATS)),
+        verdict: CriterionVerdict::of(repetition.iter().all(|r| *r < REPEATS)),
         why: "The unstrained start excites an undamped vibration that is not commensurate with the period, so the motion becomes periodic only as numerical damping removes it. A quasi-static start, or structural damping, gives a periodic motion.".into(),
         sources,
         ..statement("periodic", "Sect. 6, 7, Fig. 9a", "Case 2 is a periodic motion; the mechanism with flexible links is a periodical system.")
@@ -264,12 +264,12 @@ fn chaotic(e: &Evidence) -> Statement {
         of(case)
             .iter()
             .map(|(_, x)| x.above(CHAOTIC))
-            .fold(Verdict::Holds, Verdict::and)
+            .fold(CriterionVerdict::Holds, CriterionVerdict::and)
     };
     let below = of(2)
         .iter()
         .map(|(_, x)| x.below(CHAOTIC))
-        .fold(Verdict::Holds, Verdict::and);
+        .fold(CriterionVerdict::Holds, CriterionVerdict::and);
     Statement {
         measured: format!(
             "largest Lyapunov exponent by Benettin's method: {}; {}; {}.",

@@ -3,9 +3,9 @@
 use crate::campaign::{DURATION, FROM};
 use crate::evidence::{Evidence, statement};
 use crate::fig05::CLAIMED;
-use crate::interval::Verdict;
+use crate::interval::CriterionVerdict;
 use crate::record::{BOTH, TIGHTER};
-use crate::runs::Recording;
+use crate::runs::CaseRecording;
 use crate::signal::{peak, smooth};
 use crate::statement::Statement;
 use numbers::{digits, percent, si};
@@ -41,7 +41,7 @@ fn error_flexible(e: &Evidence) -> Statement {
             e.c.flexible_coarse.plan.pace.label()
         ),
         criterion: "between 0.1 and 0.4 mm",
-        verdict: Verdict::of((NEAR.0..=NEAR.1).contains(&fine)),
+        verdict: CriterionVerdict::of((NEAR.0..=NEAR.1).contains(&fine)),
         factor: Some(fine / CLAIMED),
         why: "Pin-ended links move the platform only by changing length, and they are too stiff for that: see the second argument below.".into(),
         sources: e.case_2(),
@@ -51,7 +51,7 @@ fn error_flexible(e: &Evidence) -> Statement {
 
 fn stiffness_matters(e: &Evidence) -> Statement {
     // means over 20 ms: the answer without the start-up vibration
-    let slow = |r: &Recording| {
+    let slow = |r: &CaseRecording| {
         let width = (0.02 / r.plan.interval) as usize;
         peak(&smooth(r.between("error.x", FROM, DURATION).1, width))
     };
@@ -64,7 +64,7 @@ fn stiffness_matters(e: &Evidence) -> Statement {
             digits(soft / stiff)
         ),
         criterion: "the ratio is between 5 and 20",
-        verdict: Verdict::of((5.0..=20.0).contains(&(soft / stiff))),
+        verdict: CriterionVerdict::of((5.0..=20.0).contains(&(soft / stiff))),
         why: "Under a load that hardly changes, the deformation is proportional to 1/E.".into(),
         sources: vec![e.c.flexible_coarse.source(), e.c.stiffer.source()],
         ..statement(

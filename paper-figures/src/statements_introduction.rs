@@ -1,12 +1,12 @@
 //! Statements of the abstract and of section 1: what flexibility and clearance do, and what methods are good for.
 
 use crate::evidence::{Evidence, statement};
-use crate::interval::Verdict;
+use crate::interval::CriterionVerdict;
 use crate::methods::{HORIZON, explicit};
-use crate::record::{Long, Work};
+use crate::record::{Long, MethodWork};
 use crate::runs::words;
 use crate::statement::Statement;
-use crate::warned::Source;
+use crate::warned::WarningSource;
 use numbers::{digits, percent, si};
 
 /// Errors at which work is compared, as parts of the largest error of the platform.
@@ -60,7 +60,7 @@ fn flexibility_matters(e: &Evidence) -> Statement {
             peak.reported(digits)
         ),
         criterion: "both change by more than 10 %",
-        verdict: Verdict::of(share > 0.1).and(peak.within(0.9, 1.1).not()),
+        verdict: CriterionVerdict::of(share > 0.1).and(peak.within(0.9, 1.1).not()),
         why: "The change of the acceleration is the undamped vibration of the start.".into(),
         sources: e.all_cases(),
         ..statement(
@@ -82,7 +82,7 @@ fn vibration(e: &Evidence) -> Statement {
             share[1].reported(percent)
         ),
         criterion: "above 5 % in cases 2, 3 and 4",
-        verdict: Verdict::of(two > 0.05)
+        verdict: CriterionVerdict::of(two > 0.05)
             .and(share[0].above(0.05))
             .and(share[1].above(0.05)),
         why: "Noise is not part of the model.".into(),
@@ -103,7 +103,7 @@ fn high_modes(e: &Evidence) -> Statement {
             si(frequency, "Hz")
         ),
         criterion: "above 50 Hz, fifty times the frequency of the motion",
-        verdict: Verdict::of(frequency > 50.0),
+        verdict: CriterionVerdict::of(frequency > 50.0),
         why: "The platform vibrates on the stiffness of the links.".into(),
         sources: vec![e.c.flexible.source()],
         ..statement(
@@ -116,10 +116,15 @@ fn high_modes(e: &Evidence) -> Statement {
 
 /// The least work of a class of methods that gives an error below a part of the largest error, with this step and with
 /// all shorter ones of the same method: a coarse step can be right by accident.
-fn cheapest<'a>(e: &'a Evidence, case: u32, is_explicit: bool, level: f64) -> Option<&'a Work> {
-    let runs: Vec<&Work> = e.e.work.iter().filter(|w| w.case == case).collect();
-    let good = |w: &Work| w.error.is_some_and(|error| error <= level * w.size);
-    let reached = |w: &&&Work| {
+fn cheapest<'a>(
+    e: &'a Evidence,
+    case: u32,
+    is_explicit: bool,
+    level: f64,
+) -> Option<&'a MethodWork> {
+    let runs: Vec<&MethodWork> = e.e.work.iter().filter(|w| w.case == case).collect();
+    let good = |w: &MethodWork| w.error.is_some_and(|error| error <= level * w.size);
+    let reached = |w: &&&MethodWork| {
         let finer = runs
             .iter()
             .filter(|f| f.method == w.method && f.step <= w.step);
@@ -132,7 +137,7 @@ fn cheapest<'a>(e: &'a Evidence, case: u32, is_explicit: bool, level: f64) -> Op
 }
 
 /// Explicit over implicit work at every level of both cases, in words, and the runs.
-fn work(e: &Evidence) -> (Vec<f64>, String, Vec<Source>) {
+fn work(e: &Evidence) -> (Vec<f64>, String, Vec<WarningSource>) {
     let (mut ratios, mut text, mut sources) = (Vec::new(), Vec::new(), Vec::new());
     for case in [2, 4] {
         for level in LEVELS {
@@ -146,7 +151,7 @@ fn work(e: &Evidence) -> (Vec<f64>, String, Vec<Source>) {
             };
             let ratio = one.evaluations as f64 / other.evaluations as f64;
             ratios.push(ratio);
-            let reported = |w: &Work| {
+            let reported = |w: &MethodWork| {
                 format!(
                     "{} evaluations by {} with h = {}",
                     w.evaluations,
@@ -167,8 +172,8 @@ fn work(e: &Evidence) -> (Vec<f64>, String, Vec<Source>) {
     (ratios, text.join("; "), sources)
 }
 
-fn source(w: &Work) -> Source {
-    Source {
+fn source(w: &MethodWork) -> WarningSource {
+    WarningSource {
         name: format!(
             "case {}, {} with h = {}",
             w.case,
@@ -187,7 +192,7 @@ fn explicit_inefficient(e: &Evidence) -> Statement {
             si(HORIZON, "s")
         ),
         criterion: "\"can be\" requires one case and accuracy in which the best explicit method takes more than twice the work of the best implicit one",
-        verdict: Verdict::of(ratios.iter().any(|r| *r > MUCH)),
+        verdict: CriterionVerdict::of(ratios.iter().any(|r| *r > MUCH)),
         why: "The tangents and factorisations of the implicit methods are not counted, so the comparison favours them. ACCURACY.md compares processor times.".into(),
         sources,
         ..statement("explicit", "Sect. 1", "For such a system explicit integration methods can be very inefficient.")
@@ -195,15 +200,15 @@ fn explicit_inefficient(e: &Evidence) -> Statement {
 }
 
 fn explicit_fails(e: &Evidence) -> Statement {
-    let useless = |w: &Work| w.error.is_none_or(|error| error > w.size);
-    let explicit_runs: Vec<&Work> = e.e.work.iter().filter(|w| explicit(&w.method)).collect();
+    let useless = |w: &MethodWork| w.error.is_none_or(|error| error > w.size);
+    let explicit_runs: Vec<&MethodWork> = e.e.work.iter().filter(|w| explicit(&w.method)).collect();
     let steps = explicit_runs.iter().filter(|w| useless(w));
-    let bathe_works = |w: &Work| {
-        let same = |b: &&Work| b.method == "bathe" && b.case == w.case && b.step == w.step;
+    let bathe_works = |w: &MethodWork| {
+        let same = |b: &&MethodWork| b.method == "bathe" && b.case == w.case && b.step == w.step;
         let bathe = e.e.work.iter().find(same);
         bathe.is_some_and(|b| b.error.is_some_and(|error| error < 0.1 * b.size))
     };
-    let failed: Vec<&Work> = steps.copied().filter(|w| bathe_works(w)).collect();
+    let failed: Vec<&MethodWork> = steps.copied().filter(|w| bathe_works(w)).collect();
     let reported: Vec<String> = failed.iter().map(|w| source(w).name).collect();
     Statement {
         measured: if reported.is_empty() {
@@ -215,7 +220,7 @@ fn explicit_fails(e: &Evidence) -> Statement {
             )
         },
         criterion: "there is such a run",
-        verdict: Verdict::of(!failed.is_empty()),
+        verdict: CriterionVerdict::of(!failed.is_empty()),
         why: "The step of an explicit method is bounded by the highest frequency of the model."
             .into(),
         sources: failed.iter().map(|w| source(w)).collect(),
@@ -236,7 +241,7 @@ fn implicit_efficient(e: &Evidence) -> Statement {
             reported.join(", ")
         ),
         criterion: "above 2 in both cases at both accuracies",
-        verdict: Verdict::of(ratios.len() == 4 && ratios.iter().all(|r| *r > MUCH)),
+        verdict: CriterionVerdict::of(ratios.len() == 4 && ratios.iter().all(|r| *r > MUCH)),
         why: "Stiff links and short impacts require steps, for accuracy, at which explicit methods are stable too.".into(),
         sources,
         ..statement("implicit", "Sect. 1", "For such a stiff system implicit integration methods are much more efficient than explicit methods.")
@@ -264,7 +269,7 @@ fn others_unstable(e: &Evidence) -> Statement {
     let stays = others
         .iter()
         .map(|l| l.stays(GROWN))
-        .fold(Verdict::Holds, Verdict::and);
+        .fold(CriterionVerdict::Holds, CriterionVerdict::and);
     Statement {
         measured: format!(
             "rms deviation of the acceleration in the last cycle over that in the second, in runs of 34 cycles of case 2 and 10 cycles of case 4: {}. The trapezoidal rule is Newmark's method with constant average acceleration; generalised-α and HHT have a spectral radius of 0.8.",
@@ -288,7 +293,7 @@ fn bathe_stable(e: &Evidence) -> Statement {
     Statement {
         measured: format!("the same for Bathe's method: {}.", grown(&bathe)),
         criterion: "no run stops, and no vibration grows by more than half",
-        verdict: bathe.iter().map(|l| l.stays(GROWN)).fold(Verdict::Holds, Verdict::and),
+        verdict: bathe.iter().map(|l| l.stays(GROWN)).fold(CriterionVerdict::Holds, CriterionVerdict::and),
         why: "A coarse step damps the vibration away and does not resolve the contacts: see the warnings.".into(),
         sources: bathe.iter().map(|l| l.source()).collect(),
         ..statement("bathe stable", "Sect. 1", "Bathe's two-step method overcomes this limitation for long time durations.")

@@ -1,7 +1,7 @@
 //! Statements of sections 2 to 5: elements, coordinates, contact, integration.
 
 use crate::evidence::{Evidence, statement};
-use crate::interval::Verdict;
+use crate::interval::CriterionVerdict;
 use crate::statement::{Basis, Statement};
 use looselink::body::{Body, FlexibleLink, RigidBody};
 use looselink::link::{ElasticRoute, GaussCable, LiteralCable};
@@ -36,7 +36,7 @@ fn coordinates(e: &Evidence) -> Statement {
     Statement {
         measured: format!("the scene of case 4 has {count}; separate coordinates for the cranks would add 12."),
         criterion: "the count is 27",
-        verdict: Verdict::of(count == 27),
+        verdict: CriterionVerdict::of(count == 27),
         basis: Basis::Construction,
         why: "A cubic element has 4 coordinates per node, so one element per link gives 3 × 8; the platform has 3. The cranks have none, because their pins are known functions of time.".into(),
         ..statement("coordinates", "Abstract, Sect. 3, 7", "Natural coordinates for rigid and ANCF for flexible links lower the global coordinates: 27 in all, 24 of the flexible links and 3 of the platform.")
@@ -52,7 +52,7 @@ fn constant_mass(e: &Evidence) -> Statement {
             "the mass matrices of the {elements} elements of case 4 are integrated once, when the scene is compiled, and do not depend on the coordinates."
         ),
         criterion: "the integral of eq. 10 does not contain q",
-        verdict: Verdict::Holds,
+        verdict: CriterionVerdict::Holds,
         basis: Basis::Construction,
         why: "r = S q is linear in q, so the integrand contains only S.".into(),
         ..statement(
@@ -110,7 +110,7 @@ fn invariants_exact() -> Statement {
         ),
         // rounding of the 64 terms of a sum: about a hundred units
         criterion: "below 1e-14, a hundred rounding errors",
-        verdict: Verdict::of(worst < 1e-14),
+        verdict: CriterionVerdict::of(worst < 1e-14),
         basis: Basis::Construction,
         why: "Both evaluate the same integrals of polynomials exactly. Eq. 11 prints U_l twice; the second is the bending energy U_t.".into(),
         ..statement("invariants", "Sect. 2.2, eqs. 13-15", "The invariant matrices give the elastic force and its tangent.")
@@ -127,7 +127,7 @@ fn invariants_efficient(e: &Evidence) -> Statement {
             t.day
         ),
         criterion: "the invariant matrices as printed take less time than quadrature",
-        verdict: Verdict::of(t.literal < t.gauss),
+        verdict: CriterionVerdict::of(t.literal < t.gauss),
         why: "Eq. 14 needs 64 quadratic forms with 8 × 8 matrices, which repeat the same 35 numbers. The method is efficient once this symmetry is used.".into(),
         ..statement("efficiency", "Sect. 2.2", "The invariant matrix method improves the computation efficiency.")
     }
@@ -149,7 +149,7 @@ fn tangent_dominates(e: &Evidence) -> Statement {
             t.day
         ),
         criterion: "more than half of the time, by the equations as printed",
-        verdict: Verdict::of(literal > 0.5),
+        verdict: CriterionVerdict::of(literal > 0.5),
         why: "It depends on the method of evaluation: with the reduced tensor the rest of the step takes more time.".into(),
         ..statement("most time", "Sect. 2.2, eq. 15", "The derivative of the elastic force will be the most time consuming part in simulation.")
     }
@@ -163,7 +163,7 @@ fn no_constraints(e: &Evidence) -> Statement {
             "case 4 has {unknowns} unknown coordinates and {multipliers} multipliers."
         ),
         criterion: "no multiplier",
-        verdict: Verdict::of(multipliers == 0),
+        verdict: CriterionVerdict::of(multipliers == 0),
         basis: Basis::Construction,
         why: "The driven pins are known functions of time, and joints with clearance are forces."
             .into(),
@@ -191,7 +191,7 @@ fn located(e: &Evidence) -> Statement {
             trials[1].reported(digits)
         ),
         criterion: "all are located",
-        verdict: Verdict::of(missed == 0.0),
+        verdict: CriterionVerdict::of(missed == 0.0),
         why: "Bracketed Newton iteration for zero penetration as a function of the step length."
             .into(),
         sources: e.ensembles(),
@@ -238,7 +238,7 @@ fn restitution(e: &Evidence) -> Statement {
             digits(delivered)
         ),
         criterion: "within 1 % of each other",
-        verdict: Verdict::of((delivered / typed - 1.0).abs() < 0.01),
+        verdict: CriterionVerdict::of((delivered / typed - 1.0).abs() < 0.01),
         basis: Basis::Assumption,
         why: "The paper does not give c_e; 0.9 is assumed. The law is an approximation for small losses: c_e = 0.5 gives 0.7252.".into(),
         ..statement("restitution", "Sect. 4.2, eq. 24", "c_e is the restitution coefficient.")
@@ -264,7 +264,7 @@ fn two_sources(e: &Evidence) -> Statement {
             reported.join(", ")
         ),
         criterion: "contacts alone excite more than 50 Hz, and a finer mesh changes the frequency by more than 10 %",
-        verdict: impacts.above(50.0).and(Verdict::of(change > 0.1)),
+        verdict: impacts.above(50.0).and(CriterionVerdict::of(change > 0.1)),
         why: "A finer mesh adds bending modes, which hardly move the platform.".into(),
         sources,
         ..statement(
@@ -281,7 +281,7 @@ fn bathe(e: &Evidence) -> Statement {
     Statement {
         measured: format!("the runs of the figures use this method with a first sub-step of {} h and reach {} s.", digits(gamma), crate::campaign::DURATION),
         criterion: "the first sub-step is h/2 and these runs reach the end",
-        verdict: Verdict::of(gamma == 0.5 && runs.iter().all(|r| r.t.last().is_some_and(|t| *t > crate::campaign::DURATION - r.plan.interval))),
+        verdict: CriterionVerdict::of(gamma == 0.5 && runs.iter().all(|r| r.t.last().is_some_and(|t| *t > crate::campaign::DURATION - r.plan.interval))),
         basis: Basis::Construction,
         why: "The paper prints no step. Without physical damping, the step determines how fast a vibration decays.".into(),
         sources: runs.map(|r| r.source()).to_vec(),

@@ -1,9 +1,9 @@
 //! Statements about the set-up: tables 1 and 2 and the start of section 6.
 
 use crate::evidence::{Evidence, statement};
-use crate::interval::Verdict;
+use crate::interval::CriterionVerdict;
 use crate::measures::Measures;
-use crate::runs::Recording;
+use crate::runs::CaseRecording;
 use crate::signal::peak;
 use crate::statement::{Basis, Statement};
 use looselink::body::{FlexibleLink, Link};
@@ -47,7 +47,7 @@ fn geometry(e: &Evidence) -> Statement {
     Statement {
         measured: format!("the scenes have the lengths {} m and a clearance of {}.", lengths.join(", "), si(read[4], "m")),
         criterion: "equal to the printed digits",
-        verdict: Verdict::of(holds),
+        verdict: CriterionVerdict::of(holds),
         basis: Basis::Construction,
         why: "Density, bearing radius, contact material, restitution, friction and elbow branch are not printed. They are assumed and marked in the scenes.".into(),
         ..statement("geometry", "Tables 1, 2", "Driving link 0.245 m, passive link 0.242 m, moving stage 0.112 m, fixed stage 0.4 m (circumradii), clearance 0.02 mm.")
@@ -84,7 +84,7 @@ fn sections(e: &Evidence) -> Statement {
             digits(bending)
         ),
         criterion: "those of the printed rectangles; the passive links bend about the axis of the 0.03 m side",
-        verdict: Verdict::of(holds),
+        verdict: CriterionVerdict::of(holds),
         basis: Basis::Construction,
         why: "The width is assumed to lie in the plane of motion, the height normal to it. The mass of the platform is that of a solid triangular plate, which is assumed.".into(),
         ..statement("sections", "Table 1", "Sections: driving link 0.015 m × 0.03 m, passive link 0.005 m × 0.03 m; moving stage 0.01 m thick.")
@@ -93,7 +93,7 @@ fn sections(e: &Evidence) -> Statement {
 
 fn cases(e: &Evidence) -> Statement {
     let c = e.c;
-    let read = |r: &Recording| {
+    let read = |r: &CaseRecording| {
         let link = r.scene.body("link1").map(|b| &r.scene.bodies[b].kind);
         let flexible = link.is_some_and(|link| !link.is_rigid());
         let loose = r.scene.joints.iter().filter(|j| j.contact().is_some());
@@ -109,7 +109,7 @@ fn cases(e: &Evidence) -> Statement {
     Statement {
         measured: format!("the scenes have: {}.", read.map(words).join("; ")),
         criterion: "as stated",
-        verdict: Verdict::of(read == [(false, 0), (true, 0), (false, 6), (true, 6)]),
+        verdict: CriterionVerdict::of(read == [(false, 0), (true, 0), (false, 6), (true, 6)]),
         basis: Basis::Construction,
         why: "Cranks and platform are rigid in all cases; the drives have no backlash.".into(),
         ..statement(
@@ -132,7 +132,7 @@ fn normal_clearance(e: &Evidence) -> Statement {
             percent(relative)
         ),
         criterion: "between 0.05 % and 0.3 %, the usual range of plain bearings",
-        verdict: Verdict::of((0.0005..=0.003).contains(&relative)),
+        verdict: CriterionVerdict::of((0.0005..=0.003).contains(&relative)),
         basis: Basis::Assumption,
         why: format!(
             "The paper prints no bearing radius; {} is assumed.",
@@ -157,7 +157,7 @@ fn modulus(e: &Evidence) -> Statement {
             si(ALUMINIUM, "Pa")
         ),
         criterion: "within 20 % of the modulus of aluminium",
-        verdict: Verdict::of((modulus / ALUMINIUM - 1.0).abs() < 0.2),
+        verdict: CriterionVerdict::of((modulus / ALUMINIUM - 1.0).abs() < 0.2),
         basis: Basis::Construction,
         why: format!(
             "The printed value is used, although aluminium is {} times as stiff. It may be a misprint or a deliberately soft link.",
@@ -182,7 +182,7 @@ fn trajectory(e: &Evidence) -> Statement {
         ),
         // solved positions: Newton tolerance of a velocity times a step, far below any clearance
         criterion: "within 1 nm",
-        verdict: Verdict::of(error < 1e-9 && e.c.geometry.radius == 0.1),
+        verdict: CriterionVerdict::of(error < 1e-9 && e.c.geometry.radius == 0.1),
         basis: Basis::Construction,
         why: "Case 1 has no degree of freedom: its motion follows from the inverse kinematics."
             .into(),
@@ -200,7 +200,7 @@ fn concentric_start(e: &Evidence) -> Statement {
     Statement {
         measured: format!("largest eccentricity at the start of case 4: {}.", si(largest, "m")),
         criterion: "below a millionth of the clearance",
-        verdict: Verdict::of(largest < 1e-6 * e.c.geometry.clearance),
+        verdict: CriterionVerdict::of(largest < 1e-6 * e.c.geometry.clearance),
         basis: Basis::Construction,
         why: "The normal of eq. 20 is undefined at the centre; no contact law is evaluated before the gap closes.".into(),
         sources: vec![e.c.both.source()],
@@ -216,7 +216,7 @@ fn ideal_velocities(e: &Evidence) -> Statement {
     Statement {
         measured: format!("the platform of case 4 starts within {} of the velocity of the ideal mechanism.", si(apart, "m/s")),
         criterion: "within 1 nm/s",
-        verdict: Verdict::of(apart < 1e-9),
+        verdict: CriterionVerdict::of(apart < 1e-9),
         basis: Basis::Construction,
         why: "Positions and velocities at t = 0 are those of the ideal mechanism; its accelerations are not, because the links are unstrained and the joints open.".into(),
         sources: vec![e.c.both.source()],
@@ -233,7 +233,7 @@ fn steady(e: &Evidence) -> Statement {
             digits(settling[1])
         ),
         criterion: "below 0.1 at both steps",
-        verdict: Verdict::of(settling.iter().all(|s| *s < 0.1)),
+        verdict: CriterionVerdict::of(settling.iter().all(|s| *s < 0.1)),
         why: "The links start unstrained and the model has no damping. Only the integrator damps, more with a coarser step, so the step decides whether the motion becomes steady.".into(),
         sources: e.case_2(),
         ..statement("steady", "Sect. 6", "Results are taken for two full cycles after the system runs steadily.")

@@ -1,8 +1,8 @@
 //! Times the routes to the elastic force and a step, for the statements that are about time.
 
 use crate::methods::evaluations;
-use crate::record::Timings;
-use crate::runs::{Pace, Plan};
+use crate::record::KernelTimings;
+use crate::runs::{RunPace, RunPlan};
 use looselink::link::{AncfCable, ElasticRoute, GaussCable, LiteralCable};
 use miette::Result;
 use std::hint::black_box;
@@ -19,9 +19,9 @@ const CALLS: usize = 20_000;
 ///
 /// # Errors
 /// When the run fails.
-pub fn run() -> Result<Timings> {
+pub fn run() -> Result<KernelTimings> {
     let (l, ea, ei) = LINK;
-    let plan = Plan::new(2, Pace::bathe(1e-5), 1e-3, 0.05);
+    let plan = RunPlan::new(2, RunPace::bathe(1e-5), 1e-3, 0.05);
     let mut step = f64::INFINITY;
     let mut evaluations_a_step = 0.0;
     for _ in 0..TIMES {
@@ -31,7 +31,7 @@ pub fn run() -> Result<Timings> {
         step = step.min(start.elapsed().as_secs_f64() / steps);
         evaluations_a_step = evaluations(&done) as f64 / steps;
     }
-    Ok(Timings {
+    Ok(KernelTimings {
         day: today(),
         literal: call(&LiteralCable::new(l, ea, ei)),
         gauss: call(&GaussCable::new(l, ea, ei)),

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 /// A run, or a group of runs that are alike, and what it warns of.
 #[derive(Debug, Clone)]
-pub struct Source {
+pub struct WarningSource {
     /// How the report calls it, such as `run 4` or `ensemble A`.
     pub name: String,
     /// Its warnings.
@@ -15,14 +15,14 @@ pub struct Source {
 /// The warnings of several runs, each kind once: every number from its least to its largest, a name with how many others
 /// stand in its place, and how many runs have it.
 pub fn merged(runs: &[&[String]]) -> Vec<String> {
-    let mut kinds: Vec<(Vec<String>, Kind)> = Vec::new();
+    let mut kinds: Vec<(Vec<String>, WarningKind)> = Vec::new();
     for (run, warnings) in runs.iter().enumerate() {
         for warning in warnings.iter() {
             let (words, values) = split(warning);
             let kind = match kinds.iter().position(|(known, _)| *known == words) {
                 Some(known) => known,
                 None => {
-                    kinds.push((words, Kind::default()));
+                    kinds.push((words, WarningKind::default()));
                     kinds.len() - 1
                 }
             };
@@ -47,7 +47,7 @@ pub fn merged(runs: &[&[String]]) -> Vec<String> {
 
 /// Warnings with the same words.
 #[derive(Default)]
-struct Kind {
+struct WarningKind {
     /// The runs that have one.
     runs: BTreeSet<usize>,
     /// The numbers and names of each warning.

@@ -13,8 +13,8 @@ use crate::kinematics::Kinematics;
 use crate::link::AncfCable;
 use crate::math::lu::Symbolic;
 use crate::model::{
-    Block, Border, Element, Mass, Model, PlacedBody, PlacedConstraint, PlacedContact, PlacedForce,
-    PlacedPoint,
+    Block, Border, Mass, Model, PlacedBody, PlacedConstraint, PlacedContact, PlacedElement,
+    PlacedForce, PlacedPoint,
 };
 use crate::scene::{Analysis, SceneError};
 use crate::system::Shape;
@@ -175,11 +175,13 @@ impl Places<'_> {
         Block::new(coordinates, self.tangent, self.unknowns)
     }
 
-    fn elements(&self, elements: Vec<(AncfCable, Vec<usize>)>) -> Vec<Element> {
-        let elements = elements.into_iter().map(|(kernel, coordinates)| Element {
-            kernel,
-            block: self.block(coordinates),
-        });
+    fn elements(&self, elements: Vec<(AncfCable, Vec<usize>)>) -> Vec<PlacedElement> {
+        let elements = elements
+            .into_iter()
+            .map(|(kernel, coordinates)| PlacedElement {
+                kernel,
+                block: self.block(coordinates),
+            });
         elements.collect()
     }
 

@@ -102,7 +102,7 @@ fn guess(
 }
 
 /// (point in the body, approximate position) of a point of a rigid body, from a sketch or from a known partner.
-fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) -> Option<Pair> {
+fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) -> Option<PointPair> {
     let local = c.bodies[point.body].points()[point.point].at;
     let of_joint = c.scene.joints.iter().enumerate().find_map(|(j, joint)| {
         let partner = joint.partner(point)?;
@@ -117,12 +117,12 @@ fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) ->
 }
 
 /// A point in the frame of its body and its approximate position.
-pub(super) type Pair = (Vec2, Vec2);
+pub(super) type PointPair = (Vec2, Vec2);
 
 /// The pose (x, y, theta) that carries points of a body closest to given positions.
-pub(super) fn fit(pairs: &[Pair]) -> [f64; 3] {
+pub(super) fn fit(pairs: &[PointPair]) -> [f64; 3] {
     let count = pairs.len() as f64;
-    let mean = |pick: fn(&Pair) -> Vec2| pairs.iter().map(pick).sum::<Vec2>() / count;
+    let mean = |pick: fn(&PointPair) -> Vec2| pairs.iter().map(pick).sum::<Vec2>() / count;
     let (local, global) = (mean(|p| p.0), mean(|p| p.1));
     let (mut sine, mut cosine) = (0.0, 0.0);
     for (s, r) in pairs {

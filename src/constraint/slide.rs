@@ -21,7 +21,7 @@ pub struct Slide {
 }
 
 /// u and e, and their rates.
-struct Geometry {
+struct SlideVectors {
     u: Vec2,
     e: Vec2,
     u_dot: Vec2,
@@ -39,9 +39,9 @@ impl Slide {
         (u, self.ends.vector(&at.q))
     }
 
-    fn geometry(&self, at: &State) -> Geometry {
+    fn vectors(&self, at: &State) -> SlideVectors {
         let (u, e) = self.at(at);
-        Geometry {
+        SlideVectors {
             u,
             e,
             u_dot: self.turned(self.spin.vector_rate(&at.q, &at.v)),
@@ -51,7 +51,7 @@ impl Slide {
 
     /// Distance along the line from the guide's point to the slider \[m\] and its rate \[m/s\].
     pub fn travel(&self, at: &State) -> [f64; 2] {
-        let Geometry { u, e, u_dot, e_dot } = self.geometry(at);
+        let SlideVectors { u, e, u_dot, e_dot } = self.vectors(at);
         // the slope of a flexible guide is longer than 1 where the link is stretched
         let (size, along) = (u.norm(), u.dot(&e));
         let stretching = u.dot(&u_dot) / (size * size);
@@ -114,12 +114,12 @@ impl Constraint for Slide {
     }
 
     fn velocity(&self, at: &State) -> [f64; ROWS] {
-        let Geometry { u, e, u_dot, e_dot } = self.geometry(at);
+        let SlideVectors { u, e, u_dot, e_dot } = self.vectors(at);
         [u_dot.perp(&e) + u.perp(&e_dot), 0.0]
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
-        let Geometry { u, e, u_dot, e_dot } = self.geometry(at);
+        let SlideVectors { u, e, u_dot, e_dot } = self.vectors(at);
         let u_ddot = self.turned(self.spin.vector_acceleration(&at.q, &at.v, &at.a));
         let e_ddot = self.ends.acceleration(&at.q, &at.v, &at.a);
         let sum = u_ddot.perp(&e) + 2.0 * u_dot.perp(&e_dot) + u.perp(&e_ddot);

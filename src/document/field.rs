@@ -1,7 +1,7 @@
 //! Typed access to a value: every getter names the field and its place when something is wrong.
 
 use super::error::{SceneError, Sources, Span, did_you_mean, quoted};
-use super::key::{Key, Range, Takes};
+use super::key::{Key, NumberRange, Takes};
 use super::tree::{Node, Value};
 use indexmap::IndexMap;
 
@@ -77,12 +77,12 @@ impl<'a> Field<'a> {
         };
         let range = match self.declared.map(|key| key.takes) {
             Some(Takes::Number { range, .. }) => range,
-            _ => Range::Any,
+            _ => NumberRange::Any,
         };
         match range {
             _ if !x.is_finite() => Err(self.must("be finite")),
-            Range::Positive if x <= 0.0 => Err(self.must("be greater than zero")),
-            Range::NonNegative if x < 0.0 => Err(self.must("not be negative")),
+            NumberRange::Positive if x <= 0.0 => Err(self.must("be greater than zero")),
+            NumberRange::NonNegative if x < 0.0 => Err(self.must("not be negative")),
             _ => Ok(x),
         }
     }

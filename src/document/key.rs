@@ -23,7 +23,7 @@ pub enum Takes {
         /// Its unit; empty where it has none.
         unit: &'static str,
         /// Where it must lie.
-        range: Range,
+        range: NumberRange,
     },
     /// A whole number from the first to the second.
     Whole(i64, i64),
@@ -66,7 +66,7 @@ pub enum Takes {
 
 /// Where a number must lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Range {
+pub enum NumberRange {
     /// Anywhere.
     Any,
     /// Above zero.
@@ -88,13 +88,13 @@ impl Key {
 
     /// A required number.
     pub const fn number(name: &'static str, unit: &'static str, purpose: &'static str) -> Key {
-        let range = Range::Any;
+        let range = NumberRange::Any;
         Key::new(name, Takes::Number { unit, range }, purpose)
     }
 
     /// A required number above zero.
     pub const fn positive(name: &'static str, unit: &'static str, purpose: &'static str) -> Key {
-        let range = Range::Positive;
+        let range = NumberRange::Positive;
         Key::new(name, Takes::Number { unit, range }, purpose)
     }
 
@@ -104,7 +104,7 @@ impl Key {
         unit: &'static str,
         purpose: &'static str,
     ) -> Key {
-        let range = Range::NonNegative;
+        let range = NumberRange::NonNegative;
         Key::new(name, Takes::Number { unit, range }, purpose)
     }
 

@@ -14,7 +14,7 @@ pub use error::{SceneError, Span};
 pub(crate) use error::{Sources, quoted};
 pub use field::Field;
 pub use fields::Fields;
-pub use key::{Key, Range, Takes};
+pub use key::{Key, NumberRange, Takes};
 pub use kind::Kind;
 pub use names::derived;
 pub(crate) use names::{RESERVED, check_name, named};

@@ -10,7 +10,7 @@ pub(crate) fn apply(sources: &Sources, root: &mut Node) -> Result<(), SceneError
 }
 
 /// One component of a path.
-struct Part {
+struct PathPart {
     name: String,
     span: Span,
 }
@@ -34,7 +34,7 @@ fn apply_one(sources: &Sources, source: usize, root: &mut Node) -> Result<(), Sc
 
     let (last, parents) = path.split_last().expect("a path has at least one part");
     let (mut node, mut above) = (root, String::new());
-    for Part { name, span } in parents {
+    for PathPart { name, span } in parents {
         if node.child(name).is_none() {
             let message = node.lacks(&above, name);
             let error = SceneError::new(sources, *span, message, "not in the scene");
@@ -83,7 +83,7 @@ fn unquoted(text: &str, wanted: char) -> impl Iterator<Item = usize> {
 }
 
 /// The dotted path in front of byte `equals`; a part that contains a dot is written in double quotes.
-fn parts(text: &str, equals: usize, source: usize) -> Vec<Part> {
+fn parts(text: &str, equals: usize, source: usize) -> Vec<PathPart> {
     let path = &text[..equals];
     let mut from = 0;
     let mut result = Vec::new();
@@ -91,7 +91,7 @@ fn parts(text: &str, equals: usize, source: usize) -> Vec<Part> {
         let written = &path[from..to];
         let name = written.trim();
         let start = from + written.len() - written.trim_start().len();
-        result.push(Part {
+        result.push(PathPart {
             name: name.trim_matches('"').to_owned(),
             span: Span::new(source, start..start + name.len()),
         });

@@ -88,7 +88,7 @@ impl Node {
 
 /// Reads the scene text (source 0).
 pub(crate) fn document(sources: &Sources) -> Result<Node, SceneError> {
-    let place = Place {
+    let place = TextPlace {
         sources,
         source: 0,
         offset: 0,
@@ -114,7 +114,7 @@ pub(super) fn value(
     offset: usize,
     text: &str,
 ) -> Result<Node, SceneError> {
-    let place = Place {
+    let place = TextPlace {
         sources,
         source,
         offset,
@@ -122,13 +122,13 @@ pub(super) fn value(
     place.value(DeValue::parse(text).map_err(|e| place.syntax(&e))?, 0)
 }
 
-struct Place<'a> {
+struct TextPlace<'a> {
     sources: &'a Sources,
     source: usize,
     offset: usize,
 }
 
-impl Place<'_> {
+impl TextPlace<'_> {
     fn span(&self, range: Range<usize>) -> Span {
         Span::new(
             self.source,

@@ -1,6 +1,6 @@
 //! `type = "maxwell"`: a spring and a damper in series between two points.
 
-use super::spring_damper::Line;
+use super::spring_damper::LineOfAction;
 use super::{Ends, ForceKind, ForceModel, SpringDamper, SpringDamperModel};
 use crate::body::PointRef;
 use crate::document::Key;
@@ -105,7 +105,7 @@ impl Maxwell {
     }
 
     /// N \[N\] and the line it acts along.
-    fn pull(&self, at: &State) -> (f64, Line) {
+    fn pull(&self, at: &State) -> (f64, LineOfAction) {
         let spring = self.at(at);
         let line = spring.line(at);
         (spring.pull(&line), line)

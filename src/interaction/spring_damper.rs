@@ -93,7 +93,7 @@ impl ForceModel for SpringDamperModel {
 const MEETING: f64 = 1e-9;
 
 /// The line between the ends.
-pub(super) struct Line {
+pub(super) struct LineOfAction {
     pub length: f64,
     /// Unit vector from one end to the other.
     n: Vec2,
@@ -113,7 +113,7 @@ impl SpringDamper {
         }
     }
 
-    pub(super) fn line(&self, at: &State) -> Line {
+    pub(super) fn line(&self, at: &State) -> LineOfAction {
         let ends = self.ends();
         let (e, e_dot) = (ends.vector(&at.q), ends.rate(&at.q, &at.v));
         let length = e.norm();
@@ -124,7 +124,7 @@ impl SpringDamper {
         for (along, column) in along.iter_mut().zip(ends.columns(&at.q).iter()) {
             *along = n.dot(column);
         }
-        Line {
+        LineOfAction {
             length,
             n,
             rate: n.dot(&e_dot),
@@ -134,19 +134,19 @@ impl SpringDamper {
         }
     }
 
-    pub(super) fn pull(&self, line: &Line) -> f64 {
+    pub(super) fn pull(&self, line: &LineOfAction) -> f64 {
         self.stiffness * (line.length - self.rest_length) + self.damping * line.rate
     }
 
     /// Adds the local force of a pull.
-    pub(super) fn pull_ends(line: &Line, pull: f64, f: &mut [f64; WIDTH]) {
+    pub(super) fn pull_ends(line: &LineOfAction, pull: f64, f: &mut [f64; WIDTH]) {
         for (f, along) in f.iter_mut().zip(line.along) {
             *f += pull * along;
         }
     }
 
     /// Adds the tangent.
-    pub(super) fn tangent(&self, at: &State, w: Weights, line: &Line, k: &mut LocalMatrix) {
+    pub(super) fn tangent(&self, at: &State, w: Weights, line: &LineOfAction, k: &mut LocalMatrix) {
         let (ends, pull) = (self.ends(), self.pull(line));
         // N/L, whose limit for a spring without rest length is k
         let turning = if line.inverse == 0.0 {

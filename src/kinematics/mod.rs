@@ -65,12 +65,12 @@ pub struct Inner {
 
 /// The motion of the ideal mechanism, which the real one follows.
 #[derive(Debug, Clone)]
-struct Motion {
+struct IdealMotion {
     kinematics: Arc<Kinematics>,
     inner: Inner,
 }
 
-impl Prescribed for Motion {
+impl Prescribed for IdealMotion {
     fn follow(&mut self, from: &State, to: &mut State) -> Result<(), PrescribeError> {
         self.kinematics.prescribe(from, to, &mut self.inner)
     }
@@ -83,7 +83,7 @@ impl Prescribed for Motion {
 impl Kinematics {
     /// The motion as one that a mechanism follows.
     pub fn motion(self: &Arc<Self>) -> Box<dyn Prescribed> {
-        Box::new(Motion {
+        Box::new(IdealMotion {
             kinematics: self.clone(),
             inner: self.work(),
         })

@@ -5,22 +5,22 @@
 use super::{ElasticRoute, shape_derivatives};
 use crate::math::quadrature::GAUSS5;
 
-type Matrix = [[f64; 8]; 8];
+type ElementMatrix = [[f64; 8]; 8];
 
 /// An element with the paper's invariant matrices.
 #[derive(Debug, Clone)]
 pub struct LiteralCable {
     /// K_t, eq. 11.
-    bending: Matrix,
+    bending: ElementMatrix,
     /// K_l2, eq. 12.
-    axial: Matrix,
+    axial: ElementMatrix,
     /// C_l1^ij, eq. 14.
-    invariants: Box<[[Matrix; 8]; 8]>,
+    invariants: Box<[[ElementMatrix; 8]; 8]>,
 }
 
 impl LiteralCable {
     /// K_t + K_l2 + K_l1(q), with (K_l1)_ij = q^T C_l1^ij q.
-    fn stiffness(&self, q: &[f64; 8]) -> Matrix {
+    fn stiffness(&self, q: &[f64; 8]) -> ElementMatrix {
         let mut stiffness = [[0.0; 8]; 8];
         for i in 0..8 {
             for j in 0..8 {
@@ -37,7 +37,7 @@ impl LiteralCable {
         stiffness
     }
 
-    fn add_product(stiffness: &Matrix, q: &[f64; 8], f: &mut [f64; 8]) {
+    fn add_product(stiffness: &ElementMatrix, q: &[f64; 8], f: &mut [f64; 8]) {
         for i in 0..8 {
             f[i] += (0..8).map(|j| stiffness[i][j] * q[j]).sum::<f64>();
         }

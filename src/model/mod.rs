@@ -45,7 +45,7 @@ pub struct Model {
     /// Effects present, in the order of their counters.
     pub(crate) effects: Vec<Effect>,
     pub(crate) mass: Mass,
-    pub(crate) elements: Vec<Element>,
+    pub(crate) elements: Vec<PlacedElement>,
     pub(crate) constraints: Vec<PlacedConstraint>,
     pub(crate) forces: Vec<PlacedForce>,
     /// Evaluations of each effect in one residual; contacts are counted separately, because they may be open.
@@ -171,7 +171,7 @@ impl PlacedContact {
 
 /// An ANCF element with its place in the equations.
 #[derive(Debug)]
-pub(crate) struct Element {
+pub(crate) struct PlacedElement {
     pub kernel: AncfCable,
     pub block: Block,
 }

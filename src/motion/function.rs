@@ -1,6 +1,6 @@
 //! Scalar functions of time with exact first and second derivatives: prescribed coordinates, angles, loads.
 
-use super::{Table, line::quintic};
+use super::{CubicSpline, line::quintic};
 use std::f64::consts::TAU;
 
 /// A function of time.
@@ -36,7 +36,7 @@ pub enum Function {
         duration: f64,
     },
     /// A natural cubic spline through (t, value).
-    Table(Table<1>),
+    Table(CubicSpline<1>),
 }
 
 /// From one value to another.
@@ -55,7 +55,9 @@ pub struct Step {
 impl Function {
     /// A spline through rows (t, value) with increasing times, two rows at least.
     pub fn table(rows: &[[f64; 2]]) -> Function {
-        Function::Table(Table::new(rows.iter().map(|&[t, value]| (t, [value]))))
+        Function::Table(CubicSpline::new(
+            rows.iter().map(|&[t, value]| (t, [value])),
+        ))
     }
 
     /// Value, first and second derivative at time t \[s\].

@@ -14,7 +14,7 @@ pub use line::Line;
 pub use read_function::{FUNCTIONS, FunctionKind, Use, read_function};
 pub(crate) use read_path::read_path;
 pub use read_path::{PATHS, PathKind};
-pub use table::Table;
+pub use table::CubicSpline;
 
 /// Position, velocity and acceleration of a body: of its centre of mass or reference point, and its angle (of a link: of its
 /// chord).
@@ -51,8 +51,8 @@ mod tests {
         [2.0, 0.8, 0.0, 0.2],
     ];
 
-    fn spline(rows: &[[f64; 4]]) -> Table<3> {
-        Table::new(rows.iter().map(|&[t, x, y, theta]| (t, [x, y, theta])))
+    fn spline(rows: &[[f64; 4]]) -> CubicSpline<3> {
+        CubicSpline::new(rows.iter().map(|&[t, x, y, theta]| (t, [x, y, theta])))
     }
 
     #[test]

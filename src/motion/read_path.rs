@@ -1,7 +1,7 @@
 //! Paths of bodies: `type` and its keys.
 
 use super::read_function::{Use, read_function, rows, rows_key};
-use super::{Circle, Line, Path, Table};
+use super::{Circle, CubicSpline, Line, Path};
 use crate::document::{Field, Fields, Key, Kind, SceneError};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -62,7 +62,7 @@ static TABLE: PathKind = PathKind {
         let rows: Vec<[f64; 4]> = rows(&fields.field("rows")?, duration)?;
         let rows = rows.iter();
         let rows = rows.map(|&[t, x, y, theta]| (t, [x, y, theta]));
-        Ok(Arc::new(Table::new(rows)))
+        Ok(Arc::new(CubicSpline::new(rows)))
     },
 };
 

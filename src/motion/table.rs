@@ -4,16 +4,16 @@ use super::{POSES, Path, Pose};
 
 /// Twice continuously differentiable, with zero second derivatives at both ends.
 #[derive(Debug, Clone)]
-pub struct Table<const N: usize> {
+pub struct CubicSpline<const N: usize> {
     times: Vec<f64>,
     values: Vec<[f64; N]>,
     /// Second derivatives at the knots.
     curvatures: Vec<[f64; N]>,
 }
 
-impl<const N: usize> Table<N> {
+impl<const N: usize> CubicSpline<N> {
     /// A spline through values at increasing times, two at least.
-    pub fn new(rows: impl Iterator<Item = (f64, [f64; N])>) -> Table<N> {
+    pub fn new(rows: impl Iterator<Item = (f64, [f64; N])>) -> CubicSpline<N> {
         let (times, values): (Vec<_>, Vec<_>) = rows.unzip();
         let n = times.len();
         let mut curvatures = vec![[0.0; N]; n];
@@ -34,7 +34,7 @@ impl<const N: usize> Table<N> {
                 curvatures[k][i] -= factor[k] * curvatures[k + 1][i];
             }
         }
-        Table {
+        CubicSpline {
             times,
             values,
             curvatures,
@@ -63,7 +63,7 @@ impl<const N: usize> Table<N> {
     }
 }
 
-impl Path for Table<3> {
+impl Path for CubicSpline<3> {
     fn at(&self, t: f64) -> Pose {
         let [position, velocity, acceleration] = self.derivatives(t);
         Pose {

@@ -19,7 +19,7 @@ mod table_file;
 mod timing;
 
 use crate::scene::Scene;
-use crate::simulate::{Channel, Contact, Report, Status};
+use crate::simulate::{Channel, ContactEvent, Report, Status};
 use crate::table::{Cell, Format};
 pub use folder::{Folder, OutputError, earlier_result, json};
 use serde::Serialize;
@@ -155,8 +155,8 @@ impl Results {
     ///
     /// # Errors
     /// When it cannot be stored; the message names the file.
-    pub fn contact(&mut self, contact: &Contact) -> io::Result<()> {
-        let Contact {
+    pub fn contact(&mut self, contact: &ContactEvent) -> io::Result<()> {
+        let ContactEvent {
             onset,
             deepest_penetration,
             end,

@@ -1,6 +1,6 @@
 //! `[integrator]`: scheme, step or accuracy, tolerances.
 
-use super::{Accuracy, Analysis, Integrator, Method, Pace, Simulation};
+use super::{Accuracy, Analysis, Integrator, Method, Pace, SimulationTable};
 use crate::document::{Field, Fields, Key, SceneError, Span, Takes, quoted};
 use crate::registry::Registry;
 use crate::stepper::{Parameter, Scheme};
@@ -85,7 +85,7 @@ pub(super) fn parameters(schemes: &[&'static Scheme]) -> Parameters {
 /// `clearance` is the smallest one of the scene.
 pub(super) fn read(
     root: &Fields,
-    simulation: &Simulation,
+    simulation: &SimulationTable,
     clearance: Option<f64>,
     registry: &Registry,
 ) -> Result<Integrator, SceneError> {
@@ -156,7 +156,11 @@ fn value(field: &Field, parameter: &Parameter) -> Result<f64, SceneError> {
 
 /// `step` or `accuracy`, and where it stands; where both stand the one that comes from a later source, which is an override.
 /// `loose` where a joint has clearance.
-fn pace(table: &Fields, simulation: &Simulation, loose: bool) -> Result<(Pace, Span), SceneError> {
+fn pace(
+    table: &Fields,
+    simulation: &SimulationTable,
+    loose: bool,
+) -> Result<(Pace, Span), SceneError> {
     let source = |name| Some(table.optional(name)?.node.key.source());
     let order = source("step").cmp(&source("accuracy"));
     match (order, table.optional("accuracy")) {
@@ -175,7 +179,7 @@ fn pace(table: &Fields, simulation: &Simulation, loose: bool) -> Result<(Pace, S
     }
 }
 
-fn step(field: &Field, simulation: &Simulation) -> Result<f64, SceneError> {
+fn step(field: &Field, simulation: &SimulationTable) -> Result<f64, SceneError> {
     let step = simulation.check_time(field)?;
     let steps = simulation.duration / step;
     if steps > MOST_STEPS {
@@ -189,7 +193,11 @@ fn step(field: &Field, simulation: &Simulation) -> Result<f64, SceneError> {
     Ok(step)
 }
 
-fn accuracy(field: &Field, simulation: &Simulation, loose: bool) -> Result<Accuracy, SceneError> {
+fn accuracy(
+    field: &Field,
+    simulation: &SimulationTable,
+    loose: bool,
+) -> Result<Accuracy, SceneError> {
     if simulation.analysis == Analysis::Static {
         let message = "a static analysis takes a `step`, not an `accuracy`";
         return Err(field.key_fault(message, "write `step`"));

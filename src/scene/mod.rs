@@ -29,7 +29,7 @@ pub struct Scene {
     /// One line that says what the scene is.
     pub title: String,
     /// Duration and gravity.
-    pub simulation: Simulation,
+    pub simulation: SimulationTable,
     /// Time integration.
     pub integrator: Integrator,
     /// What is recorded.
@@ -41,7 +41,7 @@ pub struct Scene {
     /// Motions prescribed by inverse kinematics.
     pub drives: Vec<Drive>,
     /// Motions prescribed directly.
-    pub motions: Vec<Motion>,
+    pub motions: Vec<PrescribedMotion>,
     /// Springs and loads.
     pub forces: Vec<NamedForce>,
     /// Where the motion starts.
@@ -62,7 +62,7 @@ pub enum Analysis {
 
 /// `[simulation]`
 #[derive(Debug, Clone)]
-pub struct Simulation {
+pub struct SimulationTable {
     /// Motion or equilibrium.
     pub analysis: Analysis,
     /// Simulated time \[s\]; of a static analysis the t of the full load.
@@ -170,7 +170,7 @@ pub struct Drive {
 
 /// `[drives.NAME]` of type `angle` or `point`: a motion prescribed directly.
 #[derive(Debug, Clone)]
-pub struct Motion {
+pub struct PrescribedMotion {
     /// The name the user wrote.
     pub name: String,
     /// Where the table stands.

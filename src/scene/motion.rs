@@ -1,6 +1,8 @@
 //! `[drives]` and `[initial]`.
 
-use super::{BodyState, Drive, GivenVelocity, Initial, Motion, MotionKind, SketchPoint, Sketched};
+use super::{
+    BodyState, Drive, GivenVelocity, Initial, MotionKind, PrescribedMotion, SketchPoint, Sketched,
+};
 use crate::body::{Known, PointRef, RigidBody};
 use crate::document::{Field, Fields, Key, Kind, SceneError, Takes, named};
 use crate::interaction::Names;
@@ -12,7 +14,7 @@ pub(super) struct Drives {
     /// By inverse kinematics.
     pub kinematics: Vec<Drive>,
     /// Directly.
-    pub motions: Vec<Motion>,
+    pub motions: Vec<PrescribedMotion>,
     /// The joints that are driven already.
     joints: Vec<usize>,
 }
@@ -108,7 +110,7 @@ impl Drives {
 
     /// Adds a motion that is prescribed directly.
     fn prescribe(&mut self, drive: &Fields, kind: MotionKind) {
-        self.motions.push(Motion {
+        self.motions.push(PrescribedMotion {
             name: drive.whole.name.clone(),
             span: drive.whole.span(),
             kind,

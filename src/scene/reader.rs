@@ -1,7 +1,7 @@
 //! From the tree to a [`Scene`]: the tables that stand alone; bodies, joints and motion have files of their own.
 
 use super::{Analysis, integrator, kinds, motion, smallest_clearance};
-use super::{Assumption, ChannelPattern, Integrator, Output, Scene, Simulation};
+use super::{Assumption, ChannelPattern, Integrator, Output, Scene, SimulationTable};
 use crate::body::Materials;
 use crate::document::{
     Field, Fields, Key, SceneError, Sources, Span, Takes, apply_overrides, document,
@@ -200,7 +200,7 @@ impl Scene {
     }
 }
 
-impl Simulation {
+impl SimulationTable {
     /// The time that a field gives, refused where it exceeds the duration \[s\].
     pub(super) fn check_time(&self, field: &Field) -> Result<f64, SceneError> {
         let time = field.number()?;
@@ -214,10 +214,10 @@ impl Simulation {
     }
 }
 
-fn simulation(root: &Fields) -> Result<Simulation, SceneError> {
+fn simulation(root: &Fields) -> Result<SimulationTable, SceneError> {
     let mut table = root.field("simulation")?.fields()?;
     table.declare(&[], &SIMULATION)?;
-    Ok(Simulation {
+    Ok(SimulationTable {
         analysis: match table.optional_word("analysis")? {
             Some(1) => Analysis::Static,
             _ => Analysis::Dynamic,
@@ -229,7 +229,7 @@ fn simulation(root: &Fields) -> Result<Simulation, SceneError> {
 
 fn output(
     root: &Fields,
-    simulation: &Simulation,
+    simulation: &SimulationTable,
     integrator: &Integrator,
     registry: &Registry,
 ) -> Result<Output, SceneError> {

@@ -96,19 +96,19 @@ pub(super) struct Controller {
     /// Shortest and longest step.
     taken: [f64; 2],
     /// Errors of velocity so far, by unknown.
-    sums: Vec<Sums>,
+    sums: Vec<VelocityErrorSums>,
 }
 
 /// Sums of the errors of a velocity.
 #[derive(Debug, Clone, Copy, Default)]
-struct Sums {
+struct VelocityErrorSums {
     signed: f64,
     /// Largest magnitude of the signed sum so far.
     peak: f64,
     absolute: f64,
 }
 
-impl Sums {
+impl VelocityErrorSums {
     fn add(&mut self, error: f64) {
         self.signed += error;
         self.peak = self.peak.max(self.signed.abs());
@@ -189,7 +189,7 @@ impl Controller {
             closing: Vec::with_capacity(shape.contacts),
             rejections: vec![0; shape.unknowns + 1],
             taken: [f64::INFINITY, 0.0],
-            sums: vec![Sums::default(); shape.unknowns],
+            sums: vec![VelocityErrorSums::default(); shape.unknowns],
         }
     }
 

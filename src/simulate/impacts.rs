@@ -1,6 +1,6 @@
 //! Records every contact from its onset to its end, and keeps the first ones for the summary.
 
-use super::observer::{Contact, End, Observer, Onset};
+use super::observer::{ContactEnd, ContactEvent, Observer, Onset};
 use super::top::top;
 use crate::model::Model;
 use crate::scene::Scene;
@@ -35,8 +35,8 @@ pub struct Impact {
     pub exit_velocity: Option<f64>,
 }
 
-impl From<&Contact<'_>> for Impact {
-    fn from(contact: &Contact) -> Impact {
+impl From<&ContactEvent<'_>> for Impact {
+    fn from(contact: &ContactEvent) -> Impact {
         let onset = &contact.onset;
         Impact {
             t: onset.t,
@@ -80,7 +80,7 @@ struct Course {
     delta: f64,
     angle: f64,
     deepest: f64,
-    end: Option<End>,
+    end: Option<ContactEnd>,
     /// Penetration and its rate at the last accepted step.
     before: [f64; 2],
     /// Its index among the first contacts of the run.
@@ -98,8 +98,8 @@ impl Course {
         }
     }
 
-    fn contact<'a>(&self, model: &'a Model) -> Contact<'a> {
-        Contact {
+    fn contact<'a>(&self, model: &'a Model) -> ContactEvent<'a> {
+        ContactEvent {
             onset: self.onset(model),
             deepest_penetration: self.deepest,
             end: self.end,
@@ -177,7 +177,7 @@ impl Impacts {
             course.deepest = course.deepest.max(delta).max(top);
             *deepest = deepest.max(course.deepest);
             course.before = [delta, rate];
-            course.end = (!closed).then_some(End {
+            course.end = (!closed).then_some(ContactEnd {
                 t: at.t,
                 exit_velocity: -rate,
             });

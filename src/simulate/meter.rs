@@ -58,12 +58,12 @@ pub struct Integration {
 #[derive(Debug)]
 pub(super) struct Meter {
     lengths: Vec<f64>,
-    sums: Vec<Sums>,
-    ranges: Vec<Range>,
+    sums: Vec<IntegrationSums>,
+    extents: Vec<Extent>,
     lost: [f64; 2],
     turnover: f64,
     dissipated: f64,
-    initial: Option<Initial>,
+    first: Option<FirstRow>,
     /// Largest magnitude of the work of drives and loads so far, over all steps: rows may miss it.
     work: f64,
     /// [`UNSTABLE`]; infinite with an accuracy, where a gain is an error that was allowed.
@@ -75,9 +75,9 @@ pub(super) struct Meter {
     elapsed: f64,
 }
 
-/// The first row.
+/// Energies at the first row.
 #[derive(Debug, Clone, Copy)]
-struct Initial {
+struct FirstRow {
     balance: f64,
     gravity: f64,
     /// Kinetic and elastic energy \[J\].
@@ -95,7 +95,7 @@ pub(super) struct Gain {
 
 /// Errors of one unknown so far.
 #[derive(Debug, Clone, Copy, Default)]
-struct Sums {
+struct IntegrationSums {
     /// Sum of |e_q|.
     position: f64,
     /// Sum of e_v ...
@@ -112,15 +112,15 @@ struct Sums {
 
 /// Range of an unknown over the recorded rows.
 #[derive(Debug, Clone, Copy)]
-struct Range {
+struct Extent {
     least: f64,
     greatest: f64,
     /// Largest magnitude of its rate.
     fastest: f64,
 }
 
-impl Range {
-    const EMPTY: Range = Range {
+impl Extent {
+    const EMPTY: Extent = Extent {
         least: f64::INFINITY,
         greatest: f64::NEG_INFINITY,
         fastest: 0.0,
@@ -173,7 +173,7 @@ fn plain_motion(scene: &Scene, model: &Model, start: &State) -> f64 {
     let lengths = lengths(scene, model);
     let places = start.q.iter().enumerate();
     let places = places.filter(|(i, _)| lengths.get(*i).is_none_or(|length| *length == 1.0));
-    let mut extent = Range::EMPTY;
+    let mut extent = Extent::EMPTY;
     places.for_each(|(_, q)| extent.see(*q, 0.0));
     let (mut mass, mut size) = (0.0, extent.width());
     for body in &scene.bodies {
@@ -199,12 +199,12 @@ impl Meter {
         let unknowns = model.shape().unknowns;
         Meter {
             lengths: lengths(scene, model),
-            sums: vec![Sums::default(); unknowns],
-            ranges: vec![Range::EMPTY; unknowns],
+            sums: vec![IntegrationSums::default(); unknowns],
+            extents: vec![Extent::EMPTY; unknowns],
             lost: [0.0; 2],
             turnover: 0.0,
             dissipated: 0.0,
-            initial: None,
+            first: None,
             work: 0.0,
             unstable: match scene.integrator.pace {
                 Pace::Step(_) => UNSTABLE,
@@ -239,22 +239,22 @@ impl Meter {
     /// # Errors
     /// When the integrator has put far more energy into the motion than the scene supplies.
     pub fn row(&mut self, energies: &Energies, at: &State) -> Result<(), Gain> {
-        for (range, (q, v)) in self.ranges.iter_mut().zip(at.q.iter().zip(&at.v)) {
-            range.see(*q, *v);
+        for (extent, (q, v)) in self.extents.iter_mut().zip(at.q.iter().zip(&at.v)) {
+            extent.see(*q, *v);
         }
         let (balance, size) = energies.balance(at);
         let turnover = energies.total() - energies.gravity;
-        let initial = *self.initial.get_or_insert(Initial {
+        let first = *self.first.get_or_insert(FirstRow {
             balance,
             gravity: energies.gravity,
             turnover,
         });
-        let lost = initial.balance - balance;
+        let lost = first.balance - balance;
         self.lost = [self.lost[0].min(lost), self.lost[1].max(lost)];
         self.turnover = self.turnover.max(turnover);
         self.dissipated = at.dissipated();
-        let weight = (energies.gravity - initial.gravity).abs();
-        self.supplied = self.supplied.max(initial.turnover + self.work + weight);
+        let weight = (energies.gravity - first.gravity).abs();
+        self.supplied = self.supplied.max(first.turnover + self.work + weight);
         let supplied = self.supplied;
         let bound = self.unstable * supplied.max(self.plain) + f64::EPSILON.sqrt() * size;
         match -lost > bound || !lost.is_finite() {
@@ -280,14 +280,14 @@ impl Meter {
 
     /// What has been measured so far.
     pub fn report(&self, model: &Model) -> Integration {
-        let parts = self.sums.iter().zip(&self.ranges).zip(&self.lengths);
-        let errors = parts.clone().map(|((sums, range), length)| {
-            length * (sums.position + range.crossing(self.elapsed) * sums.peak)
+        let parts = self.sums.iter().zip(&self.extents).zip(&self.lengths);
+        let errors = parts.clone().map(|((sums, extent), length)| {
+            length * (sums.position + extent.crossing(self.elapsed) * sums.peak)
         });
         let worst = largest(errors);
         let travels = parts
             .clone()
-            .map(|((_, range), length)| length * range.width());
+            .map(|((_, extent), length)| length * extent.width());
         let travel = travels.fold(0.0, f64::max);
         let sizes = parts
             .clone()

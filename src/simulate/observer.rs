@@ -17,18 +17,18 @@ pub struct Onset<'a> {
 
 /// A contact that has opened again, or that is still closed when the run ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contact<'a> {
+pub struct ContactEvent<'a> {
     /// How it began.
     pub onset: Onset<'a>,
     /// Largest penetration \[m\].
     pub deepest_penetration: f64,
     /// How it ended; absent when it is still closed.
-    pub end: Option<End>,
+    pub end: Option<ContactEnd>,
 }
 
 /// The end of a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct End {
+pub struct ContactEnd {
     /// When \[s\].
     pub t: f64,
     /// -delta_dot \[m/s\]: divided by the impact velocity it is the restitution delivered.
@@ -88,7 +88,7 @@ pub trait Observer {
     ///
     /// # Errors
     /// When it cannot be stored; the run stops.
-    fn contact(&mut self, _contact: &Contact) -> std::io::Result<()> {
+    fn contact(&mut self, _contact: &ContactEvent) -> std::io::Result<()> {
         Ok(())
     }
     /// A step has been taken.

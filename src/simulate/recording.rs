@@ -1,6 +1,6 @@
 //! Results in memory, for programs that evaluate a run after its end.
 
-use super::{Contact, Control, Impact, Observer, Onset, Progress, Simulation};
+use super::{ContactEvent, Control, Impact, Observer, Onset, Progress, Simulation};
 use std::io::Result;
 
 /// Keeps the results of a run, column by column.
@@ -63,7 +63,7 @@ impl Observer for Recording {
     }
 
     fn onset(&mut self, onset: &Onset) -> Result<()> {
-        self.onsets.push(Impact::from(&Contact {
+        self.onsets.push(Impact::from(&ContactEvent {
             onset: *onset,
             deepest_penetration: onset.delta,
             end: None,
@@ -71,7 +71,7 @@ impl Observer for Recording {
         Ok(())
     }
 
-    fn contact(&mut self, contact: &Contact) -> Result<()> {
+    fn contact(&mut self, contact: &ContactEvent) -> Result<()> {
         let mut latest = self.onsets.iter_mut().rev();
         if let Some(kept) = latest.find(|onset| onset.joint == contact.onset.joint) {
             *kept = Impact::from(contact);

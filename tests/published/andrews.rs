@@ -2,7 +2,7 @@
 //! 80-bit arithmetic (I). Seven bodies, a torque, a spring.
 
 use super::listed;
-use crate::support::{Recording, run};
+use crate::support::{TestRecording, run};
 use ladder::{Rung, Worst};
 
 const SCENE: &str = "andrews-squeezer.toml";
@@ -10,7 +10,7 @@ const STATES: &str = include_str!("andrews.csv");
 const TRAJECTORY: &str = include_str!("andrews_trajectory.csv");
 
 /// Beta, Theta, gamma, Phi, delta, Omega, epsilon, or their derivatives, from those of the bodies: K2, K4 and K6 have sums.
-fn minimal(run: &Recording, row: usize, quantity: &str) -> [f64; 7] {
+fn minimal(run: &TestRecording, row: usize, quantity: &str) -> [f64; 7] {
     let of = |body: usize| run.get(&format!("K{body}.{quantity}"))[row];
     let [k1, k2, k3, k4, k5, k6, k7] = [1, 2, 3, 4, 5, 6, 7].map(of);
     [k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7]
@@ -18,7 +18,7 @@ fn minimal(run: &Recording, row: usize, quantity: &str) -> [f64; 7] {
 
 /// Angles, rates, accelerations and multipliers in the order of the list. M q'' = f - G^T lambda pushes K2 in E by the
 /// negative sum of the multipliers, so they are the forces on the other three bodies there.
-fn components(run: &Recording, row: usize) -> Vec<f64> {
+fn components(run: &TestRecording, row: usize) -> Vec<f64> {
     let forces = ["E3.fx", "E3.fy", "E4.fx", "E4.fy", "E6.fx", "E6.fy"];
     let forces = forces.map(|name| run.get(name)[row]);
     let angles = ["theta", "omega", "alpha"].map(|q| minimal(run, row, q));

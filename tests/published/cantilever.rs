@@ -1,7 +1,7 @@
 //! Cantilevers in the functional of this element, F2: EA/2 (1/2 (r'.r' - 1))^2 + EI/2 r''.r''.
 
 use super::{CLAMP, beam, last, run, statics};
-use crate::support::Recording;
+use crate::support::TestRecording;
 use ladder::{Rung, Worst};
 use std::f64::consts::TAU;
 
@@ -25,7 +25,7 @@ frame = "ground"
 }
 
 /// Gerstmayr and Irschik 2008: L = 2, EA = 2.07e9, EI = 1.725e6, P = 3 EI/L^2 downwards.
-fn thick(elements: usize, clamp: &str) -> Recording {
+fn thick(elements: usize, clamp: &str) -> TestRecording {
     let text = statics(10)
         + &beam(2.0, 2.07e9, 1.725e6, 78.0, elements)
         + CLAMP
@@ -34,7 +34,7 @@ fn thick(elements: usize, clamp: &str) -> Recording {
     run(&text, &[])
 }
 
-fn displacement(run: &Recording, length: f64) -> [f64; 2] {
+fn displacement(run: &TestRecording, length: f64) -> [f64; 2] {
     [
         last(run, "points.beam.end.x") - length,
         last(run, "points.beam.end.y"),

@@ -1,7 +1,7 @@
 //! The car axis of the Test Set for IVP Solvers (P): two masses at a fixed distance on springs, one of them on a line that
 //! turns as the road says, at t = 3 s.
 
-use crate::support::{Recording, run};
+use crate::support::{TestRecording, run};
 use ladder::{Rung, Worst};
 
 const SCENE: &str = "car-axis.toml";
@@ -20,7 +20,7 @@ const PUBLISHED: [f64; 10] = [
     -0.0011046803312573436,
 ];
 
-fn ends(run: &Recording, quantities: [&str; 2]) -> [f64; 4] {
+fn ends(run: &TestRecording, quantities: [&str; 2]) -> [f64; 4] {
     let of = |end: &str, q: &str| *run.get(&format!("points.axle.{end}.{q}")).last().unwrap();
     let [x, y] = quantities;
     [of("left", x), of("left", y), of("right", x), of("right", y)]
@@ -28,7 +28,7 @@ fn ends(run: &Recording, quantities: [&str; 2]) -> [f64; 4] {
 
 /// The force of the line on the left end is lambda_1 (x_b, y_b). The distance of the ends is kept by the body itself:
 /// 2 lambda_2 (left - right) is the force at the right end that its acceleration, its spring and its weight leave over.
-fn multipliers(run: &Recording) -> [f64; 2] {
+fn multipliers(run: &TestRecording) -> [f64; 2] {
     let last = |name: &str| *run.get(name).last().unwrap();
     let [xb, yb] = ["x", "y"].map(|q| last(&format!("points.road.right_wheel.{q}")));
     let [fx, fy] = ["fx", "fy"].map(|q| last(&format!("line.{q}")));

@@ -1,7 +1,7 @@
 //! The slider-crank of Flores, Leine and Glocker (2010) whose slider has play in its guide, up to the first contact with
 //! the guide (I: the double pendulum in two angles, integrated with a relative tolerance of 1e-13).
 
-use crate::support::{Recording, run};
+use crate::support::{TestRecording, run};
 use ladder::{Rung, Worst};
 
 const SCENE: &str = "slider-crank/free-slider.toml";
@@ -18,7 +18,7 @@ const LISTED: [f64; 5] = [
 ];
 
 /// A channel between two rows a time `h` apart, at their share `s`: the cubic through the values and rates of both.
-fn between(run: &Recording, [value, rate]: [&str; 2], row: usize, h: f64, s: f64) -> f64 {
+fn between(run: &TestRecording, [value, rate]: [&str; 2], row: usize, h: f64, s: f64) -> f64 {
     let (value, rate) = (run.get(value), run.get(rate));
     let way = value[row + 1] - value[row];
     let (first, last) = (rate[row] * h, rate[row + 1] * h);

@@ -16,7 +16,7 @@ mod rotating_beam;
 mod schemes;
 mod spring_pendulum;
 
-use crate::support::{Recording, run_scene};
+use crate::support::{TestRecording, run_scene};
 use looselink::scene::Scene;
 
 /// A scene from text.
@@ -25,12 +25,12 @@ fn scene(text: &str, overrides: &[String]) -> Scene {
 }
 
 /// Runs a scene to its end.
-fn run(text: &str, overrides: &[String]) -> Recording {
+fn run(text: &str, overrides: &[String]) -> TestRecording {
     run_scene(&scene(text, overrides)).0
 }
 
 /// The last value of a channel.
-fn last(run: &Recording, channel: &str) -> f64 {
+fn last(run: &TestRecording, channel: &str) -> f64 {
     run.get(channel).last().copied().unwrap_or(f64::NAN)
 }
 

@@ -2,7 +2,7 @@
 //! functional of this element (I).
 
 use super::listed;
-use crate::support::{Recording, run};
+use crate::support::{TestRecording, run};
 use ladder::{Rung, Worst};
 use std::f64::consts::PI;
 
@@ -37,7 +37,7 @@ fn spline(intervals: u32) -> String {
 }
 
 /// Largest errors of place \[m\], velocity \[m/s\] and energies \[J\] of the listed times.
-fn errors(run: &Recording, elements: usize) -> [f64; 3] {
+fn errors(run: &TestRecording, elements: usize) -> [f64; 3] {
     let of = |q: &str| run.get(&format!("points.beam.end.{q}"));
     let [x, y, vx, vy] = ["x", "y", "vx", "vy"].map(of);
     let [axial, bending, kinetic] =

@@ -1,7 +1,7 @@
 //! Flexible pendulums and a beam that is spun up, in the functional of this element.
 
 use super::{beam, last, listed, run};
-use crate::support::{self, Recording};
+use crate::support::{self, TestRecording};
 use ladder::{Rung, Worst};
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ journal = "beam.start"
 model = "ideal"
 "#;
 
-fn pendulum(body: &str, step: f64, interval: f64, duration: f64) -> Recording {
+fn pendulum(body: &str, step: f64, interval: f64, duration: f64) -> TestRecording {
     let head = format!(
         r#"
 format = 1

@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 const READABLE: usize = 10_000;
 
 /// What is long, the scene, a part of the message.
-type Case = (&'static str, String, &'static str);
+type LongInput = (&'static str, String, &'static str);
 
-fn cases() -> Vec<Case> {
+fn cases() -> Vec<LongInput> {
     let many = |text: &str| text.repeat(1_000_000);
     let edited = |from: &str, to: &str| {
         assert!(CASE4.contains(from), "`{from}` is not in the scene");

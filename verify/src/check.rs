@@ -59,16 +59,16 @@ pub fn assert_all(what: &str, rows: &[Agreement]) {
 
 /// The largest of many differences, with the two numbers at its place.
 #[derive(Debug, Clone, Copy)]
-pub struct Worst {
+pub struct LargestDifference {
     pub rust: f64,
     pub cpp: f64,
     /// -1 before anything is compared.
     pub difference: f64,
 }
 
-impl Default for Worst {
-    fn default() -> Worst {
-        Worst {
+impl Default for LargestDifference {
+    fn default() -> LargestDifference {
+        LargestDifference {
             rust: 0.0,
             cpp: 0.0,
             difference: -1.0,
@@ -76,14 +76,14 @@ impl Default for Worst {
     }
 }
 
-impl Worst {
+impl LargestDifference {
     /// Looks at two numbers whose difference is measured in units of `scale`. A difference that is not a number stays;
     /// among equal ones the larger numbers are kept.
     pub fn see(&mut self, rust: f64, cpp: f64, scale: f64) {
         let difference = (rust - cpp).abs() / scale;
         let larger = difference == self.difference && cpp.abs() > self.cpp.abs();
         if difference.is_nan() || difference > self.difference || larger {
-            *self = Worst {
+            *self = LargestDifference {
                 rust,
                 cpp,
                 difference,

@@ -27,7 +27,7 @@ pub const TOLERANCES: [&str; 7] =
 
 /// A function of the header.
 #[derive(Debug, PartialEq)]
-pub struct Function {
+pub struct HeaderFunction {
     /// Its name.
     pub name: String,
     /// Types and names of what goes in; handles count as constant.
@@ -37,7 +37,7 @@ pub struct Function {
 }
 
 /// The functions of the header.
-pub fn functions() -> Vec<Function> {
+pub fn functions() -> Vec<HeaderFunction> {
     let text = plain(HEADER);
     let declarations = text.split(';').map(str::trim);
     declarations.filter_map(function).collect()
@@ -75,9 +75,9 @@ fn split(declaration: &str) -> (String, String) {
     (declaration[..place].trim().to_owned(), bare.to_owned())
 }
 
-fn function(declaration: &str) -> Option<Function> {
+fn function(declaration: &str) -> Option<HeaderFunction> {
     let (head, arguments) = declaration.split_once('(')?;
-    let mut function = Function {
+    let mut function = HeaderFunction {
         name: split(head).1,
         inputs: Vec::new(),
         results: vec![String::new()],

@@ -3,7 +3,7 @@
 //! Every full coordinate is a copy of one of Looselink's, q_full = B q with one 1 a row of B. Then M = B^T M_full B, and
 //! forces are B^T f_full: what the reference computes body by body is summed where Looselink shares a node.
 
-use crate::reference::Scene;
+use crate::reference::ReferenceScene;
 use looselink::model::Model;
 
 /// Both sides' numbering of one scene, matched through names.
@@ -53,7 +53,7 @@ fn row_name(name: &str) -> String {
 
 impl Embedding {
     /// The way between the coordinates, rows and contacts of a scene.
-    pub fn new(reference: &Scene, model: &Model) -> Embedding {
+    pub fn new(reference: &ReferenceScene, model: &Model) -> Embedding {
         let source = reference.coordinates.iter().map(|name| {
             coordinate(model, name).unwrap_or_else(|| panic!("Looselink has no coordinate {name}"))
         });

@@ -4,7 +4,7 @@ use std::ffi::{c_char, c_int};
 
 /// `ls_error`
 #[repr(C)]
-pub struct Error {
+pub struct LsError {
     pub code: i32,
     pub flag: i32,
     pub line: i32,
@@ -16,7 +16,7 @@ pub struct Error {
 
 /// `ls_description`
 #[repr(C)]
-pub struct Description {
+pub struct LsDescription {
     pub title: *const c_char,
     pub is_static: i32,
     pub reserved: i32,
@@ -28,7 +28,7 @@ pub struct Description {
 /// `ls_tolerances`
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
-pub struct Tolerances {
+pub struct LsTolerances {
     pub relative: f64,
     pub position: f64,
     pub velocity: f64,
@@ -41,7 +41,7 @@ pub struct Tolerances {
 /// `ls_event`
 #[repr(C)]
 #[derive(Default)]
-pub struct Event {
+pub struct LsEvent {
     pub time: f64,
     pub velocity: f64,
     pub eccentricity: [f64; 2],
@@ -53,7 +53,7 @@ pub struct Event {
 /// `ls_statistics`
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Statistics {
+pub struct LsStatistics {
     pub steps: i64,
     pub residuals: i64,
     pub jacobians: i64,
@@ -65,38 +65,38 @@ pub struct Statistics {
 
 /// `ls_scene`
 #[repr(C)]
-pub struct Scene {
+pub struct LsScene {
     _opaque: [u8; 0],
 }
 
 /// `ls_run`
 #[repr(C)]
-pub struct Run {
+pub struct LsRun {
     _opaque: [u8; 0],
 }
 
 #[rustfmt::skip]
 unsafe extern "C" {
-    pub fn ls_scene_read(text: *const c_char, overrides: *const *const c_char, count: usize, error: *mut Error)
-        -> *mut Scene;
-    pub fn ls_scene_free(scene: *mut Scene);
-    pub fn ls_scene_describe(scene: *const Scene, description: *mut Description);
-    pub fn ls_scene_name(scene: *const Scene, list: i32, index: usize) -> *const c_char;
-    pub fn ls_scene_start(scene: *const Scene, q: *mut f64, v: *mut f64, error: *mut Error) -> c_int;
-    pub fn ls_scene_mass(scene: *const Scene, mass: *mut f64, error: *mut Error) -> c_int;
-    pub fn ls_scene_force(scene: *const Scene, t: f64, q: *const f64, v: *const f64, z: *const f64,
-        force: *mut f64, by_q: *mut f64, by_v: *mut f64, error: *mut Error) -> c_int;
-    pub fn ls_scene_constraint_rows(scene: *const Scene, t: f64, q: *const f64,
-        phi: *mut f64, phi_q: *mut f64, phi_t: *mut f64, error: *mut Error) -> c_int;
-    pub fn ls_scene_acceleration(scene: *const Scene, t: f64, q: *const f64, v: *const f64, z: *const f64,
-        a: *mut f64, lambda: *mut f64, error: *mut Error) -> c_int;
-    pub fn ls_scene_channels(scene: *const Scene, t: f64, q: *const f64, v: *const f64, z: *const f64,
-        values: *mut f64, error: *mut Error) -> c_int;
-    pub fn ls_run_new(scene: *const Scene, tolerances: *const Tolerances, error: *mut Error) -> *mut Run;
-    pub fn ls_run_free(run: *mut Run);
-    pub fn ls_run_advance(run: *mut Run, t: f64, values: *mut f64, error: *mut Error) -> c_int;
-    pub fn ls_run_event_count(run: *const Run) -> usize;
-    pub fn ls_run_event(run: *const Run, index: usize, event: *mut Event) -> c_int;
-    pub fn ls_run_statistics(run: *const Run, statistics: *mut Statistics);
+    pub fn ls_scene_read(text: *const c_char, overrides: *const *const c_char, count: usize, error: *mut LsError)
+        -> *mut LsScene;
+    pub fn ls_scene_free(scene: *mut LsScene);
+    pub fn ls_scene_describe(scene: *const LsScene, description: *mut LsDescription);
+    pub fn ls_scene_name(scene: *const LsScene, list: i32, index: usize) -> *const c_char;
+    pub fn ls_scene_start(scene: *const LsScene, q: *mut f64, v: *mut f64, error: *mut LsError) -> c_int;
+    pub fn ls_scene_mass(scene: *const LsScene, mass: *mut f64, error: *mut LsError) -> c_int;
+    pub fn ls_scene_force(scene: *const LsScene, t: f64, q: *const f64, v: *const f64, z: *const f64,
+        force: *mut f64, by_q: *mut f64, by_v: *mut f64, error: *mut LsError) -> c_int;
+    pub fn ls_scene_constraint_rows(scene: *const LsScene, t: f64, q: *const f64,
+        phi: *mut f64, phi_q: *mut f64, phi_t: *mut f64, error: *mut LsError) -> c_int;
+    pub fn ls_scene_acceleration(scene: *const LsScene, t: f64, q: *const f64, v: *const f64, z: *const f64,
+        a: *mut f64, lambda: *mut f64, error: *mut LsError) -> c_int;
+    pub fn ls_scene_channels(scene: *const LsScene, t: f64, q: *const f64, v: *const f64, z: *const f64,
+        values: *mut f64, error: *mut LsError) -> c_int;
+    pub fn ls_run_new(scene: *const LsScene, tolerances: *const LsTolerances, error: *mut LsError) -> *mut LsRun;
+    pub fn ls_run_free(run: *mut LsRun);
+    pub fn ls_run_advance(run: *mut LsRun, t: f64, values: *mut f64, error: *mut LsError) -> c_int;
+    pub fn ls_run_event_count(run: *const LsRun) -> usize;
+    pub fn ls_run_event(run: *const LsRun, index: usize, event: *mut LsEvent) -> c_int;
+    pub fn ls_run_statistics(run: *const LsRun, statistics: *mut LsStatistics);
     pub fn ls_sundials_version() -> *const c_char;
 }

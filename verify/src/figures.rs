@@ -1,7 +1,7 @@
 //! The pictures of the report.
 
 use crate::compare::flexible::{Convergence, QUANTITIES};
-use crate::trajectory::{Plan, Trajectory, tolerances};
+use crate::trajectory::{ComparisonPlan, Trajectory, tolerances};
 use miette::Result;
 use numbers::si;
 use plot::{Axis, Figure, Mark, Panel, palette};
@@ -15,7 +15,7 @@ const SHOWN: [(&str, &str, &str, f64); 3] = [
 
 /// One scene with Looselink at two steps and the reference.
 pub struct Overlay {
-    plan: Plan,
+    plan: ComparisonPlan,
     /// Coarse and fine.
     steps: [f64; 2],
     relative: f64,
@@ -24,7 +24,7 @@ pub struct Overlay {
 }
 
 /// Runs a scene for its picture.
-pub fn overlay(plan: Plan, steps: [f64; 2], relative: f64) -> Result<Overlay> {
+pub fn overlay(plan: ComparisonPlan, steps: [f64; 2], relative: f64) -> Result<Overlay> {
     let tolerances = tolerances(relative);
     let (cpp, rust) = rayon::join(|| plan.cpp(&tolerances), || steps.map(|h| plan.rust(h)));
     let ([coarse, fine], cpp) = (rust, cpp?);

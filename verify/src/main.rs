@@ -5,7 +5,7 @@ use looselink::scene::{Analysis, Scene};
 use looselink::simulate::Simulation;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use plot::save;
-use records::Run;
+use records::RunningCampaign;
 use records::root;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,8 +14,8 @@ use verify::check::Agreement;
 use verify::compare::scenes::ROWS;
 use verify::compare::{equations, flexible, impacts, machines, rigid, scenes, statistics};
 use verify::figures::{self, overlay};
-use verify::report::Report;
-use verify::trajectory::Plan;
+use verify::report::ComparisonReport;
+use verify::trajectory::ComparisonPlan;
 
 const STARTS: &str = "Both programs read the file, assemble the mechanism and find its velocities, accelerations and channels. In all \
     tables the two values are those at the place of the largest difference; the last two columns have what is allowed, the \
@@ -50,7 +50,7 @@ fn main() -> Result<ExitCode> {
             ExitCode::from(2)
         }));
     }
-    let run = Run::begin("comparison")?;
+    let campaign = RunningCampaign::begin("comparison")?;
     let folder = root().join("verify");
     let pictures = &folder.join("figures");
     let mut others = machines::smooth()?;
@@ -70,18 +70,18 @@ fn main() -> Result<ExitCode> {
         ("Every scene: its start", STARTS.into(), all("starts", scenes::all()?, scenes::start)?),
         ("Equations", EQUATIONS.into(), all("equations", equations::plans()?, equations::agreements)?),
         ideal(pictures)?,
-        ("The first impacts", IMPACTS.into(), all("impacts", impacts::all(), impacts::Series::agreements)?),
+        ("The first impacts", IMPACTS.into(), all("impacts", impacts::all(), impacts::ImpactSeries::agreements)?),
         ("Other mechanisms", OTHERS.into(), others),
         ("Two cycles of cases 3 and 4", CYCLES.into(), all("cycles", vec![3, 4], |c| statistics::agreements(*c))?),
     ];
     trajectories(pictures)?;
     let faults = ladder::faults::judged()?;
-    let report = Report { sections, faults };
+    let report = ComparisonReport { sections, faults };
     let path = folder.join("REPORT.md");
     fs::write(&path, report.page().into_diagnostic()?)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot write {}", path.display()))?;
-    run.finish()?;
+    campaign.finish()?;
     let rows = report.sections.iter().flat_map(|section| &section.2);
     let failed = rows.filter(|row| !row.holds());
     let named = failed.map(|row| eprintln!("does not hold: {} of {}", row.quantity, row.scene));
@@ -96,7 +96,7 @@ fn own(path: &Path) -> Result<ExitCode> {
     let is_static = scene.simulation.analysis == Analysis::Static;
     let most = if is_static { f64::INFINITY } else { ROWS };
     let end = duration.min(most * interval);
-    let plan = Plan::of_file(path, &[], end, interval);
+    let plan = ComparisonPlan::of_file(path, &[], end, interval);
     plan.reference()
         .wrap_err("Looselink accepts this scene, but the reference refuses it")?;
     let mut rows = show("Start", scenes::start(&plan)?);
@@ -152,7 +152,7 @@ fn show(title: &str, rows: Vec<Agreement>) -> Vec<Agreement> {
     rows
 }
 
-type Section = (&'static str, String, Vec<Agreement>);
+type ReportSection = (&'static str, String, Vec<Agreement>);
 
 /// The rows of all things to compare.
 fn all<T>(
@@ -165,7 +165,7 @@ fn all<T>(
     Ok(each.concat())
 }
 
-fn ideal(pictures: &Path) -> Result<Section> {
+fn ideal(pictures: &Path) -> Result<ReportSection> {
     let mut rows = rigid::agreements()?;
     let runs = [1, 4].map(flexible::convergence);
     let runs = runs.into_iter().collect::<Result<Vec<_>>>()?;
@@ -200,7 +200,7 @@ fn trajectories(pictures: &Path) -> Result<()> {
         ("case3", 0.05, 2e-5, [1e-6, 1e-7], horizon),
         ("case4", 0.03, 2e-5, [1e-6, 1e-7], horizon),
     ] {
-        let plan = Plan::new(format!("3rrr/{name}"), duration, interval);
+        let plan = ComparisonPlan::new(format!("3rrr/{name}"), duration, interval);
         save(&overlay(plan, steps, 1e-12)?.figure(remark), pictures, name)?;
     }
     Ok(())

@@ -1,14 +1,14 @@
 //! The reference implementation as a Rust library: owned values, typed errors. The only file that calls C.
 
-use crate::ffi::{self, *};
-pub use crate::ffi::{Event, Statistics, Tolerances};
+use crate::ffi::*;
+pub use crate::ffi::{LsEvent, LsStatistics, LsTolerances};
 use std::ffi::{CStr, CString, c_char, c_int};
 use std::ptr::{NonNull, null_mut};
 
 /// What the reference implementation reports when it cannot go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("the reference: {message}{}", self.place())]
-pub struct Error {
+pub struct ReferenceError {
     /// What it is about, as in the header.
     pub code: i32,
     /// Path of the key, empty where the failure has no place in the scene.
@@ -23,10 +23,10 @@ pub struct Error {
     pub message: String,
 }
 
-impl Error {
+impl ReferenceError {
     /// Where and when, as far as the failure has a place.
     fn place(&self) -> String {
-        let Error { field, line, t, .. } = self;
+        let ReferenceError { field, line, t, .. } = self;
         match (field.as_str(), *t > 0.0) {
             ("", false) => String::new(),
             ("", true) => format!(", at t = {t} s"),
@@ -41,9 +41,9 @@ fn text(bytes: &[c_char]) -> String {
     String::from_utf8_lossy(&bytes.collect::<Vec<u8>>()).into_owned()
 }
 
-impl From<&ffi::Error> for Error {
-    fn from(error: &ffi::Error) -> Error {
-        Error {
+impl From<&LsError> for ReferenceError {
+    fn from(error: &LsError) -> ReferenceError {
+        ReferenceError {
             code: error.code,
             field: text(&error.field),
             line: error.line,
@@ -56,10 +56,10 @@ impl From<&ffi::Error> for Error {
 
 /// Calls a function that fills an error record.
 fn call<T>(
-    work: impl FnOnce(*mut ffi::Error) -> T,
+    work: impl FnOnce(*mut LsError) -> T,
     good: impl FnOnce(&T) -> bool,
-) -> Result<T, Error> {
-    let mut error = ffi::Error {
+) -> Result<T, ReferenceError> {
+    let mut error = LsError {
         code: 0,
         flag: 0,
         line: 0,
@@ -77,8 +77,8 @@ fn call<T>(
 /// Calls a function that fills vectors of these lengths.
 fn filled<const N: usize>(
     lengths: [usize; N],
-    work: impl FnOnce([*mut f64; N], *mut ffi::Error) -> c_int,
-) -> Result<[Vec<f64>; N], Error> {
+    work: impl FnOnce([*mut f64; N], *mut LsError) -> c_int,
+) -> Result<[Vec<f64>; N], ReferenceError> {
     let mut vectors = lengths.map(|length| vec![0.0; length]);
     let pointers = vectors.each_mut().map(Vec::as_mut_ptr);
     call(|error| work(pointers, error), |code| *code == 0)?;
@@ -107,8 +107,8 @@ pub fn versions() -> String {
 
 /// A scene as the reference reads and assembles it; matrices are row by row.
 #[derive(Debug)]
-pub struct Scene {
-    handle: NonNull<ffi::Scene>,
+pub struct ReferenceScene {
+    handle: NonNull<LsScene>,
     /// Names of the coordinates.
     pub coordinates: Vec<String>,
     /// Names of the constraint rows.
@@ -122,11 +122,11 @@ pub struct Scene {
 }
 
 // SAFETY: the library has no globals, and no function changes a scene
-unsafe impl Send for Scene {}
+unsafe impl Send for ReferenceScene {}
 // SAFETY: likewise
-unsafe impl Sync for Scene {}
+unsafe impl Sync for ReferenceScene {}
 
-impl Drop for Scene {
+impl Drop for ReferenceScene {
     fn drop(&mut self) {
         // SAFETY: the handle is freed once
         unsafe { ls_scene_free(self.handle.as_ptr()) }
@@ -135,16 +135,16 @@ impl Drop for Scene {
 
 /// A state at which equations are compared; z is the impact velocity of every joint, 0 where open or ideal.
 #[derive(Debug, Clone, Copy)]
-pub struct At<'a> {
+pub struct ReferenceState<'a> {
     pub t: f64,
     pub q: &'a [f64],
     pub v: &'a [f64],
     pub z: &'a [f64],
 }
 
-impl Scene {
+impl ReferenceScene {
     /// Reads the text of a scene with overrides `path=value`, and assembles its start.
-    pub fn read(text: &str, overrides: &[String]) -> Result<Scene, Error> {
+    pub fn read(text: &str, overrides: &[String]) -> Result<ReferenceScene, ReferenceError> {
         let c_text = |s: &str| CString::new(s).expect("scenes have no zero bytes");
         let (text, overrides) = (c_text(text), overrides.iter().map(|o| c_text(o)));
         let overrides: Vec<CString> = overrides.collect();
@@ -154,7 +154,7 @@ impl Scene {
             |e| unsafe { ls_scene_read(text.as_ptr(), pointers.as_ptr(), pointers.len(), e) },
             |handle| !handle.is_null(),
         )?;
-        let mut description = Description {
+        let mut description = LsDescription {
             title: null_mut(),
             is_static: 0,
             reserved: 0,
@@ -169,7 +169,7 @@ impl Scene {
             let name = |i| unsafe { owned(ls_scene_name(handle, list, i)) };
             (0..).map_while(name).collect()
         };
-        Ok(Scene {
+        Ok(ReferenceScene {
             coordinates: names(0),
             rows: names(1),
             joints: names(2),
@@ -180,14 +180,14 @@ impl Scene {
     }
 
     /// Number of coordinates, after a check that a state has as many.
-    fn size(&self, at: At) -> usize {
+    fn size(&self, at: ReferenceState) -> usize {
         let (n, lengths) = (self.coordinates.len(), [at.q.len(), at.v.len(), at.z.len()]);
         assert_eq!(lengths, [n, n, self.joints.len()], "a state of this scene");
         n
     }
 
     /// q and v at t = 0.
-    pub fn start(&self) -> Result<[Vec<f64>; 2], Error> {
+    pub fn start(&self) -> Result<[Vec<f64>; 2], ReferenceError> {
         // SAFETY: a number for every coordinate
         filled([self.coordinates.len(); 2], |[q, v], e| unsafe {
             ls_scene_start(self.handle.as_ptr(), q, v, e)
@@ -195,7 +195,7 @@ impl Scene {
     }
 
     /// M.
-    pub fn mass(&self) -> Result<Vec<f64>, Error> {
+    pub fn mass(&self) -> Result<Vec<f64>, ReferenceError> {
         // SAFETY: the matrix is n x n
         let [mass] = filled([self.coordinates.len().pow(2)], |[mass], e| unsafe {
             ls_scene_mass(self.handle.as_ptr(), mass, e)
@@ -204,7 +204,7 @@ impl Scene {
     }
 
     /// f, df/dq and df/dv.
-    pub fn force(&self, at: At) -> Result<[Vec<f64>; 3], Error> {
+    pub fn force(&self, at: ReferenceState) -> Result<[Vec<f64>; 3], ReferenceError> {
         let (n, scene) = (self.size(at), self.handle.as_ptr());
         let (q, v, z) = (at.q.as_ptr(), at.v.as_ptr(), at.z.as_ptr());
         // SAFETY: the state fits the scene; a vector and two matrices of n
@@ -214,7 +214,7 @@ impl Scene {
     }
 
     /// Phi, Phi_q and Phi_t.
-    pub fn constraint_rows(&self, t: f64, q: &[f64]) -> Result<[Vec<f64>; 3], Error> {
+    pub fn constraint_rows(&self, t: f64, q: &[f64]) -> Result<[Vec<f64>; 3], ReferenceError> {
         let (n, m) = (self.coordinates.len(), self.rows.len());
         assert_eq!(q.len(), n, "a state of this scene");
         // SAFETY: q fits the scene; vectors of m, a matrix of m x n
@@ -224,7 +224,7 @@ impl Scene {
     }
 
     /// a and lambda of the equations of motion.
-    pub fn acceleration(&self, at: At) -> Result<[Vec<f64>; 2], Error> {
+    pub fn acceleration(&self, at: ReferenceState) -> Result<[Vec<f64>; 2], ReferenceError> {
         let (n, scene) = (self.size(at), self.handle.as_ptr());
         let (q, v, z) = (at.q.as_ptr(), at.v.as_ptr(), at.z.as_ptr());
         // SAFETY: the state fits the scene; n and m numbers
@@ -234,7 +234,7 @@ impl Scene {
     }
 
     /// All channels, in the order of their names.
-    pub fn values(&self, at: At) -> Result<Vec<f64>, Error> {
+    pub fn values(&self, at: ReferenceState) -> Result<Vec<f64>, ReferenceError> {
         let (_, scene) = (self.size(at), self.handle.as_ptr());
         let (q, v, z) = (at.q.as_ptr(), at.v.as_ptr(), at.z.as_ptr());
         // SAFETY: the state fits the scene; a number for every channel
@@ -245,13 +245,13 @@ impl Scene {
     }
 
     /// Begins a run at the start of the scene.
-    pub fn run(&self, tolerances: &Tolerances) -> Result<Run<'_>, Error> {
+    pub fn run(&self, tolerances: &LsTolerances) -> Result<ReferenceRun<'_>, ReferenceError> {
         let handle = call(
             // SAFETY: the run keeps its own copy of the scene
             |e| unsafe { ls_run_new(self.handle.as_ptr(), tolerances, e) },
             |handle| !handle.is_null(),
         )?;
-        Ok(Run {
+        Ok(ReferenceRun {
             scene: self,
             handle: NonNull::new(handle).expect("checked above"),
         })
@@ -260,21 +260,21 @@ impl Scene {
 
 /// A run under way, of IDA or of a static analysis.
 #[derive(Debug)]
-pub struct Run<'a> {
-    scene: &'a Scene,
-    handle: NonNull<ffi::Run>,
+pub struct ReferenceRun<'a> {
+    scene: &'a ReferenceScene,
+    handle: NonNull<LsRun>,
 }
 
-impl Drop for Run<'_> {
+impl Drop for ReferenceRun<'_> {
     fn drop(&mut self) {
         // SAFETY: the handle is freed once
         unsafe { ls_run_free(self.handle.as_ptr()) }
     }
 }
 
-impl Run<'_> {
+impl ReferenceRun<'_> {
     /// Goes on to `t`; all channels there.
-    pub fn advance(&mut self, t: f64) -> Result<Vec<f64>, Error> {
+    pub fn advance(&mut self, t: f64) -> Result<Vec<f64>, ReferenceError> {
         // SAFETY: a number for every channel
         let [values] = filled([self.scene.channels.len()], |[values], e| unsafe {
             ls_run_advance(self.handle.as_ptr(), t, values, e)
@@ -283,11 +283,11 @@ impl Run<'_> {
     }
 
     /// Events from the one with index `first` on.
-    pub fn events(&self, first: usize) -> Vec<Event> {
+    pub fn events(&self, first: usize) -> Vec<LsEvent> {
         // SAFETY: the handle is of a run
         let count = unsafe { ls_run_event_count(self.handle.as_ptr()) };
         let event = |i| {
-            let mut event = Event::default();
+            let mut event = LsEvent::default();
             // SAFETY: the index is below the count
             unsafe { ls_run_event(self.handle.as_ptr(), i, &mut event) };
             event
@@ -296,8 +296,8 @@ impl Run<'_> {
     }
 
     /// Counts so far.
-    pub fn statistics(&self) -> Statistics {
-        let mut statistics = Statistics::default();
+    pub fn statistics(&self) -> LsStatistics {
+        let mut statistics = LsStatistics::default();
         // SAFETY: the handle is of a run
         unsafe { ls_run_statistics(self.handle.as_ptr(), &mut statistics) };
         statistics

@@ -3,19 +3,19 @@
 use crate::check::Agreement;
 use crate::crossing::{INPUTS, TOLERANCES, functions};
 use crate::reference;
-use ladder::faults::{Fault, Outcome};
+use ladder::faults::{Fault, FaultOutcome};
 use numbers::number;
 use std::fmt::{self, Write};
 
 /// Everything the page is made of.
-pub struct Report {
+pub struct ComparisonReport {
     /// Title of a table, a sentence about it, its rows.
     pub sections: Vec<(&'static str, String, Vec<Agreement>)>,
     /// Seeded faults and variants, with what became of them.
-    pub faults: Vec<(Fault, Outcome)>,
+    pub faults: Vec<(Fault, FaultOutcome)>,
 }
 
-impl Report {
+impl ComparisonReport {
     /// The page in Markdown.
     pub fn page(&self) -> Result<String, fmt::Error> {
         let mut page = String::new();

@@ -1,6 +1,6 @@
 //! The same scene on both sides, as columns with the same names.
 
-use crate::reference::{self, Statistics, Tolerances};
+use crate::reference::{LsStatistics, LsTolerances, ReferenceScene};
 use cpu_time::ThreadTime;
 use looselink::scene::Scene;
 use looselink::simulate::{Recording, RunError, Simulation};
@@ -13,7 +13,7 @@ const DENSE: usize = 100;
 
 /// What to run: a scene of the project, rows every `interval` up to `duration`.
 #[derive(Debug, Clone)]
-pub struct Plan {
+pub struct ComparisonPlan {
     /// Path below `scenes/` without the extension, or of a file.
     pub scene: String,
     /// The file.
@@ -30,7 +30,7 @@ pub struct Plan {
 
 /// A contact that closes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Impact {
+pub struct ComparedImpact {
     /// When \[s\].
     pub t: f64,
     /// Name of the joint.
@@ -48,11 +48,11 @@ pub struct Trajectory {
     /// Columns, the time `t` among them, by the names of Looselink's channels.
     pub columns: BTreeMap<String, Vec<f64>>,
     /// Contacts that closed, in order.
-    pub impacts: Vec<Impact>,
+    pub impacts: Vec<ComparedImpact>,
     /// Processor time of IDA \[s\], the start and what reads the scene left out.
     pub seconds: f64,
     /// Counts of IDA.
-    pub counts: Statistics,
+    pub counts: LsStatistics,
 }
 
 impl Trajectory {
@@ -63,12 +63,12 @@ impl Trajectory {
     }
 }
 
-impl Plan {
+impl ComparisonPlan {
     /// A plan without overrides.
-    pub fn new(scene: impl Into<String>, duration: f64, interval: f64) -> Plan {
+    pub fn new(scene: impl Into<String>, duration: f64, interval: f64) -> ComparisonPlan {
         let scene = scene.into();
         let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../scenes");
-        Plan {
+        ComparisonPlan {
             path: root.join(format!("{scene}.toml")),
             scene,
             overrides: Vec::new(),
@@ -79,16 +79,21 @@ impl Plan {
     }
 
     /// A scene anywhere, with overrides that change the mechanism.
-    pub fn of_file(scene: &Path, overrides: &[String], duration: f64, interval: f64) -> Plan {
-        Plan {
+    pub fn of_file(
+        scene: &Path,
+        overrides: &[String],
+        duration: f64,
+        interval: f64,
+    ) -> ComparisonPlan {
+        ComparisonPlan {
             path: scene.to_owned(),
             overrides: overrides.to_vec(),
-            ..Plan::new(scene.display().to_string(), duration, interval)
+            ..ComparisonPlan::new(scene.display().to_string(), duration, interval)
         }
     }
 
     /// The same with overrides, called `variant` in reports.
-    pub fn with(mut self, variant: &'static str, overrides: &[&str]) -> Plan {
+    pub fn with(mut self, variant: &'static str, overrides: &[&str]) -> ComparisonPlan {
         self.variant = variant;
         self.overrides
             .extend(overrides.iter().map(|o| (*o).to_owned()));
@@ -96,7 +101,7 @@ impl Plan {
     }
 
     /// The same with friction that acts against the slip of the material, in every loose joint.
-    pub fn with_friction(self) -> Plan {
+    pub fn with_friction(self) -> ComparisonPlan {
         let friction = "contacts.pin.friction={law=\"ambrosio\",coefficient=0.1,v0=1e-4,v1=1e-3}";
         self.with(", friction against material slip", &[friction])
     }
@@ -126,10 +131,10 @@ impl Plan {
     }
 
     /// The scene as the reference reads it.
-    pub fn reference(&self) -> Result<reference::Scene> {
+    pub fn reference(&self) -> Result<ReferenceScene> {
         let text = std::fs::read_to_string(&self.path).into_diagnostic();
         let text = text.wrap_err_with(|| format!("cannot read {}", self.path.display()))?;
-        let scene = reference::Scene::read(&text, &self.overrides()).into_diagnostic();
+        let scene = ReferenceScene::read(&text, &self.overrides()).into_diagnostic();
         scene.wrap_err_with(|| self.name())
     }
 
@@ -148,7 +153,7 @@ impl Plan {
             Err(RunError::Interrupted { .. }) if recording.onsets.len() >= impacts => {}
             result => result.into_diagnostic().wrap_err_with(|| self.name())?,
         }
-        let closed = recording.onsets.iter().map(|onset| Impact {
+        let closed = recording.onsets.iter().map(|onset| ComparedImpact {
             t: onset.t,
             joint: onset.joint.clone(),
             velocity: onset.impact_velocity,
@@ -158,26 +163,26 @@ impl Plan {
             impacts: closed.collect(),
             columns: recording.into_columns().collect(),
             seconds: 0.0,
-            counts: Statistics::default(),
+            counts: LsStatistics::default(),
         })
     }
 
     /// The reference's trajectory with these tolerances.
-    pub fn cpp(&self, tolerances: &Tolerances) -> Result<Trajectory> {
+    pub fn cpp(&self, tolerances: &LsTolerances) -> Result<Trajectory> {
         self.cpp_until(tolerances, usize::MAX)
     }
 
     /// The reference's trajectory, ended at the first row after `impacts` contacts have closed.
-    pub fn cpp_until(&self, tolerances: &Tolerances, impacts: usize) -> Result<Trajectory> {
+    pub fn cpp_until(&self, tolerances: &LsTolerances, impacts: usize) -> Result<Trajectory> {
         let scene = self.reference()?;
         let linear_solver = i32::from(scene.coordinates.len() > DENSE);
-        let tolerances = Tolerances {
+        let tolerances = LsTolerances {
             linear_solver,
             ..*tolerances
         };
         let mut columns = vec![Vec::new(); scene.channels.len()];
         // impacts so far; for every joint in contact the index of its impact and the direction of its eccentricity
-        let mut closed: Vec<Impact> = Vec::new();
+        let mut closed: Vec<ComparedImpact> = Vec::new();
         let mut angles = BTreeMap::new();
         let clock = ThreadTime::now();
         let mut run = scene.run(&tolerances).into_diagnostic()?;
@@ -198,7 +203,7 @@ impl Plan {
                     let [x, y] = e.eccentricity;
                     angles.insert(e.joint, (closed.len(), y.atan2(x)));
                     let joint = usize::try_from(e.joint).into_diagnostic()?;
-                    closed.push(Impact {
+                    closed.push(ComparedImpact {
                         t: e.time,
                         joint: scene.joints[joint].clone(),
                         velocity: e.velocity,
@@ -224,8 +229,8 @@ impl Plan {
 }
 
 /// Tolerances of IDA: `relative`, and absolute ones that fit it for a mechanism of some decimetres at some 0.1 m/s.
-pub fn tolerances(relative: f64) -> Tolerances {
-    Tolerances {
+pub fn tolerances(relative: f64) -> LsTolerances {
+    LsTolerances {
         relative,
         position: 1e-3 * relative,
         velocity: 0.1 * relative,

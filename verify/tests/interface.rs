@@ -4,8 +4,8 @@ use looselink::simulate::Simulation;
 use std::collections::BTreeSet;
 use verify::compare::scenes;
 use verify::crossing::{INPUTS, TOLERANCES, fields, functions};
-use verify::reference::Scene;
-use verify::trajectory::{Plan, tolerances};
+use verify::reference::ReferenceScene;
+use verify::trajectory::{ComparisonPlan, tolerances};
 
 /// Codes of errors, as in the header: the scene makes no sense, the path is out of reach, IDA failed.
 const BAD_INPUT: i32 = 1;
@@ -39,7 +39,7 @@ fn reference_has_the_expected_coordinates_and_rows() {
         ("3rrr/case3", 27, 3 + 3 + 6 + 3),
         ("3rrr/case4", 39, 3 + 6 + 3),
     ] {
-        let scene = Plan::new(scene, 0.01, 1e-3).reference().unwrap();
+        let scene = ComparisonPlan::new(scene, 0.01, 1e-3).reference().unwrap();
         let sizes = [scene.coordinates.len(), scene.rows.len()];
         assert_eq!(sizes, [unknowns, constraints], "{:?}", scene.rows);
     }
@@ -48,7 +48,7 @@ fn reference_has_the_expected_coordinates_and_rows() {
 /// A scene that makes no sense is refused with the place in the file.
 #[test]
 fn bad_scenes_are_refused_with_their_place() {
-    let text = std::fs::read_to_string(Plan::new("3rrr/case4", 1.0, 1.0).path).unwrap();
+    let text = std::fs::read_to_string(ComparisonPlan::new("3rrr/case4", 1.0, 1.0).path).unwrap();
     for (damage, place) in [
         ("joints.B1.journal=\"link1.middle\"", "joints.B1"),
         ("materials.steel.density=-1.0", "materials.steel.density"),
@@ -57,14 +57,14 @@ fn bad_scenes_are_refused_with_their_place() {
         ("drives.input.path.radius=inf", "drives.input.path.radius"),
         ("bodies.link1.lenght=0.1", "bodies.link1.lenght"),
     ] {
-        match Scene::read(&text, &[damage.to_owned()]) {
+        match ReferenceScene::read(&text, &[damage.to_owned()]) {
             Err(e) if e.code == BAD_INPUT => assert!(e.field.starts_with(place), "{e}"),
             other => panic!("{damage}: {other:?}"),
         }
     }
     let damaged = text.replace("\"lankarani_nikravesh\"", "\"lankarani\"");
     let line = damaged.lines().position(|l| l.contains("lankarani"));
-    match Scene::read(&damaged, &[]) {
+    match ReferenceScene::read(&damaged, &[]) {
         Err(e) if e.code == BAD_INPUT => {
             assert_eq!(usize::try_from(e.line), Ok(line.unwrap() + 1));
         }
@@ -75,7 +75,7 @@ fn bad_scenes_are_refused_with_their_place() {
 #[test]
 fn a_path_out_of_reach_is_refused_with_its_time() {
     let path = "drives.input.path={type=\"line\",from=[0.1,0.0,0.0],to=[0.6,0.0,0.0],duration=1.0}";
-    let plan = Plan::new("3rrr/case1", 1.0, 1e-2).with("", &[path]);
+    let plan = ComparisonPlan::new("3rrr/case1", 1.0, 1e-2).with("", &[path]);
     let scene = plan.reference().unwrap();
     let mut run = scene.run(&tolerances(1e-6)).unwrap();
     let end = (0..100).find_map(|k| run.advance(0.01 * f64::from(k)).err());
@@ -90,7 +90,9 @@ fn a_path_out_of_reach_is_refused_with_its_time() {
 /// What IDA says arrives word by word, with its flag and the time, and the run is dead afterwards.
 #[test]
 fn a_failure_of_ida_is_an_error_with_its_message() {
-    let scene = Plan::new("3rrr/case2", 0.1, 1e-3).reference().unwrap();
+    let scene = ComparisonPlan::new("3rrr/case2", 0.1, 1e-3)
+        .reference()
+        .unwrap();
     let mut run = scene.run(&tolerances(1e-30)).unwrap();
     let first = run.advance(0.01).unwrap_err();
     // IDA_TOO_MUCH_ACC
@@ -102,7 +104,9 @@ fn a_failure_of_ida_is_an_error_with_its_message() {
 /// So does a budget of steps that is used up.
 #[test]
 fn too_many_steps_are_an_error() {
-    let scene = Plan::new("3rrr/case2", 0.1, 1e-3).reference().unwrap();
+    let scene = ComparisonPlan::new("3rrr/case2", 0.1, 1e-3)
+        .reference()
+        .unwrap();
     let mut few = tolerances(1e-10);
     few.max_steps = 10;
     match scene.run(&few).unwrap().advance(0.01) {
@@ -117,7 +121,7 @@ fn too_many_steps_are_an_error() {
 #[test]
 fn the_same_run_gives_the_same_bytes() {
     let bits = || {
-        let run = Plan::new("3rrr/case4", 0.006, 1e-3).cpp(&tolerances(1e-8));
+        let run = ComparisonPlan::new("3rrr/case4", 0.006, 1e-3).cpp(&tolerances(1e-8));
         let columns = run.unwrap().columns.into_values().flatten();
         columns.map(f64::to_bits).collect::<Vec<_>>()
     };

@@ -3,7 +3,7 @@
 use looselink::scene::Analysis;
 use verify::check::assert_all;
 use verify::compare::{equations, scenes};
-use verify::trajectory::Plan;
+use verify::trajectory::ComparisonPlan;
 
 #[test]
 fn starts_of_all_scenes_agree() {
@@ -21,9 +21,9 @@ fn equilibria_agree() {
     }
 }
 
-fn equations_agree(choose: impl Fn(&Plan) -> bool) {
+fn equations_agree(choose: impl Fn(&ComparisonPlan) -> bool) {
     let plans = equations::plans().unwrap().into_iter().filter(choose);
-    let plans: Vec<Plan> = plans.collect();
+    let plans: Vec<ComparisonPlan> = plans.collect();
     assert!(!plans.is_empty());
     for plan in plans {
         let what = format!("Assembled equations of {}", plan.name());

@@ -1,7 +1,7 @@
 //! Whole motions on both sides.
 
 use verify::check::{Agreement, assert_all};
-use verify::compare::impacts::Series;
+use verify::compare::impacts::ImpactSeries;
 use verify::compare::{flexible, impacts, machines, rigid, statistics};
 
 #[test]
@@ -22,7 +22,7 @@ fn flexible_links_of_four_elements_agree() {
     assert_all("Case 2 with four elements a link in motion", &rows);
 }
 
-fn impacts_agree(what: &str, choose: impl Fn(&Series) -> bool) {
+fn impacts_agree(what: &str, choose: impl Fn(&ImpactSeries) -> bool) {
     let series = impacts::all();
     let rows: Vec<Agreement> = series
         .iter()

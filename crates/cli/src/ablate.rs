@@ -1,13 +1,13 @@
 //! `looselink ablate`
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::progress::show;
 use super::{SceneArguments, print};
 use clap::Args;
 use looselink::output::{Folder, json};
 use serde::Serialize;
 use std::path::PathBuf;
-use studies::ablation::{FILES, Observed, Repeatable, Timing, ablate as measure};
+use studies::ablation::{AblationTiming, FILES, Observed, Repeatable, ablate as measure};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -33,18 +33,20 @@ pub struct Arguments {
     quiet: bool,
 }
 
+/// What `--json` prints.
 #[derive(Serialize)]
-struct Both<'a> {
+struct AblationOutput<'a> {
     ablation: Repeatable<'a>,
-    timing: Timing,
+    timing: AblationTiming,
 }
 
 /// Runs all variants of the scene; one that cannot be built is a row that says why.
-pub fn ablate(arguments: &Arguments) -> Result<(), Failure> {
+pub fn ablate(arguments: &Arguments) -> Result<(), CommandFailure> {
     let new = |out: &PathBuf| Folder::new(out, &FILES, arguments.force);
     let folder = arguments.out.as_ref().map(new).transpose()?;
     let (scene, _) = arguments.scene.load()?;
-    let body = Observed::choose(&scene, arguments.body.as_deref()).map_err(Failure::bad_input)?;
+    let body =
+        Observed::choose(&scene, arguments.body.as_deref()).map_err(CommandFailure::bad_input)?;
     folder.iter().try_for_each(Folder::prepare)?;
     let runs = arguments.runs.map(|runs| runs as usize);
     let ablation = measure(&scene, body, runs, &mut |notice| {
@@ -53,7 +55,7 @@ pub fn ablate(arguments: &Arguments) -> Result<(), Failure> {
     // What was measured is shown also where it cannot be stored.
     let stored = folder.map_or(Ok(()), |folder| ablation.write(&folder));
     if arguments.json {
-        print(json(&Both {
+        print(json(&AblationOutput {
             ablation: ablation.repeatable(),
             timing: ablation.timing(),
         })?)?;

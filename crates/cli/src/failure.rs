@@ -17,31 +17,31 @@ pub const INTERRUPTED: u8 = 130;
 
 /// The end of a command that did not do what it was asked.
 #[derive(Debug)]
-pub struct Failure {
+pub struct CommandFailure {
     code: u8,
     text: String,
 }
 
-impl Failure {
-    fn new(code: u8, message: impl Display) -> Failure {
-        Failure {
+impl CommandFailure {
+    fn new(code: u8, message: impl Display) -> CommandFailure {
+        CommandFailure {
             code,
             text: format!("error: {message}"),
         }
     }
 
     /// Input or output failed.
-    pub fn system(message: impl Display) -> Failure {
-        Failure::new(SYSTEM, message)
+    pub fn system(message: impl Display) -> CommandFailure {
+        CommandFailure::new(SYSTEM, message)
     }
 
     /// What the command line asks for cannot be done.
-    pub fn bad_input(message: impl Display) -> Failure {
-        Failure::new(BAD_INPUT, message)
+    pub fn bad_input(message: impl Display) -> CommandFailure {
+        CommandFailure::new(BAD_INPUT, message)
     }
 
     /// A run that ended early.
-    pub fn run(error: &RunError) -> Failure {
+    pub fn run(error: &RunError) -> CommandFailure {
         let (code, message) = match error {
             RunError::Interrupted { .. } => (INTERRUPTED, error.to_string()),
             RunError::Output(_) => (SYSTEM, error.to_string()),
@@ -53,11 +53,11 @@ impl Failure {
             ),
             _ => (CANNOT_GO_ON, format!("the run cannot go on: {error}")),
         };
-        Failure::new(code, message)
+        CommandFailure::new(code, message)
     }
 
     /// The same failure with more to say.
-    pub fn and(mut self, more: &str) -> Failure {
+    pub fn and(mut self, more: &str) -> CommandFailure {
         self.text += more;
         self
     }
@@ -70,38 +70,37 @@ impl Failure {
     }
 }
 
-impl From<SceneError> for Failure {
-    fn from(error: SceneError) -> Failure {
+impl From<SceneError> for CommandFailure {
+    fn from(error: SceneError) -> CommandFailure {
         // Whole lines: a message that is cut in two cannot be searched for.
         let hook = |_: &_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build()) as _;
         // Fails only when a hook is there already.
         let _ = miette::set_hook(Box::new(hook));
-        Failure {
+        CommandFailure {
             code: BAD_INPUT,
             text: format!("{:?}", miette::Report::new(error)),
         }
     }
 }
 
-impl From<StudyError> for Failure {
-    fn from(error: StudyError) -> Failure {
+impl From<StudyError> for CommandFailure {
+    fn from(error: StudyError) -> CommandFailure {
         match error {
-            StudyError::Plain(message) => Failure::bad_input(message),
+            StudyError::Plain(message) => CommandFailure::bad_input(message),
             StudyError::Scene(error) => error.into(),
         }
     }
 }
 
-impl From<OutputError> for Failure {
-    fn from(error: OutputError) -> Failure {
+impl From<OutputError> for CommandFailure {
+    fn from(error: OutputError) -> CommandFailure {
         match error {
-            OutputError::Io(_) => Failure::system(error),
+            OutputError::Io(_) => CommandFailure::system(error),
             OutputError::NotADirectory(_) | OutputError::NotAFile(_) | OutputError::Busy(_) => {
-                Failure::bad_input(error)
+                CommandFailure::bad_input(error)
             }
-            OutputError::Occupied { .. } => {
-                Failure::bad_input(error).and("; choose another folder, or replace it with --force")
-            }
+            OutputError::Occupied { .. } => CommandFailure::bad_input(error)
+                .and("; choose another folder, or replace it with --force"),
         }
     }
 }

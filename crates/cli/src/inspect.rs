@@ -1,6 +1,6 @@
 //! `looselink inspect`
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::{SceneArguments, print};
 use clap::Args;
 use looselink::output::json;
@@ -18,7 +18,7 @@ pub struct Arguments {
 }
 
 /// Shows the compiled scene on standard output.
-pub fn inspect(arguments: &Arguments) -> Result<(), Failure> {
+pub fn inspect(arguments: &Arguments) -> Result<(), CommandFailure> {
     let (scene, simulation) = arguments.scene.load()?;
     let inspection = simulation.inspect();
     match arguments.json {

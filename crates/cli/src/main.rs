@@ -10,7 +10,7 @@ mod run;
 mod schema;
 
 use clap::{Args, Parser, Subcommand};
-use failure::Failure;
+use failure::CommandFailure;
 use looselink::scene::{Scene, SceneError};
 use looselink::simulate::Simulation;
 use std::io::Write;
@@ -124,18 +124,18 @@ fn main() -> ExitCode {
     }
 }
 
-fn check(arguments: &SceneArguments) -> Result<(), Failure> {
+fn check(arguments: &SceneArguments) -> Result<(), CommandFailure> {
     let (scene, _) = arguments.load()?;
     print(format!("{}: no error found\n", scene.title))
 }
 
 /// Writes to standard output; a reader that has gone away is no fault.
-fn print(text: impl AsRef<[u8]>) -> Result<(), Failure> {
+fn print(text: impl AsRef<[u8]>) -> Result<(), CommandFailure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_ref()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::system(format!(
-            "cannot write to standard output: {e}"
-        ))),
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(CommandFailure::system(
+            format!("cannot write to standard output: {e}"),
+        )),
         _ => Ok(()),
     }
 }

@@ -1,13 +1,15 @@
 //! `looselink precision`
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::print;
 use super::progress::show;
 use clap::Args;
 use looselink::output::Folder;
 use std::path::PathBuf;
 use studies::machine::machine;
-use studies::precision::{Compared, Effort, FILES, Found, Motion, Statistics, Study};
+use studies::precision::{
+    Compared, Effort, FILES, Found, MotionReference, StatisticsReference, Study,
+};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -31,17 +33,21 @@ pub struct Arguments {
 }
 
 /// Makes all runs of a study and writes what they found and what they took.
-pub fn precision(arguments: &Arguments) -> Result<(), Failure> {
+pub fn precision(arguments: &Arguments) -> Result<(), CommandFailure> {
     let folder = Folder::new(&arguments.out, &FILES, arguments.force)?;
     let study = Study::load(&arguments.study)?;
     folder.prepare()?;
     match study.statistics {
-        Some(_) => make::<Statistics>(arguments, &study, &folder),
-        None => make::<Motion>(arguments, &study, &folder),
+        Some(_) => make::<StatisticsReference>(arguments, &study, &folder),
+        None => make::<MotionReference>(arguments, &study, &folder),
     }
 }
 
-fn make<C: Compared>(arguments: &Arguments, study: &Study, folder: &Folder) -> Result<(), Failure> {
+fn make<C: Compared>(
+    arguments: &Arguments,
+    study: &Study,
+    folder: &Folder,
+) -> Result<(), CommandFailure> {
     let smoke = arguments.smoke;
     let effort = Effort {
         repeats: if smoke { 1 } else { arguments.repeats.into() },

@@ -100,7 +100,7 @@ pub fn say(line: &str) {
 }
 
 /// Looks at the clock every 256 steps or so, more often when steps are slow.
-pub struct Pace {
+pub struct Ticker {
     every: u32,
     count: u32,
     last: Instant,
@@ -108,10 +108,10 @@ pub struct Pace {
 
 const TICK: Duration = Duration::from_millis(100);
 
-impl Pace {
+impl Ticker {
     /// Starts with a look at every step.
-    pub fn new() -> Pace {
-        Pace {
+    pub fn new() -> Ticker {
+        Ticker {
             every: 1,
             count: 0,
             last: Instant::now(),

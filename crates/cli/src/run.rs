@@ -2,12 +2,12 @@
 
 use super::SceneArguments;
 use super::closing;
-use super::failure::{Failure, INTERRUPTED};
-use super::progress::{Display, Pace, warn};
+use super::failure::{CommandFailure, INTERRUPTED};
+use super::progress::{Display, Ticker, warn};
 use clap::Args;
 use looselink::output::{Folder, OutputError, Results, earlier_result, files};
 use looselink::registry::Registry;
-use looselink::simulate::{Contact, Control, Observer, Progress};
+use looselink::simulate::{ContactEvent, Control, Observer, Progress};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -33,25 +33,25 @@ pub struct Arguments {
 const FLUSH: Duration = Duration::from_secs(1);
 
 /// Passes results on to the disk and to the user.
-struct Watch {
+struct RunObserver {
     results: Results,
     display: Display,
-    pace: Pace,
+    ticker: Ticker,
     flushed: Instant,
     stop: Arc<AtomicBool>,
 }
 
-impl Observer for Watch {
+impl Observer for RunObserver {
     fn row(&mut self, values: &[f64]) -> io::Result<()> {
         self.results.row(values)
     }
 
-    fn contact(&mut self, contact: &Contact) -> io::Result<()> {
+    fn contact(&mut self, contact: &ContactEvent) -> io::Result<()> {
         self.results.contact(contact)
     }
 
     fn step(&mut self, progress: &Progress) -> io::Result<Control> {
-        let tick = self.pace.tick();
+        let tick = self.ticker.tick();
         if tick && self.flushed.elapsed() >= FLUSH {
             self.results.flush()?;
             self.flushed = Instant::now();
@@ -65,7 +65,7 @@ impl Observer for Watch {
 }
 
 /// Simulates the scene; whatever ends the run, what was recorded up to there stands.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let stop = stop_on_interrupt()?;
     let folder = Folder::new(
         &arguments.out,
@@ -74,35 +74,37 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     )?;
     let (scene, mut simulation) = arguments.scene.load()?;
     let started = Instant::now();
-    let not_stored = |error: OutputError| Failure::from(error).and(&earlier(arguments));
+    let not_stored = |error: OutputError| CommandFailure::from(error).and(&earlier(arguments));
     let results = Results::begin(folder, &scene, simulation.channels());
-    let mut watch = Watch {
+    let mut observer = RunObserver {
         results: results.map_err(not_stored)?,
         display: Display::new(arguments.quiet),
-        pace: Pace::new(),
+        ticker: Ticker::new(),
         flushed: started,
         stop,
     };
-    let ended = simulation.run(&mut watch);
+    let ended = simulation.run(&mut observer);
     let report = simulation.report();
     let out = arguments.out.display();
-    let stored = watch.results.finish(&report);
+    let stored = observer.results.finish(&report);
     let warn_of_all = || report.warnings().iter().for_each(|warning| warn(warning));
-    watch.display.finish("");
+    observer.display.finish("");
     if let Err(error) = ended {
         warn_of_all();
         let kept = match stored {
             Ok(()) => format!("; the results up to that time are in `{out}`"),
             Err(second) => format!("; the result in `{out}` could not be completed: {second}"),
         };
-        return Err(Failure::run(&error).and(&kept).and(&earlier(arguments)));
+        return Err(CommandFailure::run(&error)
+            .and(&kept)
+            .and(&earlier(arguments)));
     }
     stored.map_err(not_stored)?;
     let (steps, wall) = (report.steps, started.elapsed().as_secs_f64());
     let done = format!("{steps} steps in {wall:.2} s, results in `{out}`");
-    watch.display.finish(&done);
+    observer.display.finish(&done);
     for line in closing::lines(&report) {
-        watch.display.finish(&line);
+        observer.display.finish(&line);
     }
     warn_of_all();
     Ok(())
@@ -117,7 +119,7 @@ fn earlier(arguments: &Arguments) -> String {
 }
 
 /// The flag is raised by the first Ctrl-C; the second ends the program at once.
-fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
+fn stop_on_interrupt() -> Result<Arc<AtomicBool>, CommandFailure> {
     let stop = Arc::new(AtomicBool::new(false));
     let raised = stop.clone();
     ctrlc::set_handler(move || {
@@ -125,6 +127,6 @@ fn stop_on_interrupt() -> Result<Arc<AtomicBool>, Failure> {
             std::process::exit(INTERRUPTED.into());
         }
     })
-    .map_err(|e| Failure::system(format!("cannot watch for Ctrl-C: {e}")))?;
+    .map_err(|e| CommandFailure::system(format!("cannot watch for Ctrl-C: {e}")))?;
     Ok(stop)
 }

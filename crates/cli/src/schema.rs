@@ -1,14 +1,14 @@
 //! `looselink schema`: the scene language as a JSON schema, for editors that check while one types.
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::print;
-use looselink::document::{Key, Range, Takes};
+use looselink::document::{Key, NumberRange, Takes};
 use looselink::registry::Registry;
 use looselink::scene::language::{Sheet, language};
 use serde_json::{Map, Value, json};
 
 /// Prints the schema.
-pub fn show() -> Result<(), Failure> {
+pub fn show() -> Result<(), CommandFailure> {
     print(format!("{:#}\n", schema(&Registry::standard())))
 }
 
@@ -73,9 +73,9 @@ impl Language {
     fn value(&self, table: &str, key: &Key) -> Value {
         match key.takes {
             Takes::Number { range, .. } => match range {
-                Range::Any => json!({ "type": "number" }),
-                Range::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
-                Range::NonNegative => json!({ "type": "number", "minimum": 0 }),
+                NumberRange::Any => json!({ "type": "number" }),
+                NumberRange::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
+                NumberRange::NonNegative => json!({ "type": "number", "minimum": 0 }),
             },
             Takes::Whole(least, most) => {
                 json!({ "type": "integer", "minimum": least, "maximum": most })

@@ -1,25 +1,25 @@
 //! Cuts polylines at the frame of a panel.
 
-use crate::decimate::Point;
+use crate::decimate::PixelPoint;
 
 /// A rectangle in pixels, `low` and `high` corners inclusive.
 #[derive(Clone, Copy)]
-pub struct Frame {
+pub struct ClipRectangle {
     /// Least x and y.
-    pub low: Point,
+    pub low: PixelPoint,
     /// Greatest x and y.
-    pub high: Point,
+    pub high: PixelPoint,
 }
 
-impl Frame {
+impl ClipRectangle {
     /// Whether the point lies inside.
-    pub fn contains(&self, (x, y): Point) -> bool {
+    pub fn contains(&self, (x, y): PixelPoint) -> bool {
         (self.low.0..=self.high.0).contains(&x) && (self.low.1..=self.high.1).contains(&y)
     }
 
     /// The parts of a polyline inside the frame; a point that is not finite ends a part.
-    pub fn clip(&self, points: &[Point]) -> Vec<Vec<Point>> {
-        let mut parts: Vec<Vec<Point>> = Vec::new();
+    pub fn clip(&self, points: &[PixelPoint]) -> Vec<Vec<PixelPoint>> {
+        let mut parts: Vec<Vec<PixelPoint>> = Vec::new();
         let mut open = false;
         for pair in points.windows(2) {
             let Some((a, b)) = self.segment(pair[0], pair[1]) else {
@@ -36,7 +36,7 @@ impl Frame {
     }
 
     /// Liang & Barsky (1984): the part of a segment inside the frame.
-    fn segment(&self, a: Point, b: Point) -> Option<(Point, Point)> {
+    fn segment(&self, a: PixelPoint, b: PixelPoint) -> Option<(PixelPoint, PixelPoint)> {
         if ![a.0, a.1, b.0, b.1].iter().all(|v| v.is_finite()) {
             return None;
         }
@@ -77,7 +77,7 @@ impl Frame {
 mod tests {
     use super::*;
 
-    const FRAME: Frame = Frame {
+    const FRAME: ClipRectangle = ClipRectangle {
         low: (0.0, 0.0),
         high: (10.0, 10.0),
     };

@@ -1,11 +1,11 @@
 //! Thins polylines to what the pixels can show. Points are in pixels, x to the right.
 
 /// A point in pixels.
-pub type Point = (f64, f64);
+pub type PixelPoint = (f64, f64);
 
 /// The envelope of a series whose x never decreases: of every pixel column the first, lowest, highest and last point,
 /// in their order. No extreme value is lost and at most four points a column remain.
-pub fn envelope(points: &[Point]) -> Vec<Point> {
+pub fn envelope(points: &[PixelPoint]) -> Vec<PixelPoint> {
     let mut kept = Vec::new();
     for column in points.chunk_by(|a, b| a.0.floor() == b.0.floor()) {
         let by = |a: &usize, b: &usize| column[*a].1.total_cmp(&column[*b].1);
@@ -21,8 +21,8 @@ pub fn envelope(points: &[Point]) -> Vec<Point> {
 
 /// A curve of at most `budget` points: points closer than a quarter pixel to the last one kept are dropped, then those
 /// that lie within half a pixel of the chord of their neighbours; the tolerance is doubled until the budget is met.
-pub fn portrait(points: &[Point], budget: usize) -> Vec<Point> {
-    let mut kept: Vec<Point> = Vec::new();
+pub fn portrait(points: &[PixelPoint], budget: usize) -> Vec<PixelPoint> {
+    let mut kept: Vec<PixelPoint> = Vec::new();
     for (i, &(x, y)) in points.iter().enumerate() {
         let far = kept
             .last()
@@ -40,7 +40,7 @@ pub fn portrait(points: &[Point], budget: usize) -> Vec<Point> {
 }
 
 /// Douglas & Peucker (1973) on pieces of a thousand points, which bounds its cost.
-fn chords(points: &[Point], tolerance: f64) -> Vec<Point> {
+fn chords(points: &[PixelPoint], tolerance: f64) -> Vec<PixelPoint> {
     const PIECE: usize = 1000;
     let mut keep = vec![false; points.len()];
     let mut open: Vec<(usize, usize)> = (0..points.len() - 1)
@@ -64,7 +64,7 @@ fn chords(points: &[Point], tolerance: f64) -> Vec<Point> {
 }
 
 /// Distance of a point from the segment a-b.
-fn chord_distance(p: Point, a: Point, b: Point) -> f64 {
+fn chord_distance(p: PixelPoint, a: PixelPoint, b: PixelPoint) -> f64 {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let square = dx * dx + dy * dy;
     let u = if square > 0.0 {
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn envelope_is_short_and_keeps_every_peak() {
-        let mut points: Vec<Point> = (0..300_000)
+        let mut points: Vec<PixelPoint> = (0..300_000)
             .map(|i| (f64::from(i) * 0.002, f64::from(i).sin()))
             .collect();
         points[123_456].1 = 40.0;
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn portrait_stays_within_a_quarter_pixel() {
-        let points: Vec<Point> = (0..10_000)
+        let points: Vec<PixelPoint> = (0..10_000)
             .map(|i| f64::from(i) * 1e-3)
             .map(|a| (50.0 * a.cos(), 50.0 * a.sin()))
             .collect();
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn a_dense_portrait_meets_its_budget_and_keeps_its_outline() {
-        let points: Vec<Point> = (0..100_000)
+        let points: Vec<PixelPoint> = (0..100_000)
             .map(f64::from)
             .map(|i| {
                 (
@@ -124,7 +124,7 @@ mod tests {
             .collect();
         let kept = portrait(&points, 20_000);
         assert!(kept.len() <= 20_000);
-        let top = |p: &[Point]| p.iter().map(|p| p.1).fold(f64::MIN, f64::max);
+        let top = |p: &[PixelPoint]| p.iter().map(|p| p.1).fold(f64::MIN, f64::max);
         assert!((top(&kept) - top(&points)).abs() <= 1.0);
     }
 }

@@ -30,7 +30,7 @@ const BELOW: i32 = 110;
 const CATEGORY_LINE: i32 = 52;
 
 /// A panel with its axes and the place of its parts.
-pub struct Placed<'a> {
+pub struct PlacedPanel<'a> {
     /// The panel.
     pub panel: &'a Panel,
     /// Horizontal axis.
@@ -48,7 +48,7 @@ pub struct Placed<'a> {
 }
 
 /// Panels in reading order, and the lower edge of the last row.
-pub fn place(figure: &Figure) -> (Vec<Placed<'_>>, i32) {
+pub fn place(figure: &Figure) -> (Vec<PlacedPanel<'_>>, i32) {
     let mut panels = Vec::new();
     let mut top = MARGIN;
     for row in &figure.rows {
@@ -58,7 +58,7 @@ pub fn place(figure: &Figure) -> (Vec<Placed<'_>>, i32) {
         let upper = top + heads.iter().map(Head::height).max().unwrap_or(0);
         for ((panel, head), (cell_left, left)) in row.iter().zip(heads).zip(columns) {
             let (across, up) = axes(panel, [width, height]);
-            panels.push(Placed {
+            panels.push(PlacedPanel {
                 panel,
                 x: horizontal(panel, &across, width),
                 y: Ticks::new(&up, extent(panel, &up, false), 6),

@@ -122,7 +122,7 @@ pub struct Mark {
     /// Colour.
     pub color: Color,
     /// Kind.
-    pub shape: Shape,
+    pub shape: MarkShape,
     /// Abscissae; none for a level.
     pub x: Vec<f64>,
     /// Ordinates.
@@ -130,7 +130,7 @@ pub struct Mark {
 }
 
 /// The kinds of mark; widths and radii are in pixels.
-pub enum Shape {
+pub enum MarkShape {
     /// y over an x that never decreases; thinned to the envelope of every pixel column.
     Series {
         /// Line width.
@@ -209,7 +209,7 @@ impl Axis {
 }
 
 impl Mark {
-    fn new(label: &str, color: Color, shape: Shape, x: &[f64], y: &[f64]) -> Mark {
+    fn new(label: &str, color: Color, shape: MarkShape, x: &[f64], y: &[f64]) -> Mark {
         Mark {
             label: label.into(),
             color,
@@ -221,32 +221,32 @@ impl Mark {
 
     /// A line over a monotonic abscissa.
     pub fn series(label: &str, color: Color, x: &[f64], y: &[f64]) -> Mark {
-        Mark::new(label, color, Shape::Series { width: 3 }, x, y)
+        Mark::new(label, color, MarkShape::Series { width: 3 }, x, y)
     }
 
     /// A curve in the plane.
     pub fn curve(label: &str, color: Color, x: &[f64], y: &[f64]) -> Mark {
-        Mark::new(label, color, Shape::Curve { width: 2 }, x, y)
+        Mark::new(label, color, MarkShape::Curve { width: 2 }, x, y)
     }
 
     /// Dots.
     pub fn points(label: &str, color: Color, x: &[f64], y: &[f64], radius: u32) -> Mark {
-        Mark::new(label, color, Shape::Points { radius }, x, y)
+        Mark::new(label, color, MarkShape::Points { radius }, x, y)
     }
 
     /// A cross.
     pub fn cross(label: &str, color: Color, at: (f64, f64)) -> Mark {
-        Mark::new(label, color, Shape::Cross, &[at.0], &[at.1])
+        Mark::new(label, color, MarkShape::Cross, &[at.0], &[at.1])
     }
 
     /// A dashed horizontal line.
     pub fn level(label: &str, color: Color, y: f64) -> Mark {
-        Mark::new(label, color, Shape::Level, &[], &[y])
+        Mark::new(label, color, MarkShape::Level, &[], &[y])
     }
 
     /// The same mark with another line width in pixels.
     pub fn width(mut self, pixels: u32) -> Mark {
-        if let Shape::Series { width } | Shape::Curve { width } = &mut self.shape {
+        if let MarkShape::Series { width } | MarkShape::Curve { width } = &mut self.shape {
             *width = pixels;
         }
         self

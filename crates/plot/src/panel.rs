@@ -1,18 +1,18 @@
 //! Draws one panel.
 
 use crate::canvas::Canvas;
-use crate::clip::Frame;
-use crate::decimate::{Point, envelope, portrait};
+use crate::clip::ClipRectangle;
+use crate::decimate::{PixelPoint, envelope, portrait};
 use crate::layout::{
-    GAP, LABEL, LEGEND_LINE, Placed, SAMPLE, SMALL, SMALL_LINE, TITLE, TITLE_LINE,
+    GAP, LABEL, LEGEND_LINE, PlacedPanel, SAMPLE, SMALL, SMALL_LINE, TITLE, TITLE_LINE,
 };
-use crate::{Color, Mark, Shape, palette};
+use crate::{Color, Mark, MarkShape, palette};
 
 const GRID: Color = (228, 228, 228);
 /// Points a curve may have: 25,000 are 250 kB of SVG.
 const CURVE_BUDGET: usize = 25_000;
 
-impl Placed<'_> {
+impl PlacedPanel<'_> {
     /// Draws grid, marks, frame, ticks and texts.
     pub fn draw(&self, canvas: &mut Canvas) {
         self.grid(canvas);
@@ -49,16 +49,16 @@ impl Placed<'_> {
 
     fn mark(&self, canvas: &mut Canvas, mark: &Mark) {
         let [left, top, right, bottom] = self.frame;
-        let frame = Frame {
+        let frame = ClipRectangle {
             low: (f64::from(left), f64::from(top)),
             high: (f64::from(right), f64::from(bottom)),
         };
         let points = mark.x.iter().zip(&mark.y);
         let points =
             points.map(|(x, y)| (self.across(self.x.place(*x)), self.up(self.y.place(*y))));
-        let points: Vec<Point> = points.collect();
-        let pixel = |p: &Point| (p.0.round() as i32, p.1.round() as i32);
-        let mut polyline = |points: &[Point], width| {
+        let points: Vec<PixelPoint> = points.collect();
+        let pixel = |p: &PixelPoint| (p.0.round() as i32, p.1.round() as i32);
+        let mut polyline = |points: &[PixelPoint], width| {
             for part in frame.clip(points) {
                 let mut pixels: Vec<(i32, i32)> = part.iter().map(pixel).collect();
                 pixels.dedup();
@@ -67,11 +67,13 @@ impl Placed<'_> {
         };
         let inside = points.iter().filter(|p| frame.contains(**p)).map(pixel);
         match mark.shape {
-            Shape::Series { width } => polyline(&envelope(&points), width),
-            Shape::Curve { width } => polyline(&portrait(&points, CURVE_BUDGET), width),
-            Shape::Points { radius } => inside.for_each(|at| canvas.dot(at, radius, mark.color)),
-            Shape::Cross => inside.for_each(|at| canvas.cross(at, mark.color)),
-            Shape::Level => {
+            MarkShape::Series { width } => polyline(&envelope(&points), width),
+            MarkShape::Curve { width } => polyline(&portrait(&points, CURVE_BUDGET), width),
+            MarkShape::Points { radius } => {
+                inside.for_each(|at| canvas.dot(at, radius, mark.color))
+            }
+            MarkShape::Cross => inside.for_each(|at| canvas.cross(at, mark.color)),
+            MarkShape::Level => {
                 let y = self.up(self.y.place(mark.y[0])).round() as i32;
                 if (top..=bottom).contains(&y) {
                     canvas.dashes(left, right, y, mark.color);
@@ -128,12 +130,12 @@ impl Placed<'_> {
     fn sample(&self, canvas: &mut Canvas, mark: &Mark, (x, y): (i32, i32)) {
         let middle = (x + SAMPLE / 2, y);
         match mark.shape {
-            Shape::Series { .. } | Shape::Curve { .. } => {
+            MarkShape::Series { .. } | MarkShape::Curve { .. } => {
                 canvas.line(&[(x, y), (x + SAMPLE, y)], mark.color, 6);
             }
-            Shape::Level => canvas.dashes(x, x + SAMPLE, y, mark.color),
-            Shape::Cross => canvas.cross(middle, mark.color),
-            Shape::Points { radius } => canvas.dot(middle, radius.max(6), mark.color),
+            MarkShape::Level => canvas.dashes(x, x + SAMPLE, y, mark.color),
+            MarkShape::Cross => canvas.cross(middle, mark.color),
+            MarkShape::Points { radius } => canvas.dot(middle, radius.max(6), mark.color),
         }
         canvas.text(&mark.label, (x + SAMPLE + 12, y), SMALL, "start");
     }

@@ -88,7 +88,7 @@ pub fn count_instructions() -> impl FnMut() -> Option<u64> {
 
 /// Processor time of a run that was made several times \[s\].
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Timing {
+pub struct RunTiming {
     /// See [`median`]; of a single run its time.
     pub median: f64,
     /// Shortest.
@@ -100,10 +100,10 @@ pub struct Timing {
     pub instructions: Option<u64>,
 }
 
-impl Timing {
+impl RunTiming {
     /// Of at least one measured time \[s\].
-    pub fn of(seconds: Vec<f64>) -> Timing {
-        Timing {
+    pub fn of(seconds: Vec<f64>) -> RunTiming {
+        RunTiming {
             median: median(&seconds),
             least: seconds.iter().copied().fold(f64::INFINITY, f64::min),
             seconds,
@@ -112,8 +112,8 @@ impl Timing {
     }
 
     /// With the numbers of instructions of the same runs.
-    pub fn with_instructions(self, counts: &[Option<u64>]) -> Timing {
-        Timing {
+    pub fn with_instructions(self, counts: &[Option<u64>]) -> RunTiming {
+        RunTiming {
             instructions: counts.iter().flatten().min().copied(),
             ..self
         }
@@ -130,11 +130,11 @@ pub fn median(values: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Timing, median};
+    use super::{RunTiming, median};
 
     #[test]
     fn medians() {
-        let timing = Timing::of(vec![9.0, 1.0, 2.0]);
+        let timing = RunTiming::of(vec![9.0, 1.0, 2.0]);
         assert_eq!((timing.median, timing.least), (2.0, 1.0));
         assert_eq!(timing.seconds, [9.0, 1.0, 2.0]);
         let counted = timing.with_instructions(&[Some(70), None, Some(50)]);

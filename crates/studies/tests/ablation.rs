@@ -5,7 +5,7 @@ use ladder::{Rung, Worst};
 use looselink::scene::{Scene, SceneError};
 use looselink::simulate::Simulation;
 use looselink::system::System;
-use studies::ablation::{Effect, Observed, Origin, Role, ablate, effects, variants};
+use studies::ablation::{Observed, Origin, SceneEffect, VariantRole, ablate, effects, variants};
 
 /// What the scenes of a pair are brought to, so that they differ in the effect alone; long enough for impacts.
 const LIKE: [&str; 4] = [
@@ -16,49 +16,57 @@ const LIKE: [&str; 4] = [
 ];
 
 /// A scene, the effects that are taken out, the scene that was written without them.
-type Pair = (&'static str, &'static [Effect], &'static str);
+type AblationPair = (&'static str, &'static [SceneEffect], &'static str);
 
-const PAIRS: [Pair; 9] = [
+const PAIRS: [AblationPair; 9] = [
     (
         "3rrr/case4-friction.toml",
-        &[Effect::Friction],
+        &[SceneEffect::Friction],
         "3rrr/case4.toml",
     ),
-    ("3rrr/case4.toml", &[Effect::Clearance], "3rrr/case2.toml"),
-    ("3rrr/case4.toml", &[Effect::Flexibility], "3rrr/case3.toml"),
     (
         "3rrr/case4.toml",
-        &[Effect::Flexibility, Effect::Clearance],
+        &[SceneEffect::Clearance],
+        "3rrr/case2.toml",
+    ),
+    (
+        "3rrr/case4.toml",
+        &[SceneEffect::Flexibility],
+        "3rrr/case3.toml",
+    ),
+    (
+        "3rrr/case4.toml",
+        &[SceneEffect::Flexibility, SceneEffect::Clearance],
         "3rrr/case1.toml",
     ),
     (
         "3rrr/case4-friction.toml",
-        &[Effect::Clearance, Effect::Flexibility],
+        &[SceneEffect::Clearance, SceneEffect::Flexibility],
         "3rrr/case1.toml",
     ),
     (
         "3rrr/case4-4elements.toml",
-        &[Effect::Elements],
+        &[SceneEffect::Elements],
         "3rrr/case4.toml",
     ),
     (
         "ablation/everything.toml",
-        &[Effect::Gravity],
+        &[SceneEffect::Gravity],
         "ablation/without-gravity.toml",
     ),
     (
         "ablation/everything.toml",
-        &[Effect::StructuralDamping],
+        &[SceneEffect::StructuralDamping],
         "ablation/without-structural-damping.toml",
     ),
     (
         "ablation/everything.toml",
-        &[Effect::ContactDamping],
+        &[SceneEffect::ContactDamping],
         "ablation/without-contact-damping.toml",
     ),
 ];
 
-fn without(scene: &Scene, removed: &[Effect]) -> Scene {
+fn without(scene: &Scene, removed: &[SceneEffect]) -> Scene {
     removed.iter().fold(scene.clone(), |scene, effect| {
         assert!(effect.is_in(&scene), "{} is there", effect.name());
         let scene = effect.removed_from(&scene);
@@ -152,7 +160,7 @@ fn the_rigid_ideal_mechanism_has_none_of_the_terms() {
 #[test]
 fn every_effect_is_added_and_removed_with_what_it_needs() {
     let scene = load("ablation/everything.toml", &[]);
-    assert_eq!(effects(&scene), Effect::ALL);
+    assert_eq!(effects(&scene), SceneEffect::ALL);
     let names: Vec<String> = variants(&scene).iter().map(|v| v.name()).collect();
     assert_eq!(
         names,
@@ -179,19 +187,19 @@ fn every_effect_is_added_and_removed_with_what_it_needs() {
         let built = variant.scene.as_ref().unwrap();
         assert_eq!(effects(built), variant.effects, "{}", variant.name());
         let both = [&variant.effects[..], &variant.removed].concat();
-        assert_eq!(both.len(), Effect::ALL.len(), "{}", variant.name());
+        assert_eq!(both.len(), SceneEffect::ALL.len(), "{}", variant.name());
         simulation(built);
     }
     // only what is there is listed
     let scene = load("3rrr/case2.toml", &[]);
-    let roles: Vec<Role> = variants(&scene).iter().map(|v| v.role).collect();
+    let roles: Vec<VariantRole> = variants(&scene).iter().map(|v| v.role).collect();
     assert_eq!(
         roles,
         [
-            Role::Ideal,
-            Role::Added(Effect::Flexibility),
-            Role::Full,
-            Role::Removed(Effect::Flexibility)
+            VariantRole::Ideal,
+            VariantRole::Added(SceneEffect::Flexibility),
+            VariantRole::Full,
+            VariantRole::Removed(SceneEffect::Flexibility)
         ]
     );
 }
@@ -218,15 +226,15 @@ bob = { x = 0.1, y = -0.05, theta = 0.0, vx = 0.0, vy = 0.0, omega = 0.0 }
 #[test]
 fn a_variant_that_cannot_be_built_is_told_by_name() {
     let scene = Scene::parse("hanging", HANGING, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let error = |effect: Effect| -> SceneError { effect.removed_from(&scene).unwrap_err() };
-    let elements = error(Effect::Elements);
+    let error = |effect: SceneEffect| -> SceneError { effect.removed_from(&scene).unwrap_err() };
+    let elements = error(SceneEffect::Elements);
     assert_eq!(
         elements.to_string(),
         "joint P uses the inner node rod.middle, but one element has none"
     );
     assert!(elements.underlined().contains("rod.middle"));
     assert_eq!(
-        error(Effect::Flexibility).to_string(),
+        error(SceneEffect::Flexibility).to_string(),
         "joint P uses the inner node rod.middle, but a rigid link has none"
     );
 
@@ -244,11 +252,13 @@ fn a_variant_that_cannot_be_built_is_told_by_name() {
         "{reported}"
     );
     // without the rigid ideal mechanism there is no path to compare with
-    let full = ablation.outcome(Role::Full).unwrap();
+    let full = ablation.outcome(VariantRole::Full).unwrap();
     assert_eq!(full.physics.rms_error, None);
     assert!(full.physics.peak_acceleration.unwrap() > 1.0);
-    assert!(ablation.outcome(Role::Ideal).is_none());
-    let gravity = ablation.outcome(Role::Removed(Effect::Gravity)).unwrap();
+    assert!(ablation.outcome(VariantRole::Ideal).is_none());
+    let gravity = ablation
+        .outcome(VariantRole::Removed(SceneEffect::Gravity))
+        .unwrap();
     // nothing moves: rounding
     assert!(gravity.physics.peak_acceleration.unwrap() < 1e-9);
 
@@ -257,8 +267,8 @@ fn a_variant_that_cannot_be_built_is_told_by_name() {
         .replace("rod.middle", "rod.end")
         .replace("x = 0.1,", "x = 0.2,");
     let scene = Scene::parse("free", &free, &[]).unwrap_or_else(|e| panic!("{e}"));
-    assert!(Effect::Elements.removed_from(&scene).is_ok());
-    assert!(Effect::Flexibility.removed_from(&scene).is_ok());
+    assert!(SceneEffect::Elements.removed_from(&scene).is_ok());
+    assert!(SceneEffect::Flexibility.removed_from(&scene).is_ok());
 }
 
 #[test]
@@ -278,7 +288,7 @@ fn what_is_measured_is_what_a_run_records() {
         ("platform", Origin::Prescribed)
     );
     let ablation = ablate(&scene, body, Some(2), &mut |_| {});
-    let full = ablation.outcome(Role::Full).unwrap();
+    let full = ablation.outcome(VariantRole::Full).unwrap();
     let (run, report) = run_scene(&scene);
     let [x, y, ax, ay] = ["error.x", "error.y", "platform.ax", "platform.ay"].map(|c| run.get(c));
     let lengths = |x: &[f64], y: &[f64]| {
@@ -320,8 +330,8 @@ fn what_is_measured_is_what_a_run_records() {
     approx::assert_relative_eq!(product, 1.0, max_relative = 1e-14);
     // the same mechanism by two ways is measured once
     let [added, removed] = [
-        Role::Added(Effect::Flexibility),
-        Role::Removed(Effect::Clearance),
+        VariantRole::Added(SceneEffect::Flexibility),
+        VariantRole::Removed(SceneEffect::Clearance),
     ];
     assert_eq!(ablation.outcome(added), ablation.outcome(removed));
 }

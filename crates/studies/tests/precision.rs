@@ -1,7 +1,9 @@
 //! Studies of precision against time: those of the project work, faults are reported, failures are part of the outcome.
 
 use std::path::{Path, PathBuf};
-use studies::precision::{Compared, Effort, Motion, Outcome, Pace, Statistics, Study, Survey};
+use studies::precision::{
+    Compared, Effort, MotionReference, StatisticsReference, Study, StudyOutcome, StudyPace, Survey,
+};
 
 const SMOKE: Effort = Effort {
     repeats: 1,
@@ -12,8 +14,8 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies")
 }
 
-fn outcome(study: &Study) -> Outcome {
-    Outcome::run(study, SMOKE, &mut |_| {}).unwrap_or_else(|e| panic!("{}: {e}", study.title))
+fn outcome(study: &Study) -> StudyOutcome {
+    StudyOutcome::run(study, SMOKE, &mut |_| {}).unwrap_or_else(|e| panic!("{}: {e}", study.title))
 }
 
 /// Every study of the project, the coarsest point of every curve: none fails, the reference is far finer than what is
@@ -44,13 +46,13 @@ fn studies_of_the_project_work() {
                 errors.energy.is_finite() && measured.work.steps > 100,
                 "{name}"
             );
-            if let Pace::Accuracy { position, .. } = run.pace {
+            if let StudyPace::Accuracy { position, .. } = run.pace {
                 assert!(errors.position < 10.0 * position, "{name}: {errors:?}");
             }
         }
         assert!(outcome.timings.iter().flatten().all(|t| t.least > 0.0));
         assert_eq!(
-            Motion::figure(&outcome, &study).rows.len(),
+            MotionReference::figure(&outcome, &study).rows.len(),
             3,
             "{}",
             study.title
@@ -77,8 +79,10 @@ fn studies_of_statistics_work() {
             assert_eq!(measures.loss(), measures.numerical / measures.dissipated);
             assert!(measures.loss().is_finite() && work.steps > 100);
         }
-        assert!(Statistics::table(&survey, &study).lines().count() > study.curves.len() + 3);
-        assert_eq!(Statistics::figure(&survey, &study).rows.len(), 2);
+        assert!(
+            StatisticsReference::table(&survey, &study).lines().count() > study.curves.len() + 3
+        );
+        assert_eq!(StatisticsReference::figure(&survey, &study).rows.len(), 2);
     }
     let wrong = "[statistics]\nfrom = 1.0\ncontact = [\"B1.contact\"]\n[[curves]]\nname = \"x\"\nsteps = [1e-3]\n";
     let error = study(wrong).unwrap_err();
@@ -143,8 +147,11 @@ steps = [1e-3]
     assert!(failed(1).starts_with("the accuracy of 1e-20 m over 0.5 s cannot be reached at t = "));
     assert!(first.runs[2].result.is_ok());
     assert_eq!(first.timings.iter().flatten().count(), 1);
-    assert!(Motion::table(&first, &study).contains("| Verlet | step 1\u{a0}ms | failed: method"));
-    let caption = Motion::figure(&first, &study).caption;
+    assert!(
+        MotionReference::table(&first, &study)
+            .contains("| Verlet | step 1\u{a0}ms | failed: method")
+    );
+    let caption = MotionReference::figure(&first, &study).caption;
     assert!(
         caption.contains("Failed: Verlet at step 1\u{a0}ms; too much at accuracy"),
         "{caption}"
@@ -176,7 +183,7 @@ fn faults_of_a_study_are_told() {
     }
     let mut wrong = study("[[curves]]\nname = \"x\"\nsteps = [1e-3]\n").unwrap();
     wrong.position = vec!["bob.x".into()];
-    let error = Outcome::run(&wrong, SMOKE, &mut |_| {});
+    let error = StudyOutcome::run(&wrong, SMOKE, &mut |_| {});
     let error = error.unwrap_err().to_string();
     assert!(
         error.starts_with("no channel of this scene is named \"bob.x\""),

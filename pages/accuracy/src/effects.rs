@@ -3,7 +3,7 @@
 use looselink::scene::Scene;
 use miette::{Result, miette};
 use std::path::Path;
-use studies::ablation::{Ablation, Effect, Observed, Outcome, Role, ablate};
+use studies::ablation::{Ablation, Observed, SceneEffect, VariantOutcome, VariantRole, ablate};
 
 /// Over one cycle of the platform.
 const DURATION: &str = "simulation.duration=1";
@@ -31,11 +31,11 @@ pub fn section(ablation: &Ablation) -> String {
 
 /// Which effect matters most to the error and which to the time.
 fn conclusion(ablation: &Ablation) -> Option<String> {
-    let full = ablation.outcome(Role::Full)?;
-    let error = |outcome: &Outcome| outcome.physics.rms_error;
-    let seconds = |outcome: &Outcome| outcome.cost.cpu_seconds_a_simulated_second;
-    let removed = Effect::ALL.iter().filter_map(|effect| {
-        let outcome = ablation.outcome(Role::Removed(*effect))?;
+    let full = ablation.outcome(VariantRole::Full)?;
+    let error = |outcome: &VariantOutcome| outcome.physics.rms_error;
+    let seconds = |outcome: &VariantOutcome| outcome.cost.cpu_seconds_a_simulated_second;
+    let removed = SceneEffect::ALL.iter().filter_map(|effect| {
+        let outcome = ablation.outcome(VariantRole::Removed(*effect))?;
         let change = error(outcome)? / error(full)?;
         Some((effect.name(), change, seconds(outcome) / seconds(full)))
     });

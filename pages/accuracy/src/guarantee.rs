@@ -55,7 +55,7 @@ const NEWTON_TOLERANCE: f64 = 1e-11;
 
 /// One scene by one method: a line of the record.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Entry {
+pub struct GuaranteeEntry {
     /// Path below `scenes/`, without the ending.
     pub scene: String,
     /// As in the scene.
@@ -88,7 +88,7 @@ pub struct Asked {
     /// The accuracy \[m\].
     pub position: f64,
     /// How it ended.
-    pub end: End,
+    pub end: RunEnd,
     /// Steps taken.
     pub steps: u64,
     /// What it warns of.
@@ -98,7 +98,7 @@ pub struct Asked {
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum End {
+pub enum RunEnd {
     /// At the horizon, with this error \[m\]; none without a reference.
     Complete(Option<f64>),
     /// With this message.
@@ -109,10 +109,10 @@ pub enum End {
     Skipped,
 }
 
-impl Entry {
+impl GuaranteeEntry {
     /// Error achieved over accuracy asked for, of a complete run whose reference is good enough.
     pub fn ratio(&self, run: &Asked) -> Option<f64> {
-        let (End::Complete(Some(error)), Some([_, floor])) = (&run.end, self.facts.reference)
+        let (RunEnd::Complete(Some(error)), Some([_, floor])) = (&run.end, self.facts.reference)
         else {
             return None;
         };
@@ -142,7 +142,7 @@ pub fn path() -> PathBuf {
 ///
 /// # Errors
 /// A record that cannot be read, or begins otherwise.
-pub fn read() -> Result<(Digests, Vec<Entry>)> {
+pub fn read() -> Result<(Digests, Vec<GuaranteeEntry>)> {
     let path = path().display().to_string();
     let text = fs::read_to_string(&path).into_diagnostic();
     let text = text.wrap_err_with(|| format!("cannot read {path}"))?;
@@ -153,7 +153,7 @@ pub fn read() -> Result<(Digests, Vec<Entry>)> {
     Ok((digests, entries.collect()))
 }
 
-fn write(digests: &Digests, entries: &[Entry]) -> Result<()> {
+fn write(digests: &Digests, entries: &[GuaranteeEntry]) -> Result<()> {
     let mut text = serde_json::to_string(digests).into_diagnostic()? + "\n";
     for entry in entries {
         text += &(serde_json::to_string(entry).into_diagnostic()? + "\n");
@@ -162,7 +162,7 @@ fn write(digests: &Digests, entries: &[Entry]) -> Result<()> {
 }
 
 /// Dynamic scenes among the sources, in the order of their names.
-fn mechanisms(digests: &Digests) -> Result<Vec<Mechanism>> {
+fn dynamic_scenes(digests: &Digests) -> Result<Vec<MeasuredScene>> {
     let mut found = Vec::new();
     for file in digests.keys() {
         let name = file
@@ -173,7 +173,7 @@ fn mechanisms(digests: &Digests) -> Result<Vec<Mechanism>> {
         let scene = Scene::load(&path, &[]).map_err(|e| miette!("{e}"))?;
         if scene.simulation.analysis == Analysis::Dynamic {
             let (name, common) = (name.to_owned(), OnceLock::new());
-            found.push(Mechanism {
+            found.push(MeasuredScene {
                 name,
                 path,
                 scene,
@@ -190,9 +190,9 @@ fn mechanisms(digests: &Digests) -> Result<Vec<Mechanism>> {
 ///
 /// # Errors
 /// A scene that cannot be read, a record that cannot be written.
-pub fn run(only: &[String], threads: usize) -> Result<(Vec<Entry>, bool)> {
+pub fn run(only: &[String], threads: usize) -> Result<(Vec<GuaranteeEntry>, bool)> {
     let digests = records::digests(&records::root(), "guarantee")?;
-    let all = mechanisms(&digests)?;
+    let all = dynamic_scenes(&digests)?;
     if let Some(unknown) = only
         .iter()
         .find(|name| all.iter().all(|m| m.name != **name))
@@ -214,7 +214,7 @@ pub fn run(only: &[String], threads: usize) -> Result<(Vec<Entry>, bool)> {
         let wanted = all
             .iter()
             .filter(|m| only.is_empty() || only.contains(&m.name));
-        let missing = |m: &&Mechanism| {
+        let missing = |m: &&MeasuredScene| {
             !entries
                 .iter()
                 .any(|e| e.scene == m.name && e.method == method.0)
@@ -222,7 +222,7 @@ pub fn run(only: &[String], threads: usize) -> Result<(Vec<Entry>, bool)> {
         jobs.extend(wanted.filter(missing).map(|m| (m, method)));
     }
     entries.extend(work(&jobs, threads)?);
-    let method = |e: &Entry| METHODS.iter().position(|(name, _)| *name == e.method);
+    let method = |e: &GuaranteeEntry| METHODS.iter().position(|(name, _)| *name == e.method);
     entries.sort_by(|a, b| (&a.scene, method(a)).cmp(&(&b.scene, method(b))));
     write(&digests, &entries)?;
     let complete = entries.len() == all.len() * METHODS.len();
@@ -230,13 +230,13 @@ pub fn run(only: &[String], threads: usize) -> Result<(Vec<Entry>, bool)> {
 }
 
 /// Recorded positions, by channel.
-type Table = Vec<Vec<f64>>;
+type RecordedPositions = Vec<Vec<f64>>;
 /// The facts and the reference, or why the scene cannot start.
-type Common = std::result::Result<(Facts, Table), String>;
-type Job<'a> = (&'a Mechanism, (&'static str, &'static [&'static str]));
+type Common = std::result::Result<(Facts, RecordedPositions), String>;
+type Job<'a> = (&'a MeasuredScene, (&'static str, &'static [&'static str]));
 
 /// Takes one job after the other on every thread, and writes a line as soon as one is done.
-fn work(jobs: &[Job], threads: usize) -> Result<Vec<Entry>> {
+fn work(jobs: &[Job], threads: usize) -> Result<Vec<GuaranteeEntry>> {
     let file = OpenOptions::new()
         .append(true)
         .open(path())
@@ -244,8 +244,8 @@ fn work(jobs: &[Job], threads: usize) -> Result<Vec<Entry>> {
     let next = AtomicUsize::new(0);
     let done = Mutex::new((file, Vec::new()));
     let worker = || -> Result<()> {
-        while let Some((mechanism, method)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let entry = mechanism.entry(*method)?;
+        while let Some((scene, method)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let entry = scene.entry(*method)?;
             let line = serde_json::to_string(&entry).into_diagnostic()?;
             let mut done = done.lock().map_err(|_| miette!("a thread has ended"))?;
             writeln!(done.0, "{line}").into_diagnostic()?;
@@ -254,7 +254,7 @@ fn work(jobs: &[Job], threads: usize) -> Result<Vec<Entry>> {
                 "{}/{}: {}, {}",
                 done.1.len(),
                 jobs.len(),
-                mechanism.name,
+                scene.name,
                 method.0
             );
         }
@@ -272,14 +272,14 @@ fn work(jobs: &[Job], threads: usize) -> Result<Vec<Entry>> {
 }
 
 /// A scene, and what its methods have in common once it is measured.
-struct Mechanism {
+struct MeasuredScene {
     name: String,
     path: PathBuf,
     scene: Scene,
     common: OnceLock<Common>,
 }
 
-impl Mechanism {
+impl MeasuredScene {
     fn horizon(&self) -> f64 {
         match loose(&self.scene) {
             true => self.scene.simulation.duration.min(LOOSE_HORIZON),
@@ -303,12 +303,12 @@ impl Mechanism {
         Scene::load(&self.path, &overrides).map_err(|e| miette!("{e}"))
     }
 
-    fn entry(&self, method: (&str, &[&str])) -> Result<Entry> {
+    fn entry(&self, method: (&str, &[&str])) -> Result<GuaranteeEntry> {
         let common = self
             .common
             .get_or_init(|| self.measure().map_err(|e| format!("{e:?}")));
         let (facts, exact) = common.as_ref().map_err(|e| miette!("{}: {e}", self.name))?;
-        let mut entry = Entry {
+        let mut entry = GuaranteeEntry {
             scene: self.name.clone(),
             method: method.0.to_owned(),
             facts: facts.clone(),
@@ -323,12 +323,12 @@ impl Mechanism {
         let mut given_up = 0;
         for position in ACCURACIES {
             let run = match given_up {
-                GIVEN_UP => not_made(position, End::Skipped),
+                GIVEN_UP => not_made(position, RunEnd::Skipped),
                 _ => self.asked(method, position, exact)?,
             };
             match run.end {
-                End::Skipped => {}
-                End::TooLong => given_up += 1,
+                RunEnd::Skipped => {}
+                RunEnd::TooLong => given_up += 1,
                 _ => given_up = 0,
             }
             entry.runs.push(run);
@@ -343,7 +343,7 @@ impl Mechanism {
     fn asked(&self, method: (&str, &[&str]), position: f64, exact: &[Vec<f64>]) -> Result<Asked> {
         let mut simulation = match Simulation::new(&self.scene(method, position)?) {
             Ok(simulation) => simulation,
-            Err(error) => return Ok(not_made(position, End::Stopped(error.to_string()))),
+            Err(error) => return Ok(not_made(position, RunEnd::Stopped(error.to_string()))),
         };
         let (ended, positions) = observe(&mut simulation, STEPS);
         let report = simulation.report();
@@ -351,10 +351,10 @@ impl Mechanism {
             position,
             end: match ended {
                 Ok(()) => {
-                    End::Complete((!exact.is_empty()).then(|| kept(distance(&positions, exact))))
+                    RunEnd::Complete((!exact.is_empty()).then(|| kept(distance(&positions, exact))))
                 }
-                Err(RunError::Interrupted { .. }) => End::TooLong,
-                Err(error) => End::Stopped(error.to_string()),
+                Err(RunError::Interrupted { .. }) => RunEnd::TooLong,
+                Err(error) => RunEnd::Stopped(error.to_string()),
             },
             steps: report.steps,
             warnings: report.warnings(),
@@ -362,8 +362,8 @@ impl Mechanism {
     }
 
     /// The reference, its floor and the amplification; no positions where there is no reference.
-    fn measure(&self) -> Result<(Facts, Table)> {
-        let mut best: Option<(f64, Table)> = None;
+    fn measure(&self) -> Result<(Facts, RecordedPositions)> {
+        let mut best: Option<(f64, RecordedPositions)> = None;
         let (mut floor, mut steps) = (None, 0);
         for position in REFERENCES {
             let mut simulation = simulation(&self.scene(METHODS[0], position)?)?;
@@ -400,7 +400,7 @@ impl Mechanism {
     }
 }
 
-fn not_made(position: f64, end: End) -> Asked {
+fn not_made(position: f64, end: RunEnd) -> Asked {
     Asked {
         position,
         end,
@@ -423,7 +423,10 @@ pub fn simulation(scene: &Scene) -> Result<Simulation> {
 }
 
 /// Runs to the end; the positions up to there.
-fn observe(simulation: &mut Simulation, steps: u64) -> (std::result::Result<(), RunError>, Table) {
+fn observe(
+    simulation: &mut Simulation,
+    steps: u64,
+) -> (std::result::Result<(), RunError>, RecordedPositions) {
     let mut recording = Recording::new(simulation);
     recording.most_steps = steps;
     let ended = simulation.run(&mut recording);

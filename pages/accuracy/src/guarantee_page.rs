@@ -2,8 +2,8 @@
 
 use crate::amplification::NEIGHBOURS;
 use crate::guarantee::{
-    ACCURACIES, AMPLIFIES, Asked, End, Entry, GIVEN_UP, GOAL, GOOD, LOOSE_HORIZON, METHODS,
-    REFERENCE_STEPS, ROWS, STEPS,
+    ACCURACIES, AMPLIFIES, Asked, GIVEN_UP, GOAL, GOOD, GuaranteeEntry, LOOSE_HORIZON, METHODS,
+    REFERENCE_STEPS, ROWS, RunEnd, STEPS,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
 use numbers::{digits, percent, si};
@@ -21,7 +21,7 @@ const LISTED: usize = 20;
 
 /// A run that is judged.
 struct Judged<'a> {
-    entry: &'a Entry,
+    entry: &'a GuaranteeEntry,
     run: &'a Asked,
     ratio: f64,
 }
@@ -35,7 +35,7 @@ impl Judged<'_> {
 
 /// Counts of some runs.
 #[derive(Debug, Default, PartialEq)]
-struct Tally {
+struct RatioTally {
     runs: usize,
     within: usize,
     largest: f64,
@@ -43,9 +43,9 @@ struct Tally {
     scene: String,
 }
 
-impl Tally {
-    fn of<'a>(ratios: impl Iterator<Item = (f64, &'a str)>) -> Tally {
-        let mut tally = Tally::default();
+impl RatioTally {
+    fn of<'a>(ratios: impl Iterator<Item = (f64, &'a str)>) -> RatioTally {
+        let mut tally = RatioTally::default();
         for (ratio, scene) in ratios {
             tally.runs += 1;
             tally.within += usize::from(ratio <= 1.0);
@@ -61,7 +61,7 @@ impl Tally {
             return "no run was judged".to_owned();
         }
         let share = percent(self.within as f64 / self.runs as f64);
-        let Tally {
+        let RatioTally {
             runs,
             within,
             largest,
@@ -91,8 +91,8 @@ impl Tally {
 
 /// The runs that are judged. Runs of a motion that is prescribed altogether have nothing to integrate, and those whose steps
 /// the clearance or the interval of the rows limits are one run for several accuracies: the tightest of these counts.
-fn judged(entries: &[Entry]) -> Vec<Judged<'_>> {
-    let moves = |entry: &&Entry| !is_prescribed(entry);
+fn judged(entries: &[GuaranteeEntry]) -> Vec<Judged<'_>> {
+    let moves = |entry: &&GuaranteeEntry| !is_prescribed(entry);
     let runs = entries.iter().filter(moves).flat_map(|entry| {
         let tighter = entry.runs.iter().skip(1).map(Some).chain([None]);
         let runs = entry.runs.iter().zip(tighter);
@@ -110,24 +110,24 @@ fn judged(entries: &[Entry]) -> Vec<Judged<'_>> {
 }
 
 /// True of a motion without freedom, to which no error of a step does anything.
-fn is_prescribed(entry: &Entry) -> bool {
+fn is_prescribed(entry: &GuaranteeEntry) -> bool {
     entry.facts.amplification == Some(0.0)
 }
 
 /// True of two runs that took the same steps.
 fn is_same(one: &Asked, other: &Asked) -> bool {
     match (&one.end, &other.end) {
-        (End::Complete(a), End::Complete(b)) => a == b && one.steps == other.steps,
+        (RunEnd::Complete(a), RunEnd::Complete(b)) => a == b && one.steps == other.steps,
         _ => false,
     }
 }
 
 /// Pairs of runs of which the looser accuracy takes more steps: the two, and the factor.
-fn dearer(entry: &Entry) -> Vec<(f64, f64, f64)> {
+fn dearer(entry: &GuaranteeEntry) -> Vec<(f64, f64, f64)> {
     let complete: Vec<&Asked> = entry
         .runs
         .iter()
-        .filter(|r| matches!(r.end, End::Complete(_)))
+        .filter(|r| matches!(r.end, RunEnd::Complete(_)))
         .collect();
     let pairs = complete.windows(2).map(|pair| {
         let factor = pair[0].steps as f64 / pair[1].steps as f64;
@@ -153,7 +153,7 @@ fn kinds<'a>(messages: impl Iterator<Item = (&'a str, String)>) -> Vec<(usize, S
     found.into_values().collect()
 }
 
-fn run(entry: &Entry, asked: &Asked) -> String {
+fn run(entry: &GuaranteeEntry, asked: &Asked) -> String {
     format!(
         "{}, {}, {}",
         entry.scene,
@@ -195,22 +195,22 @@ fn tallied<'a>(
     of: fn(&Judged<'a>) -> f64,
     method: &str,
     position: f64,
-) -> Tally {
+) -> RatioTally {
     let runs = all
         .iter()
         .filter(|j| j.entry.method == method && j.run.position == position);
-    Tally::of(runs.map(|j| (of(j), j.entry.scene.as_str())))
+    RatioTally::of(runs.map(|j| (of(j), j.entry.scene.as_str())))
 }
 
 /// What the page says.
-fn page(entries: &[Entry]) -> Result<String> {
+fn page(entries: &[GuaranteeEntry]) -> Result<String> {
     let all = judged(entries);
     let (loud, calm): (Vec<&Judged>, Vec<&Judged>) =
         all.iter().partition(|j| j.entry.facts.amplifies());
     let tally = |runs: &[&Judged], of: fn(&Judged) -> f64| {
-        Tally::of(runs.iter().map(|j| (of(j), j.entry.scene.as_str())))
+        RatioTally::of(runs.iter().map(|j| (of(j), j.entry.scene.as_str())))
     };
-    let mut scenes: Vec<&Entry> = entries.iter().collect();
+    let mut scenes: Vec<&GuaranteeEntry> = entries.iter().collect();
     scenes.dedup_by_key(|entry| &entry.scene);
     let planned = scenes.len() * METHODS.len() * ACCURACIES.len();
     let with_ratio = entries.iter().map(|entry| {
@@ -292,7 +292,7 @@ fn page(entries: &[Entry]) -> Result<String> {
 }
 
 /// How P is chosen for a motion that amplifies errors.
-fn advice(entries: &[Entry]) -> String {
+fn advice(entries: &[GuaranteeEntry]) -> String {
     let mut out = format!(
         "\n## How to choose P for a motion that amplifies errors\n\n\
          Run your scene with P and with P/10. The largest difference of positions between the two runs is about the error of the \
@@ -310,7 +310,7 @@ fn advice(entries: &[Entry]) -> String {
         };
         let [_, floor] = entry.facts.reference.unwrap_or([f64::NAN; 2]);
         let (error, ratio) = match &asked.end {
-            End::Complete(Some(error)) if floor <= 0.1 * GOAL => {
+            RunEnd::Complete(Some(error)) if floor <= 0.1 * GOAL => {
                 let below = if *error < floor {
                     "below the floor: "
                 } else {
@@ -318,7 +318,7 @@ fn advice(entries: &[Entry]) -> String {
                 };
                 (format!("{below}{}", si(*error, "m")), digits(error / GOAL))
             }
-            End::Complete(_) => ("no reference good enough".to_owned(), "–".to_owned()),
+            RunEnd::Complete(_) => ("no reference good enough".to_owned(), "–".to_owned()),
             other => (ending(other), "–".to_owned()),
         };
         out += &format!(
@@ -333,12 +333,12 @@ fn advice(entries: &[Entry]) -> String {
     out
 }
 
-fn ending(end: &End) -> String {
+fn ending(end: &RunEnd) -> String {
     match end {
-        End::Complete(_) => "no reference".to_owned(),
-        End::Stopped(_) => "stopped".to_owned(),
-        End::TooLong => format!("> {STEPS} steps"),
-        End::Skipped => "not asked".to_owned(),
+        RunEnd::Complete(_) => "no reference".to_owned(),
+        RunEnd::Stopped(_) => "stopped".to_owned(),
+        RunEnd::TooLong => format!("> {STEPS} steps"),
+        RunEnd::Skipped => "not asked".to_owned(),
     }
 }
 
@@ -368,21 +368,21 @@ fn largest(all: &[Judged]) -> String {
     out
 }
 
-fn amplification(entry: &Entry) -> String {
+fn amplification(entry: &GuaranteeEntry) -> String {
     entry
         .facts
         .amplification
         .map_or("not measured".to_owned(), digits)
 }
 
-fn steps(entries: &[Entry]) -> String {
+fn steps(entries: &[GuaranteeEntry]) -> String {
     let mut out = String::new();
     let (mut pairs, mut count) = (0, 0);
     for entry in entries {
         let complete = entry
             .runs
             .iter()
-            .filter(|r| matches!(r.end, End::Complete(_)))
+            .filter(|r| matches!(r.end, RunEnd::Complete(_)))
             .count();
         pairs += complete.saturating_sub(1);
         for (looser, tighter, factor) in dearer(entry) {
@@ -404,15 +404,16 @@ fn steps(entries: &[Entry]) -> String {
     )
 }
 
-fn not_judged(entries: &[Entry]) -> String {
+fn not_judged(entries: &[GuaranteeEntry]) -> String {
     let runs = || {
         entries
             .iter()
             .flat_map(|entry| entry.runs.iter().map(move |r| (entry, r)))
     };
-    let count = |wanted: fn(&Entry, &Asked) -> bool| runs().filter(|(e, r)| wanted(e, r)).count();
+    let count =
+        |wanted: fn(&GuaranteeEntry, &Asked) -> bool| runs().filter(|(e, r)| wanted(e, r)).count();
     let stopped = runs().filter_map(|(e, r)| match &r.end {
-        End::Stopped(message) => Some((message.as_str(), run(e, r))),
+        RunEnd::Stopped(message) => Some((message.as_str(), run(e, r))),
         _ => None,
     });
     let mut out = format!(
@@ -420,10 +421,10 @@ fn not_judged(entries: &[Entry]) -> String {
          * At the end, without a reference that is good enough: {}.\n\
          * Given up after {STEPS} steps: {}; not asked for after them: {}.\n\
          * Stopped with an error (exit status 3 of the program, or 2 before the first step): {}.\n\nThe errors:\n\n",
-        count(|e, r| matches!(r.end, End::Complete(_)) && e.ratio(r).is_none()),
-        count(|_, r| r.end == End::TooLong),
-        count(|_, r| r.end == End::Skipped),
-        count(|_, r| matches!(r.end, End::Stopped(_))),
+        count(|e, r| matches!(r.end, RunEnd::Complete(_)) && e.ratio(r).is_none()),
+        count(|_, r| r.end == RunEnd::TooLong),
+        count(|_, r| r.end == RunEnd::Skipped),
+        count(|_, r| matches!(r.end, RunEnd::Stopped(_))),
     );
     out += &list(stopped, "No run stopped.");
     // what follows a semicolon names the constraint, the part before it the reason
@@ -446,7 +447,7 @@ fn not_judged(entries: &[Entry]) -> String {
     out
 }
 
-fn warnings(entries: &[Entry]) -> String {
+fn warnings(entries: &[GuaranteeEntry]) -> String {
     let runs = entries
         .iter()
         .flat_map(|e| e.runs.iter().chain(&e.advised).map(move |r| (e, r)));
@@ -458,7 +459,7 @@ fn warnings(entries: &[Entry]) -> String {
 }
 
 /// Every ratio.
-fn every(entries: &[Entry]) -> String {
+fn every(entries: &[GuaranteeEntry]) -> String {
     let mut out = String::from(
         "\n## Every run\n\nError achieved over accuracy asked for. In brackets: the floor of the reference is above a tenth of the \
          accuracy, so that the ratio is not judged.\n\n| scene | H | floor | amplification | method |",
@@ -473,7 +474,7 @@ fn every(entries: &[Entry]) -> String {
     for entry in entries.iter().filter(|e| e.refused.is_none()) {
         let cells = entry.runs.iter().map(|r| match (&r.end, entry.ratio(r)) {
             (_, Some(ratio)) => digits(ratio),
-            (End::Complete(Some(error)), None) => format!("({})", digits(error / r.position)),
+            (RunEnd::Complete(Some(error)), None) => format!("({})", digits(error / r.position)),
             (end, _) => ending(end),
         });
         let cells: Vec<String> = cells.collect();
@@ -494,7 +495,7 @@ fn every(entries: &[Entry]) -> String {
 }
 
 /// One panel a method.
-fn figure(entries: &[Entry]) -> Figure {
+fn figure(entries: &[GuaranteeEntry]) -> Figure {
     let all = judged(entries);
     let panels = METHODS.iter().map(|(name, _)| {
         let dots = |color, amplifies: bool| {
@@ -531,7 +532,7 @@ fn figure(entries: &[Entry]) -> Figure {
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write(entries: &[Entry]) -> Result<()> {
+pub fn write(entries: &[GuaranteeEntry]) -> Result<()> {
     let folder = records::root().join("accuracy");
     plot::save(&figure(entries), &folder.join("figures"), "guarantee")?;
     let path = folder.join("GUARANTEE.md");
@@ -545,14 +546,14 @@ mod tests {
     use super::*;
     use crate::guarantee::Facts;
 
-    fn entry(amplification: f64, floor: f64, runs: Vec<(f64, End, u64)>) -> Entry {
+    fn entry(amplification: f64, floor: f64, runs: Vec<(f64, RunEnd, u64)>) -> GuaranteeEntry {
         let run = |(position, end, steps)| Asked {
             position,
             end,
             steps,
             warnings: Vec::new(),
         };
-        Entry {
+        GuaranteeEntry {
             scene: "s".to_owned(),
             method: "bathe".to_owned(),
             facts: Facts {
@@ -569,15 +570,15 @@ mod tests {
     #[test]
     fn runs_are_judged_where_the_reference_is_good_enough_and_failures_are_counted_as_such() {
         let runs = vec![
-            (1e-3, End::Complete(Some(5e-4)), 120),
-            (1e-4, End::Complete(Some(4e-4)), 100),
-            (1e-5, End::Stopped("at t = 1 s".to_owned()), 50),
-            (1e-6, End::TooLong, 9),
-            (1e-9, End::Complete(Some(1e-9)), 400),
+            (1e-3, RunEnd::Complete(Some(5e-4)), 120),
+            (1e-4, RunEnd::Complete(Some(4e-4)), 100),
+            (1e-5, RunEnd::Stopped("at t = 1 s".to_owned()), 50),
+            (1e-6, RunEnd::TooLong, 9),
+            (1e-9, RunEnd::Complete(Some(1e-9)), 400),
         ];
         let one = [entry(1.0, 1e-8, runs)];
         let all = judged(&one);
-        let tally = Tally::of(all.iter().map(|j| (j.ratio, "s")));
+        let tally = RatioTally::of(all.iter().map(|j| (j.ratio, "s")));
         assert_eq!((tally.runs, tally.within), (2, 1));
         assert!(
             (tally.largest - 4.0).abs() < 1e-12,
@@ -592,8 +593,8 @@ mod tests {
 
     #[test]
     fn equal_runs_count_once_and_prescribed_motions_do_not() {
-        let same = |position| (position, End::Complete(Some(2e-6)), 100);
-        let tighter = (1e-6, End::Complete(Some(1e-7)), 300);
+        let same = |position| (position, RunEnd::Complete(Some(2e-6)), 100);
+        let tighter = (1e-6, RunEnd::Complete(Some(1e-7)), 300);
         let runs = vec![same(1e-4), same(1e-5), tighter];
         let one = [entry(1.0, 1e-9, runs.clone())];
         let positions: Vec<f64> = judged(&one).iter().map(|j| j.run.position).collect();
@@ -603,7 +604,7 @@ mod tests {
 
     #[test]
     fn an_error_that_is_no_number_is_the_largest_and_not_within() {
-        let tally = Tally::of([(0.5, "a"), (f64::NAN, "b"), (0.7, "c")].into_iter());
+        let tally = RatioTally::of([(0.5, "a"), (f64::NAN, "b"), (0.7, "c")].into_iter());
         assert_eq!(
             (tally.runs, tally.within, tally.scene.as_str()),
             (3, 2, "b")
@@ -615,7 +616,7 @@ mod tests {
         let one = [entry(
             50.0,
             1e-12,
-            vec![(1e-6, End::Complete(Some(1e-5)), 1)],
+            vec![(1e-6, RunEnd::Complete(Some(1e-5)), 1)],
         )];
         let all = judged(&one);
         assert!(

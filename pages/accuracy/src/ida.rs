@@ -2,8 +2,8 @@
 
 use looselink::simulate::Notice;
 use miette::{Result, miette};
-use studies::precision::{Made, Pace, Study, StudyError, Timing, Work};
-use verify::trajectory::{Plan, Trajectory, tolerances};
+use studies::precision::{CompletedRun, RunTiming, Study, StudyError, StudyPace, WorkCounts};
+use verify::trajectory::{ComparisonPlan, Trajectory, tolerances};
 
 /// Name of its curve.
 pub const NAME: &str = "IDA (second implementation)";
@@ -12,7 +12,7 @@ pub const NAME: &str = "IDA (second implementation)";
 pub const RELATIVE: [f64; 6] = [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
 
 /// Takes a point.
-type Add<'a> = &'a mut dyn FnMut(Pace, Result<Made, String>) -> Result<(), StudyError>;
+type Add<'a> = &'a mut dyn FnMut(StudyPace, Result<CompletedRun, String>) -> Result<(), StudyError>;
 
 /// Makes the points of its curve and gives each to `add`.
 ///
@@ -25,14 +25,14 @@ pub fn points(
     tell: &mut dyn FnMut(Notice),
     add: Add,
 ) -> Result<()> {
-    let plan = Plan::of_file(&study.scene, &study.set, study.duration, study.interval);
+    let plan = ComparisonPlan::of_file(&study.scene, &study.set, study.duration, study.interval);
     for &relative in tolerances {
         tell(Notice::Begun(&format!("{NAME}, tolerance {relative:e}")));
         let made = repeated(&plan, relative, repeats);
-        let pace = Pace::Tolerance(relative);
+        let pace = StudyPace::Tolerance(relative);
         let added = match &made {
             Ok((run, timing)) => {
-                let made = Made {
+                let made = CompletedRun {
                     columns: &|name| run.columns.get(name).map(Vec::as_slice),
                     work: work(run),
                     // IDA reports failures alone
@@ -49,18 +49,22 @@ pub fn points(
 }
 
 /// A first run, which is recorded, and the times of those after it.
-fn repeated(plan: &Plan, relative: f64, repeats: usize) -> Result<(Trajectory, Timing)> {
+fn repeated(
+    plan: &ComparisonPlan,
+    relative: f64,
+    repeats: usize,
+) -> Result<(Trajectory, RunTiming)> {
     let run = || plan.cpp(&tolerances(relative));
     let first = run()?;
     let seconds = (0..repeats).map(|_| Ok(run()?.seconds));
     let seconds: Vec<f64> = seconds.collect::<Result<_>>()?;
-    Ok((first, Timing::of(seconds)))
+    Ok((first, RunTiming::of(seconds)))
 }
 
-fn work(run: &Trajectory) -> Work {
+fn work(run: &Trajectory) -> WorkCounts {
     let counts = &run.counts;
     let count = |n: i64| u64::try_from(n).unwrap_or(0);
-    Work {
+    WorkCounts {
         steps: count(counts.steps),
         rejected_steps: count(counts.error_failures + counts.convergence_failures),
         location_trials: count(counts.restarts),

@@ -12,12 +12,14 @@ mod timings;
 use clap::{Parser, Subcommand};
 use looselink::simulate::Notice;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use records::Run;
+use records::RunningCampaign;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use studies::ablation::figure as figure_of_effects;
 use studies::machine::machine;
-use studies::precision::{Compared, Effort, Motion, Outcome, Statistics, Study, Survey};
+use studies::precision::{
+    Compared, Effort, MotionReference, StatisticsReference, Study, StudyOutcome, Survey,
+};
 
 /// Runs all studies of precision against time and writes ACCURACY.md.
 #[derive(Debug, Parser)]
@@ -47,13 +49,13 @@ enum Command {
 }
 
 /// A study and what came of it.
-pub struct Made {
+pub struct MadeStudy {
     /// Name of its file without the extension.
     pub name: String,
     /// What was asked.
     pub study: Study,
     /// What was found.
-    pub outcome: Outcome,
+    pub outcome: StudyOutcome,
 }
 
 /// A study of statistics and what came of it.
@@ -83,7 +85,7 @@ fn guarantee(only: &[String], threads: usize, page: bool) -> Result<()> {
         guarantee_page::write(&guarantee::read()?.1)?;
         return records::write_notes(&records::root());
     }
-    let campaign = Run::begin("guarantee")?;
+    let campaign = RunningCampaign::begin("guarantee")?;
     let (entries, all) = guarantee::run(only, threads)?;
     guarantee_page::write(&entries)?;
     match all {
@@ -94,7 +96,7 @@ fn guarantee(only: &[String], threads: usize, page: bool) -> Result<()> {
 
 /// The studies of precision against time.
 fn studied(repeats: u16) -> Result<()> {
-    let campaign = Run::begin("accuracy")?;
+    let campaign = RunningCampaign::begin("accuracy")?;
     let root = records::root();
     let started = Instant::now();
     let (mut made, mut surveyed) = (Vec::new(), Vec::new());
@@ -116,7 +118,11 @@ fn studied(repeats: u16) -> Result<()> {
             ida::points(&study, tolerances, repeats, &mut tell, &mut |pace, made| {
                 survey.add(&study, ida::NAME, pace, made)
             })?;
-            plot::save(&Statistics::figure(&survey, &study), &pictures, &name)?;
+            plot::save(
+                &StatisticsReference::figure(&survey, &study),
+                &pictures,
+                &name,
+            )?;
             surveyed.push(Surveyed {
                 name,
                 study,
@@ -124,7 +130,7 @@ fn studied(repeats: u16) -> Result<()> {
             });
             continue;
         }
-        let outcome = Outcome::run(&study, effort, &mut tell);
+        let outcome = StudyOutcome::run(&study, effort, &mut tell);
         let mut outcome = outcome.map_err(|e| miette!("{e}"))?;
         // IDA is a rival to methods; a mesh has none
         if !study.compares_elements() {
@@ -136,8 +142,8 @@ fn studied(repeats: u16) -> Result<()> {
                 &mut |pace, made| outcome.add(&study, ida::NAME, pace, made),
             )?;
         }
-        plot::save(&Motion::figure(&outcome, &study), &pictures, &name)?;
-        made.push(Made {
+        plot::save(&MotionReference::figure(&outcome, &study), &pictures, &name)?;
+        made.push(MadeStudy {
             name,
             study,
             outcome,

@@ -1,17 +1,20 @@
 //! The page.
 
-use crate::{Made, Surveyed, effects};
+use crate::{MadeStudy, Surveyed, effects};
 use std::fmt::Write;
 use studies::ablation::Ablation;
 use studies::machine::{Machine, median};
-use studies::precision::{Compared, Measures, Motion, Outcome, Pace, Run, Statistics, Work};
+use studies::precision::{
+    Compared, CurvePoint, MotionReference, RunStatistics, StatisticsReference, StudyOutcome,
+    StudyPace, WorkCounts,
+};
 
 /// Errors of position at which curves are compared \[m\].
 const LEVELS: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
 
 /// What ACCURACY.md says.
 pub fn page(
-    made: &[Made],
+    made: &[MadeStudy],
     surveyed: &[Surveyed],
     ablation: &Ablation,
     machine: &Machine,
@@ -36,7 +39,7 @@ pub fn page(
             one.study.title,
             one.study.title,
             one.name,
-            Motion::table(&one.outcome, &one.study),
+            MotionReference::table(&one.outcome, &one.study),
             folded(&one.outcome.warnings())
         );
     }
@@ -47,7 +50,7 @@ pub fn page(
             one.study.title,
             one.name,
             long_runs(one),
-            Statistics::table(&one.survey, &one.study),
+            StatisticsReference::table(&one.survey, &one.study),
             folded(&one.survey.warnings())
         );
     }
@@ -72,11 +75,11 @@ fn folded(warnings: &[String]) -> String {
 }
 
 /// Error achieved over error asked for, over all studies.
-fn asked(made: &[Made]) -> String {
+fn asked(made: &[MadeStudy]) -> String {
     let mut rows: Vec<(f64, f64, String)> = Vec::new();
     for one in made {
         for run in &one.outcome.runs {
-            if let (Pace::Accuracy { position, .. }, Ok(measured)) = (run.pace, &run.result)
+            if let (StudyPace::Accuracy { position, .. }, Ok(measured)) = (run.pace, &run.result)
                 && measured.errors.position > 2.0 * one.outcome.reference.floor.position
             {
                 let name = format!("{}, {}", one.name, run.curve);
@@ -131,8 +134,8 @@ fn asked(made: &[Made]) -> String {
 
 /// Least processor time at which a curve comes below an error, on the line between neighbours in the log-log plane, and the
 /// step or accuracy there.
-fn time_at(outcome: &Outcome, curve: &str, error: f64) -> Option<(f64, Pace)> {
-    let points: Vec<(f64, f64, Pace)> = outcome
+fn time_at(outcome: &StudyOutcome, curve: &str, error: f64) -> Option<(f64, StudyPace)> {
+    let points: Vec<(f64, f64, StudyPace)> = outcome
         .runs
         .iter()
         .zip(&outcome.timings)
@@ -155,28 +158,32 @@ fn time_at(outcome: &Outcome, curve: &str, error: f64) -> Option<(f64, Pace)> {
 }
 
 /// The pace between two of a curve.
-fn between_paces(from: Pace, to: Pace, between: impl Fn(f64, f64) -> f64) -> Pace {
+fn between_paces(from: StudyPace, to: StudyPace, between: impl Fn(f64, f64) -> f64) -> StudyPace {
     match (from, to) {
-        (Pace::Step(a), Pace::Step(b)) => Pace::Step(between(a, b)),
+        (StudyPace::Step(a), StudyPace::Step(b)) => StudyPace::Step(between(a, b)),
         (
-            Pace::Accuracy { position: a, .. },
-            Pace::Accuracy {
+            StudyPace::Accuracy { position: a, .. },
+            StudyPace::Accuracy {
                 position: b,
                 energy,
                 horizon,
             },
-        ) => Pace::Accuracy {
+        ) => StudyPace::Accuracy {
             position: between(a, b),
             energy,
             horizon,
         },
-        (Pace::Tolerance(a), Pace::Tolerance(b)) => Pace::Tolerance(between(a, b)),
+        (StudyPace::Tolerance(a), StudyPace::Tolerance(b)) => StudyPace::Tolerance(between(a, b)),
         _ => to,
     }
 }
 
 /// The curve of a study that comes below an error first, among those whose names are accepted.
-fn winner(one: &Made, error: f64, accept: impl Fn(&str) -> bool) -> Option<(&str, f64, Pace)> {
+fn winner(
+    one: &MadeStudy,
+    error: f64,
+    accept: impl Fn(&str) -> bool,
+) -> Option<(&str, f64, StudyPace)> {
     let curves = one.outcome.curves().into_iter().filter(|c| accept(c));
     let times = curves.filter_map(|c| {
         let (time, pace) = time_at(&one.outcome, c, error)?;
@@ -186,7 +193,7 @@ fn winner(one: &Made, error: f64, accept: impl Fn(&str) -> bool) -> Option<(&str
 }
 
 /// Studies that compare methods.
-fn of_methods(made: &[Made]) -> impl Iterator<Item = &Made> {
+fn of_methods(made: &[MadeStudy]) -> impl Iterator<Item = &MadeStudy> {
     made.iter().filter(|one| !one.study.compares_elements())
 }
 
@@ -198,7 +205,7 @@ fn is_explicit(curve: &str) -> bool {
 }
 
 /// What the diagrams say, counted.
-fn conclusions(made: &[Made], surveyed: &[Surveyed]) -> String {
+fn conclusions(made: &[MadeStudy], surveyed: &[Surveyed]) -> String {
     let mut wins: Vec<(&str, usize)> = Vec::new();
     let (mut cells, mut ratios) = (0, Vec::new());
     for one in of_methods(made) {
@@ -287,7 +294,7 @@ fn long_runs(one: &Surveyed) -> String {
     });
     let mut good: Vec<_> = good.collect();
     good.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let reported = |(run, time): &(&Run<(Measures, Work)>, f64)| {
+    let reported = |(run, time): &(&CurvePoint<(RunStatistics, WorkCounts)>, f64)| {
         format!(
             "{} with {} ({} times real time)",
             run.curve,
@@ -304,8 +311,9 @@ fn long_runs(one: &Surveyed) -> String {
     );
     if let Some(first) = good.first() {
         text += &format!(" The fastest of these is {}", reported(first));
-        let controlled =
-            |(run, _): &&(&Run<(Measures, Work)>, f64)| matches!(run.pace, Pace::Accuracy { .. });
+        let controlled = |(run, _): &&(&CurvePoint<(RunStatistics, WorkCounts)>, f64)| {
+            matches!(run.pace, StudyPace::Accuracy { .. })
+        };
         text += &match good.iter().find(controlled) {
             Some(other) if other.1 > first.1 => {
                 format!(
@@ -320,7 +328,7 @@ fn long_runs(one: &Surveyed) -> String {
 }
 
 /// Which method for which scene and error.
-fn fastest(made: &[Made]) -> String {
+fn fastest(made: &[MadeStudy]) -> String {
     let mut out = String::from(
         "## Which method for which error?\n\n\
          The fastest method for an error of position, with its step or accuracy and its processor time. In brackets: how many \
@@ -352,7 +360,7 @@ fn fastest(made: &[Made]) -> String {
 }
 
 /// What failed or was left out.
-fn omissions(made: &[Made]) -> String {
+fn omissions(made: &[MadeStudy]) -> String {
     let mut out = String::from("## Omissions\n\n");
     let mut none = true;
     for one in made {

@@ -1,22 +1,22 @@
 //! The raw times behind the page.
 
-use crate::{Made, Surveyed};
+use crate::{MadeStudy, Surveyed};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 use std::path::Path;
-use studies::ablation::{self, Ablation};
+use studies::ablation::{Ablation, AblationTiming};
 use studies::machine::{Machine, machine};
 use studies::precision::Time;
 
 #[derive(Serialize)]
-struct Timings<'a> {
+struct StudyTimings<'a> {
     machine: Machine,
-    studies: Vec<Study<'a>>,
-    ablation: ablation::Timing,
+    studies: Vec<StudyTimes<'a>>,
+    ablation: AblationTiming,
 }
 
 #[derive(Serialize)]
-struct Study<'a> {
+struct StudyTimes<'a> {
     study: &'a str,
     runs: Vec<Time<'a>>,
 }
@@ -25,13 +25,20 @@ struct Study<'a> {
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write(path: &Path, made: &[Made], surveyed: &[Surveyed], ablation: &Ablation) -> Result<()> {
+pub fn write(
+    path: &Path,
+    made: &[MadeStudy],
+    surveyed: &[Surveyed],
+    ablation: &Ablation,
+) -> Result<()> {
     let made = made.iter().map(|one| (&*one.name, one.outcome.times()));
     let surveyed = surveyed.iter().map(|one| (&*one.name, one.survey.times()));
     let studies = made.chain(surveyed);
-    let timings = Timings {
+    let timings = StudyTimings {
         machine: machine(),
-        studies: studies.map(|(study, runs)| Study { study, runs }).collect(),
+        studies: studies
+            .map(|(study, runs)| StudyTimes { study, runs })
+            .collect(),
         ablation: ablation.timing(),
     };
     let text = serde_json::to_string_pretty(&timings).into_diagnostic()?;

@@ -1,6 +1,6 @@
 //! One figure a scene: the mechanism at a few instants, and a channel over time.
 
-use crate::runs::Run;
+use crate::runs::SceneRun;
 use looselink::body::{FlexibleLink, Ground, Known};
 use looselink::scene::{Analysis, NamedBody, PointRef};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
@@ -15,7 +15,7 @@ const STRAIGHT: f64 = 2e-4;
 const EARLY: Color = (185, 205, 220);
 
 /// The figure of a run.
-pub fn figure(run: &Run) -> Figure {
+pub fn figure(run: &SceneRun) -> Figure {
     Figure {
         rows: vec![vec![mechanism(run), channel(run)]],
         caption: String::new(),
@@ -23,14 +23,14 @@ pub fn figure(run: &Run) -> Figure {
 }
 
 /// What t is called: time, or the part of the load.
-fn clock(run: &Run) -> (&'static str, &'static str) {
+fn clock(run: &SceneRun) -> (&'static str, &'static str) {
     match run.scene.simulation.analysis {
         Analysis::Dynamic => ("Time t", "s"),
         Analysis::Static => ("Part of the load", ""),
     }
 }
 
-fn channel(run: &Run) -> Panel {
+fn channel(run: &SceneRun) -> Panel {
     let (label, unit) = clock(run);
     let (name, t) = (run.show.channel, run.get("t").unwrap_or_default());
     let y = run.get(name).unwrap_or_default();
@@ -53,7 +53,7 @@ fn symbol(unit: &'static str) -> &'static str {
     }
 }
 
-fn mechanism(run: &Run) -> Panel {
+fn mechanism(run: &SceneRun) -> Panel {
     let t = run.get("t").unwrap_or_default();
     let last = t.last().copied().unwrap_or_default();
     let end = run.show.drawn.unwrap_or(last).min(last);
@@ -92,7 +92,7 @@ fn blend(from: Color, to: Color, share: f64) -> Color {
 }
 
 /// Names of the points that the run has recorded of a body, in the order of the body.
-fn points(run: &Run, body: &NamedBody) -> Vec<String> {
+fn points(run: &SceneRun, body: &NamedBody) -> Vec<String> {
     let all = || body.kind.points().iter();
     let names: Vec<String> = match body.kind.get::<FlexibleLink>() {
         None => all().map(|p| p.name.clone()).collect(),
@@ -111,7 +111,7 @@ fn points(run: &Run, body: &NamedBody) -> Vec<String> {
 
 /// Two channels of a point, `x` and `y` or the two of its slope.
 fn pair(
-    run: &Run,
+    run: &SceneRun,
     body: &NamedBody,
     point: &str,
     names: [&str; 2],
@@ -125,7 +125,7 @@ fn pair(
 }
 
 /// Everything at one instant; the label goes to the first mark.
-fn pose(run: &Run, row: usize, color: Color, label: &str, marks: &mut Vec<Mark>) {
+fn pose(run: &SceneRun, row: usize, color: Color, label: &str, marks: &mut Vec<Mark>) {
     let before = marks.len();
     for force in &run.scene.forces {
         if let [from, to] = force.kind.points()[..] {
@@ -168,7 +168,7 @@ fn pose(run: &Run, row: usize, color: Color, label: &str, marks: &mut Vec<Mark>)
 }
 
 /// Where a point of the scene is.
-fn place(run: &Run, point: PointRef, row: usize) -> Option<[f64; 2]> {
+fn place(run: &SceneRun, point: PointRef, row: usize) -> Option<[f64; 2]> {
     let body = &run.scene.bodies[point.body];
     let own = &body.kind.points()[point.point];
     match body.kind.known() {
@@ -178,7 +178,13 @@ fn place(run: &Run, point: PointRef, row: usize) -> Option<[f64; 2]> {
 }
 
 /// The axis of a flexible link: the cubic of its elements between nodes and slopes.
-fn bent(run: &Run, body: &NamedBody, length: f64, names: &[String], row: usize) -> Vec<[f64; 2]> {
+fn bent(
+    run: &SceneRun,
+    body: &NamedBody,
+    length: f64,
+    names: &[String],
+    row: usize,
+) -> Vec<[f64; 2]> {
     let get = |name: &String, channels| pair(run, body, name, channels, row).unwrap_or_default();
     let l = length / (names.len() - 1) as f64;
     let mut line = vec![get(&names[0], ["x", "y"])];
@@ -252,7 +258,7 @@ fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 }
 
 /// The paths of bodies that are drawn as one dot only.
-fn paths(run: &Run) -> Vec<Mark> {
+fn paths(run: &SceneRun) -> Vec<Mark> {
     let mut marks = Vec::new();
     for body in &run.scene.bodies {
         if let Some(Known::Fixed) = body.kind.known() {
@@ -269,7 +275,7 @@ fn paths(run: &Run) -> Vec<Mark> {
 }
 
 /// The points of the ground.
-fn grounds(run: &Run) -> Vec<Mark> {
+fn grounds(run: &SceneRun) -> Vec<Mark> {
     let mut marks = Vec::new();
     for body in &run.scene.bodies {
         if let Some(Ground { points }) = body.kind.get() {

@@ -1,11 +1,11 @@
 //! The page that shows all scenes.
 
-use crate::runs::Run;
+use crate::runs::SceneRun;
 use looselink::scene::Analysis;
 use numbers::si;
 
 /// The entry of a run.
-pub fn entry(run: &Run) -> String {
+pub fn entry(run: &SceneRun) -> String {
     let (slug, name) = (run.slug(), &run.name);
     let sizes = &run.inspection;
     let report = &run.report;

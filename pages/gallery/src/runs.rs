@@ -103,7 +103,7 @@ const SHOWN: [Show; 29] = [
 ];
 
 /// A scene that has run.
-pub struct Run {
+pub struct SceneRun {
     /// Path of the scene below the folder of scenes, without its ending.
     pub name: String,
     /// The scene as it stands in its file.
@@ -118,7 +118,7 @@ pub struct Run {
     recording: Recording,
 }
 
-impl Run {
+impl SceneRun {
     /// The name as a file name.
     pub fn slug(&self) -> String {
         self.name.replace('/', "-")
@@ -162,7 +162,7 @@ pub fn names(root: &Path) -> Result<Vec<String>> {
 ///
 /// # Errors
 /// A scene that cannot be read or does not run to its end.
-pub fn run(root: &Path, name: &str) -> Result<Run> {
+pub fn run(root: &Path, name: &str) -> Result<SceneRun> {
     let path = root.join(name).with_extension("toml");
     let scene = Scene::load(&path, &[])?;
     let show = SHOWN
@@ -180,7 +180,7 @@ pub fn run(root: &Path, name: &str) -> Result<Run> {
     let mut simulation = Simulation::new(&Scene::load(&path, &overrides)?)?;
     let mut recording = Recording::new(&simulation);
     simulation.run(&mut recording).into_diagnostic()?;
-    Ok(Run {
+    Ok(SceneRun {
         name: name.to_owned(),
         show,
         inspection: simulation.inspect(),

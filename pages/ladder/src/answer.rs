@@ -18,14 +18,14 @@ pub enum Allowed {
 
 /// Errors that fall.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Curve {
+pub struct ErrorCurve {
     /// What the abscissa is, with its unit in brackets.
     pub abscissa: String,
     /// Abscissa and error.
     pub errors: Vec<(f64, f64)>,
 }
 
-impl Curve {
+impl ErrorCurve {
     /// The first abscissa and the error there.
     pub fn start(&self) -> Option<(f64, f64)> {
         self.errors.first().copied()
@@ -51,7 +51,7 @@ pub struct Answer {
     /// Line in it.
     pub line: u32,
     /// What an order was read from.
-    pub curve: Option<Curve>,
+    pub curve: Option<ErrorCurve>,
 }
 
 fn number<'d, D: serde::Deserializer<'d>>(from: D) -> Result<f64, D::Error> {

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// What the property tests noticed.
 #[derive(Serialize, Deserialize)]
-pub struct Record {
+pub struct ConstantsRecord {
     /// By which part of the largest number of its table each number was changed.
     pub change: f64,
     /// The property tests.
@@ -36,12 +36,12 @@ pub fn path() -> PathBuf {
     records::root().join("pages/ladder/constants.json")
 }
 
-impl Record {
+impl ConstantsRecord {
     /// Reads the record.
     ///
     /// # Errors
     /// When it is not there or not a record.
-    pub fn load() -> Result<Record> {
+    pub fn load() -> Result<ConstantsRecord> {
         let text = fs::read_to_string(path()).into_diagnostic();
         let text = text.wrap_err_with(|| format!("cannot read {}", path().display()))?;
         serde_json::from_str(&text).into_diagnostic()

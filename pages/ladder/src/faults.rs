@@ -25,7 +25,7 @@ pub struct Fault {
 
 /// What became of a fault.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Outcome {
+pub struct FaultOutcome {
     /// Name of the fault.
     pub name: String,
     /// Tests that failed.
@@ -55,13 +55,13 @@ pub fn list() -> Result<List> {
 }
 
 /// What the last run of all faults left in `verify/faults.json`.
-pub fn outcomes() -> Result<Vec<Outcome>> {
+pub fn outcomes() -> Result<Vec<FaultOutcome>> {
     let text = read(&root().join("verify/faults.json"))?;
     serde_json::from_str(&text).into_diagnostic()
 }
 
 /// Every fault and variant with what became of it; an error where one was not run.
-pub fn judged() -> Result<Vec<(Fault, Outcome)>> {
+pub fn judged() -> Result<Vec<(Fault, FaultOutcome)>> {
     let outcomes = outcomes()?;
     let pair = |fault: &Fault| {
         let outcome = outcomes.iter().find(|o| o.name == fault.name).cloned();

@@ -1,6 +1,6 @@
 //! Convergence pictures: error against abscissa, with the slopes that bound the order.
 
-use crate::{Allowed, Answer, Curve, Rung};
+use crate::{Allowed, Answer, ErrorCurve, Rung};
 use plot::{Axis, Figure, Mark, Panel, palette};
 
 /// Panels a row.
@@ -40,7 +40,7 @@ pub fn convergence(rung: Rung, answers: &[Answer]) -> Option<Figure> {
 
 /// Asked at one place of one test, over the same abscissae, with the same bounds.
 fn are_kin(a: &Answer, b: &Answer) -> bool {
-    let start = |x: &Answer| x.curve.as_ref().and_then(Curve::start).map(|(h, _)| h);
+    let start = |x: &Answer| x.curve.as_ref().and_then(ErrorCurve::start).map(|(h, _)| h);
     (&a.file, a.line, a.allowed) == (&b.file, b.line, b.allowed) && start(a) == start(b)
 }
 
@@ -48,7 +48,7 @@ fn panel(family: &[&Answer]) -> Option<Panel> {
     let Allowed::Between(low, high) = family[0].allowed else {
         return None;
     };
-    let curves: Vec<&Curve> = family.iter().filter_map(|a| a.curve.as_ref()).collect();
+    let curves: Vec<&ErrorCurve> = family.iter().filter_map(|a| a.curve.as_ref()).collect();
     let longest = curves.iter().max_by_key(|c| c.errors.len())?;
     let (start, top) = longest.start()?;
     let alone = family.len() == 1;

@@ -18,8 +18,8 @@ pub mod page;
 pub mod seeded;
 mod worst;
 
-pub use answer::{Allowed, Answer, Curve};
-pub use worst::{Measured, Worst};
+pub use answer::{Allowed, Answer, ErrorCurve};
+pub use worst::{MeasuredError, Worst};
 
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -130,7 +130,7 @@ impl Question {
     ///
     /// # Panics
     /// When it is not.
-    pub fn within(self, error: impl Measured, tolerance: f64, reason: &str) {
+    pub fn within(self, error: impl MeasuredError, tolerance: f64, reason: &str) {
         let number = error.error().abs();
         self.answer(
             number,
@@ -206,7 +206,7 @@ impl Question {
         orders: Range<f64>,
         reason: &str,
     ) {
-        let curve = Curve {
+        let curve = ErrorCurve {
             abscissa: abscissa.into(),
             errors: errors.to_vec(),
         };
@@ -225,7 +225,7 @@ impl Question {
         place: &str,
         allowed: Allowed,
         reason: &str,
-        curve: Option<Curve>,
+        curve: Option<ErrorCurve>,
     ) {
         let answer = Answer {
             rung: self.rung,

@@ -1,7 +1,7 @@
 //! Runs the tests and writes VERIFICATION.md and its pictures, or checks the page against a run.
 
 use clap::Parser;
-use ladder::mutants::{Record, reasons};
+use ladder::mutants::{MutationRecord, reasons};
 use ladder::{Answer, FOLDER, Rung, compare, constants, figures, page};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use std::fs;
@@ -45,8 +45,8 @@ fn main() -> Result<ExitCode> {
     let text = page::page(
         &answers,
         &pictures,
-        &constants::Record::load()?,
-        &Record::read_all()?,
+        &constants::ConstantsRecord::load()?,
+        &MutationRecord::read_all()?,
         &reasons()?,
     )?;
     fs::write(&path, text).into_diagnostic()?;

@@ -97,7 +97,7 @@ impl Scope {
 
 /// A mutation run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Record {
+pub struct MutationRecord {
     /// Seed of the draw.
     pub seed: u64,
     /// Number of mutants from which those of this record were drawn.
@@ -105,14 +105,14 @@ pub struct Record {
     /// Version of cargo-mutants.
     pub tool: String,
     /// Counts by source file.
-    pub files: BTreeMap<String, Counts>,
+    pub files: BTreeMap<String, MutantCounts>,
     /// Mutants that no test noticed, as cargo-mutants names them.
     pub survivors: Vec<String>,
 }
 
 /// What became of the mutants of a file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Counts {
+pub struct MutantCounts {
     /// A test failed.
     pub caught: usize,
     /// The tests did not end.
@@ -123,8 +123,8 @@ pub struct Counts {
     pub unviable: usize,
 }
 
-impl AddAssign for Counts {
-    fn add_assign(&mut self, more: Counts) {
+impl AddAssign for MutantCounts {
+    fn add_assign(&mut self, more: MutantCounts) {
         self.caught += more.caught;
         self.timeout += more.timeout;
         self.survived += more.survived;
@@ -132,19 +132,19 @@ impl AddAssign for Counts {
     }
 }
 
-impl Counts {
+impl MutantCounts {
     /// Mutants that compiled.
     pub fn viable(self) -> usize {
         self.caught + self.timeout + self.survived
     }
 }
 
-impl Record {
+impl MutationRecord {
     /// The record of the last run.
     ///
     /// # Errors
     /// A file that cannot be read.
-    pub fn read(scope: Scope) -> Result<Record> {
+    pub fn read(scope: Scope) -> Result<MutationRecord> {
         let path = scope.path();
         let text = fs::read_to_string(&path)
             .into_diagnostic()
@@ -156,13 +156,13 @@ impl Record {
     ///
     /// # Errors
     /// A file that cannot be read.
-    pub fn read_all() -> Result<Vec<(Scope, Record)>> {
-        let record = |scope: Scope| Ok((scope, Record::read(scope)?));
+    pub fn read_all() -> Result<Vec<(Scope, MutationRecord)>> {
+        let record = |scope: Scope| Ok((scope, MutationRecord::read(scope)?));
         Scope::ALL.into_iter().map(record).collect()
     }
 
     /// Counts by the folder or file below `src`.
-    pub fn folders(&self) -> BTreeMap<String, Counts> {
+    pub fn folders(&self) -> BTreeMap<String, MutantCounts> {
         let mut folders = BTreeMap::new();
         for (file, counts) in &self.files {
             let folder: Vec<&str> = file.split('/').take(2).collect();
@@ -172,14 +172,14 @@ impl Record {
     }
 
     /// All files together.
-    pub fn total(&self) -> Counts {
-        let mut total = Counts::default();
+    pub fn total(&self) -> MutantCounts {
+        let mut total = MutantCounts::default();
         self.files.values().for_each(|counts| total += *counts);
         total
     }
 
     /// This record after the survivors `tried` were tested again, with `again` as the result.
-    pub fn revised(mut self, tried: &[String], again: Record) -> Record {
+    pub fn revised(mut self, tried: &[String], again: MutationRecord) -> MutationRecord {
         for (file, fresh) in &again.files {
             let counts = self.files.entry(file.clone()).or_default();
             counts.caught += fresh.caught;
@@ -213,17 +213,17 @@ pub fn reasons() -> Result<BTreeMap<String, String>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Counts, Record};
+    use super::{MutantCounts, MutationRecord};
 
     #[test]
     fn survivors_that_are_caught_at_last_are_counted_as_caught() {
         let record = |caught, survived, survivors: &[&str]| {
-            let counts = Counts {
+            let counts = MutantCounts {
                 caught,
                 survived,
-                ..Counts::default()
+                ..MutantCounts::default()
             };
-            Record {
+            MutationRecord {
                 seed: 4,
                 possible: 9,
                 tool: String::new(),

@@ -2,7 +2,7 @@
 
 use crate::answer::short;
 use crate::compare::{cell, link};
-use crate::mutants::{Counts, Record, Scope};
+use crate::mutants::{MutantCounts, MutationRecord, Scope};
 use crate::{Answer, Rung, constants};
 use miette::{Result, miette};
 use std::collections::BTreeMap;
@@ -15,8 +15,8 @@ use std::fmt::Write;
 pub fn page(
     answers: &[Answer],
     pictures: &[Rung],
-    constants: &constants::Record,
-    mutants: &[(Scope, Record)],
+    constants: &constants::ConstantsRecord,
+    mutants: &[(Scope, MutationRecord)],
     reasons: &BTreeMap<String, String>,
 ) -> Result<String> {
     let mut page = String::new();
@@ -105,7 +105,7 @@ fn head(page: &mut String, answers: &[Answer]) {
 }
 
 /// Which numbers of the kernels the property tests notice a change of.
-fn numbers(page: &mut String, record: &constants::Record) {
+fn numbers(page: &mut String, record: &constants::ConstantsRecord) {
     put(
         page,
         format!(
@@ -130,7 +130,7 @@ fn numbers(page: &mut String, record: &constants::Record) {
 
 fn mutation(
     page: &mut String,
-    records: &[(Scope, Record)],
+    records: &[(Scope, MutationRecord)],
     reasons: &BTreeMap<String, String>,
 ) -> Result<()> {
     put(
@@ -152,7 +152,7 @@ fn mutation(
 fn mutants(
     page: &mut String,
     scope: Scope,
-    record: &Record,
+    record: &MutationRecord,
     reasons: &BTreeMap<String, String>,
 ) -> Result<()> {
     let total = record.total();
@@ -173,7 +173,7 @@ fn mutants(
             numbers::percent((1e3 * record.caught()).floor() / 1e3),
         ),
     );
-    let mut line = |name: &str, c: &Counts| {
+    let mut line = |name: &str, c: &MutantCounts| {
         let numbers = [
             c.viable() + c.unviable,
             c.unviable,
@@ -225,17 +225,17 @@ mod tests {
         }
     }
 
-    fn record() -> Record {
-        Record {
+    fn record() -> MutationRecord {
+        MutationRecord {
             seed: 4,
             possible: 10,
             tool: "cargo-mutants".into(),
             files: [(
                 "a.rs".to_owned(),
-                Counts {
+                MutantCounts {
                     caught: 3,
                     survived: 1,
-                    ..Counts::default()
+                    ..MutantCounts::default()
                 },
             )]
             .into(),
@@ -250,7 +250,7 @@ mod tests {
         let page = page(
             &rows,
             &[],
-            &constants::Record::load().unwrap(),
+            &constants::ConstantsRecord::load().unwrap(),
             &[(Scope::Kernels, record())],
             &reasons,
         )
@@ -265,7 +265,7 @@ mod tests {
             page(
                 &[answer("one?", 0.1)],
                 &[],
-                &constants::Record::load().unwrap(),
+                &constants::ConstantsRecord::load().unwrap(),
                 &[(Scope::Kernels, record())],
                 &BTreeMap::new()
             )

@@ -8,17 +8,17 @@ use std::process::Command;
 
 /// A copy of the workspace with a build folder of its own.
 #[derive(Debug)]
-pub struct Copy {
+pub struct WorkspaceCopy {
     folder: PathBuf,
 }
 
-impl Copy {
+impl WorkspaceCopy {
     /// Copies what is under version control to `target/<name>`, where cargo never looks for a workspace of its own.
     ///
     /// # Errors
     /// Files that cannot be listed, read or written.
-    pub fn new(name: &str) -> Result<Copy> {
-        let copy = Copy {
+    pub fn new(name: &str) -> Result<WorkspaceCopy> {
+        let copy = WorkspaceCopy {
             folder: root().join("target").join(name),
         };
         let listed = Command::new("git")

@@ -11,7 +11,7 @@ pub struct Worst {
 }
 
 /// An error, and where it was seen if that is known.
-pub trait Measured {
+pub trait MeasuredError {
     /// The error.
     fn error(&self) -> f64;
     /// Where; empty when it is not known.
@@ -20,13 +20,13 @@ pub trait Measured {
     }
 }
 
-impl Measured for f64 {
+impl MeasuredError for f64 {
     fn error(&self) -> f64 {
         *self
     }
 }
 
-impl Measured for &Worst {
+impl MeasuredError for &Worst {
     fn error(&self) -> f64 {
         self.value()
     }
@@ -71,7 +71,7 @@ impl Worst {
 
 #[cfg(test)]
 mod tests {
-    use super::{Measured, Worst};
+    use super::{MeasuredError, Worst};
 
     #[test]
     fn what_is_not_a_number_is_worst() {

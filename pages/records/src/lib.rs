@@ -17,5 +17,5 @@ mod state;
 
 pub use digest::{Digests, Tree};
 pub use notes::{Findings, check, place, write_notes};
-pub use registry::{Record, Registry};
-pub use state::{Run, State, digests, root, state};
+pub use registry::{CampaignRecord, RecordRegistry};
+pub use state::{RecordState, RunningCampaign, digests, root, state};

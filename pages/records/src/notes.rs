@@ -4,8 +4,8 @@
 //! record is not of the present sources, a note that says so.
 
 use crate::digest::Tree;
-use crate::registry::{Record, Registry};
-use crate::state::{State, reported, state};
+use crate::registry::{CampaignRecord, RecordRegistry};
+use crate::state::{RecordState, reported, state};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -14,8 +14,8 @@ use std::path::Path;
 const OPENS: &str = "<!-- record: ";
 const CLOSES: &str = "<!-- /record -->\n";
 
-/// The place of a note, for the program that writes the page; the note comes with [`Run::finish`](crate::Run::finish) or
-/// [`write_notes`].
+/// The place of a note, for the program that writes the page; the note comes with
+/// [`RunningCampaign::finish`](crate::RunningCampaign::finish) or [`write_notes`].
 pub fn place(name: &str) -> String {
     format!("{OPENS}{name} -->\n{CLOSES}")
 }
@@ -24,13 +24,13 @@ pub fn place(name: &str) -> String {
 const NAMED: usize = 4;
 
 /// The lines between the comments.
-fn note(record: &Record, state: &State) -> String {
-    let Record { claim, command, .. } = record;
+fn note(record: &CampaignRecord, state: &RecordState) -> String {
+    let CampaignRecord { claim, command, .. } = record;
     let what = match state {
-        State::Current => return String::new(),
-        State::Unknown => "**Recorded with an unknown earlier state of the code.** No digest of the sources was kept."
+        RecordState::Current => return String::new(),
+        RecordState::Unknown => "**Recorded with an unknown earlier state of the code.** No digest of the sources was kept."
             .to_owned(),
-        State::Outdated(files) => {
+        RecordState::Outdated(files) => {
             let named: BTreeSet<&str> = match files.len() <= NAMED {
                 true => files.iter().map(String::as_str).collect(),
                 false => files.iter().map(|file| folder(file)).collect(),
@@ -78,13 +78,13 @@ fn replaced(page: &str, text: &str, notes: &BTreeMap<&str, String>) -> Result<St
 
 /// What is to be said.
 struct Present {
-    registry: Registry,
-    states: BTreeMap<String, State>,
+    registry: RecordRegistry,
+    states: BTreeMap<String, RecordState>,
 }
 
 impl Present {
     fn of(root: &Path) -> Result<Present> {
-        let registry = Registry::read(root)?;
+        let registry = RecordRegistry::read(root)?;
         let tree = Tree::new(root);
         let mut states = BTreeMap::new();
         for name in registry.records.keys() {

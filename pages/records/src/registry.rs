@@ -9,16 +9,16 @@ use std::path::Path;
 /// All records, and the groups of sources that they name.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Registry {
+pub struct RecordRegistry {
     groups: BTreeMap<String, Vec<String>>,
     /// The records by name.
-    pub records: BTreeMap<String, Record>,
+    pub records: BTreeMap<String, CampaignRecord>,
 }
 
 /// What a campaign leaves, and where its claims stand.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Record {
+pub struct CampaignRecord {
     /// What the campaign writes.
     pub file: String,
     /// The page with its claims.
@@ -31,16 +31,16 @@ pub struct Record {
     sources: Vec<String>,
 }
 
-impl Registry {
+impl RecordRegistry {
     /// Reads the table of the tree below `root`.
     ///
     /// # Errors
     /// A table that cannot be read, and a record whose file is not there.
-    pub fn read(root: &Path) -> Result<Registry> {
+    pub fn read(root: &Path) -> Result<RecordRegistry> {
         let path = root.join("pages/records/registry.toml");
         let text = fs::read_to_string(&path).into_diagnostic();
         let text = text.wrap_err_with(|| format!("cannot read {}", path.display()))?;
-        let registry: Registry = toml::from_str(&text)
+        let registry: RecordRegistry = toml::from_str(&text)
             .into_diagnostic()
             .wrap_err("pages/records/registry.toml")?;
         for (name, record) in &registry.records {
@@ -55,7 +55,7 @@ impl Registry {
     ///
     /// # Errors
     /// A name that the table does not have.
-    pub fn record(&self, name: &str) -> Result<&Record> {
+    pub fn record(&self, name: &str) -> Result<&CampaignRecord> {
         let record = self.records.get(name);
         record.ok_or_else(|| miette!("pages/records/registry.toml has no record {name}"))
     }
@@ -64,7 +64,7 @@ impl Registry {
     ///
     /// # Errors
     /// A group that the table does not have.
-    pub fn sources(&self, record: &Record) -> Result<Vec<String>> {
+    pub fn sources(&self, record: &CampaignRecord) -> Result<Vec<String>> {
         let mut sources = Vec::new();
         for source in &record.sources {
             match source.strip_prefix('@') {

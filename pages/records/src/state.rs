@@ -2,14 +2,14 @@
 
 use crate::digest::{Digests, Tree};
 use crate::notes;
-use crate::registry::{Record, Registry};
+use crate::registry::{CampaignRecord, RecordRegistry};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What a record is to the present sources.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum State {
+pub enum RecordState {
     /// Made from them.
     Current,
     /// Made from others: the files that have changed since then, have come or have gone.
@@ -20,7 +20,7 @@ pub enum State {
 
 /// A campaign under way. The digests are those of its start: sources that change while it runs outdate what it finds.
 #[must_use = "a campaign that does not finish leaves the earlier digests"]
-pub struct Run {
+pub struct RunningCampaign {
     root: PathBuf,
     name: String,
     digests: Digests,
@@ -41,28 +41,28 @@ fn path(root: &Path, name: &str) -> PathBuf {
 /// # Errors
 /// A record that is not in the table, sources that are not there or cannot be read.
 pub fn digests(root: &Path, name: &str) -> Result<Digests> {
-    let registry = Registry::read(root)?;
+    let registry = RecordRegistry::read(root)?;
     let sources = registry.sources(registry.record(name)?)?;
     Tree::new(root)
         .digests(&sources)
         .wrap_err_with(|| format!("sources of record {name}"))
 }
 
-impl Run {
+impl RunningCampaign {
     /// Begins the campaign that makes a record.
     ///
     /// # Errors
     /// Those of [`digests`].
-    pub fn begin(name: &str) -> Result<Run> {
-        Run::begin_in(&root(), name)
+    pub fn begin(name: &str) -> Result<RunningCampaign> {
+        RunningCampaign::begin_in(&root(), name)
     }
 
     /// The same below another root.
     ///
     /// # Errors
     /// Those of [`digests`].
-    pub fn begin_in(root: &Path, name: &str) -> Result<Run> {
-        Ok(Run {
+    pub fn begin_in(root: &Path, name: &str) -> Result<RunningCampaign> {
+        Ok(RunningCampaign {
             root: root.to_owned(),
             name: name.to_owned(),
             digests: digests(root, name)?,
@@ -89,10 +89,15 @@ impl Run {
 ///
 /// # Errors
 /// Sources that cannot be read, digests that are none.
-pub fn state(registry: &Registry, tree: &Tree, root: &Path, name: &str) -> Result<State> {
+pub fn state(
+    registry: &RecordRegistry,
+    tree: &Tree,
+    root: &Path,
+    name: &str,
+) -> Result<RecordState> {
     let path = path(root, name);
     if !path.exists() {
-        return Ok(State::Unknown);
+        return Ok(RecordState::Unknown);
     }
     let text = fs::read_to_string(&path).into_diagnostic()?;
     let then: Digests = serde_json::from_str(&text)
@@ -110,8 +115,8 @@ pub fn state(registry: &Registry, tree: &Tree, root: &Path, name: &str) -> Resul
     changed.extend(now.into_keys().filter(|file| !then.contains_key(file)));
     changed.sort();
     Ok(match changed.is_empty() {
-        true => State::Current,
-        false => State::Outdated(changed),
+        true => RecordState::Current,
+        false => RecordState::Outdated(changed),
     })
 }
 
@@ -119,11 +124,11 @@ pub fn state(registry: &Registry, tree: &Tree, root: &Path, name: &str) -> Resul
 const NAMED: usize = 6;
 
 /// What the gate says of a record; nothing of one that is current.
-pub fn reported(record: &Record, state: &State) -> Option<String> {
+pub fn reported(record: &CampaignRecord, state: &RecordState) -> Option<String> {
     let what = match state {
-        State::Current => return None,
-        State::Unknown => "an unknown earlier state".to_owned(),
-        State::Outdated(files) => {
+        RecordState::Current => return None,
+        RecordState::Unknown => "an unknown earlier state".to_owned(),
+        RecordState::Outdated(files) => {
             let mut named = files[..files.len().min(NAMED)].join(", ");
             if files.len() > NAMED {
                 named += &format!(" and {} more files", files.len() - NAMED);
@@ -131,7 +136,7 @@ pub fn reported(record: &Record, state: &State) -> Option<String> {
             format!("an earlier state: {named} changed")
         }
     };
-    let Record {
+    let CampaignRecord {
         file, page, claim, ..
     } = record;
     Some(format!("{file} is of {what}; {page}, {claim}"))

@@ -1,6 +1,6 @@
 //! Digests do not see how code is laid out, and see every line of it.
 
-use crate::support::Copy;
+use crate::support::SourceCopy;
 use records::{Digests, Tree};
 use std::process::Command;
 
@@ -12,13 +12,13 @@ const KERNELS: [&str; 5] = [
     "src/stepper",
 ];
 
-fn digests(copy: &Copy, source: &str) -> miette::Result<Digests> {
+fn digests(copy: &SourceCopy, source: &str) -> miette::Result<Digests> {
     Tree::new(copy.root()).digests(&[source.to_owned()])
 }
 
 #[test]
 fn other_widths_of_lines_change_no_digest() {
-    let copy = Copy::new();
+    let copy = SourceCopy::new();
     let before = digests(&copy, "src").unwrap();
     let original: Vec<String> = before.keys().map(|file| copy.read(file)).collect();
     for width in ["60", "140"] {
@@ -43,7 +43,7 @@ fn other_widths_of_lines_change_no_digest() {
 /// changes nothing.
 #[test]
 fn every_line_of_the_kernels_counts() {
-    let copy = Copy::new();
+    let copy = SourceCopy::new();
     let (mut code, mut comments) = (0, 0);
     for (file, digest) in KERNELS.iter().flat_map(|k| digests(&copy, k).unwrap()) {
         let text = copy.read(&file);

@@ -1,7 +1,7 @@
 //! Which records a change outdates, and what pages say of it.
 
-use crate::support::Copy;
-use records::{Registry, Run, check, root, write_notes};
+use crate::support::SourceCopy;
+use records::{RecordRegistry, RunningCampaign, check, root, write_notes};
 use std::fs;
 
 /// What rests on motions.
@@ -30,7 +30,7 @@ fn sorted<'a>(files: impl IntoIterator<Item = &'a str>) -> Vec<String> {
 
 #[test]
 fn a_changed_token_of_a_kernel_outdates_the_records_that_depend_on_it() {
-    let copy = Copy::new();
+    let copy = SourceCopy::new();
     let kernels = [
         ("src/link/ancf_cable.rs", "+=", "-="),
         ("src/contact/normal/damped_power.rs", "1.5", "1.4"),
@@ -76,7 +76,7 @@ fn a_changed_token_of_a_kernel_outdates_the_records_that_depend_on_it() {
 
 #[test]
 fn what_a_record_does_not_depend_on_does_not_outdate_it() {
-    let copy = Copy::new();
+    let copy = SourceCopy::new();
     let cases: [(&str, &str, &str, &[&str]); 8] = [
         (
             "crates/cli/src/run.rs",
@@ -143,7 +143,7 @@ fn what_a_record_does_not_depend_on_does_not_outdate_it() {
 
 #[test]
 fn files_that_come_and_go_outdate_too() {
-    let copy = Copy::new();
+    let copy = SourceCopy::new();
     copy.write("src/force/magnet.rs", "//! A magnet.\n");
     assert!(
         copy.outdated_by("src/force/magnet.rs")
@@ -160,26 +160,26 @@ fn files_that_come_and_go_outdate_too() {
 
 #[test]
 fn a_campaign_makes_its_record_current_unless_sources_change_while_it_runs() {
-    let copy = Copy::new();
+    let copy = SourceCopy::new();
     copy.change("src/link/ancf_cable.rs", "fn ", "const fn ");
     let before = copy.outdated();
-    let run = Run::begin_in(copy.root(), "mutation").unwrap();
-    run.finish().unwrap();
+    let campaign = RunningCampaign::begin_in(copy.root(), "mutation").unwrap();
+    campaign.finish().unwrap();
     let after = copy.outdated();
     assert_eq!(after.len(), before.len() - 1);
     assert!(!after.iter().any(|line| line.starts_with(MUTANTS)));
     assert_eq!(check(copy.root()).unwrap().failures, [""; 0]);
 
-    let run = Run::begin_in(copy.root(), "mutation").unwrap();
+    let campaign = RunningCampaign::begin_in(copy.root(), "mutation").unwrap();
     copy.change("src/link/ancf_cable.rs", "const fn ", "fn ");
-    run.finish().unwrap();
+    campaign.finish().unwrap();
     assert_eq!(copy.outdated_by("src/link/ancf_cable.rs"), [MUTANTS]);
     assert_eq!(check(copy.root()).unwrap().failures, [""; 0]);
 }
 
 #[test]
 fn a_page_that_does_not_say_so_fails() {
-    let copy = Copy::new();
+    let copy = SourceCopy::new();
     let failures = || check(copy.root()).unwrap().failures;
     let pages = [
         "ACCURACY.md",
@@ -247,7 +247,7 @@ fn a_page_that_does_not_say_so_fails() {
 #[test]
 fn mutation_depends_on_all_tests_of_the_kernels() {
     let text = fs::read_to_string(root().join("tests/kernels.rs")).unwrap();
-    let registry = Registry::read(&root()).unwrap();
+    let registry = RecordRegistry::read(&root()).unwrap();
     let sources = registry
         .sources(registry.record("mutation").unwrap())
         .unwrap();

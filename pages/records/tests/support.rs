@@ -1,6 +1,6 @@
 //! A copy of the sources, whose records are all of its state.
 
-use records::{Registry, Tree, check, root, write_notes};
+use records::{RecordRegistry, Tree, check, root, write_notes};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -11,17 +11,17 @@ const COPIED: [&str; 9] = [
     "rs", "toml", "cpp", "hpp", "h", "csv", "md", "json", "jsonl",
 ];
 
-pub struct Copy(TempDir);
+pub struct SourceCopy(TempDir);
 
 fn is_source(entry: &DirEntry) -> bool {
     let name = entry.file_name().to_string_lossy();
     entry.depth() == 0 || !(name.starts_with('.') || ["target", "out", "corpus"].contains(&&*name))
 }
 
-impl Copy {
+impl SourceCopy {
     /// The sources of the project; every record has their digests.
-    pub fn new() -> Copy {
-        let copy = Copy(TempDir::new().unwrap());
+    pub fn new() -> SourceCopy {
+        let copy = SourceCopy(TempDir::new().unwrap());
         let from = root().canonicalize().unwrap();
         for entry in WalkDir::new(&from).into_iter().filter_entry(is_source) {
             let entry = entry.unwrap();
@@ -33,7 +33,7 @@ impl Copy {
             }
         }
         fs::create_dir_all(copy.path("pages/records/state")).unwrap();
-        let registry = Registry::read(copy.root()).unwrap();
+        let registry = RecordRegistry::read(copy.root()).unwrap();
         let tree = Tree::new(copy.root());
         for (name, record) in &registry.records {
             let digests = tree.digests(&registry.sources(record).unwrap()).unwrap();

@@ -51,7 +51,7 @@ const REFERENCE_LOSS: f64 = 0.1;
 const NEWTON_TOLERANCE: f64 = 1e-10;
 
 /// A run that was stopped as unstable.
-struct Stop {
+struct UnstableStop {
     /// Steps a row.
     every: u64,
     /// When \[s\].
@@ -66,7 +66,7 @@ struct Stop {
 
 /// Whether a stop is right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Verdict {
+enum StopVerdict {
     True,
     Undecided,
     False,
@@ -75,19 +75,19 @@ enum Verdict {
 /// The stops of one scene, method and step: how many there are, the verdict, and a line with the reason.
 struct Alarm {
     stops: usize,
-    verdict: Verdict,
+    verdict: StopVerdict,
     line: String,
 }
 
 /// A run that has ended.
-struct Run {
+struct EndedRun {
     simulation: Simulation,
     start: State,
     rows: Recording,
     end: Result<(), RunError>,
 }
 
-impl Run {
+impl EndedRun {
     /// Energy in play at the end \[J\].
     fn in_play(&self) -> f64 {
         let energies = |state| self.simulation.model().energies(state);
@@ -110,16 +110,16 @@ impl Run {
 }
 
 /// Judges the energy in play of a run by that of a reference.
-fn compare(run: f64, reference: f64) -> (Verdict, String) {
+fn compare(run: f64, reference: f64) -> (StopVerdict, String) {
     let verdict = match run <= WRONG * reference {
-        true => Verdict::False,
-        false => Verdict::True,
+        true => StopVerdict::False,
+        false => StopVerdict::True,
     };
     (verdict, numbers::number(run / reference, 2))
 }
 
 /// A scene with one method and step.
-struct Case<'a> {
+struct Combination<'a> {
     name: &'a str,
     path: &'a Path,
     scene: &'a Scene,
@@ -127,7 +127,7 @@ struct Case<'a> {
     step: f64,
 }
 
-impl Case<'_> {
+impl Combination<'_> {
     /// Overrides for a method, with what it needs of a scene that had another one.
     fn overrides(&self, method: &[&str], pace: String, interval: f64) -> Vec<String> {
         let mut all: Vec<String> = method.iter().map(|set| (*set).to_owned()).collect();
@@ -147,14 +147,14 @@ impl Case<'_> {
     }
 
     /// Makes a run; none where the method does not take the scene.
-    fn run(&self, overrides: &[String], steps: u64) -> Option<Run> {
+    fn run(&self, overrides: &[String], steps: u64) -> Option<EndedRun> {
         let scene = Scene::load(self.path, overrides).ok()?;
         let mut simulation = Simulation::new(&scene).ok()?;
         let start = simulation.state().clone();
         let mut rows = Recording::new(&simulation);
         rows.most_steps = steps;
         let end = simulation.run(&mut rows);
-        Some(Run {
+        Some(EndedRun {
             simulation,
             start,
             rows,
@@ -163,7 +163,7 @@ impl Case<'_> {
     }
 
     /// Whether the run with so many steps a row is stopped; none where the method does not take the scene.
-    fn stop(&self, every: u64) -> Option<Option<Stop>> {
+    fn stop(&self, every: u64) -> Option<Option<UnstableStop>> {
         let run = self.run(&self.own(every as f64 * self.step), ROWS * every)?;
         Some(match run.end {
             Err(RunError::Unstable {
@@ -171,7 +171,7 @@ impl Case<'_> {
                 gained,
                 supplied,
                 ..
-            }) => Some(Stop {
+            }) => Some(UnstableStop {
                 every,
                 t,
                 gained,
@@ -202,41 +202,45 @@ impl Case<'_> {
     }
 
     /// What becomes of the run when it goes on.
-    fn continued(&self) -> (Verdict, String) {
+    fn continued(&self) -> (StopVerdict, String) {
         let whole = (self.scene.simulation.duration / self.step).floor();
         let until = self.step * whole.min(LATER);
         let mut overrides = self.own(until);
         overrides.push(format!("simulation.duration={until:e}"));
         let Some(run) = self.run(&overrides, u64::MAX) else {
-            return (Verdict::Undecided, "not repeated".to_owned());
+            return (StopVerdict::Undecided, "not repeated".to_owned());
         };
         // half a step: rounding of the times
         if run.simulation.state().t < until - 0.5 * self.step {
-            return (Verdict::True, "the run breaks off".to_owned());
+            return (StopVerdict::True, "the run breaks off".to_owned());
         }
         match self.reference(until) {
             Some(energy) => compare(run.in_play(), energy),
-            None => (Verdict::Undecided, "no reference".to_owned()),
+            None => (StopVerdict::Undecided, "no reference".to_owned()),
         }
     }
 
-    fn judge(&self, stop: &Stop, continued: &(Verdict, String)) -> (Verdict, String) {
+    fn judge(
+        &self,
+        stop: &UnstableStop,
+        continued: &(StopVerdict, String),
+    ) -> (StopVerdict, String) {
         if !stop.gained.is_finite() {
-            return (Verdict::True, "the gain is not finite".to_owned());
+            return (StopVerdict::True, "the gain is not finite".to_owned());
         }
         let (now, claim) = match self.reference(stop.t) {
             Some(energy) => compare(stop.in_play, energy),
-            None => (Verdict::Undecided, "no reference".to_owned()),
+            None => (StopVerdict::Undecided, "no reference".to_owned()),
         };
         let said = format!("{claim}, later {}", continued.1);
         match now {
-            Verdict::False => (now, said),
+            StopVerdict::False => (now, said),
             _ => (continued.0, said),
         }
     }
 
-    /// Judges the stops of this case; none where there are none.
-    fn alarm(&self, stops: &[Stop]) -> Option<Alarm> {
+    /// Judges the stops of this combination; none where there are none.
+    fn alarm(&self, stops: &[UnstableStop]) -> Option<Alarm> {
         if stops.is_empty() {
             return None;
         }
@@ -244,10 +248,10 @@ impl Case<'_> {
         let judged = stops
             .par_iter()
             .map(|stop| (stop, self.judge(stop, &continued)));
-        let judged: Vec<(&Stop, (Verdict, String))> = judged.collect();
+        let judged: Vec<(&UnstableStop, (StopVerdict, String))> = judged.collect();
         let (stop, (verdict, mut reason)) =
             judged.into_iter().min_by_key(|(_, (v, _))| Reverse(*v))?;
-        if verdict == Verdict::False {
+        if verdict == StopVerdict::False {
             let shown = self.own(stop.every as f64 * self.step).join(" --set ");
             reason += &format!("; shown by --set {shown}");
         }
@@ -276,21 +280,28 @@ fn scan(name: &str, path: &Path) -> Result<(usize, Vec<Alarm>)> {
         return Ok((0, Vec::new()));
     }
     let usual = scene.integrator.step().unwrap_or(scene.output.interval);
-    let case = |method, factor: f64| Case {
+    let combination = |method, factor: f64| Combination {
         name,
         path,
         scene: &scene,
         method,
         step: factor * usual,
     };
-    let cases = METHODS.iter().flat_map(|m| STEPS.map(|f| case(*m, f)));
-    let found = cases.collect::<Vec<Case>>().into_par_iter().map(|case| {
-        let ends = INTERVALS.par_iter().filter_map(|every| case.stop(*every));
-        let ends: Vec<Option<Stop>> = ends.collect();
-        let runs = ends.len();
-        let stops: Vec<Stop> = ends.into_iter().flatten().collect();
-        (runs, case.alarm(&stops))
-    });
+    let combinations = METHODS
+        .iter()
+        .flat_map(|m| STEPS.map(|f| combination(*m, f)));
+    let found = combinations
+        .collect::<Vec<Combination>>()
+        .into_par_iter()
+        .map(|combination| {
+            let ends = INTERVALS
+                .par_iter()
+                .filter_map(|every| combination.stop(*every));
+            let ends: Vec<Option<UnstableStop>> = ends.collect();
+            let runs = ends.len();
+            let stops: Vec<UnstableStop> = ends.into_iter().flatten().collect();
+            (runs, combination.alarm(&stops))
+        });
     let (runs, alarms): (Vec<usize>, Vec<Option<Alarm>>) = found.collect();
     Ok((runs.iter().sum(), alarms.into_iter().flatten().collect()))
 }
@@ -326,7 +337,12 @@ pub fn alarms(root: &Path, only: &[String]) -> Result<()> {
         eprintln!("{name}: {made} runs, {seconds:.0} s so far");
     }
     let count = |verdict| verdicts.iter().filter(|v| **v == verdict).count();
-    let [right, undecided, wrong] = [Verdict::True, Verdict::Undecided, Verdict::False].map(count);
+    let [right, undecided, wrong] = [
+        StopVerdict::True,
+        StopVerdict::Undecided,
+        StopVerdict::False,
+    ]
+    .map(count);
     println!(
         "\n{runs} runs; {stops} are stopped as unstable, in {} scenes with a method and step: \
          {right} true, {undecided} undecided, {wrong} false",

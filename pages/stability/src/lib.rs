@@ -1,7 +1,7 @@
 //! Hard cases: what becomes of a run where methods come to their limits.
 //!
-//! [`map`] runs a scene over a parameter and the step and gives every run an [`outcome::Outcome`]; [`cases`] lists what must
-//! hold in each of fifteen hard cases; [`random`] runs mechanisms that nobody drew.
+//! [`map`] runs a scene over a parameter and the step and gives every run an [`outcome::OutcomeClass`]; [`cases`] lists what
+//! must hold in each of fifteen hard cases; [`random`] runs mechanisms that nobody drew.
 #![forbid(unsafe_code)]
 
 pub mod cases;

@@ -5,10 +5,10 @@ mod soak;
 
 use clap::{Parser, Subcommand};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use records::Run;
+use records::RunningCampaign;
 use stability::cases::CASES;
-use stability::map::{Made, Map, files};
-use stability::outcome::Outcome;
+use stability::map::{MadeMap, Map, files};
+use stability::outcome::OutcomeClass;
 use stability::page;
 use stability::random::soak::scene;
 use stability::records::{Records, write_long};
@@ -62,7 +62,7 @@ fn main() -> Result<()> {
     }
 }
 
-fn make(path: &Path) -> Result<Made> {
+fn make(path: &Path) -> Result<MadeMap> {
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let started = Instant::now();
     let made = Map::load(path)
@@ -77,13 +77,13 @@ fn make(path: &Path) -> Result<Made> {
 }
 
 fn write_page() -> Result<()> {
-    let run = Run::begin("maps")?;
+    let campaign = RunningCampaign::begin("maps")?;
     let started = Instant::now();
     let paths = files().into_diagnostic()?;
     let made = paths
         .iter()
         .map(|path| make(path))
-        .collect::<Result<Vec<Made>>>()?;
+        .collect::<Result<Vec<MadeMap>>>()?;
     let mut checks = Vec::new();
     for case in &CASES {
         eprintln!("case {}: {}", case.number, case.title);
@@ -96,7 +96,7 @@ fn write_page() -> Result<()> {
     std::fs::write(&path, text)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot write {}", path.display()))?;
-    run.finish()
+    campaign.finish()
 }
 
 fn show_map(name: &str) -> Result<()> {
@@ -109,7 +109,11 @@ fn show_map(name: &str) -> Result<()> {
     let path =
         path.ok_or_else(|| miette!("no map in pages/stability/maps begins with {name:?}"))?;
     let made = make(path)?;
-    for cell in made.cells.iter().filter(|c| c.outcome != Outcome::Accurate) {
+    for cell in made
+        .cells
+        .iter()
+        .filter(|c| c.outcome != OutcomeClass::Accurate)
+    {
         let [method, parameter, step] = cell.at;
         println!(
             "{}, {} {:e}, step {:e} s: {}, error {}: {}",
@@ -126,7 +130,7 @@ fn show_map(name: &str) -> Result<()> {
 }
 
 fn long() -> Result<()> {
-    let run = Run::begin("long")?;
+    let campaign = RunningCampaign::begin("long")?;
     let mut found = Vec::new();
     for case in &CASES {
         let Some(checks) = case.long else { continue };
@@ -138,5 +142,5 @@ fn long() -> Result<()> {
         found.push((case.number, made));
     }
     write_long(&found).into_diagnostic()?;
-    run.finish()
+    campaign.finish()
 }

@@ -1,6 +1,6 @@
 //! Maps: a scene over a parameter and the step, with several methods.
 
-use crate::outcome::{Outcome, Stopped, judge, judge_stop, record};
+use crate::outcome::{OutcomeClass, Stopped, judge, judge_stop, record};
 use looselink::scene::Scene;
 use looselink::simulate::Recording;
 use plot::{Axis, Figure, Mark, Panel};
@@ -74,11 +74,11 @@ pub struct Map {
     #[serde(default = "unsaid")]
     pub unsaid: f64,
     /// What is varied.
-    pub parameter: Parameter,
+    pub parameter: MapParameter,
     /// Steps \[s\].
     pub steps: Vec<f64>,
     /// What the runs are compared with.
-    pub reference: Reference,
+    pub reference: MapReference,
     /// Names of [`METHODS`].
     #[serde(default = "usual")]
     pub methods: Vec<String>,
@@ -87,7 +87,7 @@ pub struct Map {
 /// What is varied.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Parameter {
+pub struct MapParameter {
     /// Its name.
     pub label: String,
     /// Its unit; empty for a number.
@@ -102,7 +102,7 @@ pub struct Parameter {
 /// A run with which those of a map are compared.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Reference {
+pub struct MapReference {
     /// Overrides that choose its method.
     pub set: Vec<String>,
     /// Its step \[s\], one for all values or one each; a run with twice the step must agree.
@@ -111,11 +111,11 @@ pub struct Reference {
 
 /// A run of a map.
 #[derive(Debug, Clone)]
-pub struct Cell {
+pub struct MapCell {
     /// Index of its method, its parameter and its step.
     pub at: [usize; 3],
     /// What became of it.
-    pub outcome: Outcome,
+    pub outcome: OutcomeClass,
     /// Largest error in the unit of the channels, of a run that reached its end.
     pub error: Option<f64>,
     /// What it said: its first warning, or why it stopped.
@@ -124,13 +124,13 @@ pub struct Cell {
 
 /// All runs of a map.
 #[derive(Debug, Clone)]
-pub struct Made {
+pub struct MadeMap {
     /// Name of its file without the extension.
     pub name: String,
     /// What was asked.
     pub map: Map,
     /// What came of it: methods, parameters, steps.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<MapCell>,
 }
 
 /// Why a map cannot be made.
@@ -250,7 +250,7 @@ impl Map {
         }
     }
 
-    fn cell(&self, at: [usize; 3], reference: &Recording) -> Cell {
+    fn cell(&self, at: [usize; 3], reference: &Recording) -> MapCell {
         let [method, parameter, step] = at;
         let chosen = METHODS
             .iter()
@@ -262,7 +262,7 @@ impl Map {
         match scene.and_then(|scene| record(&scene)) {
             Ok((recording, report)) => {
                 let error = difference(&recording, reference);
-                Cell {
+                MapCell {
                     at,
                     outcome: judge(
                         error,
@@ -274,7 +274,7 @@ impl Map {
                     said: report.warnings().first().cloned().unwrap_or_default(),
                 }
             }
-            Err(stopped) => Cell {
+            Err(stopped) => MapCell {
                 at,
                 outcome: judge_stop(&stopped),
                 error: None,
@@ -287,7 +287,7 @@ impl Map {
     ///
     /// # Errors
     /// A reference that fails or has not converged.
-    pub fn make(self, name: &str) -> Result<Made, MapError> {
+    pub fn make(self, name: &str) -> Result<MadeMap, MapError> {
         let values = 0..self.parameter.values.len();
         let references: Vec<Recording> = values
             .into_par_iter()
@@ -301,7 +301,7 @@ impl Map {
         let cells = places
             .into_par_iter()
             .map(|at| self.cell(at, &references[at[1]]));
-        Ok(Made {
+        Ok(MadeMap {
             name: name.to_owned(),
             cells: cells.collect(),
             map: self,
@@ -309,9 +309,9 @@ impl Map {
     }
 }
 
-impl Made {
+impl MadeMap {
     /// Number of runs of a method with an outcome.
-    pub fn count(&self, method: usize, outcome: Outcome) -> usize {
+    pub fn count(&self, method: usize, outcome: OutcomeClass) -> usize {
         let cells = self.cells.iter();
         cells
             .filter(|c| c.at[0] == method && c.outcome == outcome)
@@ -326,7 +326,7 @@ impl Made {
             note: String::new(),
             x: Axis::new("Step", "s", 1.0).log(),
             y: Axis::new(&self.map.parameter.label, unit(&map.parameter.unit), 1.0).log(),
-            marks: Outcome::ALL
+            marks: OutcomeClass::ALL
                 .into_iter()
                 .filter_map(|o| self.dots(m, o))
                 .collect(),
@@ -352,10 +352,10 @@ impl Made {
         }
     }
 
-    fn dots(&self, method: usize, outcome: Outcome) -> Option<Mark> {
+    fn dots(&self, method: usize, outcome: OutcomeClass) -> Option<Mark> {
         let cells = self.cells.iter();
         let places = cells.filter(|c| c.at[0] == method && c.outcome == outcome);
-        let place = |c: &Cell| (self.map.steps[c.at[2]], self.map.parameter.values[c.at[1]]);
+        let place = |c: &MapCell| (self.map.steps[c.at[2]], self.map.parameter.values[c.at[1]]);
         let (x, y): (Vec<f64>, Vec<f64>) = places.map(place).unzip();
         let mark = || Mark::points(outcome.name(), outcome.color(), &x, &y, 17);
         (!x.is_empty()).then(mark)

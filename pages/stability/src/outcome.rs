@@ -15,7 +15,7 @@ const FAILED: f64 = 0.5;
 /// How a run of a hard case ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Outcome {
+pub enum OutcomeClass {
     /// Within the tolerance of the map.
     Accurate,
     /// Bounded, off by more, and said so; the energy is kept.
@@ -30,38 +30,38 @@ pub enum Outcome {
     Silent,
 }
 
-impl Outcome {
+impl OutcomeClass {
     /// All, from good to bad.
-    pub const ALL: [Outcome; 6] = [
-        Outcome::Accurate,
-        Outcome::Coarse,
-        Outcome::Damped,
-        Outcome::Refused,
-        Outcome::Failed,
-        Outcome::Silent,
+    pub const ALL: [OutcomeClass; 6] = [
+        OutcomeClass::Accurate,
+        OutcomeClass::Coarse,
+        OutcomeClass::Damped,
+        OutcomeClass::Refused,
+        OutcomeClass::Failed,
+        OutcomeClass::Silent,
     ];
 
     /// Its name on the page.
     pub fn name(self) -> &'static str {
         match self {
-            Outcome::Accurate => "accurate",
-            Outcome::Coarse => "coarse",
-            Outcome::Damped => "damped",
-            Outcome::Refused => "refused",
-            Outcome::Failed => "failed",
-            Outcome::Silent => "silent",
+            OutcomeClass::Accurate => "accurate",
+            OutcomeClass::Coarse => "coarse",
+            OutcomeClass::Damped => "damped",
+            OutcomeClass::Refused => "refused",
+            OutcomeClass::Failed => "failed",
+            OutcomeClass::Silent => "silent",
         }
     }
 
     /// Its colour.
     pub fn color(self) -> Color {
         match self {
-            Outcome::Accurate => palette::GREEN,
-            Outcome::Coarse => palette::SKY,
-            Outcome::Damped => palette::BLUE,
-            Outcome::Refused => palette::GREY,
-            Outcome::Failed => palette::VERMILION,
-            Outcome::Silent => palette::BLACK,
+            OutcomeClass::Accurate => palette::GREEN,
+            OutcomeClass::Coarse => palette::SKY,
+            OutcomeClass::Damped => palette::BLUE,
+            OutcomeClass::Refused => palette::GREY,
+            OutcomeClass::Failed => palette::VERMILION,
+            OutcomeClass::Silent => palette::BLACK,
         }
     }
 }
@@ -99,26 +99,26 @@ pub fn record(scene: &Scene) -> Result<(Recording, Report), Stopped> {
 }
 
 /// What a run that reached its end is called by its largest error; one beyond `unsaid` needs a warning.
-pub fn judge(error: f64, tolerance: f64, unsaid: f64, report: &Report) -> Outcome {
+pub fn judge(error: f64, tolerance: f64, unsaid: f64, report: &Report) -> OutcomeClass {
     if error <= tolerance {
-        return Outcome::Accurate;
+        return OutcomeClass::Accurate;
     }
     if report.warnings().is_empty() && error > unsaid {
-        return Outcome::Silent;
+        return OutcomeClass::Silent;
     }
     match changes(report) {
-        [gained, lost] if gained > FAILED && gained >= lost => Outcome::Failed,
-        [_, lost] if lost > NOTABLE => Outcome::Damped,
-        _ => Outcome::Coarse,
+        [gained, lost] if gained > FAILED && gained >= lost => OutcomeClass::Failed,
+        [_, lost] if lost > NOTABLE => OutcomeClass::Damped,
+        _ => OutcomeClass::Coarse,
     }
 }
 
 /// What a run that stopped is called.
-pub fn judge_stop(stopped: &Stopped) -> Outcome {
+pub fn judge_stop(stopped: &Stopped) -> OutcomeClass {
     match stopped {
-        Stopped::Refused(_, gained) if *gained > FAILED => Outcome::Failed,
-        Stopped::Refused(..) => Outcome::Refused,
-        Stopped::Endless(_) => Outcome::Silent,
+        Stopped::Refused(_, gained) if *gained > FAILED => OutcomeClass::Failed,
+        Stopped::Refused(..) => OutcomeClass::Refused,
+        Stopped::Endless(_) => OutcomeClass::Silent,
     }
 }
 

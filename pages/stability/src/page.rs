@@ -1,8 +1,8 @@
 //! STABILITY.md.
 
 use crate::cases::{CASES, Check};
-use crate::map::Made;
-use crate::outcome::Outcome;
+use crate::map::MadeMap;
+use crate::outcome::OutcomeClass;
 use crate::records::Records;
 use records::place;
 use std::fmt::Write;
@@ -10,7 +10,7 @@ use std::fmt::Write;
 const WRITES: &str = "a string takes any text";
 
 /// What the page says.
-pub fn page(made: &[Made], checks: &[Vec<Check>], records: &Records, minutes: f64) -> String {
+pub fn page(made: &[MadeMap], checks: &[Vec<Check>], records: &Records, minutes: f64) -> String {
     let mut out = format!(
         "# Hard cases\n\n{}\n\
          This page takes each method to its limits and classifies every run. `cargo run --release -p stability` writes it in \
@@ -46,8 +46,8 @@ fn line(out: &mut String, text: &str) {
 }
 
 /// Counts of outcomes of a method over all maps that have it.
-fn counts(made: &[Made], method: &str) -> [usize; Outcome::ALL.len()] {
-    Outcome::ALL.map(|outcome| {
+fn counts(made: &[MadeMap], method: &str) -> [usize; OutcomeClass::ALL.len()] {
+    OutcomeClass::ALL.map(|outcome| {
         let per_map = made.iter().filter_map(|one| {
             let index = one.map.methods.iter().position(|m| m == method)?;
             Some(one.count(index, outcome))
@@ -57,7 +57,7 @@ fn counts(made: &[Made], method: &str) -> [usize; Outcome::ALL.len()] {
 }
 
 fn heads() -> String {
-    let names = Outcome::ALL.map(Outcome::name);
+    let names = OutcomeClass::ALL.map(OutcomeClass::name);
     format!(
         "| method | {} |\n|---|{}",
         names.join(" | "),
@@ -65,11 +65,11 @@ fn heads() -> String {
     )
 }
 
-fn row(name: &str, counts: [usize; Outcome::ALL.len()]) -> String {
+fn row(name: &str, counts: [usize; OutcomeClass::ALL.len()]) -> String {
     format!("| {name} | {} |", counts.map(|n| n.to_string()).join(" | "))
 }
 
-fn in_short(made: &[Made], checks: &[Vec<Check>], records: &Records) -> String {
+fn in_short(made: &[MadeMap], checks: &[Vec<Check>], records: &Records) -> String {
     let runs: usize = made.iter().map(|one| one.cells.len()).sum();
     let mut out = format!("## In short\n\n{runs} runs in {} maps:\n\n", made.len());
     line(&mut out, &heads());
@@ -99,7 +99,7 @@ fn in_short(made: &[Made], checks: &[Vec<Check>], records: &Records) -> String {
 }
 
 /// Where Bathe's scheme and the trapezoidal rule differ, at equal steps.
-fn rivalry(made: &[Made]) -> String {
+fn rivalry(made: &[MadeMap]) -> String {
     let (mut saved, mut lost) = (Vec::new(), Vec::new());
     for one in made {
         let index = |name: &str| one.map.methods.iter().position(|m| m == name);
@@ -111,12 +111,12 @@ fn rivalry(made: &[Made]) -> String {
             .zip(of(rival))
             .map(|(b, t)| (b.outcome, t.outcome))
             .collect();
-        let gone = |o: Outcome| matches!(o, Outcome::Failed | Outcome::Refused);
-        let count = |accept: &dyn Fn(Outcome, Outcome) -> bool| {
+        let gone = |o: OutcomeClass| matches!(o, OutcomeClass::Failed | OutcomeClass::Refused);
+        let count = |accept: &dyn Fn(OutcomeClass, OutcomeClass) -> bool| {
             pairs.iter().filter(|(b, t)| accept(*b, *t)).count()
         };
         let saves = count(&|b, t| gone(t) && !gone(b));
-        let loses = count(&|b, t| b != Outcome::Accurate && t == Outcome::Accurate);
+        let loses = count(&|b, t| b != OutcomeClass::Accurate && t == OutcomeClass::Accurate);
         if saves > 0 {
             saved.push(format!("{saves} in {}", one.name));
         }
@@ -235,7 +235,7 @@ fn random(records: &Records) -> String {
     out + "\n"
 }
 
-fn map(one: &Made) -> String {
+fn map(one: &MadeMap) -> String {
     let mut out = format!(
         "### {}\n\n![{}](pages/stability/figures/{}.png)\n\n{}\n",
         one.map.title,
@@ -246,7 +246,7 @@ fn map(one: &Made) -> String {
     for (index, method) in one.map.methods.iter().enumerate() {
         line(
             &mut out,
-            &row(method, Outcome::ALL.map(|o| one.count(index, o))),
+            &row(method, OutcomeClass::ALL.map(|o| one.count(index, o))),
         );
     }
     out + "\n"

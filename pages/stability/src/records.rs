@@ -1,7 +1,7 @@
 //! What runs of minutes and hours have found, kept for the page.
 
 use crate::cases::Check;
-use crate::random::soak::Tally;
+use crate::random::soak::SoakTally;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::io;
@@ -13,7 +13,7 @@ pub struct Records {
     /// Checks of long runs, by the number of their case.
     pub long: Vec<(usize, Vec<Check>)>,
     /// Random mechanisms.
-    pub soak: Tally,
+    pub soak: SoakTally,
     /// Random input.
     pub fuzz: Fuzz,
 }

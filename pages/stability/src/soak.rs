@@ -3,8 +3,8 @@
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::{IntoDiagnostic, Result, miette};
-use records::Run;
-use stability::random::soak::Tally;
+use records::RunningCampaign;
+use stability::random::soak::SoakTally;
 use std::path::{Path, PathBuf};
 
 /// What a soak is asked for.
@@ -33,15 +33,15 @@ const LINES: u64 = 500;
 /// Runs the scenes; a failing one is an error.
 pub fn soak(arguments: &Arguments) -> Result<()> {
     // a tally elsewhere is no record of the project
-    let run = match arguments.tally {
+    let campaign = match arguments.tally {
         Some(_) => None,
-        None => Some(Run::begin("soak")?),
+        None => Some(RunningCampaign::begin("soak")?),
     };
     // a panic is a failure that is written down; its message is not for the terminal
     std::panic::set_hook(Box::new(|_| {}));
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len}  {msg}").into_diagnostic()?;
     let bar = ProgressBar::new(arguments.count).with_style(style);
-    let mut tally = Tally::new(arguments.seed);
+    let mut tally = SoakTally::new(arguments.seed);
     for index in arguments.first..arguments.first + arguments.count {
         tally.run(index, &arguments.out).into_diagnostic()?;
         bar.set_message(format!("{} failures", tally.failures.len()));
@@ -60,8 +60,8 @@ pub fn soak(arguments: &Arguments) -> Result<()> {
     let path = arguments.tally.as_ref().unwrap_or(&own);
     let text = serde_json::to_string_pretty(&tally).into_diagnostic()?;
     std::fs::write(path, text + "\n").into_diagnostic()?;
-    if let Some(run) = run {
-        run.finish()?;
+    if let Some(campaign) = campaign {
+        campaign.finish()?;
     }
     match tally.failures.len() {
         0 => Ok(()),

@@ -1,7 +1,7 @@
 //! The corners of every map: no run is wrong in silence.
 
 use stability::map::{Map, files};
-use stability::outcome::Outcome;
+use stability::outcome::OutcomeClass;
 
 /// First and last of a list.
 fn ends(list: &[f64]) -> Vec<f64> {
@@ -25,12 +25,15 @@ fn corners_of_maps_are_never_silent() {
         for cell in &made.cells {
             assert_ne!(
                 cell.outcome,
-                Outcome::Silent,
+                OutcomeClass::Silent,
                 "{}: {cell:?}",
                 path.display()
             );
         }
-        let accurate = made.cells.iter().any(|c| c.outcome == Outcome::Accurate);
+        let accurate = made
+            .cells
+            .iter()
+            .any(|c| c.outcome == OutcomeClass::Accurate);
         assert!(accurate, "{}: nothing is accurate", path.display());
     }
 }

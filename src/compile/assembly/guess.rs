@@ -1,6 +1,6 @@
 //! Initial guess of the assembly: given poses, sketched joints, and the bodies connected to them.
 
-use super::super::sketch::{Pair, fit};
+use super::super::sketch::{PointPair, fit};
 use super::super::{Compiler, Role};
 use super::position;
 use crate::body::{Frame, PointRef};
@@ -10,7 +10,7 @@ use crate::scene::{MotionKind, SceneError, Sketched};
 use crate::system::State;
 
 /// The bodies that have been placed, and their coordinates.
-struct Placed<'a> {
+struct PartialAssembly<'a> {
     c: &'a Compiler<'a>,
     mechanism: &'a Model,
     done: Vec<bool>,
@@ -18,13 +18,13 @@ struct Placed<'a> {
     held: Vec<bool>,
 }
 
-impl Placed<'_> {
+impl PartialAssembly<'_> {
     fn position(&self, point: PointRef, state: &State) -> Vec2 {
         position(self.mechanism, state, point)
     }
 
     /// The points of a body whose positions are known.
-    fn known_points(&self, body: usize, state: &State) -> impl Iterator<Item = Pair> {
+    fn known_points(&self, body: usize, state: &State) -> impl Iterator<Item = PointPair> {
         let points = self.c.bodies[body].points().iter().enumerate();
         points.filter_map(move |(point, p)| {
             let known = self.known(PointRef { body, point }, state)?;
@@ -171,7 +171,7 @@ pub(super) fn guess(
     state: &mut State,
 ) -> Result<Vec<bool>, SceneError> {
     let n = mechanism.shape().unknowns;
-    let mut placed = Placed {
+    let mut assembly = PartialAssembly {
         c,
         mechanism,
         done: c.roles.iter().map(|r| *r != Role::Free).collect(),
@@ -179,26 +179,26 @@ pub(super) fn guess(
     };
     for given in &c.scene.initial.bodies {
         let frame = c.bodies[given.body].frame(given.position, given.velocity);
-        placed.write(given.body, frame.position, state);
+        assembly.write(given.body, frame.position, state);
         for i in coordinates(mechanism, given.body) {
-            placed.held[i] = true;
+            assembly.held[i] = true;
         }
     }
     loop {
-        let before = placed.done.iter().filter(|d| **d).count();
+        let before = assembly.done.iter().filter(|d| **d).count();
         for b in 0..c.scene.bodies.len() {
-            if !placed.done[b] {
-                placed.place(b, state);
+            if !assembly.done[b] {
+                assembly.place(b, state);
             }
         }
-        let stuck = placed.done.iter().filter(|d| **d).count() == before;
+        let stuck = assembly.done.iter().filter(|d| **d).count() == before;
         // only one body at a time is placed by a single point, so that its neighbours can be placed exactly
-        if stuck && !(0..c.scene.bodies.len()).any(|b| placed.place_at_point(b, state)) {
+        if stuck && !(0..c.scene.bodies.len()).any(|b| assembly.place_at_point(b, state)) {
             break;
         }
     }
-    match placed.done.iter().position(|d| !d) {
-        None => Ok(placed.held),
+    match assembly.done.iter().position(|d| !d) {
+        None => Ok(assembly.held),
         Some(b) => {
             let body = &c.scene.bodies[b];
             let message = format!("the scene does not say where {} starts", body.name);

@@ -1,6 +1,6 @@
 //! Channels of the same kind: a difference is measured in units of the largest value of its kind.
 
-use crate::check::{Agreement, Worst, largest};
+use crate::check::{Agreement, LargestDifference, largest};
 use crate::trajectory::Trajectory;
 use std::f64::consts::TAU;
 
@@ -79,7 +79,7 @@ pub fn agreements(
             continue;
         };
         let size = size.max(FLOOR);
-        let mut worst = Worst::default();
+        let mut worst = LargestDifference::default();
         for name in &members {
             let (mut r, c) = (column(rust, name), column(cpp, name));
             if *kind == ANGLES {

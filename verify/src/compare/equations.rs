@@ -1,10 +1,10 @@
 //! The assembled equations of a scene at random states near its motion, term by term.
 
 use super::scenes;
-use crate::check::{Agreement, Worst, largest};
+use crate::check::{Agreement, LargestDifference, largest};
 use crate::embedding::Embedding;
-use crate::reference::{At, Scene as Reference};
-use crate::trajectory::Plan;
+use crate::reference::{ReferenceScene, ReferenceState};
+use crate::trajectory::ComparisonPlan;
 use looselink::interaction::{SlopeClamp, Weld};
 use looselink::model::Model;
 use looselink::scene::{Analysis, PointRef, Scene};
@@ -27,17 +27,17 @@ const SPAN: f64 = 1e-5;
 
 /// Scenes whose equations are compared: all that move; an element of every stiffness; every law of contact and friction that both
 /// have; the paper's cases with more elements, other paths and friction; and a scene with every other element.
-pub fn plans() -> Result<Vec<Plan>> {
+pub fn plans() -> Result<Vec<ComparisonPlan>> {
     let table =
         "{type=\"table\",rows=[[0.0,0.1,0.0,0.0],[0.04,0.08,0.02,0.1],[0.1,0.05,0.01,0.0]]}";
     let line = "{type=\"line\",from=[0.1,0.0,0.0],to=[0.0,0.05,0.2],duration=0.1}";
     let spline = "{type=\"table\",rows=[[0.0,0.2],[0.2,0.25],[0.3,0.22],[0.5,0.2]]}";
     let friction = "{law=\"ambrosio\",coefficient=0.3,v0=0.01,v1=0.1,slip=\"paper\"}";
-    let case = |scene| Plan::new(scene, 0.1, 1e-3);
-    let loose = |scene| Plan::new(scene, 0.02, 1e-3);
-    let link = Plan::new("../verify/scenes/link", 1e-3, 1e-4);
-    let journal = Plan::new("../verify/scenes/journal", 1e-4, 1e-5);
-    let everything = Plan::new("../verify/scenes/everything", 0.5, 1e-3);
+    let case = |scene| ComparisonPlan::new(scene, 0.1, 1e-3);
+    let loose = |scene| ComparisonPlan::new(scene, 0.02, 1e-3);
+    let link = ComparisonPlan::new("../verify/scenes/link", 1e-3, 1e-4);
+    let journal = ComparisonPlan::new("../verify/scenes/journal", 1e-4, 1e-5);
+    let everything = ComparisonPlan::new("../verify/scenes/everything", 0.5, 1e-3);
     let mut plans = vec![
         case("3rrr/case2").with(", 4 elements in link 2", &["bodies.link2.elements=4"]),
         case("3rrr/case1").with(", path from a table", &[&format!("drives.input.path={table}")]),
@@ -83,9 +83,9 @@ pub fn are_comparable(scene: &Scene) -> bool {
 }
 
 /// Both sides of a scene and the way between their coordinates.
-struct Pair {
+struct ScenePair {
     simulation: Simulation,
-    reference: Reference,
+    reference: ReferenceScene,
     embedding: Embedding,
     /// How far coordinates are moved \[m, rad\].
     spread: f64,
@@ -93,7 +93,7 @@ struct Pair {
 
 /// A part of the equations.
 #[derive(Clone, Copy)]
-enum Part {
+enum EquationPart {
     Mass,
     Open,
     Closed,
@@ -131,10 +131,10 @@ const PARTS: [(&str, &str, f64); 11] = [
 
 /// The largest difference of each part over all states.
 #[derive(Default)]
-struct Differences([Worst; PARTS.len()]);
+struct EquationDifferences([LargestDifference; PARTS.len()]);
 
-impl Differences {
-    fn of(&mut self, part: Part) -> &mut Worst {
+impl EquationDifferences {
+    fn of(&mut self, part: EquationPart) -> &mut LargestDifference {
         &mut self.0[part as usize]
     }
 }
@@ -158,10 +158,10 @@ impl Observer for Until {
 }
 
 /// The rows of a scene.
-pub fn agreements(plan: &Plan) -> Result<Vec<Agreement>> {
-    let mut pair = Pair::new(plan)?;
+pub fn agreements(plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
+    let mut pair = ScenePair::new(plan)?;
     let mut random = ChaCha8Rng::seed_from_u64(4);
-    let mut differences = Differences::default();
+    let mut differences = EquationDifferences::default();
     for k in 0..STATES {
         let t = plan.duration * k as f64 / STATES as f64;
         match pair.simulation.run(&mut Until(t)) {
@@ -177,19 +177,19 @@ pub fn agreements(plan: &Plan) -> Result<Vec<Agreement>> {
         .iter()
         .zip(differences.0)
         .filter(|(_, worst)| worst.is_seen());
-    let row = |((quantity, reason, tolerance), worst): (&(&str, &str, f64), Worst)| {
+    let row = |((quantity, reason, tolerance), worst): (&(&str, &str, f64), LargestDifference)| {
         worst.row(quantity, &plan.name(), *tolerance, reason)
     };
     Ok(parts.map(row).collect())
 }
 
-impl Pair {
-    fn new(plan: &Plan) -> Result<Pair> {
+impl ScenePair {
+    fn new(plan: &ComparisonPlan) -> Result<ScenePair> {
         let reference = plan.reference()?;
         let scene = plan.scene(None)?;
         let simulation = Simulation::new(&scene)?;
         let embedding = Embedding::new(&reference, simulation.model());
-        Ok(Pair {
+        Ok(ScenePair {
             spread: spread(&scene),
             reference,
             embedding,
@@ -219,25 +219,31 @@ impl Pair {
     }
 
     /// M, f and its tangents, and the accelerations that the reference finds.
-    fn compare_forces(&self, at: &State, parts: &mut Differences) -> Result<()> {
+    fn compare_forces(&self, at: &State, parts: &mut EquationDifferences) -> Result<()> {
         let (model, embedding, t) = (self.simulation.model(), &self.embedding, at.t);
         let (width, n) = (at.q.len(), model.shape().unknowns);
         let (q, v) = (&embedding.spread(&at.q), &embedding.spread(&at.v));
         let corner = |k: &[f64]| block(&embedding.congruence(k), width, n);
         let mass = corner(&self.reference.mass().into_diagnostic()?);
         let [_, _, rust_mass] = rust_matrices(model, at);
-        parts.of(Part::Mass).see_all(&rust_mass, &mass);
+        parts.of(EquationPart::Mass).see_all(&rust_mass, &mass);
 
         let open = State {
             z: vec![0.0; at.z.len()],
             ..at.clone()
         };
-        let closed = (Part::Closed, at.clone());
+        let closed = (EquationPart::Closed, at.clone());
         let closed = Some(closed).filter(|_| !at.z.is_empty());
         let mut rounding = 0.0;
-        for (part, mine) in closed.into_iter().chain([(Part::Open, open.clone())]) {
+        for (part, mine) in closed
+            .into_iter()
+            .chain([(EquationPart::Open, open.clone())])
+        {
             let z = &embedding.memory(&mine.z);
-            let [f, by_q, by_v] = self.reference.force(At { t, q, v, z }).into_diagnostic()?;
+            let [f, by_q, by_v] = self
+                .reference
+                .force(ReferenceState { t, q, v, z })
+                .into_diagnostic()?;
             let (force, stiffness) = (&embedding.gather(&f)[..n], corner(&by_q));
             rounding = COORDINATES * largest(&stiffness) * largest(q);
             let scale = largest(force).max(rounding).max(f64::MIN_POSITIVE);
@@ -246,15 +252,17 @@ impl Pair {
                 .see_scaled(&residual(model, &mine)[..n], force, scale);
             let [rust_stiffness, damping, _] = rust_matrices(model, &mine);
             parts
-                .of(Part::Stiffness)
+                .of(EquationPart::Stiffness)
                 .see_all(&rust_stiffness, &stiffness);
-            parts.of(Part::Damping).see_all(&damping, &corner(&by_v));
+            parts
+                .of(EquationPart::Damping)
+                .see_all(&damping, &corner(&by_v));
         }
 
         let z = &embedding.memory(&open.z);
         let [a, lambda] = self
             .reference
-            .acceleration(At { t, q, v, z })
+            .acceleration(ReferenceState { t, q, v, z })
             .into_diagnostic()?;
         let mut solved = open;
         let mut rates = vec![0.0; model.shape().multipliers];
@@ -264,7 +272,7 @@ impl Pair {
         model.constraint_acceleration(&solved, &mut rates);
         let zeros = vec![0.0; n.max(rates.len())];
         parts
-            .of(Part::Acceleration)
+            .of(EquationPart::Acceleration)
             .see_scaled(&rates, &zeros[..rates.len()], scale);
         let inertia = largest(&residual(model, &solved)[..n]);
         for (mine, row) in solved.lambda.iter_mut().zip(&embedding.rows) {
@@ -273,13 +281,13 @@ impl Pair {
         let scale = inertia.max(rounding).max(f64::MIN_POSITIVE);
         let balance = &residual(model, &solved)[..n];
         parts
-            .of(Part::Balance)
+            .of(EquationPart::Balance)
             .see_scaled(balance, &zeros[..n], scale);
         Ok(())
     }
 
     /// Looselink's constraint rows against those of the same name.
-    fn compare_constraints(&self, at: &State, parts: &mut Differences) -> Result<()> {
+    fn compare_constraints(&self, at: &State, parts: &mut EquationDifferences) -> Result<()> {
         let (model, embedding) = (self.simulation.model(), &self.embedding);
         let (q, v) = (&embedding.spread(&at.q), &embedding.spread(&at.v));
         let rows = |q: &[f64]| self.reference.constraint_rows(at.t, q).into_diagnostic();
@@ -294,12 +302,14 @@ impl Pair {
             let gradient = &cpp_phi_q[place * width..(place + 1) * width];
             let rate = gradient.iter().zip(v).map(|(g, v)| g * v).sum::<f64>();
             parts
-                .of(Part::Velocity)
+                .of(EquationPart::Velocity)
                 .see(rates[row], rate + cpp_phi_t[place], 1.0);
-            parts.of(Part::Value).see(phi[row], cpp_phi[place], 1.0);
+            parts
+                .of(EquationPart::Value)
+                .see(phi[row], cpp_phi[place], 1.0);
             let gradient = &embedding.gather(gradient)[..n];
             parts
-                .of(Part::Gradient)
+                .of(EquationPart::Gradient)
                 .see_all(&phi_q[row * n..(row + 1) * n], gradient);
         }
 
@@ -338,7 +348,9 @@ impl Pair {
         let rounding = largest(&loaded.lambda) * 1e-15 / SPAN / DIFFERENCING;
         if m > 0 {
             let scale = largest(&bent).max(rounding);
-            parts.of(Part::Curvature).see_scaled(&rust, &bent, scale);
+            parts
+                .of(EquationPart::Curvature)
+                .see_scaled(&rust, &bent, scale);
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Case 2 over 0.1 s: the difference falls at Bathe's order until IDA's own error.
 
-use crate::check::{Agreement, Worst, largest};
-use crate::trajectory::{Plan, Trajectory, tolerances};
+use crate::check::{Agreement, LargestDifference, largest};
+use crate::trajectory::{ComparisonPlan, Trajectory, tolerances};
 use miette::Result;
 use rayon::prelude::*;
 
@@ -44,16 +44,16 @@ pub struct Convergence {
     /// of the scheme; positions hardly feel those modes.
     resolving: f64,
     /// One for each quantity.
-    pub curves: Vec<Differences>,
+    pub curves: Vec<StepDifferences>,
 }
 
 /// A quantity over all runs.
 #[derive(Debug)]
-pub struct Differences {
+pub struct StepDifferences {
     /// Differences from the tightest run of IDA, one for each step.
     pub by_step: Vec<f64>,
     /// The two numbers that differ most at the smallest step.
-    finest: Worst,
+    finest: LargestDifference,
     /// Difference of the two runs of IDA: the error of the looser one.
     pub own: f64,
     /// Largest value.
@@ -61,8 +61,8 @@ pub struct Differences {
 }
 
 /// Largest difference over the channels and rows.
-fn distance(a: &Trajectory, b: &Trajectory, channels: &[&str]) -> Worst {
-    let mut worst = Worst::default();
+fn distance(a: &Trajectory, b: &Trajectory, channels: &[&str]) -> LargestDifference {
+    let mut worst = LargestDifference::default();
     for name in channels {
         worst.see_scaled(a.get(name), b.get(name), 1.0);
     }
@@ -71,7 +71,7 @@ fn distance(a: &Trajectory, b: &Trajectory, channels: &[&str]) -> Worst {
 
 /// Runs both sides with 1 or 4 elements per link.
 pub fn convergence(elements: usize) -> Result<Convergence> {
-    let mut plan = Plan::new("3rrr/case2", TIMES[0], TIMES[1]);
+    let mut plan = ComparisonPlan::new("3rrr/case2", TIMES[0], TIMES[1]);
     let links = (1..=3).map(|link| format!("bodies.link{link}.elements={elements}"));
     plan.overrides = links.collect();
     // the highest mode of four elements is some eight times as fast, and costs IDA as many steps
@@ -90,12 +90,12 @@ pub fn convergence(elements: usize) -> Result<Convergence> {
     );
     let (cpp, rust) = (cpp?, rust?);
     let curve = |(_, channels, ..): &(&str, &[&str], f64, &str)| {
-        let each: Vec<Worst> = rust
+        let each: Vec<LargestDifference> = rust
             .iter()
             .map(|r| distance(r, &cpp[1], channels))
             .collect();
         let sizes = channels.iter().map(|c| largest(cpp[1].get(c)));
-        Differences {
+        StepDifferences {
             by_step: each.iter().map(|worst| worst.difference).collect(),
             finest: each[each.len() - 1],
             own: distance(&cpp[0], &cpp[1], channels).difference,

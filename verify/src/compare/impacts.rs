@@ -1,9 +1,9 @@
 //! The first impacts one by one: of cases 3 and 4 up to the chaos horizon, and of mechanisms with one loose joint.
 
 use super::classes::{self, KINDS};
-use crate::check::{Agreement, Worst};
-use crate::reference::Tolerances;
-use crate::trajectory::{Impact, Plan, Trajectory, tolerances};
+use crate::check::{Agreement, LargestDifference};
+use crate::reference::LsTolerances;
+use crate::trajectory::{ComparedImpact, ComparisonPlan, Trajectory, tolerances};
 use miette::Result;
 
 /// Time between rows \[s\].
@@ -11,8 +11,8 @@ const INTERVAL: f64 = 1e-4;
 
 /// A scene with the number of impacts that are compared, and Looselink's step.
 #[derive(Debug, Clone)]
-pub struct Series {
-    pub plan: Plan,
+pub struct ImpactSeries {
+    pub plan: ComparisonPlan,
     pub impacts: usize,
     /// Step of Looselink \[s\].
     pub step: f64,
@@ -25,9 +25,9 @@ pub struct Series {
 }
 
 /// Everything that is compared impact by impact.
-pub fn all() -> Vec<Series> {
+pub fn all() -> Vec<ImpactSeries> {
     // every impact amplifies differences: some thousandfold over all those of the six joints
-    let joints = |plan: Plan, impacts, step| Series {
+    let joints = |plan: ComparisonPlan, impacts, step| ImpactSeries {
         plan,
         impacts,
         step,
@@ -35,7 +35,7 @@ pub fn all() -> Vec<Series> {
         velocity: 0.1,
         allowed: [1e-6, 1e-4],
     };
-    let one = |plan: Plan, impacts, step, relative| Series {
+    let one = |plan: ComparisonPlan, impacts, step, relative| ImpactSeries {
         plan,
         impacts,
         step,
@@ -43,8 +43,8 @@ pub fn all() -> Vec<Series> {
         velocity: 1.0,
         allowed: [1e-7, 1e-6],
     };
-    let plan = |scene| Plan::new(scene, 0.02, INTERVAL);
-    let hanging = Plan::new("frame-with-hanging-body", 0.02, 1e-3);
+    let plan = |scene| ComparisonPlan::new(scene, 0.02, INTERVAL);
+    let hanging = ComparisonPlan::new("frame-with-hanging-body", 0.02, 1e-3);
     vec![
         joints(plan("3rrr/case3"), 15, 5e-8),
         // the seventh impact follows the sixth after 60 µs at 3 mm/s and needs the small step
@@ -56,11 +56,11 @@ pub fn all() -> Vec<Series> {
     ]
 }
 
-impl Series {
+impl ImpactSeries {
     /// The rows.
     pub fn agreements(&self) -> Result<Vec<Agreement>> {
         let velocity = self.velocity * self.relative;
-        let tolerances = Tolerances {
+        let tolerances = LsTolerances {
             velocity,
             ..tolerances(self.relative)
         };
@@ -74,7 +74,8 @@ impl Series {
     /// The rows of two runs.
     fn rows(&self, rust: &Trajectory, cpp: &Trajectory) -> Vec<Agreement> {
         let scene = format!("{}, first {} impacts", self.plan.name(), self.impacts);
-        let [mut instant, mut velocity, mut first, mut angle, mut depth] = [Worst::default(); 5];
+        let [mut instant, mut velocity, mut first, mut angle, mut depth] =
+            [LargestDifference::default(); 5];
         let mut mismatches = 0;
         for i in 0..self.impacts {
             let (Some(r), Some(c)) = (rust.impacts.get(i), cpp.impacts.get(i)) else {
@@ -99,7 +100,7 @@ impl Series {
         );
         let relative = format!("relative; {how}");
         let [instants, others] = self.allowed;
-        let last = |impacts: &[Impact]| impacts.len().min(self.impacts) as f64;
+        let last = |impacts: &[ComparedImpact]| impacts.len().min(self.impacts) as f64;
         let mut rows = vec![
             Agreement {
                 quantity: "joints in the order of their impacts".into(),

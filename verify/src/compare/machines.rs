@@ -3,7 +3,7 @@
 use super::classes::{self, KINDS};
 use super::scenes;
 use crate::check::Agreement;
-use crate::trajectory::{Plan, tolerances};
+use crate::trajectory::{ComparisonPlan, tolerances};
 use looselink::scene::Analysis;
 use miette::Result;
 
@@ -20,7 +20,7 @@ const ORDER_BAND: f64 = 0.1;
 /// Every element but clearance and legs in one motion of half a second: each kind of channel, and the order at which the
 /// difference falls.
 pub fn smooth() -> Result<Vec<Agreement>> {
-    let plan = Plan::new("../verify/scenes/everything", 0.5, 1e-2);
+    let plan = ComparisonPlan::new("../verify/scenes/everything", 0.5, 1e-2);
     let tolerances = tolerances(RELATIVE);
     let (cpp, rust) = rayon::join(|| plan.cpp(&tolerances), || STEPS.map(|h| plan.rust(h)));
     let cpp = cpp?;
@@ -50,7 +50,7 @@ pub fn smooth() -> Result<Vec<Agreement>> {
 }
 
 /// The scenes without clearance.
-pub fn plans() -> Result<Vec<Plan>> {
+pub fn plans() -> Result<Vec<ComparisonPlan>> {
     let mut plans = Vec::new();
     for plan in scenes::of(Analysis::Dynamic)? {
         if plan.scene(None)?.smallest_clearance().is_none() {
@@ -61,11 +61,11 @@ pub fn plans() -> Result<Vec<Plan>> {
 }
 
 /// Fine meshes, whose Newton matrix the reference factorises as a sparse one.
-pub fn fine_meshes() -> Vec<Plan> {
+pub fn fine_meshes() -> Vec<ComparisonPlan> {
     let links = ["link1", "link2", "link3"].map(|link| format!("bodies.{link}.elements=16"));
     let links = links.each_ref().map(String::as_str);
-    let machine = Plan::new("3rrr/case2", 1e-3, 1e-4);
-    let pendulum = Plan::new("soft-pendulum", 0.1, 5e-3);
+    let machine = ComparisonPlan::new("3rrr/case2", 1e-3, 1e-4);
+    let pendulum = ComparisonPlan::new("soft-pendulum", 0.1, 5e-3);
     vec![
         machine.with(", 16 elements a link", &links),
         pendulum.with(", 64 elements", &["bodies.rod.elements=64"]),
@@ -74,7 +74,7 @@ pub fn fine_meshes() -> Vec<Plan> {
 
 /// The first rows of a scene, by Dormand and Prince's pair with two accuracies and by IDA with two tolerances. The sides may
 /// differ by what each of them differs from its coarser run, which is about ten times the error of the finer one.
-pub fn first_rows(plan: &Plan) -> Result<Vec<Agreement>> {
+pub fn first_rows(plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
     let rust = |position: f64| {
         let accuracy = format!("{{position={position:e},horizon={:?}}}", plan.duration);
         let integrator = format!("integrator={{method=\"dormand_prince\",accuracy={accuracy}}}");

@@ -2,12 +2,12 @@
 
 use super::classes::{self, KINDS};
 use crate::check::Agreement;
-use crate::trajectory::{Plan, tolerances};
+use crate::trajectory::{ComparisonPlan, tolerances};
 use miette::Result;
 
 /// The rows of one cycle.
 pub fn agreements() -> Result<Vec<Agreement>> {
-    let plan = Plan::new("3rrr/case1", 1.0, 1e-3);
+    let plan = ComparisonPlan::new("3rrr/case1", 1.0, 1e-3);
     // positions are those of the ideal mechanism at any step; the work is of order 4
     let (rust, cpp) = (plan.rust(1e-4)?, plan.cpp(&tolerances(1e-12))?);
     let reason = "relative to the largest value of its kind; a hundred times the error of IDA at a relative tolerance of 1e-12";

@@ -1,10 +1,10 @@
 //! Every scene of the project: both sides read it, start alike and have the same channels.
 
 use super::classes::{self, KINDS};
-use crate::check::{Agreement, Worst, largest};
+use crate::check::{Agreement, LargestDifference, largest};
 use crate::embedding::Embedding;
-use crate::reference::{At, Scene};
-use crate::trajectory::{Plan, tolerances};
+use crate::reference::{ReferenceScene, ReferenceState};
+use crate::trajectory::{ComparisonPlan, tolerances};
 use looselink::scene::Analysis;
 use looselink::simulate::Simulation;
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -28,17 +28,17 @@ const MOVES: usize = 5;
 
 /// All scenes, as they are written, up to a time that costs little; one whose start has velocities of least energy; and one with
 /// every load of a static analysis.
-pub fn all() -> Result<Vec<Plan>> {
+pub fn all() -> Result<Vec<ComparisonPlan>> {
     let mut plans = Vec::new();
     let folder = root().join("scenes");
     collect(&folder, &mut plans).wrap_err_with(|| format!("cannot list {}", folder.display()))?;
-    plans.sort_by(|a: &Plan, b| a.scene.cmp(&b.scene));
-    plans.push(Plan::new("../verify/scenes/hanging", 0.1, 5e-3));
-    plans.push(Plan::new("../verify/scenes/loads", 2.0, 0.2));
+    plans.sort_by(|a: &ComparisonPlan, b| a.scene.cmp(&b.scene));
+    plans.push(ComparisonPlan::new("../verify/scenes/hanging", 0.1, 5e-3));
+    plans.push(ComparisonPlan::new("../verify/scenes/loads", 2.0, 0.2));
     Ok(plans)
 }
 
-fn collect(folder: &Path, plans: &mut Vec<Plan>) -> Result<()> {
+fn collect(folder: &Path, plans: &mut Vec<ComparisonPlan>) -> Result<()> {
     for entry in folder.read_dir().into_diagnostic()? {
         let path = entry.into_diagnostic()?.path();
         if path.is_dir() {
@@ -52,14 +52,14 @@ fn collect(folder: &Path, plans: &mut Vec<Plan>) -> Result<()> {
             };
             let name = path.strip_prefix(root().join("scenes")).into_diagnostic()?;
             let name = name.with_extension("").display().to_string();
-            plans.push(Plan::new(name, horizon, interval));
+            plans.push(ComparisonPlan::new(name, horizon, interval));
         }
     }
     Ok(())
 }
 
 /// Those with an analysis of this kind.
-pub fn of(analysis: Analysis) -> Result<Vec<Plan>> {
+pub fn of(analysis: Analysis) -> Result<Vec<ComparisonPlan>> {
     let mut plans = Vec::new();
     for plan in all()? {
         if plan.scene(None)?.simulation.analysis == analysis {
@@ -70,7 +70,7 @@ pub fn of(analysis: Analysis) -> Result<Vec<Plan>> {
 }
 
 /// The starts of a scene.
-pub fn start(plan: &Plan) -> Result<Vec<Agreement>> {
+pub fn start(plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
     let reference = plan.reference()?;
     let simulation = Simulation::new(&plan.scene(None)?)?;
     let embedding = Embedding::new(&reference, simulation.model());
@@ -91,7 +91,7 @@ pub fn start(plan: &Plan) -> Result<Vec<Agreement>> {
             "relative to the largest, at least 1 m/s or 1 rad/s; rounding",
         ),
     ] {
-        let mut worst = Worst::default();
+        let mut worst = LargestDifference::default();
         worst.see_scaled(&rust, cpp, largest(cpp).max(1.0));
         rows.push(worst.row(what, &plan.name(), START, reason));
     }
@@ -107,7 +107,7 @@ pub fn start(plan: &Plan) -> Result<Vec<Agreement>> {
 }
 
 /// What a change of the start by some tens of units in the last place does to the channels of each kind, over [`CHANNELS`].
-pub fn rounding(reference: &Scene) -> Result<[f64; KINDS]> {
+pub fn rounding(reference: &ReferenceScene) -> Result<[f64; KINDS]> {
     let z = vec![0.0; reference.joints.len()];
     let start = reference.start().into_diagnostic()?;
     let mut random = ChaCha8Rng::seed_from_u64(5);
@@ -120,7 +120,9 @@ pub fn rounding(reference: &Scene) -> Result<[f64; KINDS]> {
             x
         });
         let (t, q, v, z) = (0.0, &q, &v, &z);
-        reference.values(At { t, q, v, z }).into_diagnostic()
+        reference
+            .values(ReferenceState { t, q, v, z })
+            .into_diagnostic()
     };
     let still = values(0.0)?;
     let mut floors = [0.0_f64; KINDS];
@@ -135,7 +137,7 @@ pub fn rounding(reference: &Scene) -> Result<[f64; KINDS]> {
 }
 
 /// A static scene from its first load to the last.
-pub fn equilibrium(plan: &Plan) -> Result<Vec<Agreement>> {
+pub fn equilibrium(plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
     let floors = rounding(&plan.reference()?)?;
     let rust = plan.run(None, usize::MAX)?;
     let cpp = plan.cpp(&tolerances(1e-10))?;

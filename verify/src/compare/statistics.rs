@@ -4,7 +4,7 @@
 //! two cycles.
 
 use crate::check::{Agreement, largest};
-use crate::trajectory::{Plan, Trajectory, tolerances};
+use crate::trajectory::{ComparisonPlan, Trajectory, tolerances};
 use miette::Result;
 
 /// Time from which the motion counts \[s\]: the bouncing of the start is over.
@@ -33,13 +33,13 @@ const QUANTITIES: [(&str, &str, f64, bool); 6] = [
     ("energy dissipated in contact per cycle", "J", 0.2, true),
 ];
 
-fn plan(case: u32) -> Plan {
+fn plan(case: u32) -> ComparisonPlan {
     let scene = if case == 3 {
         "3rrr/case3"
     } else {
         "3rrr/case4"
     };
-    Plan::new(scene, FROM + CYCLES, INTERVAL)
+    ComparisonPlan::new(scene, FROM + CYCLES, INTERVAL)
 }
 
 /// The quantities of a run, in the order of [`QUANTITIES`].

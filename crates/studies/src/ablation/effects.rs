@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// An effect that can be added to the rigid ideal mechanism and removed from the full scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effect {
+pub enum SceneEffect {
     /// Links that bend and stretch; without it they are rigid.
     Flexibility,
     /// More than one element in a flexible link; without it there is one.
@@ -28,37 +28,39 @@ pub enum Effect {
     Gravity,
 }
 
-impl Effect {
+impl SceneEffect {
     /// All effects; each stands behind the one it needs.
-    pub const ALL: [Effect; 7] = [
-        Effect::Flexibility,
-        Effect::Elements,
-        Effect::StructuralDamping,
-        Effect::Clearance,
-        Effect::ContactDamping,
-        Effect::Friction,
-        Effect::Gravity,
+    pub const ALL: [SceneEffect; 7] = [
+        SceneEffect::Flexibility,
+        SceneEffect::Elements,
+        SceneEffect::StructuralDamping,
+        SceneEffect::Clearance,
+        SceneEffect::ContactDamping,
+        SceneEffect::Friction,
+        SceneEffect::Gravity,
     ];
 
     /// Its name in reports.
     pub fn name(self) -> &'static str {
         match self {
-            Effect::Flexibility => "flexibility",
-            Effect::Elements => "more elements",
-            Effect::StructuralDamping => "structural damping",
-            Effect::Clearance => "clearance",
-            Effect::ContactDamping => "contact damping",
-            Effect::Friction => "friction",
-            Effect::Gravity => "gravity",
+            SceneEffect::Flexibility => "flexibility",
+            SceneEffect::Elements => "more elements",
+            SceneEffect::StructuralDamping => "structural damping",
+            SceneEffect::Clearance => "clearance",
+            SceneEffect::ContactDamping => "contact damping",
+            SceneEffect::Friction => "friction",
+            SceneEffect::Gravity => "gravity",
         }
     }
 
     /// The effect without which this one has nothing to act on.
-    pub fn needs(self) -> Option<Effect> {
+    pub fn needs(self) -> Option<SceneEffect> {
         match self {
-            Effect::Elements | Effect::StructuralDamping => Some(Effect::Flexibility),
-            Effect::ContactDamping | Effect::Friction => Some(Effect::Clearance),
-            Effect::Flexibility | Effect::Clearance | Effect::Gravity => None,
+            SceneEffect::Elements | SceneEffect::StructuralDamping => {
+                Some(SceneEffect::Flexibility)
+            }
+            SceneEffect::ContactDamping | SceneEffect::Friction => Some(SceneEffect::Clearance),
+            SceneEffect::Flexibility | SceneEffect::Clearance | SceneEffect::Gravity => None,
         }
     }
 
@@ -70,13 +72,13 @@ impl Effect {
             contacts.into_iter().any(has)
         };
         match self {
-            Effect::Flexibility => a_link(|_| true),
-            Effect::Elements => a_link(|link| link.elements > 1),
-            Effect::StructuralDamping => a_link(|link| link.damping.is_some()),
-            Effect::Clearance => a_contact(|_| true),
-            Effect::ContactDamping => a_contact(|c| c.law.is_damped && c.restitution < 1.0),
-            Effect::Friction => a_contact(|contact| contact.friction.is_some()),
-            Effect::Gravity => scene.simulation.gravity.is_some_and(|g| g != [0.0; 2]),
+            SceneEffect::Flexibility => a_link(|_| true),
+            SceneEffect::Elements => a_link(|link| link.elements > 1),
+            SceneEffect::StructuralDamping => a_link(|link| link.damping.is_some()),
+            SceneEffect::Clearance => a_contact(|_| true),
+            SceneEffect::ContactDamping => a_contact(|c| c.law.is_damped && c.restitution < 1.0),
+            SceneEffect::Friction => a_contact(|contact| contact.friction.is_some()),
+            SceneEffect::Gravity => scene.simulation.gravity.is_some_and(|g| g != [0.0; 2]),
         }
     }
 
@@ -87,8 +89,8 @@ impl Effect {
     pub fn removed_from(self, scene: &Scene) -> Result<Scene, SceneError> {
         let mut scene = scene.clone();
         match self {
-            Effect::Flexibility => drop_inner_points(&mut scene, "a rigid link has none")?,
-            Effect::Elements => drop_inner_points(&mut scene, "one element has none")?,
+            SceneEffect::Flexibility => drop_inner_points(&mut scene, "a rigid link has none")?,
+            SceneEffect::Elements => drop_inner_points(&mut scene, "one element has none")?,
             _ => {}
         }
         for body in &mut scene.bodies {
@@ -97,12 +99,12 @@ impl Effect {
             };
             let mut link = link.clone();
             match self {
-                Effect::Flexibility => {
+                SceneEffect::Flexibility => {
                     body.kind = Arc::new(link.rigid_link());
                     continue;
                 }
-                Effect::Elements => (link.elements, link.nodes) = (1, vec![0, 1]),
-                Effect::StructuralDamping => link.damping = None,
+                SceneEffect::Elements => (link.elements, link.nodes) = (1, vec![0, 1]),
+                SceneEffect::StructuralDamping => link.damping = None,
                 _ => continue,
             }
             body.kind = Arc::new(link);
@@ -113,35 +115,35 @@ impl Effect {
             };
             let mut contact = contact.clone();
             match self {
-                Effect::Clearance => {}
-                Effect::ContactDamping => {
+                SceneEffect::Clearance => {}
+                SceneEffect::ContactDamping => {
                     (contact.law, contact.restitution) = (&HERTZ, 1.0);
                     contact.own.clear();
                 }
-                Effect::Friction => contact.friction = None,
+                SceneEffect::Friction => contact.friction = None,
                 _ => continue,
             }
-            let changed = (self != Effect::Clearance).then_some(contact);
+            let changed = (self != SceneEffect::Clearance).then_some(contact);
             if let Some(model) = joint.model.with_contact(changed) {
                 joint.model = model;
             }
         }
-        if self == Effect::Gravity {
+        if self == SceneEffect::Gravity {
             scene.simulation.gravity = None;
         }
         Ok(scene)
     }
 }
 
-impl Serialize for Effect {
+impl Serialize for SceneEffect {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.name())
     }
 }
 
-/// The effects that a scene has, in the order of [`Effect::ALL`].
-pub fn effects(scene: &Scene) -> Vec<Effect> {
-    let all = Effect::ALL.into_iter();
+/// The effects that a scene has, in the order of [`SceneEffect::ALL`].
+pub fn effects(scene: &Scene) -> Vec<SceneEffect> {
+    let all = SceneEffect::ALL.into_iter();
     all.filter(|effect| effect.is_in(scene)).collect()
 }
 

@@ -3,8 +3,8 @@
 //! Physics is measured at the rows of the output interval and repeats to the last bit. Processor time does not: it is
 //! taken of runs that record nothing, as the median of several.
 
-use super::variants::{Role, Variant};
-use crate::machine::Timing;
+use super::variants::{Variant, VariantRole};
+use crate::machine::RunTiming;
 use cpu_time::ThreadTime;
 use looselink::body::Known;
 use looselink::scene::{ChannelPattern, Scene};
@@ -122,11 +122,11 @@ pub struct Physics {
 }
 
 /// A quantity: name, unit, how to take it.
-pub type Quantity = (&'static str, &'static str, fn(&Physics) -> Option<f64>);
+pub type PhysicsQuantity = (&'static str, &'static str, fn(&Physics) -> Option<f64>);
 
 impl Physics {
     /// What is measured, its unit, its value.
-    pub const QUANTITIES: [Quantity; 6] = [
+    pub const QUANTITIES: [PhysicsQuantity; 6] = [
         ("rms error", "m", |p| p.rms_error),
         ("largest error", "m", |p| p.largest_error),
         ("rms acceleration", "m/s²", |p| p.rms_acceleration),
@@ -156,7 +156,7 @@ impl Physics {
 
 /// Sizes of a variant and the work of its run, which repeat.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Counts {
+pub struct VariantCounts {
     /// Unknown coordinates.
     pub unknowns: usize,
     /// Multipliers.
@@ -189,20 +189,24 @@ pub struct Cost {
 }
 
 /// Where a body is, row by row: x and y \[m\].
-pub(super) type Path = [Vec<f64>; 2];
+pub(super) type RecordedPath = [Vec<f64>; 2];
 
 /// A variant that has run.
-pub(super) struct Run {
+pub(super) struct VariantRun {
     pub rows: usize,
     pub physics: Physics,
     pub peak_joint: Option<String>,
-    pub counts: Counts,
+    pub counts: VariantCounts,
     pub warnings: Vec<String>,
-    pub path: Path,
+    pub path: RecordedPath,
 }
 
 /// Runs a variant and measures what it does. `ideal` is the path of the body in the rigid ideal mechanism, where that has run.
-pub(super) fn run(variant: &Variant, body: &Observed, ideal: Option<&Path>) -> Result<Run, String> {
+pub(super) fn run(
+    variant: &Variant,
+    body: &Observed,
+    ideal: Option<&RecordedPath>,
+) -> Result<VariantRun, String> {
     let scene = variant.scene.as_ref();
     let scene = scene.map_err(|error| format!("not possible: {error}"))?;
     let mut simulation = simulation(scene, &["*"])?;
@@ -217,7 +221,7 @@ pub(super) fn run(variant: &Variant, body: &Observed, ideal: Option<&Path>) -> R
             let [x, y] = ["error.x", "error.y"].map(|name| channel(name.to_owned()));
             Some(lengths(x, y))
         }
-        (Origin::Ideal, Role::Ideal) => Some(distances(&path, &path)),
+        (Origin::Ideal, VariantRole::Ideal) => Some(distances(&path, &path)),
         (Origin::Ideal, _) => ideal.map(|ideal| distances(&path, ideal)),
     };
     let accelerations = lengths(of_body("ax"), of_body("ay"));
@@ -235,7 +239,7 @@ pub(super) fn run(variant: &Variant, body: &Observed, ideal: Option<&Path>) -> R
         .filter_map(|name| Some(mean(recording.get(&name)?)))
         .collect();
     let report = simulation.report();
-    Ok(Run {
+    Ok(VariantRun {
         rows: recording.rows(),
         physics: Physics {
             rms_error: errors.as_deref().map(rms),
@@ -249,7 +253,7 @@ pub(super) fn run(variant: &Variant, body: &Observed, ideal: Option<&Path>) -> R
             .filter(|(_, force)| *force > 0.0)
             .map(|(name, _)| name.clone()),
         warnings: report.warnings(),
-        counts: Counts {
+        counts: VariantCounts {
             unknowns: shape.unknowns,
             multipliers: shape.multipliers,
             contacts: shape.contacts,
@@ -290,7 +294,7 @@ pub(super) fn time(scenes: &[&Scene], runs: Option<usize>) -> Vec<Vec<f64>> {
 impl Cost {
     /// The cost of a run over `simulated` \[s\] in so many steps, from the processor times of several \[s\].
     pub(super) fn new(seconds: Vec<f64>, steps: u64, simulated: f64) -> Cost {
-        let timing = Timing::of(seconds);
+        let timing = RunTiming::of(seconds);
         let cpu_seconds = timing.median;
         Cost {
             runs: timing.seconds.len(),
@@ -314,7 +318,7 @@ fn simulation(scene: &Scene, channels: &[&str]) -> Result<Simulation, String> {
     Simulation::new(&scene).map_err(|error| format!("not possible: {error}"))
 }
 
-fn distances([x, y]: &Path, [x0, y0]: &Path) -> Vec<f64> {
+fn distances([x, y]: &RecordedPath, [x0, y0]: &RecordedPath) -> Vec<f64> {
     let less = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>();
     lengths(&less(x, x0), &less(y, y0))
 }

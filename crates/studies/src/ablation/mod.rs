@@ -1,7 +1,7 @@
 //! What every effect of a scene does and costs: each added to the rigid ideal mechanism, each removed from the full scene.
 //!
-//! An effect is taken out of the data of the scene ([`Effect::removed_from`]), so that its absence is that of a scene which
-//! never named it: no term, no unknown, no evaluation.
+//! An effect is taken out of the data of the scene ([`SceneEffect::removed_from`]), so that its absence is that of a scene
+//! which never named it: no term, no unknown, no evaluation.
 
 mod effects;
 mod files;
@@ -11,44 +11,44 @@ mod report;
 mod table;
 mod variants;
 
-pub use effects::{Effect, effects};
+pub use effects::{SceneEffect, effects};
 pub use files::FILES;
-pub use measure::{CannotObserve, Cost, Counts, Observed, Origin, Physics, Quantity};
+pub use measure::{CannotObserve, Cost, Observed, Origin, Physics, PhysicsQuantity, VariantCounts};
 pub use picture::figure;
-pub use report::{Repeatable, Timing};
-pub use variants::{Role, Variant, variants};
+pub use report::{AblationTiming, Repeatable};
+pub use variants::{Variant, VariantRole, variants};
 
 use looselink::scene::Scene;
 use looselink::simulate::Notice;
-use measure::{Run, run, time};
+use measure::{VariantRun, run, time};
 use serde::Serialize;
 
 /// A scene, effect by effect.
 #[derive(Debug, Clone)]
 pub struct Ablation {
-    header: Header,
+    header: AblationHeader,
     /// The rigid ideal mechanism, what is added to it, the full scene, what is removed from it.
-    pub rows: Vec<Row>,
+    pub rows: Vec<AblationRow>,
 }
 
 /// A variant and what came of it.
 #[derive(Debug, Clone)]
-pub struct Row {
+pub struct AblationRow {
     /// The variant.
     pub variant: Variant,
     /// Its measurements, or why there are none.
-    pub outcome: Result<Outcome, String>,
+    pub outcome: Result<VariantOutcome, String>,
 }
 
 /// Measurements of a variant that runs to its end.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
+pub struct VariantOutcome {
     /// What it does.
     pub physics: Physics,
     /// The joint with the largest force.
     pub peak_joint: Option<String>,
     /// Sizes and work.
-    pub counts: Counts,
+    pub counts: VariantCounts,
     /// What its run warns of.
     pub warnings: Vec<String>,
     /// Processor time.
@@ -57,12 +57,12 @@ pub struct Outcome {
 
 /// What is common to all variants.
 #[derive(Debug, Clone, Serialize)]
-struct Header {
+struct AblationHeader {
     title: String,
     scene_hash: String,
     overrides: Vec<String>,
     version: &'static str,
-    effects: Vec<Effect>,
+    effects: Vec<SceneEffect>,
     body: Observed,
     /// Simulated time \[s\].
     duration: f64,
@@ -83,7 +83,7 @@ pub fn ablate(
     tell: &mut dyn FnMut(Notice),
 ) -> Ablation {
     let variants = variants(scene);
-    let mut distinct: Vec<(&Variant, Result<Run, String>)> = Vec::new();
+    let mut distinct: Vec<(&Variant, Result<VariantRun, String>)> = Vec::new();
     for variant in &variants {
         if distinct.iter().any(|(v, _)| v.effects == variant.effects) {
             continue;
@@ -105,10 +105,10 @@ pub fn ablate(
     let ran: Vec<&Scene> = ran.filter_map(|(v, _)| v.scene.as_ref().ok()).collect();
     let mut seconds = time(&ran, runs).into_iter();
     let mut rows_seen = 0;
-    let mut outcome = |run: Run| {
+    let mut outcome = |run: VariantRun| {
         rows_seen = run.rows;
         let seconds = seconds.next().unwrap_or_default();
-        Outcome {
+        VariantOutcome {
             cost: Cost::new(seconds, run.counts.steps, scene.simulation.duration),
             physics: run.physics,
             peak_joint: run.peak_joint,
@@ -123,14 +123,14 @@ pub fn ablate(
     let rows = variants.iter().filter_map(|variant| {
         let mut outcomes = outcomes.iter();
         let (_, outcome) = outcomes.find(|(effects, _)| **effects == variant.effects)?;
-        Some(Row {
+        Some(AblationRow {
             variant: variant.clone(),
             outcome: outcome.clone(),
         })
     });
     Ablation {
         rows: rows.collect(),
-        header: Header {
+        header: AblationHeader {
             title: scene.title.clone(),
             scene_hash: scene.hash(),
             overrides: scene.overrides().map(str::to_owned).collect(),
@@ -146,7 +146,7 @@ pub fn ablate(
 
 impl Ablation {
     /// The measurements of the variant with this role.
-    pub fn outcome(&self, role: Role) -> Option<&Outcome> {
+    pub fn outcome(&self, role: VariantRole) -> Option<&VariantOutcome> {
         let row = self.rows.iter().find(|row| row.variant.role == role)?;
         row.outcome.as_ref().ok()
     }

@@ -1,7 +1,7 @@
 //! The picture of an ablation: error, joint force and processor time of every variant, one dot each.
 
-use super::variants::Role;
-use super::{Ablation, Outcome, Row};
+use super::variants::VariantRole;
+use super::{Ablation, AblationRow, VariantOutcome};
 use numbers::digits;
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
@@ -15,14 +15,14 @@ const HALF_A_DECADE: f64 = 3.17;
 const DOT: u32 = 11;
 
 /// One panel: its title, what is on its axis, the unit, the quantity.
-type Shown = (
+type AblationPanel = (
     &'static str,
     &'static str,
     &'static str,
-    fn(&Outcome) -> Option<f64>,
+    fn(&VariantOutcome) -> Option<f64>,
 );
 
-const SHOWN: [Shown; 3] = [
+const SHOWN: [AblationPanel; 3] = [
     ("Error", "RMS displacement error", "m", |o| {
         o.physics.rms_error
     }),
@@ -37,7 +37,7 @@ const SHOWN: [Shown; 3] = [
 /// The figure.
 pub fn figure(ablation: &Ablation) -> Figure {
     let mut left_out = Vec::new();
-    let present = |(_, _, _, quantity): &&Shown| {
+    let present = |(_, _, _, quantity): &&AblationPanel| {
         let outcomes = ablation.rows.iter().flat_map(|row| &row.outcome);
         outcomes.filter_map(quantity).any(|value| value > 0.0)
     };
@@ -55,12 +55,12 @@ pub fn figure(ablation: &Ablation) -> Figure {
 /// Panel `place` of the row, the first with the names of the variants; values that are rounding are written down instead.
 fn panel(
     ablation: &Ablation,
-    (title, label, unit, quantity): &Shown,
+    (title, label, unit, quantity): &AblationPanel,
     place: usize,
     left_out: &mut Vec<String>,
 ) -> Panel {
-    let value = |outcome: &Outcome| quantity(outcome).filter(|v| *v > 0.0);
-    let of_row = |row: &Row| row.outcome.as_ref().ok().and_then(value);
+    let value = |outcome: &VariantOutcome| quantity(outcome).filter(|v| *v > 0.0);
+    let of_row = |row: &AblationRow| row.outcome.as_ref().ok().and_then(value);
     let values: Vec<Option<f64>> = ablation.rows.iter().map(of_row).collect();
     let largest = values.iter().flatten().copied().fold(0.0, f64::max);
     let drawn = |v: &f64| *v > ROUNDING * largest;
@@ -69,7 +69,7 @@ fn panel(
         (low.min(v), high.max(v))
     });
     let mut marks = Vec::new();
-    if let Some(full) = ablation.outcome(Role::Full).and_then(value) {
+    if let Some(full) = ablation.outcome(VariantRole::Full).and_then(value) {
         let ends = [-0.5, ablation.rows.len() as f64 - 0.5];
         marks.push(Mark::curve("", palette::GREY, &[full, full], &ends));
     }
@@ -103,11 +103,11 @@ fn panel(
     }
 }
 
-fn color(role: Role) -> Color {
+fn color(role: VariantRole) -> Color {
     match role {
-        Role::Ideal | Role::Full => palette::BLACK,
-        Role::Added(_) => palette::BLUE,
-        Role::Removed(_) => palette::VERMILION,
+        VariantRole::Ideal | VariantRole::Full => palette::BLACK,
+        VariantRole::Added(_) => palette::BLUE,
+        VariantRole::Removed(_) => palette::VERMILION,
     }
 }
 

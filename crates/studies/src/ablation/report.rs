@@ -1,10 +1,10 @@
 //! The report of an ablation: what repeats in one form, processor times in another, and both as tables.
 
-use super::effects::Effect;
-use super::measure::{Cost, Counts, Physics, Quantity};
-use super::table::Table;
-use super::variants::Role;
-use super::{Ablation, Header, Outcome, Row};
+use super::effects::SceneEffect;
+use super::measure::{Cost, Physics, PhysicsQuantity, VariantCounts};
+use super::table::TextTable;
+use super::variants::VariantRole;
+use super::{Ablation, AblationHeader, AblationRow, VariantOutcome};
 use crate::machine::{Machine, machine};
 use crate::warning_list;
 use numbers::{digits, si};
@@ -22,7 +22,7 @@ const SMALLEST: f64 = 1e-12;
 #[derive(Debug, Serialize)]
 pub struct Repeatable<'a> {
     #[serde(flatten)]
-    header: &'a Header,
+    header: &'a AblationHeader,
     units: BTreeMap<&'static str, &'static str>,
     variants: Vec<RepeatableRow<'a>>,
 }
@@ -30,8 +30,8 @@ pub struct Repeatable<'a> {
 #[derive(Debug, Serialize)]
 struct RepeatableRow<'a> {
     variant: String,
-    effects: &'a [Effect],
-    removed: &'a [Effect],
+    effects: &'a [SceneEffect],
+    removed: &'a [SceneEffect],
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -43,14 +43,14 @@ struct RepeatableRow<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     less_full_scene: Option<Physics>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    counts: Option<&'a Counts>,
+    counts: Option<&'a VariantCounts>,
     #[serde(skip_serializing_if = "Option::is_none")]
     warnings: Option<&'a [String]>,
 }
 
 /// What of an ablation differs when it is repeated: `timing.json`.
 #[derive(Debug, Serialize)]
-pub struct Timing {
+pub struct AblationTiming {
     machine: Machine,
     variants: Vec<TimingRow>,
 }
@@ -65,10 +65,11 @@ struct TimingRow {
 impl Ablation {
     /// What repeats.
     pub fn repeatable(&self) -> Repeatable<'_> {
-        let [ideal, full] = [Role::Ideal, Role::Full].map(|role| self.outcome(role));
+        let [ideal, full] = [VariantRole::Ideal, VariantRole::Full].map(|role| self.outcome(role));
         let variants = self.rows.iter().map(|row| {
             let outcome = row.outcome.as_ref().ok();
-            let less = |other: Option<&Outcome>| Some(outcome?.physics.less(&other?.physics));
+            let less =
+                |other: Option<&VariantOutcome>| Some(outcome?.physics.less(&other?.physics));
             RepeatableRow {
                 variant: row.variant.name(),
                 effects: &row.variant.effects,
@@ -96,14 +97,14 @@ impl Ablation {
     }
 
     /// What does not repeat.
-    pub fn timing(&self) -> Timing {
-        let row = |row: &Row| {
+    pub fn timing(&self) -> AblationTiming {
+        let row = |row: &AblationRow| {
             Some(TimingRow {
                 variant: row.variant.name(),
                 cost: row.outcome.as_ref().ok()?.cost.clone(),
             })
         };
-        Timing {
+        AblationTiming {
             machine: machine(),
             variants: self.rows.iter().filter_map(row).collect(),
         }
@@ -138,7 +139,7 @@ impl Ablation {
 
     /// All warnings, each after the name of its variant.
     pub fn warnings(&self) -> Vec<String> {
-        let named = |row: &Row| {
+        let named = |row: &AblationRow| {
             let name = row.variant.name();
             let warnings = row.outcome.iter().flat_map(|outcome| &outcome.warnings);
             warnings.map(|w| format!("{name}: {w}")).collect::<Vec<_>>()
@@ -175,11 +176,14 @@ impl Ablation {
     }
 
     /// The tables of what repeats, with their titles.
-    fn tables(&self) -> Vec<(&'static str, Table)> {
+    fn tables(&self) -> Vec<(&'static str, TextTable)> {
         let mut tables = vec![("Results of each variant", self.physics())];
         for (title, role) in [
-            ("Difference from the rigid ideal mechanism", Role::Ideal),
-            ("Difference from the full scene", Role::Full),
+            (
+                "Difference from the rigid ideal mechanism",
+                VariantRole::Ideal,
+            ),
+            ("Difference from the full scene", VariantRole::Full),
         ] {
             if let Some(reference) = self.outcome(role) {
                 tables.push((title, self.less(role, &reference.physics)));
@@ -189,10 +193,10 @@ impl Ablation {
         tables
     }
 
-    fn physics(&self) -> Table {
+    fn physics(&self) -> TextTable {
         let mut heads = Physics::QUANTITIES.map(|(name, ..)| name).to_vec();
         heads.insert(JOINT, "in joint");
-        let cells = |outcome: &Outcome| {
+        let cells = |outcome: &VariantOutcome| {
             let mut cells = quantities(&outcome.physics, "");
             let joint = outcome.peak_joint.as_deref();
             cells.insert(JOINT, joint.unwrap_or(NONE).to_owned());
@@ -201,14 +205,14 @@ impl Ablation {
         self.table(&heads, |_| true, cells)
     }
 
-    fn less(&self, role: Role, reference: &Physics) -> Table {
+    fn less(&self, role: VariantRole, reference: &Physics) -> TextTable {
         let heads = Physics::QUANTITIES.map(|(name, ..)| name);
-        let other = |row: &Row| row.outcome.is_ok() && row.variant.role != role;
-        let cells = |outcome: &Outcome| quantities(&outcome.physics.less(reference), "+");
+        let other = |row: &AblationRow| row.outcome.is_ok() && row.variant.role != role;
+        let cells = |outcome: &VariantOutcome| quantities(&outcome.physics.less(reference), "+");
         self.table(&heads, other, cells)
     }
 
-    fn work(&self) -> Table {
+    fn work(&self) -> TextTable {
         let heads = [
             "unknowns",
             "multipliers",
@@ -216,7 +220,7 @@ impl Ablation {
             "steps",
             "Newton iterations",
         ];
-        let cells = |outcome: &Outcome| {
+        let cells = |outcome: &VariantOutcome| {
             let c = &outcome.counts;
             vec![
                 c.unknowns.to_string(),
@@ -229,9 +233,9 @@ impl Ablation {
         self.table(&heads, |row| row.outcome.is_ok(), cells)
     }
 
-    fn costs(&self) -> Table {
+    fn costs(&self) -> TextTable {
         let heads = ["a step", "a simulated second", "real-time factor", "runs"];
-        let cells = |outcome: &Outcome| {
+        let cells = |outcome: &VariantOutcome| {
             let cost = &outcome.cost;
             vec![
                 si(1e-6 * cost.microseconds_a_step, "s"),
@@ -247,10 +251,10 @@ impl Ablation {
     fn table(
         &self,
         heads: &[&str],
-        shown: impl Fn(&Row) -> bool,
-        cells: impl Fn(&Outcome) -> Vec<String>,
-    ) -> Table {
-        let mut table = Table::new(&[&["variant"], heads].concat());
+        shown: impl Fn(&AblationRow) -> bool,
+        cells: impl Fn(&VariantOutcome) -> Vec<String>,
+    ) -> TextTable {
+        let mut table = TextTable::new(&[&["variant"], heads].concat());
         for row in self.rows.iter().filter(|row| shown(row)) {
             let numbers = row.outcome.as_ref().map(&cells);
             table.row(row.variant.name(), numbers.map_err(String::clone));
@@ -261,7 +265,7 @@ impl Ablation {
 
 /// The quantities with their units; `plus` stands before those that are not negative.
 fn quantities(physics: &Physics, plus: &str) -> Vec<String> {
-    let cell = |(_, unit, value): Quantity| match value(physics) {
+    let cell = |(_, unit, value): PhysicsQuantity| match value(physics) {
         None => NONE.to_owned(),
         Some(value) => {
             let text = match unit {

@@ -2,16 +2,16 @@
 
 /// Names in the first column, numbers in the others.
 #[derive(Debug, Clone)]
-pub(super) struct Table {
+pub(super) struct TextTable {
     /// The heads, then the rows; one that is shorter than the heads is a name and a remark.
     lines: Vec<Vec<String>>,
 }
 
-impl Table {
+impl TextTable {
     /// A table with these columns, the first that of the names.
-    pub fn new(head: &[&str]) -> Table {
+    pub fn new(head: &[&str]) -> TextTable {
         let head = head.iter().map(|h| (*h).to_owned()).collect();
-        Table { lines: vec![head] }
+        TextTable { lines: vec![head] }
     }
 
     /// Adds a row of numbers, or of one remark in their place.
@@ -59,11 +59,11 @@ impl Table {
 
 #[cfg(test)]
 mod tests {
-    use super::Table;
+    use super::TextTable;
 
     #[test]
     fn both_forms_have_all_cells() {
-        let mut table = Table::new(&["variant", "error", "force"]);
+        let mut table = TextTable::new(&["variant", "error", "force"]);
         table.row("+ a".into(), Ok(vec!["1.5\u{a0}µm".into(), "–".into()]));
         table.row("− b".into(), Err("not possible: x | y".into()));
         assert_eq!(

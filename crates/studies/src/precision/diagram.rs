@@ -2,7 +2,7 @@
 
 use super::elements::Meshes;
 use super::errors::NORMS;
-use super::{Compared, Errors, Found, Outcome, Pace, Run, Study};
+use super::{Compared, CurvePoint, Errors, Found, Study, StudyOutcome, StudyPace};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
 /// Curves that several studies have, each with the same colour in all of them.
@@ -22,7 +22,7 @@ const NAMED: [(&str, Color); 12] = [
 ];
 
 /// Errors against processor time, one panel a norm, and the error of position against the step or the accuracy.
-pub(super) fn figure(study: &Study, outcome: &Outcome) -> Figure {
+pub(super) fn figure(study: &Study, outcome: &StudyOutcome) -> Figure {
     let mut panels = Vec::new();
     for (name, unit, of) in NORMS {
         let asked = match name {
@@ -97,7 +97,7 @@ impl<C: Compared> Found<C> {
     /// The marks of every curve in its colour: `draw` makes them from the points that are there and positive.
     pub(super) fn marks(
         &self,
-        point: impl Fn(usize, &Run<C::Measured>) -> Option<(f64, f64)>,
+        point: impl Fn(usize, &CurvePoint<C::Measured>) -> Option<(f64, f64)>,
         draw: impl Fn(&str, Color, &[f64], &[f64]) -> Vec<Mark>,
     ) -> Vec<Mark> {
         let mut marks = Vec::new();
@@ -127,7 +127,7 @@ fn lines(label: &str, color: Color, x: &[f64], y: &[f64]) -> Vec<Mark> {
 }
 
 fn against_time(
-    outcome: &Outcome,
+    outcome: &StudyOutcome,
     name: &str,
     unit: &'static str,
     of: fn(&Errors) -> f64,
@@ -150,10 +150,10 @@ fn against_time(
 }
 
 /// Against the accuracies asked for with `asked`, else against steps.
-fn against_pace(outcome: &Outcome, asked: bool) -> Panel {
-    let abscissa = |pace: Pace| match (pace, asked) {
-        (Pace::Step(step), false) => Some(step),
-        (Pace::Accuracy { position, .. }, true) => Some(position),
+fn against_pace(outcome: &StudyOutcome, asked: bool) -> Panel {
+    let abscissa = |pace: StudyPace| match (pace, asked) {
+        (StudyPace::Step(step), false) => Some(step),
+        (StudyPace::Accuracy { position, .. }, true) => Some(position),
         _ => None,
     };
     let mut marks = outcome.marks(

@@ -4,7 +4,7 @@
 //! luck. So a point keeps an error only when all finer points of its curve keep it too, and what the finest point keeps is
 //! the floor of the mesh.
 
-use super::{Outcome, Pace, Study};
+use super::{Study, StudyOutcome, StudyPace};
 use numbers::si;
 use plot::{Axis, Color, Mark, Panel, palette};
 
@@ -22,11 +22,11 @@ pub(super) struct Meshes(Vec<Mesh>);
 struct Mesh {
     elements: usize,
     color: Color,
-    points: Vec<Point>,
+    points: Vec<MeshPoint>,
 }
 
-struct Point {
-    pace: Pace,
+struct MeshPoint {
+    pace: StudyPace,
     /// Processor time \[s\].
     seconds: f64,
     /// Error of position \[m\].
@@ -36,20 +36,20 @@ struct Point {
 }
 
 impl Meshes {
-    pub fn new(study: &Study, outcome: &Outcome) -> Meshes {
+    pub fn new(study: &Study, outcome: &StudyOutcome) -> Meshes {
         let meshes = study.curves.iter().filter_map(|curve| {
             let runs = outcome.runs.iter().zip(&outcome.timings);
             let runs = runs.filter(|(run, _)| run.curve == curve.name);
             let points = runs.filter_map(|(run, timing)| {
                 let error = run.result.as_ref().ok()?.errors.position;
-                Some(Point {
+                Some(MeshPoint {
                     pace: run.pace,
                     seconds: timing.as_ref()?.median,
                     error,
                     kept: error,
                 })
             });
-            let mut points: Vec<Point> = points.collect();
+            let mut points: Vec<MeshPoint> = points.collect();
             for i in (1..points.len()).rev() {
                 points[i - 1].kept = points[i - 1].kept.max(points[i].kept);
             }
@@ -65,7 +65,7 @@ impl Meshes {
     /// Draws the least time for every error behind the curves of a panel of errors over time, and notes whose it is.
     pub fn mark_cheapest(&self, panel: &mut Panel) {
         let meshes = self.0.iter();
-        let mut points: Vec<(usize, &Point)> = meshes
+        let mut points: Vec<(usize, &MeshPoint)> = meshes
             .flat_map(|mesh| mesh.points.iter().map(|point| (mesh.elements, point)))
             .collect();
         points.sort_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds));
@@ -101,7 +101,7 @@ impl Meshes {
 
     /// Errors over the number of elements, one line a step or accuracy.
     pub fn errors(&self) -> Panel {
-        let mut paces: Vec<Pace> = Vec::new();
+        let mut paces: Vec<StudyPace> = Vec::new();
         for point in self.0.iter().flat_map(|mesh| &mesh.points) {
             if !paces.contains(&point.pace) {
                 paces.push(point.pace);

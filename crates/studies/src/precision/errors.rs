@@ -2,7 +2,7 @@
 
 use super::diagram::figure;
 use super::table::table;
-use super::{Columns, Compared, Found, Study, StudyError, Work, column};
+use super::{ColumnLookup, Compared, Found, Study, StudyError, WorkCounts, column};
 use plot::Figure;
 use serde::Serialize;
 
@@ -32,34 +32,34 @@ pub const NORMS: [Norm; 4] = [
 
 /// The reference of a study of errors.
 #[derive(Debug, Serialize)]
-pub struct Motion {
+pub struct MotionReference {
     /// Difference between the two runs of the reference: nothing below it is distinguished.
     pub floor: Errors,
     /// What the fine one recorded.
     #[serde(skip)]
-    exact: Series,
+    exact: RecordedSeries,
 }
 
 /// What a run that reached its end gave.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Measured {
+pub struct MeasuredRun {
     /// Against the reference.
     pub errors: Errors,
     /// Work done.
-    pub work: Work,
+    pub work: WorkCounts,
 }
 
-impl Compared for Motion {
-    type Kept = Series;
-    type Measured = Measured;
+impl Compared for MotionReference {
+    type Kept = RecordedSeries;
+    type Measured = MeasuredRun;
     const FIGURE: &str = "Work and precision";
 
-    fn keep(study: &Study, get: Columns) -> Result<Series, StudyError> {
+    fn keep(study: &Study, get: ColumnLookup) -> Result<RecordedSeries, StudyError> {
         let columns = |names: &[String]| {
             let columns = names.iter().map(|name| Ok(column(get, name)?.to_vec()));
             columns.collect::<Result<Vec<_>, StudyError>>()
         };
-        Ok(Series {
+        Ok(RecordedSeries {
             interval: study.interval,
             position: columns(&study.position)?,
             acceleration: columns(&study.acceleration)?,
@@ -68,30 +68,30 @@ impl Compared for Motion {
         })
     }
 
-    fn new(coarse: Series, fine: Series) -> Motion {
-        Motion {
+    fn new(coarse: RecordedSeries, fine: RecordedSeries) -> MotionReference {
+        MotionReference {
             floor: coarse.errors(&fine),
             exact: fine,
         }
     }
 
-    fn measure(&self, kept: Series, work: Work) -> Measured {
+    fn measure(&self, kept: RecordedSeries, work: WorkCounts) -> MeasuredRun {
         let errors = kept.errors(&self.exact);
-        Measured { errors, work }
+        MeasuredRun { errors, work }
     }
 
-    fn table(found: &Found<Motion>, _: &Study) -> String {
+    fn table(found: &Found<MotionReference>, _: &Study) -> String {
         table(found)
     }
 
-    fn figure(found: &Found<Motion>, study: &Study) -> Figure {
+    fn figure(found: &Found<MotionReference>, study: &Study) -> Figure {
         figure(study, found)
     }
 }
 
 /// What a run recorded of what is compared.
 #[derive(Debug)]
-pub struct Series {
+pub struct RecordedSeries {
     interval: f64,
     position: Vec<Vec<f64>>,
     acceleration: Vec<Vec<f64>>,
@@ -99,8 +99,8 @@ pub struct Series {
     energy: Vec<f64>,
 }
 
-impl Series {
-    fn errors(&self, exact: &Series) -> Errors {
+impl RecordedSeries {
+    fn errors(&self, exact: &RecordedSeries) -> Errors {
         Errors {
             position: largest(&self.position, &exact.position),
             acceleration: largest(&self.acceleration, &exact.acceleration),
@@ -110,7 +110,7 @@ impl Series {
     }
 
     /// By the trapezoidal rule between rows, the same for both.
-    fn largest_impulse(&self, exact: &Series) -> f64 {
+    fn largest_impulse(&self, exact: &RecordedSeries) -> f64 {
         let mut largest = 0.0;
         for (a, b) in self.force.iter().zip(&exact.force) {
             let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();

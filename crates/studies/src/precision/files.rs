@@ -10,7 +10,7 @@
 //! The first is the same bytes when the study is repeated. It comes last: without it there is no result. A result that is
 //! replaced stands in `previous-result` inside the folder until then.
 
-use super::{Compared, Found, Pace, Study, Timing};
+use super::{Compared, Found, RunTiming, Study, StudyPace};
 use crate::machine::Machine;
 use crate::{pictures, warning_list};
 use looselink::output::{Folder, OutputError, TIMING, json};
@@ -39,9 +39,9 @@ struct Times<'a> {
 #[derive(Debug, Serialize)]
 pub struct Time<'a> {
     curve: &'a str,
-    pace: Pace,
+    pace: StudyPace,
     /// Absent for a run that failed.
-    timing: Option<&'a Timing>,
+    timing: Option<&'a RunTiming>,
 }
 
 impl<C: Compared> Found<C> {

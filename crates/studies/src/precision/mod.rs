@@ -2,8 +2,8 @@
 //!
 //! A [`Study`] names a scene, channels, a reference and curves; [`Found::run`] makes all runs one after the other, each recorded
 //! once and then timed several times without recording. What it found is in [`Found::runs`] and does not differ when the study
-//! is repeated; what it took is in [`Found::timings`]. Short runs are compared in their [`Motion`], long ones in their
-//! [`Statistics`].
+//! is repeated; what it took is in [`Found::timings`]. Short runs are compared in their [`MotionReference`], long ones in their
+//! [`StatisticsReference`].
 
 mod diagram;
 mod elements;
@@ -13,11 +13,11 @@ mod statistics;
 mod study;
 mod table;
 
-pub use crate::machine::Timing;
-pub use errors::{Errors, Measured, Motion};
+pub use crate::machine::RunTiming;
+pub use errors::{Errors, MeasuredRun, MotionReference};
 pub use files::{FILES, Time};
-pub use statistics::{Measures, Statistics};
-pub use study::{Curve, Pace, Reference, Sampling, Study, StudyError};
+pub use statistics::{RunStatistics, StatisticsReference};
+pub use study::{ReferenceRuns, Sampling, Study, StudyCurve, StudyError, StudyPace};
 
 use crate::machine::count_instructions;
 use cpu_time::ThreadTime;
@@ -37,10 +37,10 @@ pub struct Effort {
 }
 
 /// What was recorded, by the names of channels.
-type Columns<'a> = &'a dyn Fn(&str) -> Option<&'a [f64]>;
+type ColumnLookup<'a> = &'a dyn Fn(&str) -> Option<&'a [f64]>;
 
 /// A recorded column.
-fn column<'a>(get: Columns<'a>, name: &str) -> Result<&'a [f64], StudyError> {
+fn column<'a>(get: ColumnLookup<'a>, name: &str) -> Result<&'a [f64], StudyError> {
     let missing = || StudyError::Plain(format!("the scene has no channel {name:?}"));
     get(name).ok_or_else(missing)
 }
@@ -58,13 +58,13 @@ pub trait Compared: Serialize + Sized {
     ///
     /// # Errors
     /// A channel that it does not have.
-    fn keep(study: &Study, get: Columns) -> Result<Self::Kept, StudyError>;
+    fn keep(study: &Study, get: ColumnLookup) -> Result<Self::Kept, StudyError>;
 
     /// From the coarse and the fine run of the reference.
     fn new(coarse: Self::Kept, fine: Self::Kept) -> Self;
 
     /// A run against the reference.
-    fn measure(&self, kept: Self::Kept, work: Work) -> Self::Measured;
+    fn measure(&self, kept: Self::Kept, work: WorkCounts) -> Self::Measured;
 
     /// What was found and what it took, a line a run, in Markdown.
     fn table(found: &Found<Self>, study: &Study) -> String;
@@ -84,37 +84,37 @@ pub struct Found<C: Compared> {
     /// Warnings of the two runs of the reference, coarse and fine.
     pub reference_warnings: [Vec<String>; 2],
     /// All points, curve by curve.
-    pub runs: Vec<Run<C::Measured>>,
+    pub runs: Vec<CurvePoint<C::Measured>>,
     /// Their times, in the same order.
     #[serde(skip)]
-    pub timings: Vec<Option<Timing>>,
+    pub timings: Vec<Option<RunTiming>>,
 }
 
 /// Errors of motions.
-pub type Outcome = Found<Motion>;
+pub type StudyOutcome = Found<MotionReference>;
 /// Statistics of long runs.
-pub type Survey = Found<Statistics>;
+pub type Survey = Found<StatisticsReference>;
 
 /// A run that reached its end.
 #[derive(Clone)]
-pub struct Made<'a> {
+pub struct CompletedRun<'a> {
     /// What it recorded, by the names of channels.
-    pub columns: Columns<'a>,
+    pub columns: ColumnLookup<'a>,
     /// Work done.
-    pub work: Work,
+    pub work: WorkCounts,
     /// What it warns of.
     pub warnings: Vec<String>,
     /// Its time.
-    pub timing: Timing,
+    pub timing: RunTiming,
 }
 
 /// One point of a curve.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Run<T> {
+pub struct CurvePoint<T> {
     /// Name of the curve.
     pub curve: String,
     /// Step or accuracy.
-    pub pace: Pace,
+    pub pace: StudyPace,
     /// What came of it.
     pub result: Result<T, String>,
     /// What a run that reached its end warns of.
@@ -124,7 +124,7 @@ pub struct Run<T> {
 /// Counts of work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[expect(missing_docs, reason = "the names are those of the report of a run")]
-pub struct Work {
+pub struct WorkCounts {
     pub steps: u64,
     pub rejected_steps: u64,
     pub location_trials: u64,
@@ -133,10 +133,10 @@ pub struct Work {
     pub onsets: u64,
 }
 
-impl Work {
-    fn of(report: &Report) -> Work {
+impl WorkCounts {
+    fn of(report: &Report) -> WorkCounts {
         let accuracy = report.accuracy.as_ref().map_or(0, |a| a.rejected_steps);
-        Work {
+        WorkCounts {
             steps: report.steps,
             rejected_steps: report.rejected_steps + accuracy,
             location_trials: report.location_trials,
@@ -182,9 +182,9 @@ impl<C: Compared> Found<C> {
                 let scene = study.scene(&curve.set, curve.elements, pace)?;
                 match record_and_time(&scene, effort.repeats) {
                     Ok((recording, report, timing)) => {
-                        let made = Made {
+                        let made = CompletedRun {
                             columns: &|name| recording.get(name),
-                            work: Work::of(&report),
+                            work: WorkCounts::of(&report),
                             warnings: warnings(&report, &name, tell),
                             timing,
                         };
@@ -205,8 +205,8 @@ impl<C: Compared> Found<C> {
         &mut self,
         study: &Study,
         curve: &str,
-        pace: Pace,
-        made: Result<Made, String>,
+        pace: StudyPace,
+        made: Result<CompletedRun, String>,
     ) -> Result<(), StudyError> {
         let (result, warnings, timing) = match made {
             Ok(made) => {
@@ -216,7 +216,7 @@ impl<C: Compared> Found<C> {
             }
             Err(error) => (Err(error), Vec::new(), None),
         };
-        self.runs.push(Run {
+        self.runs.push(CurvePoint {
             curve: curve.to_owned(),
             pace,
             result,
@@ -252,7 +252,7 @@ impl<C: Compared> Found<C> {
 /// One run of the reference, and its warnings.
 fn reference<C: Compared>(
     study: &Study,
-    pace: Pace,
+    pace: StudyPace,
     tell: &mut dyn FnMut(Notice),
 ) -> Result<(C::Kept, Vec<String>), StudyError> {
     let name = format!("reference, {pace}");
@@ -279,7 +279,7 @@ fn warnings(report: &Report, run: &str, tell: &mut dyn FnMut(Notice)) -> Vec<Str
 fn record_and_time(
     scene: &Scene,
     repeats: usize,
-) -> Result<(Recording, Report, Timing), Box<dyn Error>> {
+) -> Result<(Recording, Report, RunTiming), Box<dyn Error>> {
     let mut simulation = Simulation::new(scene)?;
     let mut recording = Recording::new(&simulation);
     simulation.run(&mut recording)?;
@@ -291,6 +291,6 @@ fn record_and_time(
         seconds.push(clock.elapsed().as_secs_f64());
         counts.push(instructions());
     }
-    let timing = Timing::of(seconds).with_instructions(&counts);
+    let timing = RunTiming::of(seconds).with_instructions(&counts);
     Ok((recording, simulation.report(), timing))
 }

@@ -5,14 +5,14 @@
 //! loses. The first two are compared with a reference, relative; the third too, as it is; the last with the one before it.
 
 use super::errors::larger;
-use super::{Columns, Compared, Run, Study, StudyError, Survey, Work, column};
+use super::{ColumnLookup, Compared, CurvePoint, Study, StudyError, Survey, WorkCounts, column};
 use numbers::{digits, percent, si};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 use serde::Serialize;
 
 /// Statistics of one run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Measures {
+pub struct RunStatistics {
     /// Largest magnitude of every position \[m\].
     pub envelope: Vec<f64>,
     /// Root mean square of the vector of positions \[m\].
@@ -27,18 +27,18 @@ pub struct Measures {
 
 /// The reference of a study of statistics.
 #[derive(Debug, Serialize)]
-pub struct Statistics {
+pub struct StatisticsReference {
     /// Its runs: coarse and fine.
     #[serde(rename = "reference")]
-    pub runs: [Measures; 2],
+    pub runs: [RunStatistics; 2],
 }
 
-impl Compared for Statistics {
-    type Kept = Measures;
-    type Measured = (Measures, Work);
+impl Compared for StatisticsReference {
+    type Kept = RunStatistics;
+    type Measured = (RunStatistics, WorkCounts);
     const FIGURE: &str = "Statistics";
 
-    fn keep(study: &Study, get: Columns) -> Result<Measures, StudyError> {
+    fn keep(study: &Study, get: ColumnLookup) -> Result<RunStatistics, StudyError> {
         let sampling = study.statistics.as_ref();
         let sampling = sampling.expect("a study of statistics says which");
         let first = (sampling.from / study.interval).round() as usize;
@@ -55,7 +55,7 @@ impl Compared for Statistics {
         let largest = |x: &&[f64]| x.iter().fold(0.0, |m, x| larger(m, *x));
         let squares = positions.iter().map(|x| mean(x, |x| x * x));
         let shares = contacts.iter().map(|x| mean(x, |x| x));
-        Ok(Measures {
+        Ok(RunStatistics {
             envelope: positions.iter().map(largest).collect(),
             rms: squares.sum::<f64>().sqrt(),
             contact: shares.sum::<f64>() / contacts.len() as f64,
@@ -64,13 +64,13 @@ impl Compared for Statistics {
         })
     }
 
-    fn new(coarse: Measures, fine: Measures) -> Statistics {
-        Statistics {
+    fn new(coarse: RunStatistics, fine: RunStatistics) -> StatisticsReference {
+        StatisticsReference {
             runs: [coarse, fine],
         }
     }
 
-    fn measure(&self, kept: Measures, work: Work) -> (Measures, Work) {
+    fn measure(&self, kept: RunStatistics, work: WorkCounts) -> (RunStatistics, WorkCounts) {
         (kept, work)
     }
 
@@ -117,8 +117,8 @@ impl Compared for Statistics {
         let dots = |curve: &str, color: Color, x: &[f64], y: &[f64]| {
             vec![Mark::points(curve, color, x, y, 9)]
         };
-        let panel = |title: &str, label: &str, of: &dyn Fn(&Measures) -> f64, bound: f64| {
-            let point = |i, run: &Run<(Measures, Work)>| {
+        let panel = |title: &str, label: &str, of: &dyn Fn(&RunStatistics) -> f64, bound: f64| {
+            let point = |i, run: &CurvePoint<(RunStatistics, WorkCounts)>| {
                 let (measures, _) = run.result.as_ref().ok()?;
                 Some((survey.seconds(i)? / duration, of(measures).abs()))
             };
@@ -133,11 +133,16 @@ impl Compared for Statistics {
             }
         };
         let [rough, exact] = &survey.reference.runs;
-        let deviation = |m: &Measures| m.deviation(exact);
-        let contact = |m: &Measures| m.contact - exact.contact;
+        let deviation = |m: &RunStatistics| m.deviation(exact);
+        let contact = |m: &RunStatistics| m.contact - exact.contact;
         let loss = "Energy lost by the integrator";
         let panels = vec![
-            panel(loss, "Over the contact dissipation", &Measures::loss, 0.05),
+            panel(
+                loss,
+                "Over the contact dissipation",
+                &RunStatistics::loss,
+                0.05,
+            ),
             panel("Envelopes and rms", "Largest deviation", &deviation, 0.01),
             panel("Share of time in contact", "Deviation", &contact, 0.03),
         ];
@@ -159,9 +164,9 @@ impl Compared for Statistics {
     }
 }
 
-impl Measures {
+impl RunStatistics {
     /// Largest deviation of the envelope and the rms, relative.
-    pub fn deviation(&self, exact: &Measures) -> f64 {
+    pub fn deviation(&self, exact: &RunStatistics) -> f64 {
         let pairs = self.envelope.iter().zip(&exact.envelope);
         let pairs = pairs.chain([(&self.rms, &exact.rms)]);
         pairs.fold(0.0, |m, (x, y)| larger(m, x / y - 1.0))
@@ -173,7 +178,7 @@ impl Measures {
     }
 
     /// Its part of a line of a table.
-    fn cells(&self, exact: &Measures) -> [String; 6] {
+    fn cells(&self, exact: &RunStatistics) -> [String; 6] {
         let envelope = self.envelope.iter().map(|e| si(*e, "m"));
         let (numerical, loss) = (si(self.numerical, "J"), percent(self.loss()));
         [

@@ -43,11 +43,11 @@ pub struct Study {
     #[serde(default)]
     pub force: Vec<String>,
     /// What the curves are compared with.
-    pub reference: Reference,
+    pub reference: ReferenceRuns,
     /// Present where not the motion is compared, which chaos has taken apart, but its statistics.
     pub statistics: Option<Sampling>,
     /// Methods with their steps or accuracies.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<StudyCurve>,
 }
 
 /// Which part of a run statistics are of.
@@ -63,7 +63,7 @@ pub struct Sampling {
 /// Two runs of a method that none of the curves depends on: the difference between them is the floor.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Reference {
+pub struct ReferenceRuns {
     /// Overrides that choose the method.
     pub set: Vec<String>,
     /// Elements of every flexible link; as in the scene unless given.
@@ -75,7 +75,7 @@ pub struct Reference {
 /// One curve.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Curve {
+pub struct StudyCurve {
     /// Its name in diagrams and tables.
     pub name: String,
     /// Overrides that choose the method, or change the mechanism.
@@ -98,7 +98,7 @@ pub struct Curve {
 /// What the steps of a run follow.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Pace {
+pub enum StudyPace {
     /// A step \[s\].
     Step(f64),
     /// An accuracy \[m\] over a horizon \[s\].
@@ -115,34 +115,34 @@ pub enum Pace {
     Tolerance(f64),
 }
 
-impl fmt::Display for Pace {
+impl fmt::Display for StudyPace {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Pace::Step(step) => write!(f, "step {}", numbers::si(*step, "s")),
-            Pace::Accuracy {
+            StudyPace::Step(step) => write!(f, "step {}", numbers::si(*step, "s")),
+            StudyPace::Accuracy {
                 position, energy, ..
             } => {
                 write!(f, "accuracy {}", numbers::si(*position, "m"))?;
                 energy.map_or(Ok(()), |e| write!(f, " and {}", numbers::si(e, "J")))
             }
-            Pace::Tolerance(relative) => write!(f, "tolerance {relative:e}"),
+            StudyPace::Tolerance(relative) => write!(f, "tolerance {relative:e}"),
         }
     }
 }
 
-impl Reference {
+impl ReferenceRuns {
     /// Coarse and fine.
-    pub fn paces(&self) -> [Pace; 2] {
-        self.steps.map(Pace::Step)
+    pub fn paces(&self) -> [StudyPace; 2] {
+        self.steps.map(StudyPace::Step)
     }
 }
 
-impl Curve {
+impl StudyCurve {
     /// Its points.
-    pub fn paces(&self) -> Vec<Pace> {
-        let steps = self.steps.iter().map(|h| Pace::Step(*h));
+    pub fn paces(&self) -> Vec<StudyPace> {
+        let steps = self.steps.iter().map(|h| StudyPace::Step(*h));
         let horizon = self.horizon.unwrap_or(f64::NAN);
-        let accuracies = self.accuracies.iter().map(|position| Pace::Accuracy {
+        let accuracies = self.accuracies.iter().map(|position| StudyPace::Accuracy {
             position: *position,
             energy: self.energy,
             horizon,
@@ -238,7 +238,7 @@ impl Study {
         &self,
         set: &[String],
         elements: Option<usize>,
-        pace: Pace,
+        pace: StudyPace,
     ) -> Result<Scene, SceneError> {
         let mut channels = [&self.position[..], &self.acceleration, &self.force].concat();
         if let Some(statistics) = &self.statistics {
@@ -260,8 +260,8 @@ impl Study {
             format!("output.interval={:?}", self.interval),
             format!("output.channels={channels:?}"),
             match pace {
-                Pace::Step(step) => format!("integrator.step={step:?}"),
-                Pace::Accuracy {
+                StudyPace::Step(step) => format!("integrator.step={step:?}"),
+                StudyPace::Accuracy {
                     position,
                     energy,
                     horizon,
@@ -269,7 +269,7 @@ impl Study {
                     let energy = energy.map_or(String::new(), |e| format!("energy = {e:?}, "));
                     format!("integrator.accuracy={{ position = {position:?}, {energy}horizon = {horizon:?} }}")
                 }
-                Pace::Tolerance(_) => unreachable!("curves of a study have steps or accuracies"),
+                StudyPace::Tolerance(_) => unreachable!("curves of a study have steps or accuracies"),
             },
         ]);
         Scene::load(&self.scene, &overrides)

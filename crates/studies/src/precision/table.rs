@@ -1,7 +1,7 @@
 //! A study as a table in Markdown: what was found, and what it took.
 
 use super::errors::NORMS;
-use super::{Compared, Errors, Found, Outcome, Pace, Timing};
+use super::{Compared, Errors, Found, RunTiming, StudyOutcome, StudyPace};
 use numbers::{digits, si};
 
 impl<C: Compared> Found<C> {
@@ -10,7 +10,7 @@ impl<C: Compared> Found<C> {
     pub(super) fn tabulate(
         &self,
         heads: &[&str],
-        cells: impl Fn(Pace, &C::Measured, &Timing) -> Vec<String>,
+        cells: impl Fn(StudyPace, &C::Measured, &RunTiming) -> Vec<String>,
         reference: impl IntoIterator<Item = Vec<String>>,
     ) -> String {
         let heads = [&["method", "step or accuracy"], heads].concat();
@@ -37,8 +37,8 @@ impl<C: Compared> Found<C> {
 }
 
 /// Errors, times and work of all runs.
-pub(super) fn table(outcome: &Outcome) -> String {
-    let counted = |timing: &Timing| timing.instructions.is_some();
+pub(super) fn table(outcome: &StudyOutcome) -> String {
+    let counted = |timing: &RunTiming| timing.instructions.is_some();
     let counted = outcome.timings.iter().flatten().any(counted);
     let mut heads = vec![
         "position",
@@ -70,8 +70,8 @@ pub(super) fn table(outcome: &Outcome) -> String {
         |pace, measured, timing| {
             let [position, acceleration, impulse, energy] = norms(&measured.errors);
             let asked = match pace {
-                Pace::Step(_) | Pace::Tolerance(_) => String::new(),
-                Pace::Accuracy { position, .. } => digits(measured.errors.position / position),
+                StudyPace::Step(_) | StudyPace::Tolerance(_) => String::new(),
+                StudyPace::Accuracy { position, .. } => digits(measured.errors.position / position),
             };
             let work = measured.work;
             let mut cells = vec![

@@ -3,10 +3,10 @@
 //! without any of them noticing.
 
 use clap::Parser;
-use ladder::constants::{Number, Record, path};
-use ladder::seeded::Copy;
+use ladder::constants::{ConstantsRecord, Number, path};
+use ladder::seeded::WorkspaceCopy;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use records::Run;
+use records::RunningCampaign;
 use std::fs;
 
 /// The property tests.
@@ -20,7 +20,7 @@ const TESTS: [&str; 3] = [
 const CHANGE: f64 = 1e-6;
 
 /// Numbers that stand between two texts of a file, with commas between them.
-struct Table {
+struct NumberTable {
     name: &'static str,
     file: &'static str,
     begins: &'static str,
@@ -30,8 +30,8 @@ struct Table {
 }
 
 /// The literal route has no numbers of its own: its 64 matrices come from the points and weights of quadrature.
-const TABLES: [Table; 5] = [
-    Table {
+const TABLES: [NumberTable; 5] = [
+    NumberTable {
         name: "tensor",
         file: "src/link/ancf_cable.rs",
         begins: "const T: [[f64; 6]; 6] = [",
@@ -39,7 +39,7 @@ const TABLES: [Table; 5] = [
         count: 36,
         largest: 72.0 / 35.0,
     },
-    Table {
+    NumberTable {
         name: "bending",
         file: "src/link/ancf_cable.rs",
         begins: "const B: [[f64; 3]; 3] = [",
@@ -47,7 +47,7 @@ const TABLES: [Table; 5] = [
         count: 9,
         largest: 12.0,
     },
-    Table {
+    NumberTable {
         name: "mass",
         file: "src/link/ancf_cable.rs",
         begins: "const MASS: [f64; 10] = [",
@@ -55,7 +55,7 @@ const TABLES: [Table; 5] = [
         count: 10,
         largest: 156.0,
     },
-    Table {
+    NumberTable {
         name: "weights of Bathe's scheme",
         file: "src/stepper/bathe.rs",
         begins: "let weights = [",
@@ -64,7 +64,7 @@ const TABLES: [Table; 5] = [
         // all three, for gamma = 1/2
         largest: 1.0 / 3.0,
     },
-    Table {
+    NumberTable {
         name: "quadrature of the Gauss and the literal route",
         file: "src/math/quadrature.rs",
         begins: "pub const GAUSS5: [(f64, f64); 5] = [",
@@ -74,7 +74,7 @@ const TABLES: [Table; 5] = [
     },
 ];
 
-impl Table {
+impl NumberTable {
     /// Every number as the file has it, and the text of the file with that number changed.
     fn changed(&self, text: &str) -> Result<Vec<(String, String)>> {
         let begin = text.find(self.begins).map(|at| at + self.begins.len());
@@ -118,8 +118,8 @@ struct Arguments {
 
 fn main() -> Result<()> {
     let only = Arguments::parse().only.unwrap_or_default();
-    let run = Run::begin("constants")?;
-    let copy = Copy::new("constants")?;
+    let campaign = RunningCampaign::begin("constants")?;
+    let copy = WorkspaceCopy::new("constants")?;
     let tests = || copy.failing(&["--profile", "mutants", "--test", "kernels"], &TESTS);
     let sound = tests()?;
     if !sound.is_empty() {
@@ -131,7 +131,7 @@ fn main() -> Result<()> {
         // all tables first: a table that is not found fails at once
         changed.push((table, table.changed(&text)?));
     }
-    let known = Record::load().map_or(Vec::new(), |record| record.numbers);
+    let known = ConstantsRecord::load().map_or(Vec::new(), |record| record.numbers);
     let mut numbers = Vec::new();
     for (table, changed) in changed {
         if !table.name.contains(&only) {
@@ -159,7 +159,7 @@ fn main() -> Result<()> {
     }
     let survived = numbers.iter().filter(|n| n.caught_by.is_empty()).count();
     let all = numbers.len();
-    let record = Record {
+    let record = ConstantsRecord {
         change: CHANGE,
         tests: TESTS.map(str::to_owned).to_vec(),
         numbers,
@@ -167,7 +167,7 @@ fn main() -> Result<()> {
     let text = serde_json::to_string_pretty(&record).into_diagnostic()?;
     fs::write(path(), text + "\n").into_diagnostic()?;
     if only.is_empty() {
-        run.finish()?;
+        campaign.finish()?;
     }
     println!("{} of {all} numbers caught", all - survived);
     match survived {
@@ -178,14 +178,14 @@ fn main() -> Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use super::{CHANGE, Record, TABLES, TESTS};
+    use super::{CHANGE, ConstantsRecord, TABLES, TESTS};
     use records::root;
     use std::fs;
 
     /// The record is that of the numbers in the code, by the tests of today, and every one was caught.
     #[test]
     fn every_number_is_on_record_as_caught() {
-        let record = Record::load().unwrap();
+        let record = ConstantsRecord::load().unwrap();
         assert_eq!((record.change, record.tests.len()), (CHANGE, TESTS.len()));
         assert!(
             TESTS

@@ -1,10 +1,10 @@
 //! Applies every seeded fault and every variant to a copy of the workspace, one at a time, and reports which tests fail.
 
 use clap::Parser;
-use ladder::faults::{Fault, List, Outcome, list, outcomes as known};
-use ladder::seeded::Copy;
+use ladder::faults::{Fault, FaultOutcome, List, list, outcomes as known};
+use ladder::seeded::WorkspaceCopy;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use records::{Run, root};
+use records::{RunningCampaign, root};
 use std::fs;
 
 /// Tests that take seconds, and those that take a minute and are asked only when the first catch nothing.
@@ -29,16 +29,16 @@ struct Arguments {
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
     // some faults run again say nothing of the others
-    let run = match arguments.only {
+    let campaign = match arguments.only {
         Some(_) => None,
-        None => Some(Run::begin("faults")?),
+        None => Some(RunningCampaign::begin("faults")?),
     };
     let list = list()?;
     let chosen = |fault: &&Fault| {
         let only = arguments.only.as_ref();
         only.is_none_or(|text| fault.name.contains(text.as_str()))
     };
-    let copy = Copy::new("faults")?;
+    let copy = WorkspaceCopy::new("faults")?;
     let sound = tests(&copy, STAGES[0])?;
     if !sound.is_empty() {
         return Err(miette!(
@@ -63,8 +63,8 @@ fn main() -> Result<()> {
         outcomes.push(outcome);
     }
     keep(&list, outcomes)?;
-    if let Some(run) = run {
-        run.finish()?;
+    if let Some(campaign) = campaign {
+        campaign.finish()?;
     }
     match wrong {
         0 => Ok(()),
@@ -75,19 +75,19 @@ fn main() -> Result<()> {
 }
 
 /// Writes the outcomes, those of faults that were not run from the run before.
-fn keep(list: &List, fresh: Vec<Outcome>) -> Result<()> {
+fn keep(list: &List, fresh: Vec<FaultOutcome>) -> Result<()> {
     let before = known().unwrap_or_default();
     let find = |fault: &Fault| {
         let all = fresh.iter().chain(&before);
         all.into_iter().find(|o| o.name == fault.name)
     };
-    let outcomes: Vec<&Outcome> = list.all().filter_map(find).collect();
+    let outcomes: Vec<&FaultOutcome> = list.all().filter_map(find).collect();
     let text = serde_json::to_string_pretty(&outcomes).into_diagnostic()?;
     fs::write(root().join("verify/faults.json"), text + "\n").into_diagnostic()
 }
 
 /// Puts a fault in, asks the tests, takes it out.
-fn seed(copy: &Copy, fault: &Fault) -> Result<Outcome> {
+fn seed(copy: &WorkspaceCopy, fault: &Fault) -> Result<FaultOutcome> {
     let text = fault.applied(&copy.tree())?;
     let caught_by = copy.with(&fault.file, &text, || {
         if fault.is_variant() {
@@ -101,14 +101,14 @@ fn seed(copy: &Copy, fault: &Fault) -> Result<Outcome> {
             Ok(quick)
         }
     });
-    Ok(Outcome {
+    Ok(FaultOutcome {
         name: fault.name.clone(),
         caught_by: caught_by.wrap_err_with(|| fault.name.clone())?,
     })
 }
 
 /// Names of the tests that fail.
-fn tests(copy: &Copy, filters: &[&str]) -> Result<Vec<String>> {
+fn tests(copy: &WorkspaceCopy, filters: &[&str]) -> Result<Vec<String>> {
     copy.failing(
         &["--release", "-p", "verify", "--test", "agreement"],
         filters,

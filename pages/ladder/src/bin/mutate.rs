@@ -5,13 +5,13 @@
 //! `cargo run --release -p ladder -- --from target/ladder` then brings the page up to date.
 
 use clap::Parser;
-use ladder::mutants::{Counts, Record, Scope, reasons};
-use ladder::seeded::Copy;
+use ladder::mutants::{MutantCounts, MutationRecord, Scope, reasons};
+use ladder::seeded::WorkspaceCopy;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
-use records::{Digests, Run, digests, root};
+use records::{Digests, RunningCampaign, digests, root};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
@@ -40,25 +40,25 @@ struct Arguments {
 
 /// What has a verdict so far.
 #[derive(Serialize, Deserialize)]
-struct Progress {
+struct MutationProgress {
     /// Of what the record depends on, when the draw was made.
     sources: Digests,
     drawn: Vec<String>,
     done: usize,
-    record: Record,
+    record: MutationRecord,
 }
 
 /// `outcomes.json` of cargo-mutants, as far as it is read here.
 #[derive(Deserialize)]
 struct Outcomes {
-    outcomes: Vec<Outcome>,
+    outcomes: Vec<MutantOutcome>,
     cargo_mutants_version: String,
 }
 
 #[derive(Deserialize)]
-struct Outcome {
+struct MutantOutcome {
     scenario: Scenario,
-    summary: Summary,
+    summary: MutantSummary,
 }
 
 #[derive(Deserialize)]
@@ -68,7 +68,7 @@ enum Scenario {
 }
 
 #[derive(Deserialize)]
-enum Summary {
+enum MutantSummary {
     Success,
     CaughtMutant,
     MissedMutant,
@@ -81,13 +81,16 @@ fn main() -> Result<()> {
     let arguments = Arguments::parse();
     let scope = arguments.scope;
     // what is only revised keeps the digests of the run that it revises
-    let run = match arguments.again {
+    let campaign = match arguments.again {
         true => None,
-        false => Some(Run::begin(scope.name())?),
+        false => Some(RunningCampaign::begin(scope.name())?),
     };
-    let copy = Copy::new("mutation")?;
+    let copy = WorkspaceCopy::new("mutation")?;
     let all = list(scope, &copy.tree())?;
-    let before = arguments.again.then(|| Record::read(scope)).transpose()?;
+    let before = arguments
+        .again
+        .then(|| MutationRecord::read(scope))
+        .transpose()?;
     let drawn = match &before {
         Some(before) => {
             let reasons = reasons()?;
@@ -105,11 +108,11 @@ fn main() -> Result<()> {
     if let Some(gone) = drawn.iter().find(|name| !all.contains(name)) {
         return Err(miette!("{gone} is of another version of the code"));
     }
-    let fresh = Progress {
+    let fresh = MutationProgress {
         sources: digests(&root(), scope.name())?,
         drawn,
         done: 0,
-        record: Record {
+        record: MutationRecord {
             seed: arguments.seed,
             possible: all.len(),
             tool: String::new(),
@@ -125,8 +128,8 @@ fn main() -> Result<()> {
     };
     let text = serde_json::to_string_pretty(&record).into_diagnostic()?;
     fs::write(scope.path(), text + "\n").into_diagnostic()?;
-    if let Some(run) = run {
-        run.finish()?;
+    if let Some(campaign) = campaign {
+        campaign.finish()?;
     }
     let total = record.total();
     println!("{:.1} % caught of {total:?}", 100.0 * record.caught());
@@ -134,11 +137,11 @@ fn main() -> Result<()> {
 }
 
 /// Tries the mutants part by part, after those that an interrupted run has tried.
-fn complete(scope: Scope, copy: &Copy, fresh: Progress) -> Result<Record> {
+fn complete(scope: Scope, copy: &WorkspaceCopy, fresh: MutationProgress) -> Result<MutationRecord> {
     let path = root().join(format!("target/{}-progress.json", scope.name()));
     let kept = fs::read_to_string(&path).ok();
-    let kept = kept.and_then(|text| serde_json::from_str::<Progress>(&text).ok());
-    let same = |kept: &Progress| kept.sources == fresh.sources && kept.drawn == fresh.drawn;
+    let kept = kept.and_then(|text| serde_json::from_str::<MutationProgress>(&text).ok());
+    let same = |kept: &MutationProgress| kept.sources == fresh.sources && kept.drawn == fresh.drawn;
     let mut progress = kept.filter(same).unwrap_or(fresh);
     while progress.done < progress.drawn.len() {
         let end = progress.drawn.len().min(progress.done + PART);
@@ -164,7 +167,7 @@ fn complete(scope: Scope, copy: &Copy, fresh: Progress) -> Result<Record> {
 }
 
 /// Has cargo-mutants try these mutants in the copy.
-fn test(scope: Scope, copy: &Copy, drawn: &[String]) -> Result<Outcomes> {
+fn test(scope: Scope, copy: &WorkspaceCopy, drawn: &[String]) -> Result<Outcomes> {
     let output = root().join("target/mutation");
     let mut command = Command::new("cargo");
     command.arg("mutants").current_dir(copy.tree());
@@ -204,7 +207,7 @@ fn list(scope: Scope, tree: &Path) -> Result<Vec<String>> {
 }
 
 /// Adds the verdicts on the mutants that were drawn.
-fn count(record: &mut Record, drawn: &[String], outcomes: Outcomes) -> Result<()> {
+fn count(record: &mut MutationRecord, drawn: &[String], outcomes: Outcomes) -> Result<()> {
     record.tool = format!("cargo-mutants {}", outcomes.cargo_mutants_version);
     for outcome in outcomes.outcomes {
         let Scenario::Mutant { name } = outcome.scenario else {
@@ -215,16 +218,16 @@ fn count(record: &mut Record, drawn: &[String], outcomes: Outcomes) -> Result<()
             continue;
         }
         let file = name.split(':').next().unwrap_or(&name).to_owned();
-        let counts: &mut Counts = record.files.entry(file).or_default();
+        let counts: &mut MutantCounts = record.files.entry(file).or_default();
         match outcome.summary {
-            Summary::CaughtMutant => counts.caught += 1,
-            Summary::Timeout => counts.timeout += 1,
-            Summary::Unviable => counts.unviable += 1,
-            Summary::MissedMutant => {
+            MutantSummary::CaughtMutant => counts.caught += 1,
+            MutantSummary::Timeout => counts.timeout += 1,
+            MutantSummary::Unviable => counts.unviable += 1,
+            MutantSummary::MissedMutant => {
                 counts.survived += 1;
                 record.survivors.push(name);
             }
-            Summary::Success | Summary::Failure => {
+            MutantSummary::Success | MutantSummary::Failure => {
                 return Err(miette!("cargo-mutants has no verdict on {name}"));
             }
         }

@@ -78,7 +78,7 @@ impl Check {
 
 /// A hard case.
 #[derive(Debug, Clone, Copy)]
-pub struct Case {
+pub struct HardCase {
     /// Its number on the page.
     pub number: usize,
     /// What is hard about it.
@@ -90,35 +90,36 @@ pub struct Case {
 }
 
 /// All of them.
-pub const CASES: [Case; 15] = [
-    Case::new(1, "Stiff springs and trusses", schemes::stiff_springs).with(long::revolutions),
-    Case::new(2, "Spring from 1e3 to 1e12 N/m", schemes::three_springs),
-    Case::new(3, "Flexible link spinning free", flexible::spinning_link).with(long::spinning_link),
-    Case::new(4, "Clearance from 1 mm to 1 nm", clearance::limit),
-    Case::new(5, "Restitution and contact stiffness", contact::restitution),
-    Case::new(
+pub const CASES: [HardCase; 15] = [
+    HardCase::new(1, "Stiff springs and trusses", schemes::stiff_springs).with(long::revolutions),
+    HardCase::new(2, "Spring from 1e3 to 1e12 N/m", schemes::three_springs),
+    HardCase::new(3, "Flexible link spinning free", flexible::spinning_link)
+        .with(long::spinning_link),
+    HardCase::new(4, "Clearance from 1 mm to 1 nm", clearance::limit),
+    HardCase::new(5, "Restitution and contact stiffness", contact::restitution),
+    HardCase::new(
         6,
         "Young's modulus to the rigid limit",
         flexible::rigid_limit,
     ),
-    Case::new(7, "Platform from 1 g to 10 t", flexible::platform_mass),
-    Case::new(
+    HardCase::new(7, "Platform from 1 g to 10 t", flexible::platform_mass),
+    HardCase::new(
         8,
         "Grazing, resting, chattering, six at once",
         contact::onsets,
     ),
-    Case::new(9, "Stick and slip", contact::stick_slip),
-    Case::new(10, "Singular poses", rigid::singular_poses),
-    Case::new(11, "50,000 rpm", contact::speed),
-    Case::new(12, "256 elements, slenderness 1e4", flexible::elements),
-    Case::new(13, "Steps 10 and 100 times too long", shipped::long_steps),
-    Case::new(14, "Redundant constraints", rigid::redundant),
-    Case::new(15, "Ten million steps", long::shorter).with(long::ten_million_steps),
+    HardCase::new(9, "Stick and slip", contact::stick_slip),
+    HardCase::new(10, "Singular poses", rigid::singular_poses),
+    HardCase::new(11, "50,000 rpm", contact::speed),
+    HardCase::new(12, "256 elements, slenderness 1e4", flexible::elements),
+    HardCase::new(13, "Steps 10 and 100 times too long", shipped::long_steps),
+    HardCase::new(14, "Redundant constraints", rigid::redundant),
+    HardCase::new(15, "Ten million steps", long::shorter).with(long::ten_million_steps),
 ];
 
-impl Case {
-    const fn new(number: usize, title: &'static str, checks: fn() -> Vec<Check>) -> Case {
-        Case {
+impl HardCase {
+    const fn new(number: usize, title: &'static str, checks: fn() -> Vec<Check>) -> HardCase {
+        HardCase {
             number,
             title,
             checks,
@@ -126,8 +127,8 @@ impl Case {
         }
     }
 
-    const fn with(self, long: fn() -> Vec<Check>) -> Case {
-        Case {
+    const fn with(self, long: fn() -> Vec<Check>) -> HardCase {
+        HardCase {
             long: Some(long),
             ..self
         }

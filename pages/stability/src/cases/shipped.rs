@@ -2,7 +2,7 @@
 
 use super::{Check, largest};
 use crate::map::difference;
-use crate::outcome::{Outcome, Stopped, judge, judge_stop, record};
+use crate::outcome::{OutcomeClass, Stopped, judge, judge_stop, record};
 use looselink::scene::{Analysis, Scene};
 use looselink::simulate::Recording;
 use std::path::{Path, PathBuf};
@@ -46,7 +46,7 @@ pub(super) fn long_steps() -> Vec<Check> {
         &mut found,
     );
     found.sort();
-    let mut counts = [0_usize; Outcome::ALL.len()];
+    let mut counts = [0_usize; OutcomeClass::ALL.len()];
     for path in &found {
         let scene = Scene::load(path, &[]).expect("a scene of the project");
         let Some(step) = scene.integrator.step() else {
@@ -72,9 +72,9 @@ pub(super) fn long_steps() -> Vec<Check> {
                     judge(error, 0.01 * range, UNSAID * range, &report)
                 }
                 Ok(Err(stopped)) => judge_stop(&stopped),
-                Err(_) => Outcome::Refused,
+                Err(_) => OutcomeClass::Refused,
             };
-            let place = Outcome::ALL
+            let place = OutcomeClass::ALL
                 .iter()
                 .position(|o| *o == outcome)
                 .expect("listed");
@@ -82,7 +82,7 @@ pub(super) fn long_steps() -> Vec<Check> {
         }
     }
     let runs: usize = counts.iter().sum();
-    let named = Outcome::ALL
+    let named = OutcomeClass::ALL
         .iter()
         .zip(counts)
         .map(|(o, n)| format!("{n} {}", o.name()));
@@ -92,7 +92,7 @@ pub(super) fn long_steps() -> Vec<Check> {
                 "Every dynamic scene with 10 and 100 times its step ({}): silent runs",
                 named.collect::<Vec<String>>().join(", ")
             ),
-            counts[Outcome::ALL.len() - 1] as f64,
+            counts[OutcomeClass::ALL.len() - 1] as f64,
             0.0,
         ),
         Check::new("The same: number of runs", runs as f64, 40.0..=f64::MAX),

@@ -1,12 +1,14 @@
 //! What acts on a mechanism: contacts, drives, springs, loads.
 
 use super::genes::Tape;
-use super::mechanism::{Form, Kind, Mechanism, Pin, Point, Topology, add, norm, scale, sub};
+use super::mechanism::{
+    Form, HingeKind, PinRef, PlanePoint, RandomMechanism, Topology, add, norm, scale, sub,
+};
 use super::text::{Scales, joint_name, member_name, point_name};
 use looselink::contact::normal::LAWS;
 
 /// The contact of a loose joint.
-pub struct Contact {
+pub struct RandomContact {
     /// Its table.
     pub text: String,
     /// Clearance \[m\].
@@ -19,7 +21,7 @@ pub fn contact(
     index: usize,
     scales: &Scales,
     features: &mut Vec<&'static str>,
-) -> Contact {
+) -> RandomContact {
     let clearance = scales.length * tape.decades(-4.0, -2.0);
     let radius = clearance * tape.decades(0.5, 2.0);
     let law = tape.pick(&LAWS);
@@ -52,14 +54,14 @@ pub fn contact(
             v0 * v1
         );
     }
-    Contact {
+    RandomContact {
         text: text + "\n",
         clearance,
     }
 }
 
 /// A function of time, as it is written.
-struct Function {
+struct RandomFunction {
     text: String,
     /// Whether its rate at t = 0 is not zero.
     moving: bool,
@@ -67,7 +69,13 @@ struct Function {
 
 /// A function with this value at t = 0 that changes by about `amount` within the time of the scales; smooth where a motion
 /// follows it.
-fn function(tape: &mut Tape, start: f64, amount: f64, scales: &Scales, smooth: bool) -> Function {
+fn function(
+    tape: &mut Tape,
+    start: f64,
+    amount: f64,
+    scales: &Scales,
+    smooth: bool,
+) -> RandomFunction {
     let (t, end) = (scales.time, scales.duration);
     let kind = tape.pick(&[
         "number",
@@ -114,14 +122,14 @@ fn function(tape: &mut Tape, start: f64, amount: f64, scales: &Scales, smooth: b
         ),
         _ => format!("{start:?}"),
     };
-    Function {
+    RandomFunction {
         text,
         moving: matches!(kind, "polynomial" | "harmonic" | "table"),
     }
 }
 
 /// A prescribed motion.
-pub struct Drive {
+pub struct RandomDrive {
     /// Its tables.
     pub text: String,
     /// What it is, for tallies.
@@ -135,7 +143,7 @@ pub struct Drive {
 }
 
 /// A drive, or none.
-pub fn drive(tape: &mut Tape, m: &Mechanism, scales: &Scales) -> Option<Drive> {
+pub fn drive(tape: &mut Tape, m: &RandomMechanism, scales: &Scales) -> Option<RandomDrive> {
     let (wanted, direct) = (tape.chance(0.35), !tape.chance(0.5));
     if !wanted {
         return None;
@@ -143,7 +151,7 @@ pub fn drive(tape: &mut Tape, m: &Mechanism, scales: &Scales) -> Option<Drive> {
     if m.topology == Topology::Parallel && !direct {
         return follow(tape, m, scales);
     }
-    let turning = |h: &usize| matches!(m.hinges[*h].kind, Kind::Ideal | Kind::Loose);
+    let turning = |h: &usize| matches!(m.hinges[*h].kind, HingeKind::Ideal | HingeKind::Loose);
     let with_angle = |h: &usize| {
         let hinge = &m.hinges[*h];
         [hinge.first, hinge.second]
@@ -159,18 +167,18 @@ pub fn drive(tape: &mut Tape, m: &Mechanism, scales: &Scales) -> Option<Drive> {
     let other = choices[tape.whole(0, choices.len() - 1)];
     let j = if inner { other } else { first };
     let hinge = &m.hinges[j];
-    let theta = |pin: Pin| m.members[pin.member].theta;
+    let theta = |pin: PinRef| m.members[pin.member].theta;
     let angle = theta(hinge.second) - theta(hinge.first);
     let amount = tape.signed_decades(-1.0, 0.5);
     let function = function(tape, angle, amount, scales, true);
     let mut moves = Vec::new();
     for (pin, other) in [(hinge.second, hinge.first), (hinge.first, hinge.second)] {
         let stiff = matches!(m.members[pin.member].form, Form::Rigid | Form::Body { .. });
-        if hinge.kind == Kind::Ideal && other.member == 0 && stiff {
+        if hinge.kind == HingeKind::Ideal && other.member == 0 && stiff {
             moves.push(pin.member);
         }
     }
-    Some(Drive {
+    Some(RandomDrive {
         text: format!(
             "[drives.drive1]\ntype = \"angle\"\njoint = {:?}\nangle = {}\n\n",
             joint_name(j),
@@ -184,9 +192,9 @@ pub fn drive(tape: &mut Tape, m: &Mechanism, scales: &Scales) -> Option<Drive> {
 }
 
 /// The platform of a parallel mechanism follows a path by its three cranks.
-fn follow(tape: &mut Tape, m: &Mechanism, scales: &Scales) -> Option<Drive> {
+fn follow(tape: &mut Tape, m: &RandomMechanism, scales: &Scales) -> Option<RandomDrive> {
     let cranks_fit = (0..3).all(|h| {
-        m.hinges[h].kind == Kind::Ideal
+        m.hinges[h].kind == HingeKind::Ideal
             && [m.hinges[h].first, m.hinges[h].second]
                 .iter()
                 .all(|p| !matches!(m.members[p.member].form, Form::Flexible { .. }))
@@ -224,7 +232,7 @@ fn follow(tape: &mut Tape, m: &Mechanism, scales: &Scales) -> Option<Drive> {
         )
     };
     let joints = [0, 1, 2].map(joint_name);
-    Some(Drive {
+    Some(RandomDrive {
         text: format!(
             "[drives.drive1]\ntype = \"inverse_kinematics\"\njoints = {joints:?}\nbody = {:?}\npath = {path}\n\n",
             member_name(platform)
@@ -237,7 +245,7 @@ fn follow(tape: &mut Tape, m: &Mechanism, scales: &Scales) -> Option<Drive> {
 }
 
 /// A spring or a load.
-pub struct PlacedForce {
+pub struct RandomForce {
     /// Its table.
     pub text: String,
     /// What it is, for tallies.
@@ -245,7 +253,7 @@ pub struct PlacedForce {
 }
 
 /// Springs and loads; anchors of springs become points of the ground.
-pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<PlacedForce> {
+pub fn forces(tape: &mut Tape, m: &mut RandomMechanism, scales: &Scales) -> Vec<RandomForce> {
     let mut forces = Vec::new();
     let mut name = 0;
     let mut named = |body: &str| {
@@ -259,19 +267,19 @@ pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<Placed
     for k in 0..springs {
         let mut tape = tape.part(10);
         let to = match m.topology {
-            Topology::Masses => Pin {
+            Topology::Masses => PinRef {
                 member: k + 1,
                 pin: 0,
             },
             _ => random_pin(&mut tape, m),
         };
         let from = match m.topology {
-            Topology::Masses => Pin { member: k, pin: 0 },
+            Topology::Masses => PinRef { member: k, pin: 0 },
             _ => {
                 let off = tape.vector(-0.5, 0.0);
                 let at = add(at(m, to), scale(scales.length, off));
                 m.members[0].pins.push(at);
-                Pin {
+                PinRef {
                     member: 0,
                     pin: m.members[0].pins.len() - 1,
                 }
@@ -291,7 +299,7 @@ pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<Placed
         } else {
             distance * tape.between(0.7, 1.3)
         };
-        forces.push(PlacedForce {
+        forces.push(RandomForce {
             text: named(&format!(
                 "type = \"spring_damper\"\nfrom = {:?}\nto = {:?}\nstiffness = {stiffness:?}\ndamping = {damping:?}\nrest_length = {rest:?}",
                 point_name(m, from),
@@ -301,10 +309,12 @@ pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<Placed
         });
     }
     let (coil, load, motor) = (tape.chance(0.2), tape.chance(0.25), tape.chance(0.2));
-    let turns = |pin: Pin| m.members[pin.member].form != Form::Mass;
+    let turns = |pin: PinRef| m.members[pin.member].form != Form::Mass;
     if coil
         && let Some(j) = m.hinges.iter().position(|h| {
-            matches!(h.kind, Kind::Ideal | Kind::Loose) && turns(h.first) && turns(h.second)
+            matches!(h.kind, HingeKind::Ideal | HingeKind::Loose)
+                && turns(h.first)
+                && turns(h.second)
         })
     {
         let hinge = &m.hinges[j];
@@ -315,7 +325,7 @@ pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<Placed
             size * scales.time * tape.decades(-3.0, 0.0),
         );
         let rest = angle + tape.between(-1.0, 1.0);
-        forces.push(PlacedForce {
+        forces.push(RandomForce {
             text: named(&format!(
                 "type = \"torsion_spring\"\njoint = {:?}\nstiffness = {stiffness:?}\ndamping = {damping:?}\nrest_angle = {rest:?}",
                 joint_name(j)
@@ -331,7 +341,7 @@ pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<Placed
             function(tape, 0.3 * size, size, scales, false).text
         });
         let frame = if body { "body" } else { "ground" };
-        forces.push(PlacedForce {
+        forces.push(RandomForce {
             text: named(&format!(
                 "type = \"force\"\npoint = {:?}\nx = {x}\ny = {y}\nframe = {frame:?}",
                 point_name(m, pin)
@@ -344,7 +354,7 @@ pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<Placed
         let size = scales.force() * scales.length * tape.signed_decades(-2.0, 1.0);
         let value = function(tape, 0.3 * size, size, scales, false).text;
         if turns(pin) {
-            forces.push(PlacedForce {
+            forces.push(RandomForce {
                 text: named(&format!(
                     "type = \"torque\"\npoint = {:?}\nvalue = {value}",
                     point_name(m, pin)
@@ -356,13 +366,13 @@ pub fn forces(tape: &mut Tape, m: &mut Mechanism, scales: &Scales) -> Vec<Placed
     forces
 }
 
-fn at(m: &Mechanism, pin: Pin) -> Point {
+fn at(m: &RandomMechanism, pin: PinRef) -> PlanePoint {
     m.members[pin.member].pins[pin.pin]
 }
 
 /// A pin of a body that moves.
-fn random_pin(tape: &mut Tape, m: &Mechanism) -> Pin {
+fn random_pin(tape: &mut Tape, m: &RandomMechanism) -> PinRef {
     let member = tape.whole(1, m.members.len() - 1);
     let pin = tape.whole(0, m.members[member].pins.len() - 1);
-    Pin { member, pin }
+    PinRef { member, pin }
 }

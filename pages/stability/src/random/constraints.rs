@@ -1,7 +1,7 @@
 //! Constraints kept: joints stay closed and links keep their lengths, in every row.
 
 use super::newton_law::{extent, point};
-use super::outcome::{Breach, Outcome, Run};
+use super::outcome::{Breach, RandomRun, RunOutcome};
 use looselink::body::RigidLink;
 use looselink::scene::Pace;
 
@@ -12,7 +12,7 @@ const STAGNATION: f64 = 1e4;
 
 /// Newton's method leaves less than its tolerance in every velocity, hence less than tolerance times step in a coordinate;
 /// explicit schemes project to rounding. Angles and slopes move points by less than the extent of the mechanism.
-fn allowed(run: &Run, extent: f64) -> f64 {
+fn allowed(run: &RandomRun, extent: f64) -> f64 {
     let Some(scene) = &run.scene else { return 0.0 };
     let step = match scene.integrator.pace {
         Pace::Step(step) => step,
@@ -27,7 +27,7 @@ fn allowed(run: &Run, extent: f64) -> f64 {
 }
 
 /// What is open in the rows, and at the end of the run.
-pub fn kept(run: &Run) -> Result<(), Breach> {
+pub fn kept(run: &RandomRun) -> Result<(), Breach> {
     let (Some(scene), rows) = (&run.scene, &run.rows) else {
         return Ok(());
     };
@@ -81,7 +81,7 @@ pub fn kept(run: &Run) -> Result<(), Breach> {
             }
         }
     }
-    let ran = matches!(run.outcome, Outcome::Finished | Outcome::Remarked(_));
+    let ran = matches!(run.outcome, RunOutcome::Finished | RunOutcome::Remarked(_));
     if let (true, Some((open, _, name))) = (ran, &run.open) {
         let allowed = allowed(run, largest.max(run.reach));
         if open.is_nan() || *open > allowed {

@@ -9,7 +9,7 @@
 //! unless the step is far below 1/(w^2 T), only gains are looked at.
 
 use super::newton_law::{at_rest, extent, flies, inertia, mass, stiffness};
-use super::outcome::{Breach, Outcome, Rows, Run, run};
+use super::outcome::{Breach, ChannelRows, RandomRun, RunOutcome, run};
 use looselink::body::Known;
 use looselink::contact::Slip;
 use looselink::interaction::SpringDamperModel;
@@ -40,7 +40,7 @@ const GONE: [&str; 3] = [
 ];
 
 /// The ledger's identity: what is stored, was done and has gone adds up to what is called numerical.
-pub fn identity(run: &Run) -> Result<(), Breach> {
+pub fn identity(run: &RandomRun) -> Result<(), Breach> {
     let rows = &run.rows;
     let sum = |names: &[&str], row: usize| {
         let each = names.iter().map(|n| rows.get(n, row));
@@ -74,7 +74,7 @@ struct Defect {
     size: f64,
 }
 
-fn energy(scene: &Scene, rows: &Rows, lossy: bool) -> Defect {
+fn energy(scene: &Scene, rows: &ChannelRows, lossy: bool) -> Defect {
     let over = |name: &str| {
         let values = (0..rows.len()).map(|row| rows.get(name, row));
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
@@ -106,7 +106,7 @@ fn energy(scene: &Scene, rows: &Rows, lossy: bool) -> Defect {
 }
 
 /// Angular momentum about the origin, of bodies that do not bend and nothing turns from outside.
-fn spin(scene: &Scene, rows: &Rows) -> Option<Defect> {
+fn spin(scene: &Scene, rows: &ChannelRows) -> Option<Defect> {
     let still = scene.simulation.gravity.is_none_or(|g| g == [0.0; 2]);
     let bodies = scene.bodies.iter().filter(|b| mass(&*b.kind) > 0.0);
     let known: Option<Vec<_>> = bodies
@@ -147,7 +147,7 @@ fn spin(scene: &Scene, rows: &Rows) -> Option<Defect> {
     })
 }
 
-fn defects(run: &Run) -> Vec<Defect> {
+fn defects(run: &RandomRun) -> Vec<Defect> {
     let Some(scene) = &run.scene else {
         return Vec::new();
     };
@@ -185,7 +185,7 @@ const NO_DIRECTION: f64 = 0.3;
 /// Not asked of explicit schemes with a step of their own, which are unstable at any step that is too long, nor where an
 /// onset is not located: its error then depends on where in the step it falls; nor of links that are pressed or pulled far
 /// beyond what the element is made for, which the report tells by their strain.
-pub fn closes(text: &str, first: &Run, guard: Option<Duration>) -> Result<(), Breach> {
+pub fn closes(text: &str, first: &RandomRun, guard: Option<Duration>) -> Result<(), Breach> {
     let Some(scene) = &first.scene else {
         return Ok(());
     };
@@ -194,7 +194,10 @@ pub fn closes(text: &str, first: &Run, guard: Option<Duration>) -> Result<(), Br
     if strains.into_iter().any(|s| s.abs() > NO_DIRECTION) {
         return Ok(());
     }
-    let ran = matches!(first.outcome, Outcome::Finished | Outcome::Remarked(_));
+    let ran = matches!(
+        first.outcome,
+        RunOutcome::Finished | RunOutcome::Remarked(_)
+    );
     if !ran
         || (scene.integrator.method.scheme.is_explicit && fixed)
         || !scene.integrator.locate_onsets
@@ -223,7 +226,7 @@ pub fn closes(text: &str, first: &Run, guard: Option<Duration>) -> Result<(), Br
         divisor *= 4.0;
         let overrides = finer(scene, divisor);
         let next = run(text, &overrides, guard)?;
-        if !matches!(next.outcome, Outcome::Finished | Outcome::Remarked(_)) {
+        if !matches!(next.outcome, RunOutcome::Finished | RunOutcome::Remarked(_)) {
             // a run that stops or is cut short says nothing of the ledger
             return Ok(());
         }
@@ -238,7 +241,7 @@ pub fn closes(text: &str, first: &Run, guard: Option<Duration>) -> Result<(), Br
 
 /// Point masses on springs without rest length are linear: one-step schemes that are A-stable gain nothing in any row, since
 /// their amplification is a function of a skew-symmetric matrix, and its norm the largest of |R(i omega h)| <= 1.
-fn linear(scene: &Scene, rows: &Rows) -> Result<(), Breach> {
+fn linear(scene: &Scene, rows: &ChannelRows) -> Result<(), Breach> {
     let one_step =
         ["bathe", "trapezoidal", "backward_euler"].contains(&scene.integrator.method.name());
     let at_rest = |b: &NamedBody| matches!(b.kind.known(), Some(Known::Fixed));

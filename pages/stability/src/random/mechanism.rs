@@ -3,26 +3,26 @@
 use super::genes::Tape;
 
 /// A point of the plane \[m\].
-pub type Point = [f64; 2];
+pub type PlanePoint = [f64; 2];
 
-pub(super) fn add(a: Point, b: Point) -> Point {
+pub(super) fn add(a: PlanePoint, b: PlanePoint) -> PlanePoint {
     [a[0] + b[0], a[1] + b[1]]
 }
 
-pub(super) fn sub(a: Point, b: Point) -> Point {
+pub(super) fn sub(a: PlanePoint, b: PlanePoint) -> PlanePoint {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-pub(super) fn scale(s: f64, a: Point) -> Point {
+pub(super) fn scale(s: f64, a: PlanePoint) -> PlanePoint {
     [s * a[0], s * a[1]]
 }
 
-pub(super) fn norm(a: Point) -> f64 {
+pub(super) fn norm(a: PlanePoint) -> f64 {
     a[0].hypot(a[1])
 }
 
 /// a turned by `angle` \[rad\].
-pub(super) fn rotate(angle: f64, a: Point) -> Point {
+pub(super) fn rotate(angle: f64, a: PlanePoint) -> PlanePoint {
     let (s, c) = angle.sin_cos();
     [c * a[0] - s * a[1], s * a[0] + c * a[1]]
 }
@@ -42,7 +42,7 @@ pub enum Form {
     /// A rigid body; its centre of mass in the plane \[m\].
     Body {
         /// Centre of mass.
-        centre: Point,
+        centre: PlanePoint,
     },
     /// A point mass.
     Mass,
@@ -52,7 +52,7 @@ pub enum Form {
 #[derive(Debug, Clone)]
 pub struct Member {
     /// Its pins in the plane \[m\]; of a link start and end.
-    pub pins: Vec<Point>,
+    pub pins: Vec<PlanePoint>,
     /// How it is made.
     pub form: Form,
     /// Its direction \[rad\].
@@ -63,7 +63,7 @@ pub struct Member {
 
 /// A pin of a member.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pin {
+pub struct PinRef {
     /// Index of the member.
     pub member: usize,
     /// Index of the pin among its pins.
@@ -72,7 +72,7 @@ pub struct Pin {
 
 /// What a hinge allows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum HingeKind {
     /// Turning.
     Ideal,
     /// Turning, with play.
@@ -95,11 +95,11 @@ pub enum Kind {
 #[derive(Debug, Clone, Copy)]
 pub struct Hinge {
     /// Bearing, guide or first side.
-    pub first: Pin,
+    pub first: PinRef,
     /// Journal, slider or second side.
-    pub second: Pin,
+    pub second: PinRef,
     /// What it allows.
-    pub kind: Kind,
+    pub kind: HingeKind,
 }
 
 /// Kinds of mechanism.
@@ -156,7 +156,7 @@ impl Topology {
 
 /// Bodies and what joins them; the ground is member 0.
 #[derive(Debug, Clone)]
-pub struct Mechanism {
+pub struct RandomMechanism {
     /// What kind of mechanism it is.
     pub topology: Topology,
     /// Its size \[m\].
@@ -180,7 +180,7 @@ struct Drawing<'a, 'b> {
 }
 
 /// A mechanism.
-pub fn mechanism(tape: &mut Tape) -> Mechanism {
+pub fn mechanism(tape: &mut Tape) -> RandomMechanism {
     let topology = tape.pick(&Topology::ALL);
     let mut drawing = Drawing {
         size: tape.decades(-2.0, 1.0),
@@ -211,7 +211,7 @@ pub fn mechanism(tape: &mut Tape) -> Mechanism {
         topology,
         Topology::Chain | Topology::Slot | Topology::Masses | Topology::Journal
     );
-    Mechanism {
+    RandomMechanism {
         topology,
         size: drawing.size,
         members: drawing.members,
@@ -222,16 +222,16 @@ pub fn mechanism(tape: &mut Tape) -> Mechanism {
 
 impl Drawing<'_, '_> {
     /// A pin of the ground.
-    fn ground(&mut self, at: Point) -> Pin {
+    fn ground(&mut self, at: PlanePoint) -> PinRef {
         self.members[0].pins.push(at);
-        Pin {
+        PinRef {
             member: 0,
             pin: self.members[0].pins.len() - 1,
         }
     }
 
     /// A body through pins, of any form that such pins allow; returns its index.
-    fn member(&mut self, pins: &[Point]) -> usize {
+    fn member(&mut self, pins: &[PlanePoint]) -> usize {
         let mut tape = self.tape.part(8);
         let body = tape.chance(if pins.len() == 2 { 0.25 } else { 1.0 });
         let flexible = tape.chance(0.4);
@@ -266,7 +266,7 @@ impl Drawing<'_, '_> {
     }
 
     /// A point mass; returns its index.
-    fn point_mass(&mut self, at: Point) -> usize {
+    fn point_mass(&mut self, at: PlanePoint) -> usize {
         let mass = self.mass * self.tape.decades(-2.0, 2.0);
         self.members.push(Member {
             pins: vec![at],
@@ -278,23 +278,23 @@ impl Drawing<'_, '_> {
     }
 
     /// Joins two pins; `free` where the mechanism has freedoms enough for welds and slides.
-    fn join(&mut self, first: Pin, second: Pin, free: bool) {
+    fn join(&mut self, first: PinRef, second: PinRef, free: bool) {
         let mut tape = self.tape.part(8);
         let loose = tape.chance(0.3);
         let other = tape.chance(if free { 0.25 } else { 0.03 });
         let weld = tape.chance(0.5);
         let (vector, direction, locked) = (tape.chance(0.5), tape.angle(), tape.chance(0.5));
-        let point = |pin: Pin| self.members[pin.member].form == Form::Mass;
+        let point = |pin: PinRef| self.members[pin.member].form == Form::Mass;
         let kind = match (other, weld) {
-            (true, true) if !point(first) && !point(second) => Kind::Weld { vector },
-            (true, false) if !point(first) => Kind::Slide {
+            (true, true) if !point(first) && !point(second) => HingeKind::Weld { vector },
+            (true, false) if !point(first) => HingeKind::Slide {
                 direction,
                 locked: locked && !point(second),
             },
-            _ if loose => Kind::Loose,
-            _ => Kind::Ideal,
+            _ if loose => HingeKind::Loose,
+            _ => HingeKind::Ideal,
         };
-        let swapped = tape.chance(0.3) && matches!(kind, Kind::Ideal | Kind::Loose);
+        let swapped = tape.chance(0.3) && matches!(kind, HingeKind::Ideal | HingeKind::Loose);
         let (first, second) = if swapped {
             (second, first)
         } else {
@@ -308,7 +308,7 @@ impl Drawing<'_, '_> {
     }
 
     /// A point beside the middle of two others, out of their line: the third corner of a triangle.
-    fn apex(&mut self, a: Point, b: Point) -> Point {
+    fn apex(&mut self, a: PlanePoint, b: PlanePoint) -> PlanePoint {
         let mut tape = self.tape.part(3);
         let near = tape.decades(-4.0, -2.0);
         let height = match self.near_singular {
@@ -331,52 +331,52 @@ impl Drawing<'_, '_> {
             let next = add(at, rotate(direction, [length, 0.0]));
             let member = self.member(&[at, next]);
             if let Some(last) = last {
-                self.join(last, Pin { member, pin: 0 }, true);
+                self.join(last, PinRef { member, pin: 0 }, true);
             }
-            last = Some(Pin { member, pin: 1 });
+            last = Some(PinRef { member, pin: 1 });
             at = next;
         }
         if let (true, Some(last)) = (hung, last) {
             let member = self.point_mass(at);
-            self.join(last, Pin { member, pin: 0 }, true);
+            self.join(last, PinRef { member, pin: 0 }, true);
         }
     }
 
     /// A crank of the ground; returns its pin at the far end and where that is.
-    fn crank(&mut self, axis: Point) -> (Pin, Point) {
+    fn crank(&mut self, axis: PlanePoint) -> (PinRef, PlanePoint) {
         let (direction, length) = (self.tape.angle(), self.size * self.tape.between(0.2, 0.5));
         let end = add(axis, rotate(direction, [length, 0.0]));
         let ground = self.ground(axis);
         let member = self.member(&[axis, end]);
-        self.join(ground, Pin { member, pin: 0 }, false);
-        (Pin { member, pin: 1 }, end)
+        self.join(ground, PinRef { member, pin: 0 }, false);
+        (PinRef { member, pin: 1 }, end)
     }
 
     /// Two bodies that meet in an apex between two pins.
-    fn dyad(&mut self, from: Pin, a: Point, to: Pin, b: Point) -> [usize; 2] {
+    fn dyad(&mut self, from: PinRef, a: PlanePoint, to: PinRef, b: PlanePoint) -> [usize; 2] {
         let apex = self.apex(a, b);
         let (left, right) = (self.member(&[a, apex]), self.member(&[apex, b]));
         self.join(
             from,
-            Pin {
+            PinRef {
                 member: left,
                 pin: 0,
             },
             false,
         );
         let (first, second) = (
-            Pin {
+            PinRef {
                 member: left,
                 pin: 1,
             },
-            Pin {
+            PinRef {
                 member: right,
                 pin: 0,
             },
         );
         self.join(first, second, false);
         self.join(
-            Pin {
+            PinRef {
                 member: right,
                 pin: 1,
             },
@@ -412,7 +412,7 @@ impl Drawing<'_, '_> {
         let rod = self.member(&[b, pin]);
         self.join(
             crank,
-            Pin {
+            PinRef {
                 member: rod,
                 pin: 0,
             },
@@ -423,11 +423,11 @@ impl Drawing<'_, '_> {
             false => self.member(&[pin]),
         };
         self.join(
-            Pin {
+            PinRef {
                 member: rod,
                 pin: 1,
             },
-            Pin {
+            PinRef {
                 member: block,
                 pin: 0,
             },
@@ -436,11 +436,11 @@ impl Drawing<'_, '_> {
         let guide = self.ground(pin);
         self.hinges.push(Hinge {
             first: guide,
-            second: Pin {
+            second: PinRef {
                 member: block,
                 pin: 0,
             },
-            kind: Kind::Slide {
+            kind: HingeKind::Slide {
                 direction: 0.0,
                 locked: locked && !light,
             },
@@ -453,7 +453,7 @@ impl Drawing<'_, '_> {
         let ground = self.ground(foot);
         let way = sub(b, foot);
         let lever = self.member(&[foot, add(foot, scale(1.5, way))]);
-        let pivot = Pin {
+        let pivot = PinRef {
             member: lever,
             pin: 0,
         };
@@ -461,7 +461,7 @@ impl Drawing<'_, '_> {
         self.hinges.push(Hinge {
             first: pivot,
             second: crank,
-            kind: Kind::Slide {
+            kind: HingeKind::Slide {
                 direction: way[1].atan2(way[0]),
                 locked: false,
             },
@@ -475,7 +475,7 @@ impl Drawing<'_, '_> {
         let c = self.apex(b, foot);
         let p = add(b, rotate(1.0, scale(0.7, sub(c, b))));
         let (coupler, rocker) = (self.member(&[b, c, p]), self.member(&[c, foot]));
-        let of = |member, pin| Pin { member, pin };
+        let of = |member, pin| PinRef { member, pin };
         self.join(crank, of(coupler, 0), false);
         self.join(of(coupler, 1), of(rocker, 0), false);
         self.join(of(rocker, 1), ground, false);
@@ -500,10 +500,10 @@ impl Drawing<'_, '_> {
         for (k, (foot, top)) in feet.into_iter().zip(tops).enumerate() {
             let ground = self.ground(foot);
             let member = self.member(&[foot, top]);
-            self.join(ground, Pin { member, pin: 0 }, false);
+            self.join(ground, PinRef { member, pin: 0 }, false);
             self.join(
-                Pin { member, pin: 1 },
-                Pin {
+                PinRef { member, pin: 1 },
+                PinRef {
                     member: coupler,
                     pin: k,
                 },
@@ -523,16 +523,16 @@ impl Drawing<'_, '_> {
         for k in 0..3 {
             let ground = self.ground(feet[k]);
             let member = self.member(&[feet[k], elbows[k]]);
-            self.join(ground, Pin { member, pin: 0 }, false);
-            ends.push(Pin { member, pin: 1 });
+            self.join(ground, PinRef { member, pin: 0 }, false);
+            ends.push(PinRef { member, pin: 1 });
         }
         let platform = self.member(&corners);
         for k in 0..3 {
             let member = self.member(&[elbows[k], corners[k]]);
-            self.join(ends[k], Pin { member, pin: 0 }, false);
+            self.join(ends[k], PinRef { member, pin: 0 }, false);
             self.join(
-                Pin { member, pin: 1 },
-                Pin {
+                PinRef { member, pin: 1 },
+                PinRef {
                     member: platform,
                     pin: k,
                 },
@@ -558,7 +558,7 @@ impl Drawing<'_, '_> {
         let flies = self.tape.chance(0.5);
         let at = [0.0, 0.0];
         let bearing = match flies {
-            true => Pin {
+            true => PinRef {
                 member: self.member(&[at]),
                 pin: 0,
             },
@@ -571,8 +571,8 @@ impl Drawing<'_, '_> {
         };
         self.hinges.push(Hinge {
             first: bearing,
-            second: Pin { member, pin: 0 },
-            kind: Kind::Loose,
+            second: PinRef { member, pin: 0 },
+            kind: HingeKind::Loose,
         });
     }
 }

@@ -14,8 +14,8 @@ pub mod soak;
 mod text;
 
 pub use genes::{Genes, genes};
-pub use outcome::{Breach, Outcome, Rows, Run, run};
-pub use text::{Drawn, draw};
+pub use outcome::{Breach, ChannelRows, RandomRun, RunOutcome, run};
+pub use text::{RandomScene, draw};
 
 use std::time::Duration;
 
@@ -23,7 +23,7 @@ use std::time::Duration;
 ///
 /// # Errors
 /// The first property that does not hold.
-pub fn judge(text: &str, guard: Option<Duration>) -> Result<Outcome, Breach> {
+pub fn judge(text: &str, guard: Option<Duration>) -> Result<RunOutcome, Breach> {
     let first = run(text, &[], guard)?;
     constraints::kept(&first)?;
     newton_law::forces(&first)?;
@@ -35,7 +35,7 @@ pub fn judge(text: &str, guard: Option<Duration>) -> Result<Outcome, Breach> {
 }
 
 /// The same scene, run in another thread, gives the same bytes.
-fn repeatable(text: &str, first: &Run, guard: Option<Duration>) -> Result<(), Breach> {
+fn repeatable(text: &str, first: &RandomRun, guard: Option<Duration>) -> Result<(), Breach> {
     let again = std::thread::scope(|s| s.spawn(|| run(text, &[], guard)).join());
     let again = again.map_err(|_| Breach::new("no panic", "in a thread"))??;
     let same = again.rows.bits() == first.rows.bits()

@@ -1,7 +1,7 @@
 //! Newton's law from the outside: recorded forces on every body against its mass and recorded acceleration, and the momentum
 //! of what flies freely. Rows are consistent at the acceleration level, whatever the scheme.
 
-use super::outcome::{Breach, Rows, Run};
+use super::outcome::{Breach, ChannelRows, RandomRun};
 use looselink::body::{Body, FlexibleLink, Known, RigidBody, RigidLink};
 use looselink::interaction::{
     ForceModel, PointForceModel, SpringDamperModel, TorqueModel, TorsionSpringModel,
@@ -59,7 +59,7 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// Position of a point in a row.
-pub(super) fn point(scene: &Scene, rows: &Rows, at: PointRef, row: usize) -> [f64; 2] {
+pub(super) fn point(scene: &Scene, rows: &ChannelRows, at: PointRef, row: usize) -> [f64; 2] {
     let body = &scene.bodies[at.body];
     let own = &body.kind.points()[at.point];
     if let Some(Known::Fixed) = body.kind.known() {
@@ -79,7 +79,7 @@ struct Loads {
 }
 
 /// What acts on every body in a row; couples count as forces at the lever `extent` \[m\].
-fn loads(scene: &Scene, rows: &Rows, row: usize, extent: f64) -> Loads {
+fn loads(scene: &Scene, rows: &ChannelRows, row: usize, extent: f64) -> Loads {
     let count = scene.bodies.len();
     let mut loads = Loads {
         force: vec![[0.0; 2]; count],
@@ -140,7 +140,7 @@ fn loads(scene: &Scene, rows: &Rows, row: usize, extent: f64) -> Loads {
 }
 
 /// What is left of Newton's law for every body, and of Euler's where it can be evaluated from outside.
-pub fn forces(run: &Run) -> Result<(), Breach> {
+pub fn forces(run: &RandomRun) -> Result<(), Breach> {
     let (Some(scene), rows) = (&run.scene, &run.rows) else {
         return Ok(());
     };
@@ -194,7 +194,7 @@ pub fn forces(run: &Run) -> Result<(), Breach> {
 }
 
 /// Largest distance of a point of a body from the origin \[m\]: coordinates are rounded relative to it.
-pub(super) fn extent(scene: &Scene, rows: &Rows, row: usize) -> f64 {
+pub(super) fn extent(scene: &Scene, rows: &ChannelRows, row: usize) -> f64 {
     let of = |b: &str, q: &str| rows.get(&format!("{b}.{q}"), row).abs();
     let mut extent = f64::MIN_POSITIVE;
     for (index, body) in scene.bodies.iter().enumerate() {
@@ -213,7 +213,7 @@ pub(super) fn extent(scene: &Scene, rows: &Rows, row: usize) -> f64 {
 
 /// The momentum \[kg m/s\] of everything moving by 1e-6 of the extent in the duration: what changes by less is at rest but
 /// for rounding.
-pub(super) fn at_rest(scene: &Scene, rows: &Rows) -> f64 {
+pub(super) fn at_rest(scene: &Scene, rows: &ChannelRows) -> f64 {
     let masses: f64 = scene.bodies.iter().map(|b| mass(&*b.kind)).sum();
     1e-6 * masses * extent(scene, rows, 0) / scene.simulation.duration
 }
@@ -235,7 +235,7 @@ pub(super) fn flies(scene: &Scene) -> bool {
 }
 
 /// The momentum of what flies freely changes by its weight only.
-pub fn momentum(run: &Run) -> Result<(), Breach> {
+pub fn momentum(run: &RandomRun) -> Result<(), Breach> {
     let (Some(scene), rows) = (&run.scene, &run.rows) else {
         return Ok(());
     };

@@ -14,7 +14,7 @@ const MOST_CHOSEN_STEPS: u64 = 20_000;
 
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
+pub enum RunOutcome {
     /// At the end of the scene, with nothing to remark.
     Finished,
     /// At the end of the scene, with counts in the report that say what was hard.
@@ -27,15 +27,15 @@ pub enum Outcome {
     CutShort,
 }
 
-impl Outcome {
+impl RunOutcome {
     /// Its class in tallies.
     pub fn class(&self) -> &'static str {
         match self {
-            Outcome::Finished => "finished",
-            Outcome::Remarked(_) => "finished with a remark",
-            Outcome::Stopped(_) => "stopped with an error",
-            Outcome::Refused(_) => "refused",
-            Outcome::CutShort => "cut short",
+            RunOutcome::Finished => "finished",
+            RunOutcome::Remarked(_) => "finished with a remark",
+            RunOutcome::Stopped(_) => "stopped with an error",
+            RunOutcome::Refused(_) => "refused",
+            RunOutcome::CutShort => "cut short",
         }
     }
 }
@@ -61,13 +61,13 @@ impl Breach {
 
 /// Rows of a run, by channel.
 #[derive(Debug, Default, Clone)]
-pub struct Rows {
+pub struct ChannelRows {
     names: HashMap<String, usize>,
     width: usize,
     values: Vec<f64>,
 }
 
-impl Rows {
+impl ChannelRows {
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.values.len() / self.width.max(1)
@@ -104,13 +104,13 @@ impl Rows {
 
 /// A run.
 #[derive(Debug)]
-pub struct Run {
+pub struct RandomRun {
     /// The scene, where it could be read.
     pub scene: Option<Scene>,
     /// What it reported.
-    pub rows: Rows,
+    pub rows: ChannelRows,
     /// How it ended.
-    pub outcome: Outcome,
+    pub outcome: RunOutcome,
     /// Its report, where it began.
     pub report: Option<Report>,
     /// Largest opening of a constraint at the end \[m\], its rate, and its name.
@@ -119,7 +119,7 @@ pub struct Run {
     pub reach: f64,
 }
 
-impl Run {
+impl RandomRun {
     /// True of an explicit scheme whose step is too long: it has gained more energy than there was.
     pub fn blown_up(&self) -> bool {
         let explicit = self
@@ -130,15 +130,16 @@ impl Run {
     }
 }
 
-struct Watch {
-    rows: Rows,
+/// Keeps the rows of a run, and stops one that takes too many steps or too long.
+struct LimitedRows {
+    rows: ChannelRows,
     steps: u64,
     most: u64,
     deadline: Option<Instant>,
     late: bool,
 }
 
-impl Observer for Watch {
+impl Observer for LimitedRows {
     fn row(&mut self, values: &[f64]) -> io::Result<()> {
         self.rows.values.extend_from_slice(values);
         Ok(())
@@ -158,7 +159,7 @@ impl Observer for Watch {
 ///
 /// # Errors
 /// A panic, a hang, a row with what is not a number, an error that does not say enough.
-pub fn run(text: &str, overrides: &[String], guard: Option<Duration>) -> Result<Run, Breach> {
+pub fn run(text: &str, overrides: &[String], guard: Option<Duration>) -> Result<RandomRun, Breach> {
     let caught = catch_unwind(AssertUnwindSafe(|| unguarded(text, overrides, guard)));
     caught.unwrap_or_else(|cause| {
         let cause = cause
@@ -169,11 +170,15 @@ pub fn run(text: &str, overrides: &[String], guard: Option<Duration>) -> Result<
     })
 }
 
-fn unguarded(text: &str, overrides: &[String], guard: Option<Duration>) -> Result<Run, Breach> {
-    let mut run = Run {
+fn unguarded(
+    text: &str,
+    overrides: &[String],
+    guard: Option<Duration>,
+) -> Result<RandomRun, Breach> {
+    let mut run = RandomRun {
         scene: None,
-        rows: Rows::default(),
-        outcome: Outcome::Finished,
+        rows: ChannelRows::default(),
+        outcome: RunOutcome::Finished,
         report: None,
         open: None,
         reach: 0.0,
@@ -196,8 +201,8 @@ fn unguarded(text: &str, overrides: &[String], guard: Option<Duration>) -> Resul
     let channels = simulation.channels().iter().enumerate();
     let step = scene.integrator.step();
     let asked = step.map(|h| (scene.simulation.duration / h).ceil() as u64);
-    let mut watch = Watch {
-        rows: Rows {
+    let mut limited = LimitedRows {
+        rows: ChannelRows {
             names: channels.map(|(i, c)| (c.name.clone(), i)).collect(),
             width: simulation.channels().len(),
             values: Vec::new(),
@@ -207,19 +212,19 @@ fn unguarded(text: &str, overrides: &[String], guard: Option<Duration>) -> Resul
         deadline: guard.map(|g| Instant::now() + g),
         late: false,
     };
-    let ended = simulation.run(&mut watch);
+    let ended = simulation.run(&mut limited);
     let report = simulation.report();
-    if let Some((row, name)) = watch.rows.first_not_finite() {
+    if let Some((row, name)) = limited.rows.first_not_finite() {
         let detail = format!("{name} of row {row} is no number; the run: {ended:?}");
         return Err(Breach::new("finite rows", detail));
     }
     run.outcome = match ended {
         Ok(()) => remarks(&report),
-        Err(RunError::Interrupted { t }) if watch.late => {
-            let detail = format!("{} steps to t = {t} s, {asked:?} asked for", watch.steps);
+        Err(RunError::Interrupted { t }) if limited.late => {
+            let detail = format!("{} steps to t = {t} s, {asked:?} asked for", limited.steps);
             return Err(Breach::new("no hang", detail));
         }
-        Err(RunError::Interrupted { .. }) => Outcome::CutShort,
+        Err(RunError::Interrupted { .. }) => RunOutcome::CutShort,
         Err(error) => stopped(&scene, &error)?,
     };
     run.open = simulation.model().worst_constraint(simulation.state());
@@ -230,24 +235,24 @@ fn unguarded(text: &str, overrides: &[String], guard: Option<Duration>) -> Resul
     bounded(&report, asked, stages)?;
     let coordinates = simulation.state().q.iter();
     run.reach = coordinates.fold(0.0, |m, q| m.max(q.abs()));
-    run.rows = watch.rows;
+    run.rows = limited.rows;
     run.report = Some(report);
     run.scene = Some(scene);
     Ok(run)
 }
 
 /// A fault must have a place and underline something.
-fn refused(error: &SceneError) -> Result<Outcome, Breach> {
+fn refused(error: &SceneError) -> Result<RunOutcome, Breach> {
     match error.place() {
         Some((_, line, column)) if line > 0 && column > 0 && !error.underlined().is_empty() => {
-            Ok(Outcome::Refused(error.to_string()))
+            Ok(RunOutcome::Refused(error.to_string()))
         }
         _ => Err(Breach::new("faults have a place", error.to_string())),
     }
 }
 
 /// An error must name something of the scene and, where the run had begun, the time.
-fn stopped(scene: &Scene, error: &RunError) -> Result<Outcome, Breach> {
+fn stopped(scene: &Scene, error: &RunError) -> Result<RunOutcome, Breach> {
     let text = error.to_string();
     let bodies = scene.bodies.iter().map(|b| &b.name);
     let joints = scene.joints.iter().map(|j| &j.name);
@@ -258,7 +263,7 @@ fn stopped(scene: &Scene, error: &RunError) -> Result<Outcome, Breach> {
     let named = in_energy || names.any(|n| text.contains(n.as_str()));
     let begun = !matches!(error, RunError::Unaffordable { .. });
     match named && (!begun || text.contains("t = ")) {
-        true => Ok(Outcome::Stopped(text)),
+        true => Ok(RunOutcome::Stopped(text)),
         false => Err(Breach::new("errors say what, when and why", text)),
     }
 }
@@ -271,7 +276,7 @@ fn blown_up(report: &Report) -> bool {
     })
 }
 
-fn remarks(report: &Report) -> Outcome {
+fn remarks(report: &Report) -> RunOutcome {
     let counts = [
         ("energy gained without bounds", u64::from(blown_up(report))),
         ("stagnations", report.stagnations),
@@ -286,8 +291,8 @@ fn remarks(report: &Report) -> Outcome {
         .map(|(n, _)| *n)
         .collect();
     match found.is_empty() {
-        true => Outcome::Finished,
-        false => Outcome::Remarked(found),
+        true => RunOutcome::Finished,
+        false => RunOutcome::Remarked(found),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Many random scenes, one after the other, and a tally of what became of them.
 
-use super::{Outcome, draw, genes, judge};
+use super::{RunOutcome, draw, genes, judge};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ const GUARD: Duration = Duration::from_secs(600);
 
 /// What became of the scenes; nothing in it differs when the soak is repeated.
 #[derive(Debug, Default, Serialize, Deserialize)]
-pub struct Tally {
+pub struct SoakTally {
     /// Seed of the soak.
     pub seed: u64,
     /// Scenes run.
@@ -28,12 +28,12 @@ pub struct Tally {
     /// How they ended, by what is in them: kind of mechanism, method, parts.
     pub features: BTreeMap<String, BTreeMap<String, u64>>,
     /// Scenes of which a property does not hold: their number and the property.
-    pub failures: Vec<Failure>,
+    pub failures: Vec<SoakFailure>,
 }
 
 /// A scene of which a property does not hold.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Failure {
+pub struct SoakFailure {
     /// Its number.
     pub scene: u64,
     /// The property.
@@ -43,7 +43,7 @@ pub struct Failure {
 }
 
 /// Scene `index` of a seed.
-pub fn scene(seed: u64, index: u64) -> super::Drawn {
+pub fn scene(seed: u64, index: u64) -> super::RandomScene {
     let mut bytes = [0; 32];
     bytes[..8].copy_from_slice(&seed.to_le_bytes());
     bytes[8..16].copy_from_slice(&index.to_le_bytes());
@@ -62,12 +62,12 @@ fn cause(text: &str) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-impl Tally {
+impl SoakTally {
     /// An empty tally.
-    pub fn new(seed: u64) -> Tally {
-        Tally {
+    pub fn new(seed: u64) -> SoakTally {
+        SoakTally {
             seed,
-            ..Tally::default()
+            ..SoakTally::default()
         }
     }
 
@@ -81,15 +81,15 @@ impl Tally {
         let class = match judge(&drawn.text, Some(GUARD)) {
             Ok(outcome) => {
                 match &outcome {
-                    Outcome::Remarked(remarks) => {
+                    RunOutcome::Remarked(remarks) => {
                         for remark in remarks {
                             *self.remarks.entry((*remark).to_owned()).or_default() += 1;
                         }
                     }
-                    Outcome::Stopped(text) | Outcome::Refused(text) => {
+                    RunOutcome::Stopped(text) | RunOutcome::Refused(text) => {
                         *self.causes.entry(cause(text)).or_default() += 1;
                     }
-                    Outcome::Finished | Outcome::CutShort => {}
+                    RunOutcome::Finished | RunOutcome::CutShort => {}
                 }
                 outcome.class()
             }
@@ -98,7 +98,7 @@ impl Tally {
                 let path = folder.join(format!("seed{}-{index}.toml", self.seed));
                 let text = format!("# {}: {}\n{}", breach.property, breach.detail, drawn.text);
                 std::fs::write(path, text)?;
-                self.failures.push(Failure {
+                self.failures.push(SoakFailure {
                     scene: index,
                     property: breach.property.to_owned(),
                     detail: breach.detail,

@@ -1,15 +1,16 @@
 //! From a mechanism and genes to the text of a scene.
 
-use super::actions::{Drive, contact, drive, forces};
+use super::actions::{RandomDrive, contact, drive, forces};
 use super::genes::{Genes, Tape};
 use super::mechanism::{
-    Form, Hinge, Kind, Mechanism, Member, Pin, Point, Topology, add, mechanism, rotate, scale, sub,
+    Form, Hinge, HingeKind, Member, PinRef, PlanePoint, RandomMechanism, Topology, add, mechanism,
+    rotate, scale, sub,
 };
 use std::fmt::Write;
 
 /// A scene that nobody drew.
 #[derive(Debug, Clone)]
-pub struct Drawn {
+pub struct RandomScene {
     /// Its text.
     pub text: String,
     /// What is in it, for tallies: kind of mechanism, method, parts, each once.
@@ -44,7 +45,7 @@ impl Scales {
 }
 
 /// The name of a point of a member.
-pub(super) fn point_name(m: &Mechanism, pin: Pin) -> String {
+pub(super) fn point_name(m: &RandomMechanism, pin: PinRef) -> String {
     let point = match (m.members[pin.member].form, pin.pin) {
         (Form::Rigid | Form::Flexible { .. }, 0) => "start".to_owned(),
         (Form::Rigid | Form::Flexible { .. }, _) => "end".to_owned(),
@@ -68,7 +69,7 @@ pub(super) fn joint_name(index: usize) -> String {
 }
 
 /// The scene that genes make.
-pub fn draw(genes: &Genes) -> Drawn {
+pub fn draw(genes: &Genes) -> RandomScene {
     let mut tape = genes.tape();
     let mut m = mechanism(&mut tape.part(300));
     let mut features = vec![m.topology.name()];
@@ -90,7 +91,7 @@ pub fn draw(genes: &Genes) -> Drawn {
     let mut laws = tape.part(140);
     for (j, hinge) in m.hinges.iter().enumerate() {
         let mut tape = laws.part(14);
-        if hinge.kind == Kind::Loose {
+        if hinge.kind == HingeKind::Loose {
             let contact = contact(&mut tape, j, &scales, &mut features);
             least = f64::min(least, contact.clearance);
             contacts += &contact.text;
@@ -160,18 +161,18 @@ pub fn draw(genes: &Genes) -> Drawn {
     }
     features.sort_unstable();
     features.dedup();
-    Drawn { text, features }
+    RandomScene { text, features }
 }
 
 /// True where no joint leads to the ground.
-fn is_free(m: &Mechanism) -> bool {
+fn is_free(m: &RandomMechanism) -> bool {
     m.hinges
         .iter()
         .all(|h| h.first.member != 0 && h.second.member != 0)
 }
 
 /// Method, step or accuracy, duration.
-struct Pace {
+struct RandomPace {
     integrator: String,
     time: f64,
     step: f64,
@@ -181,10 +182,10 @@ struct Pace {
     locate: bool,
 }
 
-fn pace(tape: &mut Tape, m: &Mechanism, features: &mut Vec<&'static str>) -> Pace {
+fn pace(tape: &mut Tape, m: &RandomMechanism, features: &mut Vec<&'static str>) -> RandomPace {
     let time = tape.decades(-3.0, 1.0);
     // contacts last a small part of the time in which things move
-    let loose = m.hinges.iter().any(|h| h.kind == Kind::Loose);
+    let loose = m.hinges.iter().any(|h| h.kind == HingeKind::Loose);
     let step = time * tape.decades(-5.5, if loose { -2.5 } else { -0.5 });
     let between_rows = tape.whole(1, 10);
     let rows = tape.whole(2, 20);
@@ -244,7 +245,7 @@ fn pace(tape: &mut Tape, m: &Mechanism, features: &mut Vec<&'static str>) -> Pac
     if !matches!(method, "dormand_prince" | "velocity_verlet") {
         writeln!(integrator, "newton_tolerance = {tolerance:?}").unwrap();
     }
-    Pace {
+    RandomPace {
         integrator,
         time,
         step,
@@ -259,12 +260,12 @@ fn body(
     tape: &mut Tape,
     index: usize,
     member: &Member,
-    m: &Mechanism,
+    m: &RandomMechanism,
     scales: &Scales,
     features: &mut Vec<&'static str>,
 ) -> String {
     let name = member_name(index);
-    let points = |origin: Point, theta: f64| {
+    let points = |origin: PlanePoint, theta: f64| {
         let mut text = String::new();
         for (k, pin) in member.pins.iter().enumerate() {
             let at = rotate(-theta, sub(*pin, origin));
@@ -342,32 +343,37 @@ fn length(member: &Member) -> f64 {
     super::mechanism::norm(sub(member.pins[1], member.pins[0]))
 }
 
-fn joint(index: usize, hinge: &Hinge, m: &Mechanism, features: &mut Vec<&'static str>) -> String {
+fn joint(
+    index: usize,
+    hinge: &Hinge,
+    m: &RandomMechanism,
+    features: &mut Vec<&'static str>,
+) -> String {
     let [first, second] = [hinge.first, hinge.second].map(|pin| point_name(m, pin));
-    let theta = |pin: Pin| m.members[pin.member].theta;
+    let theta = |pin: PinRef| m.members[pin.member].theta;
     let turned = theta(hinge.second) - theta(hinge.first);
     let head = format!("[joints.{}]\n", joint_name(index));
     head + &match hinge.kind {
-        Kind::Ideal => {
+        HingeKind::Ideal => {
             features.push("ideal revolute");
             format!(
                 "type = \"revolute\"\nbearing = {first:?}\njournal = {second:?}\nmodel = \"ideal\"\n\n"
             )
         }
-        Kind::Loose => {
+        HingeKind::Loose => {
             features.push("clearance");
             format!(
                 "type = \"revolute\"\nbearing = {first:?}\njournal = {second:?}\nmodel = \"clearance\"\ncontact = \"c{index}\"\n\n"
             )
         }
-        Kind::Weld { vector } => {
+        HingeKind::Weld { vector } => {
             features.push("weld");
             let slope = if vector { "vector" } else { "direction" };
             format!(
                 "type = \"weld\"\nfirst = {first:?}\nsecond = {second:?}\nangle = {turned:?}\nslope = {slope:?}\n\n"
             )
         }
-        Kind::Slide { direction, locked } => {
+        HingeKind::Slide { direction, locked } => {
             features.push("prismatic");
             let along = rotate(direction - theta(hinge.first), [1.0, 0.0]);
             let rotation = match locked {
@@ -382,10 +388,10 @@ fn joint(index: usize, hinge: &Hinge, m: &Mechanism, features: &mut Vec<&'static
 }
 
 /// Which members hang together by joints without play, as the lowest index among them.
-fn components(m: &Mechanism) -> Vec<usize> {
+fn components(m: &RandomMechanism) -> Vec<usize> {
     let mut of: Vec<usize> = (0..m.members.len()).collect();
     for _ in 0..m.members.len() {
-        for hinge in m.hinges.iter().filter(|h| h.kind != Kind::Loose) {
+        for hinge in m.hinges.iter().filter(|h| h.kind != HingeKind::Loose) {
             let (i, j) = (hinge.first.member, hinge.second.member);
             let least = of[i].min(of[j]);
             (of[i], of[j]) = (least, least);
@@ -395,7 +401,7 @@ fn components(m: &Mechanism) -> Vec<usize> {
 }
 
 /// Centre of mass of a body.
-fn position(member: &Member) -> Point {
+fn position(member: &Member) -> PlanePoint {
     match member.form {
         Form::Body { centre } => centre,
         Form::Rigid | Form::Flexible { .. } => scale(0.5, add(member.pins[0], member.pins[1])),
@@ -407,8 +413,8 @@ fn position(member: &Member) -> Point {
 /// completed; or a sketch.
 fn start(
     tape: &mut Tape,
-    m: &mut Mechanism,
-    drive: Option<&Drive>,
+    m: &mut RandomMechanism,
+    drive: Option<&RandomDrive>,
     scales: &Scales,
     clearance: f64,
     features: &mut Vec<&'static str>,
@@ -510,7 +516,7 @@ fn start(
 }
 
 /// Where the joints are, a little off.
-fn sketch(m: &Mechanism, jitter: f64) -> String {
+fn sketch(m: &RandomMechanism, jitter: f64) -> String {
     let mut entries = Vec::new();
     for (j, hinge) in m.hinges.iter().enumerate() {
         let at = m.members[hinge.second.member].pins[hinge.second.pin];
@@ -521,7 +527,7 @@ fn sketch(m: &Mechanism, jitter: f64) -> String {
 }
 
 /// An entry of `initial.bodies`.
-fn pose(m: &Mechanism, b: usize, velocity: Option<(Point, f64)>) -> String {
+fn pose(m: &RandomMechanism, b: usize, velocity: Option<(PlanePoint, f64)>) -> String {
     let member = &m.members[b];
     let [x, y] = position(member);
     let mut text = format!(
