@@ -141,10 +141,12 @@ fn table(sheet: &language::Sheet) -> String {
             Takes::Word(words) => list(words),
             Takes::Function { .. } => ", a [function of time](#functions-of-time)".to_owned(),
             Takes::Vector { shape, .. } | Takes::Rows { shape, .. } => format!(", as {shape}"),
-            Takes::Number {
-                range: NumberRange::NonNegative,
-                ..
-            } => ", not negative".to_owned(),
+            Takes::Number { range, .. } => match range {
+                NumberRange::NonNegative => ", not negative".to_owned(),
+                NumberRange::AtLeast(least) => format!("; at least {least}"),
+                NumberRange::Within(above, most) => format!("; above {above} and at most {most}"),
+                NumberRange::Any | NumberRange::Positive => String::new(),
+            },
             _ => String::new(),
         };
         text += &format!(

@@ -1,6 +1,6 @@
 //! `[materials]` and `[sections]`.
 
-use crate::document::{Field, Fields, Key, SceneError, derived, named};
+use crate::document::{Field, Fields, Key, NumberRange, SceneError, derived, named};
 use indexmap::IndexMap;
 
 /// `[materials.NAME]`
@@ -41,10 +41,10 @@ pub static MATERIAL: [Key; 3] = [
         "Young's modulus, needed by flexible links, and by contacts that name the material",
     )
     .or("none"),
-    Key::number(
+    Key::within(
         "poissons_ratio",
-        "",
-        "Poisson's ratio, above -1 and at most 0.5; needed by contacts that name the material",
+        NumberRange::Within(-1.0, 0.5),
+        "Poisson's ratio, needed by contacts that name the material",
     )
     .or("none"),
 ];
@@ -124,13 +124,8 @@ fn has(value: Option<f64>, field: &Field, key: &str) -> Result<f64, SceneError> 
 fn material(field: &Field) -> Result<Material, SceneError> {
     let mut table = field.fields()?;
     table.declare(&[], &MATERIAL)?;
-    let poissons_ratio = table.optional("poissons_ratio");
-    let poissons_ratio = poissons_ratio.map(|nu| match nu.number()? {
-        x if x > -1.0 && x <= 0.5 => Ok(x),
-        _ => Err(nu.must("lie above -1 and not above 0.5")),
-    });
     Ok(Material {
-        poissons_ratio: poissons_ratio.transpose()?,
+        poissons_ratio: table.optional_number("poissons_ratio")?,
         density: table.number("density")?,
         youngs_modulus: table.optional_number("youngs_modulus")?,
     })

@@ -79,11 +79,10 @@ impl<'a> Field<'a> {
             Some(Takes::Number { range, .. }) => range,
             _ => NumberRange::Any,
         };
-        match range {
+        match range.violated(x) {
             _ if !x.is_finite() => Err(self.must("be finite")),
-            NumberRange::Positive if x <= 0.0 => Err(self.must("be greater than zero")),
-            NumberRange::NonNegative if x < 0.0 => Err(self.must("not be negative")),
-            _ => Ok(x),
+            Some(requirement) => Err(self.must(&requirement)),
+            None => Ok(x),
         }
     }
 

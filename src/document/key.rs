@@ -65,7 +65,7 @@ pub enum Takes {
 }
 
 /// Where a number must lie.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NumberRange {
     /// Anywhere.
     Any,
@@ -73,6 +73,25 @@ pub enum NumberRange {
     Positive,
     /// Not below zero.
     NonNegative,
+    /// Not below this number.
+    AtLeast(f64),
+    /// Above the first number and not above the second.
+    Within(f64, f64),
+}
+
+impl NumberRange {
+    /// What a number outside of the range must do.
+    pub(super) fn violated(self, x: f64) -> Option<String> {
+        match self {
+            NumberRange::Positive if x <= 0.0 => Some("be greater than zero".into()),
+            NumberRange::NonNegative if x < 0.0 => Some("not be negative".into()),
+            NumberRange::AtLeast(least) if x < least => Some(format!("be at least {least}")),
+            NumberRange::Within(above, most) if x <= above || x > most => {
+                Some(format!("lie above {above} and not above {most}"))
+            }
+            _ => None,
+        }
+    }
 }
 
 impl Key {
@@ -106,6 +125,11 @@ impl Key {
     ) -> Key {
         let range = NumberRange::NonNegative;
         Key::new(name, Takes::Number { unit, range }, purpose)
+    }
+
+    /// A required number in a range, without unit.
+    pub const fn within(name: &'static str, range: NumberRange, purpose: &'static str) -> Key {
+        Key::new(name, Takes::Number { unit: "", range }, purpose)
     }
 
     /// A required vector, whose numbers are called as `shape` says.

@@ -5,7 +5,7 @@ use crate::contact::friction::Ambrosio;
 use crate::contact::geometry::Geometry;
 use crate::contact::normal::{NormalLaw, NormalLawKind, NormalParameters};
 use crate::contact::{ContactPair, Rough, Slip, Smooth};
-use crate::document::{Field, Fields, Key, SceneError, Takes, derived};
+use crate::document::{Field, Fields, Key, NumberRange, SceneError, Takes, derived};
 use crate::marker::Spin;
 
 const LAW: Key = Key::name_in("law", "normal laws", "the normal law, see below");
@@ -32,16 +32,22 @@ pub static KEYS: [Key; 10] = [
         "the material of the journal; or give `stiffness`",
     )
     .or("required without `stiffness`"),
-    Key::positive("stiffness", "N/m^exponent", "the stiffness K; excludes the two materials").or("from the materials"),
     Key::positive(
+        "stiffness",
+        "N/m^exponent",
+        "the stiffness K; excludes the two materials",
+    )
+    .or("from the materials"),
+    Key::within(
         "exponent",
-        "",
-        "the exponent n of the penetration, at least 1; 1.5 for metals",
+        // below 1 the stiffness is infinite at first touch
+        NumberRange::AtLeast(1.0),
+        "the exponent n of the penetration, 1.5 for metals",
     ),
-    Key::number(
+    Key::within(
         "restitution",
-        "",
-        "the coefficient of restitution c_e, above 0 and at most 1; `\"hertz\"` takes no other than 1",
+        NumberRange::Within(0.0, 1.0),
+        "the coefficient of restitution c_e; `\"hertz\"` takes no other than 1",
     )
     .or("required; 1 for `\"hertz\"`"),
     Key::positive(
@@ -150,11 +156,6 @@ impl Contact {
             let field = table.field("clearance")?;
             return Err(field.must("be less than `bearing_radius`, or no journal is left"));
         }
-        let exponent = table.number("exponent")?;
-        if exponent < 1.0 {
-            let field = table.field("exponent")?;
-            return Err(field.must("be at least 1, or the stiffness is infinite at first touch"));
-        }
         let friction = table.optional("friction");
         let own = law.keys.iter().map(|key| table.number(key.name));
         Ok(Contact {
@@ -163,7 +164,7 @@ impl Contact {
             clearance,
             law,
             stiffness: stiffness(field, &table, materials, bearing_radius, clearance)?,
-            exponent,
+            exponent: table.number("exponent")?,
             restitution: restitution(&table, law)?,
             impact_velocity_floor: floor(&table, law)?,
             friction: friction.map(|f| read_friction(&f)).transpose()?.flatten(),
@@ -238,10 +239,7 @@ fn restitution(table: &Fields, law: &NormalLawKind) -> Result<f64, SceneError> {
         (_, Some(field)) => field,
         (_, None) => table.field("restitution")?,
     };
-    match field.number()? {
-        e if e > 0.0 && e <= 1.0 => Ok(e),
-        _ => Err(field.must("lie above 0 and not above 1")),
-    }
+    field.number()
 }
 
 fn floor(table: &Fields, law: &NormalLawKind) -> Result<f64, SceneError> {

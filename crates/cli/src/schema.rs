@@ -9,7 +9,12 @@ use serde_json::{Map, Value, json};
 
 /// Prints the schema.
 pub fn show() -> Result<(), CommandFailure> {
-    print(format!("{:#}\n", schema(&Registry::standard())))
+    print(text())
+}
+
+/// The schema of scenes with the kinds of the program.
+pub fn text() -> String {
+    format!("{:#}\n", schema(&Registry::standard()))
 }
 
 /// The schema of scenes with the kinds of a registry.
@@ -43,8 +48,11 @@ impl Language {
         let sheets = self.sheets.iter();
         let sheets =
             sheets.filter(|s| s.table == table || s.table.starts_with(&format!("{table} of ")));
-        let kinds: Vec<Value> = sheets.map(|sheet| self.object(sheet)).collect();
-        json!({ "anyOf": kinds })
+        let mut kinds: Vec<Value> = sheets.map(|sheet| self.object(sheet)).collect();
+        match kinds.len() {
+            1 => kinds.swap_remove(0),
+            _ => json!({ "anyOf": kinds }),
+        }
     }
 
     /// A table with the keys of a sheet.
@@ -76,6 +84,10 @@ impl Language {
                 NumberRange::Any => json!({ "type": "number" }),
                 NumberRange::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
                 NumberRange::NonNegative => json!({ "type": "number", "minimum": 0 }),
+                NumberRange::AtLeast(least) => json!({ "type": "number", "minimum": least }),
+                NumberRange::Within(above, most) => {
+                    json!({ "type": "number", "exclusiveMinimum": above, "maximum": most })
+                }
             },
             Takes::Whole(least, most) => {
                 json!({ "type": "integer", "minimum": least, "maximum": most })
@@ -84,7 +96,8 @@ impl Language {
                 let count = shape.split(',').count();
                 json!({ "type": "array", "items": { "type": "number" }, "minItems": count, "maxItems": count })
             }
-            Takes::Rows { .. } | Takes::List => json!({ "type": "array" }),
+            Takes::Rows { .. } => json!({ "type": "array" }),
+            Takes::List => json!({ "type": "array", "items": { "type": "string" } }),
             Takes::Word(words) => json!({ "enum": words }),
             Takes::Name("normal laws") => json!({ "enum": self.laws }),
             Takes::Name("schemes") => json!({ "enum": self.schemes }),
