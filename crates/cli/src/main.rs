@@ -2,12 +2,15 @@
 
 mod ablate;
 mod closing;
+mod completions;
 mod failure;
 mod inspect;
+mod new;
 mod precision;
 mod progress;
 mod run;
 mod schema;
+mod templates;
 
 use clap::{Args, Parser, Subcommand};
 use failure::CommandFailure;
@@ -31,6 +34,9 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Write a commented scene to start from, and the schema that editors check it with.
+    #[command(after_help = "Example:\n  looselink new four-bar my.toml")]
+    New(new::Arguments),
     /// Simulate a scene and write its channels.
     #[command(
         after_help = "Example:\n  looselink run scenes/3rrr/case4.toml --out out/case4 --set integrator.step=5e-6"
@@ -53,8 +59,13 @@ enum Command {
     )]
     Ablate(ablate::Arguments),
     /// Show the scene language as a JSON schema, for editors.
-    #[command(after_help = "Example:\n  looselink schema > scene.schema.json")]
+    #[command(after_help = "Example:\n  looselink schema > looselink.schema.json")]
     Schema,
+    /// Print a script by which a shell completes commands and options.
+    #[command(
+        after_help = "Example:\n  looselink completions bash > ~/.local/share/bash-completion/completions/looselink"
+    )]
+    Completions(completions::Arguments),
 }
 
 /// A scene and changes to it.
@@ -111,12 +122,14 @@ impl SceneArguments {
 
 fn main() -> ExitCode {
     let result = match &Arguments::parse().command {
+        Command::New(arguments) => new::new(arguments),
         Command::Run(arguments) => run::run(arguments),
         Command::Inspect(arguments) => inspect::inspect(arguments),
         Command::Check(arguments) => check(arguments),
         Command::Precision(arguments) => precision::precision(arguments),
         Command::Ablate(arguments) => ablate::ablate(arguments),
         Command::Schema => schema::show(),
+        Command::Completions(arguments) => completions::completions(arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -594,6 +594,8 @@ fn every_command_has_help_with_an_example() {
         &["inspect", "--help"],
         &["check", "--help"],
         &["ablate", "--help"],
+        &["new", "--help"],
+        &["completions", "--help"],
     ] {
         let output = looselink(command);
         expect(&output, 0, "");

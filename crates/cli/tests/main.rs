@@ -1,6 +1,8 @@
 //! Tests of the command line.
 
 mod command_line;
+mod completions;
+mod new;
 mod precision;
 mod process;
 mod schema;

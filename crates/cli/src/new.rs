@@ -1,0 +1,82 @@
+//! `looselink new`: a commented scene to start from, and the schema that editors check it with.
+
+use super::failure::Failure;
+use super::templates::{TEMPLATES, Template};
+use super::{print, schema};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The schema beside the scene, which the first line of every template names.
+const SCHEMA: &str = "looselink.schema.json";
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// What to start from.
+    #[arg(value_parser = template())]
+    template: &'static Template,
+    /// The scene file that is written; the schema is written beside it unless it is there.
+    file: PathBuf,
+    /// Replace an existing file, and the schema beside it.
+    #[arg(long)]
+    force: bool,
+}
+
+/// A template by its name.
+fn template() -> impl TypedValueParser<Value = &'static Template> {
+    let value = |template: &Template| PossibleValue::new(template.name).help(template.purpose);
+    PossibleValuesParser::new(TEMPLATES.iter().map(value)).map(|name| {
+        let mut templates = TEMPLATES.iter();
+        let named = templates.find(|template| template.name == name);
+        named.expect("the parser takes no other name")
+    })
+}
+
+/// Writes the scene, and the schema before it: where there is a scene, there is a schema.
+pub fn new(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments {
+        template,
+        file,
+        force,
+    } = arguments;
+    if !force && file.symlink_metadata().is_ok() {
+        let message = format!("`{}` exists already", file.display());
+        return Err(
+            Failure::bad_input(message).and("; choose another file, or replace it with --force")
+        );
+    }
+    let beside = file.with_file_name(SCHEMA);
+    if *force || !beside.exists() {
+        write(&beside, &schema::text())?;
+    }
+    let stem = Path::new("out").join(file.file_stem().unwrap_or_default());
+    let [typed, out] = [file, &stem].map(|path| word(path));
+    write(file, &template.scene(&typed, &out))?;
+    print(format!(
+        "{typed}: {}\n\n  looselink inspect {typed}\n  looselink run {typed} --out {out}\n",
+        template.purpose
+    ))
+}
+
+/// A path as a word of a command line; in quotes, where it has letters that a shell may take for others.
+fn word(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/\\:._-+".contains(c);
+    match text.chars().all(plain) {
+        true => text,
+        false => format!("{text:?}"),
+    }
+}
+
+/// Writes a whole file: a failure leaves none, or the earlier one.
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    let mut partial = path.as_os_str().to_owned();
+    partial.push(".partial");
+    let written = fs::write(&partial, text).and_then(|()| fs::rename(&partial, path));
+    written.map_err(|error| {
+        // It may not even be there.
+        let _ = fs::remove_file(&partial);
+        Failure::system(format!("cannot write `{}`: {error}", path.display()))
+    })
+}
