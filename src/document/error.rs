@@ -183,7 +183,7 @@ fn shown(message: String) -> String {
 }
 
 /// The known name nearest to `name`, when it is near enough to be meant.
-pub(crate) fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+pub fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     let letters = name.chars().count();
     // Nobody mistypes a name as long as this, and the comparison of two takes the product of their lengths.
     if letters > LONGEST {
@@ -200,7 +200,7 @@ pub(crate) fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) 
 }
 
 /// The end of a message about an unknown name: a suggestion, or nothing.
-pub(super) fn did_you_mean<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> String {
+pub fn did_you_mean<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> String {
     nearest(name, known).map_or(String::new(), |k| format!("; did you mean `{k}`?"))
 }
 

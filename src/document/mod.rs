@@ -10,7 +10,7 @@ mod overrides;
 mod text;
 mod tree;
 
-pub use error::{SceneError, Span};
+pub use error::{SceneError, Span, did_you_mean, nearest};
 pub(crate) use error::{Sources, quoted};
 pub use field::Field;
 pub use fields::Fields;

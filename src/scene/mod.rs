@@ -3,6 +3,7 @@
 //! A [`Scene`] is plain data with every name resolved and every number checked; the spans point back into the
 //! text so that a later error (a mechanism that cannot close) still names file, line and field.
 
+mod file;
 mod integrator;
 mod kinds;
 pub mod language;
@@ -15,7 +16,7 @@ pub use crate::interaction::{Contact, Friction, Joint, NamedForce};
 use crate::math::plane::Vec2;
 use crate::motion::{Function, Path};
 pub use crate::stepper::Method;
-pub use reader::read_file;
+pub use file::read_file;
 
 use crate::body::Body;
 use crate::document::Sources;

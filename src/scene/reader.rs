@@ -1,5 +1,6 @@
 //! From the tree to a [`Scene`]: the tables that stand alone; bodies, joints and motion have files of their own.
 
+use super::file::read_file;
 use super::{Analysis, integrator, kinds, motion, smallest_clearance};
 use super::{Assumption, ChannelPattern, Integrator, Output, Scene, SimulationTable};
 use crate::body::Materials;
@@ -9,12 +10,8 @@ use crate::document::{
 use crate::interaction::Names;
 use crate::registry::Registry;
 use indexmap::IndexMap;
-use std::fs::File;
-use std::io::{self, Read};
 use std::path::Path;
 
-/// Larger files are refused: a table of 100 000 rows takes about 5 MB, and the worst text of this size 2.3 GB of memory.
-const LARGEST_FILE: u64 = 8 << 20;
 /// Relative error allowed in `interval / step`: decimal fractions are not exact in binary.
 const WHOLE: f64 = 1e-9;
 
@@ -80,21 +77,6 @@ pub(super) static OUTPUT: [Key; 3] = [
     ),
     Key::name_in("format", "formats", "the format of the tables, see below").or("`\"csv\"`"),
 ];
-
-/// The bytes of a scene or a study; whatever the file is, their number is bounded.
-///
-/// # Errors
-/// A file that cannot be read, or that is larger than 8 MiB.
-pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    File::open(path)?
-        .take(LARGEST_FILE + 1)
-        .read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > LARGEST_FILE {
-        return Err(io::Error::other("it is larger than 8 MiB"));
-    }
-    Ok(bytes)
-}
 
 impl Scene {
     /// Reads a scene file, applies `path=value` overrides in order, checks every field.

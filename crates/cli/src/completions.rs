@@ -1,6 +1,6 @@
 //! `looselink completions`: a script by which a shell completes commands, options and templates.
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::print;
 use clap::{Args, CommandFactory};
 use clap_complete::{Shell, generate};
@@ -12,7 +12,7 @@ pub struct Arguments {
 }
 
 /// Prints the script.
-pub fn completions(arguments: &Arguments) -> Result<(), Failure> {
+pub fn completions(arguments: &Arguments) -> Result<(), CommandFailure> {
     let mut script = Vec::new();
     let mut command = super::Arguments::command();
     generate(arguments.shell, &mut command, "looselink", &mut script);

@@ -10,10 +10,12 @@ mod precision;
 mod progress;
 mod run;
 mod schema;
+mod suggestion;
 mod templates;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use failure::CommandFailure;
+use looselink::document::did_you_mean;
 use looselink::scene::{Scene, SceneError};
 use looselink::simulate::Simulation;
 use std::io::Write;
@@ -85,6 +87,7 @@ struct SceneArguments {
 /// Checks the keys and numbers of an accuracy. A number alone is the position.
 fn accuracy(text: &str) -> Result<String, String> {
     const EXAMPLE: &str = "for example `position=1e-9,horizon=0.01`";
+    const KEYS: [&str; 3] = ["position", "energy", "horizon"];
     let text = match text.parse::<f64>() {
         Ok(_) => format!("position={text}"),
         Err(_) => text.to_owned(),
@@ -95,9 +98,10 @@ fn accuracy(text: &str) -> Result<String, String> {
                 "`{part}` lacks a key; commas separate the keys, numbers have a decimal point: {EXAMPLE}"
             ));
         };
-        if !["position", "energy", "horizon"].contains(&key.trim()) {
+        if !KEYS.contains(&key.trim()) {
+            let hint = did_you_mean(key.trim(), KEYS);
             return Err(format!(
-                "unknown key `{key}`; the keys are `position` [m], `energy` [J] and `horizon` [s]: {EXAMPLE}"
+                "unknown key `{key}`; the keys are `position` [m], `energy` [J] and `horizon` [s]: {EXAMPLE}{hint}"
             ));
         }
         if number.trim().parse::<f64>().is_err() {
@@ -121,7 +125,9 @@ impl SceneArguments {
 }
 
 fn main() -> ExitCode {
-    let result = match &Arguments::parse().command {
+    let arguments = Arguments::try_parse()
+        .unwrap_or_else(|error| suggestion::added(error, &Arguments::command()).exit());
+    let result = match &arguments.command {
         Command::New(arguments) => new::new(arguments),
         Command::Run(arguments) => run::run(arguments),
         Command::Inspect(arguments) => inspect::inspect(arguments),

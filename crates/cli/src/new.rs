@@ -1,6 +1,6 @@
 //! `looselink new`: a commented scene to start from, and the schema that editors check it with.
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::templates::{TEMPLATES, Template};
 use super::{print, schema};
 use clap::Args;
@@ -34,7 +34,7 @@ fn template() -> impl TypedValueParser<Value = &'static Template> {
 }
 
 /// Writes the scene, and the schema before it: where there is a scene, there is a schema.
-pub fn new(arguments: &Arguments) -> Result<(), Failure> {
+pub fn new(arguments: &Arguments) -> Result<(), CommandFailure> {
     let Arguments {
         template,
         file,
@@ -42,9 +42,8 @@ pub fn new(arguments: &Arguments) -> Result<(), Failure> {
     } = arguments;
     if !force && file.symlink_metadata().is_ok() {
         let message = format!("`{}` exists already", file.display());
-        return Err(
-            Failure::bad_input(message).and("; choose another file, or replace it with --force")
-        );
+        return Err(CommandFailure::bad_input(message)
+            .and("; choose another file, or replace it with --force"));
     }
     let beside = file.with_file_name(SCHEMA);
     if *force || !beside.exists() {
@@ -70,13 +69,13 @@ fn word(path: &Path) -> String {
 }
 
 /// Writes a whole file: a failure leaves none, or the earlier one.
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
+fn write(path: &Path, text: &str) -> Result<(), CommandFailure> {
     let mut partial = path.as_os_str().to_owned();
     partial.push(".partial");
     let written = fs::write(&partial, text).and_then(|()| fs::rename(&partial, path));
     written.map_err(|error| {
         // It may not even be there.
         let _ = fs::remove_file(&partial);
-        Failure::system(format!("cannot write `{}`: {error}", path.display()))
+        CommandFailure::system(format!("cannot write `{}`: {error}", path.display()))
     })
 }

@@ -6,3 +6,4 @@ mod new;
 mod precision;
 mod process;
 mod schema;
+mod suggestions;

@@ -7,6 +7,7 @@ use super::variants::{Variant, VariantRole};
 use crate::machine::RunTiming;
 use cpu_time::ThreadTime;
 use looselink::body::Known;
+use looselink::document::did_you_mean;
 use looselink::scene::{ChannelPattern, Scene};
 use looselink::simulate::{Recording, Simulation};
 use serde::{Serialize, Serializer};
@@ -55,7 +56,11 @@ impl Serialize for Origin {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CannotObserve {
     /// No body that moves has the name.
-    #[error("no body that moves is called `{name}`; there are {}", moving.join(", "))]
+    #[error(
+        "no body that moves is called `{name}`; there are {}{}",
+        moving.join(", "),
+        did_you_mean(name, moving.iter().map(String::as_str))
+    )]
     Unknown {
         /// The name asked for.
         name: String,

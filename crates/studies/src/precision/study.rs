@@ -1,5 +1,6 @@
 //! What a study file says.
 
+use looselink::document::did_you_mean;
 use looselink::scene::{Scene, SceneError, read_file};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -151,6 +152,15 @@ impl StudyCurve {
     }
 }
 
+/// What was meant by a key that a message calls unknown; it quotes that key and then those that there are.
+fn suggestion(message: &str) -> String {
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    match quoted.next() {
+        Some(unknown) if message.starts_with("unknown field") => did_you_mean(unknown, quoted),
+        _ => String::new(),
+    }
+}
+
 impl Study {
     /// Reads a study and checks what can be seen without its scene.
     ///
@@ -171,8 +181,10 @@ impl Study {
     /// The first fault found, with its line.
     pub fn parse(path: &Path, text: &str) -> Result<Study, StudyError> {
         let name = path.display();
-        let mut study: Study = toml::from_str(text)
-            .map_err(|e| StudyError::Plain(format!("`{name}`: {}", e.to_string().trim_end())))?;
+        let mut study: Study = toml::from_str(text).map_err(|e| {
+            let hint = suggestion(e.message());
+            StudyError::Plain(format!("`{name}`: {}{hint}", e.to_string().trim_end()))
+        })?;
         let fault = |message: String| Err(StudyError::Plain(format!("`{name}`: {message}")));
         for (key, value) in [("duration", study.duration), ("interval", study.interval)] {
             if !(value > 0.0 && value.is_finite()) {
