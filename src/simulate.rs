@@ -400,8 +400,8 @@ impl Simulation {
         for (extreme, value) in extremes.iter_mut().zip(row) {
             extreme.see(*value, output.t);
         }
-        observer.row(row)?;
-        Ok(())
+        observer.state(model, output)?;
+        Ok(observer.row(row)?)
     }
 
     /// Checks that a constraint that was left out is still satisfied; a prescribed motion may contradict the others.

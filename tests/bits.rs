@@ -15,7 +15,7 @@ use std::path::Path;
 fn begin(scene: &Scene, folder: &Path) -> (Simulation, Results) {
     let simulation = Simulation::new(scene).unwrap();
     let folder = Folder::new(folder, &files(&FORMATS), false).unwrap();
-    let results = Results::begin(folder, scene, simulation.channels()).unwrap();
+    let results = Results::begin(folder, scene, &simulation).unwrap();
     (simulation, results)
 }
 

@@ -54,6 +54,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             mass,
             inertia,
             points: all,
+            radius: Some(radius),
         }))
     },
 };

@@ -171,6 +171,10 @@ pub trait Body: Any + Debug + Send + Sync {
     fn size(&self) -> f64 {
         0.0
     }
+    /// Its radius, if it is round about the origin of its frame \[m\].
+    fn radius(&self) -> Option<f64> {
+        None
+    }
     /// A point as a function of the coordinates.
     fn marker(&self, point: usize, x: &[usize]) -> Marker {
         let s = self.points()[point].at;

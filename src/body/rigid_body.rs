@@ -49,6 +49,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             mass,
             inertia,
             points,
+            radius: None,
         }))
     },
 };
@@ -62,6 +63,8 @@ pub struct RigidBody {
     pub inertia: f64,
     /// Named points relative to the centre of mass at theta = 0 \[m\].
     pub points: Vec<Point>,
+    /// Radius of a disc about the centre of mass \[m\].
+    pub radius: Option<f64>,
 }
 
 impl Body for RigidBody {
@@ -75,6 +78,10 @@ impl Body for RigidBody {
 
     fn size(&self) -> f64 {
         (self.inertia / self.mass).sqrt()
+    }
+
+    fn radius(&self) -> Option<f64> {
+        self.radius
     }
 
     fn lever(&self, _: usize) -> f64 {

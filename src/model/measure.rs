@@ -111,11 +111,16 @@ impl Model {
                 let c = &self.constraints[i];
                 c.term.force(at, c.multipliers(at))
             }
-            ForceTerm::Contact(i) => self.contacts[i].pair.reaction(contact_state(at, i)),
+            ForceTerm::Contact(i) => self.contact_force(i, at),
             ForceTerm::Eliminated => joint.reaction.as_ref().map_or(Vec2::zeros(), |reaction| {
                 reaction.sign * pair(&self.sum(&reaction.shares, at, work), 0)
             }),
         }
+    }
+
+    /// Force of the bearing side on the journal side of contact `index` \[N\].
+    pub fn contact_force(&self, index: usize, at: &State) -> Vec2 {
+        self.contacts[index].pair.reaction(contact_state(at, index))
     }
 
     /// Couple of the first side on the second of a joint that holds an angle \[N m\].

@@ -200,7 +200,7 @@ fn remove(path: &Path) -> io::Result<()> {
 }
 
 /// Makes an error of the system say which file it is about.
-pub(super) fn naming(path: &Path) -> impl FnOnce(io::Error) -> io::Error {
+pub fn naming(path: &Path) -> impl FnOnce(io::Error) -> io::Error {
     move |error| {
         let message = format!("cannot write `{}`: {error}", path.display());
         io::Error::new(error.kind(), message)

@@ -3,6 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | `channels.*` | one row an output interval, `name [unit]` above each column |
+//! | `motion.bin` | where all bodies are, one row an output interval: see [`MotionLayout`] |
 //! | `onsets.*` | one row a contact, when it opens; last those that are closed at the end, without end and exit velocity |
 //! | `scene.toml` | the scene as it was read; overrides are in the summary |
 //! | `summary.json` | status, counters, energy ledger, extremes, warnings |
@@ -18,10 +19,13 @@ mod folder;
 mod table_file;
 mod timing;
 
+use crate::model::Model;
+use crate::record::MotionLayout;
 use crate::scene::Scene;
-use crate::simulate::{Channel, ContactEvent, Report, Status};
-use crate::table::{Cell, Format};
-pub use folder::{Folder, OutputError, earlier_result, json};
+use crate::simulate::{ContactEvent, Report, Simulation, Status};
+use crate::system::State;
+use crate::table::{Cell, Format, float32};
+pub use folder::{Folder, OutputError, earlier_result, json, naming};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
@@ -33,6 +37,7 @@ pub use timing::machine;
 
 const CHANNELS: &str = "channels";
 const ONSETS: &str = "onsets";
+const MOTION: &str = "motion";
 const SCENE: &str = "scene.toml";
 const SUMMARY: &str = "summary.json";
 /// The file of what differs when a run is repeated.
@@ -53,7 +58,11 @@ const CONTACT: [&str; 8] = [
 pub fn files(formats: &[&'static Format]) -> Vec<String> {
     let tables = [CHANNELS, ONSETS].into_iter();
     let tables = tables.flat_map(|table| formats.iter().map(move |format| format.file(table)));
-    let others = [SCENE, TIMING].map(str::to_owned);
+    let others = [
+        float32::FORMAT.file(MOTION),
+        SCENE.to_owned(),
+        TIMING.to_owned(),
+    ];
     let summary = std::iter::once(SUMMARY.to_owned());
     summary.chain(tables).chain(others).collect()
 }
@@ -65,7 +74,9 @@ pub struct Results {
     header: Header,
     channels: TableFile,
     onsets: TableFile,
-    /// A row of channels.
+    motion: Option<(MotionLayout, TableFile)>,
+    /// A row of motion, and one of cells.
+    values: Vec<f64>,
     cells: Vec<Cell<'static>>,
     stopwatch: Stopwatch,
 }
@@ -102,7 +113,7 @@ impl Results {
     pub fn begin(
         folder: Folder,
         scene: &Scene,
-        channels: &[Channel],
+        simulation: &Simulation,
     ) -> Result<Results, OutputError> {
         folder.make()?;
         if folder.replaces {
@@ -115,7 +126,10 @@ impl Results {
             overrides: scene.overrides().map(str::to_owned).collect(),
             version: env!("CARGO_PKG_VERSION"),
         };
-        let names = channels.iter().map(|c| format!("{} [{}]", c.name, c.unit));
+        let names = simulation
+            .channels()
+            .iter()
+            .map(|c| format!("{} [{}]", c.name, c.unit));
         // First of all and never over another: of two runs that start together one fails.
         let format = scene.output.format;
         let table = |name| folder.path.join(format.file(name));
@@ -131,11 +145,19 @@ impl Results {
         write_summary(&folder, &header, pending)?;
         folder.replace(SCENE, scene.text().as_bytes())?;
         let onsets = TableFile::create(table(ONSETS), format, CONTACT.map(str::to_owned))?;
+        let motion = scene.output.motion.then(|| {
+            let layout = MotionLayout::new(simulation.model());
+            let names = layout.names().iter().cloned();
+            let path = folder.path.join(float32::FORMAT.file(MOTION));
+            TableFile::create(path, &float32::FORMAT, names).map(|table| (layout, table))
+        });
         Ok(Results {
             folder,
             header,
             channels,
             onsets,
+            motion: motion.transpose()?,
+            values: Vec::new(),
             cells: Vec::new(),
             stopwatch: Stopwatch::start(),
         })
@@ -146,9 +168,20 @@ impl Results {
     /// # Errors
     /// When it cannot be stored; the message names the file.
     pub fn row(&mut self, values: &[f64]) -> io::Result<()> {
-        self.cells.clear();
-        self.cells.extend(values.iter().copied().map(Cell::Number));
-        self.channels.row(&self.cells)
+        write_numbers(&mut self.channels, values, &mut self.cells)
+    }
+
+    /// Appends a row of the motion.
+    ///
+    /// # Errors
+    /// When it cannot be stored; the message names the file.
+    pub fn state(&mut self, model: &Model, at: &State) -> io::Result<()> {
+        let Some((layout, table)) = &mut self.motion else {
+            return Ok(());
+        };
+        self.values.clear();
+        layout.measure(model, at, &mut self.values);
+        write_numbers(table, &self.values, &mut self.cells)
     }
 
     /// Appends a contact; what a contact without an end does not have stays empty.
@@ -182,8 +215,14 @@ impl Results {
     /// # Errors
     /// When it cannot be stored; the message names the file.
     pub fn flush(&mut self) -> io::Result<()> {
-        self.channels.flush()?;
-        self.onsets.flush()
+        self.tables().try_for_each(TableFile::flush)
+    }
+
+    fn tables(&mut self) -> impl Iterator<Item = &mut TableFile> {
+        let motion = self.motion.iter_mut().map(|(_, table)| table);
+        [&mut self.channels, &mut self.onsets]
+            .into_iter()
+            .chain(motion)
     }
 
     /// Ends the result: the rest of the rows, the timing, and last the summary. A result that a complete one has replaced is
@@ -192,8 +231,7 @@ impl Results {
     /// # Errors
     /// When something cannot be stored; the summary then goes on saying `incomplete`.
     pub fn finish(mut self, report: &Report) -> Result<(), OutputError> {
-        self.channels.close()?;
-        self.onsets.close()?;
+        self.tables().try_for_each(TableFile::close)?;
         let timing = self.stopwatch.stop(report.t);
         self.folder.replace(TIMING, &json(&timing)?)?;
         let warnings = report.warnings();
@@ -203,6 +241,16 @@ impl Results {
         }
         Ok(())
     }
+}
+
+fn write_numbers(
+    table: &mut TableFile,
+    values: &[f64],
+    cells: &mut Vec<Cell<'static>>,
+) -> io::Result<()> {
+    cells.clear();
+    cells.extend(values.iter().copied().map(Cell::Number));
+    table.row(cells)
 }
 
 /// True where a run has reached its end.

@@ -1,6 +1,7 @@
 //! Named channels with units: what a row of output contains.
 
 mod channels;
+mod motion;
 
 use crate::model::{Energies, Model};
 use crate::scene::{Scene, SceneError};
@@ -10,6 +11,7 @@ use std::f64::consts::TAU;
 use wildmatch::WildMatchPattern;
 
 pub use channels::Channel;
+pub use motion::MotionLayout;
 
 /// Fills rows.
 #[derive(Debug)]

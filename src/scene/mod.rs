@@ -141,6 +141,8 @@ pub struct Output {
     pub channels: Vec<ChannelPattern>,
     /// How tables are written.
     pub format: &'static Format,
+    /// True where the motion is stored for a viewer.
+    pub motion: bool,
 }
 
 /// One entry of `output.channels`.

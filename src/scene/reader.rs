@@ -64,7 +64,7 @@ pub(super) static SIMULATION: [Key; 3] = [
 ];
 
 /// The keys of `[output]`.
-pub(super) static OUTPUT: [Key; 3] = [
+pub(super) static OUTPUT: [Key; 4] = [
     Key::positive(
         "interval",
         "s",
@@ -76,6 +76,12 @@ pub(super) static OUTPUT: [Key; 3] = [
         "the list of recorded channels, such as [\"platform.*\"]; `*` stands for any sequence of characters",
     ),
     Key::name_in("format", "formats", "the format of the tables, see below").or("`\"csv\"`"),
+    Key::new(
+        "motion",
+        Takes::Boolean,
+        "whether `motion.bin` is written, which `looselink view` shows",
+    )
+    .or("`true`"),
 ];
 
 impl Scene {
@@ -240,6 +246,7 @@ fn output(
         interval,
         channels,
         format: format.transpose()?.unwrap_or(registry.formats[0]),
+        motion: table.optional_boolean("motion")?.unwrap_or(true),
     })
 }
 

@@ -1,5 +1,8 @@
 //! What a run reports while it is under way.
 
+use crate::model::Model;
+use crate::system::State;
+
 /// A contact that closes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Onset<'a> {
@@ -76,6 +79,13 @@ pub trait Observer {
     /// # Errors
     /// When it cannot be stored; the run stops.
     fn row(&mut self, values: &[f64]) -> std::io::Result<()>;
+    /// The state of the row that comes next, with accelerations and multipliers of the acceleration level.
+    ///
+    /// # Errors
+    /// When it cannot be stored; the run stops.
+    fn state(&mut self, _model: &Model, _at: &State) -> std::io::Result<()> {
+        Ok(())
+    }
     /// A contact has closed.
     ///
     /// # Errors

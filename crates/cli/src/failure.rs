@@ -8,6 +8,7 @@ use std::fmt::Display;
 use std::io::Write;
 use std::process::ExitCode;
 use studies::precision::StudyError;
+use view::ViewError;
 
 const SYSTEM: u8 = 1;
 const BAD_INPUT: u8 = 2;
@@ -88,6 +89,16 @@ impl From<StudyError> for CommandFailure {
         match error {
             StudyError::Plain(message) => CommandFailure::bad_input(message),
             StudyError::Scene(error) => error.into(),
+        }
+    }
+}
+
+impl From<ViewError> for CommandFailure {
+    fn from(error: ViewError) -> CommandFailure {
+        match error {
+            ViewError::Result(message) => CommandFailure::bad_input(message),
+            ViewError::Scene(error) => error.into(),
+            ViewError::Io(error) => CommandFailure::system(error),
         }
     }
 }

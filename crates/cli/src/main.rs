@@ -12,6 +12,7 @@ mod run;
 mod schema;
 mod suggestion;
 mod templates;
+mod view;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use failure::CommandFailure;
@@ -44,6 +45,9 @@ enum Command {
         after_help = "Example:\n  looselink run scenes/3rrr/case4.toml --out out/case4 --set integrator.step=5e-6"
     )]
     Run(run::Arguments),
+    /// Show the motion of a result: one HTML file for a browser, or SVG pictures.
+    #[command(after_help = "Example:\n  looselink view out/case4 --ghost out/case1")]
+    View(view::Arguments),
     /// Show the compiled scene without running it.
     #[command(after_help = "Example:\n  looselink inspect scenes/3rrr/case4.toml --json")]
     Inspect(inspect::Arguments),
@@ -130,6 +134,7 @@ fn main() -> ExitCode {
     let result = match &arguments.command {
         Command::New(arguments) => new::new(arguments),
         Command::Run(arguments) => run::run(arguments),
+        Command::View(arguments) => view::view(arguments),
         Command::Inspect(arguments) => inspect::inspect(arguments),
         Command::Check(arguments) => check(arguments),
         Command::Precision(arguments) => precision::precision(arguments),

@@ -4,10 +4,13 @@ use super::SceneArguments;
 use super::closing;
 use super::failure::{CommandFailure, INTERRUPTED};
 use super::progress::{Display, Ticker, warn};
+use super::view;
 use clap::Args;
+use looselink::model::Model;
 use looselink::output::{Folder, OutputError, Results, earlier_result, files};
 use looselink::registry::Registry;
 use looselink::simulate::{ContactEvent, Control, Observer, Progress};
+use looselink::system::State;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -24,6 +27,9 @@ pub struct Arguments {
     /// Replace an existing result; it is kept in `previous-result` inside the folder until the new one is complete.
     #[arg(long)]
     force: bool,
+    /// Write `view.html` into the folder, in which the mechanism moves.
+    #[arg(long)]
+    view: bool,
     /// Show no progress; warnings are still shown.
     #[arg(long)]
     quiet: bool,
@@ -44,6 +50,10 @@ struct RunObserver {
 impl Observer for RunObserver {
     fn row(&mut self, values: &[f64]) -> io::Result<()> {
         self.results.row(values)
+    }
+
+    fn state(&mut self, model: &Model, at: &State) -> io::Result<()> {
+        self.results.state(model, at)
     }
 
     fn contact(&mut self, contact: &ContactEvent) -> io::Result<()> {
@@ -67,15 +77,13 @@ impl Observer for RunObserver {
 /// Simulates the scene; whatever ends the run, what was recorded up to there stands.
 pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let stop = stop_on_interrupt()?;
-    let folder = Folder::new(
-        &arguments.out,
-        &files(&Registry::standard().formats),
-        arguments.force,
-    )?;
+    let mut files = files(&Registry::standard().formats);
+    files.push(view::PAGE.to_owned());
+    let folder = Folder::new(&arguments.out, &files, arguments.force)?;
     let (scene, mut simulation) = arguments.scene.load()?;
     let started = Instant::now();
     let not_stored = |error: OutputError| CommandFailure::from(error).and(&earlier(arguments));
-    let results = Results::begin(folder, &scene, simulation.channels());
+    let results = Results::begin(folder, &scene, &simulation);
     let mut observer = RunObserver {
         results: results.map_err(not_stored)?,
         display: Display::new(arguments.quiet),
@@ -107,6 +115,12 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
         observer.display.finish(&line);
     }
     warn_of_all();
+    if arguments.view {
+        let page = view::beside(&arguments.out)?;
+        observer
+            .display
+            .finish(&format!("open `{}` in a browser", page.display()));
+    }
     Ok(())
 }
 

@@ -1,0 +1,284 @@
+//! What bodies and joints look like, and where they are over time.
+//!
+//! A rigid body is its hull in its own frame, with the pose of the frame as a track. A flexible link is the chord between its ends,
+//! as a pose and a length, and the deviation of every node and slope from the straight link in the frame of the chord: so a viewer
+//! can magnify deformations that are much smaller than a pixel. The eccentricity of a loose joint, which is as small, is stored
+//! apart from the poses, too.
+
+use super::moved::{Moved, Shape};
+use super::pack::{Pack, Packed};
+use super::stored::StoredRun;
+use super::tracks::{Group, Signal};
+use looselink::body::{FlexibleLink, PointRef};
+use looselink::interaction::Joint;
+use looselink::scene::{Analysis, Pace, Scene};
+use numbers::si;
+use serde::Serialize;
+
+/// Errors of poses, relative to the size of the mechanism: a twentieth of a pixel where it fills a thousand pixels.
+const POSE_ERROR: f64 = 5e-5;
+/// Errors of eccentricities between kept rows, relative to the clearance; rounding to 16 bits adds at most 3.1e-5 of a range that
+/// is twice the clearance and the deepest penetration. The sum is below a thousandth as long as the penetration is below the
+/// clearance.
+const ECCENTRICITY_ERROR: f64 = 5e-4;
+/// Errors of deformations and contact forces, relative to the largest.
+const RELATIVE_ERROR: f64 = 1e-3;
+/// Poses on the path of a drive.
+const PATH_POSES: usize = 400;
+
+/// A run as the viewer draws it.
+#[derive(Debug, Serialize)]
+pub struct Drawing {
+    title: String,
+    folder: String,
+    method: String,
+    status: String,
+    error: Option<String>,
+    overrides: Vec<String>,
+    warnings: Vec<String>,
+    is_static: bool,
+    times: Packed,
+    /// Least x and y, greatest x and y of all points over all rows \[m\].
+    bounds: [f64; 4],
+    bodies: Vec<DrawnBody>,
+    joints: Vec<DrawnJoint>,
+    forces: Vec<DrawnForce>,
+    /// Where the drive leads its body, and the body.
+    path: Vec<[f64; 2]>,
+    driven: Option<usize>,
+    channels: Vec<DrawnChannel>,
+}
+
+/// A body.
+#[derive(Debug, Serialize)]
+pub struct DrawnBody {
+    name: String,
+    /// Named points in the frame of the body \[m\].
+    points: Vec<DrawnPoint>,
+    shape: Shape,
+    /// Of its frame: x, y, theta. Of a flexible link: that of the chord, and its length. None of the ground.
+    pose: Option<Group>,
+    /// Of a flexible link: the deviations of each node, u and w of the position, then of the slope.
+    deformation: Option<Group>,
+}
+
+/// A named point.
+#[derive(Debug, Serialize)]
+struct DrawnPoint {
+    name: String,
+    at: [f64; 2],
+    /// Its node, on a flexible link.
+    node: Option<usize>,
+}
+
+/// A joint.
+#[derive(Debug, Serialize)]
+struct DrawnJoint {
+    name: String,
+    /// Body and point of its two sides.
+    ends: [[usize; 2]; 2],
+    /// How it is drawn.
+    glyph: Glyph,
+    clearance: Option<Clearance>,
+}
+
+/// How a joint is drawn.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Glyph {
+    /// A ring.
+    Revolute,
+    /// A square.
+    Weld,
+    /// A slot in this direction, in the frame of the first body \[rad\].
+    Slide(f64),
+    /// A bar between two points.
+    Rod,
+}
+
+/// What is known of a loose joint.
+#[derive(Debug, Serialize)]
+struct Clearance {
+    clearance: f64,
+    /// x and y \[m\].
+    eccentricity: Group,
+    /// Force of the bearing on the journal, x and y \[N\].
+    force: Group,
+}
+
+/// A spring or a load.
+#[derive(Debug, Serialize)]
+struct DrawnForce {
+    name: String,
+    ends: Vec<[usize; 2]>,
+}
+
+/// A channel for charts.
+#[derive(Debug, Serialize)]
+struct DrawnChannel {
+    name: String,
+    unit: String,
+    data: Packed,
+}
+
+impl Drawing {
+    /// That of a run; its arrays go into the pack.
+    pub fn new(run: &StoredRun, pack: &mut Pack) -> Drawing {
+        let scene = &run.scene;
+        let (moved, bounds) = Moved::all(run);
+        let size = (bounds[2] - bounds[0]).max(bounds[3] - bounds[1]);
+        let bodies = scene.bodies.iter().zip(moved).map(|(named, moved)| {
+            let points = named.kind.points().iter().enumerate();
+            let beam = named.kind.get::<FlexibleLink>();
+            DrawnBody {
+                name: named.name.clone(),
+                points: points
+                    .map(|(i, point)| DrawnPoint {
+                        name: point.name.clone(),
+                        at: point.at.into(),
+                        node: beam.map(|link| link.nodes[i]),
+                    })
+                    .collect(),
+                pose: pose(&moved, &run.times, size, pack),
+                deformation: deformation(&moved, &run.times, pack),
+                shape: moved.shape,
+            }
+        });
+        let bodies = bodies.collect();
+        let mut loose = run.layout.loose();
+        let model = run.simulation.model();
+        let joints = scene.joints.iter().enumerate().map(|(j, joint)| {
+            let contact = joint.contact().filter(|_| model.is_loose(j));
+            DrawnJoint {
+                name: joint.name.clone(),
+                ends: joint.points().map(end),
+                glyph: glyph(joint),
+                clearance: contact.and_then(|contact| {
+                    let first = loose.next()?;
+                    Some(Clearance::new(run, contact.clearance, first, pack))
+                }),
+            }
+        });
+        let joints = joints.collect();
+        let forces = scene.forces.iter().map(|force| DrawnForce {
+            name: force.name.clone(),
+            ends: force.kind.points().into_iter().map(end).collect(),
+        });
+        Drawing {
+            title: scene.title.clone(),
+            folder: run.folder.display().to_string(),
+            method: method(scene),
+            status: run.summary.status.clone(),
+            error: run.summary.error.clone(),
+            overrides: run.summary.overrides.clone(),
+            warnings: run.summary.warnings.clone(),
+            is_static: scene.simulation.analysis == Analysis::Static,
+            times: pack.add(run.times.iter().copied()),
+            bounds,
+            bodies,
+            joints,
+            forces: forces.collect(),
+            path: path(scene),
+            driven: scene.drives.first().map(|drive| drive.body),
+            channels: run
+                .channels
+                .iter()
+                .map(|channel| DrawnChannel {
+                    name: channel.name.clone(),
+                    unit: channel.unit.clone(),
+                    data: pack.add(channel.values.iter().map(|x| *x as f32)),
+                })
+                .collect(),
+        }
+    }
+}
+
+fn end(point: PointRef) -> [usize; 2] {
+    [point.body, point.point]
+}
+
+fn glyph(joint: &Joint) -> Glyph {
+    match (joint.model.line(), joint.model.angle()) {
+        (Some(direction), _) => Glyph::Slide(direction),
+        (None, Some(_)) => Glyph::Weld,
+        (None, None) if joint.model.is_revolute() => Glyph::Revolute,
+        (None, None) => Glyph::Rod,
+    }
+}
+
+/// The method and what its steps follow.
+fn method(scene: &Scene) -> String {
+    let pace = match scene.integrator.pace {
+        Pace::Step(step) => format!("step {}", si(step, "s")),
+        Pace::Accuracy(accuracy) => format!("accuracy {accuracy}"),
+    };
+    format!("{}, {pace}", scene.integrator.method.name())
+}
+
+/// Positions along the path of the first drive.
+fn path(scene: &Scene) -> Vec<[f64; 2]> {
+    let drives = scene.drives.iter().take(1);
+    let poses = drives.flat_map(|drive| {
+        let (time, count) = drive.path.sweep(scene.simulation.duration);
+        let count = count.clamp(1, PATH_POSES);
+        (0..=count).map(move |k| drive.path.at(time * k as f64 / count as f64).position)
+    });
+    poses.map(|[x, y, _]| [x, y]).collect()
+}
+
+/// The poses of a body as tracks; none of what does not move.
+fn pose(moved: &Moved, times: &[f64], size: f64, pack: &mut Pack) -> Option<Group> {
+    let error = POSE_ERROR * size;
+    // an angle moves the points of a body by at most its size, which is that of the mechanism at most
+    let tolerances = [error, error, POSE_ERROR, error];
+    let signals = moved.pose.iter().zip(tolerances);
+    let signals = signals.map(|(values, tolerance)| signal(values, tolerance));
+    let signals: Vec<Signal> = signals.collect();
+    (!moved.pose[0].is_empty()).then(|| Group::exact(times, &signals, pack))
+}
+
+/// The deformation of a flexible link as tracks.
+fn deformation(moved: &Moved, times: &[f64], pack: &mut Pack) -> Option<Group> {
+    let Shape::Beam { length, .. } = moved.shape else {
+        return None;
+    };
+    // a slope moves points by a part of the length
+    let lever = |i: usize| if i % 4 < 2 { 1.0 } else { length };
+    let tracks = || moved.deviations.iter().enumerate();
+    let sizes = tracks().map(|(i, values)| lever(i) * largest(values));
+    let error = RELATIVE_ERROR * sizes.fold(0.0, f64::max);
+    let signals = tracks().map(|(i, values)| signal(values, error / lever(i)));
+    Some(Group::exact(times, &signals.collect::<Vec<_>>(), pack))
+}
+
+fn signal(values: &[f64], tolerance: f64) -> Signal {
+    Signal {
+        values: values.to_vec(),
+        tolerance,
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
+}
+
+impl Clearance {
+    /// The four columns from `first` on.
+    fn new(run: &StoredRun, clearance: f64, first: usize, pack: &mut Pack) -> Clearance {
+        let column = |i: usize| -> Vec<f64> {
+            let rows = run.motion.iter();
+            rows.map(|row| f64::from(row[first + i])).collect()
+        };
+        let columns = [0, 1, 2, 3].map(column);
+        let strongest = largest(&columns[2]).max(largest(&columns[3]));
+        let mut group = |pair: &[Vec<f64>], tolerance| {
+            let signals = [0, 1].map(|i| signal(&pair[i], tolerance));
+            Group::quantised(&run.times, &signals, pack)
+        };
+        Clearance {
+            clearance,
+            eccentricity: group(&columns[..2], ECCENTRICITY_ERROR * clearance),
+            force: group(&columns[2..], RELATIVE_ERROR * strongest),
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! A result of `looselink run` as one HTML file in which the mechanism moves, or as SVG frames.
+//!
+//! The page needs no network. Its program is `assets/viewer.html`, which is built from the TypeScript in `web/`; this crate adds
+//! the data: what bodies and joints look like ([`drawing`], [`moved`]), and how they move ([`tracks`]), compressed ([`pack`]).
+
+pub mod drawing;
+pub mod frames;
+pub mod moved;
+pub mod pack;
+pub mod stored;
+pub mod tracks;
+
+pub use stored::{StoredRun, ViewError};
+
+use drawing::Drawing;
+use pack::Pack;
+use serde::Serialize;
+
+const PAGE: &str = include_str!("../assets/viewer.html");
+/// Where the data stand in the page.
+const PLACE: &str = "<!--DATA-->";
+
+/// Everything the page shows of some runs; its arrays are in the pack.
+#[derive(Serialize)]
+struct Contents {
+    runs: Vec<Drawing>,
+    pack: String,
+}
+
+/// The page of a run, with another one as its ghost if there are two.
+///
+/// # Errors
+/// A mechanism that cannot be drawn.
+pub fn page(runs: &[StoredRun]) -> Result<String, ViewError> {
+    let mut pack = Pack::default();
+    let drawings = runs.iter().map(|run| Drawing::new(run, &mut pack));
+    let contents = Contents {
+        runs: drawings.collect(),
+        pack: pack.encode(),
+    };
+    // `<` cannot end the script element from inside a string
+    let data = serde_json::to_string(&contents).map_err(std::io::Error::from)?;
+    let data = data.replace('<', "\\u003c");
+    let element = format!("<script type=\"application/json\" id=\"data\">{data}</script>");
+    let (head, tail) = PAGE
+        .split_once(PLACE)
+        .expect("the page has a place for data");
+    Ok([head, &element, tail].concat())
+}

@@ -1,0 +1,220 @@
+//! A result of `looselink run`, read back.
+
+use indexmap::IndexMap;
+use looselink::record::MotionLayout;
+use looselink::scene::{Scene, SceneError};
+use looselink::simulate::Simulation;
+use looselink::table::FORMATS;
+use serde::Deserialize;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a result cannot be shown.
+#[derive(Debug, thiserror::Error)]
+pub enum ViewError {
+    /// A folder without a result, or with one that is damaged.
+    #[error("{0}")]
+    Result(String),
+    /// Its scene has a fault.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The system refused; the message names the file.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+}
+
+/// A result and its mechanism.
+#[derive(Debug)]
+pub struct StoredRun {
+    /// The folder.
+    pub folder: PathBuf,
+    /// What was simulated.
+    pub scene: Scene,
+    /// The compiled mechanism at its start.
+    pub simulation: Simulation,
+    /// Status, warnings and overrides.
+    pub summary: StoredSummary,
+    /// What stands in a row of motion.
+    pub layout: MotionLayout,
+    /// Rows of motion.
+    pub motion: Vec<Vec<f32>>,
+    /// Time of every row \[s\].
+    pub times: Vec<f64>,
+    /// The other channels, column by column.
+    pub channels: Vec<StoredChannel>,
+}
+
+/// A channel of a result.
+#[derive(Debug)]
+pub struct StoredChannel {
+    /// Its name.
+    pub name: String,
+    /// Its unit; 1 where it has none.
+    pub unit: String,
+    /// Its value at every row.
+    pub values: Vec<f64>,
+}
+
+/// What the viewer needs of `summary.json`.
+#[derive(Debug, Deserialize)]
+pub struct StoredSummary {
+    scene_hash: String,
+    /// `path=value` changes of the scene.
+    pub overrides: Vec<String>,
+    /// `complete`, `incomplete` or `failed`.
+    pub status: String,
+    /// Why, for a run that could not go on.
+    pub error: Option<String>,
+    /// What the run warned of.
+    #[serde(default)]
+    pub warnings: Vec<String>,
+}
+
+impl StoredRun {
+    /// Reads the result in a folder. Of a run that was stopped or is under way the rows so far are read.
+    ///
+    /// # Errors
+    /// A folder without a result or without its motion, and files that do not belong together.
+    pub fn load(folder: &Path) -> Result<StoredRun, ViewError> {
+        let read = |name: &str| {
+            let path = folder.join(name);
+            fs::read(&path).map_err(|e| match e.kind() {
+                io::ErrorKind::NotFound => ViewError::Result(format!(
+                    "`{}` holds no result of `looselink run`: it has no `{name}`",
+                    folder.display()
+                )),
+                _ => naming(&path, e),
+            })
+        };
+        let summary: StoredSummary = serde_json::from_slice(&read("summary.json")?)
+            .map_err(|e| damaged(&folder.join("summary.json"), &e.to_string()))?;
+        read("scene.toml")?;
+        let scene = Scene::load(&folder.join("scene.toml"), &summary.overrides)?;
+        if scene.hash() != summary.scene_hash {
+            let message = "it is not the scene of the run that wrote `summary.json`";
+            return Err(damaged(&folder.join("scene.toml"), message));
+        }
+        let simulation = Simulation::new(&scene)?;
+        let layout = MotionLayout::new(simulation.model());
+        if !scene.output.motion {
+            return Err(ViewError::Result(format!(
+                "`{}` has no motion to show: the scene says `output.motion = false`",
+                folder.display()
+            )));
+        }
+        let motion = rows(&folder.join("motion.bin"), &read("motion.bin")?, &layout)?;
+        let table = scene.output.format.file("channels");
+        let mut channels = columns(
+            &folder.join(&table),
+            &read(&table)?,
+            scene.output.format.name,
+        )?;
+        // of a run under way one table can be a row ahead of the other
+        let count = motion.len().min(channels[0].values.len());
+        if count == 0 {
+            let message = format!("`{}` holds no row yet", folder.display());
+            return Err(ViewError::Result(message));
+        }
+        channels.iter_mut().for_each(|c| c.values.truncate(count));
+        let times = channels.remove(0).values;
+        Ok(StoredRun {
+            folder: folder.to_owned(),
+            motion: motion.into_iter().take(count).collect(),
+            scene,
+            simulation,
+            summary,
+            layout,
+            times,
+            channels,
+        })
+    }
+}
+
+fn naming(path: &Path, error: io::Error) -> ViewError {
+    let message = format!("cannot read `{}`: {error}", path.display());
+    io::Error::new(error.kind(), message).into()
+}
+
+fn damaged(path: &Path, message: &str) -> ViewError {
+    ViewError::Result(format!("`{}`: {message}", path.display()))
+}
+
+/// What precedes the rows of `motion.bin`.
+#[derive(Deserialize)]
+struct MotionHeader {
+    columns: Vec<String>,
+}
+
+/// The whole rows of `motion.bin`.
+fn rows(path: &Path, bytes: &[u8], layout: &MotionLayout) -> Result<Vec<Vec<f32>>, ViewError> {
+    let end = bytes.iter().position(|b| *b == b'\n');
+    let header = end.and_then(|end| serde_json::from_slice(&bytes[..end]).ok());
+    let (Some(end), Some(MotionHeader { columns })) = (end, header) else {
+        return Err(damaged(path, "its first line does not name its columns"));
+    };
+    if columns != layout.names() {
+        let message =
+            "its columns are not those of the scene; another version of the program wrote it";
+        return Err(damaged(path, message));
+    }
+    let rows = bytes[end + 1..].chunks_exact(4 * columns.len());
+    let number = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+    Ok(rows
+        .map(|row| row.chunks_exact(4).map(number).collect())
+        .collect())
+}
+
+/// The whole rows of a table of channels, column by column; the first is the time.
+fn columns(path: &Path, bytes: &[u8], format: &str) -> Result<Vec<StoredChannel>, ViewError> {
+    // a row is whole when it ends with a line feed
+    let whole = bytes
+        .iter()
+        .rposition(|b| *b == b'\n')
+        .map_or(0, |end| end + 1);
+    let read = match format {
+        name if name == FORMATS[0].name => read_csv(&bytes[..whole]),
+        _ => read_json_lines(&bytes[..whole]),
+    };
+    let channels = read.map_err(|message| damaged(path, &message))?;
+    match channels.is_empty() {
+        true => Err(damaged(path, "it has no columns")),
+        false => Ok(channels),
+    }
+}
+
+fn channel(heading: &str) -> StoredChannel {
+    let (name, unit) = heading.split_once(" [").unwrap_or((heading, "1]"));
+    StoredChannel {
+        name: name.to_owned(),
+        unit: unit.trim_end_matches(']').to_owned(),
+        values: Vec::new(),
+    }
+}
+
+fn read_csv(bytes: &[u8]) -> Result<Vec<StoredChannel>, String> {
+    let mut reader = csv::Reader::from_reader(bytes);
+    let headings = reader.headers().map_err(|e| e.to_string())?;
+    let mut channels: Vec<_> = headings.iter().map(channel).collect();
+    for row in reader.deserialize() {
+        let row: Vec<f64> = row.map_err(|e: csv::Error| e.to_string())?;
+        for (channel, value) in channels.iter_mut().zip(row) {
+            channel.values.push(value);
+        }
+    }
+    Ok(channels)
+}
+
+fn read_json_lines(bytes: &[u8]) -> Result<Vec<StoredChannel>, String> {
+    let mut channels: Vec<StoredChannel> = Vec::new();
+    for row in serde_json::Deserializer::from_slice(bytes).into_iter() {
+        let row: IndexMap<String, f64> = row.map_err(|e| e.to_string())?;
+        if channels.is_empty() {
+            channels = row.keys().map(|heading| channel(heading)).collect();
+        }
+        for (channel, value) in channels.iter_mut().zip(row.into_values()) {
+            channel.values.push(value);
+        }
+    }
+    Ok(channels)
+}

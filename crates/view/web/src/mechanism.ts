@@ -1,0 +1,226 @@
+// The mechanism: bodies, joints, springs and loads, contact forces, trails.
+
+import type { Body, End, Joint, Run } from "./data";
+import { angleOf, nodes, pointAt, type Vector } from "./pose";
+import { add, set } from "./svg";
+
+/** Sizes of symbols relative to the mechanism. */
+const BAR = 0.026;
+const RING = 0.014;
+const SLOT = 0.12;
+const ARROW = 0.22;
+/** Contact forces below this part of the largest are not drawn; the length of arrows is logarithmic above it. */
+const WEAKEST = 1e-3;
+const TRAIL_POINTS = 1500;
+
+export interface Options {
+  magnification: number;
+  forces: boolean;
+  names: boolean;
+  trail: End | null;
+}
+
+type Updater = (t: number, options: Options) => void;
+
+/** Draws a run, and moves it. */
+export class Mechanism {
+  private updaters: Updater[] = [];
+  readonly size: number;
+  private strongest: number;
+
+  constructor(
+    root: SVGGElement,
+    private run: Run,
+    kind: "run" | "ghost",
+  ) {
+    const [x0, y0, x1, y1] = run.bounds;
+    this.size = Math.max(x1 - x0, y1 - y0) || 1;
+    this.strongest = Math.max(0, ...run.joints.map((j) => j.clearance?.strongest ?? 0));
+    const group = add(root, "g", { class: kind });
+    if (kind === "run") {
+      if (run.path.length > 0) add(group, "polyline", { class: "path", points: run.path.join(" ") });
+      this.addTrail(group);
+    }
+    run.bodies.forEach((body, b) => this.addBody(group, body, b));
+    run.forces.forEach((force) => this.addForce(group, force.ends));
+    run.joints.forEach((joint) => this.addJoint(group, joint));
+    if (kind === "run") {
+      run.joints.forEach((joint) => this.addArrow(group, joint));
+      run.bodies.forEach((body, b) => this.addName(group, body, b));
+    }
+  }
+
+  update(t: number, options: Options): void {
+    for (const update of this.updaters) update(t, options);
+  }
+
+  private addBody(parent: Element, body: Body, b: number): void {
+    const { shape } = body;
+    const label = { "data-body": body.name };
+    if (shape === "ground") {
+      body.points.forEach((p) => this.addSupport(parent, p.at));
+      return;
+    }
+    if ("beam" in shape) {
+      const path = add(parent, "path", { ...label, class: "beam", "stroke-width": 0.5 * BAR * this.size });
+      this.updaters.push((t, options) => set(path, { d: curve(nodes(body, t, options.magnification), shape.beam) }));
+      return;
+    }
+    const group = add(parent, "g", { ...label, class: `rigid tone${b % 3}` });
+    if ("disc" in shape) {
+      add(group, "circle", { r: shape.disc });
+      add(group, "line", { x2: shape.disc });
+    } else if (shape.hull.length > 1) {
+      add(group, "polygon", { points: shape.hull.join(" "), "stroke-width": BAR * this.size });
+    } else {
+      const [x, y] = shape.hull[0] ?? [0, 0];
+      add(group, "circle", { cx: x, cy: y, r: 0.8 * BAR * this.size });
+    }
+    this.updaters.push((t) => {
+      const [x, y, theta] = body.pose!.at(t);
+      set(group, { transform: `translate(${x} ${y}) rotate(${(theta * 180) / Math.PI})` });
+    });
+  }
+
+  /** The triangle of a fixed point. */
+  private addSupport(parent: Element, [x, y]: Vector): void {
+    const w = 1.4 * BAR * this.size;
+    add(parent, "path", { class: "support", d: `M${x} ${y}l${-w} ${-1.5 * w}h${2 * w}z` });
+  }
+
+  private addJoint(parent: Element, joint: Joint): void {
+    const { run } = this;
+    const r = RING * this.size * (joint.clearance ? 1.2 : 1);
+    const [b, p] = joint.ends[0];
+    const bearing = `${run.bodies[b].name}.${run.bodies[b].points[p].name}`;
+    const kind = joint.clearance ? "joint loose" : "joint";
+    const group = add(parent, "g", { class: kind, "data-joint": joint.name, "data-bearing": bearing });
+    const at = (end: 0 | 1, t: number, options: Options) => pointAt(run, joint.ends[end], t, options.magnification);
+    const { glyph } = joint;
+    if (typeof glyph === "object") {
+      const half = 0.5 * SLOT * this.size;
+      const slot = add(group, "line", { class: "slot", x1: -half, x2: half, style: `stroke-width: ${2.4 * r}` });
+      const block = add(group, "rect", { x: -1.6 * r, y: -r, width: 3.2 * r, height: 2 * r });
+      this.updaters.push((t, options) => {
+        const angle = angleOf(run.bodies[joint.ends[0][0]], t) + glyph.slide;
+        const place = (p: Vector) => `translate(${p}) rotate(${(angle * 180) / Math.PI})`;
+        set(slot, { transform: place(at(0, t, options)) });
+        set(block, { transform: place(at(1, t, options)) });
+      });
+    } else if (glyph === "rod") {
+      const line = add(group, "line", { class: "rod", style: `stroke-width: ${0.3 * BAR * this.size}` });
+      this.updaters.push((t, options) => {
+        const [[x1, y1], [x2, y2]] = [at(0, t, options), at(1, t, options)];
+        set(line, { x1, y1, x2, y2 });
+      });
+    } else {
+      const symbol =
+        glyph === "weld" ? add(group, "rect", { x: -r, y: -r, width: 2 * r, height: 2 * r }) : add(group, "circle", { r });
+      if (joint.clearance) add(group, "circle", { class: "pin", r: 0.45 * r });
+      this.updaters.push((t, options) => set(group, { transform: `translate(${at(0, t, options)})` }));
+      add(symbol, "title").textContent = joint.name;
+    }
+  }
+
+  /** A spring between two points, or a mark where a load acts. */
+  private addForce(parent: Element, ends: End[]): void {
+    const { run, size } = this;
+    if (ends.length < 2) {
+      const mark = add(parent, "circle", { class: "load", r: 0.7 * RING * size });
+      this.updaters.push((t, options) => {
+        const [cx, cy] = pointAt(run, ends[0], t, options.magnification);
+        set(mark, { cx, cy });
+      });
+      return;
+    }
+    const path = add(parent, "path", { class: "spring" });
+    this.updaters.push((t, options) => {
+      const [a, b] = ends.slice(0, 2).map((end) => pointAt(run, end, t, options.magnification));
+      set(path, { d: Math.hypot(b[0] - a[0], b[1] - a[1]) > RING * size ? zigzag(a, b, 0.02 * size) : spiral(a, 2.2 * RING * size) });
+    });
+  }
+
+  /** The force of the bearing on the journal. */
+  private addArrow(parent: Element, joint: Joint): void {
+    const { clearance } = joint;
+    if (!clearance || this.strongest === 0) return;
+    const path = add(parent, "path", { class: "arrow" });
+    this.updaters.push((t, options) => {
+      const [fx, fy] = clearance.force.at(t);
+      const share = Math.hypot(fx, fy) / this.strongest;
+      if (!options.forces || share < WEAKEST) return set(path, { d: "" });
+      const length = ARROW * this.size * (1 - Math.log(share) / Math.log(WEAKEST));
+      const from = pointAt(this.run, joint.ends[0], t, options.magnification);
+      set(path, { d: arrow(from, Math.atan2(fy, fx), length, 0.012 * this.size) });
+    });
+  }
+
+  private addName(parent: Element, body: Body, b: number): void {
+    if (body.shape === "ground" || body.points.length === 0) return;
+    const text = add(parent, "text", { class: "name", "font-size": 0.03 * this.size });
+    text.textContent = body.name;
+    this.updaters.push((t, options) => {
+      text.style.display = options.names ? "" : "none";
+      if (!options.names) return;
+      const points = body.points.map((_, p) => pointAt(this.run, [b, p], t, options.magnification));
+      const mean = (i: 0 | 1) => points.reduce((sum, p) => sum + p[i], 0) / points.length;
+      set(text, { transform: `translate(${mean(0)} ${mean(1)}) scale(1 -1)` });
+    });
+  }
+
+  /** The way of a point up to now. */
+  private addTrail(parent: Element): void {
+    const line = add(parent, "polyline", { class: "trail" });
+    const { times } = this.run;
+    const duration = times[times.length - 1];
+    let known: { end: End | null; magnification: number; points: Vector[] } = { end: null, magnification: 1, points: [] };
+    this.updaters.push((t, { trail, magnification }) => {
+      if (known.end !== trail || known.magnification !== magnification) {
+        const sample = (_: unknown, k: number) => pointAt(this.run, trail!, (duration * k) / TRAIL_POINTS, magnification);
+        known = { end: trail, magnification, points: trail ? Array.from({ length: TRAIL_POINTS + 1 }, sample) : [] };
+      }
+      const count = Math.floor((t / duration) * TRAIL_POINTS) + 1;
+      const now = trail ? [pointAt(this.run, trail, t, magnification)] : [];
+      set(line, { points: [...known.points.slice(0, count), ...now].join(" ") });
+    });
+  }
+}
+
+/** The cubics of a flexible link, as Bezier curves: control points lie a third of an element along the slopes. */
+function curve(at: { at: Vector; slope: Vector }[], beam: { elements: number; length: number }): string {
+  const third = beam.length / beam.elements / 3;
+  const parts = at.slice(1).map((node, k) => {
+    const before = at[k];
+    const a = before.at.map((x, i) => x + third * before.slope[i]);
+    const b = node.at.map((x, i) => x - third * node.slope[i]);
+    return `C${a} ${b} ${node.at}`;
+  });
+  return `M${at[0].at}${parts.join("")}`;
+}
+
+function zigzag(a: Vector, b: Vector, width: number): string {
+  const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+  const length = Math.hypot(dx, dy);
+  const normal = [(-dy / length) * width, (dx / length) * width];
+  const turns = 12;
+  const points = Array.from({ length: turns }, (_, k) => {
+    const share = 0.2 + (0.6 * k) / (turns - 1);
+    const side = k === 0 || k === turns - 1 ? 0 : k % 2 ? 1 : -1;
+    return [a[0] + share * dx + side * normal[0], a[1] + share * dy + side * normal[1]];
+  });
+  return `M${a}L${points.join(" ")} ${b}`;
+}
+
+function spiral([x, y]: Vector, radius: number): string {
+  const points = Array.from({ length: 49 }, (_, k) => {
+    const [angle, r] = [(k * Math.PI) / 12, (radius * (k + 12)) / 60];
+    return [x + r * Math.cos(angle), y + r * Math.sin(angle)];
+  });
+  return `M${points.join("L")}`;
+}
+
+export function arrow([x, y]: Vector, angle: number, length: number, head: number): string {
+  const tip: Vector = [x + length * Math.cos(angle), y + length * Math.sin(angle)];
+  const side = (turn: number) => [tip[0] + head * 2 * Math.cos(angle + turn), tip[1] + head * 2 * Math.sin(angle + turn)];
+  return `M${x} ${y}L${tip}M${side(2.7)}L${tip}L${side(-2.7)}`;
+}

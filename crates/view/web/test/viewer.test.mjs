@@ -1,0 +1,206 @@
+// The page in headless Chromium: four cases of the paper and five other scenes load without a message, the mechanism follows the
+// time slider to half a pixel, charts follow, and the built page is that of the sources.
+//
+// LOOSELINK names the program, CHROMIUM the browser.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const ROOT = resolve(import.meta.dirname, "../../../..");
+const PROGRAM = process.env.LOOSELINK ?? join(ROOT, "target/release/looselink");
+const BROWSER = process.env.CHROMIUM ?? "/usr/bin/chromium";
+const VIEWPORT = { width: 1280, height: 900 };
+const LOAD_SCENES = [
+  { name: "case1", scene: "3rrr/case1.toml", set: ["simulation.duration=1.0"] },
+  { name: "case2", scene: "3rrr/case2.toml", set: ["simulation.duration=0.2"] },
+  { name: "case3", scene: "3rrr/case3.toml", set: ["simulation.duration=0.1"], least: 25 },
+  { name: "case4", scene: "3rrr/case4.toml", set: ["simulation.duration=0.1"], least: 25 },
+  { name: "slider", scene: "slider-crank/both.toml", set: ["simulation.duration=0.05"] },
+  { name: "yoke", scene: "scotch-yoke.toml", set: [] },
+  { name: "maxwell", scene: "maxwell.toml", set: [] },
+  { name: "disc", scene: "driven-disc.toml", set: [] },
+  { name: "static", scene: "cantilever-static.toml", set: [], least: 0 },
+];
+
+let browser;
+let folder;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), "looselink-viewer-"));
+  browser = await chromium.launch({
+    executablePath: BROWSER,
+    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+  });
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+/** Runs a scene and returns its folder. */
+function run(name, scene, set) {
+  const out = join(folder, name);
+  const overrides = [...set, 'output.channels=["*"]'].flatMap((s) => ["--set", s]);
+  execFileSync(PROGRAM, ["run", join(ROOT, "scenes", scene), "--out", out, "--view", "--quiet", ...overrides], { stdio: "ignore" });
+  return out;
+}
+
+/** Columns of channels.csv, or of channels.jsonl. */
+function channels(out) {
+  try {
+    const [head, ...rows] = readFileSync(join(out, "channels.csv"), "utf8").trim().split("\n").map((row) => row.split(","));
+    const names = head.map((h) => h.split(" [")[0]);
+    return Object.fromEntries(names.map((name, i) => [name, rows.map((row) => Number(row[i]))]));
+  } catch {
+    const rows = readFileSync(join(out, "channels.jsonl"), "utf8").trim().split("\n").map((row) => JSON.parse(row));
+    return Object.fromEntries(Object.keys(rows[0]).map((key) => [key.split(" [")[0], rows.map((row) => row[key])]));
+  }
+}
+
+/** Opens a page; everything that it or the browser says is collected. */
+async function open(file, viewport = VIEWPORT) {
+  const page = await browser.newPage({ viewport });
+  const messages = [];
+  page.on("console", (message) => messages.push(message.text()));
+  page.on("pageerror", (error) => messages.push(String(error)));
+  page.on("request", (request) => request.url().startsWith("file:") || request.url().startsWith("data:") || messages.push(`request: ${request.url()}`));
+  await page.goto(pathToFileURL(file).href);
+  await page.waitForSelector("html[data-ready]");
+  return { page, messages };
+}
+
+const seek = (page, t) =>
+  page.evaluate((t) => {
+    const slider = document.getElementById("time");
+    slider.value = String(t);
+    slider.dispatchEvent(new Event("input"));
+    return Number(slider.value);
+  }, t);
+
+/** How far symbols of rigid bodies and of revolute joints are on the screen from where the channels have them at a row [pixels]. */
+const distances = async (page, columns, row) => {
+  const symbols = await page.evaluate(() => {
+    const at = (e) => (({ e: x, f: y }) => [x, y])(e.getScreenCTM());
+    const { a, b, c, d, e, f } = document.getElementById("world").getScreenCTM();
+    return {
+      plane: [a, b, c, d, e, f],
+      bodies: [...document.querySelectorAll(".run g.rigid")].map((g) => [g.dataset.body, at(g)]),
+      joints: [...document.querySelectorAll(".run g.joint[transform]")].map((g) => [`points.${g.dataset.bearing}`, at(g)]),
+    };
+  });
+  const [a, b, c, d, e, f] = symbols.plane;
+  const distance = ([name, [px, py]]) => {
+    const [x, y] = [columns[`${name}.x`][row], columns[`${name}.y`][row]];
+    return Math.hypot(a * x + c * y + e - px, b * x + d * y + f - py);
+  };
+  const known = ([name]) => columns[`${name}.x`];
+  // the frame of a link is at its start; its channels are those of its centre
+  const frames = symbols.bodies.filter(([name]) => known([name]) && !columns[`points.${name}.start.x`]);
+  return [...frames, ...symbols.joints.filter(known)].map(distance);
+};
+
+for (const { name, scene, set, least = 1 } of LOAD_SCENES) {
+  test(`${scene} loads without a message and moves with the slider`, async (context) => {
+    const out = run(name, scene, set);
+    const file = join(out, "view.html");
+    const { page, messages } = await open(file);
+    const columns = channels(out);
+    const rows = columns.t.length;
+    const before = await page.evaluate(() => document.getElementById("world").innerHTML);
+    let [worst, compared] = [0, 0];
+    for (const row of [1, Math.floor(rows / 3), Math.floor(rows / 2), rows - 2, rows - 1].filter((r) => r > 0)) {
+      await seek(page, columns.t[row]);
+      const all = await distances(page, columns, row);
+      worst = Math.max(worst, ...all);
+      compared += all.length;
+    }
+    assert.ok(worst <= 0.5, `a symbol is ${worst} pixels off`);
+    assert.ok(compared >= least, `only ${compared} places were compared`);
+    const later = await page.evaluate(() => document.getElementById("world").innerHTML);
+    assert.notEqual(before, later, "the mechanism stands still");
+    // charts follow: the line that shows the time stands where the chart has that time
+    await seek(page, columns.t[Math.floor(rows / 2)]);
+    const lines = await page.evaluate(() =>
+      [...document.querySelectorAll(".now")].map((line) => {
+        const over = line.parentElement.getBoundingClientRect();
+        return (line.getBoundingClientRect().left - over.left) / over.width;
+      }),
+    );
+    assert.ok(lines.length > 0, "there is no chart");
+    const share = (columns.t[Math.floor(rows / 2)] - columns.t[0]) / (columns.t[rows - 1] - columns.t[0]);
+    for (const line of lines) assert.ok(Math.abs(line - share) < 0.02, `the chart shows ${line} of the time, not ${share}`);
+    // frames while it plays
+    await page.click("#play");
+    const rate = await page.evaluate(
+      () =>
+        new Promise((done) => {
+          let frames = 0;
+          const start = performance.now();
+          const count = () => (++frames, performance.now() - start < 1000 ? requestAnimationFrame(count) : done((1000 * frames) / (performance.now() - start)));
+          requestAnimationFrame(count);
+        }),
+    );
+    context.diagnostic(`${compared} places at most ${worst.toFixed(3)} px off; ${rate.toFixed(0)} frames/s; ${(statSync(file).size / 1e6).toFixed(2)} MB`);
+    assert.deepEqual(messages, []);
+    await page.close();
+  });
+}
+
+test("eccentricities are right to a thousandth of the clearance", async () => {
+  const out = run("loose", "3rrr/case3.toml", ["simulation.duration=0.05"]);
+  const { page } = await open(join(out, "view.html"));
+  const columns = channels(out);
+  // radius of the play in the picture stands for the clearance of 2e-5 m
+  const [play, clearance] = [22, 2e-5];
+  let worst = 0;
+  for (let row = 0; row < columns.t.length; row += 7) {
+    await seek(page, columns.t[row]);
+    const [cx, cy] = await page.evaluate(() => {
+      const journal = document.querySelector('[data-inset="B1"] .journal');
+      return [Number(journal.getAttribute("cx")), Number(journal.getAttribute("cy"))];
+    });
+    worst = Math.max(worst, Math.hypot(cx - (play / clearance) * columns["B1.ex"][row], cy - (play / clearance) * columns["B1.ey"][row]) / play);
+  }
+  assert.ok(worst <= 1e-3, `${worst} of the clearance`);
+  await page.close();
+});
+
+test("a ghost, a phone, the dark, the keyboard and names for screen readers", async () => {
+  const out = run("both", "slider-crank/both.toml", ["simulation.duration=0.02"]);
+  const ideal = run("ideal", "slider-crank/ideal.toml", ["simulation.duration=0.02"]);
+  const file = join(folder, "ghost.html");
+  execFileSync(PROGRAM, ["view", out, "--ghost", ideal, "-o", file]);
+  const { page, messages } = await open(file, { width: 390, height: 800 });
+  assert.equal(await page.locator(".ghost").count(), 1);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "it is wider than the phone");
+  await page.click("#theme");
+  const time = () => page.evaluate(() => Number(document.getElementById("time").value));
+  await page.focus("#mechanism");
+  await page.keyboard.press("End");
+  assert.ok(Math.abs((await time()) - 0.02) < 1e-9);
+  await page.keyboard.press("ArrowLeft");
+  assert.ok((await time()) < 0.02);
+  await page.keyboard.press("Home");
+  assert.equal(await time(), 0);
+  await page.keyboard.press(" ");
+  await page.waitForFunction(() => Number(document.getElementById("time").value) > 0);
+  const nameless = await page.evaluate(() =>
+    [...document.querySelectorAll("button, input, select, svg[role=img], section")]
+      .filter((e) => !(e.getAttribute("aria-label") || e.closest("label")?.textContent.trim() || e.textContent.trim()))
+      .map((e) => e.outerHTML.slice(0, 80)),
+  );
+  assert.deepEqual(nameless, []);
+  assert.deepEqual(messages, []);
+  await page.close();
+});
+
+test("the page in the repository is the one that the sources build", () => {
+  const built = join(folder, "built.html");
+  execFileSync("node", ["build.mjs", built], { cwd: join(import.meta.dirname, "..") });
+  assert.equal(readFileSync(built, "utf8"), readFileSync(join(import.meta.dirname, "../../assets/viewer.html"), "utf8"));
+});

@@ -1,0 +1,22 @@
+//! Rows of 32-bit numbers, little-endian, after a line with the names of the columns: for tables that programs read.
+
+use super::{Cell, Format};
+use serde_json::json;
+
+pub(crate) static FORMAT: Format = Format {
+    name: "float32",
+    extension: "bin",
+    header: |columns, text| {
+        text.extend(json!({ "columns": columns }).to_string().as_bytes());
+        text.push(b'\n');
+    },
+    row: |_, cells, text| {
+        for cell in cells {
+            let number = match cell {
+                Cell::Number(number) => *number as f32,
+                Cell::Word(_) | Cell::Empty => f32::NAN,
+            };
+            text.extend(number.to_le_bytes());
+        }
+    },
+};
