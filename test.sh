@@ -11,17 +11,21 @@ fewest_tests=454
 # Comparisons that take a minute or more.
 slow=(flexible_links impacts_of statistics_of first_rows_without_clearance)
 
-install_libraries() {
-    local packages=(g++ libeigen3-dev libsundials-dev libsuitesparse-dev libtomlplusplus-dev)
-    # an environment variable names a place of one's own
-    if [ -n "${EIGEN_INCLUDE_DIR:-}" ] && [ -n "${SUNDIALS_DIR:-}" ]; then return; fi
-    command -v apt-get > /dev/null || return 0 # the build says what is missing, and how to get it
-    if dpkg -s "${packages[@]}" > /dev/null 2>&1; then return; fi
+# Packages of Debian and Ubuntu; elsewhere what needs them says what is missing.
+install() {
+    command -v apt-get > /dev/null || return 0
+    if dpkg -s "$@" > /dev/null 2>&1; then return; fi
     local root=()
     [ "$(id -u)" -eq 0 ] || root=(sudo)
-    echo "installing ${packages[*]}"
+    echo "installing $*"
     "${root[@]}" apt-get update -qq
-    DEBIAN_FRONTEND=noninteractive "${root[@]}" apt-get install -y -qq --no-install-recommends "${packages[@]}" > /dev/null
+    DEBIAN_FRONTEND=noninteractive "${root[@]}" apt-get install -y -qq --no-install-recommends "$@" > /dev/null
+}
+
+install_libraries() {
+    # an environment variable names a place of one's own
+    if [ -n "${EIGEN_INCLUDE_DIR:-}" ] && [ -n "${SUNDIALS_DIR:-}" ]; then return; fi
+    install g++ libeigen3-dev libsundials-dev libsuitesparse-dev libtomlplusplus-dev
 }
 
 quick() {
@@ -53,13 +57,27 @@ everything() {
     cargo run --quiet --profile test -p ladder -- --from "$LOOSELINK_LADDER" --check
 }
 
+# The viewer: its page is that of its sources, and works in a browser. Needs node 20 or newer.
+web() {
+    [ -n "${CHROMIUM:-}" ] || install chromium fonts-dejavu-core
+    cargo build --release -p looselink-cli
+    cd crates/view/web
+    npm ci --silent
+    npx tsc --noEmit
+    npm test
+}
+
+if [ "${1:-}" = --web ]; then
+    web
+    exit
+fi
 install_libraries
 cargo fmt --all --check
 case "${1:-}" in
     "") quick ;;
     --all) everything ;;
     *)
-        echo "usage: ./test.sh [--all]" >&2
+        echo "usage: ./test.sh [--all | --web]" >&2
         exit 2
         ;;
 esac

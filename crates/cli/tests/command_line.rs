@@ -20,7 +20,7 @@ pub fn looselink(arguments: &[&str]) -> Output {
     program().args(arguments).output().unwrap()
 }
 
-fn run(out: &Path, more: &[&str]) -> Output {
+pub fn run(out: &Path, more: &[&str]) -> Output {
     let arguments = ["run", SCENE, "--out", out.to_str().unwrap()];
     looselink(&[&arguments, more].concat())
 }
@@ -60,6 +60,7 @@ fn a_run_leaves_a_result() {
         files(&out),
         [
             "channels.csv",
+            "motion.bin",
             "onsets.csv",
             "scene.toml",
             "summary.json",
@@ -192,8 +193,15 @@ fn a_repeated_run_differs_in_its_timing_only() {
     for out in [&first, &second] {
         expect(&run(out, &["--quiet"]), 0, "");
     }
-    for file in ["channels.csv", "onsets.csv", "scene.toml", "summary.json"] {
-        assert_eq!(read(&first, file), read(&second, file), "{file}");
+    for file in [
+        "channels.csv",
+        "onsets.csv",
+        "motion.bin",
+        "scene.toml",
+        "summary.json",
+    ] {
+        let bytes = [&first, &second].map(|out| fs::read(out.join(file)).unwrap());
+        assert_eq!(bytes[0], bytes[1], "{file}");
     }
 }
 
@@ -352,10 +360,12 @@ fn a_result_is_replaced_only_on_demand() {
 fn a_part_of_a_result_counts_as_one() {
     for file in [
         "channels.csv",
+        "motion.bin",
         "onsets.csv",
         "scene.toml",
         "summary.json",
         "timing.json",
+        "view.html",
     ] {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join(file), "precious").unwrap();

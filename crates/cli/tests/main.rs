@@ -7,3 +7,4 @@ mod precision;
 mod process;
 mod schema;
 mod suggestions;
+mod view;

@@ -27,8 +27,9 @@ const RUN: [&str; 8] = [
 const NEW: &str = "simulation.duration=0.04";
 const EARLIER: &str = "simulation.duration=0.02";
 
-const FILES: [&str; 5] = [
+const FILES: [&str; 6] = [
     "channels.csv",
+    "motion.bin",
     "onsets.csv",
     "scene.toml",
     "summary.json",
@@ -103,7 +104,7 @@ fn run_and_kill(out: &Path, more: &[&str], moment: Moment) -> bool {
 
 /// The bytes of a result.
 #[derive(Debug, PartialEq)]
-struct Bytes([Vec<u8>; 5]);
+struct Bytes([Vec<u8>; FILES.len()]);
 
 impl Bytes {
     fn of(folder: &Path) -> Bytes {
@@ -112,7 +113,7 @@ impl Bytes {
 
     /// All but the timing, which differs when a run is repeated.
     fn repeatable(&self) -> &[Vec<u8>] {
-        &self.0[..4]
+        &self.0[..FILES.len() - 1]
     }
 
     fn lay(&self, folder: &Path) {
@@ -134,7 +135,7 @@ fn whole(folder: &Path, duration: &str) -> (Bytes, Duration) {
         let numbers = line.split(',').map(|x| x.parse::<f64>().unwrap());
         assert_eq!(numbers.filter(|x| x.is_finite()).count(), width);
     }
-    assert!(text.lines().count() > 1000 && bytes.0[1].len() > 1000);
+    assert!(text.lines().count() > 1000 && bytes.0[2].len() > 1000);
     (bytes, started.elapsed())
 }
 
@@ -151,10 +152,10 @@ fn check_killed(folder: &Path, whole: &Bytes) {
     match status(folder).as_deref() {
         Some("complete") => assert_eq!(found.repeatable(), whole.repeatable()),
         Some("incomplete") | None => {
-            for k in [0, 1] {
+            for k in [0, 1, 2] {
                 assert!(whole.0[k].starts_with(&found.0[k]), "{}", FILES[k]);
             }
-            assert!(found.0[2].is_empty() || found.0[2] == whole.0[2]);
+            assert!(found.0[3].is_empty() || found.0[3] == whole.0[3]);
         }
         Some(other) => panic!("{other}"),
     }

@@ -24,7 +24,7 @@ fn limited(out: &Path, blocks: usize, dies: bool, more: &[&str]) -> Output {
         .unwrap()
 }
 
-/// No room for a file, at sizes that each of the files reaches first with one of the three lists of channels.
+/// No room for a file, at sizes that each of the files reaches first with one of the four lists of channels.
 #[test]
 fn a_full_disk_ends_a_run_with_the_name_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
@@ -46,7 +46,13 @@ fn a_full_disk_ends_a_run_with_the_name_of_the_file() {
         "--set",
         "output.channels=[\"error.x\"]",
     ];
-    for (n, more) in [&lots[..], &all, &one].into_iter().enumerate() {
+    // many rows of one channel: the motion is the longest file then
+    let few = [
+        "simulation.duration=0.02",
+        "--set",
+        "output.channels=[\"error.x\"]",
+    ];
+    for (n, more) in [&lots[..], &all, &one, &few].into_iter().enumerate() {
         let out = folder.path().join(format!("whole-{n}"));
         expect(&looselink(&arguments(&out, more)), 0, "");
         let whole = Bytes::of(&out);
@@ -89,6 +95,7 @@ fn a_full_disk_ends_a_run_with_the_name_of_the_file() {
             ".scene.toml.tmp",
             ".summary.json.tmp",
             "channels.csv",
+            "motion.bin",
             "onsets.csv"
         ]
     );
