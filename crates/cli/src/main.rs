@@ -6,6 +6,7 @@ mod completions;
 mod failure;
 mod inspect;
 mod new;
+mod plot;
 mod precision;
 mod progress;
 mod run;
@@ -48,6 +49,12 @@ enum Command {
     /// Show the motion of a result: one HTML file for a browser, or SVG pictures.
     #[command(after_help = "Example:\n  looselink view out/case4 --ghost out/case1")]
     View(view::Arguments),
+    /// Draw channels of a result: over time, over each other, their spectrum, a Poincare section.
+    #[command(
+        after_help = "Examples:\n  looselink plot out/case4 --channels 'error.*' -o error.svg\n  \
+        looselink plot out/case4 --phase B1.ex B1.ey -o orbit.png"
+    )]
+    Plot(plot::Arguments),
     /// Show the compiled scene without running it.
     #[command(after_help = "Example:\n  looselink inspect scenes/3rrr/case4.toml --json")]
     Inspect(inspect::Arguments),
@@ -134,6 +141,7 @@ fn main() -> ExitCode {
     let result = match &arguments.command {
         Command::New(arguments) => new::new(arguments),
         Command::Run(arguments) => run::run(arguments),
+        Command::Plot(arguments) => plot::plot(arguments),
         Command::View(arguments) => view::view(arguments),
         Command::Inspect(arguments) => inspect::inspect(arguments),
         Command::Check(arguments) => check(arguments),

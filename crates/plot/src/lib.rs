@@ -12,7 +12,7 @@ mod panel;
 mod text;
 mod ticks;
 
-pub use output::{render, save};
+pub use output::{png, render, save, svg};
 
 /// An RGB colour.
 pub type Color = (u8, u8, u8);
@@ -91,7 +91,7 @@ pub struct Axis {
     /// Quantity without the unit.
     pub label: String,
     /// Symbol of the unit the ticks are in, such as `µm`; empty for a pure number.
-    pub unit: &'static str,
+    pub unit: String,
     /// Ticks are data (SI) times this.
     pub factor: f64,
     /// Linear or logarithmic.
@@ -154,10 +154,10 @@ pub enum MarkShape {
 
 impl Axis {
     /// A linear axis over the range of the data: ticks are data times `factor`, in `unit`.
-    pub fn new(label: &str, unit: &'static str, factor: f64) -> Axis {
+    pub fn new(label: &str, unit: &str, factor: f64) -> Axis {
         Axis {
             label: label.into(),
-            unit,
+            unit: unit.to_owned(),
             factor,
             scale: Scale::Linear,
             range: None,

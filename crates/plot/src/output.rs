@@ -44,7 +44,7 @@ pub fn render(figure: &Figure) -> Result<[Vec<u8>; 2]> {
 }
 
 /// The SVG text of a figure.
-fn svg(figure: &Figure) -> String {
+pub fn svg(figure: &Figure) -> String {
     let (panels, bottom) = place(figure);
     let caption = text::wrap(&figure.caption, SMALL, WIDTH - 4 * MARGIN);
     let mut canvas = Canvas::new(bottom + SMALL_LINE * caption.len() as i32 + MARGIN);
@@ -55,8 +55,11 @@ fn svg(figure: &Figure) -> String {
     canvas.finish()
 }
 
-/// Rasterises at one pixel a drawing unit.
-fn png(svg: &str) -> Result<Vec<u8>> {
+/// The PNG of an SVG text, at one pixel a drawing unit.
+///
+/// # Errors
+/// A text that cannot be drawn.
+pub fn png(svg: &str) -> Result<Vec<u8>> {
     let options = usvg::Options {
         fontdb: FONTS.clone(),
         font_family: "DejaVu Sans".into(),

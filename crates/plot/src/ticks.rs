@@ -168,7 +168,7 @@ fn label(axis: &Axis, power: i32) -> String {
         0 => String::new(),
         power => format!("10{}", numbers::superscript(power)),
     };
-    match [&scale, axis.unit].join(" ").trim() {
+    match format!("{scale} {}", axis.unit).trim() {
         "" => axis.label.clone(),
         unit => format!("{} ({unit})", axis.label),
     }

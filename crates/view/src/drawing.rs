@@ -11,8 +11,7 @@ use super::stored::StoredRun;
 use super::tracks::{Group, Signal};
 use looselink::body::{FlexibleLink, PointRef};
 use looselink::interaction::Joint;
-use looselink::scene::{Analysis, Pace, Scene};
-use numbers::si;
+use looselink::scene::{Analysis, Scene};
 use serde::Serialize;
 
 /// Errors of poses, relative to the size of the mechanism: a twentieth of a pixel where it fills a thousand pixels.
@@ -124,7 +123,8 @@ struct DrawnChannel {
 impl Drawing {
     /// That of a run; its arrays go into the pack.
     pub fn new(run: &StoredRun, pack: &mut Pack) -> Drawing {
-        let scene = &run.scene;
+        let StoredRun { result, .. } = run;
+        let scene = &result.scene;
         let (moved, bounds) = Moved::all(run);
         let size = (bounds[2] - bounds[0]).max(bounds[3] - bounds[1]);
         let bodies = scene.bodies.iter().zip(moved).map(|(named, moved)| {
@@ -139,8 +139,8 @@ impl Drawing {
                         node: beam.map(|link| link.nodes[i]),
                     })
                     .collect(),
-                pose: pose(&moved, &run.times, size, pack),
-                deformation: deformation(&moved, &run.times, pack),
+                pose: pose(&moved, &result.times, size, pack),
+                deformation: deformation(&moved, &result.times, pack),
                 shape: moved.shape,
             }
         });
@@ -166,21 +166,21 @@ impl Drawing {
         });
         Drawing {
             title: scene.title.clone(),
-            folder: run.folder.display().to_string(),
-            method: method(scene),
-            status: run.summary.status.clone(),
-            error: run.summary.error.clone(),
-            overrides: run.summary.overrides.clone(),
-            warnings: run.summary.warnings.clone(),
+            folder: result.folder.display().to_string(),
+            method: result.method(),
+            status: result.summary.status.clone(),
+            error: result.summary.error.clone(),
+            overrides: result.summary.overrides.clone(),
+            warnings: result.summary.warnings.clone(),
             is_static: scene.simulation.analysis == Analysis::Static,
-            times: pack.add(run.times.iter().copied()),
+            times: pack.add(result.times.iter().copied()),
             bounds,
             bodies,
             joints,
             forces: forces.collect(),
             path: path(scene),
             driven: scene.drives.first().map(|drive| drive.body),
-            channels: run
+            channels: result
                 .channels
                 .iter()
                 .map(|channel| DrawnChannel {
@@ -204,15 +204,6 @@ fn glyph(joint: &Joint) -> Glyph {
         (None, None) if joint.model.is_revolute() => Glyph::Revolute,
         (None, None) => Glyph::Rod,
     }
-}
-
-/// The method and what its steps follow.
-fn method(scene: &Scene) -> String {
-    let pace = match scene.integrator.pace {
-        Pace::Step(step) => format!("step {}", si(step, "s")),
-        Pace::Accuracy(accuracy) => format!("accuracy {accuracy}"),
-    };
-    format!("{}, {pace}", scene.integrator.method.name())
 }
 
 /// Positions along the path of the first drive.
@@ -273,7 +264,7 @@ impl Clearance {
         let strongest = largest(&columns[2]).max(largest(&columns[3]));
         let mut group = |pair: &[Vec<f64>], tolerance| {
             let signals = [0, 1].map(|i| signal(&pair[i], tolerance));
-            Group::quantised(&run.times, &signals, pack)
+            Group::quantised(&run.result.times, &signals, pack)
         };
         Clearance {
             clearance,

@@ -17,7 +17,7 @@ opacity:.8}.beam{fill:none;stroke:#d2691e;stroke-linecap:round}.ground{fill:#e2e
 /// Pictures at evenly spaced rows, the first and the last among them.
 pub fn frames(run: &StoredRun, count: usize) -> Vec<String> {
     let (bodies, bounds) = Moved::all(run);
-    let last = run.times.len() - 1;
+    let last = run.result.times.len() - 1;
     let intervals = count.saturating_sub(1).max(1);
     let rows = (0..count).map(|k| (k as f64 / intervals as f64 * last as f64).round() as usize);
     rows.map(|row| frame(run, &bodies, bounds, row)).collect()
@@ -35,14 +35,14 @@ fn frame(run: &StoredRun, bodies: &[Moved], bounds: [f64; 4], row: usize) -> Str
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.2}\"><style>{STYLE}</style>\
         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/><text x=\"12\" y=\"24\">t = {:.6} s</text>\
         <g transform=\"translate({left:.4} {top:.4}) scale({scale:.6} {:.6})\">\n",
-        run.times[row], -scale
+        run.result.times[row], -scale
     );
     let places: Vec<Place> = bodies.iter().map(|body| Place::of(body, row)).collect();
     for (body, place) in bodies.iter().zip(&places) {
         place.draw(&body.shape, size, &mut svg);
     }
-    let named = &run.scene.bodies;
-    for joint in &run.scene.joints {
+    let named = &run.result.scene.bodies;
+    for joint in &run.result.scene.joints {
         let end = joint.bearing;
         let class = if joint.contact().is_some() {
             "loose"

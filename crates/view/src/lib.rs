@@ -10,7 +10,7 @@ pub mod pack;
 pub mod stored;
 pub mod tracks;
 
-pub use stored::{StoredRun, ViewError};
+pub use stored::{StoredChannel, StoredResult, StoredRun, ViewError};
 
 use drawing::Drawing;
 use pack::Pack;

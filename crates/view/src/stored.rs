@@ -2,9 +2,10 @@
 
 use indexmap::IndexMap;
 use looselink::record::MotionLayout;
-use looselink::scene::{Scene, SceneError};
+use looselink::scene::{Pace, Scene, SceneError};
 use looselink::simulate::Simulation;
 use looselink::table::FORMATS;
+use numbers::si;
 use serde::Deserialize;
 use std::fs;
 use std::io;
@@ -24,25 +25,32 @@ pub enum ViewError {
     Io(#[from] io::Error),
 }
 
-/// A result and its mechanism.
+/// A result.
 #[derive(Debug)]
-pub struct StoredRun {
+pub struct StoredResult {
     /// The folder.
     pub folder: PathBuf,
     /// What was simulated.
     pub scene: Scene,
-    /// The compiled mechanism at its start.
-    pub simulation: Simulation,
     /// Status, warnings and overrides.
     pub summary: StoredSummary,
-    /// What stands in a row of motion.
-    pub layout: MotionLayout,
-    /// Rows of motion.
-    pub motion: Vec<Vec<f32>>,
     /// Time of every row \[s\].
     pub times: Vec<f64>,
     /// The other channels, column by column.
     pub channels: Vec<StoredChannel>,
+}
+
+/// A result with its mechanism and its motion.
+#[derive(Debug)]
+pub struct StoredRun {
+    /// Scene, summary and channels.
+    pub result: StoredResult,
+    /// The compiled mechanism at its start.
+    pub simulation: Simulation,
+    /// What stands in a row of motion.
+    pub layout: MotionLayout,
+    /// Rows of motion.
+    pub motion: Vec<Vec<f32>>,
 }
 
 /// A channel of a result.
@@ -71,64 +79,95 @@ pub struct StoredSummary {
     pub warnings: Vec<String>,
 }
 
-impl StoredRun {
+impl StoredResult {
     /// Reads the result in a folder. Of a run that was stopped or is under way the rows so far are read.
     ///
     /// # Errors
-    /// A folder without a result or without its motion, and files that do not belong together.
-    pub fn load(folder: &Path) -> Result<StoredRun, ViewError> {
-        let read = |name: &str| {
-            let path = folder.join(name);
-            fs::read(&path).map_err(|e| match e.kind() {
-                io::ErrorKind::NotFound => ViewError::Result(format!(
-                    "`{}` holds no result of `looselink run`: it has no `{name}`",
-                    folder.display()
-                )),
-                _ => naming(&path, e),
-            })
-        };
-        let summary: StoredSummary = serde_json::from_slice(&read("summary.json")?)
+    /// A folder without a result, and files that do not belong together.
+    pub fn load(folder: &Path) -> Result<StoredResult, ViewError> {
+        let summary: StoredSummary = serde_json::from_slice(&read(folder, "summary.json")?)
             .map_err(|e| damaged(&folder.join("summary.json"), &e.to_string()))?;
-        read("scene.toml")?;
+        read(folder, "scene.toml")?;
         let scene = Scene::load(&folder.join("scene.toml"), &summary.overrides)?;
         if scene.hash() != summary.scene_hash {
             let message = "it is not the scene of the run that wrote `summary.json`";
             return Err(damaged(&folder.join("scene.toml"), message));
         }
-        let simulation = Simulation::new(&scene)?;
+        let format = scene.output.format;
+        let table = format.file("channels");
+        let bytes = read(folder, &table)?;
+        let mut channels = columns(&folder.join(&table), &bytes, format.name)?;
+        let times = channels.remove(0).values;
+        if times.is_empty() {
+            let message = format!("`{}` holds no row yet", folder.display());
+            return Err(ViewError::Result(message));
+        }
+        Ok(StoredResult {
+            folder: folder.to_owned(),
+            scene,
+            summary,
+            times,
+            channels,
+        })
+    }
+
+    /// The method and what its steps follow.
+    pub fn method(&self) -> String {
+        let pace = match self.scene.integrator.pace {
+            Pace::Step(step) => format!("step {}", si(step, "s")),
+            Pace::Accuracy(accuracy) => format!("accuracy {accuracy}"),
+        };
+        format!("{}, {pace}", self.scene.integrator.method.name())
+    }
+}
+
+impl StoredRun {
+    /// Reads the result in a folder with its motion.
+    ///
+    /// # Errors
+    /// As [`StoredResult::load`], and a result without its motion.
+    pub fn load(folder: &Path) -> Result<StoredRun, ViewError> {
+        let mut result = StoredResult::load(folder)?;
+        let simulation = Simulation::new(&result.scene)?;
         let layout = MotionLayout::new(simulation.model());
-        if !scene.output.motion {
+        if !result.scene.output.motion {
             return Err(ViewError::Result(format!(
                 "`{}` has no motion to show: the scene says `output.motion = false`",
                 folder.display()
             )));
         }
-        let motion = rows(&folder.join("motion.bin"), &read("motion.bin")?, &layout)?;
-        let table = scene.output.format.file("channels");
-        let mut channels = columns(
-            &folder.join(&table),
-            &read(&table)?,
-            scene.output.format.name,
-        )?;
-        // of a run under way one table can be a row ahead of the other
-        let count = motion.len().min(channels[0].values.len());
+        let bytes = read(folder, "motion.bin")?;
+        let mut motion = rows(&folder.join("motion.bin"), &bytes, &layout)?;
+        // of a run under way one table can be some rows ahead of the other
+        let count = motion.len().min(result.times.len());
         if count == 0 {
             let message = format!("`{}` holds no row yet", folder.display());
             return Err(ViewError::Result(message));
         }
-        channels.iter_mut().for_each(|c| c.values.truncate(count));
-        let times = channels.remove(0).values;
+        motion.truncate(count);
+        result.times.truncate(count);
+        for channel in &mut result.channels {
+            channel.values.truncate(count);
+        }
         Ok(StoredRun {
-            folder: folder.to_owned(),
-            motion: motion.into_iter().take(count).collect(),
-            scene,
+            result,
             simulation,
-            summary,
             layout,
-            times,
-            channels,
+            motion,
         })
     }
+}
+
+/// A file of a result.
+fn read(folder: &Path, name: &str) -> Result<Vec<u8>, ViewError> {
+    let path = folder.join(name);
+    fs::read(&path).map_err(|e| match e.kind() {
+        io::ErrorKind::NotFound => ViewError::Result(format!(
+            "`{}` holds no result of `looselink run`: it has no `{name}`",
+            folder.display()
+        )),
+        _ => naming(&path, e),
+    })
 }
 
 fn naming(path: &Path, error: io::Error) -> ViewError {

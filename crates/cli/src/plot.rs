@@ -1,0 +1,187 @@
+//! `looselink plot`: figures of the channels of a result.
+
+mod phase;
+mod spectrum;
+
+use super::failure::CommandFailure;
+use super::print;
+use clap::{ArgGroup, Args};
+use looselink::document::did_you_mean;
+use looselink::output::naming;
+use plot::palette::{
+    BLUE, BROWN, GREEN, INDIGO, OLIVE, ORANGE, PURPLE, SKY, TEAL, VERMILION, WINE,
+};
+use plot::{Axis, Color, Figure, Mark, Panel, png, svg};
+use std::collections::HashSet;
+use std::fs;
+use std::path::PathBuf;
+use view::{StoredChannel, StoredResult, ViewError};
+use wildmatch::WildMatch;
+
+const COLORS: [Color; 11] = [
+    BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, INDIGO, BROWN, OLIVE, WINE, TEAL,
+];
+
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("what").required(true)))]
+pub struct Arguments {
+    /// The folder of a result.
+    dir: PathBuf,
+    /// Channels over time, a panel for each unit; `*` stands for any characters.
+    #[arg(long, value_name = "NAME", num_args = 1.., group = "what")]
+    channels: Vec<String>,
+    /// One channel over another.
+    #[arg(long, value_names = ["X", "Y"], num_args = 2, group = "what")]
+    phase: Vec<String>,
+    /// Amplitude spectrum of a channel.
+    #[arg(long, value_name = "NAME", group = "what")]
+    spectrum: Option<String>,
+    /// With --phase: a point at every multiple of this period (s) instead of a curve, a Poincare section.
+    #[arg(long, value_name = "PERIOD", requires = "phase")]
+    poincare: Option<f64>,
+    /// Leave out what comes before this time (s).
+    #[arg(long, value_name = "T")]
+    from: Option<f64>,
+    /// Leave out what comes after this time (s).
+    #[arg(long, value_name = "T")]
+    to: Option<f64>,
+    /// The figure, an SVG or PNG file.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+}
+
+/// Writes the figure.
+pub fn plot(arguments: &Arguments) -> Result<(), CommandFailure> {
+    let extension = arguments.output.extension().unwrap_or_default();
+    if extension != "svg" && extension != "png" {
+        let path = arguments.output.display();
+        return Err(CommandFailure::bad_input(format!(
+            "`{path}` must end in .svg or .png"
+        )));
+    }
+    let mut result = StoredResult::load(&arguments.dir)?;
+    cut(&mut result, arguments)?;
+    let panels = match (&arguments.phase[..], &arguments.spectrum) {
+        ([x, y], _) => {
+            let [x, y] = [x, y].map(|name| find(&result, name));
+            vec![phase::panel(&result, x?, y?, arguments.poincare)?]
+        }
+        (_, Some(name)) => vec![spectrum::panel(&result.times, find(&result, name)?)?],
+        _ => over_time(&result, &arguments.channels)?,
+    };
+    let caption = format!(
+        "{}; {}{}. {}",
+        result.scene.title,
+        result.method(),
+        result
+            .summary
+            .overrides
+            .iter()
+            .map(|o| format!(", {o}"))
+            .collect::<String>(),
+        match result.summary.warnings.len() {
+            0 => "The run gave no warning.".to_owned(),
+            1 => format!("The run warned: {}.", result.summary.warnings[0]),
+            n => format!("The run gave {n} warnings, which summary.json lists."),
+        }
+    );
+    let text = svg(&Figure::grid(panels, 1, caption));
+    let bytes = match extension.to_str() {
+        Some("png") => png(&text).map_err(CommandFailure::system)?,
+        _ => text.into_bytes(),
+    };
+    fs::write(&arguments.output, bytes)
+        .map_err(|e| ViewError::from(naming(&arguments.output)(e)))?;
+    print(format!("wrote `{}`\n", arguments.output.display()))
+}
+
+/// Keeps the rows between `--from` and `--to`.
+fn cut(result: &mut StoredResult, arguments: &Arguments) -> Result<(), CommandFailure> {
+    let [from, to] = [
+        arguments.from.unwrap_or(f64::NEG_INFINITY),
+        arguments.to.unwrap_or(f64::INFINITY),
+    ];
+    let first = result.times.partition_point(|t| *t < from);
+    let end = result.times.partition_point(|t| *t <= to);
+    if end < first + 2 {
+        let [begin, last] = [result.times[0], result.times[result.times.len() - 1]];
+        return Err(CommandFailure::bad_input(format!(
+            "fewer than two rows lie between --from and --to; the result has {begin} s to {last} s"
+        )));
+    }
+    result.times = result.times[first..end].to_vec();
+    for channel in &mut result.channels {
+        channel.values = channel.values[first..end].to_vec();
+    }
+    Ok(())
+}
+
+/// The channel of a name; the error names the nearest ones.
+fn find<'a>(result: &'a StoredResult, name: &str) -> Result<&'a StoredChannel, CommandFailure> {
+    let names = || result.channels.iter().map(|c| c.name.as_str());
+    let channel = result.channels.iter().find(|c| c.name == name);
+    channel.ok_or_else(|| {
+        let hint = did_you_mean(name, names());
+        let recorded: Vec<&str> = names().collect();
+        CommandFailure::bad_input(format!(
+            "the result has no channel `{name}`{hint}\nits channels: {}",
+            recorded.join(", ")
+        ))
+    })
+}
+
+/// A panel for each unit of the channels that patterns name.
+fn over_time(result: &StoredResult, patterns: &[String]) -> Result<Vec<Panel>, CommandFailure> {
+    let mut chosen: Vec<&StoredChannel> = Vec::new();
+    for text in patterns {
+        let pattern = WildMatch::new(text);
+        let matching = result.channels.iter().filter(|c| pattern.matches(&c.name));
+        let matching: Vec<_> = matching.collect();
+        if matching.is_empty() {
+            find(result, text)?;
+        }
+        chosen.extend(matching);
+    }
+    let mut names = HashSet::new();
+    chosen.retain(|channel| names.insert(&channel.name));
+    let mut panels: Vec<(&str, Panel)> = Vec::new();
+    for channel in chosen {
+        let place = panels.iter().position(|(unit, _)| *unit == channel.unit);
+        let place = place.unwrap_or_else(|| {
+            panels.push((
+                &channel.unit,
+                panel(Axis::new("Time", "s", 1.0), axis("", channel)),
+            ));
+            panels.len() - 1
+        });
+        let marks = &mut panels[place].1.marks;
+        let color = COLORS[marks.len() % COLORS.len()];
+        marks.push(Mark::series(
+            &channel.name,
+            color,
+            &result.times,
+            &channel.values,
+        ));
+    }
+    Ok(panels.into_iter().map(|(_, panel)| panel).collect())
+}
+
+/// Axes without marks.
+fn panel(x: Axis, y: Axis) -> Panel {
+    Panel {
+        title: String::new(),
+        note: String::new(),
+        x,
+        y,
+        marks: Vec::new(),
+    }
+}
+
+/// An axis in the unit of a channel.
+fn axis(label: &str, channel: &StoredChannel) -> Axis {
+    let unit = match channel.unit.as_str() {
+        "1" => "",
+        unit => unit,
+    };
+    Axis::new(label, unit, 1.0)
+}

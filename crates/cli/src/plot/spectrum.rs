@@ -1,0 +1,81 @@
+//! The amplitude spectrum of a channel.
+
+use super::axis;
+use crate::failure::CommandFailure;
+use plot::palette::BLUE;
+use plot::{Axis, Mark, Panel};
+use realfft::RealFftPlanner;
+use std::f64::consts::TAU;
+use view::StoredChannel;
+
+/// Times are evenly spaced if their differences agree up to this part.
+const ROUNDING: f64 = 1e-6;
+
+/// The panel of a channel.
+pub fn panel(times: &[f64], channel: &StoredChannel) -> Result<Panel, CommandFailure> {
+    let interval = times[1] - times[0];
+    let even = |pair: &[f64]| (pair[1] - pair[0] - interval).abs() <= ROUNDING * interval;
+    // the last row of a run can come sooner
+    let count = 1 + times.windows(2).take_while(|pair| even(pair)).count();
+    if count + 1 < times.len() {
+        return Err(CommandFailure::bad_input(
+            "the rows are not evenly spaced in time",
+        ));
+    }
+    let amplitudes = amplitudes(&channel.values[..count]);
+    let step = 1.0 / (interval * count as f64);
+    let frequencies: Vec<f64> = (0..amplitudes.len()).map(|k| k as f64 * step).collect();
+    let label = format!("Amplitude of {}", channel.name);
+    let mut panel = super::panel(
+        Axis::new("Frequency", "Hz", 1.0),
+        axis(&label, channel).log(),
+    );
+    panel.note = format!("Hann window over {count} rows, mean removed, resolution {step:.4} Hz");
+    // the mean is gone
+    panel
+        .marks
+        .push(Mark::series("", BLUE, &frequencies[1..], &amplitudes[1..]));
+    Ok(panel)
+}
+
+/// Amplitudes at multiples of 1/(n dt): with the window w and its sum W, 2 |sum w_k (x_k - mean) exp(-i omega t_k)|/W, which is A
+/// for A cos(omega t).
+fn amplitudes(values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    let mean = values.iter().sum::<f64>() / n as f64;
+    let window = |k: usize| 0.5 - 0.5 * (TAU * k as f64 / n as f64).cos();
+    let total: f64 = (0..n).map(window).sum();
+    let weighted = values
+        .iter()
+        .enumerate()
+        .map(|(k, x)| window(k) * (x - mean));
+    let mut weighted: Vec<f64> = weighted.collect();
+    let transform = RealFftPlanner::new().plan_fft_forward(n);
+    let mut spectrum = transform.make_output_vec();
+    transform
+        .process(&mut weighted, &mut spectrum)
+        .expect("both vectors have the lengths of the plan");
+    spectrum.iter().map(|x| 2.0 * x.norm() / total).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two oscillations in whole periods on a mean: their amplitudes come out, whatever their phases.
+    #[test]
+    fn amplitudes_are_those_of_the_oscillations() {
+        let n = 1000;
+        let at = |k: usize| {
+            let turn = TAU * k as f64 / n as f64;
+            7.0 + 3.0 * (20.0 * turn + 0.3).cos() + 1e-3 * (150.0 * turn).sin()
+        };
+        let found = amplitudes(&(0..n).map(at).collect::<Vec<_>>());
+        // rounding of a sum of n numbers of size 10
+        let close = |k: usize, expected: f64| (found[k] - expected).abs() < 1e-11;
+        assert!(
+            close(20, 3.0) && close(150, 1e-3) && close(80, 0.0),
+            "{found:?}"
+        );
+    }
+}
