@@ -60,7 +60,8 @@ everything() {
 # The viewer: its page is that of its sources, and works in a browser. Needs node 20 or newer.
 web() {
     [ -n "${CHROMIUM:-}" ] || install chromium fonts-dejavu-core
-    cargo build --release -p looselink-cli
+    # the profile of the tests, which have built it already
+    cargo build --profile test -p looselink-cli
     cd crates/view/web
     npm ci --silent
     npx tsc --noEmit

@@ -53,7 +53,7 @@ pub fn new(arguments: &Arguments) -> Result<(), CommandFailure> {
     let [typed, out] = [file, &stem].map(|path| word(path));
     write(file, &template.scene(&typed, &out))?;
     print(format!(
-        "{typed}: {}\n\n  looselink inspect {typed}\n  looselink run {typed} --out {out}\n",
+        "{typed}: {}\n\n  looselink inspect {typed}\n  looselink run {typed} --out {out} --view\n",
         template.purpose
     ))
 }

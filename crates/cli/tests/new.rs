@@ -34,7 +34,7 @@ fn every_template_runs_without_a_warning() {
         assert!(scene.starts_with("#:schema ./looselink.schema.json\n"));
         for command in [
             format!("looselink inspect {file}\n"),
-            format!("looselink run {file} --out out/my-{name}\n"),
+            format!("looselink run {file} --out out/my-{name} --view\n"),
         ] {
             let line = scene.lines().find(|l| l.contains(command.trim_end()));
             assert!(line.is_some() && shown.contains(&command), "{shown}{scene}");
@@ -145,6 +145,6 @@ fn a_name_with_a_space_is_quoted() {
     let folder = tempfile::tempdir().unwrap();
     expect(&new(folder.path(), &["empty", "my scene.toml"]), 0, "");
     let scene = read(folder.path(), "my scene.toml");
-    let command = "looselink run \"my scene.toml\" --out \"out/my scene\"\n";
+    let command = "looselink run \"my scene.toml\" --out \"out/my scene\" --view\n";
     assert!(scene.contains(command), "{scene}");
 }

@@ -12,7 +12,7 @@ import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
 const ROOT = resolve(import.meta.dirname, "../../../..");
-const PROGRAM = process.env.LOOSELINK ?? join(ROOT, "target/release/looselink");
+const PROGRAM = process.env.LOOSELINK ?? join(ROOT, process.env.CARGO_TARGET_DIR ?? "target", "debug/looselink");
 const BROWSER = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const VIEWPORT = { width: 1280, height: 900 };
 const LOAD_SCENES = [
