@@ -16,7 +16,11 @@ pub fn panel(
     y: &StoredChannel,
     period: Option<f64>,
 ) -> Result<Panel, CommandFailure> {
-    let mut panel = super::panel(axis(&x.name, x), axis(&y.name, y));
+    let mut across = axis(&x.name, x);
+    if x.unit == y.unit {
+        across = across.equal();
+    }
+    let mut panel = super::panel(across, axis(&y.name, y));
     let Some(period) = period else {
         panel
             .marks
