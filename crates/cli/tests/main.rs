@@ -7,4 +7,5 @@ mod precision;
 mod process;
 mod schema;
 mod suggestions;
+mod tutorial;
 mod view;
