@@ -139,22 +139,9 @@ impl Folder {
         fs::remove_dir(aside).map_err(naming(aside))
     }
 
-    /// Puts a whole file in its place at once: a reader sees the old one or the new one, never a part.
+    /// See [`replace`].
     pub(super) fn replace(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
-        let temporary = self.path.join(format!(".{name}.tmp"));
-        let write = || -> io::Result<()> {
-            let mut file = File::create(&temporary)?;
-            file.write_all(bytes)?;
-            // On disk before the name points at it.
-            file.sync_all()
-        };
-        write().map_err(|e| {
-            // What is left of it is of no use, and the first error is the one to report.
-            let _ = fs::remove_file(&temporary);
-            naming(&temporary)(e)
-        })?;
-        let path = self.path.join(name);
-        Ok(fs::rename(&temporary, &path).map_err(naming(&path))?)
+        replace(&self.path.join(name), bytes)
     }
 
     /// Refuses a path that is no folder, a folder with a result unless it may be replaced, and what is no file.
@@ -180,6 +167,27 @@ impl Folder {
         }
         Ok(())
     }
+}
+
+/// Puts a whole file in its place at once: a reader sees the old one or the new one, never a part.
+///
+/// # Errors
+/// When it cannot be written; the message names the file.
+pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+    let name = path.file_name().unwrap_or_default().display();
+    let temporary = path.with_file_name(format!(".{name}.tmp"));
+    let write = || -> io::Result<()> {
+        let mut file = File::create(&temporary)?;
+        file.write_all(bytes)?;
+        // On disk before the name points at it.
+        file.sync_all()
+    };
+    let written = write().map_err(naming(&temporary));
+    let placed = written.and_then(|()| fs::rename(&temporary, path).map_err(naming(path)));
+    Ok(placed.inspect_err(|_| {
+        // What is left of it is of no use, and the first error is the one to report.
+        let _ = fs::remove_file(&temporary);
+    })?)
 }
 
 /// A second name for a file or, where there are none, a copy; of a link what it points at, which may be relative.

@@ -24,8 +24,8 @@ use crate::record::MotionLayout;
 use crate::scene::Scene;
 use crate::simulate::{ContactEvent, Report, Simulation, Status};
 use crate::system::State;
-use crate::table::{Cell, Format, float32};
-pub use folder::{Folder, OutputError, earlier_result, json, naming};
+use crate::table::{Cell, Format, float64};
+pub use folder::{Folder, OutputError, earlier_result, json, naming, replace};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
@@ -59,7 +59,7 @@ pub fn files(formats: &[&'static Format]) -> Vec<String> {
     let tables = [CHANNELS, ONSETS].into_iter();
     let tables = tables.flat_map(|table| formats.iter().map(move |format| format.file(table)));
     let others = [
-        float32::FORMAT.file(MOTION),
+        float64::FORMAT.file(MOTION),
         SCENE.to_owned(),
         TIMING.to_owned(),
     ];
@@ -148,8 +148,8 @@ impl Results {
         let motion = scene.output.motion.then(|| {
             let layout = MotionLayout::new(simulation.model());
             let names = layout.names().iter().cloned();
-            let path = folder.path.join(float32::FORMAT.file(MOTION));
-            TableFile::create(path, &float32::FORMAT, names).map(|table| (layout, table))
+            let path = folder.path.join(float64::FORMAT.file(MOTION));
+            TableFile::create(path, &float64::FORMAT, names).map(|table| (layout, table))
         });
         Ok(Results {
             folder,

@@ -66,9 +66,9 @@ impl MotionLayout {
     }
 
     /// Puts the coordinates of a row into `q`.
-    pub fn restore(&self, row: &[f32], q: &mut [f64]) {
+    pub fn restore(&self, row: &[f64], q: &mut [f64]) {
         for (&i, value) in self.coordinates.iter().zip(&row[1..]) {
-            q[i] = f64::from(*value);
+            q[i] = *value;
         }
     }
 }

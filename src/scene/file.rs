@@ -35,7 +35,7 @@ fn similar(path: &Path) -> Option<PathBuf> {
         folder => folder,
     };
     let files = folder.read_dir().ok()?.flatten().map(|entry| entry.path());
-    let alike = files.filter(|file| file.extension() == path.extension());
+    let alike = files.filter(|file| file.extension() == path.extension() && file.is_file());
     let stem = |file: &Path| Some(file.file_stem()?.to_str()?.to_owned());
     let mut stems: Vec<String> = alike.filter_map(|file| stem(&file)).collect();
     stems.sort_unstable();

@@ -1,7 +1,7 @@
 //! Formats of tables that are written row by row, one a file.
 
 mod csv;
-pub(crate) mod float32;
+pub(crate) mod float64;
 mod json_lines;
 
 /// The formats that a scene can name; the first is taken by default.

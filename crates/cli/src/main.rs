@@ -51,7 +51,7 @@ enum Command {
     View(view::Arguments),
     /// Draw channels of a result: over time, over each other, their spectrum, a Poincare section.
     #[command(
-        after_help = "Examples:\n  looselink plot out/case4 --channels 'error.*' -o error.svg\n  \
+        after_help = "Example:\n  looselink plot out/case4 --channels 'error.*' -o error.svg\n  \
         looselink plot out/case4 --phase B1.ex B1.ey -o orbit.png"
     )]
     Plot(plot::Arguments),

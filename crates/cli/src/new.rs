@@ -5,7 +5,7 @@ use super::templates::{TEMPLATES, Template};
 use super::{print, schema};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use std::fs;
+use looselink::output::replace;
 use std::path::{Path, PathBuf};
 
 /// The schema beside the scene, which the first line of every template names.
@@ -47,11 +47,11 @@ pub fn new(arguments: &Arguments) -> Result<(), CommandFailure> {
     }
     let beside = file.with_file_name(SCHEMA);
     if *force || !beside.exists() {
-        write(&beside, &schema::text())?;
+        replace(&beside, schema::text().as_bytes())?;
     }
     let stem = Path::new("out").join(file.file_stem().unwrap_or_default());
     let [typed, out] = [file, &stem].map(|path| word(path));
-    write(file, &template.scene(&typed, &out))?;
+    replace(file, template.scene(&typed, &out).as_bytes())?;
     print(format!(
         "{typed}: {}\n\n  looselink inspect {typed}\n  looselink run {typed} --out {out} --view\n",
         template.purpose
@@ -66,16 +66,4 @@ fn word(path: &Path) -> String {
         true => text,
         false => format!("{text:?}"),
     }
-}
-
-/// Writes a whole file: a failure leaves none, or the earlier one.
-fn write(path: &Path, text: &str) -> Result<(), CommandFailure> {
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
-    let written = fs::write(&partial, text).and_then(|()| fs::rename(&partial, path));
-    written.map_err(|error| {
-        // It may not even be there.
-        let _ = fs::remove_file(&partial);
-        CommandFailure::system(format!("cannot write `{}`: {error}", path.display()))
-    })
 }

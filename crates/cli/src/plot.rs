@@ -7,15 +7,14 @@ use super::failure::CommandFailure;
 use super::print;
 use clap::{ArgGroup, Args};
 use looselink::document::did_you_mean;
-use looselink::output::naming;
+use looselink::output::replace;
 use plot::palette::{
     BLUE, BROWN, GREEN, INDIGO, OLIVE, ORANGE, PURPLE, SKY, TEAL, VERMILION, WINE,
 };
 use plot::{Axis, Color, Figure, Mark, Panel, png, svg};
 use std::collections::HashSet;
-use std::fs;
 use std::path::PathBuf;
-use view::{StoredChannel, StoredResult, ViewError};
+use view::{StoredChannel, StoredResult};
 use wildmatch::WildMatch;
 
 const COLORS: [Color; 11] = [
@@ -37,7 +36,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", group = "what")]
     spectrum: Option<String>,
     /// With --phase: a point at every multiple of this period (s) instead of a curve, a Poincare section.
-    #[arg(long, value_name = "PERIOD", requires = "phase")]
+    #[arg(long, value_name = "PERIOD", requires = "phase", conflicts_with_all = ["channels", "spectrum"])]
     poincare: Option<f64>,
     /// Leave out what comes before this time (s).
     #[arg(long, value_name = "T")]
@@ -69,30 +68,34 @@ pub fn plot(arguments: &Arguments) -> Result<(), CommandFailure> {
         (_, Some(name)) => vec![spectrum::panel(&result.times, find(&result, name)?)?],
         _ => over_time(&result, &arguments.channels)?,
     };
-    let caption = format!(
-        "{}; {}{}. {}",
-        result.scene.title,
-        result.method(),
-        result
-            .summary
-            .overrides
-            .iter()
-            .map(|o| format!(", {o}"))
-            .collect::<String>(),
-        match result.summary.warnings.len() {
-            0 => "The run gave no warning.".to_owned(),
-            1 => format!("The run warned: {}.", result.summary.warnings[0]),
-            n => format!("The run gave {n} warnings, which summary.json lists."),
-        }
-    );
-    let text = svg(&Figure::grid(panels, 1, caption));
+    let text = svg(&Figure::grid(panels, 1, caption(&result)));
     let bytes = match extension.to_str() {
         Some("png") => png(&text).map_err(CommandFailure::system)?,
         _ => text.into_bytes(),
     };
-    fs::write(&arguments.output, bytes)
-        .map_err(|e| ViewError::from(naming(&arguments.output)(e)))?;
+    replace(&arguments.output, &bytes)?;
     print(format!("wrote `{}`\n", arguments.output.display()))
+}
+
+/// Which run a figure shows, and what it warned of.
+fn caption(result: &StoredResult) -> String {
+    let StoredResult { scene, summary, .. } = result;
+    let mut caption = format!("{}; {}", scene.title, result.method());
+    for change in &summary.overrides {
+        caption += &format!(", {change}");
+    }
+    if summary.status != "complete" {
+        caption += &format!("; the run is {}", summary.status);
+    }
+    caption
+        + &match &summary.warnings[..] {
+            [] => ". The run gave no warning.".to_owned(),
+            [warning] => format!(". The run warned: {warning}."),
+            all => format!(
+                ". The run gave {} warnings, which summary.json lists.",
+                all.len()
+            ),
+        }
 }
 
 /// Keeps the rows between `--from` and `--to`.

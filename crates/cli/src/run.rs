@@ -81,6 +81,10 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     files.push(view::PAGE.to_owned());
     let folder = Folder::new(&arguments.out, &files, arguments.force)?;
     let (scene, mut simulation) = arguments.scene.load()?;
+    if arguments.view && !scene.output.motion {
+        let message = "--view shows the motion, which `output.motion = false` leaves out";
+        return Err(CommandFailure::bad_input(message));
+    }
     let started = Instant::now();
     let not_stored = |error: OutputError| CommandFailure::from(error).and(&earlier(arguments));
     let results = Results::begin(folder, &scene, &simulation);
@@ -100,6 +104,10 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     if let Err(error) = ended {
         warn_of_all();
         let kept = match stored {
+            Ok(()) if arguments.view => {
+                let page = view::beside(&arguments.out)?;
+                format!("; the motion up to that time is in `{}`", page.display())
+            }
             Ok(()) => format!("; the results up to that time are in `{out}`"),
             Err(second) => format!("; the result in `{out}` could not be completed: {second}"),
         };

@@ -48,7 +48,10 @@ impl Template {
     /// The scene, with the commands that simulate it from `file` to `out`.
     pub fn scene(&self, file: &str, out: &str) -> String {
         let Template { name, text, .. } = self;
-        text.replace(&format!("{name}.toml"), file)
-            .replace(&format!("out/{name}"), out)
+        // a name in the place of one must not be replaced again
+        const OUT: &str = "{out}";
+        text.replace(&format!("out/{name}"), OUT)
+            .replace(&format!("{name}.toml"), file)
+            .replace(OUT, out)
     }
 }

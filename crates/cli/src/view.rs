@@ -3,7 +3,7 @@
 use super::failure::CommandFailure;
 use super::print;
 use clap::Args;
-use looselink::output::naming;
+use looselink::output::{naming, replace};
 use std::fs;
 use std::path::{Path, PathBuf};
 use view::frames::frames;
@@ -19,48 +19,68 @@ pub struct Arguments {
     /// Show another result as the ghost of this one, for example the ideal mechanism.
     #[arg(long, value_name = "DIR")]
     ghost: Option<PathBuf>,
-    /// Write the page to this file instead of `view.html` in the folder.
-    #[arg(short, long, value_name = "FILE", conflicts_with = "frames")]
+    /// Write the page to this HTML file instead of `view.html` in the folder.
+    #[arg(short, long, value_name = "FILE", value_parser = html)]
     output: Option<PathBuf>,
     /// Write SVG pictures, `frame-0000.svg` and so on, into this folder instead of the page.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["ghost", "output"])]
     frames: Option<PathBuf>,
     /// Number of pictures.
     #[arg(long, value_name = "N", default_value_t = 100, requires = "frames", value_parser = clap::value_parser!(u32).range(1..))]
     count: u32,
 }
 
+/// The page is no other file.
+fn html(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path
+        .extension()
+        .is_some_and(|extension| extension == "html")
+    {
+        true => Ok(path),
+        false => Err("the page needs a name that ends in .html".to_owned()),
+    }
+}
+
 /// Writes the page, or the pictures.
 pub fn view(arguments: &Arguments) -> Result<(), CommandFailure> {
     let run = StoredRun::load(&arguments.dir)?;
     if let Some(folder) = &arguments.frames {
-        let pictures = frames(&run, arguments.count as usize);
-        fs::create_dir_all(folder).map_err(|e| ViewError::from(naming(folder)(e)))?;
-        for (k, picture) in pictures.iter().enumerate() {
-            write(&folder.join(format!("frame-{k:04}.svg")), picture)?;
-        }
-        return print(format!(
-            "{} pictures in `{}`\n",
-            pictures.len(),
-            folder.display()
-        ));
+        return pictures(&run, folder, arguments.count as usize);
     }
     let ghost = arguments.ghost.iter().map(|dir| StoredRun::load(dir));
     let runs = std::iter::once(Ok(run)).chain(ghost);
     let runs: Vec<StoredRun> = runs.collect::<Result<_, _>>()?;
     let own = || arguments.dir.join(PAGE);
     let path = arguments.output.clone().unwrap_or_else(own);
-    write(&path, &page(&runs)?)?;
+    replace(&path, page(&runs).as_bytes())?;
     print(format!("open `{}` in a browser\n", path.display()))
 }
 
-/// Writes the page of a result that is complete or was stopped, into its folder.
-pub fn beside(dir: &Path) -> Result<PathBuf, CommandFailure> {
-    let path = dir.join(PAGE);
-    write(&path, &page(&[StoredRun::load(dir)?])?)?;
-    Ok(path)
+/// Writes pictures into a folder that has none yet: those of another series would get into a film.
+fn pictures(run: &StoredRun, folder: &Path, count: usize) -> Result<(), CommandFailure> {
+    let cannot = |e| ViewError::from(naming(folder)(e));
+    fs::create_dir_all(folder).map_err(cannot)?;
+    for entry in fs::read_dir(folder).map_err(cannot)? {
+        let name = entry.map_err(cannot)?.file_name();
+        if name.to_string_lossy().starts_with("frame-") {
+            let (folder, name) = (folder.display(), name.display());
+            let message = format!("`{folder}` holds pictures already (`{name}`)");
+            return Err(CommandFailure::bad_input(message).and("; choose another folder"));
+        }
+    }
+    for (k, picture) in frames(run, count).iter().enumerate() {
+        replace(
+            &folder.join(format!("frame-{k:04}.svg")),
+            picture.as_bytes(),
+        )?;
+    }
+    print(format!("{count} pictures in `{}`\n", folder.display()))
 }
 
-fn write(path: &Path, text: &str) -> Result<(), ViewError> {
-    Ok(fs::write(path, text).map_err(naming(path))?)
+/// Writes the page of a result into its folder.
+pub fn beside(dir: &Path) -> Result<PathBuf, CommandFailure> {
+    let path = dir.join(PAGE);
+    replace(&path, page(&[StoredRun::load(dir)?]).as_bytes())?;
+    Ok(path)
 }

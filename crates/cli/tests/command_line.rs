@@ -601,6 +601,8 @@ fn every_command_has_help_with_an_example() {
     for command in [
         &["--help"][..],
         &["run", "--help"],
+        &["view", "--help"],
+        &["plot", "--help"],
         &["inspect", "--help"],
         &["check", "--help"],
         &["ablate", "--help"],

@@ -3,6 +3,7 @@
 mod command_line;
 mod completions;
 mod new;
+mod plot;
 mod precision;
 mod process;
 mod schema;

@@ -21,6 +21,12 @@ fn run_and_view_write_the_same_page() {
     assert!(!page.contains("src=") && !page.contains("<link rel=\"stylesheet"));
     expect(&view(out, &[]), 0, "");
     assert_eq!(read(out, "view.html"), page);
+    // a name of its own for the page
+    expect(
+        &view(out, &["-o", out.join("channels.csv").to_str().unwrap()]),
+        2,
+        ".html",
+    );
     // a page is a part of its result
     expect(&run(out, &["--force"]), 0, "");
     assert!(!out.join("view.html").exists());
@@ -62,6 +68,8 @@ fn pictures_stand_at_evenly_spaced_times() {
         files(&pictures),
         ["frame-0000.svg", "frame-0001.svg", "frame-0002.svg"]
     );
+    // pictures of two series are not mixed
+    expect(&view(&out, &frames), 2, "holds pictures already");
     let last = read(&out, "channels.csv")
         .lines()
         .last()
@@ -77,7 +85,14 @@ fn what_cannot_be_shown_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path();
     expect(&view(&out.join("nothing"), &[]), 2, "holds no result");
-    expect(&run(out, &["--set", "output.motion=false"]), 0, "");
+    let still = ["--set", "output.motion=false"];
+    expect(
+        &run(out, &[&still[..], &["--view"]].concat()),
+        2,
+        "leaves out",
+    );
+    expect(&run(out, &still), 0, "");
+    expect(&view(&out.join("scene.toml"), &[]), 2, "is a file");
     assert!(!out.join("motion.bin").exists());
     expect(&view(out, &[]), 2, "output.motion = false");
     expect(&run(out, &["--force"]), 0, "");
@@ -100,4 +115,16 @@ fn what_cannot_be_shown_is_said() {
         1,
         "cannot write",
     );
+}
+
+/// The page of a run that ends early says so.
+#[test]
+fn a_run_that_cannot_go_on_has_its_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(
+        folder.path(),
+        &["--view", "--set", "bodies.journal.mass=1e-300"],
+    );
+    expect(&output, 3, "view.html");
+    assert!(read(folder.path(), "view.html").contains("failed"));
 }

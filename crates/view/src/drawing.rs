@@ -5,22 +5,23 @@
 //! can magnify deformations that are much smaller than a pixel. The eccentricity of a loose joint, which is as small, is stored
 //! apart from the poses, too.
 
-use super::moved::{Moved, Shape};
+use super::moved::{Moved, Shape, bounds};
 use super::pack::{Pack, Packed};
 use super::stored::StoredRun;
 use super::tracks::{Group, Signal};
 use looselink::body::{FlexibleLink, PointRef};
-use looselink::interaction::Joint;
+use looselink::interaction::{ForceModel, Joint, TorsionSpringModel};
 use looselink::scene::{Analysis, Scene};
 use serde::Serialize;
+use std::f64::consts::SQRT_2;
 
-/// Errors of poses, relative to the size of the mechanism: a twentieth of a pixel where it fills a thousand pixels.
+/// Error of a point of a rigid body or of a chord, relative to the size of the mechanism: a twentieth of a pixel where it fills a
+/// thousand pixels. Position, angle and length of the chord have a third each.
 const POSE_ERROR: f64 = 5e-5;
-/// Errors of eccentricities between kept rows, relative to the clearance; rounding to 16 bits adds at most 3.1e-5 of a range that
-/// is twice the clearance and the deepest penetration. The sum is below a thousandth as long as the penetration is below the
-/// clearance.
+/// Error of an eccentricity between kept rows, relative to the clearance c. Rounding to 16 bits adds at most
+/// 2 (c + penetration)/131070 a component. The sum is below a thousandth of c as long as the penetration is below 10 c.
 const ECCENTRICITY_ERROR: f64 = 5e-4;
-/// Errors of deformations and contact forces, relative to the largest.
+/// Error of a deformation or contact force, relative to the largest.
 const RELATIVE_ERROR: f64 = 1e-3;
 /// Poses on the path of a drive.
 const PATH_POSES: usize = 400;
@@ -117,6 +118,8 @@ struct DrawnForce {
 struct DrawnChannel {
     name: String,
     unit: String,
+    /// The first value; the data are differences from it.
+    offset: f64,
     data: Packed,
 }
 
@@ -125,25 +128,29 @@ impl Drawing {
     pub fn new(run: &StoredRun, pack: &mut Pack) -> Drawing {
         let StoredRun { result, .. } = run;
         let scene = &result.scene;
-        let (moved, bounds) = Moved::all(run);
+        let bounds = bounds(run);
         let size = (bounds[2] - bounds[0]).max(bounds[3] - bounds[1]);
-        let bodies = scene.bodies.iter().zip(moved).map(|(named, moved)| {
-            let points = named.kind.points().iter().enumerate();
-            let beam = named.kind.get::<FlexibleLink>();
-            DrawnBody {
-                name: named.name.clone(),
-                points: points
-                    .map(|(i, point)| DrawnPoint {
-                        name: point.name.clone(),
-                        at: point.at.into(),
-                        node: beam.map(|link| link.nodes[i]),
-                    })
-                    .collect(),
-                pose: pose(&moved, &result.times, size, pack),
-                deformation: deformation(&moved, &result.times, pack),
-                shape: moved.shape,
-            }
-        });
+        let bodies = scene
+            .bodies
+            .iter()
+            .zip(Moved::all(run))
+            .map(|(named, moved)| {
+                let points = named.kind.points().iter().enumerate();
+                let beam = named.kind.get::<FlexibleLink>();
+                DrawnBody {
+                    name: named.name.clone(),
+                    points: points
+                        .map(|(i, point)| DrawnPoint {
+                            name: point.name.clone(),
+                            at: point.at.into(),
+                            node: beam.map(|link| link.nodes[i]),
+                        })
+                        .collect(),
+                    pose: pose(&moved, &result.times, size, pack),
+                    deformation: deformation(&moved, &result.times, pack),
+                    shape: moved.shape,
+                }
+            });
         let bodies = bodies.collect();
         let mut loose = run.layout.loose();
         let model = run.simulation.model();
@@ -162,11 +169,11 @@ impl Drawing {
         let joints = joints.collect();
         let forces = scene.forces.iter().map(|force| DrawnForce {
             name: force.name.clone(),
-            ends: force.kind.points().into_iter().map(end).collect(),
+            ends: ends(&*force.kind, &scene.joints),
         });
         Drawing {
             title: scene.title.clone(),
-            folder: result.folder.display().to_string(),
+            folder: result.name(),
             method: result.method(),
             status: result.summary.status.clone(),
             error: result.summary.error.clone(),
@@ -186,7 +193,13 @@ impl Drawing {
                 .map(|channel| DrawnChannel {
                     name: channel.name.clone(),
                     unit: channel.unit.clone(),
-                    data: pack.add(channel.values.iter().map(|x| *x as f32)),
+                    offset: channel.values[0],
+                    data: pack.add(
+                        channel
+                            .values
+                            .iter()
+                            .map(|x| (x - channel.values[0]) as f32),
+                    ),
                 })
                 .collect(),
         }
@@ -195,6 +208,15 @@ impl Drawing {
 
 fn end(point: PointRef) -> [usize; 2] {
     [point.body, point.point]
+}
+
+/// Where a force acts: a torsion spring at its joint.
+fn ends(force: &dyn ForceModel, joints: &[Joint]) -> Vec<[usize; 2]> {
+    let points = match force.get::<TorsionSpringModel>() {
+        Some(spring) => joints[spring.joint].points().to_vec(),
+        None => force.points(),
+    };
+    points.into_iter().map(end).collect()
 }
 
 fn glyph(joint: &Joint) -> Glyph {
@@ -219,9 +241,9 @@ fn path(scene: &Scene) -> Vec<[f64; 2]> {
 
 /// The poses of a body as tracks; none of what does not move.
 fn pose(moved: &Moved, times: &[f64], size: f64, pack: &mut Pack) -> Option<Group> {
-    let error = POSE_ERROR * size;
-    // an angle moves the points of a body by at most its size, which is that of the mechanism at most
-    let tolerances = [error, error, POSE_ERROR, error];
+    let share = POSE_ERROR * size / 3.0;
+    let angle = share / moved.shape.reach().max(f64::MIN_POSITIVE);
+    let tolerances = [share / SQRT_2, share / SQRT_2, angle, share];
     let signals = moved.pose.iter().zip(tolerances);
     let signals = signals.map(|(values, tolerance)| signal(values, tolerance));
     let signals: Vec<Signal> = signals.collect();
@@ -237,9 +259,9 @@ fn deformation(moved: &Moved, times: &[f64], pack: &mut Pack) -> Option<Group> {
     let lever = |i: usize| if i % 4 < 2 { 1.0 } else { length };
     let tracks = || moved.deviations.iter().enumerate();
     let sizes = tracks().map(|(i, values)| lever(i) * largest(values));
-    let error = RELATIVE_ERROR * sizes.fold(0.0, f64::max);
+    let error = RELATIVE_ERROR / SQRT_2 * sizes.fold(0.0, f64::max);
     let signals = tracks().map(|(i, values)| signal(values, error / lever(i)));
-    Some(Group::exact(times, &signals.collect::<Vec<_>>(), pack))
+    Some(Group::single(times, &signals.collect::<Vec<_>>(), pack))
 }
 
 fn signal(values: &[f64], tolerance: f64) -> Signal {
@@ -258,7 +280,7 @@ impl Clearance {
     fn new(run: &StoredRun, clearance: f64, first: usize, pack: &mut Pack) -> Clearance {
         let column = |i: usize| -> Vec<f64> {
             let rows = run.motion.iter();
-            rows.map(|row| f64::from(row[first + i])).collect()
+            rows.map(|row| row[first + i]).collect()
         };
         let columns = [0, 1, 2, 3].map(column);
         let strongest = largest(&columns[2]).max(largest(&columns[3]));
@@ -268,8 +290,8 @@ impl Clearance {
         };
         Clearance {
             clearance,
-            eccentricity: group(&columns[..2], ECCENTRICITY_ERROR * clearance),
-            force: group(&columns[2..], RELATIVE_ERROR * strongest),
+            eccentricity: group(&columns[..2], ECCENTRICITY_ERROR / SQRT_2 * clearance),
+            force: group(&columns[2..], RELATIVE_ERROR / SQRT_2 * strongest),
         }
     }
 }

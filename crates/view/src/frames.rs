@@ -1,7 +1,9 @@
-//! A run as a series of SVG pictures, for films and papers.
+//! A run as a series of SVG pictures, for films and papers: bodies and joints.
 
-use super::moved::{Moved, Shape};
+use super::moved::{Shape, bounds};
 use super::stored::StoredRun;
+use looselink::interaction::Placed;
+use looselink::scene::Analysis;
 use std::fmt::Write;
 
 /// Width of a picture \[pixels\], and the part of the mechanism's size that is left free around it.
@@ -11,132 +13,146 @@ const MARGIN: f64 = 0.12;
 const BAR: f64 = 0.026;
 const RING: f64 = 0.014;
 const STYLE: &str = "text{font:16px sans-serif}.body{fill:#5b7fb4;stroke:#5b7fb4;stroke-linejoin:round;stroke-linecap:round;\
-opacity:.8}.beam{fill:none;stroke:#d2691e;stroke-linecap:round}.ground{fill:#e2e5e9;stroke:#6a737d}\
-.joint{fill:#fff;stroke:#24292f}.loose{fill:#fff;stroke:#c2352b}";
+opacity:.8}.beam{fill:none;stroke:#d2691e;stroke-linecap:round}\
+.joint{fill:#fff;stroke:#24292f;stroke-width:2}.loose{fill:#fff;stroke:#c2352b;stroke-width:2}";
 
-/// Pictures at evenly spaced rows, the first and the last among them.
-pub fn frames(run: &StoredRun, count: usize) -> Vec<String> {
-    let (bodies, bounds) = Moved::all(run);
-    let last = run.result.times.len() - 1;
-    let intervals = count.saturating_sub(1).max(1);
-    let rows = (0..count).map(|k| (k as f64 / intervals as f64 * last as f64).round() as usize);
-    rows.map(|row| frame(run, &bodies, bounds, row)).collect()
+/// From the plane to the picture.
+struct Scale {
+    bounds: [f64; 4],
+    size: f64,
+    /// Pixels a metre.
+    factor: f64,
 }
 
-/// The picture of a row.
-fn frame(run: &StoredRun, bodies: &[Moved], bounds: [f64; 4], row: usize) -> String {
-    let [x0, y0, x1, y1] = bounds;
-    let size = (x1 - x0).max(y1 - y0).max(f64::MIN_POSITIVE);
-    let margin = MARGIN * size;
-    let scale = WIDTH / (x1 - x0 + 2.0 * margin);
-    let height = scale * (y1 - y0 + 2.0 * margin);
-    let [left, top] = [scale * (margin - x0), scale * (margin + y1)];
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.2}\"><style>{STYLE}</style>\
-        <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/><text x=\"12\" y=\"24\">t = {:.6} s</text>\
-        <g transform=\"translate({left:.4} {top:.4}) scale({scale:.6} {:.6})\">\n",
-        run.result.times[row], -scale
-    );
-    let places: Vec<Place> = bodies.iter().map(|body| Place::of(body, row)).collect();
-    for (body, place) in bodies.iter().zip(&places) {
-        place.draw(&body.shape, size, &mut svg);
+impl Scale {
+    fn new(bounds: [f64; 4]) -> Scale {
+        let [x0, y0, x1, y1] = bounds;
+        let size = (x1 - x0).max(y1 - y0);
+        Scale {
+            bounds,
+            size,
+            factor: WIDTH / (x1 - x0 + 2.0 * MARGIN * size),
+        }
     }
-    let named = &run.result.scene.bodies;
+
+    fn height(&self) -> f64 {
+        let [_, y0, _, y1] = self.bounds;
+        self.factor * (y1 - y0 + 2.0 * MARGIN * self.size)
+    }
+
+    fn pixels(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let margin = MARGIN * self.size;
+        let [x0, _, _, y1] = self.bounds;
+        [
+            self.factor * (x - x0 + margin),
+            self.factor * (y1 + margin - y),
+        ]
+    }
+
+    /// A point as a part of a path.
+    fn text(&self, at: [f64; 2]) -> String {
+        let [x, y] = self.pixels(at);
+        format!("{x:.2} {y:.2}")
+    }
+}
+
+/// Pictures at evenly spaced rows, the first and the last among them; a single one shows the first row.
+pub fn frames(run: &StoredRun, count: usize) -> Vec<String> {
+    let scale = Scale::new(bounds(run));
+    let last = (run.motion.len() - 1) as f64;
+    let intervals = count.saturating_sub(1).max(1) as f64;
+    let rows = (0..count).map(|k| (k as f64 / intervals * last).round() as usize);
+    let mut q = run.simulation.state().q.clone();
+    rows.map(|row| {
+        run.layout.restore(&run.motion[row], &mut q);
+        frame(run, &scale, run.result.times[row], &q)
+    })
+    .collect()
+}
+
+/// The picture of a state.
+fn frame(run: &StoredRun, scale: &Scale, t: f64, q: &[f64]) -> String {
+    let unit = match run.result.scene.simulation.analysis {
+        Analysis::Dynamic => " s",
+        Analysis::Static => "",
+    };
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {:.2}\"><style>{STYLE}</style>\
+        <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/><text x=\"12\" y=\"24\">t = {t:.6}{unit}</text>\n",
+        scale.height()
+    );
+    let bodies = run.simulation.model().bodies();
+    for body in bodies {
+        svg += &draw(&body.placed, scale, q);
+    }
     for joint in &run.result.scene.joints {
-        let end = joint.bearing;
         let class = if joint.contact().is_some() {
             "loose"
         } else {
             "joint"
         };
-        let point = &named[end.body].kind.points()[end.point];
-        let [x, y] = places[end.body].point(&bodies[end.body].shape, point.at.into());
-        // writing to a string cannot fail
-        let _ = writeln!(
-            svg,
-            "<circle class=\"{class}\" cx=\"{x:.6}\" cy=\"{y:.6}\" r=\"{:.6}\" stroke-width=\"{:.6}\"/>",
-            RING * size,
-            0.3 * RING * size
-        );
+        for end in joint.points() {
+            let marker = bodies[end.body].placed.marker(end.point);
+            let [x, y] = scale.pixels(marker.position(q, marker.arm(q)).into());
+            let r = RING * scale.size * scale.factor;
+            // writing to a string cannot fail
+            let _ = writeln!(
+                svg,
+                "<circle class=\"{class}\" cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{r:.2}\"/>"
+            );
+        }
     }
-    svg + "</g></svg>\n"
+    svg + "</svg>\n"
 }
 
-/// A body at a row.
-struct Place {
-    pose: [f64; 4],
-    deviations: Vec<f64>,
+/// A body in a state.
+fn draw(placed: &Placed, scale: &Scale, q: &[f64]) -> String {
+    let width = BAR * scale.size * scale.factor;
+    let frame = || {
+        placed
+            .kind
+            .frame_at(&placed.x, q, q)
+            .map(|frame| frame.position)
+    };
+    let path = |class: &str, d: &str, width: f64| {
+        format!("<path class=\"{class}\" d=\"{d}\" stroke-width=\"{width:.2}\"/>\n")
+    };
+    match (Shape::of(placed), frame()) {
+        (Shape::Beam { elements, length }, _) => path(
+            "beam",
+            &beam(&placed.x, q, elements, length, scale),
+            0.5 * width,
+        ),
+        (Shape::Disc(radius), Some([x, y, _])) => {
+            let ([x, y], r) = (scale.pixels([x, y]), radius * scale.factor);
+            format!(
+                "<circle class=\"body\" cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{r:.2}\" stroke-width=\"0\"/>\n"
+            )
+        }
+        (Shape::Hull(corners), Some([x, y, theta])) => {
+            let (s, c) = theta.sin_cos();
+            let carried = |[u, w]: [f64; 2]| scale.text([x + c * u - s * w, y + s * u + c * w]);
+            let corners: Vec<String> = match corners.is_empty() {
+                true => vec![carried([0.0; 2])],
+                false => corners.into_iter().map(carried).collect(),
+            };
+            path("body", &format!("M{}Z", corners.join("L")), width)
+        }
+        (Shape::Ground, _) | (_, None) => String::new(),
+    }
 }
 
-impl Place {
-    fn of(body: &Moved, row: usize) -> Place {
-        let value = |track: &Vec<f64>| track.get(row).copied().unwrap_or_default();
-        Place {
-            pose: std::array::from_fn(|i| value(&body.pose[i])),
-            deviations: body.deviations.iter().map(value).collect(),
-        }
+/// The cubics of a flexible link: control points lie a third of an element along the slopes.
+fn beam(x: &[usize], q: &[f64], elements: usize, length: f64, scale: &Scale) -> String {
+    let third = length / elements as f64 / 3.0;
+    let node = |k: usize, along: f64| {
+        let [at, slope] = [x[2 * k], x[2 * k + 1]];
+        scale.text([q[at] + along * q[slope], q[at + 1] + along * q[slope + 1]])
+    };
+    let mut path = format!("M{}", node(0, 0.0));
+    for k in 1..=elements {
+        let (a, b) = (node(k - 1, third), node(k, -third));
+        let _ = write!(path, "C{a} {b} {}", node(k, 0.0));
     }
-
-    /// From the frame of the body to the plane.
-    fn carry(&self, [u, w]: [f64; 2]) -> [f64; 2] {
-        let [x, y, theta, _] = self.pose;
-        let (s, c) = theta.sin_cos();
-        [x + c * u - s * w, y + s * u + c * w]
-    }
-
-    /// A point of the body; on a flexible link those between the ends are taken on the chord.
-    fn point(&self, shape: &Shape, at: [f64; 2]) -> [f64; 2] {
-        match shape {
-            Shape::Ground => at,
-            Shape::Beam { length, .. } => self.carry([at[0] / length * self.pose[3], 0.0]),
-            Shape::Hull(_) | Shape::Disc(_) => self.carry(at),
-        }
-    }
-
-    fn draw(&self, shape: &Shape, size: f64, svg: &mut String) {
-        let path = match shape {
-            Shape::Ground => return,
-            Shape::Beam { elements, length } => self.beam(*elements, *length),
-            Shape::Disc(radius) => {
-                let [x, y] = self.carry([0.0; 2]);
-                let _ = writeln!(
-                    svg,
-                    "<circle class=\"body\" cx=\"{x:.6}\" cy=\"{y:.6}\" r=\"{radius:.6}\" stroke-width=\"0\"/>"
-                );
-                return;
-            }
-            Shape::Hull(corners) => {
-                let corners = corners.iter().map(|corner| self.carry(*corner));
-                let corners = corners.map(|[x, y]| format!("{x:.6} {y:.6}"));
-                format!("M{}Z", corners.collect::<Vec<_>>().join("L"))
-            }
-        };
-        let (class, share) = match shape {
-            Shape::Beam { .. } => ("beam", 0.5),
-            _ => ("body", 1.0),
-        };
-        let width = share * BAR * size;
-        let _ = writeln!(
-            svg,
-            "<path class=\"{class}\" d=\"{path}\" stroke-width=\"{width:.6}\"/>"
-        );
-    }
-
-    /// The cubics of a flexible link: control points lie a third of an element along the slopes.
-    fn beam(&self, elements: usize, length: f64) -> String {
-        let chord = self.pose[3];
-        let third = length / elements as f64 / 3.0;
-        let node = |k: usize, along: f64| {
-            let [u, w, su, sw] = std::array::from_fn(|i| self.deviations[4 * k + i]);
-            let straight = chord * k as f64 / elements as f64;
-            let [x, y] = self.carry([straight + u + along * (chord / length + su), w + along * sw]);
-            format!("{x:.6} {y:.6}")
-        };
-        let mut path = format!("M{}", node(0, 0.0));
-        for k in 1..=elements {
-            let (a, b) = (node(k - 1, third), node(k, -third));
-            let _ = write!(path, "C{a} {b} {}", node(k, 0.0));
-        }
-        path
-    }
+    path
 }

@@ -28,22 +28,19 @@ struct Contents {
 }
 
 /// The page of a run, with another one as its ghost if there are two.
-///
-/// # Errors
-/// A mechanism that cannot be drawn.
-pub fn page(runs: &[StoredRun]) -> Result<String, ViewError> {
+pub fn page(runs: &[StoredRun]) -> String {
     let mut pack = Pack::default();
     let drawings = runs.iter().map(|run| Drawing::new(run, &mut pack));
     let contents = Contents {
         runs: drawings.collect(),
         pack: pack.encode(),
     };
+    let data = serde_json::to_string(&contents).expect("numbers, texts and lists");
     // `<` cannot end the script element from inside a string
-    let data = serde_json::to_string(&contents).map_err(std::io::Error::from)?;
     let data = data.replace('<', "\\u003c");
     let element = format!("<script type=\"application/json\" id=\"data\">{data}</script>");
     let (head, tail) = PAGE
         .split_once(PLACE)
         .expect("the page has a place for data");
-    Ok([head, &element, tail].concat())
+    [head, &element, tail].concat()
 }

@@ -1,7 +1,7 @@
 //! Shapes of bodies, and where they are at every row.
 
 use super::stored::StoredRun;
-use looselink::body::FlexibleLink;
+use looselink::body::{Content, FlexibleLink, Known};
 use looselink::interaction::Placed;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -25,7 +25,45 @@ pub enum Shape {
     },
 }
 
+impl Shape {
+    /// That of a body.
+    pub fn of(placed: &Placed) -> Shape {
+        let kind = &placed.kind;
+        let points: Vec<[f64; 2]> = kind.points().iter().map(|p| p.at.into()).collect();
+        match (kind.get::<FlexibleLink>(), kind.radius(), &points[..]) {
+            (Some(link), ..) => Shape::Beam {
+                elements: link.elements,
+                length: link.link.length,
+            },
+            (_, Some(radius), _) => Shape::Disc(radius),
+            _ if matches!(kind.known(), Some(Known::Fixed)) => Shape::Ground,
+            (.., points) => {
+                // a disc of the same mass and moment of inertia
+                let radius = kind.size() * 2_f64.sqrt();
+                match points {
+                    [] if radius > 0.0 => Shape::Disc(radius),
+                    // about its centre of mass, or a bar from there to its point
+                    [[x, y]] if radius >= x.hypot(*y) && radius > 0.0 => Shape::Disc(radius),
+                    [point] => Shape::Hull(hull(&[[0.0; 2], *point])),
+                    points => Shape::Hull(hull(points)),
+                }
+            }
+        }
+    }
+
+    /// The largest distance of a point of the body from the origin of its frame \[m\].
+    pub fn reach(&self) -> f64 {
+        match self {
+            Shape::Ground => 0.0,
+            Shape::Hull(corners) => corners.iter().fold(0.0, |m, [x, y]| m.max(x.hypot(*y))),
+            Shape::Disc(radius) => *radius,
+            Shape::Beam { length, .. } => *length,
+        }
+    }
+}
+
 /// How a body moves, row by row.
+#[derive(Debug)]
 pub struct Moved {
     /// What it looks like.
     pub shape: Shape,
@@ -33,72 +71,100 @@ pub struct Moved {
     pub pose: [Vec<f64>; 4],
     /// u, w of the position and of the slope of every node.
     pub deviations: Vec<Vec<f64>>,
+    /// True where theta is a coordinate, which counts full turns. That of a link is known up to full turns: it is taken to turn by
+    /// less than half a turn between two rows.
+    counts_turns: bool,
+}
+
+/// Calls `see` with the coordinates of every row.
+pub fn every_row(run: &StoredRun, mut see: impl FnMut(&[f64])) {
+    let mut q = run.simulation.state().q.clone();
+    for row in &run.motion {
+        run.layout.restore(row, &mut q);
+        see(&q);
+    }
+}
+
+/// Least x and y, greatest x and y of all bodies over all rows \[m\]; a square of a metre about what has no extent.
+pub fn bounds(run: &StoredRun) -> [f64; 4] {
+    let bodies = run.simulation.model().bodies();
+    let shapes: Vec<Shape> = bodies.iter().map(|b| Shape::of(&b.placed)).collect();
+    let (mut least, mut greatest) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let mut see = |at: [f64; 2], radius: f64| {
+        for i in 0..2 {
+            least[i] = least[i].min(at[i] - radius);
+            greatest[i] = greatest[i].max(at[i] + radius);
+        }
+    };
+    every_row(run, |q| {
+        for (body, shape) in bodies.iter().zip(&shapes) {
+            let placed = &body.placed;
+            for point in 0..placed.kind.points().len() {
+                let marker = placed.marker(point);
+                see(marker.position(q, marker.arm(q)).into(), 0.0);
+            }
+            if let Shape::Disc(_) | Shape::Hull(_) = shape
+                && let Some(frame) = placed.kind.frame_at(&placed.x, q, q)
+            {
+                let radius = if let Shape::Disc(radius) = shape {
+                    *radius
+                } else {
+                    0.0
+                };
+                see([frame.position[0], frame.position[1]], radius);
+            }
+        }
+    });
+    match greatest[0] - least[0] > 0.0 || greatest[1] - least[1] > 0.0 {
+        true => [least[0], least[1], greatest[0], greatest[1]],
+        false => {
+            let centre = least.map(|x| if x.is_finite() { x } else { 0.0 });
+            [
+                centre[0] - 0.5,
+                centre[1] - 0.5,
+                centre[0] + 0.5,
+                centre[1] + 0.5,
+            ]
+        }
+    }
 }
 
 impl Moved {
-    /// All bodies of a run, and the bounds of their points.
-    pub fn all(run: &StoredRun) -> (Vec<Moved>, [f64; 4]) {
-        let model = run.simulation.model();
-        let mut bodies: Vec<Moved> = model
-            .bodies()
-            .iter()
-            .map(|b| Moved::new(&b.placed))
-            .collect();
-        let mut bounds = [
-            f64::INFINITY,
-            f64::INFINITY,
-            f64::NEG_INFINITY,
-            f64::NEG_INFINITY,
-        ];
-        let mut q = run.simulation.state().q.clone();
-        let still = vec![0.0; q.len()];
-        for row in &run.motion {
-            run.layout.restore(row, &mut q);
-            for (body, placed) in bodies.iter_mut().zip(model.bodies()) {
-                let placed = &placed.placed;
-                body.see(placed, &q, &still);
-                for point in 0..placed.kind.points().len() {
-                    let marker = placed.marker(point);
-                    let at = marker.position(&q, marker.arm(&q));
-                    for (i, x) in [at.x, at.y].into_iter().enumerate() {
-                        bounds[i] = bounds[i].min(x);
-                        bounds[2 + i] = bounds[2 + i].max(x);
-                    }
-                }
+    /// All bodies of a run.
+    pub fn all(run: &StoredRun) -> Vec<Moved> {
+        let bodies = run.simulation.model().bodies();
+        let mut moved: Vec<Moved> = bodies.iter().map(|b| Moved::new(&b.placed)).collect();
+        every_row(run, |q| {
+            for (body, placed) in moved.iter_mut().zip(bodies) {
+                body.see(&placed.placed, q);
             }
-        }
-        (bodies, bounds)
+        });
+        moved
     }
 
     fn new(placed: &Placed) -> Moved {
-        let kind = &placed.kind;
-        let points: Vec<[f64; 2]> = kind.points().iter().map(|p| p.at.into()).collect();
-        let beam = kind.get::<FlexibleLink>();
-        let shape = match (beam, kind.radius(), &points[..]) {
-            (Some(link), ..) => Shape::Beam {
-                elements: link.elements,
-                length: link.link.length,
-            },
-            (_, Some(radius), _) => Shape::Disc(radius),
-            _ if kind.known().is_some() && kind.slots().len() == points.len() => Shape::Ground,
-            // a disc of the same mass and moment of inertia
-            (.., [] | [_]) if kind.size() > 0.0 => Shape::Disc(kind.size() * 2_f64.sqrt()),
-            (.., points) => Shape::Hull(hull(points)),
+        let shape = Shape::of(placed);
+        let tracks = match shape {
+            Shape::Beam { elements, .. } => 4 * (elements + 1),
+            _ => 0,
         };
+        let slots = placed.kind.slots();
         Moved {
             shape,
             pose: Default::default(),
-            deviations: vec![Vec::new(); beam.map_or(0, |link| 4 * (link.elements + 1))],
+            deviations: vec![Vec::new(); tracks],
+            counts_turns: slots.iter().any(|slot| slot.content == Content::Pose),
         }
     }
 
     /// Adds a row.
-    fn see(&mut self, placed: &Placed, q: &[f64], still: &[f64]) {
+    fn see(&mut self, placed: &Placed, q: &[f64]) {
         match self.shape {
             Shape::Ground => {}
             Shape::Beam { elements, length } => self.see_beam(&placed.x, q, elements, length),
             Shape::Hull(_) | Shape::Disc(_) => {
-                if let Some(frame) = placed.kind.frame_at(&placed.x, q, still) {
+                // the velocities of the frame are not used
+                if let Some(frame) = placed.kind.frame_at(&placed.x, q, q) {
                     let [x, y, theta] = frame.position;
                     self.push([x, y, theta, 0.0]);
                 }
@@ -107,7 +173,7 @@ impl Moved {
     }
 
     fn push(&mut self, mut pose: [f64; 4]) {
-        if let Some(before) = self.pose[2].last() {
+        if let Some(before) = self.pose[2].last().filter(|_| !self.counts_turns) {
             pose[2] += TAU * ((before - pose[2]) / TAU).round();
         }
         for (track, value) in self.pose.iter_mut().zip(pose) {

@@ -4,7 +4,6 @@ use indexmap::IndexMap;
 use looselink::record::MotionLayout;
 use looselink::scene::{Pace, Scene, SceneError};
 use looselink::simulate::Simulation;
-use looselink::table::FORMATS;
 use numbers::si;
 use serde::Deserialize;
 use std::fs;
@@ -50,7 +49,7 @@ pub struct StoredRun {
     /// What stands in a row of motion.
     pub layout: MotionLayout,
     /// Rows of motion.
-    pub motion: Vec<Vec<f32>>,
+    pub motion: Vec<Vec<f64>>,
 }
 
 /// A channel of a result.
@@ -111,6 +110,13 @@ impl StoredResult {
         })
     }
 
+    /// The name of the folder, without where it is.
+    pub fn name(&self) -> String {
+        let folder = self.folder.canonicalize();
+        let name = folder.iter().filter_map(|folder| folder.file_name()).next();
+        name.map_or(String::new(), |name| name.to_string_lossy().into_owned())
+    }
+
     /// The method and what its steps follow.
     pub fn method(&self) -> String {
         let pace = match self.scene.integrator.pace {
@@ -162,6 +168,10 @@ impl StoredRun {
 fn read(folder: &Path, name: &str) -> Result<Vec<u8>, ViewError> {
     let path = folder.join(name);
     fs::read(&path).map_err(|e| match e.kind() {
+        io::ErrorKind::NotADirectory => ViewError::Result(format!(
+            "`{}` is a file, not the folder of a result; `looselink run` writes one",
+            folder.display()
+        )),
         io::ErrorKind::NotFound => ViewError::Result(format!(
             "`{}` holds no result of `looselink run`: it has no `{name}`",
             folder.display()
@@ -186,7 +196,7 @@ struct MotionHeader {
 }
 
 /// The whole rows of `motion.bin`.
-fn rows(path: &Path, bytes: &[u8], layout: &MotionLayout) -> Result<Vec<Vec<f32>>, ViewError> {
+fn rows(path: &Path, bytes: &[u8], layout: &MotionLayout) -> Result<Vec<Vec<f64>>, ViewError> {
     let end = bytes.iter().position(|b| *b == b'\n');
     let header = end.and_then(|end| serde_json::from_slice(&bytes[..end]).ok());
     let (Some(end), Some(MotionHeader { columns })) = (end, header) else {
@@ -197,10 +207,10 @@ fn rows(path: &Path, bytes: &[u8], layout: &MotionLayout) -> Result<Vec<Vec<f32>
             "its columns are not those of the scene; another version of the program wrote it";
         return Err(damaged(path, message));
     }
-    let rows = bytes[end + 1..].chunks_exact(4 * columns.len());
-    let number = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+    let rows = bytes[end + 1..].chunks_exact(8 * columns.len());
+    let number = |b: &[u8]| f64::from_le_bytes(std::array::from_fn(|i| b[i]));
     Ok(rows
-        .map(|row| row.chunks_exact(4).map(number).collect())
+        .map(|row| row.chunks_exact(8).map(number).collect())
         .collect())
 }
 
@@ -212,12 +222,13 @@ fn columns(path: &Path, bytes: &[u8], format: &str) -> Result<Vec<StoredChannel>
         .rposition(|b| *b == b'\n')
         .map_or(0, |end| end + 1);
     let read = match format {
-        name if name == FORMATS[0].name => read_csv(&bytes[..whole]),
-        _ => read_json_lines(&bytes[..whole]),
+        "csv" => read_csv(&bytes[..whole]),
+        "json_lines" => read_json_lines(&bytes[..whole]),
+        other => Err(format!("tables of the format {other:?} cannot be read")),
     };
     let channels = read.map_err(|message| damaged(path, &message))?;
     match channels.is_empty() {
-        true => Err(damaged(path, "it has no columns")),
+        true => Err(damaged(path, "it holds no row yet")),
         false => Ok(channels),
     }
 }

@@ -31,8 +31,17 @@ pub struct Signal {
 }
 
 impl Group {
-    /// Keeps the rows that the tolerances need, as 32-bit numbers.
+    /// Keeps the rows that the tolerances need, as they are.
     pub fn exact(times: &[f64], signals: &[Signal], pack: &mut Pack) -> Group {
+        Group::of(times, signals, pack, |values, pack| Track {
+            offset: 0.0,
+            scale: 1.0,
+            data: pack.add(values.iter().copied()),
+        })
+    }
+
+    /// Keeps the rows that the tolerances need, as 32-bit numbers.
+    pub fn single(times: &[f64], signals: &[Signal], pack: &mut Pack) -> Group {
         Group::of(times, signals, pack, |values, pack| Track {
             offset: 0.0,
             scale: 1.0,

@@ -17,7 +17,7 @@ pub fn panel(
     period: Option<f64>,
 ) -> Result<Panel, CommandFailure> {
     let mut across = axis(&x.name, x);
-    if x.unit == y.unit {
+    if x.unit == y.unit && comparable(&x.values, &y.values) {
         across = across.equal();
     }
     let mut panel = super::panel(across, axis(&y.name, y));
@@ -42,6 +42,11 @@ fn section(times: &[f64], period: f64) -> Result<Vec<usize>, String> {
         ));
     }
     let interval = times[1] - times[0];
+    if period < interval * (1.0 - ROUNDING) {
+        return Err(format!(
+            "--poincare {period} is shorter than the time between rows, {interval} s"
+        ));
+    }
     let [first, last] = [times[0], times[times.len() - 1]].map(|t| t / period);
     let mut rows = Vec::new();
     for k in (first - ROUNDING).ceil() as i64..=(last + ROUNDING).floor() as i64 {
@@ -56,7 +61,22 @@ fn section(times: &[f64], period: f64) -> Result<Vec<usize>, String> {
             }
         }
     }
-    Ok(rows)
+    match rows.is_empty() {
+        true => Err(format!(
+            "no multiple of {period} s lies between the first and the last row"
+        )),
+        false => Ok(rows),
+    }
+}
+
+/// True where one scale shows both: neither range is more than ten times the other.
+fn comparable(x: &[f64], y: &[f64]) -> bool {
+    let range = |values: &[f64]| {
+        let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        greatest - values.iter().copied().fold(f64::INFINITY, f64::min)
+    };
+    let ratio = range(x) / range(y);
+    (0.1..=10.0).contains(&ratio)
 }
 
 #[cfg(test)]
@@ -74,5 +94,11 @@ mod tests {
                 .contains("no row at t = 0.255")
         );
         assert!(section(&times, 0.0).is_err());
+        assert!(section(&times, 1e-18).unwrap_err().contains("shorter"));
+        assert!(
+            section(&times[1..], 3.0)
+                .unwrap_err()
+                .contains("no multiple")
+        );
     }
 }

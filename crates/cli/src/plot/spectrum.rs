@@ -15,14 +15,12 @@ const ROUNDING: f64 = 1e-6;
 pub fn panel(times: &[f64], channel: &StoredChannel) -> Result<Panel, CommandFailure> {
     let interval = times[1] - times[0];
     let even = |pair: &[f64]| (pair[1] - pair[0] - interval).abs() <= ROUNDING * interval;
-    // the last row of a run can come sooner
-    let count = 1 + times.windows(2).take_while(|pair| even(pair)).count();
-    if count + 1 < times.len() {
-        return Err(CommandFailure::bad_input(
-            "the rows are not evenly spaced in time",
-        ));
+    if !times.windows(2).all(even) {
+        let message = "the rows are not evenly spaced in time";
+        return Err(CommandFailure::bad_input(message));
     }
-    let amplitudes = amplitudes(&channel.values[..count]);
+    let count = times.len();
+    let amplitudes = amplitudes(&channel.values);
     let step = 1.0 / (interval * count as f64);
     let frequencies: Vec<f64> = (0..amplitudes.len()).map(|k| k as f64 * step).collect();
     let label = format!("Amplitude of {}", channel.name);
@@ -39,7 +37,8 @@ pub fn panel(times: &[f64], channel: &StoredChannel) -> Result<Panel, CommandFai
 }
 
 /// Amplitudes at multiples of 1/(n dt): with the window w and its sum W, 2 |sum w_k (x_k - mean) exp(-i omega t_k)|/W, which is A
-/// for A cos(omega t).
+/// for A cos(omega t). At half the rate of the rows, the last frequency of an even number of rows, the factor 2 is 1: there the two
+/// sides of the spectrum are one.
 fn amplitudes(values: &[f64]) -> Vec<f64> {
     let n = values.len();
     let mean = values.iter().sum::<f64>() / n as f64;
@@ -55,7 +54,11 @@ fn amplitudes(values: &[f64]) -> Vec<f64> {
     transform
         .process(&mut weighted, &mut spectrum)
         .expect("both vectors have the lengths of the plan");
-    spectrum.iter().map(|x| 2.0 * x.norm() / total).collect()
+    let factor = |k: usize| if 2 * k == n { 1.0 } else { 2.0 };
+    let amplitudes = spectrum.iter().enumerate();
+    amplitudes
+        .map(|(k, x)| factor(k) * x.norm() / total)
+        .collect()
 }
 
 #[cfg(test)]
@@ -68,13 +71,14 @@ mod tests {
         let n = 1000;
         let at = |k: usize| {
             let turn = TAU * k as f64 / n as f64;
-            7.0 + 3.0 * (20.0 * turn + 0.3).cos() + 1e-3 * (150.0 * turn).sin()
+            let fastest = 0.5 * f64::from(1 - 2 * (k as i32 % 2));
+            7.0 + 3.0 * (20.0 * turn + 0.3).cos() + 1e-3 * (150.0 * turn).sin() + fastest
         };
         let found = amplitudes(&(0..n).map(at).collect::<Vec<_>>());
         // rounding of a sum of n numbers of size 10
         let close = |k: usize, expected: f64| (found[k] - expected).abs() < 1e-11;
         assert!(
-            close(20, 3.0) && close(150, 1e-3) && close(80, 0.0),
+            close(20, 3.0) && close(150, 1e-3) && close(80, 0.0) && close(500, 0.5),
             "{found:?}"
         );
     }

@@ -25,6 +25,8 @@ export class Charts {
   private chosen: Set<string>;
   private ledger: boolean;
   private t = 0;
+  /** The part of the time that is shown, if it is not all of it. */
+  private part: { min: number; max: number } | null = null;
 
   constructor(
     private root: HTMLElement,
@@ -50,6 +52,8 @@ export class Charts {
       if (times[middle] <= t) low = middle;
       else high = middle - 1;
     }
+    // the nearest row
+    if (low + 1 < times.length && times[low + 1] - t < t - times[low]) low++;
     for (const { plot, cursor } of this.panels) {
       plot.setLegend({ idx: low });
       const x = plot.valToPos(t, "x");
@@ -68,6 +72,7 @@ export class Charts {
       this.panel(channels.map((c) => c.name).join(", "), unit, series);
     }
     if (this.ledger) this.panel("Energy: stored and dissipated, stacked; line: supplied", "J", ledger(this.run), 0);
+    if (this.part) this.panels[0]?.plot.setScale("x", this.part);
     this.update(this.t);
   }
 
@@ -101,12 +106,12 @@ export class Charts {
         scales: { x: { time: false }, y: least === undefined ? {} : { range: (_, min, max) => [Math.min(least, min), 1.05 * max] } },
         axes: [
           { ...axis, label: this.run.is_static ? "t" : "t [s]", labelSize: 16, size: 32 },
-          { ...axis, label: unit === "1" ? "" : `[${unit}]`, labelSize: 16, size: 74, values: (_, ticks) => ticks.map(short) },
+          { ...axis, label: unit === "1" ? "" : `[${unit}]`, labelSize: 16, size: 74, space: 26, values: (_, ticks) => ticks.map(short) },
         ],
         series: [
           { label: "t", value: (_, v) => (v == null ? "–" : `${v.toPrecision(6)} s`) },
           ...series.map((s) => {
-            const c = s.dashed ? colour(COLOURS[(next - 1) % COLOURS.length]) : colour(COLOURS[next++ % COLOURS.length]);
+            const c = colour(s.dashed ? "--soft" : COLOURS[next++ % COLOURS.length]);
             return {
               label: s.label,
               stroke: c,
@@ -137,6 +142,8 @@ export class Charts {
   private zoomed(from: uPlot): void {
     const { min, max } = from.scales.x;
     if (min == null || max == null) return;
+    const { times } = this.run;
+    this.part = min > times[0] || max < times[times.length - 1] ? { min, max } : null;
     for (const { plot } of this.panels) {
       if (plot !== from && (plot.scales.x.min !== min || plot.scales.x.max !== max)) plot.setScale("x", { min, max });
     }

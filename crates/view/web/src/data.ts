@@ -44,7 +44,7 @@ interface PackedRun {
   forces: { name: string; ends: End[] }[];
   path: [number, number][];
   driven: number | null;
-  channels: { name: string; unit: string; data: Packed }[];
+  channels: { name: string; unit: string; offset: number; data: Packed }[];
 }
 
 /** Quantities over time, linear between the rows that were kept. */
@@ -111,7 +111,7 @@ export interface Joint {
 export interface Channel {
   name: string;
   unit: string;
-  values: Float32Array;
+  values: Float64Array;
 }
 export type Run = Omit<PackedRun, "times" | "bodies" | "joints" | "channels"> & {
   times: Float64Array;
@@ -143,7 +143,11 @@ export async function load(): Promise<Run[]> {
       times,
       bodies: run.bodies.map((b) => ({ ...b, pose: optional(b.pose), deformation: optional(b.deformation) })),
       joints: run.joints.map((j) => ({ ...j, clearance: j.clearance && loose(j.clearance, group) })),
-      channels: run.channels.map((c) => ({ name: c.name, unit: c.unit, values: array(c.data) as Float32Array })),
+      channels: run.channels.map((c) => ({
+        name: c.name,
+        unit: c.unit,
+        values: Float64Array.from(array(c.data), (x) => c.offset + x),
+      })),
     };
   });
 }

@@ -1,8 +1,8 @@
 // One inset a loose joint: the journal in its bearing with the play magnified, the orbit of its centre, the contact force.
 
 import type { Clearance, Joint, Run } from "./data";
-import { arrow } from "./mechanism";
-import { angleOf } from "./pose";
+import { arrow, WEAKEST } from "./mechanism";
+import { angleAt } from "./pose";
 import { add, set } from "./svg";
 import { quantity } from "./text";
 
@@ -61,20 +61,24 @@ function inset(parent: HTMLElement, run: Run, joint: Joint, loose: Clearance, gh
       set(shadow, { cx: (PLAY / ghost.clearance) * gx, cy: (PLAY / ghost.clearance) * gy });
     }
     if (walls) {
-      const angle = angleOf(run.bodies[joint.ends[0][0]], t) + slide!;
+      const angle = angleAt(run, joint.ends[0], t) + slide!;
       set(walls, { transform: `rotate(${(angle * 180) / Math.PI})` });
     }
-    const last = eccentricity.index(t);
-    const points: string[] = [];
-    for (let i = Math.max(0, last - ORBIT_ROWS); i <= last; i++) points.push(`${scale * ex[i]},${scale * ey[i]}`);
-    set(orbit, { points: `${points.join(" ")} ${cx},${cy}` });
+    // between walls that turn, earlier positions stand nowhere
+    if (!walls) {
+      const last = eccentricity.index(t);
+      const points: string[] = [];
+      for (let i = Math.max(0, last - ORBIT_ROWS); i <= last; i++) points.push(`${scale * ex[i]},${scale * ey[i]}`);
+      set(orbit, { points: `${points.join(" ")} ${cx},${cy}` });
+    }
     const [fx, fy] = loose.force.at(t);
-    const newtons = Math.hypot(fx, fy);
-    const share = loose.strongest > 0 ? newtons / loose.strongest : 0;
+    // forces are stored to a thousandth of the largest
+    const share = loose.strongest > 0 ? Math.hypot(fx, fy) / loose.strongest : 0;
+    const newtons = share < WEAKEST ? 0 : Math.hypot(fx, fy);
     // from the contact point, where the bearing pushes the journal
     const angle = Math.atan2(fy, fx);
     const contact: [number, number] = [cx - (BEARING - PLAY) * Math.cos(angle), cy - (BEARING - PLAY) * Math.sin(angle)];
-    const length = share < 1e-3 ? 0 : LONGEST_ARROW * (1 + Math.log10(share) / 3);
+    const length = share < WEAKEST ? 0 : LONGEST_ARROW * (1 - Math.log(share) / Math.log(WEAKEST));
     set(force, { d: length > 0 ? arrow(contact, angle, length, 3) : "" });
     const part = Math.hypot(x, y) / clearance;
     caption.textContent = `${joint.name}: e = ${part.toFixed(2)} c\n${quantity(newtons, "N")}`;

@@ -10,7 +10,8 @@ import { add } from "./svg";
 
 /** Seconds that a run takes at the first speed. */
 const FIRST_SPEED = 12;
-const LARGEST_MAGNIFICATION = 5;
+/** The largest magnification bends a link by this part of its length. */
+const LARGEST_BEND = 0.5;
 
 const find = <T extends Element>(id: string) => document.getElementById(id) as unknown as T;
 
@@ -19,12 +20,17 @@ function header(run: Run, ghost: Run | undefined): void {
   find("title").textContent = run.title;
   const parts = [run.method, run.folder, ...run.overrides];
   if (ghost) parts.push(`ghost: ${ghost.title}, ${ghost.folder}`);
-  if (run.status !== "complete") parts.push(`the run is ${run.status}${run.error ? `: ${run.error}` : ""}`);
   find("method").textContent = parts.join(" · ");
-  const all = [...run.warnings, ...(ghost?.warnings ?? []).map((w) => `ghost: ${w}`)];
+  const ended = [run, ghost].flatMap((r, i) => {
+    if (!r || r.status === "complete") return [];
+    return [`the ${i === 0 ? "run" : "ghost"} is ${r.status}${r.error ? `: ${r.error}` : ""}`];
+  });
+  const ghostly = (ghost?.warnings ?? []).map((w) => `ghost: ${w}`);
+  const all = [...ended, ...run.warnings, ...ghostly];
   const box = find<HTMLDetailsElement>("warnings");
   box.hidden = all.length === 0;
-  box.querySelector("summary")!.textContent = `${all.length} warning${all.length === 1 ? "" : "s"} of the run`;
+  const count = (warnings: string[], of: string) => (warnings.length ? [`${warnings.length} warning${warnings.length === 1 ? "" : "s"} of the ${of}`] : []);
+  box.querySelector("summary")!.textContent = [...ended, ...count(run.warnings, "run"), ...count(ghostly, "ghost")].join("; ");
   box.querySelector("ul")!.replaceChildren(
     ...all.map((warning) => Object.assign(document.createElement("li"), { textContent: warning })),
   );
@@ -53,8 +59,9 @@ function tools(run: Run, options: Options, plane: Plane, changed: () => void): v
   select.selectedIndex = options.trail ? 1 + ends.findIndex((end) => name(end) === name(options.trail!)) : 0;
   select.addEventListener("change", () => ((options.trail = ends[select.selectedIndex - 1] ?? null), changed()));
   labelled("Trail", select);
-  if (run.bodies.some((body) => body.deformation)) {
-    const slider = Object.assign(document.createElement("input"), { type: "range", min: "0", max: String(LARGEST_MAGNIFICATION), step: "0.1", value: "0" });
+  const largest = largestMagnification(run);
+  if (largest > 1) {
+    const slider = Object.assign(document.createElement("input"), { type: "range", min: "0", max: String(Math.log10(largest)), step: "any", value: "0" });
     slider.setAttribute("aria-label", "Magnification of deformations");
     slider.id = "magnification";
     const text = document.createElement("output");
@@ -72,6 +79,19 @@ function tools(run: Run, options: Options, plane: Plane, changed: () => void): v
   const theme = Object.assign(document.createElement("button"), { type: "button", textContent: "Light / dark" });
   theme.id = "theme";
   root.append(fit, theme);
+}
+
+/** The magnification at which the link that bends most is bent by half its length; 1 if no link bends. */
+function largestMagnification(run: Run): number {
+  const bends = run.bodies.map(({ shape, deformation }) => {
+    if (typeof shape !== "object" || !("beam" in shape) || !deformation) return 0;
+    const across = deformation.columns.filter((_, i) => i % 4 === 1 || i % 4 === 3);
+    // a slope at the end of a link moves its middle by about an eighth of the length
+    const most = across.map((c, i) => c.reduce((m, x) => Math.max(m, Math.abs(x)), 0) / (i % 2 === 0 ? shape.beam.length : 8));
+    return Math.max(...most);
+  });
+  const most = Math.max(0, ...bends);
+  return most > 0 ? LARGEST_BEND / most : 1;
 }
 
 /** The point whose way is drawn at first: the driven body, or the point that gets around most. */
@@ -96,10 +116,11 @@ async function main(): Promise<void> {
   const { times } = run;
   const [begin, end] = [times[0], times[times.length - 1]];
   header(run, ghost);
-  const options: Options = { magnification: 1, forces: true, names: false, trail: firstTrail(run) };
+  const options: Options = { magnification: 1, pixel: 1, forces: true, names: false, trail: firstTrail(run) };
 
   const svg = find<SVGSVGElement>("mechanism");
-  const plane = new Plane(svg, run.bounds);
+  let ready = false;
+  const plane: Plane = new Plane(svg, run.bounds, () => ready && show());
   const world = add(svg, "g", { id: "world", transform: "scale(1 -1)" });
   const pictures = [
     ...(ghost ? [new Mechanism(world, ghost, "ghost")] : []),
@@ -112,7 +133,9 @@ async function main(): Promise<void> {
   let [t, playing] = [begin, false];
 
   const show = () => {
+    options.pixel = plane.scale();
     for (const picture of pictures) picture.update(t, options);
+    svg.querySelector(".ghost")?.classList.toggle("gone", t > ghost!.times[ghost!.times.length - 1]);
     updateInsets(t);
     charts.update(t);
     slider.value = String(t);
@@ -147,7 +170,7 @@ async function main(): Promise<void> {
   };
   const toggle = (on = !playing) => {
     playing = on;
-    play.textContent = on ? "⏸" : "▶";
+    play.classList.toggle("playing", on);
     play.setAttribute("aria-label", on ? "Pause" : "Play");
     last = performance.now();
     if (on) requestAnimationFrame(frame);
@@ -155,7 +178,10 @@ async function main(): Promise<void> {
   play.addEventListener("click", () => toggle());
   document.addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;
-    if (["INPUT", "SELECT", "BUTTON", "SUMMARY"].includes(target.tagName) || event.ctrlKey || event.metaKey) return;
+    const typing = target.matches("input[type=search], select");
+    const moves = target.matches("input[type=range]") && /^(Arrow|Home|End)/.test(event.key);
+    const presses = target.matches("input, button, summary") && event.key === " ";
+    if (typing || moves || presses || event.ctrlKey || event.metaKey) return;
     const step = (end - begin) / (event.shiftKey ? 1000 : 100);
     const actions: Record<string, () => void> = {
       " ": () => toggle(),
@@ -163,6 +189,8 @@ async function main(): Promise<void> {
       ArrowRight: () => seek(t + step),
       Home: () => seek(begin),
       End: () => seek(end),
+      "+": () => plane.zoom(0.8),
+      "-": () => plane.zoom(1.25),
     };
     if (actions[event.key]) {
       event.preventDefault();
@@ -179,10 +207,14 @@ async function main(): Promise<void> {
   find("theme").addEventListener("click", () => theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
   theme(dark.matches ? "dark" : "light");
   if (run.joints.some((j) => j.clearance)) {
-    find("legend").textContent = "Arrows: force of the bearing on the journal, length logarithmic over three decades below the largest.";
+    find("legend").textContent = "Arrows: force of the bearing on the journal. Their length is logarithmic, from a thousandth of the largest force on.";
   }
+  ready = true;
   seek(begin);
   document.documentElement.dataset.ready = "yes";
 }
 
-void main();
+main().catch((error: unknown) => {
+  find("title").textContent = "This page cannot be shown";
+  find("method").textContent = `${error}. It needs a browser of 2023 or later.`;
+});

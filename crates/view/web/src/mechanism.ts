@@ -1,7 +1,7 @@
 // The mechanism: bodies, joints, springs and loads, contact forces, trails.
 
 import type { Body, End, Joint, Run } from "./data";
-import { angleOf, nodes, pointAt, type Vector } from "./pose";
+import { angleAt, nodes, pointAt, type Vector } from "./pose";
 import { add, set } from "./svg";
 
 /** Sizes of symbols relative to the mechanism. */
@@ -10,11 +10,17 @@ const RING = 0.014;
 const SLOT = 0.12;
 const ARROW = 0.22;
 /** Contact forces below this part of the largest are not drawn; the length of arrows is logarithmic above it. */
-const WEAKEST = 1e-3;
-const TRAIL_POINTS = 1500;
+export const WEAKEST = 1e-3;
+/** A trail has the stored poses of the body, this many at most. */
+const TRAIL_POINTS = 4000;
+/** Symbols of joints grow with the picture up to this radius, and names have this size [pixels]. */
+const LARGEST_RING = 11;
+const LETTERS = 13;
 
 export interface Options {
   magnification: number;
+  /** Metres a pixel. */
+  pixel: number;
   forces: boolean;
   names: boolean;
   trail: End | null;
@@ -47,6 +53,7 @@ export class Mechanism {
     if (kind === "run") {
       run.joints.forEach((joint) => this.addArrow(group, joint));
       run.bodies.forEach((body, b) => this.addName(group, body, b));
+      run.joints.forEach((joint) => joint.clearance && this.addJointName(group, joint));
     }
   }
 
@@ -102,7 +109,7 @@ export class Mechanism {
       const slot = add(group, "line", { class: "slot", x1: -half, x2: half, style: `stroke-width: ${2.4 * r}` });
       const block = add(group, "rect", { x: -1.6 * r, y: -r, width: 3.2 * r, height: 2 * r });
       this.updaters.push((t, options) => {
-        const angle = angleOf(run.bodies[joint.ends[0][0]], t) + glyph.slide;
+        const angle = angleAt(run, joint.ends[0], t) + glyph.slide;
         const place = (p: Vector) => `translate(${p}) rotate(${(angle * 180) / Math.PI})`;
         set(slot, { transform: place(at(0, t, options)) });
         set(block, { transform: place(at(1, t, options)) });
@@ -117,7 +124,10 @@ export class Mechanism {
       const symbol =
         glyph === "weld" ? add(group, "rect", { x: -r, y: -r, width: 2 * r, height: 2 * r }) : add(group, "circle", { r });
       if (joint.clearance) add(group, "circle", { class: "pin", r: 0.45 * r });
-      this.updaters.push((t, options) => set(group, { transform: `translate(${at(0, t, options)})` }));
+      this.updaters.push((t, options) => {
+        const scale = Math.min(1, (LARGEST_RING * options.pixel) / r);
+        set(group, { transform: `translate(${at(0, t, options)}) scale(${scale})` });
+      });
       add(symbol, "title").textContent = joint.name;
     }
   }
@@ -125,6 +135,7 @@ export class Mechanism {
   /** A spring between two points, or a mark where a load acts. */
   private addForce(parent: Element, ends: End[]): void {
     const { run, size } = this;
+    if (ends.length === 0) return;
     if (ends.length < 2) {
       const mark = add(parent, "circle", { class: "load", r: 0.7 * RING * size });
       this.updaters.push((t, options) => {
@@ -156,32 +167,44 @@ export class Mechanism {
   }
 
   private addName(parent: Element, body: Body, b: number): void {
-    if (body.shape === "ground" || body.points.length === 0) return;
-    const text = add(parent, "text", { class: "name", "font-size": 0.03 * this.size });
-    text.textContent = body.name;
-    this.updaters.push((t, options) => {
-      text.style.display = options.names ? "" : "none";
-      if (!options.names) return;
+    if (!body.pose || body.points.length === 0) return;
+    const middle = (t: number, options: Options): Vector => {
       const points = body.points.map((_, p) => pointAt(this.run, [b, p], t, options.magnification));
       const mean = (i: 0 | 1) => points.reduce((sum, p) => sum + p[i], 0) / points.length;
-      set(text, { transform: `translate(${mean(0)} ${mean(1)}) scale(1 -1)` });
+      return [mean(0), mean(1)];
+    };
+    this.addText(parent, body.name, 0, middle, (options) => options.names);
+  }
+
+  /** The name of a loose joint, by which its inset is found. */
+  private addJointName(parent: Element, joint: Joint): void {
+    const at = (t: number, options: Options) => pointAt(this.run, joint.ends[0], t, options.magnification);
+    this.addText(parent, joint.name, 1.2 * LETTERS, at, () => true);
+  }
+
+  /** A text of constant size, so many pixels above a point. */
+  private addText(parent: Element, words: string, above: number, at: (t: number, options: Options) => Vector, shown: (options: Options) => boolean): void {
+    const text = add(parent, "text", { class: "name" });
+    text.textContent = words;
+    this.updaters.push((t, options) => {
+      text.style.display = shown(options) ? "" : "none";
+      if (!shown(options)) return;
+      const [x, y] = at(t, options);
+      const { pixel } = options;
+      set(text, { transform: `translate(${x} ${y + above * pixel}) scale(${pixel} ${-pixel})`, "font-size": LETTERS });
     });
   }
 
-  /** The way of a point up to now. */
+  /** The way of a point up to now, through the stored poses of its body. */
   private addTrail(parent: Element): void {
     const line = add(parent, "polyline", { class: "trail" });
-    const { times } = this.run;
-    const duration = times[times.length - 1];
-    let known: { end: End | null; magnification: number; points: Vector[] } = { end: null, magnification: 1, points: [] };
     this.updaters.push((t, { trail, magnification }) => {
-      if (known.end !== trail || known.magnification !== magnification) {
-        const sample = (_: unknown, k: number) => pointAt(this.run, trail!, (duration * k) / TRAIL_POINTS, magnification);
-        known = { end: trail, magnification, points: trail ? Array.from({ length: TRAIL_POINTS + 1 }, sample) : [] };
-      }
-      const count = Math.floor((t / duration) * TRAIL_POINTS) + 1;
-      const now = trail ? [pointAt(this.run, trail, t, magnification)] : [];
-      set(line, { points: [...known.points.slice(0, count), ...now].join(" ") });
+      if (!trail) return set(line, { points: "" });
+      const { pose, deformation } = this.run.bodies[trail[0]];
+      const stored = magnification > 1 && deformation ? deformation : pose!;
+      const last = stored.index(t);
+      const times = stored.times.slice(Math.max(0, last + 1 - TRAIL_POINTS), last + 1);
+      set(line, { points: [...times, t].map((time) => pointAt(this.run, trail, time, magnification)).join(" ") });
     });
   }
 }

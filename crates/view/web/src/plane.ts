@@ -1,7 +1,8 @@
 // Zoom and shift of the mechanism with wheel, mouse and fingers.
 
 const MARGIN = 0.12;
-const KEYS: Record<string, [zoom: number]> = { "+": [0.8], "-": [1.25] };
+/** Least and greatest part of the plane that is shown, relative to the motion. */
+const RANGE = [1e-4, 20];
 
 /** The part of the plane that an image shows; y points down in it. */
 export class Plane {
@@ -11,6 +12,7 @@ export class Plane {
   constructor(
     private svg: SVGSVGElement,
     private bounds: [number, number, number, number],
+    private changed: () => void,
   ) {
     this.fit();
     svg.addEventListener("wheel", (event) => {
@@ -26,10 +28,7 @@ export class Plane {
       svg.addEventListener(name, (event) => this.fingers.delete(event.pointerId));
     }
     svg.addEventListener("dblclick", () => this.fit());
-    svg.addEventListener("keydown", (event) => {
-      const zoom = KEYS[event.key];
-      if (zoom) this.zoom(zoom[0], svg.clientWidth / 2, svg.clientHeight / 2);
-    });
+    new ResizeObserver(() => changed()).observe(svg);
   }
 
   /** Shows the whole motion. */
@@ -42,15 +41,19 @@ export class Plane {
 
   private apply(): void {
     this.svg.setAttribute("viewBox", this.box.join(" "));
+    this.changed();
   }
 
   /** Metres a pixel. */
-  private scale(): number {
+  scale(): number {
     return Math.max(this.box[2] / this.svg.clientWidth, this.box[3] / this.svg.clientHeight);
   }
 
-  private zoom(factor: number, px: number, py: number): void {
+  zoom(factor: number, px = this.svg.clientWidth / 2, py = this.svg.clientHeight / 2): void {
     const [x, y, width, height] = this.box;
+    const [x0, y0, x1, y1] = this.bounds;
+    const shown = (Math.max(width, height) / (Math.max(x1 - x0, y1 - y0) || 1)) * factor;
+    if (shown < RANGE[0] || shown > RANGE[1]) return;
     // the image is centred in its element
     const cx = x + width / 2 + (px - this.svg.clientWidth / 2) * this.scale();
     const cy = y + height / 2 + (py - this.svg.clientHeight / 2) * this.scale();

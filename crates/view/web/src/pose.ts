@@ -32,7 +32,11 @@ export function pointAt(run: Run, [b, p]: End, t: number, magnification: number)
   return [x + c * px - s * py, y + s * px + c * py];
 }
 
-/** The angle of a body; of the ground zero. */
-export function angleOf(body: Body, t: number): number {
-  return body.pose ? body.pose.at(t)[2] : 0;
+/** The direction of a body at a point: of a flexible link that of its slope there, of the ground zero. */
+export function angleAt(run: Run, [b, p]: End, t: number): number {
+  const body = run.bodies[b];
+  const node = body.points[p].node;
+  if (node === null) return body.pose ? body.pose.at(t)[2] : 0;
+  const [x, y] = nodes(body, t, 1)[node].slope;
+  return Math.atan2(y, x);
 }

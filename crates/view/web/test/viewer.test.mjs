@@ -1,5 +1,5 @@
 // The page in headless Chromium: four cases of the paper and five other scenes load without a message, the mechanism follows the
-// time slider to half a pixel, charts follow, and the built page is that of the sources.
+// time slider to a fraction of a pixel, charts follow, and the built page is that of the sources.
 //
 // LOOSELINK names the program, CHROMIUM the browser.
 import assert from "node:assert/strict";
@@ -12,7 +12,7 @@ import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
 const ROOT = resolve(import.meta.dirname, "../../../..");
-const PROGRAM = process.env.LOOSELINK ?? join(ROOT, process.env.CARGO_TARGET_DIR ?? "target", "debug/looselink");
+const PROGRAM = process.env.LOOSELINK ?? resolve(ROOT, process.env.CARGO_TARGET_DIR ?? "target", "debug/looselink");
 const BROWSER = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const VIEWPORT = { width: 1280, height: 900 };
 const LOAD_SCENES = [
@@ -24,6 +24,9 @@ const LOAD_SCENES = [
   { name: "yoke", scene: "scotch-yoke.toml", set: [] },
   { name: "maxwell", scene: "maxwell.toml", set: [] },
   { name: "disc", scene: "driven-disc.toml", set: [] },
+  { name: "crane", scene: "../crates/cli/templates/crane.toml", set: ["simulation.duration=2.0"] },
+  { name: "pendulum", scene: "../crates/cli/templates/pendulum.toml", set: [] },
+  { name: "spring", scene: "../verify/scenes/everything.toml", set: ["simulation.duration=0.02"] },
   { name: "static", scene: "cantilever-static.toml", set: [], least: 0 },
 ];
 
@@ -119,7 +122,12 @@ for (const { name, scene, set, least = 1 } of LOAD_SCENES) {
       worst = Math.max(worst, ...all);
       compared += all.length;
     }
-    assert.ok(worst <= 0.5, `a symbol is ${worst} pixels off`);
+    // what docs/view.md promises, and rounding of screen coordinates to single precision
+    const allowed = 5e-5 * (await page.evaluate(() => {
+      const { width, height } = document.getElementById("mechanism").viewBox.baseVal;
+      return Math.max(width, height) * document.getElementById("world").getScreenCTM().a;
+    })) + 1e-3;
+    assert.ok(worst <= allowed, `a symbol is ${worst} pixels off, more than ${allowed}`);
     assert.ok(compared >= least, `only ${compared} places were compared`);
     const later = await page.evaluate(() => document.getElementById("world").innerHTML);
     assert.notEqual(before, later, "the mechanism stands still");

@@ -1,10 +1,11 @@
-//! Rows of 32-bit numbers, little-endian, after a line with the names of the columns: for tables that programs read.
+//! Rows of 64-bit numbers, little-endian, after a line with the names of the columns: for tables that programs read. What is no
+//! number is NaN.
 
 use super::{Cell, Format};
 use serde_json::json;
 
 pub(crate) static FORMAT: Format = Format {
-    name: "float32",
+    name: "float64",
     extension: "bin",
     header: |columns, text| {
         text.extend(json!({ "columns": columns }).to_string().as_bytes());
@@ -13,8 +14,8 @@ pub(crate) static FORMAT: Format = Format {
     row: |_, cells, text| {
         for cell in cells {
             let number = match cell {
-                Cell::Number(number) => *number as f32,
-                Cell::Word(_) | Cell::Empty => f32::NAN,
+                Cell::Number(number) => *number,
+                Cell::Word(_) | Cell::Empty => f64::NAN,
             };
             text.extend(number.to_le_bytes());
         }

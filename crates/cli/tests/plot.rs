@@ -1,0 +1,96 @@
+//! `looselink plot`.
+
+use crate::command_line::{expect, looselink, read, run};
+use std::path::Path;
+use std::process::Output;
+
+fn plot(folder: &Path, file: &str, more: &[&str]) -> Output {
+    let output = folder.join(file);
+    let arguments = [
+        "plot",
+        folder.to_str().unwrap(),
+        "-o",
+        output.to_str().unwrap(),
+    ];
+    looselink(&[&arguments, more].concat())
+}
+
+#[test]
+fn figures_say_what_they_show() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    expect(&run(out, &["--set", "integrator.step=1.6e-6"]), 0, "");
+    let channels = ["--channels", "journal.x", "journal.v*", "energy.kinetic"];
+    expect(&plot(out, "time.svg", &channels), 0, "");
+    let figure = read(out, "time.svg");
+    for text in [
+        "journal.x",
+        "journal.vy",
+        "energy.kinetic",
+        "(m/s)",
+        "bathe",
+        "step 1.6",
+        "integrator.step=1.6e-6",
+    ] {
+        assert!(figure.contains(text), "{text} is not in the figure");
+    }
+    expect(
+        &plot(
+            out,
+            "orbit.png",
+            &["--phase", "pin.ex", "pin.ey", "--to", "0.01"],
+        ),
+        0,
+        "",
+    );
+    let image = std::fs::read(out.join("orbit.png")).unwrap();
+    assert!(image.starts_with(b"\x89PNG") && image.len() > 5000);
+    let section = ["--phase", "pin.ex", "pin.ey", "--poincare", "0.005"];
+    expect(&plot(out, "section.svg", &section), 0, "");
+    assert!(read(out, "section.svg").contains("5 points"));
+    expect(
+        &plot(out, "spectrum.svg", &["--spectrum", "journal.vx"]),
+        0,
+        "",
+    );
+    assert!(read(out, "spectrum.svg").contains("Amplitude of journal.vx"));
+}
+
+#[test]
+fn what_cannot_be_drawn_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    expect(&run(out, &[]), 0, "");
+    for (more, message) in [
+        (
+            &["--channels", "journal.z"][..],
+            "did you mean `journal.x`?",
+        ),
+        (&["--channels", "pins.*"], "its channels: "),
+        (
+            &["--phase", "pin.ex", "pin.ey", "--poincare", "0.0033333"],
+            "no row at t = ",
+        ),
+        (
+            &["--phase", "pin.ex", "pin.ey", "--poincare", "1e-18"],
+            "shorter than",
+        ),
+        (
+            &["--channels", "journal.x", "--poincare", "0.1"],
+            "cannot be used with",
+        ),
+        (
+            &["--channels", "journal.x", "--from", "7"],
+            "fewer than two rows",
+        ),
+        (&[], "required"),
+    ] {
+        expect(&plot(out, "figure.svg", more), 2, message);
+    }
+    expect(
+        &plot(out, "figure.pdf", &["--spectrum", "journal.x"]),
+        2,
+        "must end in .svg or .png",
+    );
+    assert!(!out.join("figure.svg").exists());
+}
