@@ -5,7 +5,7 @@
 //! can magnify deformations that are much smaller than a pixel. The eccentricity of a loose joint, which is as small, is stored
 //! apart from the poses, too.
 
-use super::moved::{Moved, Shape, bounds};
+use super::moved::{BodyShape, Moved, bounds};
 use super::pack::{Pack, Packed};
 use super::stored::StoredRun;
 use super::tracks::{Group, Signal};
@@ -28,7 +28,7 @@ const PATH_POSES: usize = 400;
 
 /// A run as the viewer draws it.
 #[derive(Debug, Serialize)]
-pub struct Drawing {
+pub struct RunDrawing {
     title: String,
     folder: String,
     method: String,
@@ -55,7 +55,7 @@ pub struct DrawnBody {
     name: String,
     /// Named points in the frame of the body \[m\].
     points: Vec<DrawnPoint>,
-    shape: Shape,
+    shape: BodyShape,
     /// Of its frame: x, y, theta. Of a flexible link: that of the chord, and its length. None of the ground.
     pose: Option<Group>,
     /// Of a flexible link: the deviations of each node, u and w of the position, then of the slope.
@@ -123,9 +123,9 @@ struct DrawnChannel {
     data: Packed,
 }
 
-impl Drawing {
+impl RunDrawing {
     /// That of a run; its arrays go into the pack.
-    pub fn new(run: &StoredRun, pack: &mut Pack) -> Drawing {
+    pub fn new(run: &StoredRun, pack: &mut Pack) -> RunDrawing {
         let StoredRun { result, .. } = run;
         let scene = &result.scene;
         let bounds = bounds(run);
@@ -171,7 +171,7 @@ impl Drawing {
             name: force.name.clone(),
             ends: ends(&*force.kind, &scene.joints),
         });
-        Drawing {
+        RunDrawing {
             title: scene.title.clone(),
             folder: result.name(),
             method: result.method(),
@@ -252,7 +252,7 @@ fn pose(moved: &Moved, times: &[f64], size: f64, pack: &mut Pack) -> Option<Grou
 
 /// The deformation of a flexible link as tracks.
 fn deformation(moved: &Moved, times: &[f64], pack: &mut Pack) -> Option<Group> {
-    let Shape::Beam { length, .. } = moved.shape else {
+    let BodyShape::Beam { length, .. } = moved.shape else {
         return None;
     };
     // a slope moves points by a part of the length

@@ -1,6 +1,6 @@
 //! A run as a series of SVG pictures, for films and papers: bodies and joints.
 
-use super::moved::{Shape, bounds};
+use super::moved::{BodyShape, bounds};
 use super::stored::StoredRun;
 use looselink::interaction::Placed;
 use looselink::scene::Analysis;
@@ -17,18 +17,18 @@ opacity:.8}.beam{fill:none;stroke:#d2691e;stroke-linecap:round}\
 .joint{fill:#fff;stroke:#24292f;stroke-width:2}.loose{fill:#fff;stroke:#c2352b;stroke-width:2}";
 
 /// From the plane to the picture.
-struct Scale {
+struct FrameScale {
     bounds: [f64; 4],
     size: f64,
     /// Pixels a metre.
     factor: f64,
 }
 
-impl Scale {
-    fn new(bounds: [f64; 4]) -> Scale {
+impl FrameScale {
+    fn new(bounds: [f64; 4]) -> FrameScale {
         let [x0, y0, x1, y1] = bounds;
         let size = (x1 - x0).max(y1 - y0);
-        Scale {
+        FrameScale {
             bounds,
             size,
             factor: WIDTH / (x1 - x0 + 2.0 * MARGIN * size),
@@ -58,7 +58,7 @@ impl Scale {
 
 /// Pictures at evenly spaced rows, the first and the last among them; a single one shows the first row.
 pub fn frames(run: &StoredRun, count: usize) -> Vec<String> {
-    let scale = Scale::new(bounds(run));
+    let scale = FrameScale::new(bounds(run));
     let last = (run.motion.len() - 1) as f64;
     let intervals = count.saturating_sub(1).max(1) as f64;
     let rows = (0..count).map(|k| (k as f64 / intervals * last).round() as usize);
@@ -71,7 +71,7 @@ pub fn frames(run: &StoredRun, count: usize) -> Vec<String> {
 }
 
 /// The picture of a state.
-fn frame(run: &StoredRun, scale: &Scale, t: f64, q: &[f64]) -> String {
+fn frame(run: &StoredRun, scale: &FrameScale, t: f64, q: &[f64]) -> String {
     let unit = match run.result.scene.simulation.analysis {
         Analysis::Dynamic => " s",
         Analysis::Static => "",
@@ -106,7 +106,7 @@ fn frame(run: &StoredRun, scale: &Scale, t: f64, q: &[f64]) -> String {
 }
 
 /// A body in a state.
-fn draw(placed: &Placed, scale: &Scale, q: &[f64]) -> String {
+fn draw(placed: &Placed, scale: &FrameScale, q: &[f64]) -> String {
     let width = BAR * scale.size * scale.factor;
     let frame = || {
         placed
@@ -117,19 +117,19 @@ fn draw(placed: &Placed, scale: &Scale, q: &[f64]) -> String {
     let path = |class: &str, d: &str, width: f64| {
         format!("<path class=\"{class}\" d=\"{d}\" stroke-width=\"{width:.2}\"/>\n")
     };
-    match (Shape::of(placed), frame()) {
-        (Shape::Beam { elements, length }, _) => path(
+    match (BodyShape::of(placed), frame()) {
+        (BodyShape::Beam { elements, length }, _) => path(
             "beam",
             &beam(&placed.x, q, elements, length, scale),
             0.5 * width,
         ),
-        (Shape::Disc(radius), Some([x, y, _])) => {
+        (BodyShape::Disc(radius), Some([x, y, _])) => {
             let ([x, y], r) = (scale.pixels([x, y]), radius * scale.factor);
             format!(
                 "<circle class=\"body\" cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{r:.2}\" stroke-width=\"0\"/>\n"
             )
         }
-        (Shape::Hull(corners), Some([x, y, theta])) => {
+        (BodyShape::Hull(corners), Some([x, y, theta])) => {
             let (s, c) = theta.sin_cos();
             let carried = |[u, w]: [f64; 2]| scale.text([x + c * u - s * w, y + s * u + c * w]);
             let corners: Vec<String> = match corners.is_empty() {
@@ -138,12 +138,12 @@ fn draw(placed: &Placed, scale: &Scale, q: &[f64]) -> String {
             };
             path("body", &format!("M{}Z", corners.join("L")), width)
         }
-        (Shape::Ground, _) | (_, None) => String::new(),
+        (BodyShape::Ground, _) | (_, None) => String::new(),
     }
 }
 
 /// The cubics of a flexible link: control points lie a third of an element along the slopes.
-fn beam(x: &[usize], q: &[f64], elements: usize, length: f64, scale: &Scale) -> String {
+fn beam(x: &[usize], q: &[f64], elements: usize, length: f64, scale: &FrameScale) -> String {
     let third = length / elements as f64 / 3.0;
     let node = |k: usize, along: f64| {
         let [at, slope] = [x[2 * k], x[2 * k + 1]];

@@ -12,7 +12,7 @@ pub mod tracks;
 
 pub use stored::{StoredChannel, StoredResult, StoredRun, ViewError};
 
-use drawing::Drawing;
+use drawing::RunDrawing;
 use pack::Pack;
 use serde::Serialize;
 
@@ -23,14 +23,14 @@ const PLACE: &str = "<!--DATA-->";
 /// Everything the page shows of some runs; its arrays are in the pack.
 #[derive(Serialize)]
 struct Contents {
-    runs: Vec<Drawing>,
+    runs: Vec<RunDrawing>,
     pack: String,
 }
 
 /// The page of a run, with another one as its ghost if there are two.
 pub fn page(runs: &[StoredRun]) -> String {
     let mut pack = Pack::default();
-    let drawings = runs.iter().map(|run| Drawing::new(run, &mut pack));
+    let drawings = runs.iter().map(|run| RunDrawing::new(run, &mut pack));
     let contents = Contents {
         runs: drawings.collect(),
         pack: pack.encode(),

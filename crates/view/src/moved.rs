@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 /// The shape of a body.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Shape {
+pub enum BodyShape {
     /// Points that do not move.
     Ground,
     /// The convex hull of its points: two corners are a bar, none a point.
@@ -25,27 +25,27 @@ pub enum Shape {
     },
 }
 
-impl Shape {
+impl BodyShape {
     /// That of a body.
-    pub fn of(placed: &Placed) -> Shape {
+    pub fn of(placed: &Placed) -> BodyShape {
         let kind = &placed.kind;
         let points: Vec<[f64; 2]> = kind.points().iter().map(|p| p.at.into()).collect();
         match (kind.get::<FlexibleLink>(), kind.radius(), &points[..]) {
-            (Some(link), ..) => Shape::Beam {
+            (Some(link), ..) => BodyShape::Beam {
                 elements: link.elements,
                 length: link.link.length,
             },
-            (_, Some(radius), _) => Shape::Disc(radius),
-            _ if matches!(kind.known(), Some(Known::Fixed)) => Shape::Ground,
+            (_, Some(radius), _) => BodyShape::Disc(radius),
+            _ if matches!(kind.known(), Some(Known::Fixed)) => BodyShape::Ground,
             (.., points) => {
                 // a disc of the same mass and moment of inertia
                 let radius = kind.size() * 2_f64.sqrt();
                 match points {
-                    [] if radius > 0.0 => Shape::Disc(radius),
+                    [] if radius > 0.0 => BodyShape::Disc(radius),
                     // about its centre of mass, or a bar from there to its point
-                    [[x, y]] if radius >= x.hypot(*y) && radius > 0.0 => Shape::Disc(radius),
-                    [point] => Shape::Hull(hull(&[[0.0; 2], *point])),
-                    points => Shape::Hull(hull(points)),
+                    [[x, y]] if radius >= x.hypot(*y) && radius > 0.0 => BodyShape::Disc(radius),
+                    [point] => BodyShape::Hull(hull(&[[0.0; 2], *point])),
+                    points => BodyShape::Hull(hull(points)),
                 }
             }
         }
@@ -54,10 +54,10 @@ impl Shape {
     /// The largest distance of a point of the body from the origin of its frame \[m\].
     pub fn reach(&self) -> f64 {
         match self {
-            Shape::Ground => 0.0,
-            Shape::Hull(corners) => corners.iter().fold(0.0, |m, [x, y]| m.max(x.hypot(*y))),
-            Shape::Disc(radius) => *radius,
-            Shape::Beam { length, .. } => *length,
+            BodyShape::Ground => 0.0,
+            BodyShape::Hull(corners) => corners.iter().fold(0.0, |m, [x, y]| m.max(x.hypot(*y))),
+            BodyShape::Disc(radius) => *radius,
+            BodyShape::Beam { length, .. } => *length,
         }
     }
 }
@@ -66,7 +66,7 @@ impl Shape {
 #[derive(Debug)]
 pub struct Moved {
     /// What it looks like.
-    pub shape: Shape,
+    pub shape: BodyShape,
     /// x, y, theta, and the length of the chord of a flexible link.
     pub pose: [Vec<f64>; 4],
     /// u, w of the position and of the slope of every node.
@@ -88,7 +88,7 @@ pub fn every_row(run: &StoredRun, mut see: impl FnMut(&[f64])) {
 /// Least x and y, greatest x and y of all bodies over all rows \[m\]; a square of a metre about what has no extent.
 pub fn bounds(run: &StoredRun) -> [f64; 4] {
     let bodies = run.simulation.model().bodies();
-    let shapes: Vec<Shape> = bodies.iter().map(|b| Shape::of(&b.placed)).collect();
+    let shapes: Vec<BodyShape> = bodies.iter().map(|b| BodyShape::of(&b.placed)).collect();
     let (mut least, mut greatest) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     let mut see = |at: [f64; 2], radius: f64| {
         for i in 0..2 {
@@ -103,10 +103,10 @@ pub fn bounds(run: &StoredRun) -> [f64; 4] {
                 let marker = placed.marker(point);
                 see(marker.position(q, marker.arm(q)).into(), 0.0);
             }
-            if let Shape::Disc(_) | Shape::Hull(_) = shape
+            if let BodyShape::Disc(_) | BodyShape::Hull(_) = shape
                 && let Some(frame) = placed.kind.frame_at(&placed.x, q, q)
             {
-                let radius = if let Shape::Disc(radius) = shape {
+                let radius = if let BodyShape::Disc(radius) = shape {
                     *radius
                 } else {
                     0.0
@@ -143,9 +143,9 @@ impl Moved {
     }
 
     fn new(placed: &Placed) -> Moved {
-        let shape = Shape::of(placed);
+        let shape = BodyShape::of(placed);
         let tracks = match shape {
-            Shape::Beam { elements, .. } => 4 * (elements + 1),
+            BodyShape::Beam { elements, .. } => 4 * (elements + 1),
             _ => 0,
         };
         let slots = placed.kind.slots();
@@ -160,9 +160,9 @@ impl Moved {
     /// Adds a row.
     fn see(&mut self, placed: &Placed, q: &[f64]) {
         match self.shape {
-            Shape::Ground => {}
-            Shape::Beam { elements, length } => self.see_beam(&placed.x, q, elements, length),
-            Shape::Hull(_) | Shape::Disc(_) => {
+            BodyShape::Ground => {}
+            BodyShape::Beam { elements, length } => self.see_beam(&placed.x, q, elements, length),
+            BodyShape::Hull(_) | BodyShape::Disc(_) => {
                 // the velocities of the frame are not used
                 if let Some(frame) = placed.kind.frame_at(&placed.x, q, q) {
                     let [x, y, theta] = frame.position;

@@ -118,6 +118,7 @@ export class Charts {
               width: 1.2,
               dash: s.dashed ? [5, 4] : undefined,
               fill: s.fill ? `color-mix(in srgb, ${c} 65%, ${colour("--panel")})` : undefined,
+              pxAlign: 0,
               points: { show: false },
               value: (_: uPlot, v: number | null, __: number, i: number | null) => (v == null ? "–" : (s.own && i != null ? s.own[i] : v).toPrecision(6)),
             };

@@ -11,8 +11,9 @@ const SLOT = 0.12;
 const ARROW = 0.22;
 /** Contact forces below this part of the largest are not drawn; the length of arrows is logarithmic above it. */
 export const WEAKEST = 1e-3;
-/** A trail has the stored poses of the body, this many at most. */
+/** A trail has this many points at most, with this angle between two of a body that turns [rad]. */
 const TRAIL_POINTS = 4000;
+const TRAIL_TURN = 0.05;
 /** Symbols of joints grow with the picture up to this radius, and names have this size [pixels]. */
 const LARGEST_RING = 11;
 const LETTERS = 13;
@@ -75,8 +76,14 @@ export class Mechanism {
     }
     const group = add(parent, "g", { ...label, class: `rigid tone${b % 3}` });
     if ("disc" in shape) {
-      add(group, "circle", { r: shape.disc });
-      add(group, "line", { x2: shape.disc });
+      const slides = this.run.joints.some((j) => typeof j.glyph === "object" && j.ends[1][0] === b);
+      // a square with the moment of inertia of the disc
+      const half = (shape.disc * Math.sqrt(3)) / 2;
+      if (slides) add(group, "rect", { class: "solid", x: -half, y: -half, width: 2 * half, height: 2 * half });
+      else add(group, "circle", { class: "solid", r: shape.disc });
+      if (!slides) add(group, "line", { class: "mark", x2: shape.disc });
+      const far = body.points.filter((p) => Math.hypot(...p.at) > 1.01 * shape.disc);
+      for (const { at } of far) add(group, "line", { x2: at[0], y2: at[1], "stroke-width": 0.4 * BAR * this.size });
     } else if (shape.hull.length > 1) {
       add(group, "polygon", { points: shape.hull.join(" "), "stroke-width": BAR * this.size });
     } else {
@@ -195,18 +202,29 @@ export class Mechanism {
     });
   }
 
-  /** The way of a point up to now, through the stored poses of its body. */
+  /** The way of a point up to now. */
   private addTrail(parent: Element): void {
     const line = add(parent, "polyline", { class: "trail" });
     this.updaters.push((t, { trail, magnification }) => {
-      if (!trail) return set(line, { points: "" });
-      const { pose, deformation } = this.run.bodies[trail[0]];
-      const stored = magnification > 1 && deformation ? deformation : pose!;
-      const last = stored.index(t);
-      const times = stored.times.slice(Math.max(0, last + 1 - TRAIL_POINTS), last + 1);
-      set(line, { points: [...times, t].map((time) => pointAt(this.run, trail, time, magnification)).join(" ") });
+      const times = trail ? trailTimes(this.run.bodies[trail[0]], t, magnification) : [];
+      set(line, { points: times.map((time) => pointAt(this.run, trail!, time, magnification)).join(" ") });
     });
   }
+}
+
+/** Times up to t at which a trail has a point, the latest first: stored poses, and between them where the body turns. */
+function trailTimes({ pose, deformation }: Body, t: number, magnification: number): number[] {
+  const { times, columns } = magnification > 1 && deformation ? deformation : pose!;
+  const turns = columns === pose!.columns ? columns[2] : null;
+  const found = [t];
+  let i = (columns === pose!.columns ? pose! : deformation!).index(t);
+  for (let later = t; i >= 0 && found.length < TRAIL_POINTS; later = times[i--]) {
+    const end = Math.min(i + 1, times.length - 1);
+    const turned = turns ? Math.abs(turns[end] - turns[i]) : 0;
+    const parts = Math.max(1, Math.ceil(turned / TRAIL_TURN));
+    for (let k = 1; k <= parts; k++) found.push(later + ((times[i] - later) * k) / parts);
+  }
+  return found;
 }
 
 /** The cubics of a flexible link, as Bezier curves: control points lie a third of an element along the slopes. */
