@@ -441,6 +441,6 @@ fn observe(
 /// The largest difference; what is not a number is larger than all.
 fn distance(one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
     let pairs = one.iter().flatten().zip(other.iter().flatten());
-    let larger = |m: f64, d: f64| if d <= m { m } else { d };
+    let larger = |m: f64, d: f64| if m.is_nan() || d <= m { m } else { d };
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, larger)
 }

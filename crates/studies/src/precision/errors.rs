@@ -131,5 +131,21 @@ fn largest(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 
 /// The larger magnitude; what is not a number is larger than all.
 pub(super) fn larger(a: f64, b: f64) -> f64 {
-    if b.abs() <= a { a } else { b.abs() }
+    if a.is_nan() || b.abs() <= a {
+        a
+    } else {
+        b.abs()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::larger;
+
+    #[test]
+    fn what_is_not_a_number_stays_the_largest() {
+        let all = [1.0, f64::NAN, -2.0, 3.0];
+        assert!(all.into_iter().fold(0.0, larger).is_nan());
+        assert_eq!([1.0, -4.0, 3.0].into_iter().fold(0.0, larger), 4.0);
+    }
 }
