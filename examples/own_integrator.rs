@@ -1,5 +1,6 @@
 //! An integration scheme from outside the library: `cargo run --release --example own_integrator`.
 
+use looselink::checkpoint::{Carried, Checkpoint};
 use looselink::stepper::{Estimate, LocalError, Scheme, StepError, Stepper};
 use looselink::system::{State, System, Work};
 use looselink::{newton::Newton, registry::Registry, scene::Scene, simulate::Simulation};
@@ -7,6 +8,11 @@ use looselink::{newton::Newton, registry::Registry, scene::Scene, simulate::Simu
 /// The symplectic Euler method: v_1 = v + h a, q_1 = q + h v_1.
 #[derive(Debug)]
 struct SymplecticEuler;
+
+/// Nothing that a checkpoint has to hold: each step depends on its start alone.
+impl Carried for SymplecticEuler {
+    fn carry(&mut self, _: &mut Checkpoint) {}
+}
 
 impl Stepper for SymplecticEuler {
     #[rustfmt::skip]

@@ -36,6 +36,7 @@
 #![forbid(unsafe_code)]
 
 pub mod body;
+pub mod checkpoint;
 pub mod compile;
 pub mod constraint;
 pub mod contact;
@@ -49,6 +50,7 @@ pub mod link;
 pub mod marker;
 pub mod math;
 pub mod model;
+pub mod modes;
 pub mod motion;
 pub mod newton;
 pub mod output;

@@ -1,6 +1,7 @@
 //! The loop: step, locate contact onset and loss, commit memory, record.
 
 mod change;
+mod checkpoint;
 mod closures;
 mod control;
 mod equilibrium;
@@ -8,13 +9,14 @@ mod failure;
 mod foresight;
 mod impacts;
 mod meter;
+mod modes;
 mod observer;
 mod pace;
 mod recording;
 mod report;
-mod resume;
 mod stall;
 mod start;
+mod stepwise;
 mod top;
 mod warnings;
 
@@ -32,6 +34,7 @@ pub use observer::{ContactEnd, ContactEvent, Control, Notice, Observer, Onset, P
 pub use recording::Recording;
 pub use report::{Extreme, Inspection, Report, Status};
 
+use crate::checkpoint::carried;
 use crate::model::Model;
 use crate::newton::Newton;
 use crate::record::{Record, Recorder};
@@ -67,7 +70,11 @@ struct LoopCounters {
     onsets: u64,
     unlocated: u64,
     clamps: u64,
+    /// Rows recorded.
+    rows: u64,
 }
+
+carried!(LoopCounters { steps, rejected, location_trials, singular_pose_trials, onsets, unlocated, clamps, rows } but {});
 
 /// One scene, compiled and under way.
 #[derive(Debug)]
@@ -81,6 +88,8 @@ pub struct Simulation {
     /// True where constraints that repeat others are left out.
     leaves_out: bool,
     newton: Newton,
+    /// True on the way from one recorded row to the next.
+    is_between_rows: bool,
     /// True while steps end in a singular pose whatever their length.
     stays_in_singular_pose: bool,
     /// True of a step that met a singular pose and was given another length.
@@ -157,10 +166,13 @@ impl Simulation {
         let (interval, duration) = (self.scene.output.interval, self.scene.simulation.duration);
         // a remainder of the duration below this is the rounding of duration/interval
         let rows = (duration / interval + GRID_ROUNDING).floor() as u64;
-        self.tell_onsets(observer)?;
-        self.record(observer)?;
-        for k in 1..=rows {
-            self.advance((k as f64 * interval).min(duration), observer)?;
+        if self.counters.rows == 0 {
+            self.tell_onsets(observer)?;
+            self.record(observer)?;
+        }
+        while self.counters.rows <= rows {
+            let next = self.counters.rows as f64 * interval;
+            self.advance(next.min(duration), observer)?;
             self.record(observer)?;
         }
         self.advance(duration, observer)
@@ -168,7 +180,9 @@ impl Simulation {
 
     /// Steps to `target`, stopping at every contact onset and loss on the way.
     fn advance(&mut self, target: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
-        self.pacer.begin(self.state.t);
+        if !std::mem::replace(&mut self.is_between_rows, true) {
+            self.pacer.begin(self.state.t);
+        }
         while self.state.t < target {
             let goal = self.pacer.goal(self.state.t, target);
             let (mut clamps, mut reached) = self.try_step(goal)?;
@@ -214,7 +228,7 @@ impl Simulation {
             let impacts = &mut self.impacts;
             impacts.step(&self.model, taken, &self.state, observer)?;
             let (before, after) = (&self.trial.z, &self.state.z);
-            self.closures.step(&self.model, self.state.t, before, after);
+            self.closures.step(self.state.t, before, after);
             self.stall
                 .step(self.state.t, before, after)
                 .map_err(|stalled| self.stalled(stalled))?;
@@ -226,10 +240,15 @@ impl Simulation {
                 duration: self.scene.simulation.duration,
                 contacts: Some(contacts),
             };
-            if observer.step(&progress)? == Control::Stop {
+            let control = observer.step(&progress)?;
+            if control != Control::Continue {
+                observer.checkpoint(self.state.t, &self.checkpoint())?;
+            }
+            if control == Control::Stop {
                 return Err(RunError::Interrupted { t: self.state.t });
             }
         }
+        self.is_between_rows = false;
         Ok(())
     }
 
@@ -400,6 +419,7 @@ impl Simulation {
         for (extreme, value) in extremes.iter_mut().zip(row) {
             extreme.see(*value, output.t);
         }
+        self.counters.rows += 1;
         observer.state(model, output)?;
         Ok(observer.row(row)?)
     }

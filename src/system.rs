@@ -7,6 +7,7 @@
 //! with the coordinates q (unknown ones first, then known ones), their first and second derivatives v and a, the multipliers
 //! lambda, and the contact memory z, which changes only between accepted steps.
 
+use crate::checkpoint::{Carried, Checkpoint, carried};
 use crate::math::lu::Symbolic;
 
 /// Sizes of a system.
@@ -70,6 +71,8 @@ pub struct State {
     pub powers: [f64; INTEGRALS],
 }
 
+carried!(State { t, weight, q, q_low, v, a, lambda, z, angles, integrals, powers } but {});
+
 impl State {
     /// All zero.
     pub fn zeros(shape: Shape) -> State {
@@ -130,8 +133,18 @@ pub struct Work {
     pub prescribed: Vec<Box<dyn Prescribed>>,
 }
 
+impl Carried for Work {
+    fn carry(&mut self, checkpoint: &mut Checkpoint) {
+        let Work { tally, prescribed } = self;
+        tally.carry(checkpoint);
+        for motion in prescribed {
+            motion.carry(checkpoint);
+        }
+    }
+}
+
 /// A prescribed motion that is found by solving, with its own memory.
-pub trait Prescribed: std::fmt::Debug + Send + Sync {
+pub trait Prescribed: Carried + std::fmt::Debug + Send + Sync {
     /// Sets the coordinates that it prescribes, and their rates, in `to` at time `to.t`; `from` is a nearby state.
     ///
     /// # Errors

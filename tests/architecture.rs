@@ -10,7 +10,8 @@ use syn::visit::Visit;
 use syn::{Item, ItemUse, UseTree};
 
 /// Folders and files at the top of `src`, the lowest first: each uses those before it only.
-const LAYERS: [&str; 24] = [
+const LAYERS: [&str; 26] = [
+    "checkpoint",
     "math",
     "table",
     "effect",
@@ -30,6 +31,7 @@ const LAYERS: [&str; 24] = [
     "registry",
     "scene",
     "model",
+    "modes",
     "kinematics",
     "compile",
     "initial",

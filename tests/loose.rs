@@ -403,7 +403,7 @@ fn a_run_takes_over_the_state_of_another() {
         pairs.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()))
     };
     assert!(apart(&one, &other) > 1e-7, "the two motions differ");
-    one.resume(other.state()).unwrap();
+    one.continue_from(other.state()).unwrap();
     one.advance_to(t + 2e-3, &mut ()).unwrap();
     other.advance_to(t + 2e-3, &mut ()).unwrap();
     let worst = Worst::new();

@@ -24,6 +24,7 @@ mod methods;
 mod overrides;
 mod published;
 mod registry;
+mod resume;
 mod rod;
 mod rrr;
 mod stability;

@@ -113,7 +113,7 @@ fn growth(
     for (i, q) in pair.next.v[..unknowns].iter_mut().enumerate() {
         *q += distance * (1.0 + (i * STARTS + k) as f64).sin() / RATES;
     }
-    neighbour.resume(&pair.next).into_diagnostic()?;
+    neighbour.continue_from(&pair.next).into_diagnostic()?;
     let mut sums = Vec::new();
     let mut sum = 0.0;
     for i in 1..=(DURATION / RETURN).round() as usize {
@@ -124,7 +124,7 @@ fn growth(
         sum += (apart / distance).ln();
         sums.push(sum);
         pair.bring_back(motion.state(), neighbour.state(), distance / apart);
-        neighbour.resume(&pair.next).into_diagnostic()?;
+        neighbour.continue_from(&pair.next).into_diagnostic()?;
     }
     Ok(Growth {
         sums,

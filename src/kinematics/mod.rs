@@ -7,6 +7,7 @@
 
 mod series;
 
+use crate::checkpoint::carried;
 use crate::math::plane::pair;
 use crate::model::Model;
 use crate::newton::{Factors, Failure, Update, iterate};
@@ -63,12 +64,16 @@ pub struct Inner {
     series: Series,
 }
 
+carried!(Inner { state, series } but { phi, factors, b });
+
 /// The motion of the ideal mechanism, which the real one follows.
 #[derive(Debug, Clone)]
 struct IdealMotion {
     kinematics: Arc<Kinematics>,
     inner: Inner,
 }
+
+carried!(IdealMotion { inner } but { kinematics });
 
 impl Prescribed for IdealMotion {
     fn follow(&mut self, from: &State, to: &mut State) -> Result<(), PrescribeError> {

@@ -7,6 +7,7 @@
 //! steps, at kinks of the path or near singular poses, the kinematics is solved at every time.
 
 use super::{Inner, Kinematics};
+use crate::checkpoint::carried;
 use crate::system::State;
 use std::f64::consts::PI;
 
@@ -38,6 +39,8 @@ pub(crate) struct Series {
     /// One row.
     sum: Vec<f64>,
 }
+
+carried!(Series { start, end, span, rough_until, coefficients } but { values, sum });
 
 /// cos(i pi/n), n the degree, with the symmetries that make the sums over all nodes vanish.
 fn cosine(i: usize) -> f64 {

@@ -1,6 +1,7 @@
 //! A matrix of fixed pattern and its factors.
 
 use super::{Counters, Failure};
+use crate::checkpoint::{Carried, Checkpoint};
 use crate::math::lu::{DenseLu, Symbolic, WeakPivot};
 
 /// A matrix that is filled, factorised and solved many times.
@@ -56,6 +57,18 @@ impl Factors {
             }
         }
         Ok(())
+    }
+
+    /// Carries the factors; `values` beside dense factors are the matrix itself.
+    pub fn carry(&mut self, symbolic: &Symbolic, checkpoint: &mut Checkpoint) {
+        let Factors { values, dense } = self;
+        let mut is_dense = dense.is_some();
+        is_dense.carry(checkpoint);
+        values.carry(checkpoint);
+        *dense = match is_dense {
+            true => DenseLu::factor(symbolic, values),
+            false => None,
+        };
     }
 
     /// Solves in place.

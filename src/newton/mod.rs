@@ -10,6 +10,7 @@ pub(crate) use factors::Factors;
 pub(crate) use iteration::{Update, iterate};
 pub use response::Response;
 
+use crate::checkpoint::carried;
 use crate::system::{State, System, Weights, Work};
 use singular::{SINGULAR, Truncated};
 
@@ -37,6 +38,8 @@ pub struct Counters {
     /// Stages that ended in a nearly singular pose, where the singular direction was left out.
     pub singular_poses: u64,
 }
+
+carried!(Counters { stages, newton_iterations, factorisations, fallbacks, stagnations, singular_poses } but {});
 
 /// Why there is no solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,6 +94,9 @@ pub struct Newton {
     /// Work done so far.
     pub counters: Counters,
 }
+
+// the mass matrix of a system without multipliers has been factorised at the start of the run
+carried!(Newton { in_singular_pose, met_singular_pose, counters } but { tolerance, r, phi, b, stage, acceleration, holds_mass });
 
 impl Newton {
     /// Memory for a system; `tolerance` is the largest error left in a velocity \[m/s\].

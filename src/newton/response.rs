@@ -12,6 +12,7 @@
 
 use super::Counters;
 use super::factors::Factors;
+use crate::checkpoint::{Carried, Checkpoint};
 use crate::system::{State, System, Weights, Work};
 
 /// Ratio of neighbouring times.
@@ -66,6 +67,29 @@ impl Response {
             phi: vec![0.0; shape.multipliers],
             b: vec![0.0; size],
             x: vec![0.0; shape.unknowns],
+        }
+    }
+
+    /// Carries the matrices, which are those of earlier poses.
+    pub fn carry(&mut self, system: &dyn System, checkpoint: &mut Checkpoint) {
+        let Response {
+            horizon: _,
+            levels,
+            ready,
+            age,
+            renewed,
+            at: _,
+            r: _,
+            phi: _,
+            b: _,
+            x: _,
+        } = self;
+        for count in [ready, age, renewed] {
+            count.carry(checkpoint);
+        }
+        for Level { factors, singular } in levels {
+            factors.carry(system.symbolic(), checkpoint);
+            singular.carry(checkpoint);
         }
     }
 

@@ -33,6 +33,14 @@ pub enum OutputError {
     /// What stands in the place of a file of the result is none.
     #[error("`{}` is not a file", .0.display())]
     NotAFile(PathBuf),
+    /// A run that cannot be resumed.
+    #[error("cannot resume the run in `{}`: {why}", folder.display())]
+    NotResumable {
+        /// The folder.
+        folder: PathBuf,
+        /// Why not.
+        why: String,
+    },
     /// Another run writes to the folder.
     #[error("another run is writing to `{}`", .0.display())]
     Busy(PathBuf),
@@ -130,6 +138,13 @@ impl Folder {
         self.discard(&self.path.join(PREVIOUS))
     }
 
+    /// Deletes a file, and what an interrupted [`replace`] has left of it.
+    pub(super) fn remove(&self, name: &str) -> io::Result<()> {
+        let path = self.path.join(name);
+        remove(&temporary(&path))?;
+        remove(&path)
+    }
+
     fn discard(&self, aside: &Path) -> io::Result<()> {
         if !aside.exists() {
             return Ok(());
@@ -174,8 +189,7 @@ impl Folder {
 /// # Errors
 /// When it cannot be written; the message names the file.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
-    let name = path.file_name().unwrap_or_default().display();
-    let temporary = path.with_file_name(format!(".{name}.tmp"));
+    let temporary = temporary(path);
     let write = || -> io::Result<()> {
         let mut file = File::create(&temporary)?;
         file.write_all(bytes)?;
@@ -188,6 +202,12 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
         // What is left of it is of no use, and the first error is the one to report.
         let _ = fs::remove_file(&temporary);
     })?)
+}
+
+/// Where a file is written before it takes its place.
+fn temporary(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().display();
+    path.with_file_name(format!(".{name}.tmp"))
 }
 
 /// A second name for a file or, where there are none, a copy; of a link what it points at, which may be relative.

@@ -8,6 +8,7 @@
 //! | `scene.toml` | the scene as it was read; overrides are in the summary |
 //! | `summary.json` | status, counters, energy ledger, extremes, warnings |
 //! | `timing.json` | wall and processor time, machine, date |
+//! | `checkpoint.bin` | what an interrupted run goes on from; a complete result has none |
 //!
 //! Only `timing.json` differs when a run is repeated. `summary.json` says `incomplete` from the first rows to the last, so
 //! that a run that was killed is not taken for a finished one; without a summary there is no result. A kill or a full disk
@@ -15,6 +16,7 @@
 //!
 //! A result that is replaced stands in `previous-result` inside the folder until the new one is complete.
 
+mod checkpoint;
 mod folder;
 mod table_file;
 mod timing;
@@ -25,15 +27,17 @@ use crate::scene::Scene;
 use crate::simulate::{ContactEvent, Report, Simulation, Status};
 use crate::system::State;
 use crate::table::{Cell, Format, float64};
+pub use checkpoint::StoredCheckpoint;
+use checkpoint::{CHECKPOINT, Origin};
 pub use folder::{Folder, OutputError, earlier_result, json, naming, replace};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use table_file::TableFile;
-use timing::Stopwatch;
 pub use timing::machine;
+use timing::{Elapsed, Stopwatch};
 
 const CHANNELS: &str = "channels";
 const ONSETS: &str = "onsets";
@@ -62,6 +66,7 @@ pub fn files(formats: &[&'static Format]) -> Vec<String> {
         float64::FORMAT.file(MOTION),
         SCENE.to_owned(),
         TIMING.to_owned(),
+        CHECKPOINT.to_owned(),
     ];
     let summary = std::iter::once(SUMMARY.to_owned());
     summary.chain(tables).chain(others).collect()
@@ -72,13 +77,58 @@ pub fn files(formats: &[&'static Format]) -> Vec<String> {
 pub struct Results {
     folder: Folder,
     header: Header,
-    channels: TableFile,
-    onsets: TableFile,
-    motion: Option<(MotionLayout, TableFile)>,
+    tables: Tables,
+    scene: Scene,
+    /// Known from the first checkpoint on.
+    origin: Option<Origin>,
     /// A row of motion, and one of cells.
     values: Vec<f64>,
     cells: Vec<Cell<'static>>,
     stopwatch: Stopwatch,
+}
+
+/// The files with rows.
+#[derive(Debug)]
+struct Tables {
+    channels: TableFile,
+    onsets: TableFile,
+    motion: Option<(MotionLayout, TableFile)>,
+}
+
+impl Tables {
+    /// Opens each by `open`, first the channels.
+    fn new(
+        folder: &Folder,
+        scene: &Scene,
+        simulation: &Simulation,
+        open: impl Fn(PathBuf, &'static Format, Vec<String>) -> io::Result<TableFile>,
+    ) -> io::Result<Tables> {
+        let path = |format: &Format, table| folder.path.join(format.file(table));
+        let format = scene.output.format;
+        let channels = simulation.channels().iter();
+        let channels = channels.map(|c| format!("{} [{}]", c.name, c.unit));
+        let channels = open(path(format, CHANNELS), format, channels.collect())?;
+        let onsets = CONTACT.map(str::to_owned).to_vec();
+        let onsets = open(path(format, ONSETS), format, onsets)?;
+        let motion = scene.output.motion.then(|| {
+            let layout = MotionLayout::new(simulation.model());
+            let format = &float64::FORMAT;
+            let table = open(path(format, MOTION), format, layout.names().to_vec())?;
+            Ok::<_, io::Error>((layout, table))
+        });
+        Ok(Tables {
+            channels,
+            onsets,
+            motion: motion.transpose()?,
+        })
+    }
+
+    fn all(&mut self) -> impl Iterator<Item = &mut TableFile> {
+        let motion = self.motion.iter_mut().map(|(_, table)| table);
+        [&mut self.channels, &mut self.onsets]
+            .into_iter()
+            .chain(motion)
+    }
 }
 
 /// What is known of a run before it starts.
@@ -118,49 +168,102 @@ impl Results {
         folder.make()?;
         if folder.replaces {
             refuse_busy(&folder)?;
-            folder.set_aside(is_complete(&folder.path))?;
+            let complete = status(&folder.path).as_deref() == Some("complete");
+            folder.set_aside(complete)?;
         }
+        // First of all and never over another: of two runs that start together one fails.
+        let tables = Tables::new(&folder, scene, simulation, TableFile::create);
+        let tables = tables.map_err(|e| match e.kind() {
+            io::ErrorKind::AlreadyExists => OutputError::Occupied {
+                folder: folder.path.clone(),
+                file: scene.output.format.file(CHANNELS),
+            },
+            _ => e.into(),
+        })?;
+        let results = Results::new(folder, scene, tables, Elapsed::NONE)?;
+        let text = scene.text().as_bytes();
+        results.folder.replace(SCENE, text)?;
+        Ok(results)
+    }
+
+    /// Goes on with the result of a run that was interrupted: cuts what was written after its checkpoint, and brings a fresh
+    /// simulation of the scene to where the run was. `folder` is that of the run, with leave to replace an earlier result.
+    ///
+    /// # Errors
+    /// [`OutputError::NotResumable`] for another scene or another program, and as [`Results::begin`].
+    pub fn resume(
+        folder: Folder,
+        scene: &Scene,
+        simulation: &mut Simulation,
+        from: StoredCheckpoint,
+    ) -> Result<Results, OutputError> {
+        let origin = Origin::of(scene)?;
+        from.check(&origin)?;
+        refuse_busy(&folder)?;
+        let open = |path: PathBuf, format, columns| {
+            let name = path.file_name().unwrap_or_default();
+            let size = from.size(&name.to_string_lossy());
+            TableFile::reopen(path, format, columns, size)
+        };
+        let tables = Tables::new(&folder, scene, simulation, open);
+        let tables = tables.map_err(|e| match e.kind() {
+            io::ErrorKind::InvalidData | io::ErrorKind::NotFound => OutputError::NotResumable {
+                folder: folder.path.clone(),
+                why: e.to_string(),
+            },
+            _ => e.into(),
+        })?;
+        let elapsed = from.elapsed();
+        from.restore(simulation)?;
+        let mut results = Results::new(folder, scene, tables, elapsed)?;
+        results.origin = Some(origin);
+        Ok(results)
+    }
+
+    /// A result whose tables are open; its summary says that it is incomplete.
+    fn new(
+        folder: Folder,
+        scene: &Scene,
+        tables: Tables,
+        elapsed: Elapsed,
+    ) -> Result<Results, OutputError> {
         let header = Header {
             title: scene.title.clone(),
             scene_hash: scene.hash(),
             overrides: scene.overrides().map(str::to_owned).collect(),
             version: env!("CARGO_PKG_VERSION"),
         };
-        let names = simulation
-            .channels()
-            .iter()
-            .map(|c| format!("{} [{}]", c.name, c.unit));
-        // First of all and never over another: of two runs that start together one fails.
-        let format = scene.output.format;
-        let table = |name| folder.path.join(format.file(name));
-        let channels = TableFile::create(table(CHANNELS), format, names);
-        let channels = channels.map_err(|e| match e.kind() {
-            io::ErrorKind::AlreadyExists => OutputError::Occupied {
-                folder: folder.path.clone(),
-                file: format.file(CHANNELS),
-            },
-            _ => e.into(),
-        })?;
         let pending = BTreeMap::from([("status", Status::Incomplete)]);
         write_summary(&folder, &header, pending)?;
-        folder.replace(SCENE, scene.text().as_bytes())?;
-        let onsets = TableFile::create(table(ONSETS), format, CONTACT.map(str::to_owned))?;
-        let motion = scene.output.motion.then(|| {
-            let layout = MotionLayout::new(simulation.model());
-            let names = layout.names().iter().cloned();
-            let path = folder.path.join(float64::FORMAT.file(MOTION));
-            TableFile::create(path, &float64::FORMAT, names).map(|table| (layout, table))
-        });
         Ok(Results {
             folder,
             header,
-            channels,
-            onsets,
-            motion: motion.transpose()?,
+            tables,
+            scene: scene.clone(),
+            origin: None,
             values: Vec::new(),
             cells: Vec::new(),
-            stopwatch: Stopwatch::start(),
+            stopwatch: Stopwatch::start(elapsed),
         })
+    }
+
+    /// Stores a checkpoint at time `t`, with all rows so far.
+    ///
+    /// # Errors
+    /// When it cannot be stored; the message names the file.
+    pub fn checkpoint(&mut self, t: f64, bytes: &[u8]) -> Result<(), OutputError> {
+        let origin = match &self.origin {
+            Some(origin) => origin,
+            None => self.origin.insert(Origin::of(&self.scene)?),
+        };
+        let sizes = self.tables.all().map(|table| {
+            let size = table.sync()?;
+            let name = table.path().file_name().unwrap_or_default();
+            Ok::<_, io::Error>((name.to_string_lossy().into_owned(), size))
+        });
+        let sizes = sizes.collect::<Result<_, _>>()?;
+        let elapsed = self.stopwatch.elapsed();
+        checkpoint::write(&self.folder, t, origin, sizes, elapsed, bytes)
     }
 
     /// Appends a row of channels.
@@ -168,7 +271,7 @@ impl Results {
     /// # Errors
     /// When it cannot be stored; the message names the file.
     pub fn row(&mut self, values: &[f64]) -> io::Result<()> {
-        write_numbers(&mut self.channels, values, &mut self.cells)
+        write_numbers(&mut self.tables.channels, values, &mut self.cells)
     }
 
     /// Appends a row of the motion.
@@ -176,7 +279,7 @@ impl Results {
     /// # Errors
     /// When it cannot be stored; the message names the file.
     pub fn state(&mut self, model: &Model, at: &State) -> io::Result<()> {
-        let Some((layout, table)) = &mut self.motion else {
+        let Some((layout, table)) = &mut self.tables.motion else {
             return Ok(());
         };
         self.values.clear();
@@ -198,7 +301,7 @@ impl Results {
             Some(end) => [end.t, end.exit_velocity].map(Cell::Number),
             None => [Cell::Empty; 2],
         };
-        self.onsets.row(&[
+        self.tables.onsets.row(&[
             Cell::Number(onset.t),
             Cell::Word(onset.joint),
             Cell::Number(onset.impact_velocity),
@@ -215,14 +318,7 @@ impl Results {
     /// # Errors
     /// When it cannot be stored; the message names the file.
     pub fn flush(&mut self) -> io::Result<()> {
-        self.tables().try_for_each(TableFile::flush)
-    }
-
-    fn tables(&mut self) -> impl Iterator<Item = &mut TableFile> {
-        let motion = self.motion.iter_mut().map(|(_, table)| table);
-        [&mut self.channels, &mut self.onsets]
-            .into_iter()
-            .chain(motion)
+        self.tables.all().try_for_each(TableFile::flush)
     }
 
     /// Ends the result: the rest of the rows, the timing, and last the summary. A result that a complete one has replaced is
@@ -231,11 +327,16 @@ impl Results {
     /// # Errors
     /// When something cannot be stored; the summary then goes on saying `incomplete`.
     pub fn finish(mut self, report: &Report) -> Result<(), OutputError> {
-        self.tables().try_for_each(TableFile::close)?;
+        self.tables
+            .all()
+            .try_for_each(|table| table.sync().map(drop))?;
         let timing = self.stopwatch.stop(report.t);
         self.folder.replace(TIMING, &json(&timing)?)?;
         let warnings = report.warnings();
         write_summary(&self.folder, &self.header, Ended { report, warnings })?;
+        if report.status != Status::Incomplete {
+            self.folder.remove(CHECKPOINT)?;
+        }
         if self.folder.replaces && report.status == Status::Complete {
             self.folder.forget()?;
         }
@@ -253,11 +354,11 @@ fn write_numbers(
     table.row(cells)
 }
 
-/// True where a run has reached its end.
-fn is_complete(folder: &Path) -> bool {
-    let summary = fs::read(folder.join(SUMMARY)).unwrap_or_default();
-    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
-    summary["status"] == "complete"
+/// The status in the summary of a run; `None` without a summary.
+fn status(folder: &Path) -> Option<String> {
+    let summary = fs::read(folder.join(SUMMARY)).ok()?;
+    let summary: serde_json::Value = serde_json::from_slice(&summary).ok()?;
+    summary["status"].as_str().map(str::to_owned)
 }
 
 /// Refuses a folder to which a run writes: it holds its channels locked.

@@ -2,9 +2,9 @@
 
 use super::folder::naming;
 use crate::table::{Cell, Format};
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
-use std::path::PathBuf;
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufWriter, ErrorKind, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
 
 #[derive(Debug)]
 pub(super) struct TableFile {
@@ -24,21 +24,54 @@ impl TableFile {
         columns: impl IntoIterator<Item = String>,
     ) -> io::Result<TableFile> {
         let file = File::create_new(&path).map_err(naming(&path))?;
+        let mut table = TableFile::new(path, format, columns, file);
+        (format.header)(&table.columns, &mut table.line);
+        table.write()?;
+        table.flush()?;
+        Ok(table)
+    }
+
+    /// Opens a file again that was written before, locks it, and cuts it after `size` bytes.
+    pub(super) fn reopen(
+        path: PathBuf,
+        format: &'static Format,
+        columns: impl IntoIterator<Item = String>,
+        size: u64,
+    ) -> io::Result<TableFile> {
+        let file = OpenOptions::new().write(true).open(&path);
+        let mut file = file.map_err(naming(&path))?;
+        if file.metadata().map_err(naming(&path))?.len() < size {
+            let message = format!("`{}` has lost rows", path.display());
+            return Err(io::Error::new(ErrorKind::InvalidData, message));
+        }
+        let cut = file
+            .set_len(size)
+            .and_then(|()| file.seek(SeekFrom::End(0)));
+        cut.map_err(naming(&path))?;
+        Ok(TableFile::new(path, format, columns, file))
+    }
+
+    fn new(
+        path: PathBuf,
+        format: &'static Format,
+        columns: impl IntoIterator<Item = String>,
+        file: File,
+    ) -> TableFile {
         // Not on Windows, where a lock would keep readers out; where a file system has no locks, nobody is warned.
         if cfg!(unix) {
             let _ = file.try_lock();
         }
-        let mut table = TableFile {
+        TableFile {
             path,
             format,
             columns: columns.into_iter().collect(),
             writer: BufWriter::new(file),
             line: Vec::new(),
-        };
-        (format.header)(&table.columns, &mut table.line);
-        table.write()?;
-        table.flush()?;
-        Ok(table)
+        }
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
     }
 
     pub(super) fn row(&mut self, cells: &[Cell]) -> io::Result<()> {
@@ -56,10 +89,11 @@ impl TableFile {
         self.writer.flush().map_err(naming(&self.path))
     }
 
-    /// Ends the table, on disk before a summary tells of it.
-    pub(super) fn close(&mut self) -> io::Result<()> {
+    /// Sees that all rows so far are on disk, before another file tells of them; returns how many bytes they have.
+    pub(super) fn sync(&mut self) -> io::Result<u64> {
         self.flush()?;
         let file = self.writer.get_ref();
-        file.sync_all().map_err(naming(&self.path))
+        let size = file.sync_all().and_then(|()| Ok(file.metadata()?.len()));
+        size.map_err(naming(&self.path))
     }
 }

@@ -1,7 +1,7 @@
 //! How long a run took, where and when: all that differs when it is repeated.
 
 use cpu_time::ProcessTime;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 #[derive(Debug)]
@@ -9,39 +9,67 @@ pub(super) struct Stopwatch {
     wall: Instant,
     cpu: Option<ProcessTime>,
     date: String,
+    before: Elapsed,
+}
+
+/// Time that a run has taken \[s\].
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(super) struct Elapsed {
+    wall_seconds: f64,
+    /// Processor time of the process in user and system mode; absent where the system has no such clock.
+    cpu_seconds: Option<f64>,
+}
+
+impl Elapsed {
+    /// That of a run that begins.
+    pub(super) const NONE: Elapsed = Elapsed {
+        wall_seconds: 0.0,
+        cpu_seconds: Some(0.0),
+    };
 }
 
 #[derive(Debug, Serialize)]
 pub(super) struct Timing {
-    /// Start of the run, UTC.
+    /// Start of the run or, of one that was interrupted, of its last part, UTC.
     date: String,
     machine: String,
-    wall_seconds: f64,
-    /// Processor time of the process in user and system mode; absent where the system has no such clock.
-    cpu_seconds: Option<f64>,
+    #[serde(flatten)]
+    elapsed: Elapsed,
     /// Simulated time over wall time.
     real_time_factor: f64,
 }
 
 impl Stopwatch {
-    pub(super) fn start() -> Stopwatch {
+    /// Starts; a run that was interrupted has taken some time `before`.
+    pub(super) fn start(before: Elapsed) -> Stopwatch {
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
         Stopwatch {
             wall: Instant::now(),
             cpu: ProcessTime::try_now().ok(),
             date: date(since.map_or(0, |s| s.as_secs())),
+            before,
+        }
+    }
+
+    /// The time so far.
+    pub(super) fn elapsed(&self) -> Elapsed {
+        let cpu = self.cpu.and_then(|started| started.try_elapsed().ok());
+        let before = self.before;
+        Elapsed {
+            wall_seconds: before.wall_seconds + self.wall.elapsed().as_secs_f64(),
+            cpu_seconds: cpu
+                .zip(before.cpu_seconds)
+                .map(|(cpu, before)| before + cpu.as_secs_f64()),
         }
     }
 
     pub(super) fn stop(&self, simulated: f64) -> Timing {
-        let wall_seconds = self.wall.elapsed().as_secs_f64();
-        let cpu = self.cpu.and_then(|started| started.try_elapsed().ok());
+        let elapsed = self.elapsed();
         Timing {
             date: self.date.clone(),
             machine: machine(),
-            wall_seconds,
-            cpu_seconds: cpu.map(|cpu| cpu.as_secs_f64()),
-            real_time_factor: simulated / wall_seconds,
+            elapsed,
+            real_time_factor: simulated / elapsed.wall_seconds,
         }
     }
 }
@@ -82,7 +110,7 @@ fn date(seconds: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Stopwatch, date, machine};
+    use super::{Elapsed, Stopwatch, date, machine};
 
     #[test]
     fn a_machine_has_a_processor_and_a_system() {
@@ -95,10 +123,10 @@ mod tests {
     #[test]
     fn short_runs_have_a_processor_time() {
         let times = (1..=20).map(|n| {
-            let stopwatch = Stopwatch::start();
+            let stopwatch = Stopwatch::start(Elapsed::NONE);
             let sum: f64 = (0..n * 1000).map(|k| f64::from(k).sqrt()).sum();
             assert!(std::hint::black_box(sum) > 0.0);
-            stopwatch.stop(1.0).cpu_seconds.unwrap()
+            stopwatch.elapsed().cpu_seconds.unwrap()
         });
         let times: Vec<f64> = times.collect();
         assert!(times.iter().all(|t| *t > 0.0), "{times:?}");

@@ -3,6 +3,7 @@
 mod channels;
 mod motion;
 
+use crate::checkpoint::{Carried, Checkpoint, carried};
 use crate::model::{Energies, Model};
 use crate::scene::{Scene, SceneError};
 use crate::system::{State, Work};
@@ -39,6 +40,8 @@ struct Turning {
     last: Option<[f64; 3]>,
 }
 
+carried!(Turning { last } but { speed });
+
 impl Turning {
     /// The angle nearest to where the last recorded one and the speeds since lead.
     fn follow(&mut self, angle: f64, speed: f64, t: f64) -> f64 {
@@ -51,6 +54,22 @@ impl Turning {
         };
         self.last = Some([angle, speed, t]);
         angle
+    }
+}
+
+impl Carried for Recorder {
+    fn carry(&mut self, checkpoint: &mut Checkpoint) {
+        let Recorder {
+            channels: _,
+            parts: _,
+            places: _,
+            turning,
+            values: _,
+            row: _,
+            initial_energy: _,
+        } = self;
+        let angles = turning.iter_mut().flatten();
+        angles.for_each(|angle| angle.carry(checkpoint));
     }
 }
 

@@ -1,5 +1,6 @@
 //! Contacts that the steps do not resolve: closed for a few steps only, or closing and opening repeatedly (chatter).
 
+use crate::checkpoint::{Carried, Checkpoint, carried, carry_list};
 use crate::model::Model;
 use serde::Serialize;
 
@@ -32,8 +33,34 @@ pub(super) struct Closures {
     /// Those of them that were closed for a few steps only.
     pub brief: u64,
     /// The first stretches of chatter.
-    pub chatter: Vec<Chatter>,
+    listed: Vec<Stretch>,
 }
+
+impl Carried for Closures {
+    fn carry(&mut self, checkpoint: &mut Checkpoint) {
+        let Closures {
+            contacts,
+            ended,
+            brief,
+            listed,
+        } = self;
+        contacts.carry(checkpoint);
+        ended.carry(checkpoint);
+        brief.carry(checkpoint);
+        carry_list(listed, LISTED, checkpoint);
+    }
+}
+
+/// A period of chatter of a contact; see [`Chatter`].
+#[derive(Debug, Clone, Copy, Default)]
+struct Stretch {
+    contact: usize,
+    from: f64,
+    to: f64,
+    onsets: u64,
+}
+
+carried!(Stretch { contact, from, to, onsets } but {});
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Closure {
@@ -47,6 +74,8 @@ struct Closure {
     listed: Option<usize>,
 }
 
+carried!(Closure { steps, streak, from, listed } but {});
+
 impl Closures {
     pub fn new(contacts: usize) -> Closures {
         let start = Closure {
@@ -57,12 +86,12 @@ impl Closures {
             contacts: vec![start; contacts],
             ended: 0,
             brief: 0,
-            chatter: Vec::with_capacity(LISTED),
+            listed: Vec::with_capacity(LISTED),
         }
     }
 
     /// Records an accepted step to time t, from contact memory `before` to `after`.
-    pub fn step(&mut self, model: &Model, t: f64, before: &[f64], after: &[f64]) {
+    pub fn step(&mut self, t: f64, before: &[f64], after: &[f64]) {
         for (c, contact) in self.contacts.iter_mut().enumerate() {
             contact.steps += 1;
             let (was, is) = (before[c] > 0.0, after[c] > 0.0);
@@ -86,21 +115,32 @@ impl Closures {
             }
             self.brief += 1;
             contact.streak += 1;
-            if let Some(listed) = contact.listed {
-                let chatter = &mut self.chatter[listed];
-                (chatter.to, chatter.onsets) = (t, contact.streak);
-            } else if contact.streak == CHATTER && self.chatter.len() < LISTED {
-                contact.listed = Some(self.chatter.len());
-                let joint = model
-                    .contact_joint(c)
-                    .map(|j| model.joints()[j].name.clone());
-                self.chatter.push(Chatter {
-                    joint: joint.unwrap_or_default(),
+            if let Some(place) = contact.listed {
+                let stretch = &mut self.listed[place];
+                (stretch.to, stretch.onsets) = (t, contact.streak);
+            } else if contact.streak == CHATTER && self.listed.len() < LISTED {
+                contact.listed = Some(self.listed.len());
+                self.listed.push(Stretch {
+                    contact: c,
                     from: contact.from,
                     to: t,
                     onsets: contact.streak,
                 });
             }
         }
+    }
+
+    /// The first periods of chatter.
+    pub fn chatter(&self, model: &Model) -> Vec<Chatter> {
+        let named = |stretch: &Stretch| {
+            let joint = model.contact_joint(stretch.contact);
+            Chatter {
+                joint: joint.map_or(String::new(), |j| model.joints()[j].name.clone()),
+                from: stretch.from,
+                to: stretch.to,
+                onsets: stretch.onsets,
+            }
+        };
+        self.listed.iter().map(named).collect()
     }
 }

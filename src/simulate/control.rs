@@ -37,6 +37,7 @@
 //! that was accepted after the previous onset of the same contact; the controller increases the step from there.
 
 use super::meter::lengths;
+use crate::checkpoint::{Carried, Checkpoint, carried, carry_list};
 use crate::model::Model;
 use crate::newton::Response;
 use crate::scene::{Accuracy, Scene};
@@ -107,6 +108,8 @@ struct VelocityErrorSums {
     peak: f64,
     absolute: f64,
 }
+
+carried!(VelocityErrorSums { signed, peak, absolute } but {});
 
 impl VelocityErrorSums {
     fn add(&mut self, error: f64) {
@@ -191,6 +194,40 @@ impl Controller {
             taken: [f64::INFINITY, 0.0],
             sums: vec![VelocityErrorSums::default(); shape.unknowns],
         }
+    }
+
+    /// Carries what later steps depend on.
+    pub fn carry(&mut self, model: &Model, checkpoint: &mut Checkpoint) {
+        let Controller {
+            accuracy: _,
+            position: _,
+            estimate: _,
+            lengths: _,
+            response,
+            longest: _,
+            shortest: _,
+            next,
+            last,
+            unused,
+            rejected,
+            first_steps,
+            closing,
+            rejections,
+            taken,
+            sums,
+        } = self;
+        if let Some(response) = response {
+            response.carry(model, checkpoint);
+        }
+        for x in [next, last, unused] {
+            x.carry(checkpoint);
+        }
+        rejected.carry(checkpoint);
+        first_steps.carry(checkpoint);
+        carry_list(closing, first_steps.len(), checkpoint);
+        rejections.carry(checkpoint);
+        taken.carry(checkpoint);
+        sums.carry(checkpoint);
     }
 
     /// No step is longer \[s\].

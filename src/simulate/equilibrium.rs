@@ -111,7 +111,11 @@ impl Simulation {
     }
 
     /// Equilibria up to the loads at `target`, in steps that are halved where they fail.
-    fn load_to(&mut self, target: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
+    pub(super) fn load_to(
+        &mut self,
+        target: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<(), RunError> {
         let whole = self.pacer.scale();
         let mut step = whole;
         let smallest = step * 2.0_f64.powi(-HALVINGS);

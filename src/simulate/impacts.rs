@@ -2,6 +2,7 @@
 
 use super::observer::{ContactEnd, ContactEvent, Observer, Onset};
 use super::top::top;
+use crate::checkpoint::{Carried, Checkpoint, carried, carry_list};
 use crate::model::Model;
 use crate::scene::Scene;
 use crate::system::State;
@@ -62,6 +63,19 @@ pub(super) struct Impacts {
     depths: Vec<[f64; 2]>,
 }
 
+impl Carried for Impacts {
+    fn carry(&mut self, checkpoint: &mut Checkpoint) {
+        let Impacts {
+            closed,
+            listed,
+            depths,
+        } = self;
+        closed.carry(checkpoint);
+        carry_list(listed, LISTED, checkpoint);
+        depths.carry(checkpoint);
+    }
+}
+
 /// A journal that has gone deeper into its bearing than the radius of the bearing: no contact law holds there.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Overrun {
@@ -72,7 +86,7 @@ pub struct Overrun {
 }
 
 /// A contact from its onset on.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Course {
     joint: usize,
     t: f64,
@@ -86,6 +100,8 @@ struct Course {
     /// Its index among the first contacts of the run.
     listed: Option<usize>,
 }
+
+carried!(Course { joint, t, impact_velocity, delta, angle, deepest, end, before, listed } but {});
 
 impl Course {
     fn onset<'a>(&self, model: &'a Model) -> Onset<'a> {

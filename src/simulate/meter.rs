@@ -21,6 +21,7 @@
 //! the largest acceleration whose changes move points by more than rounding.
 
 use crate::body::Content;
+use crate::checkpoint::carried;
 use crate::model::{Energies, Model};
 use crate::scene::{Pace, Scene};
 use crate::stepper::LocalError;
@@ -75,8 +76,10 @@ pub(super) struct Meter {
     elapsed: f64,
 }
 
+carried!(Meter { sums, extents, lost, turnover, dissipated, first, work, supplied, elapsed } but { lengths, unstable, plain });
+
 /// Energies at the first row.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct FirstRow {
     balance: f64,
     gravity: f64,
@@ -92,6 +95,8 @@ pub(super) struct Gain {
     /// Energy supplied: that at the start plus the work of drives, loads and weight since \[J\].
     pub supplied: f64,
 }
+
+carried!(FirstRow { balance, gravity, turnover } but {});
 
 /// Errors of one unknown so far.
 #[derive(Debug, Clone, Copy, Default)]
@@ -110,14 +115,18 @@ struct IntegrationSums {
     shaking: f64,
 }
 
+carried!(IntegrationSums { position, velocity, peak, acceleration, change, shaking } but {});
+
 /// Range of an unknown over the recorded rows.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Extent {
     least: f64,
     greatest: f64,
     /// Largest magnitude of its rate.
     fastest: f64,
 }
+
+carried!(Extent { least, greatest, fastest } but {});
 
 impl Extent {
     const EMPTY: Extent = Extent {

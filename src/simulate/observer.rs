@@ -1,5 +1,6 @@
 //! What a run reports while it is under way.
 
+use crate::checkpoint::carried;
 use crate::model::Model;
 use crate::system::State;
 
@@ -30,13 +31,15 @@ pub struct ContactEvent<'a> {
 }
 
 /// The end of a contact.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ContactEnd {
     /// When \[s\].
     pub t: f64,
     /// -delta_dot \[m/s\]: divided by the impact velocity it is the restitution delivered.
     pub exit_velocity: f64,
 }
+
+carried!(ContactEnd { t, exit_velocity } but {});
 
 /// Where a run is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,7 +71,9 @@ pub enum Notice<'a> {
 pub enum Control {
     /// Go on.
     Continue,
-    /// Stop after this step.
+    /// Hand over a checkpoint, then go on.
+    Checkpoint,
+    /// Hand over a checkpoint, then stop.
     Stop,
 }
 
@@ -99,6 +104,14 @@ pub trait Observer {
     /// # Errors
     /// When it cannot be stored; the run stops.
     fn contact(&mut self, _contact: &ContactEvent) -> std::io::Result<()> {
+        Ok(())
+    }
+    /// A checkpoint was asked for, or the run is stopped: from these bytes [`super::Simulation::restore`] goes on at `t` as if
+    /// the run had never stopped. A static analysis has none.
+    ///
+    /// # Errors
+    /// When it cannot be stored; the run stops.
+    fn checkpoint(&mut self, _t: f64, _bytes: &[u8]) -> std::io::Result<()> {
         Ok(())
     }
     /// A step has been taken.

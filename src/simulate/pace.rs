@@ -2,6 +2,8 @@
 
 use super::GRID_ROUNDING;
 use super::control::Controller;
+use crate::checkpoint::{Carried, Checkpoint, carried};
+use crate::model::Model;
 use crate::system::State;
 
 /// Equal steps from an anchor.
@@ -16,6 +18,8 @@ pub(super) struct Grid {
     anchor: f64,
     count: f64,
 }
+
+carried!(Grid { anchor, count } but { step });
 
 /// Rule for the length of the next step.
 #[derive(Debug)]
@@ -34,6 +38,14 @@ impl Pacer {
             anchor: 0.0,
             count: 0.0,
         })
+    }
+
+    /// Carries what later steps depend on.
+    pub fn carry(&mut self, model: &Model, checkpoint: &mut Checkpoint) {
+        match self {
+            Pacer::Grid(grid) => grid.carry(checkpoint),
+            Pacer::Controller(controller) => controller.carry(model, checkpoint),
+        }
     }
 
     /// Time \[s\] against which a step counts as short.

@@ -2,6 +2,7 @@
 
 use super::pace::Pacer;
 use super::{AccuracyReport, Chatter, Impact, Integration, Overrun, Simulation};
+use crate::checkpoint::carried;
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, Scene};
 use crate::system::System;
@@ -32,6 +33,8 @@ pub struct Extreme {
     /// When \[s\].
     pub t_max: f64,
 }
+
+carried!(Extreme { min, t_min, max, t_max } but {});
 
 impl Default for Extreme {
     fn default() -> Extreme {
@@ -255,7 +258,7 @@ impl Simulation {
             clamps: self.counters.clamps,
             ended_contacts: self.closures.ended,
             brief_contacts: self.closures.brief,
-            chatter: self.closures.chatter.clone(),
+            chatter: self.closures.chatter(&self.model),
             integration: dynamic.then(|| self.meter.report(&self.model)),
             ledger: dynamic.then(|| {
                 self.recorder

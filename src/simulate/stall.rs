@@ -1,5 +1,7 @@
 //! Detects a run that will not end because its steps are far too short.
 
+use crate::checkpoint::carried;
+
 /// Equal steps: the least number of steps tried, and the average step relative to that of the scene.
 const OF_EQUAL_STEPS: (u64, f64) = (20_000, 0.02);
 /// Steps of an accuracy: the same, the average relative to the duration. The number takes some ten seconds; at that average
@@ -18,6 +20,8 @@ pub(super) struct Stall {
     /// Changes of every contact so far.
     changes: Vec<u64>,
 }
+
+carried!(Stall { steps, tried, changes } but { patience, least });
 
 /// What a stalled run did.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -76,6 +76,7 @@ impl Simulation {
             leaves_out: !model.redundant().is_empty(),
             locates: scene.integrator.locate_onsets && shape.contacts > 0,
             newton,
+            is_between_rows: false,
             stays_in_singular_pose: false,
             passes_singular_pose: false,
             work,

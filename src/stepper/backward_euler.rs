@@ -6,6 +6,7 @@
 
 use super::history::History;
 use super::{Estimate, LocalError, Scheme, Stage, StepError, Stepper, integrate_ends};
+use crate::checkpoint::carried;
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
 
@@ -24,6 +25,8 @@ pub struct BackwardEuler {
     stage: Stage,
     history: History,
 }
+
+carried!(BackwardEuler { history } but { stage });
 
 impl BackwardEuler {
     /// Memory for a system.

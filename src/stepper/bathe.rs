@@ -25,6 +25,7 @@
 use super::{
     Estimate, LocalError, Method, Parameter, Scheme, Stage, StepError, Stepper, integrate,
 };
+use crate::checkpoint::carried;
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
 
@@ -78,6 +79,8 @@ pub struct Bathe {
     middle: [State; 1],
     stage: Stage,
 }
+
+carried!(Bathe {} but { gamma, weights, quadrature, middle, stage });
 
 impl Bathe {
     /// The scheme with splitting `gamma` in (0, 1) and spectral radius `rho` in \[0, 1\].

@@ -8,6 +8,7 @@
 //! The local error is the difference of the two solutions, of order h^5. The step continues with the solution of order 5.
 
 use super::{Estimate, LocalError, Scheme, StepError, Stepper, accumulate, integrate};
+use crate::checkpoint::carried;
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Work};
 
@@ -76,6 +77,8 @@ pub struct DormandPrince {
     /// Changes of q or v.
     increment: Vec<f64>,
 }
+
+carried!(DormandPrince {} but { stages, increment });
 
 impl DormandPrince {
     /// Memory for a system.

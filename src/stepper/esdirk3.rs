@@ -12,6 +12,7 @@
 //! The local error is estimated by the embedded formula of order 2. The method continues with the solution of order 3.
 
 use super::{Estimate, LocalError, Scheme, Stage, StepError, Stepper, integrate};
+use crate::checkpoint::carried;
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
 
@@ -57,6 +58,8 @@ pub struct Esdirk3 {
     middle: [State; 2],
     stage: Stage,
 }
+
+carried!(Esdirk3 {} but { middle, stage });
 
 impl Esdirk3 {
     /// Memory for a system.

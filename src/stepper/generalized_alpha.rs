@@ -17,6 +17,7 @@
 
 use super::history::History;
 use super::{Estimate, LocalError, Parameter, Scheme, Stage, StepError, Stepper, integrate_ends};
+use crate::checkpoint::carried;
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
 
@@ -70,6 +71,8 @@ pub struct GeneralizedAlpha {
     stage: Stage,
     history: History,
 }
+
+carried!(GeneralizedAlpha { lag, history } but { alpha_m, alpha_f, beta, gamma, next_lag, stage });
 
 impl GeneralizedAlpha {
     /// Generalised-alpha with spectral radius `rho` in \[0, 1\].

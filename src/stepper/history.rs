@@ -15,6 +15,7 @@
 //! acceleration was a_0. At the start, and after a change of a contact, there is no smooth previous step. There the
 //! acceleration a_2 at t + 2 h, from an explicit extrapolation of the step, replaces a_0.
 
+use crate::checkpoint::carried;
 use crate::system::{Shape, State};
 
 /// The memory of the estimate.
@@ -26,6 +27,8 @@ pub(super) struct History {
     last: Beginning,
 }
 
+carried!(History { before, last } but {});
+
 /// Values at the beginning of a step.
 #[derive(Debug)]
 struct Beginning {
@@ -33,6 +36,8 @@ struct Beginning {
     a: Vec<f64>,
     z: Vec<f64>,
 }
+
+carried!(Beginning { t, a, z } but {});
 
 impl Beginning {
     fn new(shape: Shape) -> Beginning {

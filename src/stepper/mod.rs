@@ -19,6 +19,7 @@ pub use scheme::{MOST, Method, Parameter, Scheme};
 pub use trapezoidal::Trapezoidal;
 pub use velocity_verlet::VelocityVerlet;
 
+use crate::checkpoint::Carried;
 use crate::newton::{Failure, Newton};
 use crate::system::{INTEGRALS, PrescribeError, Shape, State, System, Weights, Work};
 
@@ -62,7 +63,7 @@ impl From<PrescribeError> for StepError {
 }
 
 /// An integration scheme.
-pub trait Stepper: std::fmt::Debug + Send {
+pub trait Stepper: Carried + std::fmt::Debug + Send {
     /// Steps from `from` to time `t`, into `to`; contact memory is copied, never changed. Returns the number of
     /// clamped contact forces at its stages.
     ///

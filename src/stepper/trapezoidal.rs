@@ -11,6 +11,7 @@
 
 use super::history::History;
 use super::{Estimate, LocalError, Scheme, Stage, StepError, Stepper, integrate_ends};
+use crate::checkpoint::carried;
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
 
@@ -29,6 +30,8 @@ pub struct Trapezoidal {
     stage: Stage,
     history: History,
 }
+
+carried!(Trapezoidal { history } but { stage });
 
 impl Trapezoidal {
     /// Memory for a system.

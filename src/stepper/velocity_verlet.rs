@@ -10,6 +10,7 @@
 
 use super::history::History;
 use super::{Estimate, LocalError, Scheme, StepError, Stepper, accumulate, integrate_ends};
+use crate::checkpoint::carried;
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Work};
 
@@ -29,6 +30,8 @@ pub struct VelocityVerlet {
     increment: Vec<f64>,
     history: History,
 }
+
+carried!(VelocityVerlet { history } but { increment });
 
 impl VelocityVerlet {
     /// Memory for a system.

@@ -107,9 +107,10 @@ impl From<OutputError> for CommandFailure {
     fn from(error: OutputError) -> CommandFailure {
         match error {
             OutputError::Io(_) => CommandFailure::system(error),
-            OutputError::NotADirectory(_) | OutputError::NotAFile(_) | OutputError::Busy(_) => {
-                CommandFailure::bad_input(error)
-            }
+            OutputError::NotADirectory(_)
+            | OutputError::NotAFile(_)
+            | OutputError::Busy(_)
+            | OutputError::NotResumable { .. } => CommandFailure::bad_input(error),
             OutputError::Occupied { .. } => CommandFailure::bad_input(error)
                 .and("; choose another folder, or replace it with --force"),
         }

@@ -9,6 +9,7 @@ mod new;
 mod plot;
 mod precision;
 mod progress;
+mod resume;
 mod run;
 mod schema;
 mod suggestion;
@@ -46,6 +47,9 @@ enum Command {
         after_help = "Example:\n  looselink run scenes/3rrr/case4.toml --out out/case4 --set integrator.step=5e-6"
     )]
     Run(run::Arguments),
+    /// Go on with a run that was interrupted or killed, from its last checkpoint.
+    #[command(after_help = "Example:\n  looselink resume out/case4")]
+    Resume(resume::Arguments),
     /// Show the motion of a result: one HTML file for a browser, or SVG pictures.
     #[command(after_help = "Example:\n  looselink view out/case4 --ghost out/case1")]
     View(view::Arguments),
@@ -138,17 +142,18 @@ impl SceneArguments {
 fn main() -> ExitCode {
     let arguments = Arguments::try_parse()
         .unwrap_or_else(|error| suggestion::added(error, &Arguments::command()).exit());
-    let result = match &arguments.command {
-        Command::New(arguments) => new::new(arguments),
-        Command::Run(arguments) => run::run(arguments),
-        Command::Plot(arguments) => plot::plot(arguments),
-        Command::View(arguments) => view::view(arguments),
-        Command::Inspect(arguments) => inspect::inspect(arguments),
-        Command::Check(arguments) => check(arguments),
-        Command::Precision(arguments) => precision::precision(arguments),
-        Command::Ablate(arguments) => ablate::ablate(arguments),
+    let result = match arguments.command {
+        Command::New(arguments) => new::new(&arguments),
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Plot(arguments) => plot::plot(&arguments),
+        Command::Resume(arguments) => resume::resume(arguments),
+        Command::View(arguments) => view::view(&arguments),
+        Command::Inspect(arguments) => inspect::inspect(&arguments),
+        Command::Check(arguments) => check(&arguments),
+        Command::Precision(arguments) => precision::precision(&arguments),
+        Command::Ablate(arguments) => ablate::ablate(&arguments),
         Command::Schema => schema::show(),
-        Command::Completions(arguments) => completions::completions(arguments),
+        Command::Completions(arguments) => completions::completions(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

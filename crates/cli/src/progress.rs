@@ -15,26 +15,28 @@ pub enum Display {
     /// Nowhere.
     None,
     /// On a terminal.
-    Bar(ProgressBar, Instant),
-    /// On standard error that is no terminal; the next line is due at this part of the duration.
-    Lines(f64, Instant),
+    Bar(ProgressBar, Start),
+    /// On standard error that is no terminal; the next line is due at this part of the duration, which is
+    /// known from the first step on.
+    Lines(Option<f64>, Start),
 }
 
+/// When a run began or was resumed: on the clock, and in simulated time \[s\].
+pub struct Start(Instant, f64);
+
 impl Display {
-    /// A display on standard error.
-    pub fn new(quiet: bool) -> Display {
+    /// A display on standard error of a run from a simulated time on.
+    pub fn new(quiet: bool, from: f64) -> Display {
+        let start = Start(Instant::now(), from);
         if quiet {
             return Display::None;
         }
         if !std::io::stderr().is_terminal() {
-            return Display::Lines(1.0 / LINES, Instant::now());
+            return Display::Lines(None, start);
         }
         let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}")
             .expect("the template is valid");
-        Display::Bar(
-            ProgressBar::new(FINE as u64).with_style(style),
-            Instant::now(),
-        )
+        Display::Bar(ProgressBar::new(FINE as u64).with_style(style), start)
     }
 
     /// Called after every step; `tick` is true a few times a second.
@@ -45,9 +47,11 @@ impl Display {
                 bar.set_position((part * FINE) as u64);
                 bar.set_message(message(progress, started));
             }
-            Display::Lines(next, started) if part >= *next && part < 1.0 => {
-                *next = ((part * LINES).floor() + 1.0) / LINES;
-                say(&message(progress, started));
+            Display::Lines(next, started) if next.is_none_or(|next| part >= next) => {
+                let following = ((part * LINES).floor() + 1.0) / LINES;
+                if next.replace(following).is_some() && part < 1.0 {
+                    say(&message(progress, started));
+                }
             }
             _ => {}
         }
@@ -66,7 +70,7 @@ impl Display {
     }
 }
 
-fn message(progress: &Progress, started: &Instant) -> String {
+fn message(progress: &Progress, Start(clock, from): &Start) -> String {
     let Progress {
         t,
         duration,
@@ -75,7 +79,7 @@ fn message(progress: &Progress, started: &Instant) -> String {
     let Some(contacts) = contacts else {
         return format!("equilibrium at t = {t:.4} of {duration}");
     };
-    let factor = t / started.elapsed().as_secs_f64();
+    let factor = (t - from) / clock.elapsed().as_secs_f64();
     format!("t = {t:.4} s of {duration} s, {factor:.3} x real time, closed contacts: {contacts}")
 }
 

@@ -7,12 +7,12 @@ use super::progress::{Display, Ticker, warn};
 use super::view;
 use clap::Args;
 use looselink::model::Model;
-use looselink::output::{Folder, OutputError, Results, earlier_result, files};
+use looselink::output::{Folder, OutputError, Results, StoredCheckpoint, earlier_result, files};
 use looselink::registry::Registry;
-use looselink::simulate::{ContactEvent, Control, Observer, Progress};
+use looselink::simulate::{ContactEvent, Control, Observer, Progress, RunError, Simulation};
 use looselink::system::State;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -27,12 +27,30 @@ pub struct Arguments {
     /// Replace an existing result; it is kept in `previous-result` inside the folder until the new one is complete.
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    course: Course,
+}
+
+/// How a run is shown and kept.
+#[derive(Debug, Args)]
+pub struct Course {
     /// Write `view.html` into the folder, in which the mechanism moves.
     #[arg(long)]
-    view: bool,
+    pub view: bool,
     /// Show no progress; warnings are still shown.
     #[arg(long)]
-    quiet: bool,
+    pub quiet: bool,
+    /// Time between two checkpoints, from which `looselink resume` goes on if the program is killed.
+    #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = seconds)]
+    checkpoint: f64,
+}
+
+/// A time of a clock, a century at most.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.0..=3.2e9).contains(&seconds) => Ok(seconds),
+        _ => Err("not a number of seconds".to_owned()),
+    }
 }
 
 /// Rows reach the disk at least this often.
@@ -44,6 +62,9 @@ struct RunObserver {
     display: Display,
     ticker: Ticker,
     flushed: Instant,
+    /// When the last checkpoint was kept, and the time between two.
+    kept: Instant,
+    every: Duration,
     stop: Arc<AtomicBool>,
 }
 
@@ -67,64 +88,103 @@ impl Observer for RunObserver {
             self.flushed = Instant::now();
         }
         self.display.show(progress, tick);
-        Ok(match self.stop.load(Ordering::Relaxed) {
-            true => Control::Stop,
-            false => Control::Continue,
-        })
+        if self.stop.load(Ordering::Relaxed) {
+            return Ok(Control::Stop);
+        }
+        if tick && self.kept.elapsed() >= self.every {
+            self.kept = Instant::now();
+            return Ok(Control::Checkpoint);
+        }
+        Ok(Control::Continue)
+    }
+
+    fn checkpoint(&mut self, t: f64, bytes: &[u8]) -> io::Result<()> {
+        let stored = self.results.checkpoint(t, bytes);
+        stored.map_err(io::Error::other)
     }
 }
 
 /// Simulates the scene; whatever ends the run, what was recorded up to there stands.
 pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let stop = stop_on_interrupt()?;
-    let mut files = files(&Registry::standard().formats);
-    files.push(view::PAGE.to_owned());
-    let folder = Folder::new(&arguments.out, &files, arguments.force)?;
-    let (scene, mut simulation) = arguments.scene.load()?;
-    if arguments.view && !scene.output.motion {
+    let Arguments { out, force, .. } = arguments;
+    let folder = Folder::new(out, &all_files(), *force)?;
+    let (scene, simulation) = arguments.scene.load()?;
+    if arguments.course.view && !scene.output.motion {
         let message = "--view shows the motion, which `output.motion = false` leaves out";
         return Err(CommandFailure::bad_input(message));
     }
-    let started = Instant::now();
-    let not_stored = |error: OutputError| CommandFailure::from(error).and(&earlier(arguments));
     let results = Results::begin(folder, &scene, &simulation);
+    let results = results.map_err(|error| not_stored(error, out, *force))?;
+    to_the_end(simulation, results, out, *force, &arguments.course, stop)
+}
+
+/// The files of a run and its page.
+pub fn all_files() -> Vec<String> {
+    let mut files = files(&Registry::standard().formats);
+    files.push(view::PAGE.to_owned());
+    files
+}
+
+/// Simulates what is left of a run.
+pub fn to_the_end(
+    mut simulation: Simulation,
+    results: Results,
+    out: &Path,
+    replaces: bool,
+    course: &Course,
+    stop: Arc<AtomicBool>,
+) -> Result<(), CommandFailure> {
+    let started = Instant::now();
+    let before = simulation.report().steps;
     let mut observer = RunObserver {
-        results: results.map_err(not_stored)?,
-        display: Display::new(arguments.quiet),
+        results,
+        display: Display::new(course.quiet, simulation.state().t),
         ticker: Ticker::new(),
         flushed: started,
+        kept: started,
+        every: Duration::from_secs_f64(course.checkpoint),
         stop,
     };
     let ended = simulation.run(&mut observer);
     let report = simulation.report();
-    let out = arguments.out.display();
     let stored = observer.results.finish(&report);
     let warn_of_all = || report.warnings().iter().for_each(|warning| warn(warning));
     observer.display.finish("");
+    let folder = out.display();
     if let Err(error) = ended {
         warn_of_all();
+        let go_on = match (&error, StoredCheckpoint::read(out)) {
+            (RunError::Interrupted { .. }, Ok(_)) => {
+                format!("; `looselink resume {folder}` goes on from there")
+            }
+            _ => String::new(),
+        };
         let kept = match stored {
-            Ok(()) if arguments.view => {
-                let page = view::beside(&arguments.out)?;
+            Ok(()) if course.view => {
+                let page = view::beside(out)?;
                 format!("; the motion up to that time is in `{}`", page.display())
             }
-            Ok(()) => format!("; the results up to that time are in `{out}`"),
-            Err(second) => format!("; the result in `{out}` could not be completed: {second}"),
+            Ok(()) => format!("; the results up to that time are in `{folder}`"),
+            Err(second) => {
+                format!("; the result in `{folder}` could not be completed: {second}")
+            }
         };
         return Err(CommandFailure::run(&error)
             .and(&kept)
-            .and(&earlier(arguments)));
+            .and(&go_on)
+            .and(&earlier(out, replaces)));
     }
-    stored.map_err(not_stored)?;
-    let (steps, wall) = (report.steps, started.elapsed().as_secs_f64());
-    let done = format!("{steps} steps in {wall:.2} s, results in `{out}`");
+    stored.map_err(|error| not_stored(error, out, replaces))?;
+    let (steps, wall) = (report.steps - before, started.elapsed().as_secs_f64());
+    let done = format!("{steps} steps in {wall:.2} s, results in `{folder}`");
     observer.display.finish(&done);
     for line in closing::lines(&report) {
         observer.display.finish(&line);
     }
     warn_of_all();
-    if arguments.view {
-        let page = view::beside(&arguments.out)?;
+    if course.view {
+        let page = view::beside(out)?;
         observer
             .display
             .finish(&format!("open `{}` in a browser", page.display()));
@@ -132,16 +192,21 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     Ok(())
 }
 
+/// A result that could not be stored.
+pub fn not_stored(error: OutputError, out: &Path, replaces: bool) -> CommandFailure {
+    CommandFailure::from(error).and(&earlier(out, replaces))
+}
+
 /// Where a result is that the run was to replace.
-fn earlier(arguments: &Arguments) -> String {
-    let aside = earlier_result(&arguments.out).filter(|_| arguments.force);
+fn earlier(out: &Path, replaces: bool) -> String {
+    let aside = earlier_result(out).filter(|_| replaces);
     aside.map_or(String::new(), |aside| {
         format!("; the earlier result is in `{}`", aside.display())
     })
 }
 
 /// The flag is raised by the first Ctrl-C; the second ends the program at once.
-fn stop_on_interrupt() -> Result<Arc<AtomicBool>, CommandFailure> {
+pub fn stop_on_interrupt() -> Result<Arc<AtomicBool>, CommandFailure> {
     let stop = Arc::new(AtomicBool::new(false));
     let raised = stop.clone();
     ctrlc::set_handler(move || {

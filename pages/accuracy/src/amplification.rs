@@ -129,7 +129,7 @@ impl Neighbour {
         for (i, part) in &self.velocities {
             self.next.v[*i] += velocity * part;
         }
-        self.simulation.resume(&self.next)
+        self.simulation.continue_from(&self.next)
     }
 
     fn distance(&self, apart: impl Fn(usize) -> f64) -> f64 {
@@ -173,6 +173,6 @@ impl Neighbour {
                 *memory = (*memory + factors[1] * (other - *memory)).max(f64::MIN_POSITIVE);
             }
         }
-        self.simulation.resume(&self.next)
+        self.simulation.continue_from(&self.next)
     }
 }

@@ -5,6 +5,7 @@
 mod killed;
 mod no_room;
 mod replaced;
+mod resumed;
 
 use crate::command_line::{expect, looselink, program, read};
 use std::fs;

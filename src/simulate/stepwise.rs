@@ -1,15 +1,20 @@
-//! Lets a program control a run: step to a time, and continue from another state of the same mechanism.
+//! Lets a program control a run: step to a time, and go on from another state of the same mechanism.
 
 use super::{Observer, RunError, Simulation};
+use crate::scene::Analysis;
 use crate::system::{State, System};
 
 impl Simulation {
-    /// Steps to time `t` \[s\] and records a row there, as the run of a scene does at its intervals.
+    /// Steps to time `t` \[s\], in a static analysis to the loads at `t`, and records a row there, as the run of a scene does at
+    /// its intervals.
     ///
     /// # Errors
     /// See [`RunError`].
     pub fn advance_to(&mut self, t: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
-        self.advance(t, observer)?;
+        match self.scene.simulation.analysis {
+            Analysis::Dynamic => self.advance(t, observer)?,
+            Analysis::Static => self.load_to(t, observer)?,
+        }
         self.record(observer)
     }
 
@@ -25,14 +30,16 @@ impl Simulation {
     ///
     /// # Panics
     /// When `other` belongs to another mechanism.
-    pub fn resume(&mut self, other: &State) -> Result<(), RunError> {
+    pub fn continue_from(&mut self, other: &State) -> Result<(), RunError> {
         let Simulation {
             model,
             state,
             newton,
             work,
+            is_between_rows,
             ..
         } = self;
+        *is_between_rows = false;
         state.q.copy_from_slice(&other.q);
         state.q_low.copy_from_slice(&other.q_low);
         state.v.copy_from_slice(&other.v);

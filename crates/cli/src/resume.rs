@@ -1,0 +1,38 @@
+//! `looselink resume`
+
+use super::failure::CommandFailure;
+use super::progress::say;
+use super::run::{Course, all_files, not_stored, stop_on_interrupt, to_the_end};
+use super::view;
+use clap::Args;
+use looselink::output::{Folder, Results, StoredCheckpoint};
+use looselink::registry::Registry;
+use looselink::simulate::Simulation;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// The folder of a run that was interrupted or killed.
+    folder: PathBuf,
+    #[command(flatten)]
+    course: Course,
+}
+
+/// Goes on with a run as if it had never stopped: its files are those of a run without interruption.
+pub fn resume(mut arguments: Arguments) -> Result<(), CommandFailure> {
+    let stop = stop_on_interrupt()?;
+    let Arguments { folder, course } = &mut arguments;
+    let checkpoint = StoredCheckpoint::read(folder)?;
+    let scene = checkpoint.scene(&Registry::standard())?;
+    let mut simulation = Simulation::new(&scene)?;
+    let replaced = Folder::new(folder, &all_files(), true)?;
+    // a page of the part so far would be out of date
+    course.view |= folder.join(view::PAGE).exists();
+    let t = checkpoint.t();
+    let results = Results::resume(replaced, &scene, &mut simulation, checkpoint);
+    let results = results.map_err(|error| not_stored(error, folder, true))?;
+    if !course.quiet {
+        say(&format!("resumed at t = {t} s"));
+    }
+    to_the_end(simulation, results, folder, true, course, stop)
+}

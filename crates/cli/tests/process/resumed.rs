@@ -1,0 +1,196 @@
+//! Runs that are interrupted or killed, and resumed.
+
+use super::{FILES, Random, twice};
+use crate::command_line::{expect, files, looselink, program, read};
+use serde_json::Value;
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// Scenes with contacts, flexible links and springs, cut to some tenths of a second of processor time.
+const SCENES: [(&str, &str, &str); 3] = [
+    ("scenes/3rrr/case3.toml", "0.1", "5e-6"),
+    ("scenes/3rrr/case4.toml", "0.06", "5e-6"),
+    ("scenes/four-bar-three-loose.toml", "0.1", "5e-6"),
+];
+/// Methods, with equal steps and with an accuracy.
+const METHODS: [&str; 4] = [
+    "{method=\"bathe\",newton_tolerance=1e-10,onset_tolerance=1e-12,step=STEP}",
+    "{method=\"generalized_alpha\",spectral_radius=0.8,newton_tolerance=1e-10,onset_tolerance=1e-12,step=STEP}",
+    "{method=\"trapezoidal\",newton_tolerance=1e-10,onset_tolerance=1e-12,accuracy={position=1e-6,energy=1e-6,horizon=0.01}}",
+    "{method=\"dormand_prince\",onset_tolerance=1e-12,accuracy={position=1e-7,horizon=0.01}}",
+];
+/// Interruptions of every scene with every method.
+const INTERRUPTIONS: usize = 5;
+
+/// Runs of the program with some arguments, whose messages nobody reads.
+fn start(arguments: &[&str]) -> Child {
+    program()
+        .args(arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap()
+}
+
+/// Interrupts as Ctrl-C does, or kills, after a time; true if the program has ended by itself before.
+fn stop(mut child: Child, after: Duration, kills: bool) -> bool {
+    std::thread::sleep(after);
+    match kills {
+        true => child.kill().unwrap(),
+        false => {
+            let process = child.id().to_string();
+            let mut interrupt = Command::new("kill");
+            let interrupt = interrupt.args(["-INT", &process]).stderr(Stdio::null());
+            interrupt.status().unwrap();
+        }
+    }
+    let status = child.wait().unwrap();
+    // a signal ends a program that does not watch for it yet
+    let stopped = status.code() == Some(130) || status.signal().is_some();
+    assert!(stopped || status.success(), "{status}");
+    status.success()
+}
+
+/// All files of a result but the timing, which differs when a run is repeated.
+fn result(folder: &Path) -> Vec<(&'static str, Vec<u8>)> {
+    let repeatable = FILES.iter().filter(|file| **file != "timing.json");
+    let bytes = |file| fs::read(folder.join(file)).unwrap();
+    repeatable.map(|file| (*file, bytes(file))).collect()
+}
+
+/// A run of a scene, and the same run with interruptions; returns how many of them came before its end, and how many times
+/// it was resumed.
+fn check(folder: &Path, changes: [&str; 3], scene: &str, random: &mut Random) -> [usize; 2] {
+    let [whole, parts] = ["whole", "parts"].map(|part| folder.join(part));
+    let course = ["--quiet", "--checkpoint", "0"];
+    let run = |out| {
+        let changes = changes.iter().flat_map(|change| ["--set", change]);
+        let arguments = ["run", scene, "--force", "--out", path(out)];
+        let arguments = arguments.into_iter().chain(course).chain(changes);
+        arguments.collect::<Vec<_>>()
+    };
+    let began = Instant::now();
+    expect(&looselink(&run(&whole)), 0, "");
+    let time = began.elapsed();
+    let resume = [&["resume", path(&parts)], &course[..]].concat();
+    let next = || match parts.join("checkpoint.bin").exists() {
+        true => resume.clone(),
+        false => run(&parts),
+    };
+    let [mut stops, mut resumed] = [0; 2];
+    for k in 0..INTERRUPTIONS {
+        let arguments = next();
+        resumed += usize::from(arguments[0] == "resume");
+        let after = time.mul_f64(random.uniform() * 2.0 / INTERRUPTIONS as f64);
+        if stop(start(&arguments), after, k % 2 == 1) {
+            break;
+        }
+        stops += 1;
+    }
+    if stops == INTERRUPTIONS {
+        let arguments = next();
+        resumed += usize::from(arguments[0] == "resume");
+        expect(&looselink(&arguments), 0, "");
+    }
+    assert!(result(&parts) == result(&whole), "{scene} {changes:?}");
+    assert_eq!(files(&parts), FILES);
+    [stops, resumed]
+}
+
+fn path(folder: &Path) -> &str {
+    folder.to_str().unwrap()
+}
+
+#[test]
+fn runs_that_are_stopped_at_random_instants_end_with_the_bytes_of_whole_ones() {
+    let counts = Mutex::new([0; 2]);
+    twice(|thread| {
+        let mut random = Random(20 + thread);
+        let mut methods = METHODS.iter().enumerate();
+        while let Some((_, method)) = methods.find(|(n, _)| n % 2 == thread as usize) {
+            for (scene, duration, step) in SCENES {
+                let folder = tempfile::tempdir().unwrap();
+                let integrator = format!("integrator={}", method.replace("STEP", step));
+                let duration = format!("simulation.duration={duration}");
+                let changes = [&integrator, "assumptions={}", &duration];
+                let found = check(folder.path(), changes, scene, &mut random);
+                let mut counts = counts.lock().unwrap();
+                counts.iter_mut().zip(found).for_each(|(sum, n)| *sum += n);
+            }
+        }
+    });
+    let [stops, resumed] = counts.into_inner().unwrap();
+    assert!(stops >= 50 && resumed >= 40, "{stops} {resumed}");
+}
+
+/// A run of some tenths of a second that was interrupted.
+fn interrupted(out: &Path) -> Output {
+    let run = ["run", SCENES[0].0, "--quiet", "--out", path(out)];
+    let child = program().args(run).stderr(Stdio::piped()).spawn().unwrap();
+    while !fs::read(out.join("channels.csv")).is_ok_and(|rows| rows.len() > 10_000) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let process = child.id().to_string();
+    Command::new("kill")
+        .args(["-INT", &process])
+        .status()
+        .unwrap();
+    child.wait_with_output().unwrap()
+}
+
+#[test]
+fn what_cannot_be_resumed_is_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let resume = || looselink(&["resume", path(&out)]);
+    expect(&resume(), 2, "it has no `summary.json`, so there is no run");
+    let stopped = interrupted(&out);
+    let hint = format!("`looselink resume {}` goes on from there", path(&out));
+    expect(&stopped, 130, &hint);
+
+    let file = |name: &str| out.join(name);
+    let refused = |name: &str, bytes: &[u8], message: &str| {
+        let was = fs::read(file(name)).unwrap();
+        fs::write(file(name), bytes).unwrap();
+        let before = result(&out);
+        expect(&resume(), 2, message);
+        assert!(result(&out) == before, "{message}");
+        fs::write(file(name), was).unwrap();
+    };
+    let scene = read(&out, "scene.toml") + "\n";
+    let changed = format!(
+        "`{}` has been changed since it began",
+        path(&file("scene.toml"))
+    );
+    refused("scene.toml", scene.as_bytes(), &changed);
+
+    let checkpoint = fs::read(file("checkpoint.bin")).unwrap();
+    let line = checkpoint.iter().position(|byte| *byte == b'\n').unwrap();
+    let mut header: Value = serde_json::from_slice(&checkpoint[..line]).unwrap();
+    let damaged = "`checkpoint.bin` is damaged";
+    refused(
+        "checkpoint.bin",
+        &checkpoint[..checkpoint.len() - 1],
+        damaged,
+    );
+    refused("checkpoint.bin", &checkpoint[..line / 2], damaged);
+    header["program"] = "0123456789abcdef".into();
+    let other = [header.to_string().as_bytes(), &checkpoint[line..]].concat();
+    let message =
+        "it was begun by another program (looselink 0.1.0 with SHA-256 0123456789ab...; this is";
+    refused("checkpoint.bin", &other, message);
+
+    let rows = fs::read(file("channels.csv")).unwrap();
+    let message = format!("`{}` has lost rows", path(&file("channels.csv")));
+    refused("channels.csv", &rows[..rows.len() / 2], &message);
+
+    fs::remove_file(file("checkpoint.bin")).unwrap();
+    expect(&resume(), 2, "it was stopped before its first checkpoint");
+    fs::write(file("checkpoint.bin"), checkpoint).unwrap();
+    expect(&resume(), 0, "resumed at t = ");
+    expect(&resume(), 2, "it is complete");
+}

@@ -1,0 +1,205 @@
+//! Natural frequencies and mode shapes of small vibrations about a pose.
+//!
+//! At rest in a pose, with the multipliers and the contact memory of a state, the equations of motion of a small displacement x
+//! are
+//!
+//! ```text
+//! M x'' + C x' + K x + Phi_q^T mu = 0        Phi_q x = 0
+//! K = d(f + Phi_q^T lambda)/dq,   C = df/dv
+//! ```
+//!
+//! With an orthonormal basis Z of the displacements that the constraints allow, x = Z y, the modes are the solutions of
+//!
+//! ```text
+//! Z^T (K + K^T)/2 Z y = w^2 Z^T M Z y,    y . Z^T M Z y = 1
+//! ```
+//!
+//! (Shabana 2019, Vibration of Discrete and Continuous Systems, chapter 3). The damping ratio is y . Z^T C Z y/(2 w): that of
+//! the mode where C does not couple modes, and to first order in C elsewhere. Velocities do not enter: the frequencies are those
+//! of vibrations that are fast compared with the motion through the pose. Where the pose is not an equilibrium, lambda holds the
+//! forces of inertia that act in it.
+
+use crate::model::Model;
+use crate::system::{State, System, Weights, Work};
+use faer::{Mat, Side};
+use serde::Serialize;
+
+/// Singular values of the scaled constraints below this part of the largest belong to a singular pose: the constraints lose a
+/// direction there, which rounding determines.
+const SINGULAR: f64 = 1e-9;
+
+/// A mode.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Mode {
+    /// w/(2 pi) \[Hz\]; 0 of a mode that moves freely or is unstable.
+    pub frequency: f64,
+    /// Rate s of the growth e^(s t) of an unstable mode, whose w^2 = -s^2 is negative \[1/s\]; else 0.
+    pub growth: f64,
+    /// Damping relative to the critical damping, to first order; 0 of a mode that does not vibrate.
+    pub damping: f64,
+    /// Displacement of every coordinate; known coordinates do not move.
+    #[serde(skip)]
+    pub shape: Vec<f64>,
+}
+
+/// The modes of a mechanism in a pose, the slowest first.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Modes {
+    /// All modes; unstable ones come first.
+    pub modes: Vec<Mode>,
+    /// Largest part of the stiffness that is not symmetric, relative to its largest entry; the modes leave it out.
+    pub asymmetry: f64,
+}
+
+/// Why there are no modes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum ModesError {
+    /// Nothing can move.
+    #[error("the constraints leave nothing that can move")]
+    Rigid,
+    /// The constraints lose rank.
+    #[error("the pose is singular: its constraints lose a direction")]
+    SingularPose,
+    /// A displacement that the constraints allow moves no mass.
+    #[error("something without mass can move")]
+    Massless,
+}
+
+/// Matrices of the linearised equations, of the unknowns that are positions.
+struct Linearised {
+    /// The unknowns that are positions, not internal states.
+    positions: Vec<usize>,
+    mass: Mat<f64>,
+    damping: Mat<f64>,
+    stiffness: Mat<f64>,
+    /// The gradient of the constraints, each row of length one.
+    gradient: Mat<f64>,
+}
+
+impl Linearised {
+    fn new(model: &Model, at: &State, work: &mut Work) -> Linearised {
+        let shape = model.shape();
+        let n = shape.unknowns;
+        let mut rest = at.clone();
+        rest.a.fill(0.0);
+        // the velocity of an internal state is its value
+        let is_state = |i: &usize| model.states.contains(i);
+        let moving = (0..shape.coordinates).filter(|i| !is_state(i));
+        moving.for_each(|i| rest.v[i] = 0.0);
+        let (mut r, mut phi) = (vec![0.0; shape.coordinates], vec![0.0; shape.multipliers]);
+        let mut matrix = |q: f64, v: f64| {
+            let symbolic = model.symbolic();
+            let mut k = vec![0.0; symbolic.len()];
+            let weights = Weights { q, v };
+            model.linearise(&rest, weights, &mut r, &mut phi, &mut k, work);
+            symbolic.to_dense(&k)
+        };
+        let [alone, with_k, with_c] = [matrix(0.0, 0.0), matrix(1.0, 0.0), matrix(0.0, 1.0)];
+        let positions: Vec<usize> = (0..n).filter(|i| !is_state(i)).collect();
+        let block = |of: &dyn Fn(usize, usize) -> f64| {
+            let size = positions.len();
+            Mat::from_fn(size, size, |i, j| of(positions[i], positions[j]))
+        };
+        // the row of a constraint that was left out has a diagonal, lambda = 0
+        let rows = (n..n + shape.multipliers).filter(|&row| alone[(row, row)] == 0.0);
+        let rows: Vec<usize> = rows.collect();
+        let length = |row: usize| {
+            let entries = positions.iter().map(|&j| alone[(row, j)]);
+            entries.map(|x| x * x).sum::<f64>().sqrt()
+        };
+        Linearised {
+            mass: block(&|i, j| alone[(i, j)]),
+            stiffness: block(&|i, j| with_k[(i, j)] - alone[(i, j)]),
+            damping: block(&|i, j| with_c[(i, j)] - alone[(i, j)]),
+            gradient: Mat::from_fn(rows.len(), positions.len(), |i, j| {
+                alone[(rows[i], positions[j])] / length(rows[i])
+            }),
+            positions,
+        }
+    }
+
+    /// An orthonormal basis of the displacements that the constraints allow, as columns.
+    fn allowed(&self) -> Result<Mat<f64>, ModesError> {
+        let (n, m) = (self.mass.nrows(), self.gradient.nrows());
+        if n <= m {
+            return Err(ModesError::Rigid);
+        }
+        if m == 0 {
+            return Ok(Mat::identity(n, n));
+        }
+        let svd = self.gradient.transpose().svd();
+        let svd = svd.map_err(|_| ModesError::SingularPose)?;
+        let values = svd.S();
+        match values[m - 1] > SINGULAR * values[0] {
+            true => Ok(svd.U().subcols(m, n - m).to_owned()),
+            false => Err(ModesError::SingularPose),
+        }
+    }
+}
+
+/// The modes of a mechanism about the pose of a consistent state.
+///
+/// # Errors
+/// See [`ModesError`].
+pub fn modes(model: &Model, at: &State, work: &mut Work) -> Result<Modes, ModesError> {
+    let linearised = Linearised::new(model, at, work);
+    let z = linearised.allowed()?;
+    let reduced = |matrix: &Mat<f64>| z.transpose() * matrix * &z;
+    let [mass, damping, stiffness] =
+        [&linearised.mass, &linearised.damping, &linearised.stiffness].map(reduced);
+    let size = |m: &Mat<f64>| m.norm_max();
+    let odd = Mat::from_fn(z.ncols(), z.ncols(), |i, j| {
+        0.5 * (stiffness[(i, j)] - stiffness[(j, i)])
+    });
+    let asymmetry = match size(&stiffness) {
+        0.0 => 0.0,
+        largest => size(&odd) / largest,
+    };
+    let factor = mass.llt(Side::Lower).map_err(|_| ModesError::Massless)?;
+    let lower = factor.L();
+    let symmetric = &stiffness - &odd;
+    // L^-1 K L^-T
+    let mut half = symmetric.to_owned();
+    lower.solve_lower_triangular_in_place(&mut half);
+    let mut scaled = half.transpose().to_owned();
+    lower.solve_lower_triangular_in_place(&mut scaled);
+    let eigen = scaled.self_adjoint_eigen(Side::Lower);
+    let eigen = eigen.map_err(|_| ModesError::Massless)?;
+    let (squares, vectors) = (eigen.S(), eigen.U());
+    let mut y = vectors.to_owned();
+    lower.transpose().solve_upper_triangular_in_place(&mut y);
+    let x = &z * &y;
+    let count = z.ncols();
+    let largest = (0..count).fold(0.0_f64, |m, k| m.max(squares[k].abs()));
+    let rounding = count as f64 * f64::EPSILON * largest;
+    let of = |k: usize| {
+        let square = squares[k];
+        let frequency = match square > rounding {
+            true => square.sqrt(),
+            false => 0.0,
+        };
+        let growth = match square < -rounding {
+            true => (-square).sqrt(),
+            false => 0.0,
+        };
+        let y = y.col(k);
+        let power = y.transpose() * &damping * y;
+        let mut shape = vec![0.0; at.q.len()];
+        for (j, &i) in linearised.positions.iter().enumerate() {
+            shape[i] = x[(j, k)];
+        }
+        Mode {
+            frequency: frequency / std::f64::consts::TAU,
+            growth,
+            damping: match frequency {
+                0.0 => 0.0,
+                w => 0.5 * power / w,
+            },
+            shape,
+        }
+    };
+    Ok(Modes {
+        modes: (0..count).map(of).collect(),
+        asymmetry,
+    })
+}

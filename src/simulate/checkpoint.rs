@@ -1,0 +1,78 @@
+//! A run that is interrupted and goes on bit for bit.
+
+use super::Simulation;
+use crate::checkpoint::{Carried, Checkpoint, Misfit};
+
+impl Simulation {
+    /// What the rest of the run depends on, beside the scene.
+    pub(super) fn checkpoint(&mut self) -> Vec<u8> {
+        Checkpoint::written(|checkpoint| self.carry(checkpoint))
+    }
+
+    /// Goes on from the bytes that a run of the same scene by the same program gave to [`super::Observer::checkpoint`].
+    /// [`Simulation::run`] then records the rest of its rows.
+    ///
+    /// # Errors
+    /// When the bytes are those of another scene or another program.
+    pub fn restore(&mut self, bytes: Vec<u8>) -> Result<(), Misfit> {
+        Checkpoint::read(bytes, |checkpoint| self.carry(checkpoint))
+    }
+
+    fn carry(&mut self, checkpoint: &mut Checkpoint) {
+        let Simulation {
+            scene: _,
+            model,
+            stepper,
+            pacer,
+            locates: _,
+            leaves_out: _,
+            newton,
+            is_between_rows,
+            stays_in_singular_pose,
+            passes_singular_pose: _,
+            work,
+            state,
+            trial: _,
+            output: _,
+            recorder,
+            measured: _,
+            extremes,
+            strains,
+            impacts,
+            closures,
+            meter,
+            is_pilot: _,
+            local_error: _,
+            stall,
+            counters,
+            halved,
+            delta: _,
+            rate: _,
+            last_gaps: _,
+            started: _,
+            status: _,
+            error: _,
+        } = self;
+        pacer.carry(model, checkpoint);
+        let parts: [&mut dyn Carried; 14] = [
+            stepper,
+            newton,
+            is_between_rows,
+            stays_in_singular_pose,
+            work,
+            state,
+            recorder,
+            extremes,
+            strains,
+            impacts,
+            closures,
+            meter,
+            stall,
+            counters,
+        ];
+        for part in parts {
+            part.carry(checkpoint);
+        }
+        halved.carry(checkpoint);
+    }
+}
