@@ -8,6 +8,10 @@ use looselink::scene::Scene;
 use looselink::simulate::{Recording, Simulation};
 use looselink::stepper::{Method, Parameter, Scheme};
 
+#[path = "../examples/own_contact_law.rs"]
+#[allow(dead_code, reason = "the example is a program")]
+mod own_contact_law;
+
 #[path = "../examples/own_integrator.rs"]
 #[allow(dead_code, reason = "the example is a program")]
 mod own_integrator;
@@ -95,6 +99,20 @@ fn a_scene_names_a_law_and_a_scheme_of_the_user() {
     // order 1: a step of 1e-7 s in 4e-5 s
     assert!((lasted - 4e-5).abs() < 1e-6, "{lasted}");
     assert!((contact.impact_velocity - 0.02).abs() < 1e-12);
+}
+
+/// chi = 3 (1 - c_e)/(2 c_e) delivers 0.8999 for a restitution of 0.9.
+#[test]
+fn a_scene_names_the_law_of_the_example() {
+    let registry = Registry::standard().with_law(&own_contact_law::LAW);
+    let text = include_str!("../scenes/bouncing-journal.toml");
+    let own = ["contacts.aluminium.law=hu_guo".to_owned()];
+    let scene = Scene::parse_with(&registry, "bouncing-journal.toml", text, &own).unwrap();
+    let recording = run_scene(&scene).0;
+    let impact = &recording.onsets[0];
+    let restitution = impact.exit_velocity.unwrap() / impact.impact_velocity;
+    // 50 steps of order 2 in a contact
+    assert!((restitution - 0.8999).abs() < 5e-4, "{restitution}");
 }
 
 #[test]
