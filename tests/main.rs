@@ -21,6 +21,7 @@ mod malformed;
 mod maxwell;
 mod mechanisms;
 mod methods;
+mod modes;
 mod overrides;
 mod published;
 mod registry;

@@ -1,6 +1,7 @@
 //! Small vibrations about the state that a run has reached.
 
 use super::Simulation;
+use super::meter::lengths;
 use crate::modes::{Modes, ModesError, modes};
 
 impl Simulation {
@@ -14,6 +15,7 @@ impl Simulation {
         if opens {
             at.z.fill(0.0);
         }
-        modes(&self.model, &at, &mut self.work.clone())
+        let lengths = lengths(&self.scene, &self.model);
+        modes(&self.model, &at, &lengths, &mut self.work.clone())
     }
 }

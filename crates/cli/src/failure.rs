@@ -41,6 +41,11 @@ impl CommandFailure {
         CommandFailure::new(BAD_INPUT, message)
     }
 
+    /// What was asked for does not exist at that state.
+    pub fn cannot_go_on(message: impl Display) -> CommandFailure {
+        CommandFailure::new(CANNOT_GO_ON, message)
+    }
+
     /// A run that ended early.
     pub fn run(error: &RunError) -> CommandFailure {
         let (code, message) = match error {

@@ -5,6 +5,7 @@ mod closing;
 mod completions;
 mod failure;
 mod inspect;
+mod modes;
 mod new;
 mod plot;
 mod precision;
@@ -22,7 +23,7 @@ use looselink::document::did_you_mean;
 use looselink::scene::{Scene, SceneError};
 use looselink::simulate::Simulation;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Simulates planar mechanisms with flexible links and loose joints.
@@ -59,6 +60,11 @@ enum Command {
         looselink plot out/case4 --phase B1.ex B1.ey -o orbit.png"
     )]
     Plot(plot::Arguments),
+    /// Find natural frequencies and mode shapes about a pose.
+    #[command(
+        after_help = "Example:\n  looselink modes scenes/3rrr/case4.toml --at 0.01 --contacts ideal"
+    )]
+    Modes(modes::Arguments),
     /// Show the compiled scene without running it.
     #[command(after_help = "Example:\n  looselink inspect scenes/3rrr/case4.toml --json")]
     Inspect(inspect::Arguments),
@@ -129,11 +135,16 @@ fn accuracy(text: &str) -> Result<String, String> {
 }
 
 impl SceneArguments {
-    fn load(&self) -> Result<(Scene, Simulation), SceneError> {
-        let mut overrides = self.overrides.clone();
+    /// The scene of a file with some overrides, and those of the command line after them.
+    fn scene_with(&self, file: &Path, mut overrides: Vec<String>) -> Result<Scene, SceneError> {
+        overrides.extend(self.overrides.iter().cloned());
         let accuracy = self.accuracy.as_ref();
         overrides.extend(accuracy.map(|a| format!("integrator.accuracy={{ {a} }}")));
-        let scene = Scene::load(&self.scene, &overrides)?;
+        Scene::load(file, &overrides)
+    }
+
+    fn load(&self) -> Result<(Scene, Simulation), SceneError> {
+        let scene = self.scene_with(&self.scene, Vec::new())?;
         let simulation = Simulation::new(&scene)?;
         Ok((scene, simulation))
     }
@@ -148,6 +159,7 @@ fn main() -> ExitCode {
         Command::Plot(arguments) => plot::plot(&arguments),
         Command::Resume(arguments) => resume::resume(arguments),
         Command::View(arguments) => view::view(&arguments),
+        Command::Modes(arguments) => modes::modes(&arguments),
         Command::Inspect(arguments) => inspect::inspect(&arguments),
         Command::Check(arguments) => check(&arguments),
         Command::Precision(arguments) => precision::precision(&arguments),

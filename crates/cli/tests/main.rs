@@ -2,6 +2,7 @@
 
 mod command_line;
 mod completions;
+mod modes;
 mod new;
 mod plot;
 mod precision;

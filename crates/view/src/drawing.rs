@@ -173,7 +173,7 @@ impl RunDrawing {
         });
         RunDrawing {
             title: scene.title.clone(),
-            folder: result.name(),
+            folder: result.name.clone(),
             method: result.method(),
             status: result.summary.status.clone(),
             error: result.summary.error.clone(),

@@ -1,14 +1,17 @@
 //! A result of `looselink run`, read back.
 
+use super::moved::bounds;
 use indexmap::IndexMap;
+use looselink::modes::Mode;
 use looselink::record::MotionLayout;
 use looselink::scene::{Pace, Scene, SceneError};
 use looselink::simulate::Simulation;
-use numbers::si;
+use numbers::{exact, si};
 use serde::Deserialize;
+use std::f64::consts::TAU;
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Why a result cannot be shown.
 #[derive(Debug, thiserror::Error)]
@@ -27,8 +30,8 @@ pub enum ViewError {
 /// A result.
 #[derive(Debug)]
 pub struct StoredResult {
-    /// The folder.
-    pub folder: PathBuf,
+    /// The folder, without where it is.
+    pub name: String,
     /// What was simulated.
     pub scene: Scene,
     /// Status, warnings and overrides.
@@ -101,20 +104,15 @@ impl StoredResult {
             let message = format!("`{}` holds no row yet", folder.display());
             return Err(ViewError::Result(message));
         }
+        let place = folder.canonicalize();
+        let name = place.iter().filter_map(|place| place.file_name()).next();
         Ok(StoredResult {
-            folder: folder.to_owned(),
+            name: name.map_or(String::new(), |name| name.to_string_lossy().into_owned()),
             scene,
             summary,
             times,
             channels,
         })
-    }
-
-    /// The name of the folder, without where it is.
-    pub fn name(&self) -> String {
-        let folder = self.folder.canonicalize();
-        let name = folder.iter().filter_map(|folder| folder.file_name()).next();
-        name.map_or(String::new(), |name| name.to_string_lossy().into_owned())
     }
 
     /// The method and what its steps follow.
@@ -160,6 +158,79 @@ impl StoredRun {
             simulation,
             layout,
             motion,
+        })
+    }
+}
+
+/// Rows of a period in which a mode swings, and periods.
+const PERIOD: usize = 48;
+const PERIODS: usize = 4;
+/// Largest distance by which a mode that swings moves a point, relative to the size of the mechanism.
+const AMPLITUDE: f64 = 0.05;
+
+impl StoredRun {
+    /// A mode that swings about the pose that a simulation has reached, and the pose at rest. Loose joints are drawn as they are
+    /// in the pose.
+    ///
+    /// # Errors
+    /// That of a scene that cannot be compiled.
+    pub fn swinging(
+        scene: &Scene,
+        title: String,
+        about: &Simulation,
+        mode: &Mode,
+    ) -> Result<[StoredRun; 2], SceneError> {
+        let pose = || StoredRun::pose(scene.clone(), about);
+        let (mut run, mut rest) = (pose()?, pose()?);
+        let at_rest = rest.motion[0].clone();
+        let [least_x, least_y, greatest_x, greatest_y] = bounds(&rest);
+        let amplitude = AMPLITUDE * (greatest_x - least_x).max(greatest_y - least_y);
+        let moved = |k: usize| {
+            let part = amplitude * (TAU * k as f64 / PERIOD as f64).cos();
+            let mut at = about.state().clone();
+            let shape = at.q.iter_mut().zip(&mode.shape);
+            shape.for_each(|(q, x)| *q += part * x);
+            let mut row = Vec::new();
+            rest.layout.measure(about.model(), &at, &mut row);
+            for first in rest.layout.loose() {
+                row[first..first + 4].copy_from_slice(&at_rest[first..first + 4]);
+            }
+            row
+        };
+        run.result.scene.title = title;
+        let rows = PERIODS * PERIOD;
+        let time = |k: usize| k as f64 / PERIOD as f64 / mode.frequency;
+        run.result.times = (0..=rows).map(time).collect();
+        run.motion = (0..=rows).map(moved).collect();
+        rest.result.times.push(time(rows));
+        rest.motion.push(at_rest);
+        Ok([run, rest])
+    }
+
+    /// The pose that a simulation has reached, as a run of one row.
+    fn pose(scene: Scene, at: &Simulation) -> Result<StoredRun, SceneError> {
+        let simulation = Simulation::new(&scene)?;
+        let layout = MotionLayout::new(simulation.model());
+        let mut row = Vec::new();
+        layout.measure(at.model(), at.state(), &mut row);
+        let result = StoredResult {
+            name: format!("pose at t = {} s", exact(at.state().t)),
+            summary: StoredSummary {
+                scene_hash: scene.hash(),
+                overrides: scene.overrides().map(str::to_owned).collect(),
+                status: "complete".to_owned(),
+                error: None,
+                warnings: Vec::new(),
+            },
+            scene,
+            times: vec![0.0],
+            channels: Vec::new(),
+        };
+        Ok(StoredRun {
+            result,
+            simulation,
+            layout,
+            motion: vec![row],
         })
     }
 }

@@ -1,0 +1,113 @@
+//! `looselink modes`: what it prints, what it refuses, and the pages of modes.
+
+use crate::command_line::{expect, files, looselink, read};
+use serde_json::Value;
+
+const CASE_4: &str = "scenes/3rrr/case4.toml";
+
+fn text(arguments: &[&str]) -> String {
+    let output = looselink(&[&["modes"], arguments].concat());
+    expect(&output, 0, "");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A rotor blade of 8 m, clamped at its hub: b = 1.8751, f = b^2/(2 pi l^2) sqrt(EI/(rho A)).
+#[test]
+fn modes_are_printed_from_the_slowest_on() {
+    let shown = text(&["scenes/spin-up.toml", "--count", "2"]);
+    let lines: Vec<&str> = shown.lines().collect();
+    assert_eq!(lines[0], "rotor blade spun up, t = 0 s");
+    assert!(lines[3].starts_with("   1       0.6044"), "{shown}");
+    assert_eq!(lines.len(), 6, "{shown}");
+    assert!(lines[5].starts_with("and 31 more: --count 33"), "{shown}");
+}
+
+#[test]
+fn loose_joints_are_open_or_closed_or_ideal() {
+    let heading = |more: &[&str]| {
+        let at = [CASE_4, "--at", "0.0126", "--count", "30"];
+        let shown = text(&[&at, more].concat());
+        let ideal = shown.contains("unstable") || shown.contains("(free)");
+        (
+            shown
+                .lines()
+                .next()
+                .unwrap()
+                .split(", ")
+                .last()
+                .unwrap()
+                .to_owned(),
+            ideal,
+        )
+    };
+    assert_eq!(heading(&[]), ("C3".to_owned(), true));
+    assert_eq!(
+        heading(&["--contacts", "open"]),
+        ("with all loose joints open".to_owned(), true)
+    );
+    assert_eq!(
+        heading(&["--contacts", "ideal"]),
+        ("with ideal joints".to_owned(), false)
+    );
+}
+
+/// The same pose of a scene with overrides and of its result.
+#[test]
+fn a_result_has_the_modes_of_its_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let out = out.to_str().unwrap();
+    let change = [
+        "--set",
+        "bodies.link1.elements=2",
+        "--set",
+        "simulation.duration=0.002",
+    ];
+    let run = [&["run", CASE_4, "--quiet", "--out", out], &change[..]].concat();
+    expect(&looselink(&run), 0, "");
+    let of_run = text(&[out, "--at", "0.001", "--json"]);
+    let of_scene = text(&[&[CASE_4, "--at", "0.001", "--json"], &change[..]].concat());
+    assert_eq!(of_run, of_scene);
+    let modes: Value = serde_json::from_str(&of_run).unwrap();
+    let shape = modes["modes"][9]["shape"].as_object().unwrap();
+    assert!(shape.contains_key("link1.node1.x"));
+    let largest = shape
+        .values()
+        .map(|x| x.as_f64().unwrap().abs())
+        .fold(0.0, f64::max);
+    assert!(largest >= 1.0);
+}
+
+#[test]
+fn every_mode_that_vibrates_has_a_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let pages = folder.path().join("modes");
+    let scene = "scenes/slider-crank/flexible.toml";
+    let shown = text(&[scene, "--count", "3", "--view", pages.to_str().unwrap()]);
+    assert!(shown.contains("3 pages in"), "{shown}");
+    assert_eq!(
+        files(&pages),
+        ["mode-01.html", "mode-02.html", "mode-03.html"]
+    );
+    assert!(read(&pages, "mode-02.html").contains("Mode 2, "));
+}
+
+#[test]
+fn what_has_no_modes_is_refused() {
+    let refused = |arguments: &[&str], code, message| {
+        expect(&looselink(&[&["modes"], arguments].concat()), code, message);
+    };
+    refused(&[CASE_4, "--at", "-1"], 2, "unexpected argument");
+    refused(
+        &[CASE_4, "--at", "1e9"],
+        2,
+        "--at 1000000000 lies outside the duration, 0 to 3 s",
+    );
+    refused(&[CASE_4, "--at", "nan"], 2, "lies outside the duration");
+    refused(
+        &["scenes/3rrr/case1.toml"],
+        3,
+        "constraints and drives leave nothing that can move",
+    );
+    refused(&["nowhere.toml"], 2, "nowhere.toml");
+}
