@@ -34,7 +34,7 @@ const ROUNDING: f64 = 8.0;
 
 /// A mode.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Mode {
+pub struct NaturalMode {
     /// w/(2 pi) \[Hz\]; 0 of a mode that moves freely or is unstable.
     pub frequency: f64,
     /// Rate s of the growth e^(s t) of an unstable mode, whose w^2 = -s^2 is negative \[1/s\]; else 0.
@@ -53,23 +53,23 @@ pub struct Mode {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Modes {
     /// All modes; unstable ones come first.
-    pub modes: Vec<Mode>,
+    pub modes: Vec<NaturalMode>,
     /// Largest part of the stiffness that is not symmetric, relative to its largest entry; the modes leave it out.
     pub asymmetry: f64,
 }
 
 /// Why there are no modes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ModesError {
     /// Nothing can move.
     #[error("constraints and drives leave nothing that can move")]
     Rigid,
-    /// The constraints lose rank.
-    #[error("the pose is singular: its constraints lose a direction")]
-    SingularPose,
-    /// A displacement that the constraints allow moves no mass.
-    #[error("something without mass can move")]
-    Massless,
+    /// The constraints lose rank; the one that depends most on the others.
+    #[error("the pose is singular: {0} depends on the other constraints")]
+    SingularPose(String),
+    /// A displacement that the constraints allow moves no mass; the unknown that moves most.
+    #[error("{0} can move without moving any mass")]
+    Massless(String),
 }
 
 /// Matrices of the linearised equations, of the unknowns that are positions.
@@ -79,8 +79,9 @@ struct Linearised {
     mass: Mat<f64>,
     damping: Mat<f64>,
     stiffness: Mat<f64>,
-    /// The gradient of the constraints, each row of length one.
+    /// The gradient of the constraints, each row of length one, and their multipliers.
     gradient: Mat<f64>,
+    rows: Vec<usize>,
 }
 
 impl Linearised {
@@ -121,6 +122,7 @@ impl Linearised {
             gradient: Mat::from_fn(rows.len(), positions.len(), |i, j| {
                 alone[(rows[i], positions[j])] / length(rows[i])
             }),
+            rows,
             positions,
         }
     }
@@ -134,7 +136,7 @@ impl Linearised {
     }
 
     /// An orthonormal basis of the displacements that the constraints allow, as columns.
-    fn allowed(&self) -> Result<Mat<f64>, ModesError> {
+    fn allowed(&self, model: &Model) -> Result<Mat<f64>, ModesError> {
         let (n, m) = (self.mass.nrows(), self.gradient.nrows());
         if n <= m {
             return Err(ModesError::Rigid);
@@ -142,14 +144,21 @@ impl Linearised {
         if m == 0 {
             return Ok(Mat::identity(n, n));
         }
+        let singular = |row: usize| ModesError::SingularPose(model.unknown_name(self.rows[row]));
         let svd = self.gradient.transpose().svd();
-        let svd = svd.map_err(|_| ModesError::SingularPose)?;
+        let svd = svd.map_err(|_| singular(0))?;
         let values = svd.S();
         match values[m - 1] > SINGULAR * values[0] {
             true => Ok(svd.U().subcols(m, n - m).to_owned()),
-            false => Err(ModesError::SingularPose),
+            false => Err(singular(largest_entry(svd.V().col(m - 1)))),
         }
     }
+}
+
+/// The index of the entry of largest magnitude.
+fn largest_entry(x: ColRef<f64>) -> usize {
+    let indices = (0..x.nrows()).max_by(|i, j| x[*i].abs().total_cmp(&x[*j].abs()));
+    indices.unwrap_or_default()
 }
 
 /// Eigenvalues in ascending order and eigenvectors of a symmetric matrix, by nalgebra. faer's solver gave -6e5 1/s2 for a zero of a
@@ -176,7 +185,7 @@ pub fn modes(
     work: &mut Work,
 ) -> Result<Modes, ModesError> {
     let linearised = Linearised::new(model, at, work);
-    let z = linearised.allowed()?;
+    let z = linearised.allowed(model)?;
     let reduced = |matrix: &Mat<f64>| z.transpose() * matrix * &z;
     let [mass, damping, stiffness] =
         [&linearised.mass, &linearised.damping, &linearised.stiffness].map(reduced);
@@ -188,7 +197,12 @@ pub fn modes(
         0.0 => 0.0,
         largest => size(&odd) / largest,
     };
-    let factor = mass.llt(Side::Lower).map_err(|_| ModesError::Massless)?;
+    let factor = mass.llt(Side::Lower).map_err(|_| {
+        let (_, vectors) = eigen(&mass);
+        let x = &z * vectors.col(0);
+        let most = linearised.positions[largest_entry(x.as_ref())];
+        ModesError::Massless(model.unknown_name(most))
+    })?;
     let lower = factor.L();
     let symmetric = &stiffness - &odd;
     // L^-1 K L^-T
@@ -196,17 +210,14 @@ pub fn modes(
     lower.solve_lower_triangular_in_place(&mut half);
     let mut scaled = half.transpose().to_owned();
     lower.solve_lower_triangular_in_place(&mut scaled);
-    let (squares, vectors) = eigen(&scaled);
-    let mut y = vectors;
+    let (_, mut y) = eigen(&scaled);
     lower.transpose().solve_upper_triangular_in_place(&mut y);
     let x = &z * &y;
-    let count = z.ncols();
-    let largest = (0..count).fold(0.0_f64, |m, k| m.max(squares[k].abs()));
     let of = |k: usize| {
-        let square = squares[k];
-        // of the eigenvalue solver, and of K
-        let entries = linearised.magnitude(&linearised.stiffness, x.col(k));
-        let rounding = ROUNDING * f64::EPSILON * (count as f64 * largest + entries);
+        let x = x.col(k);
+        // x . K x keeps the digits of a slow mode beside fast ones, which the eigenvalue loses
+        let square = x.transpose() * &linearised.stiffness * x;
+        let rounding = ROUNDING * f64::EPSILON * linearised.magnitude(&linearised.stiffness, x);
         let frequency = match square > rounding {
             true => square.sqrt(),
             false => 0.0,
@@ -217,17 +228,17 @@ pub fn modes(
         };
         let y = y.col(k);
         let power = y.transpose() * &damping * y;
-        let entries = linearised.magnitude(&linearised.damping, x.col(k));
-        let is_damped = power.abs() > ROUNDING * f64::EPSILON * entries;
+        let rounding = ROUNDING * f64::EPSILON * linearised.magnitude(&linearised.damping, x);
+        let is_damped = power.abs() > rounding;
         let distances = linearised.positions.iter().enumerate();
-        let distances = distances.map(|(j, &i)| (i, lengths[i] * x[(j, k)]));
+        let distances = distances.map(|(j, &i)| (i, lengths[i] * x[j]));
         let largest = distances.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         let (most, distance) = largest.unwrap_or((0, 1.0));
         let mut shape = vec![0.0; at.q.len()];
         for (j, &i) in linearised.positions.iter().enumerate() {
-            shape[i] = x[(j, k)] / distance;
+            shape[i] = x[j] / distance;
         }
-        Mode {
+        NaturalMode {
             frequency: frequency / std::f64::consts::TAU,
             growth,
             damping: match is_damped && frequency > 0.0 {
@@ -239,7 +250,7 @@ pub fn modes(
         }
     };
     Ok(Modes {
-        modes: (0..count).map(of).collect(),
+        modes: (0..z.ncols()).map(of).collect(),
         asymmetry,
     })
 }

@@ -145,6 +145,7 @@ fn table(sheet: &language::Sheet) -> String {
                 NumberRange::NonNegative => ", not negative".to_owned(),
                 NumberRange::AtLeast(least) => format!("; at least {least}"),
                 NumberRange::Within(above, most) => format!("; above {above} and at most {most}"),
+                NumberRange::Between(least, most) => format!("; from {least} to {most}"),
                 NumberRange::Any | NumberRange::Positive => String::new(),
             },
             _ => String::new(),

@@ -1,10 +1,11 @@
 //! Cases 3 and 4 and the bouncing journal: joints with clearance.
 
 use crate::rrr;
-use crate::support::{load, run};
+use crate::support::{load, path, run};
 use ladder::{Rung, Worst};
 use looselink::contact::normal::NormalParameters;
 use looselink::contact::normal::damped_power::LANKARANI_NIKRAVESH;
+use looselink::scene::Scene;
 use looselink::simulate::{
     ContactEvent, Control, Impact, Observer, Progress, Recording, RunError, Simulation,
 };
@@ -38,10 +39,23 @@ fn rebound(restitution: f64, steps_a_contact: f64) -> f64 {
     -vx[vx.len() - 1] / run.onsets[0].impact_velocity
 }
 
+/// chi = 8 (1 - c_e)/(5 c_e) has no value at zero.
+#[test]
+fn a_law_that_divides_by_the_restitution_refuses_zero() {
+    let changes = [
+        "contacts.aluminium.law=flores",
+        "contacts.aluminium.restitution=0",
+    ];
+    let changes = changes.map(str::to_owned);
+    let error = Scene::load(&path("bouncing-journal.toml"), &changes).unwrap_err();
+    let expected = "`contacts.aluminium.restitution` must be greater than zero for law \"flores\"";
+    assert!(error.to_string().contains(expected), "{error}");
+}
+
 #[test]
 fn a_bouncing_journal_delivers_the_restitution_of_the_formula() {
     let worst = Worst::new();
-    for typed in [0.95, 0.9, 0.7, 0.5, 0.3] {
+    for typed in [0.95, 0.9, 0.7, 0.5, 0.3, 0.0] {
         let law = (LANKARANI_NIKRAVESH.build)(&NormalParameters {
             stiffness: 1.0,
             exponent: 1.5,

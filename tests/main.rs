@@ -7,6 +7,7 @@ mod bad_mechanism;
 mod balance;
 mod bits;
 mod couples;
+mod deformed;
 mod disc;
 mod documents;
 mod drift;

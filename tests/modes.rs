@@ -215,7 +215,7 @@ fn a_closed_contact_is_a_spring() {
     let contact = scene.joints[0].contact().unwrap();
     let (k, n, clearance) = (contact.stiffness, contact.exponent, contact.clearance);
     let delta = (clearance + DELTA) - clearance;
-    let simulation = Simulation::new(&scene).unwrap();
+    let mut simulation = Simulation::new(&scene).unwrap();
     let closed = simulation.modes(false).unwrap();
     let along = (n * k * delta.powf(n - 1.0) / 0.05).sqrt() / TAU;
     let across = (k * delta.powf(n) / ((clearance + delta) * 0.05)).sqrt() / TAU;
@@ -287,7 +287,7 @@ fn case_4_with_closed_contacts_converges_with_the_elements() {
 #[test]
 fn shapes_satisfy_the_constraints() {
     let scene = load("3rrr/case2.toml", &[]);
-    let simulation = Simulation::new(&scene).unwrap();
+    let mut simulation = Simulation::new(&scene).unwrap();
     let modes = simulation.modes(false).unwrap();
     let model = simulation.model();
     let (n, worst) = (model.shape().unknowns, Worst::new());

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Discs, rods, loose guides and Maxwell elements against closed forms, and scenes with them that must be refused:
+"""Discs, rods, loose guides, Maxwell elements, piecewise linear loads, states at named points, and links that start stretched
+or bending, against closed forms, and scenes with them that must be refused:
 make && make build/libreference.so && python3 checks/additions.py"""
 import csv
 import math
@@ -185,15 +186,16 @@ def delivered(chi):
 
 
 # damped: every impact returns the delivered restitution; between impacts the offset is linear in t
-for law, chi in (("lankarani_nikravesh", 0.75 * (1 - 0.49)), ("hunt_crossley", 1.5 * 0.3), ("flores", 8 * 0.3 / 3.5)):
-    pin, events = run(law, scene(0.05, 1e-4, walls(law, 1.5, 0.7).replace("stiffness = 1000000.0", "stiffness = 1e8"), clearance=True))
+for law, given, chi in (("lankarani_nikravesh", 0.7, 0.75 * (1 - 0.49)), ("hunt_crossley", 0.7, 1.5 * 0.3),
+                        ("flores", 0.7, 8 * 0.3 / 3.5), ("lankarani_nikravesh", 0.0, 0.75), ("hunt_crossley", 0.0, 1.5)):
+    pin, events = run(f"{law}-{given}", scene(0.05, 1e-4, walls(law, 1.5, given).replace("stiffness = 1000000.0", "stiffness = 1e8"), clearance=True))
     onsets, losses = ([e for e in events if e["onset"] == k] for k in (1, 0))
-    expect(f"{law}: restitution of {len(losses)} impacts", [-b["velocity"] / a["velocity"] - delivered(chi) for a, b in zip(onsets, losses)], 1e-6)
-    expect(f"{law}: flight between the walls", [b["t"] - a["t"] - 2 * PLAY / -a["velocity"] for a, b in zip(losses, onsets[1:])], 1e-8)
-    expect(f"{law}: impact velocity kept in flight", [b["velocity"] + a["velocity"] for a, b in zip(losses, onsets[1:])], 1e-7)
-    expect(f"{law}: energy dissipated", pin["energy.kinetic"][-1] + pin["energy.contact"][-1] + pin["energy.contact_dissipated"][-1]
+    expect(f"{law}, {given}: restitution of {len(losses)} impacts", [-b["velocity"] / a["velocity"] - delivered(chi) for a, b in zip(onsets, losses)], 1e-6)
+    expect(f"{law}, {given}: flight between the walls", [b["t"] - a["t"] - 2 * PLAY / -a["velocity"] for a, b in zip(losses, onsets[1:])], 1e-8)
+    expect(f"{law}, {given}: impact velocity kept in flight", [b["velocity"] + a["velocity"] for a, b in zip(losses, onsets[1:])], 1e-7)
+    expect(f"{law}, {given}: energy dissipated", pin["energy.kinetic"][-1] + pin["energy.contact"][-1] + pin["energy.contact_dissipated"][-1]
            - pin["energy.kinetic"][0], 1e-8)
-    expect(f"{law}: energy", pin["energy.numerical"], 1e-8)
+    expect(f"{law}, {given}: energy", pin["energy.numerical"], 1e-8)
 
 # friction: full friction takes mu times the impulse of the normal force
 pin, events = run("friction", scene(0.02, 1e-4, walls("hunt_crossley", 1.5, 0.7, ', friction = { law = "ambrosio", coefficient = 0.1, v0 = 0.0, v1 = 1e-4 }')
@@ -332,6 +334,190 @@ for (c, events), name in zip(both, ("dense", "sparse")):
     expect(f"all together, {name}: energy", c["energy.numerical"], 1e-8)
 expect("all together: dense and sparse", [both[0][0][k] - both[1][0][k] for k in ("pin.x", "frame.theta", "element.elongation")], 1e-7)
 
+# ---- piecewise linear loads -------------------------------------------------------------------------------------------------------
+
+ROWS = [[-0.05, 1.0], [0.1, 4.0], [0.13, -2.0], [0.13000001, 3.0], [0.3, 3.0], [0.6, 0.0]]
+PUSH = """bodies.ground = {{ type = "ground", points.o = [0.0, 0.0] }}
+bodies.bob = {{ type = "rigid_body", mass = 0.5, inertia = 2e-3, points.c = [0.0, 0.0] }}
+forces.push = {{ type = "force", point = "bob.c", x = {push}, y = 0.0, frame = "ground" }}
+forces.turn = {{ type = "torque", point = "bob.c", value = {turn} }}
+{rest}initial.bodies.bob = {{ x = 0.0, y = 0.0, theta = 0.0 }}
+"""
+TURN = [[0.0, 0.0], [0.25, 0.02], [0.5, 0.0]]
+piecewise = PUSH.format(push=f'{{ type = "piecewise", rows = {ROWS} }}', turn=f'{{ type = "piecewise", rows = {TURN} }}', rest="")
+
+
+def integrals(rows, t):
+    """Value, first and second integral from 0 of the straight lines, piece by piece."""
+    rows = np.array(rows)
+    once = twice = 0.0
+    result = []
+    knots = [k for k in rows[:, 0] if 0 < k <= t[-1]]
+    marks = sorted({0.0, *knots, *t})
+    at = dict(zip(marks, np.interp(marks, rows[:, 0], rows[:, 1])))
+    table = {0.0: (at[0.0], 0.0, 0.0)}
+    for a, b in zip(marks, marks[1:]):
+        h = b - a
+        twice += once * h + h * h * (2 * at[a] + at[b]) / 6
+        once += h * (at[a] + at[b]) / 2
+        table[b] = (at[b], once, twice)
+    return np.array([table[x] for x in t]).T
+
+
+bob, _ = run("piecewise", scene(0.5, 0.01, piecewise))
+for name, rows, inertia, channels in (("force", ROWS, 0.5, ("push.fx", "bob.vx", "bob.x")), ("torque", TURN, 2e-3, ("turn.torque", "bob.omega", "bob.theta"))):
+    for what, channel, factor, exact in zip(("value", "velocity", "position"), channels, (1.0, inertia, inertia), integrals(rows, bob["t"])):
+        expect(f"piecewise {name}: {what}", factor * bob[channel] - exact, 1e-9)
+expect("piecewise: energy", bob["energy.numerical"], 1e-8)
+held_up = PUSH.format(push='{ type = "piecewise", rows = [[0.0, 2.0], [0.5, 8.0], [1.0, 4.0]] }', turn=0.0, rest="""joints.line = { type = "prismatic", guide = "ground.o", direction = [1.0, 0.0], slider = "bob.c", rotation = "locked" }
+forces.spring = { type = "spring_damper", from = "ground.o", to = "bob.c", stiffness = 80.0, damping = 0.0, rest_length = 0.2 }
+""").replace("bob = { x = 0.0", "bob = { x = 0.2")
+bob, _ = run("piecewise-static", scene(1.0, 0.125, held_up, analysis="static"))
+expect("piecewise load in a static analysis", 80 * (bob["bob.x"] - 0.2) - np.interp(bob["t"], [0, 0.5, 1], [2, 8, 4]), 1e-9)
+
+# ---- states at named points ---------------------------------------------------------------------------------------------------------
+
+LINKS = """materials.steel = {{ density = 7850.0, youngs_modulus = 2e9 }}
+sections.strip = {{ width = 0.006, height = 0.02 }}
+bodies.ground = {{ type = "ground", points.o = [0.3, -0.2] }}
+bodies.body = {{ {body} }}
+{rest}initial.bodies.body = {{ {state} }}
+"""
+FLEXIBLE = AS_LINK + '"flexible", elements = 4, points.quarter = 0.075, points.middle = 0.15'
+KEYS = ("x", "y", "theta", "vx", "vy", "omega")
+GIVEN = (0.3, -0.2, 2.5, 0.7, -0.4, 3.0)
+
+
+def state_of(values, **more):
+    return ", ".join(f"{k} = {v!r}" if not isinstance(v, str) else f'{k} = "{v}"' for k, v in {**dict(zip(KEYS, values)), **more}.items())
+
+
+for name, body, point, arm in (
+        ("rigid body", 'type = "rigid_body", mass = 0.3, inertia = 2e-3, center_of_mass = [0.01, 0.02], points.p = [0.06, -0.03]', "p", (0.05, -0.05)),
+        ("plate", 'type = "rigid_body", plate = { shape = "rectangle", width = 0.2, height = 0.1, thickness = 0.01, material = "steel" }, points.p = [0.1, 0.05]', "p", (0.1, 0.05)),
+        ("disc", 'type = "disc", mass = 0.3, radius = 0.05, rim = 0.5', "rim", (0.05 * math.cos(0.5), 0.05 * math.sin(0.5))),
+        ("rigid link", AS_LINK + '"rigid"', "start", (-0.15, 0.0)),
+        ("rigid link", AS_LINK + '"rigid"', "end", (0.15, 0.0)),
+        ("flexible link", FLEXIBLE, "start", (-0.15, 0.0)),
+        ("flexible link", FLEXIBLE, "quarter", (-0.075, 0.0))):
+    x, y, theta, vx, vy, omega = GIVEN
+    dx, dy = arm[0] * math.cos(theta) - arm[1] * math.sin(theta), arm[0] * math.sin(theta) + arm[1] * math.cos(theta)
+    same = (x - dx, y - dy, theta, vx + omega * dy, vy - omega * dx, omega)
+    one, other = (run(f"state-{i}", scene(0.01, 1e-3, LINKS.format(body=body, rest="", state=state)))[0]
+                  for i, state in enumerate((state_of(GIVEN, point=point), state_of(same))))
+    expect(f"state at the {point} of a {name}: the point", [one[f"points.body.{point}.{k}"][0] - v for k, v in zip(KEYS, GIVEN) if k not in ("theta", "omega")], 1e-14)
+    expect(f"state at the {point} of a {name}: every channel as of the centre of mass", [np.max(np.abs(one[k] - other[k])) for k in other], 1e-7)
+
+hinge = 'joints.pin = { type = "revolute", bearing = "ground.o", journal = "body.start", model = "ideal" }\n'
+hung, _ = run("hung", scene(0.05, 1e-3, LINKS.format(body=FLEXIBLE, rest=hinge, state=state_of((0.3, -0.2, 2.5), point="start")), (0.0, -9.81)))
+expect("state at a joint: it starts closed and at rest", [hung["points.body.start.x"][0] - 0.3, hung["points.body.start.y"][0] + 0.2, hung["body.omega"][0]], 1e-14)
+# two bodies, the velocity of the second given or found
+end = (0.3 + 0.3 * math.cos(2.5), -0.2 + 0.3 * math.sin(2.5))
+speed = (-3.0 * 0.3 * math.sin(2.5), 3.0 * 0.3 * math.cos(2.5))
+next_body = """bodies.next = {{ type = "rigid_body", mass = 0.1, inertia = 1e-4, points.p = [0.1, 0.0] }}
+joints.knee = {{ type = "revolute", bearing = "body.end", journal = "next.p", model = "ideal" }}
+initial.bodies.next = {{ {state} }}
+"""
+for name, state in (("given", state_of((*end, 0.3, *speed, 0.0), point="p")),
+                    ("assembled", state_of((*end, 0.3), point="p") + " }\ninitial.velocities.next = { omega = 0.0")):
+    both, _ = run("two-" + name, scene(0.02, 1e-3, LINKS.format(body=AS_LINK + '"rigid"', rest=hinge + next_body.format(state=state),
+                                                                state=state_of((0.3, -0.2, 2.5, 0.0, 0.0, 3.0), point="start"))))
+    expect(f"states at points, {name}: velocity of the second body",
+           [both["next.vx"][0] - speed[0], both["next.vy"][0] - speed[1], both["next.omega"][0]], 1e-9)
+
+# ---- links that start stretched or bending --------------------------------------------------------------------------------------------
+
+LENGTH, LINE, EA = 0.3, 7850.0 * 0.006 * 0.02, 2e9 * 0.006 * 0.02
+WHOLE = LINE * LENGTH
+for eps in (1e-3, 0.2, -0.1):
+    text = LINKS.format(body=FLEXIBLE, rest="", state=state_of((0.3, -0.2, 2.5), strain=eps))
+    free, _ = run(f"stretched-{eps}", scene(0.002, 1e-5, text))
+    stretch = math.sqrt(1 + 2 * eps)
+    expect(f"strain {eps}: axial energy E A l eps^2/2", free["energy.axial"][0] / (0.5 * EA * LENGTH * eps ** 2) - 1, 1e-12)
+    expect(f"strain {eps}: no other energy", [free["energy.kinetic"][0], free["energy.bending"][0]], 1e-20)
+    expect(f"strain {eps}: the channel", free["body.strain"][0] - eps, 1e-14)
+    expect(f"strain {eps}: the centre of mass stays, nothing turns", [free["body.x"] - 0.3, free["body.y"] + 0.2, free["body.theta"] - 2.5], 1e-8)
+    expect(f"strain {eps}: momentum", WHOLE * np.array([free["body.vx"], free["body.vy"]]), 1e-8)
+    expect(f"strain {eps}: length", math.hypot(free["points.body.end.x"][0] - free["points.body.start.x"][0],
+                                               free["points.body.end.y"][0] - free["points.body.start.y"][0]) - stretch * LENGTH, 1e-14)
+    expect(f"strain {eps}: energy, of {free['energy.axial'][0]:.1e} J", free["energy.numerical"] / free["energy.axial"][0], 1e-6)
+
+for rate in (0.5, -40.0):
+    text = LINKS.format(body=FLEXIBLE, rest="", state=state_of((0.3, -0.2, 2.5), bending_rate=rate))
+    free, _ = run(f"bending-{rate}", scene(0.02, 1e-4, text))
+    n = np.array([-math.sin(2.5), math.cos(2.5)])
+    expect(f"rate of bending {rate}: kinetic energy", free["energy.kinetic"][0] / (LINE * LENGTH ** 5 * rate ** 2 / 1440) - 1, 1e-12)
+    expect(f"rate of bending {rate}: no other energy", [free["energy.axial"][0], free["energy.bending"][0]], 1e-20)
+    expect(f"rate of bending {rate}: momentum", WHOLE * np.array([free["body.vx"], free["body.vy"]]), 1e-8)
+    # both ends move alike and the shape stays even
+    expect(f"rate of bending {rate}: nothing turns", [free["body.theta"] - 2.5, free["body.omega"] / 1e3], 1e-8)
+    for point, xi in (("start", -0.15), ("quarter", -0.075), ("middle", 0.0), ("end", 0.15)):
+        speed = rate * (0.5 * xi ** 2 - LENGTH ** 2 / 24)
+        expect(f"rate of bending {rate}: velocity of the {point}", [free[f"points.body.{point}.v{k}"][0] - speed * n[i] for i, k in enumerate("xy")], 1e-14)
+    expect(f"rate of bending {rate}: energy", free["energy.numerical"] / free["energy.kinetic"][0], 1e-5)
+
+# all of it at once: the energies and moments of momentum add up, and a named point is where it is said to be
+eps, rate = 0.05, 30.0
+stretch = math.sqrt(1 + 2 * eps)
+for point, xi in (("start", -0.15), ("quarter", -0.075), ("middle", 0.0), ("end", 0.15)):
+    text = LINKS.format(body=FLEXIBLE, rest="", state=state_of(GIVEN, point=point, strain=eps, bending_rate=rate))
+    free, _ = run(f"both-{point}", scene(0.005, 1e-4, text))
+    expect(f"stretched and bending, at the {point}: the point", [free[f"points.body.{point}.{k}"][0] - v for k, v in zip(KEYS, GIVEN) if k not in ("theta", "omega")], 1e-13)
+    d, n = np.array([math.cos(2.5), math.sin(2.5)]), np.array([-math.sin(2.5), math.cos(2.5)])
+    centre = np.array([0.3, -0.2]) - stretch * xi * d
+    drift = np.array([0.7, -0.4]) - (3.0 * stretch * xi + rate * (0.5 * xi ** 2 - LENGTH ** 2 / 24)) * n
+    expect(f"stretched and bending, at the {point}: centre of mass", [free["body.x"] - centre[0] - drift[0] * free["t"], free["body.y"] - centre[1] - drift[1] * free["t"]], 1e-9)
+    kinetic = 0.5 * WHOLE * drift @ drift + 0.5 * 9.0 * WHOLE * (stretch * LENGTH) ** 2 / 12 + LINE * LENGTH ** 5 * rate ** 2 / 1440
+    expect(f"stretched and bending, at the {point}: kinetic energy", free["energy.kinetic"][0] / kinetic - 1, 1e-12)
+    expect(f"stretched and bending, at the {point}: energy", free["energy.numerical"] / (kinetic + free["energy.axial"][0]), 1e-6)
+
+# between two pins at the distance of the stretched length: a string at rest, and a beam that bends about its ends
+far = f"points.far = [{0.3 + stretch * LENGTH * math.cos(2.5)!r}, {-0.2 + stretch * LENGTH * math.sin(2.5)!r}], points.o"
+taut = LINKS.format(body=FLEXIBLE, rest=hinge + 'joints.far = { type = "revolute", bearing = "ground.far", journal = "body.end", model = "ideal" }\n',
+                    state=state_of((0.3, -0.2, 2.5), point="start", strain=eps)).replace("points.o", far)
+string, _ = run("string", scene(0.05, 1e-3, taut))
+expect("string between two pins: at rest", [string["body.x"] - string["body.x"][0], string["body.y"] - string["body.y"][0], string["energy.kinetic"]], 1e-9)
+expect("string between two pins: tension E A eps sqrt(1 + 2 eps)", string["far.force"] / (EA * eps * stretch) - 1, 1e-9)
+beam, _ = run("string-bends", scene(0.01, 1e-4, taut.replace("strain", "bending_rate = 5.0, strain")))
+expect("string that bends: its ends rest", [beam[f"points.body.{p}.v{k}"][0] for p in ("start", "end") for k in "xy"], 1e-14)
+expect("string that bends: its middle", beam["points.body.middle.vx"][0] + 5.0 * LENGTH ** 2 / 8 * -math.sin(2.5), 1e-14)
+expect("string that bends: energy", beam["energy.numerical"] / beam["energy.axial"][0], 1e-6)
+
+# a journal in a bearing with clearance: the stretch draws it across the play
+pin = """contacts.pin = { law = "hunt_crossley", bearing_radius = 0.01, clearance = 1e-3, stiffness = 1e8, exponent = 1.5, restitution = 0.0, impact_velocity_floor = 1e-6 }
+joints.pin = { type = "revolute", bearing = "ground.o", journal = "body.start", model = "clearance", contact = "pin" }
+"""
+loose, events = run("loose-string", scene(0.02, 1e-4, LINKS.format(body=FLEXIBLE, rest=pin, state=state_of((0.3, -0.2, 2.5), point="start", strain=0.01)), clearance=True))
+expect("stretched link in a loose pin: the journal starts in the centre", loose["pin.eccentricity"][0], 1e-14)
+expect(f"stretched link in a loose pin, {len(events)} events: energy", loose["energy.numerical"], 1e-6)
+
+# inverse kinematics: a tail on the driven body, its state exact
+ARM = """materials.steel = {{ density = 7850.0, youngs_modulus = 2e9 }}
+sections.strip = {{ width = 0.006, height = 0.02 }}
+bodies.ground = {{ type = "ground", points.o = [0.0, 0.0] }}
+bodies.one = {{ type = "link", model = "rigid", length = 0.3, section = "strip", material = "steel" }}
+bodies.two = {{ type = "link", model = "rigid", length = 0.3, section = "strip", material = "steel" }}
+bodies.hand = {{ type = "rigid_body", mass = 0.2, inertia = 1e-4, points.wrist = [0.0, 0.0], points.tip = [0.05, 0.0] }}
+bodies.body = {{ {body} }}
+joints.a = {{ type = "revolute", bearing = "ground.o", journal = "one.start", model = "ideal" }}
+joints.b = {{ type = "revolute", bearing = "one.end", journal = "two.start", model = "ideal" }}
+joints.c = {{ type = "revolute", bearing = "two.end", journal = "hand.wrist", model = "ideal" }}
+joints.d = {{ type = "revolute", bearing = "hand.tip", journal = "body.start", model = "ideal" }}
+drives.input = {{ type = "inverse_kinematics", joints = ["a", "b", "c"], body = "hand", path = {{ type = "line", from = [0.4, 0.0, 0.3], to = [0.35, 0.1, 0.0], duration = 0.05 }} }}
+initial.sketch = {{ b = [0.2, 0.2], body = {{ end = [0.5, -0.25] }} }}
+initial.bodies.body = {{ {state} }}
+"""
+tip = (0.4 + 0.05 * math.cos(0.3), 0.05 * math.sin(0.3))
+tail, _ = run("tail", scene(0.02, 1e-4, ARM.format(body=FLEXIBLE, state=state_of((*tip, -1.2), point="start", strain=1e-3, bending_rate=2.0))))
+expect("tail of a driven body: energies of strain and bending", [tail["energy.axial"][0] / (0.5 * EA * LENGTH * 1e-6) - 1,
+       tail["energy.kinetic"][0] / (0.5 * WHOLE * (2.0 * LENGTH ** 2 / 12) ** 2 + LINE * LENGTH ** 5 * 4 / 1440) - 1], 1e-11)
+expect("tail of a driven body: energy", tail["energy.numerical"] / tail["energy.axial"][0], 1e-5)
+moving = ARM.replace('type = "line", from = [0.4, 0.0, 0.3], to = [0.35, 0.1, 0.0], duration = 0.05',
+                     'type = "coordinates", x = {{ type = "polynomial", coefficients = [0.4, -0.5] }}, y = 0.0, theta = 0.3')
+moving = moving.replace('journal = "body.start", model = "ideal"', 'journal = "body.start", model = "clearance", contact = "pin"').replace("joints.d =", pin.split("\n")[0].replace("{", "{{").replace("}", "}}") + "\njoints.d =")
+tail, _ = run("moving-tail", scene(0.001, 1e-4, moving.format(body=FLEXIBLE, state=state_of((*tip, -1.2), point="start")), clearance=True))
+expect("loose tail of a driven body: a velocity that is not given is zero", [tail["hand.vx"][0] + 0.5, *(tail["body." + k][0] for k in ("vx", "vy", "omega"))], 1e-9)
+
 # ---- refusals ---------------------------------------------------------------------------------------------------------------------
 
 # an internal state has no place in a static analysis
@@ -389,6 +575,17 @@ REFUSED = [
     (draw, "elongation = 0.1", "elongations = 0.1", "`elongations` has no meaning"),
     (draw, "elongation = 0.1", 'elongation = "long"', "must be a number"),
     (held, "initial.bodies.bob", "initial.equilibrium = true\ninitial.bodies.bob", "Maxwell element"),
+    (swing, "bob = { x", 'bob = { point = "center", x', "`point` has no meaning"),
+    (swing, "bob = { x", "bob = { strain = 0.1, x", "`strain` has no meaning"),
+    (scene(0.05, 1e-3, taut), "strain = 0.05", "strain = 0.06", "violate"),
+    (scene(0.05, 1e-3, taut), "strain = 0.05", "strain = -0.5", "above -0.5"),
+    (scene(0.05, 1e-3, taut), "strain = 0.05", "strain = 0.05, omega = 1.0", "`vx` is missing"),
+    (scene(0.05, 1e-3, taut), "strain = 0.05", "strain = 0.05, vx = 0.1, vy = 0.0, omega = 0.0", "velocities violate"),
+    (scene(0.05, 1e-3, taut), "initial.bodies", "initial.sketch.pin = [0.3, -0.2]\ninitial.bodies", "cannot be assembled"),
+    (scene(0.05, 1e-3, taut.replace("strain = 0.05", "bending_rate = 1.0")), "initial.bodies", "initial.velocities.body.omega = 0.0\ninitial.bodies", "cannot be assembled"),
+    (scene(0.05, 1e-3, taut.replace("strain = 0.05", "strain = 0.05, bending_rate = 1.0")), "initial.bodies", "initial.equilibrium = true\ninitial.bodies", "given velocities"),
+    (scene(0.05, 1e-3, taut), 'point = "start"', 'point = "o"', "no point `o`"),
+    (scene(0.05, 1e-3, taut), 'point = "start"', "point = 1", "must be a string"),
 ]
 for text, old, new, expected in REFUSED:
     assert old in text, old

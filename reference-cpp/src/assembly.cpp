@@ -125,7 +125,7 @@ Assembled assemble(const Scene &ideal, bool states_are_guesses) {
     VectorXd q = VectorXd::Zero(system.coordinates()), v = q, freedom = VectorXd::Ones(system.coordinates());
     for (std::size_t i = 0; i < placed.size(); ++i) {
         const Body &body = system.bodies()[i];
-        put_body(body, placed[i], {}, q, v);
+        put_body(body, placed[i], {}, {}, q, v);
         const bool stays = body.kind == BodyKind::moving || (ideal.initial.states[i] && !states_are_guesses);
         if (stays) freedom.segment(body.offset, body.size).setZero();
     }

@@ -102,7 +102,8 @@ void add_translation(const Body &b, double x, double y, Eigen::VectorXd &field) 
     }
 }
 
-void put_body(const Body &b, const Frame &pose, const Frame &velocity, Eigen::VectorXd &q, Eigen::VectorXd &v) {
+void put_body(const Body &b, const Frame &pose, const Frame &velocity, const Deformation &deformation,
+              Eigen::VectorXd &q, Eigen::VectorXd &v) {
     const double c = std::cos(pose.theta), s = std::sin(pose.theta);
     // the point at the distance x from the middle
     auto put_point = [&](int i, double x) {
@@ -117,9 +118,12 @@ void put_body(const Body &b, const Frame &pose, const Frame &velocity, Eigen::Ve
     case BodyKind::flexible_link:
         for (int i = 0; i <= b.elements; ++i) {
             const int o = b.offset + 4 * i;
-            put_point(o, (static_cast<double>(i) / b.elements - 0.5) * b.length);
-            q.segment<2>(o + 2) << c, s;
-            v.segment<2>(o + 2) << -velocity.theta * s, velocity.theta * c;
+            const double x = (static_cast<double>(i) / b.elements - 0.5) * b.length, stretch = deformation.stretch();
+            const Eigen::Vector2d along(c, s), across(-s, c);
+            put_point(o, stretch * x);
+            v.segment<2>(o) += deformation.velocity(x, b.length) * across;
+            q.segment<2>(o + 2) = stretch * along;
+            v.segment<2>(o + 2) = (velocity.theta * stretch + deformation.slope_rate(x)) * across;
         }
         break;
     case BodyKind::rigid_body:

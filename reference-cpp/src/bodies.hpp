@@ -40,8 +40,9 @@ void add_mass(const Body &body, Entries &mass);
 // Adds the field of a uniform translation by (x, y) to the body's part of `field`.
 void add_translation(const Body &body, double x, double y, Eigen::VectorXd &field);
 
-// A straight, undeformed body in the given place, and its rigid motion.
-void put_body(const Body &body, const Frame &pose, const Frame &velocity, Eigen::VectorXd &q, Eigen::VectorXd &v);
+// A straight body in the given place, and its rigid motion; of a flexible link also stretch and bending.
+void put_body(const Body &body, const Frame &pose, const Frame &velocity, const Deformation &deformation,
+              Eigen::VectorXd &q, Eigen::VectorXd &v);
 
 // A point of a body, with the few coordinates it depends on:
 //   ground               none

@@ -22,6 +22,16 @@ Jet transition(const Step &f, const Jet &t, Shape shape) {
     return f.from + (f.to - f.from) * shape((t - f.start) / f.duration);
 }
 
+// Constant beyond the ends.
+Jet interpolate(const PiecewiseLinear &p, const Jet &t) {
+    if (value_of(t) < p.t.front()) return Jet(p.y.front());
+    if (value_of(t) >= p.t.back()) return Jet(p.y.back());
+    const auto next = std::upper_bound(p.t.begin(), p.t.end(), value_of(t));
+    const std::size_t j = static_cast<std::size_t>(next - p.t.begin()), i = j - 1;
+    const double h = p.t[j] - p.t[i];
+    return (p.t[j] - t) / h * p.y[i] + (t - p.t[i]) / h * p.y[j];
+}
+
 // Beyond the ends the outer cubics go on: IDA steps past the time asked for.
 Jet interpolate(const Spline &s, const Jet &t) {
     const auto next = std::upper_bound(s.t.begin() + 1, s.t.end() - 1, value_of(t));
@@ -64,6 +74,7 @@ Jet at(const TimeFunction &function, const Jet &t) {
             [&](const SmoothStep &f) {
                 return transition(f, t, [](const Jet &u) { return u * u * u * (10.0 + u * (6.0 * u - 15.0)); });
             },
+            [&](const PiecewiseLinear &f) { return interpolate(f, t); },
             [&](const SpinUp &f) {
                 if (value_of(t) >= f.duration) return f.start + f.speed * (t - 0.5 * f.duration);
                 const double k = 2.0 * pi / f.duration;
@@ -80,6 +91,7 @@ Prescribed evaluate(const TimeFunction &function, double t) {
 }
 
 void add_breaks(const TimeFunction &function, std::vector<double> &times) {
+    auto insert = [&](const std::vector<double> &knots) { times.insert(times.end(), knots.begin(), knots.end()); };
     auto transition_ends = [&](const auto &f) {
         times.push_back(f.start);
         times.push_back(f.start + f.duration);
@@ -89,7 +101,8 @@ void add_breaks(const TimeFunction &function, std::vector<double> &times) {
                    [&](const Ramp &f) { transition_ends(f); },
                    [&](const SmoothStep &f) { transition_ends(f); },
                    [&](const SpinUp &f) { times.push_back(f.duration); },
-                   [&](const Spline &f) { times.insert(times.end(), f.t.begin(), f.t.end()); },
+                   [&](const PiecewiseLinear &f) { insert(f.t); },
+                   [&](const Spline &f) { insert(f.t); },
                },
                function);
 }

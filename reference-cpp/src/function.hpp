@@ -27,6 +27,9 @@ struct Ramp {
 struct SmoothStep {
     double from, to, start, duration; // 10 u^3 - 15 u^4 + 6 u^5 of the way
 };
+struct PiecewiseLinear { // straight lines between the rows
+    std::vector<double> t, y;
+};
 struct SpinUp {
     double start, speed, duration; // the rate rises from 0 to the speed as u - sin(2 pi u) / 2 pi
 };
@@ -35,7 +38,7 @@ struct Spline { // natural cubic
 };
 Spline natural_spline(std::vector<double> t, std::vector<double> y);
 
-using TimeFunction = std::variant<Constant, Polynomial, Harmonic, Ramp, SmoothStep, SpinUp, Spline>;
+using TimeFunction = std::variant<Constant, Polynomial, Harmonic, Ramp, SmoothStep, PiecewiseLinear, SpinUp, Spline>;
 
 Jet at(const TimeFunction &function, const Jet &t);
 Prescribed evaluate(const TimeFunction &function, double t);

@@ -23,6 +23,14 @@ bool needs_assembly(const Scene &scene) {
     return false;
 }
 
+// A straight line of another length, or one that bends, is not the rigid link that an assembly moves.
+void refuse_deformations(const Scene &scene) {
+    for (const std::optional<State> &state : scene.initial.states)
+        if (state && state->deformation.any())
+            refuse(state->source, "a link with a strain or bending_rate cannot be assembled: give every body a state, and "
+                                  "neither a sketch nor velocities");
+}
+
 // States as they are; of moving bodies those of their paths.
 Assembled exact_states(const Scene &scene) {
     Assembled start;
@@ -79,16 +87,19 @@ Model make_model(Scene scene) {
         for (std::size_t i = 0; i < scene.bodies.size(); ++i)
             if (const std::optional<State> &state = scene.initial.states[i]) {
                 start.poses[i] = state->pose;
-                start.velocities[i] = state->velocity.value_or(start.velocities[i]);
+                start.velocities[i] = state->velocity.value_or(Frame{});
             }
     } else {
+        if (assembled) refuse_deformations(scene);
         start = assembled ? assemble(ideal, false) : exact_states(scene);
     }
 
     System system(scene, std::move(driven_angles));
     VectorXd q = VectorXd::Zero(system.coordinates()), v = q;
-    for (std::size_t i = 0; i < start.poses.size(); ++i)
-        put_body(system.bodies()[i], start.poses[i], start.velocities[i], q, v);
+    for (std::size_t i = 0; i < start.poses.size(); ++i) {
+        const std::optional<State> &state = scene.initial.states[i];
+        put_body(system.bodies()[i], start.poses[i], start.velocities[i], state ? state->deformation : Deformation{}, q, v);
+    }
     check_exact_start(scene, system, q, v);
 
     const std::vector<int> redundant = redundant_rows(system, q);

@@ -19,7 +19,7 @@ Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposed(const MatrixXd &matr
 
 PathFollowing::PathFollowing(const Scene &ideal, const std::vector<Frame> &start) : system_(ideal) {
     VectorXd q = VectorXd::Zero(system_.coordinates()), v = q;
-    for (std::size_t i = 0; i < start.size(); ++i) put_body(system_.bodies()[i], start[i], {}, q, v);
+    for (std::size_t i = 0; i < start.size(); ++i) put_body(system_.bodies()[i], start[i], {}, {}, q, v);
     extent_ = q.maxCoeff() - q.minCoeff();
     auto theta = [&](int body) {
         const Body &b = system_.bodies()[body];

@@ -166,15 +166,18 @@ BodyDescription read_body(const std::string &name, const Value &value, const Lib
     return body;
 }
 
+Vec<double> named_point(const BodyDescription &body, const std::string &name, const Source &source) {
+    const auto point =
+        std::find_if(body.points.begin(), body.points.end(), [&](const NamedPoint &p) { return p.name == name; });
+    require(point != body.points.end(), source, "the body `" + body.name + "` has no point `" + name + "`");
+    return point->at;
+}
+
 PointReference read_point(const Value &value, const Scene &scene, const Library &library) {
     const std::string &text = as_text(value);
     const std::size_t dot = text.find('.');
     require(dot != std::string::npos, value.source, "a point is written \"body.point\"");
     const auto body = library.bodies.find(text.substr(0, dot));
     require(body != library.bodies.end(), value.source, "there is no body `" + text.substr(0, dot) + "`");
-    const std::string name = text.substr(dot + 1);
-    const std::vector<NamedPoint> &points = scene.bodies[body->second].points;
-    const auto point = std::find_if(points.begin(), points.end(), [&](const NamedPoint &p) { return p.name == name; });
-    require(point != points.end(), value.source, "the body `" + body->first + "` has no point `" + name + "`");
-    return {body->second, point->at};
+    return {body->second, named_point(scene.bodies[body->second], text.substr(dot + 1), value.source)};
 }

@@ -82,9 +82,11 @@ ContactLaw read_contact(const Value &value, const Library &library) {
     law.exponent = f.number("exponent");
     require(law.exponent >= 1.0, f.source("exponent"), "must be at least 1");
     const bool undamped = kind == Law::hertz;
-    const double restitution = undamped ? f.number("restitution", 1.0) : f.positive("restitution");
+    const double restitution = undamped ? f.number("restitution", 1.0) : f.not_negative("restitution");
     require(restitution <= 1.0, f.source("restitution"), "must be at most 1");
     require(!undamped || restitution == 1.0, f.source("restitution"), "must be 1 with Hertz's law, which has no damping");
+    require(kind != Law::flores || restitution > 0.0, f.source("restitution"),
+            "must be above 0 with the law of Flores, which divides by it");
     law.damping = damping_factor(kind, restitution);
     // without damping the impact velocity is without effect, but it tells a closed contact from an open one
     law.impact_velocity_floor = undamped ? 1.0 : f.positive("impact_velocity_floor");

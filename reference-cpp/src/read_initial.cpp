@@ -13,13 +13,38 @@ int read_free_body(const std::string &name, const Value &value, const Scene &sce
     return found->second;
 }
 
-State read_state(const Value &value, bool has_angle) {
+// Turns place and velocity of a point into those of the centre of mass. at: as NamedPoint::at
+void move_to_center(State &state, const BodyDescription &body, Vec<double> at) {
+    const Deformation &d = state.deformation;
+    const double x = at.x - 0.5 * body.length; // of a link from its middle; other bodies have no length
+    const Vec<double> arm = rotated(Vec<double>{d.stretch() * x, at.y}, state.pose.theta);
+    state.pose.x -= arm.x;
+    state.pose.y -= arm.y;
+    if (!state.velocity) return;
+    const Vec<double> across = rotated(Vec<double>{0.0, d.velocity(x, body.length)}, state.pose.theta);
+    const Vec<double> difference = state.velocity->theta * turned(arm) + across;
+    state.velocity->x -= difference.x;
+    state.velocity->y -= difference.y;
+}
+
+State read_state(const Value &value, const BodyDescription &body) {
+    const bool has_angle = body.has_direction();
     Fields f(value);
     State state;
     state.source = value.source;
     state.pose = {f.number("x"), f.number("y"), has_angle ? f.number("theta") : 0.0};
     if (f.has("vx") || f.has("vy") || (has_angle && f.has("omega")))
         state.velocity = Frame{f.number("vx"), f.number("vy"), has_angle ? f.number("omega") : 0.0};
+    if (body.kind == BodyKind::flexible_link) {
+        state.deformation = {f.number("strain", 0.0), f.number("bending_rate", 0.0)};
+        require(state.deformation.strain > -0.5 && state.deformation.strain <= 1.0, f.source("strain"),
+                "must be above -0.5 and at most 1");
+        // a link that bends has a velocity: what is not given of it is zero, at the point too
+        if (state.deformation.bending_rate != 0.0 && !state.velocity) state.velocity = Frame{};
+    }
+    if (has_angle)
+        if (const Value *point = f.find("point"))
+            move_to_center(state, body, named_point(body, as_text(*point), point->source));
     f.finish();
     return state;
 }
@@ -62,7 +87,7 @@ Initial read_initial(const Value *value, const Scene &scene, const Library &libr
     read_sketch(f.find("sketch"), scene, library, initial);
     each_entry(f.find("bodies"), [&](const std::string &name, const Value &entry) {
         const int body = read_free_body(name, entry, scene, library);
-        initial.states[body] = read_state(entry, scene.bodies[body].has_direction());
+        initial.states[body] = read_state(entry, scene.bodies[body]);
     });
     each_entry(f.find("velocities"), [&](const std::string &name, const Value &entry) {
         const int body = read_free_body(name, entry, scene, library);

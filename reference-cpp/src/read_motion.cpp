@@ -26,13 +26,14 @@ std::vector<std::vector<double>> read_rows(const Value &value, std::size_t colum
 
 TimeFunction read_function(const Value &value, double duration) {
     if (value.is_number()) return Constant{as_number(value)};
-    enum class Type { polynomial, harmonic, ramp, smooth_step, spin_up, table };
+    enum class Type { polynomial, harmonic, ramp, smooth_step, piecewise, spin_up, table };
     Fields f(value);
     TimeFunction function;
     switch (f.choice<Type>("type", {{"polynomial", Type::polynomial},
                                     {"harmonic", Type::harmonic},
                                     {"ramp", Type::ramp},
                                     {"smooth_step", Type::smooth_step},
+                                    {"piecewise", Type::piecewise},
                                     {"spin_up", Type::spin_up},
                                     {"table", Type::table}})) {
     case Type::polynomial: {
@@ -48,6 +49,11 @@ TimeFunction read_function(const Value &value, double duration) {
     case Type::smooth_step:
         function = SmoothStep{f.number("from"), f.number("to"), f.number("start"), f.positive("duration")};
         break;
+    case Type::piecewise: {
+        std::vector<std::vector<double>> table = read_rows(f.get("rows"), 2, duration);
+        function = PiecewiseLinear{std::move(table[0]), std::move(table[1])};
+        break;
+    }
     case Type::spin_up: function = SpinUp{f.number("start"), f.number("speed"), f.positive("duration")}; break;
     case Type::table: {
         std::vector<std::vector<double>> table = read_rows(f.get("rows"), 2, duration);
@@ -62,6 +68,8 @@ TimeFunction read_function(const Value &value, double duration) {
 TimeFunction read_motion(const Value &value, double duration) {
     TimeFunction function = read_function(value, duration);
     require(!std::holds_alternative<Ramp>(function), value.source, "a ramp cannot prescribe a motion, because its rate jumps");
+    require(!std::holds_alternative<PiecewiseLinear>(function), value.source,
+            "straight lines between rows cannot prescribe a motion, because its rate jumps");
     return function;
 }
 

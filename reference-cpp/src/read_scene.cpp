@@ -83,7 +83,9 @@ void read_output(const Value &value, Scene &scene) {
     }
     scene.patterns = as_texts(f.get("channels"));
     scene.patterns_source = f.source("channels");
-    if (f.has("format")) f.choice<int>("format", {{"csv", 0}, {"json_lines", 1}}); // of files that are not written here
+    // both about files that are not written here
+    if (f.has("format")) f.choice<int>("format", {{"csv", 0}, {"json_lines", 1}});
+    f.flag("motion", true);
     f.finish();
 }
 

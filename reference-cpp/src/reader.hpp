@@ -46,6 +46,7 @@ Section read_section(const Value &value);
 ContactLaw read_contact(const Value &value, const Library &library);
 
 BodyDescription read_body(const std::string &name, const Value &value, const Library &library, double duration);
+Vec<double> named_point(const BodyDescription &body, const std::string &name, const Source &source);
 PointReference read_point(const Value &value, const Scene &scene, const Library &library); // "body.point"
 
 JointDescription read_joint(const std::string &name, const Value &value, const Scene &scene, const Library &library);

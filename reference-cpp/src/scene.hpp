@@ -1,6 +1,7 @@
 // A scene as data: names resolved, materials and sections turned into masses and stiffnesses.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -114,10 +115,23 @@ struct LoadDescription {
 struct Frame {
     double x = 0.0, y = 0.0, theta = 0.0;
 };
+// What a flexible link does at the start beside the motion of a straight line of its own length. x is the distance of a point
+// from the middle of the undeformed link, positive towards its end.
+struct Deformation {
+    double strain = 0.0;       // (r'.r' - 1) / 2, uniform
+    double bending_rate = 0.0; // uniform rate of r'' across the link, 1/(m s)
+
+    bool any() const { return strain != 0.0 || bending_rate != 0.0; }
+    double stretch() const { return std::sqrt(1.0 + 2.0 * strain); } // |r'|
+    // Velocity across the link, of a link of the given length without momentum and moment of momentum.
+    double velocity(double x, double length) const { return bending_rate * (0.5 * x * x - length * length / 24.0); }
+    double slope_rate(double x) const { return bending_rate * x; } // the derivative of this velocity by x
+};
 struct State {
     Source source;
     Frame pose;
     std::optional<Frame> velocity;
+    Deformation deformation; // flexible links
 };
 
 struct SingleVelocity {

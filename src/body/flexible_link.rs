@@ -1,7 +1,8 @@
 //! A flexible link: planar cubic ANCF elements (eqs. 6-15) between nodes with positions and slopes.
 
 use super::{
-    Body, Content, Frame, Levels, Link, Point, Pose, RigidLink, Slot, carried, rigid_link,
+    Body, Content, Deformation, Frame, Levels, Link, Point, Pose, RigidLink, Slot, carried,
+    rigid_link,
 };
 use crate::force::{ElementDamping, MassDamping};
 use crate::link::{AncfCable, ElasticRoute};
@@ -183,6 +184,35 @@ impl Body for FlexibleLink {
         let slope = slope.map(|x| x.push(0.0).into());
         let node = |k: usize| carried(frame, self.link.length * k as f64 / self.elements as f64);
         (0..=self.elements).flat_map(|k| [node(k), slope]).collect()
+    }
+
+    fn place_deformed(&self, frame: &Frame, deformation: &Deformation) -> Vec<[[f64; 3]; 2]> {
+        let ([.., theta], [.., omega]) = (frame.position, frame.velocity);
+        let length = self.link.length;
+        let (e, n) = (unit(theta), quarter_turn(unit(theta)));
+        let stretched = deformation.stretch() - 1.0;
+        let mut values = self.place(frame);
+        // adding zero would change the sign of a negative zero
+        if *deformation == Deformation::default() {
+            return values;
+        }
+        for (k, node) in values.chunks_exact_mut(2).enumerate() {
+            let xi = length * (k as f64 / self.elements as f64 - 0.5);
+            let [rate, slope_rate] = deformation.bending(length, xi);
+            let changes = [
+                [stretched * xi * e, (stretched * xi * omega + rate) * n],
+                [stretched * e, (stretched * omega + slope_rate) * n],
+            ];
+            for (level, change) in node
+                .as_flattened_mut()
+                .iter_mut()
+                .zip(changes.as_flattened())
+            {
+                level[0] += change.x;
+                level[1] += change.y;
+            }
+        }
+        values
     }
 
     fn velocity(&self, _: usize, _: &[usize], _: &[f64]) -> Option<Vec<(usize, f64)>> {

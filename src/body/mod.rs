@@ -126,6 +126,29 @@ pub struct Frame {
     pub velocity: [f64; 3],
 }
 
+/// How a body is deformed at the start.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Deformation {
+    /// Axial strain (r'.r' - 1)/2.
+    pub strain: f64,
+    /// Rate of r'' normal to the link, uniform along it \[1/(m s)\].
+    pub bending_rate: f64,
+}
+
+impl Deformation {
+    /// |r'|: length over undeformed length.
+    pub fn stretch(&self) -> f64 {
+        (1.0 + 2.0 * self.strain).sqrt()
+    }
+
+    /// Velocity normal to a link of this length, and its derivative along the link, at a distance xi from its middle, due to
+    /// bending: kappa_dot (xi^2/2 - l^2/24), which has neither momentum nor moment of momentum.
+    pub fn bending(&self, length: f64, xi: f64) -> [f64; 2] {
+        let shape = 0.5 * xi * xi - length * length / 24.0;
+        [self.bending_rate * shape, self.bending_rate * xi]
+    }
+}
+
 impl Pose {
     /// The pose of x, y, theta from index `x`.
     pub fn of(x: usize, levels: Levels) -> Pose {
@@ -216,6 +239,10 @@ pub trait Body: Any + Debug + Send + Sync {
     /// The values of all slots of the undeformed body in a frame, and their rates.
     fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]> {
         vec![[frame.position, frame.velocity]]
+    }
+    /// The same of a body that is deformed; a rigid one is not.
+    fn place_deformed(&self, frame: &Frame, _: &Deformation) -> Vec<[[f64; 3]; 2]> {
+        self.place(frame)
     }
     /// A velocity of the body (0, 1: of its centre of mass, 2: angular) as a sum of velocities of coordinates times factors.
     fn velocity(&self, component: usize, x: &[usize], _q: &[f64]) -> Option<Vec<(usize, f64)>> {

@@ -77,6 +77,8 @@ pub enum NumberRange {
     AtLeast(f64),
     /// Above the first number and not above the second.
     Within(f64, f64),
+    /// From the first number to the second.
+    Between(f64, f64),
 }
 
 impl NumberRange {
@@ -88,6 +90,9 @@ impl NumberRange {
             NumberRange::AtLeast(least) if x < least => Some(format!("be at least {least}")),
             NumberRange::Within(above, most) if x <= above || x > most => {
                 Some(format!("lie above {above} and not above {most}"))
+            }
+            NumberRange::Between(least, most) if x < least || x > most => {
+                Some(format!("lie between {least} and {most}"))
             }
             _ => None,
         }

@@ -2,7 +2,7 @@
 
 pub(crate) mod redundancy;
 
-use crate::body::Frame;
+use crate::body::{Deformation, Frame};
 use crate::compile::Compiled;
 use crate::compile::assembly::{CENTRE, assemble, name, opening, whole_name};
 use crate::math::plane::Vec2;
@@ -36,8 +36,11 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
     for (b, start) in starts.iter().enumerate() {
         let Some(start) = start else { continue };
         let body = &scene.bodies[b];
-        if !place(&model.bodies()[b], start, &mut state, &mut written) {
-            let given = scene.initial.state_of(b);
+        let given = scene.initial.state_of(b);
+        let deformation = given.map_or(Deformation::default(), |given| given.deformation);
+        let kind = &scene.bodies[b].kind;
+        let values = kind.place_deformed(start, &deformation);
+        if !place(&model.bodies()[b], values, &mut state, &mut written) {
             let span = given.map_or(body.span, |g| g.span);
             let message = format!(
                 "the pose of {} does not fit the points that its ends are joined to",
@@ -159,6 +162,16 @@ fn starts(
     let exact = |b: usize| given(b).map(|g| scene.bodies[b].kind.frame(g.position, g.velocity));
     let incomplete = (0..scene.bodies.len()).any(|b| free[b] && given(b).is_none());
     let asked = !scene.initial.sketch.is_empty() || !scene.initial.velocities.is_empty();
+    let deformed = scene.initial.bodies.iter();
+    let mut deformed = deformed.filter(|given| given.deformation != Deformation::default());
+    if let (None, true, Some(given)) = (kinematics, incomplete || asked, deformed.next()) {
+        let name = &scene.bodies[given.body].name;
+        let message = format!("{name} cannot be assembled: it starts stretched or bending");
+        let error = scene.error(given.span, message, "deformed");
+        return Err(error.with_help(
+            "give every body a state, and leave out `initial.sketch` and `initial.velocities`",
+        ));
+    }
     let assembly = match kinematics {
         None if incomplete || asked => Some(assemble(scene)?),
         _ => None,
@@ -182,10 +195,14 @@ fn ideal_start(mechanism: &Model, b: usize, state: &State, offset: usize) -> Opt
     placed.kind.frame_at(&placed.x, q, v)
 }
 
-/// Writes the coordinates of a body, undeformed, and remembers which were written; false if one of them is known or written
+/// Writes the coordinates of a body, and remembers which were written; false if one of them is known or written
 /// already and differs: bodies that share a node must agree on it.
-fn place(body: &PlacedBody, start: &Frame, state: &mut State, written: &mut [bool]) -> bool {
-    let values = body.placed.kind.place(start);
+fn place(
+    body: &PlacedBody,
+    values: Vec<[[f64; 3]; 2]>,
+    state: &mut State,
+    written: &mut [bool],
+) -> bool {
     let mut fits = true;
     for ((&x, values), content) in body.placed.x.iter().zip(values).zip(&body.contents) {
         let here = x..x + content.names().len();

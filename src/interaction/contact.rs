@@ -46,8 +46,8 @@ pub static KEYS: [Key; 10] = [
     ),
     Key::within(
         "restitution",
-        NumberRange::Within(0.0, 1.0),
-        "the coefficient of restitution c_e; `\"hertz\"` takes no other than 1",
+        NumberRange::Between(0.0, 1.0),
+        "the coefficient of restitution c_e; `\"hertz\"` takes no other than 1, `\"flores\"` not 0",
     )
     .or("required; 1 for `\"hertz\"`"),
     Key::positive(
@@ -158,7 +158,7 @@ impl Contact {
         }
         let friction = table.optional("friction");
         let own = law.keys.iter().map(|key| table.number(key.name));
-        Ok(Contact {
+        let contact = Contact {
             own: own.collect::<Result<_, _>>()?,
             bearing_radius,
             clearance,
@@ -168,7 +168,15 @@ impl Contact {
             restitution: restitution(&table, law)?,
             impact_velocity_floor: floor(&table, law)?,
             friction: friction.map(|f| read_friction(&f)).transpose()?.flatten(),
-        })
+        };
+        // a law may divide by the restitution
+        let force = contact.normal_law().force(contact.clearance, 1.0, 1.0);
+        if contact.restitution == 0.0 && !force.value.is_finite() {
+            let field = table.field("restitution")?;
+            let must = format!("be greater than zero for law {:?}", law.name);
+            return Err(field.must(&must));
+        }
+        Ok(contact)
     }
 }
 

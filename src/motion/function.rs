@@ -37,6 +37,8 @@ pub enum Function {
     },
     /// A natural cubic spline through (t, value).
     Table(CubicSpline<1>),
+    /// Straight lines between rows (t, value), two at least, constant before and after; its second derivative is left at zero.
+    Piecewise(Vec<[f64; 2]>),
 }
 
 /// From one value to another.
@@ -124,6 +126,17 @@ impl Function {
                 ]
             }
             Function::Table(table) => table.derivatives(t).map(|[x]| x),
+            Function::Piecewise(rows) => {
+                let after = rows.partition_point(|[time, _]| *time <= t);
+                match rows.get(after.wrapping_sub(1)..=after) {
+                    Some(&[[t_0, from], [t_1, to]]) => {
+                        let slope = (to - from) / (t_1 - t_0);
+                        [from + slope * (t - t_0), slope, 0.0]
+                    }
+                    _ if after == 0 => [rows[0][1], 0.0, 0.0],
+                    _ => [rows[rows.len() - 1][1], 0.0, 0.0],
+                }
+            }
         }
     }
 }
@@ -179,6 +192,23 @@ mod tests {
                 // exact in binary
                 assert_eq!(f.at(t)[0], value);
             }
+        }
+    }
+
+    #[test]
+    fn pieces_are_straight_lines_between_rows() {
+        let f = Function::Piecewise(vec![[0.0, 1.0], [0.5, 3.0], [2.0, 0.0]]);
+        for (t, expected) in [
+            (-1.0, [1.0, 0.0]),
+            (0.0, [1.0, 4.0]),
+            (0.25, [2.0, 4.0]),
+            (0.5, [3.0, -2.0]),
+            (1.5, [1.0, -2.0]),
+            (2.0, [0.0, 0.0]),
+            (9.0, [0.0, 0.0]),
+        ] {
+            let [value, rate, second] = f.at(t);
+            assert_eq!(([value, rate], second), (expected, 0.0), "{t}");
         }
     }
 }

@@ -16,13 +16,14 @@ pub enum Use {
 pub type FunctionKind = Kind<fn(&Fields, Use, f64) -> Result<Function, SceneError>>;
 
 /// The kinds that a scene can name.
-pub static FUNCTIONS: [&FunctionKind; 6] = [
+pub static FUNCTIONS: [&FunctionKind; 7] = [
     &POLYNOMIAL,
     &HARMONIC,
     &RAMP,
     &SMOOTH_STEP,
     &SPIN_UP,
     &TABLE,
+    &PIECEWISE,
 ];
 
 static POLYNOMIAL: FunctionKind = FunctionKind {
@@ -84,18 +85,24 @@ static RAMP: FunctionKind = FunctionKind {
     name: "ramp",
     keys: &STEP,
     read: |table, purpose, _| {
-        if purpose == Use::Motion {
-            let message = format!(
-                "`{}` cannot follow a ramp: its speed would jump where the ramp begins",
-                table.path()
-            );
-            let kind = table.optional("type").expect("a kind is named");
-            let error = kind.fault(message, "no acceleration");
-            return Err(error.with_help("use \"smooth_step\""));
-        }
+        refuse_kinks(table, purpose, "ramp", "use \"smooth_step\"")?;
         Ok(Function::Ramp(step(table)?))
     },
 };
+
+/// Refuses a function whose rate jumps for a motion, which needs an acceleration.
+fn refuse_kinks(table: &Fields, purpose: Use, name: &str, instead: &str) -> Result<(), SceneError> {
+    if purpose == Use::Load {
+        return Ok(());
+    }
+    let message = format!(
+        "`{}` cannot follow a {name} function: its speed would jump",
+        table.path()
+    );
+    let kind = table.optional("type").expect("a kind is named");
+    let error = kind.fault(message, "no acceleration");
+    Err(error.with_help(instead))
+}
 
 static SMOOTH_STEP: FunctionKind = FunctionKind {
     name: "smooth_step",
@@ -130,6 +137,16 @@ static TABLE: FunctionKind = FunctionKind {
     name: "table",
     keys: &[rows_key("s, value", "[t, value]")],
     read: |table, _, duration| Ok(Function::table(&rows(&table.field("rows")?, duration)?)),
+};
+
+static PIECEWISE: FunctionKind = FunctionKind {
+    name: "piecewise",
+    keys: &[rows_key("s, value", "[t, value]")],
+    read: |table, purpose, duration| {
+        refuse_kinks(table, purpose, "piecewise", "use \"table\"")?;
+        let rows = rows(&table.field("rows")?, duration)?;
+        Ok(Function::Piecewise(rows))
+    },
 };
 
 /// Reads a function of time; `duration` is what a table must cover \[s\].

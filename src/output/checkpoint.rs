@@ -1,9 +1,8 @@
 //! The checkpoint of a run on disk: a line of JSON that says what it belongs to, then the bytes from which the run goes on.
 
+use super::SCENE;
 use super::folder::{Folder, OutputError};
 use super::timing::Elapsed;
-use super::{SCENE, SUMMARY};
-use crate::checkpoint::Misfit;
 use crate::registry::Registry;
 use crate::scene::{Scene, SceneError};
 use crate::simulate::Simulation;
@@ -21,7 +20,7 @@ const DIGITS: usize = 12;
 
 /// What a checkpoint belongs to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Origin {
+pub(super) struct CheckpointOrigin {
     version: String,
     /// SHA-256 of the program.
     program: String,
@@ -34,7 +33,9 @@ struct CheckpointHeader {
     /// Time reached \[s\].
     t: f64,
     #[serde(flatten)]
-    origin: Origin,
+    origin: CheckpointOrigin,
+    /// True where the run may replace an earlier result.
+    replaces: bool,
     /// Bytes of every table that belong to it; later ones are cut.
     tables: BTreeMap<String, u64>,
     #[serde(flatten)]
@@ -52,16 +53,39 @@ pub struct StoredCheckpoint {
     bytes: Vec<u8>,
 }
 
-impl Origin {
+/// Why a run is not resumed that needs it no longer.
+const COMPLETE: &str = "it is complete";
+
+fn refused(folder: &Path, why: String) -> OutputError {
+    OutputError::NotResumable {
+        folder: folder.to_owned(),
+        why,
+    }
+}
+
+impl CheckpointOrigin {
     /// That of a run of a scene by this program.
-    pub(super) fn of(scene: &Scene) -> io::Result<Origin> {
-        Ok(Origin {
+    pub(super) fn of(scene: &Scene) -> io::Result<CheckpointOrigin> {
+        Ok(CheckpointOrigin {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            program: sha256(&fs::read(std::env::current_exe()?)?),
+            program: sha256(&program()?),
             scene_hash: scene.hash(),
             overrides: scene.overrides().map(str::to_owned).collect(),
         })
     }
+}
+
+/// The bytes of this program. On Linux they can be read after its file has been replaced, by a build for example.
+fn program() -> io::Result<Vec<u8>> {
+    let path = match cfg!(target_os = "linux") {
+        true => PathBuf::from("/proc/self/exe"),
+        false => std::env::current_exe()?,
+    };
+    let named = |e: io::Error| {
+        let message = format!("cannot read the program `{}`: {e}", path.display());
+        io::Error::new(e.kind(), message)
+    };
+    fs::read(&path).map_err(named)
 }
 
 fn sha256(bytes: &[u8]) -> String {
@@ -73,7 +97,7 @@ fn sha256(bytes: &[u8]) -> String {
 pub(super) fn write(
     folder: &Folder,
     t: f64,
-    origin: &Origin,
+    origin: &CheckpointOrigin,
     tables: BTreeMap<String, u64>,
     elapsed: Elapsed,
     bytes: &[u8],
@@ -81,6 +105,7 @@ pub(super) fn write(
     let header = CheckpointHeader {
         t,
         origin: origin.clone(),
+        replaces: folder.replaces,
         tables,
         elapsed,
         sha256: sha256(bytes),
@@ -92,47 +117,49 @@ pub(super) fn write(
 }
 
 impl StoredCheckpoint {
-    /// The checkpoint of the run whose result is in `folder`.
+    /// The checkpoint of the run whose result is in a folder.
     ///
     /// # Errors
-    /// [`OutputError::NotResumable`] when there is none, or none that this program can go on from.
-    pub fn read(folder: &Path) -> Result<StoredCheckpoint, OutputError> {
-        let refuse = |why: String| {
-            Err(OutputError::NotResumable {
-                folder: folder.to_owned(),
-                why,
-            })
-        };
-        match super::status(folder).as_deref() {
-            None => return refuse(format!("it has no `{SUMMARY}`, so there is no run")),
-            Some("complete") => return refuse("it is complete".to_owned()),
-            Some("failed") => return refuse("it could not go on by itself".to_owned()),
-            Some(_) => {}
+    /// [`OutputError::NotResumable`] when there is none, or a damaged one; [`OutputError::Busy`] while the run writes there.
+    pub fn read(folder: &Folder) -> Result<StoredCheckpoint, OutputError> {
+        let refused = |why: &str| refused(&folder.path, why.to_owned());
+        match super::status(&folder.path).as_deref() {
+            None => return Err(refused("it has no `summary.json`, so there is no run")),
+            Some("complete") => return Err(refused(COMPLETE)),
+            Some(_) => super::refuse_busy(folder)?,
         }
-        let file = match fs::read(folder.join(CHECKPOINT)) {
-            Ok(file) => file,
-            Err(e) if e.kind() == ErrorKind::NotFound => {
-                let why = "it was stopped before its first checkpoint, or is a static analysis, which has none; run the scene again with --force";
-                return refuse(why.to_owned());
-            }
-            Err(e) => return refuse(format!("`{CHECKPOINT}` cannot be read: {e}")),
-        };
-        let mut parts = file.splitn(2, |byte| *byte == b'\n');
-        let header = parts
-            .next()
-            .and_then(|line| serde_json::from_slice(line).ok());
-        let header: Option<CheckpointHeader> = header;
-        let (Some(header), Some(bytes)) = (header, parts.next()) else {
-            return refuse(format!("`{CHECKPOINT}` is damaged"));
-        };
-        if header.sha256 != sha256(bytes) {
-            return refuse(format!("`{CHECKPOINT}` is damaged"));
+        let file = fs::read(folder.path.join(CHECKPOINT)).map_err(|e| match e.kind() {
+            ErrorKind::NotFound => refused(
+                "it was stopped before its first checkpoint, or is a static analysis, which has none; run the scene again with --force",
+            ),
+            _ => refused(&format!("`{CHECKPOINT}` cannot be read: {e}")),
+        })?;
+        let damaged = || refused(&format!("`{CHECKPOINT}` is damaged"));
+        let end = file.iter().position(|byte| *byte == b'\n');
+        let (line, bytes) = file.split_at(end.ok_or_else(damaged)?);
+        let header: CheckpointHeader = serde_json::from_slice(line).map_err(|_| damaged())?;
+        let bytes = bytes[1..].to_vec();
+        match header.sha256 == sha256(&bytes) {
+            true => Ok(StoredCheckpoint {
+                folder: folder.path.clone(),
+                header,
+                bytes,
+            }),
+            false => Err(damaged()),
         }
-        Ok(StoredCheckpoint {
-            folder: folder.to_owned(),
-            bytes: bytes.to_vec(),
-            header,
-        })
+    }
+
+    /// Refuses a run that has come to its end since.
+    pub(super) fn still_stands(&self) -> Result<(), OutputError> {
+        match super::status(&self.folder).as_deref() {
+            Some("complete") => Err(self.refused(COMPLETE.to_owned())),
+            _ => Ok(()),
+        }
+    }
+
+    /// The error of a run that cannot be resumed.
+    pub(super) fn refused(&self, why: String) -> OutputError {
+        refused(&self.folder, why)
     }
 
     /// The scene of the run, as it is in the folder.
@@ -145,9 +172,9 @@ impl StoredCheckpoint {
     }
 
     /// Refuses a scene and a program that are not those of the run.
-    pub(super) fn check(&self, origin: &Origin) -> Result<(), OutputError> {
+    pub(super) fn check(&self, origin: &CheckpointOrigin) -> Result<(), OutputError> {
         let was = &self.header.origin;
-        let program = |origin: &Origin| {
+        let program = |origin: &CheckpointOrigin| {
             let digits = origin.program.get(..DIGITS).unwrap_or_default();
             format!("looselink {} with SHA-256 {digits}...", origin.version)
         };
@@ -160,19 +187,18 @@ impl StoredCheckpoint {
         } else {
             return Ok(());
         };
-        Err(OutputError::NotResumable {
-            folder: self.folder.clone(),
-            why,
-        })
+        Err(self.refused(why))
     }
 
     /// Brings a simulation to where the run was.
-    pub(super) fn restore(self, simulation: &mut Simulation) -> Result<(), OutputError> {
-        let misfit = |why: Misfit| OutputError::NotResumable {
-            folder: self.folder,
-            why: why.to_string(),
-        };
-        simulation.restore(self.bytes).map_err(misfit)
+    pub(super) fn restore(&self, simulation: &mut Simulation) -> Result<(), OutputError> {
+        let restored = simulation.restore(self.bytes.clone());
+        restored.map_err(|misfit| self.refused(misfit.to_string()))
+    }
+
+    /// True where the run may replace an earlier result.
+    pub(super) fn replaces(&self) -> bool {
+        self.header.replaces
     }
 
     /// Time reached \[s\].

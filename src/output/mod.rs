@@ -28,7 +28,7 @@ use crate::simulate::{ContactEvent, Report, Simulation, Status};
 use crate::system::State;
 use crate::table::{Cell, Format, float64};
 pub use checkpoint::StoredCheckpoint;
-use checkpoint::{CHECKPOINT, Origin};
+use checkpoint::{CHECKPOINT, CheckpointOrigin};
 pub use folder::{Folder, OutputError, earlier_result, json, naming, replace};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -80,7 +80,7 @@ pub struct Results {
     tables: Tables,
     scene: Scene,
     /// Known from the first checkpoint on.
-    origin: Option<Origin>,
+    origin: Option<CheckpointOrigin>,
     /// A row of motion, and one of cells.
     values: Vec<f64>,
     cells: Vec<Cell<'static>>,
@@ -186,36 +186,39 @@ impl Results {
         Ok(results)
     }
 
-    /// Goes on with the result of a run that was interrupted: cuts what was written after its checkpoint, and brings a fresh
-    /// simulation of the scene to where the run was. `folder` is that of the run, with leave to replace an earlier result.
+    /// Goes on with the result of a run that was interrupted: brings a fresh simulation of the scene to where the run was, and
+    /// cuts what was written after its checkpoint. `folder` is that of the run, with leave to replace what is there.
     ///
     /// # Errors
-    /// [`OutputError::NotResumable`] for another scene or another program, and as [`Results::begin`].
+    /// [`OutputError::NotResumable`] for another scene or another program, [`OutputError::Busy`] while a run writes there; the
+    /// result is then as it was. As [`Results::begin`] later.
     pub fn resume(
-        folder: Folder,
+        mut folder: Folder,
         scene: &Scene,
         simulation: &mut Simulation,
         from: StoredCheckpoint,
     ) -> Result<Results, OutputError> {
-        let origin = Origin::of(scene)?;
+        let origin = CheckpointOrigin::of(scene)?;
         from.check(&origin)?;
-        refuse_busy(&folder)?;
         let open = |path: PathBuf, format, columns| {
             let name = path.file_name().unwrap_or_default();
             let size = from.size(&name.to_string_lossy());
             TableFile::reopen(path, format, columns, size)
         };
         let tables = Tables::new(&folder, scene, simulation, open);
-        let tables = tables.map_err(|e| match e.kind() {
-            io::ErrorKind::InvalidData | io::ErrorKind::NotFound => OutputError::NotResumable {
-                folder: folder.path.clone(),
-                why: e.to_string(),
-            },
+        let mut tables = tables.map_err(|e| match e.kind() {
+            io::ErrorKind::WouldBlock => OutputError::Busy(folder.path.clone()),
+            io::ErrorKind::InvalidData | io::ErrorKind::NotFound => from.refused(e.to_string()),
             _ => e.into(),
         })?;
-        let elapsed = from.elapsed();
+        // while the tables were not locked the run may have come to its end
+        from.still_stands()?;
         from.restore(simulation)?;
-        let mut results = Results::new(folder, scene, tables, elapsed)?;
+        for table in tables.all() {
+            table.cut(from.size(&table.name()))?;
+        }
+        folder.replaces = from.replaces();
+        let mut results = Results::new(folder, scene, tables, from.elapsed())?;
         results.origin = Some(origin);
         Ok(results)
     }
@@ -254,12 +257,11 @@ impl Results {
     pub fn checkpoint(&mut self, t: f64, bytes: &[u8]) -> Result<(), OutputError> {
         let origin = match &self.origin {
             Some(origin) => origin,
-            None => self.origin.insert(Origin::of(&self.scene)?),
+            None => self.origin.insert(CheckpointOrigin::of(&self.scene)?),
         };
         let sizes = self.tables.all().map(|table| {
             let size = table.sync()?;
-            let name = table.path().file_name().unwrap_or_default();
-            Ok::<_, io::Error>((name.to_string_lossy().into_owned(), size))
+            Ok::<_, io::Error>((table.name(), size))
         });
         let sizes = sizes.collect::<Result<_, _>>()?;
         let elapsed = self.stopwatch.elapsed();
@@ -334,7 +336,7 @@ impl Results {
         self.folder.replace(TIMING, &json(&timing)?)?;
         let warnings = report.warnings();
         write_summary(&self.folder, &self.header, Ended { report, warnings })?;
-        if report.status != Status::Incomplete {
+        if report.status == Status::Complete {
             self.folder.remove(CHECKPOINT)?;
         }
         if self.folder.replaces && report.status == Status::Complete {

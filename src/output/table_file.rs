@@ -2,9 +2,9 @@
 
 use super::folder::naming;
 use crate::table::{Cell, Format};
-use std::fs::{File, OpenOptions};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 #[derive(Debug)]
 pub(super) struct TableFile {
@@ -24,6 +24,10 @@ impl TableFile {
         columns: impl IntoIterator<Item = String>,
     ) -> io::Result<TableFile> {
         let file = File::create_new(&path).map_err(naming(&path))?;
+        // Not on Windows, where a lock would keep readers out; where a file system has no locks, nobody is warned.
+        if cfg!(unix) {
+            let _ = file.try_lock();
+        }
         let mut table = TableFile::new(path, format, columns, file);
         (format.header)(&table.columns, &mut table.line);
         table.write()?;
@@ -31,7 +35,7 @@ impl TableFile {
         Ok(table)
     }
 
-    /// Opens a file again that was written before, locks it, and cuts it after `size` bytes.
+    /// Opens a file again that was written before, and locks it; it must have `size` bytes at least.
     pub(super) fn reopen(
         path: PathBuf,
         format: &'static Format,
@@ -39,16 +43,24 @@ impl TableFile {
         size: u64,
     ) -> io::Result<TableFile> {
         let file = OpenOptions::new().write(true).open(&path);
-        let mut file = file.map_err(naming(&path))?;
+        let file = file.map_err(naming(&path))?;
+        if cfg!(unix) && matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
+            return Err(ErrorKind::WouldBlock.into());
+        }
         if file.metadata().map_err(naming(&path))?.len() < size {
             let message = format!("`{}` has lost rows", path.display());
             return Err(io::Error::new(ErrorKind::InvalidData, message));
         }
+        Ok(TableFile::new(path, format, columns, file))
+    }
+
+    /// Goes on after `size` bytes; what follows them is lost.
+    pub(super) fn cut(&mut self, size: u64) -> io::Result<()> {
+        let file = self.writer.get_mut();
         let cut = file
             .set_len(size)
-            .and_then(|()| file.seek(SeekFrom::End(0)));
-        cut.map_err(naming(&path))?;
-        Ok(TableFile::new(path, format, columns, file))
+            .and_then(|()| file.seek(SeekFrom::End(0)).map(drop));
+        cut.map_err(naming(&self.path))
     }
 
     fn new(
@@ -57,10 +69,6 @@ impl TableFile {
         columns: impl IntoIterator<Item = String>,
         file: File,
     ) -> TableFile {
-        // Not on Windows, where a lock would keep readers out; where a file system has no locks, nobody is warned.
-        if cfg!(unix) {
-            let _ = file.try_lock();
-        }
         TableFile {
             path,
             format,
@@ -70,8 +78,10 @@ impl TableFile {
         }
     }
 
-    pub(super) fn path(&self) -> &Path {
-        &self.path
+    /// The name of the file.
+    pub(super) fn name(&self) -> String {
+        let name = self.path.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
     }
 
     pub(super) fn row(&mut self, cells: &[Cell]) -> io::Result<()> {

@@ -52,6 +52,8 @@ pub fn language(registry: &Registry) -> Vec<Sheet> {
     plain("bodies.NAME.rayleigh", &RAYLEIGH);
     plain("initial", &motion::INITIAL);
     plain("initial.bodies.NAME", &motion::STATE);
+    let of_flexible_link = [&motion::STATE[..], &motion::DEFORMED].concat();
+    plain("initial.bodies.NAME of a flexible link", &of_flexible_link);
     plain("initial.bodies.NAME of a point mass", &motion::POINT_STATE);
     plain("initial.velocities.NAME", &motion::VELOCITIES);
     add_by("shape", &mut sheets, "bodies.NAME.plate", &PLATES);

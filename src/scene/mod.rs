@@ -18,7 +18,7 @@ use crate::motion::{Function, Path};
 pub use crate::stepper::Method;
 pub use file::read_file;
 
-use crate::body::Body;
+use crate::body::{Body, Deformation};
 use crate::document::Sources;
 use crate::table::Format;
 use serde::Serialize;
@@ -265,6 +265,8 @@ pub struct BodyState {
     pub velocity: [f64; 3],
     /// False when the scene leaves the velocity out.
     pub velocity_given: bool,
+    /// How it is deformed.
+    pub deformation: Deformation,
     /// Where it stands.
     pub span: Span,
 }

@@ -3,9 +3,10 @@
 use super::{
     BodyState, Drive, GivenVelocity, Initial, MotionKind, PrescribedMotion, SketchPoint, Sketched,
 };
-use crate::body::{Known, PointRef, RigidBody};
-use crate::document::{Field, Fields, Key, Kind, SceneError, Takes, named};
+use crate::body::{Body, Deformation, Known, PointRef, RigidBody};
+use crate::document::{Field, Fields, Key, Kind, NumberRange, SceneError, Takes, named};
 use crate::interaction::Names;
+use crate::math::plane::{Vec2, pair, quarter_turn, unit};
 use crate::motion::{Use, read_function, read_path};
 
 /// What drives prescribe.
@@ -185,7 +186,13 @@ const VELOCITY: &str = "a velocity of the centre of mass";
 const ALL_THREE: &str = "a velocity of the centre of mass; give all three or none";
 
 /// The keys of a state of a body.
-pub(super) static STATE: [Key; 6] = [
+pub(super) static STATE: [Key; 7] = [
+    Key::new(
+        "point",
+        Takes::Text,
+        "the point of the body that `x`, `y`, `vx` and `vy` are those of",
+    )
+    .or("the centre of mass"),
     Key::number("x", "m", "x of the centre of mass"),
     Key::number("y", "m", "y of the centre of mass"),
     Key::number(
@@ -201,6 +208,22 @@ pub(super) static STATE: [Key; 6] = [
         "the angular velocity; give all three or none",
     )
     .or(WITH_ONE),
+];
+
+/// The keys that a state of a flexible link has beside those.
+pub(super) static DEFORMED: [Key; 2] = [
+    Key::within(
+        "strain",
+        NumberRange::Within(-0.5, 1.0),
+        "the axial strain (r'.r' - 1)/2 along the whole link",
+    )
+    .or("0"),
+    Key::number(
+        "bending_rate",
+        "1/(m s)",
+        "the rate of r'' across the link, equal along it",
+    )
+    .or("0"),
 ];
 
 /// The keys of a state of a point mass, which has no angle.
@@ -336,10 +359,12 @@ fn moving_body(field: &Field, names: &Names) -> Result<usize, SceneError> {
 
 fn state(field: &Field, names: &Names) -> Result<BodyState, SceneError> {
     let body = moving_body(field, names)?;
-    let turns = names.bodies[body].turns();
+    let kind = &names.bodies[body];
+    let turns = kind.turns();
     let mut table = field.fields()?;
     let keys: &[Key] = if turns { &STATE } else { &POINT_STATE };
-    table.declare(&[], keys)?;
+    let deformed: &[Key] = if kind.is_rigid() { &[] } else { &DEFORMED };
+    table.declare(&[], keys.iter().chain(deformed))?;
     let components = if turns { 3 } else { 2 };
     let velocity_given = RATES[..components]
         .iter()
@@ -351,11 +376,52 @@ fn state(field: &Field, names: &Names) -> Result<BodyState, SceneError> {
     for component in (0..components).filter(|_| velocity_given) {
         velocity[component] = table.number(RATES[component])?;
     }
+    let or_zero = |key: &Key| Ok(table.optional_number(key.name)?.unwrap_or_default());
+    let numbers: Result<Vec<f64>, SceneError> = deformed.iter().map(or_zero).collect();
+    let deformation = match numbers?[..] {
+        [strain, bending_rate] => Deformation {
+            strain,
+            bending_rate,
+        },
+        _ => Deformation::default(),
+    };
+    if turns && let Some(named) = table.optional("point") {
+        let [from_centre, rate] = off_centre(&named, &**kind, &deformation, position, velocity)?;
+        for i in 0..2 {
+            position[i] -= from_centre[i];
+            velocity[i] -= rate[i];
+        }
+    }
     Ok(BodyState {
         body,
         position,
         velocity,
         velocity_given,
+        deformation,
         span: field.span(),
     })
+}
+
+/// The vector from the centre of mass of a body to the point that a field names, and its rate.
+fn off_centre(
+    named: &Field,
+    kind: &dyn Body,
+    deformation: &Deformation,
+    [.., theta]: [f64; 3],
+    [.., omega]: [f64; 3],
+) -> Result<[Vec2; 2], SceneError> {
+    let name = named.text()?;
+    let own = || kind.points().iter().map(|p| p.name.as_str());
+    let Some(point) = kind.points().iter().find(|p| p.name == name) else {
+        return Err(named.dangling("point of the body called", name, own()));
+    };
+    // in the axes of the body
+    let origin = pair(&kind.frame([0.0; 3], [0.0; 3]).position, 0);
+    let undeformed = origin + point.at;
+    let along = deformation.stretch() * undeformed;
+    let length = kind.link().map_or(0.0, |link| link.length);
+    let [bending, _] = deformation.bending(length, undeformed.x);
+    let (e, n) = (unit(theta), quarter_turn(unit(theta)));
+    let arm = along.x * e + along.y * n;
+    Ok([arm, omega * quarter_turn(arm) + bending * n])
 }

@@ -2,6 +2,7 @@
 
 use super::Simulation;
 use crate::checkpoint::{Carried, Checkpoint, Misfit};
+use crate::system::State;
 
 impl Simulation {
     /// What the rest of the run depends on, beside the scene.
@@ -32,7 +33,8 @@ impl Simulation {
             passes_singular_pose: _,
             work,
             state,
-            trial: _,
+            // the length of the last step is reported
+            trial: State { t: last, .. },
             output: _,
             recorder,
             measured: _,
@@ -74,5 +76,6 @@ impl Simulation {
             part.carry(checkpoint);
         }
         halved.carry(checkpoint);
+        last.carry(checkpoint);
     }
 }

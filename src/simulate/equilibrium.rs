@@ -48,6 +48,11 @@ pub(super) fn prepare(
         let message = "a static analysis cannot have inverse kinematics";
         return Err(scene.error(drive.span, message, "remove this"));
     }
+    let mut bending = scene.initial.bodies.iter();
+    if let Some(given) = bending.find(|given| given.deformation.bending_rate != 0.0) {
+        let message = "an equilibrium is at rest: it has no `bending_rate`";
+        return Err(scene.error(given.span, message, "this link bends"));
+    }
     if start && path {
         let message =
             "a static analysis starts from the undeformed shape: it has no `initial.equilibrium`";

@@ -3,6 +3,7 @@
 use super::Simulation;
 use super::meter::lengths;
 use crate::modes::{Modes, ModesError, modes};
+use crate::system::System;
 
 impl Simulation {
     /// Natural frequencies and mode shapes about the last accepted state: its contacts act as they do there or, with
@@ -10,12 +11,18 @@ impl Simulation {
     ///
     /// # Errors
     /// See [`ModesError`].
-    pub fn modes(&self, opens: bool) -> Result<Modes, ModesError> {
-        let mut at = self.state.clone();
+    pub fn modes(&mut self, opens: bool) -> Result<Modes, ModesError> {
+        let (mut at, mut work) = (self.state.clone(), self.work.clone());
         if opens {
             at.z.fill(0.0);
+            // the multipliers without the contacts
+            let newton = &mut self.newton;
+            let solved = newton.accelerate_aside(&self.model, &mut at, &mut work);
+            solved.map_err(|failure| {
+                ModesError::SingularPose(self.model.unknown_name(failure.index()))
+            })?;
         }
         let lengths = lengths(&self.scene, &self.model);
-        modes(&self.model, &at, &lengths, &mut self.work.clone())
+        modes(&self.model, &at, &lengths, &mut work)
     }
 }

@@ -68,6 +68,11 @@ impl CommandFailure {
         self
     }
 
+    /// What failed on the way of another failure.
+    pub fn after(&self, what: &str) -> String {
+        format!("; {what}: {}", self.text.trim_start_matches("error: "))
+    }
+
     /// Tells the user on standard error.
     pub fn show(&self) -> ExitCode {
         // Standard error is closed: nobody can read this.

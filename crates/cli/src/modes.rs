@@ -1,11 +1,11 @@
 //! `looselink modes`
 
 use super::failure::CommandFailure;
-use super::progress::{Display, Ticker};
+use super::progress::{Display, Ticker, say, warn};
 use super::{SceneArguments, print};
 use clap::{Args, ValueEnum};
 use looselink::model::Model;
-use looselink::modes::{Mode, Modes};
+use looselink::modes::{Modes, NaturalMode};
 use looselink::output::{json, naming, replace};
 use looselink::scene::{Analysis, Scene};
 use looselink::simulate::{Control, Observer, Progress, Simulation};
@@ -22,7 +22,7 @@ use view::{StoredResult, StoredRun, page};
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Time of the pose \[s\]; the scene is simulated up to it. In a static analysis the part of the loads.
+    /// Time of the pose (s); the scene is simulated up to it. In a static analysis the measure of the load, up to its duration.
     #[arg(long, value_name = "T", default_value = "0")]
     at: f64,
     /// What the loose joints do.
@@ -55,7 +55,7 @@ const ASYMMETRIC: f64 = 1e-9;
 
 /// What is printed.
 #[derive(Serialize)]
-struct Output<'a> {
+struct ModesOutput<'a> {
     title: &'a str,
     /// Time of the pose \[s\].
     t: f64,
@@ -67,7 +67,7 @@ struct Output<'a> {
 #[derive(Serialize)]
 struct NamedMode<'a> {
     #[serde(flatten)]
-    mode: &'a Mode,
+    mode: &'a NaturalMode,
     shape: BTreeMap<&'a str, f64>,
 }
 
@@ -101,8 +101,10 @@ pub fn modes(arguments: &Arguments) -> Result<(), CommandFailure> {
     if at > 0.0 || scene.simulation.analysis == Analysis::Static {
         let mut approach = Approach(Display::new(arguments.json, 0.0), Ticker::new());
         let reached = simulation.advance_to(at, &mut approach);
-        reached.map_err(|error| CommandFailure::run(&error))?;
         approach.0.finish("");
+        let warnings = simulation.report().warnings();
+        warnings.iter().for_each(|warning| warn(warning));
+        reached.map_err(|error| CommandFailure::run(&error))?;
     }
     let found = simulation.modes(arguments.contacts == Contacts::Open);
     let mut found = found.map_err(CommandFailure::cannot_go_on)?;
@@ -136,9 +138,9 @@ fn scene(arguments: &Arguments) -> Result<Scene, CommandFailure> {
     }
 }
 
-fn output<'a>(scene: &'a Scene, model: &'a Model, t: f64, found: &'a Modes) -> Output<'a> {
+fn output<'a>(scene: &'a Scene, model: &'a Model, t: f64, found: &'a Modes) -> ModesOutput<'a> {
     let names = model.unknown_names();
-    let named = |mode: &'a Mode| {
+    let named = |mode: &'a NaturalMode| {
         let shape = names
             .iter()
             .map(String::as_str)
@@ -148,7 +150,7 @@ fn output<'a>(scene: &'a Scene, model: &'a Model, t: f64, found: &'a Modes) -> O
             shape: shape.take(model.shape().unknowns).collect(),
         }
     };
-    Output {
+    ModesOutput {
         title: &scene.title,
         t,
         asymmetry: found.asymmetry,
@@ -234,5 +236,6 @@ fn pages(
         replace(&file, page(&runs).as_bytes())?;
         count += 1;
     }
-    print(format!("{count} pages in `{}`\n", folder.display()))
+    say(&format!("{count} pages in `{}`", folder.display()));
+    Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::failure::CommandFailure;
 use super::progress::say;
-use super::run::{Course, all_files, not_stored, stop_on_interrupt, to_the_end};
+use super::run::{RunOptions, all_files, not_stored, stop_on_interrupt, to_the_end};
 use super::view;
 use clap::Args;
 use looselink::output::{Folder, Results, StoredCheckpoint};
@@ -15,17 +15,18 @@ pub struct Arguments {
     /// The folder of a run that was interrupted or killed.
     folder: PathBuf,
     #[command(flatten)]
-    course: Course,
+    course: RunOptions,
 }
 
 /// Goes on with a run as if it had never stopped: its files are those of a run without interruption.
 pub fn resume(mut arguments: Arguments) -> Result<(), CommandFailure> {
     let stop = stop_on_interrupt()?;
     let Arguments { folder, course } = &mut arguments;
-    let checkpoint = StoredCheckpoint::read(folder)?;
-    let scene = checkpoint.scene(&Registry::standard())?;
-    let mut simulation = Simulation::new(&scene)?;
     let replaced = Folder::new(folder, &all_files(), true)?;
+    let checkpoint = StoredCheckpoint::read(&replaced)?;
+    let scene = checkpoint.scene(&Registry::standard())?;
+    course.check(&scene)?;
+    let mut simulation = Simulation::new(&scene)?;
     // a page of the part so far would be out of date
     course.view |= folder.join(view::PAGE).exists();
     let t = checkpoint.t();

@@ -9,6 +9,7 @@ use clap::Args;
 use looselink::model::Model;
 use looselink::output::{Folder, OutputError, Results, StoredCheckpoint, earlier_result, files};
 use looselink::registry::Registry;
+use looselink::scene::Scene;
 use looselink::simulate::{ContactEvent, Control, Observer, Progress, RunError, Simulation};
 use looselink::system::State;
 use std::io;
@@ -28,12 +29,12 @@ pub struct Arguments {
     #[arg(long)]
     force: bool,
     #[command(flatten)]
-    course: Course,
+    course: RunOptions,
 }
 
 /// How a run is shown and kept.
 #[derive(Debug, Args)]
-pub struct Course {
+pub struct RunOptions {
     /// Write `view.html` into the folder, in which the mechanism moves.
     #[arg(long)]
     pub view: bool,
@@ -43,6 +44,17 @@ pub struct Course {
     /// Time between two checkpoints, from which `looselink resume` goes on if the program is killed.
     #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = seconds)]
     checkpoint: f64,
+}
+
+impl RunOptions {
+    /// Refuses a page of a run without motion.
+    pub fn check(&self, scene: &Scene) -> Result<(), CommandFailure> {
+        let message = "--view shows the motion, which `output.motion = false` leaves out";
+        match self.view && !scene.output.motion {
+            true => Err(CommandFailure::bad_input(message)),
+            false => Ok(()),
+        }
+    }
 }
 
 /// A time of a clock, a century at most.
@@ -108,12 +120,16 @@ impl Observer for RunObserver {
 pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let stop = stop_on_interrupt()?;
     let Arguments { out, force, .. } = arguments;
-    let folder = Folder::new(out, &all_files(), *force)?;
+    let folder = Folder::new(out, &all_files(), *force).map_err(|error| match error {
+        OutputError::Occupied { .. } if is_resumable(out) => {
+            let out = out.display();
+            CommandFailure::from(error)
+                .and(&format!("; `looselink resume {out}` goes on with the run"))
+        }
+        error => error.into(),
+    })?;
     let (scene, simulation) = arguments.scene.load()?;
-    if arguments.course.view && !scene.output.motion {
-        let message = "--view shows the motion, which `output.motion = false` leaves out";
-        return Err(CommandFailure::bad_input(message));
-    }
+    arguments.course.check(&scene)?;
     let results = Results::begin(folder, &scene, &simulation);
     let results = results.map_err(|error| not_stored(error, out, *force))?;
     to_the_end(simulation, results, out, *force, &arguments.course, stop)
@@ -132,7 +148,7 @@ pub fn to_the_end(
     results: Results,
     out: &Path,
     replaces: bool,
-    course: &Course,
+    course: &RunOptions,
     stop: Arc<AtomicBool>,
 ) -> Result<(), CommandFailure> {
     let started = Instant::now();
@@ -154,17 +170,17 @@ pub fn to_the_end(
     let folder = out.display();
     if let Err(error) = ended {
         warn_of_all();
-        let go_on = match (&error, StoredCheckpoint::read(out)) {
-            (RunError::Interrupted { .. }, Ok(_)) => {
-                format!("; `looselink resume {folder}` goes on from there")
-            }
-            _ => String::new(),
+        // a run that cannot go on would stop there again
+        let resumable = matches!(error, RunError::Interrupted { .. } | RunError::Output(_));
+        let go_on = match resumable && is_resumable(out) {
+            true => format!("; `looselink resume {folder}` goes on from its last checkpoint"),
+            false => String::new(),
         };
         let kept = match stored {
-            Ok(()) if course.view => {
-                let page = view::beside(out)?;
-                format!("; the motion up to that time is in `{}`", page.display())
-            }
+            Ok(()) if course.view => match view::beside(out) {
+                Ok(page) => format!("; the motion up to that time is in `{}`", page.display()),
+                Err(second) => second.after("the page could not be written"),
+            },
             Ok(()) => format!("; the results up to that time are in `{folder}`"),
             Err(second) => {
                 format!("; the result in `{folder}` could not be completed: {second}")
@@ -190,6 +206,12 @@ pub fn to_the_end(
             .finish(&format!("open `{}` in a browser", page.display()));
     }
     Ok(())
+}
+
+/// True where a run has left a checkpoint.
+fn is_resumable(out: &Path) -> bool {
+    let folder = Folder::new(out, &all_files(), true);
+    folder.is_ok_and(|folder| StoredCheckpoint::read(&folder).is_ok())
 }
 
 /// A result that could not be stored.

@@ -88,6 +88,9 @@ impl Language {
                 NumberRange::Within(above, most) => {
                     json!({ "type": "number", "exclusiveMinimum": above, "maximum": most })
                 }
+                NumberRange::Between(least, most) => {
+                    json!({ "type": "number", "minimum": least, "maximum": most })
+                }
             },
             Takes::Whole(least, most) => {
                 json!({ "type": "integer", "minimum": least, "maximum": most })

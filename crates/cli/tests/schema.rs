@@ -140,7 +140,7 @@ fn faults_of_scenes_violate_the_schema() {
         ("method = \"", "method = \"x"),
         ("[bodies.", "[body."),
         ("exponent = 1.5", "exponent = 0.9"),
-        ("restitution = 0.9", "restitution = 0"),
+        ("restitution = 0.9", "restitution = -0.1"),
         ("restitution = 0.9", "restitution = 1.1"),
         ("poissons_ratio = 0.3", "poissons_ratio = 0.6"),
         ("poissons_ratio = 0.3", "poissons_ratio = -1"),

@@ -11,7 +11,7 @@ use super::stored::StoredRun;
 use super::tracks::{Group, Signal};
 use looselink::body::{FlexibleLink, PointRef};
 use looselink::interaction::{ForceModel, Joint, TorsionSpringModel};
-use looselink::scene::{Analysis, Scene};
+use looselink::scene::{Analysis, NamedBody, Scene};
 use serde::Serialize;
 use std::f64::consts::SQRT_2;
 
@@ -146,7 +146,7 @@ impl RunDrawing {
                             node: beam.map(|link| link.nodes[i]),
                         })
                         .collect(),
-                    pose: pose(&moved, &result.times, size, pack),
+                    pose: pose(&moved, named, &result.times, size, pack),
                     deformation: deformation(&moved, &result.times, pack),
                     shape: moved.shape,
                 }
@@ -240,9 +240,18 @@ fn path(scene: &Scene) -> Vec<[f64; 2]> {
 }
 
 /// The poses of a body as tracks; none of what does not move.
-fn pose(moved: &Moved, times: &[f64], size: f64, pack: &mut Pack) -> Option<Group> {
+fn pose(
+    moved: &Moved,
+    body: &NamedBody,
+    times: &[f64],
+    size: f64,
+    pack: &mut Pack,
+) -> Option<Group> {
     let share = POSE_ERROR * size / 3.0;
-    let angle = share / moved.shape.reach().max(f64::MIN_POSITIVE);
+    // a named point may lie outside of the shape
+    let points = body.kind.points().iter().map(|point| point.at.norm());
+    let reach = points.fold(moved.shape.reach(), f64::max);
+    let angle = share / reach.max(f64::MIN_POSITIVE);
     let tolerances = [share / SQRT_2, share / SQRT_2, angle, share];
     let signals = moved.pose.iter().zip(tolerances);
     let signals = signals.map(|(values, tolerance)| signal(values, tolerance));

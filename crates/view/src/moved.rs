@@ -51,7 +51,7 @@ impl BodyShape {
         }
     }
 
-    /// The largest distance of a point of the body from the origin of its frame \[m\].
+    /// The largest distance of a point of the shape from the origin of its frame \[m\].
     pub fn reach(&self) -> f64 {
         match self {
             BodyShape::Ground => 0.0,

@@ -2,7 +2,7 @@
 
 use super::moved::bounds;
 use indexmap::IndexMap;
-use looselink::modes::Mode;
+use looselink::modes::NaturalMode;
 use looselink::record::MotionLayout;
 use looselink::scene::{Pace, Scene, SceneError};
 use looselink::simulate::Simulation;
@@ -178,7 +178,7 @@ impl StoredRun {
         scene: &Scene,
         title: String,
         about: &Simulation,
-        mode: &Mode,
+        mode: &NaturalMode,
     ) -> Result<[StoredRun; 2], SceneError> {
         let pose = || StoredRun::pose(scene.clone(), about);
         let (mut run, mut rest) = (pose()?, pose()?);

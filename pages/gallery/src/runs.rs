@@ -48,7 +48,7 @@ impl Show {
 }
 
 /// The first entry whose name begins that of the scene counts.
-const SHOWN: [Show; 29] = [
+const SHOWN: [Show; 31] = [
     show("3rrr/case1", "A1.torque", "Torque of motor A1").cut(0.5),
     show("3rrr/", "error.x", "Error of the platform, x").cut(0.5),
     show("ablation/", "rocker.alpha", "Acceleration of the rocker"),
@@ -82,8 +82,14 @@ const SHOWN: [Show; 29] = [
     show("maxwell", "element.force", "Pull of the element"),
     show("n-four-bar", "points.crank0.end.x", "B0, x").drawn(1.2),
     show("pendulum", "points.rod.bob.x", "Point at 1 m, x").drawn(1.18),
+    show(
+        "plucked-string",
+        "points.string.middle.y",
+        "Middle of the string, y",
+    ),
     show("quick-return", "ram.vx", "Velocity of the ram").drawn(0.6),
     show("ramped-cantilever", "points.beam.end.y", "Tip, y").drawn(3.5),
+    show("ringing-bar", "energy.bending", "Bending energy"),
     show("rod-linkage", "large.theta", "Angle of the large disc"),
     show("roll-up", "points.beam.end.y", "Tip, y"),
     show("scotch-yoke", "yoke.ax", "Acceleration of the yoke").drawn(0.5),

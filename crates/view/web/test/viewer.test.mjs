@@ -45,10 +45,10 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-/** Runs a scene and returns its folder. */
-function run(name, scene, set) {
+/** Runs a scene, with all channels or some, and returns its folder. */
+function run(name, scene, set, recorded = ["*"]) {
   const out = join(folder, name);
-  const overrides = [...set, 'output.channels=["*"]'].flatMap((s) => ["--set", s]);
+  const overrides = [...set, `output.channels=${JSON.stringify(recorded)}`].flatMap((s) => ["--set", s]);
   execFileSync(PROGRAM, ["run", join(ROOT, "scenes", scene), "--out", out, "--view", "--quiet", ...overrides], { stdio: "ignore" });
   return out;
 }
@@ -107,6 +107,18 @@ const distances = async (page, columns, row) => {
   return [...frames, ...symbols.joints.filter(known)].map(distance);
 };
 
+/** Frames in a second of playing. */
+const frames = (page) =>
+  page.evaluate(
+    () =>
+      new Promise((done) => {
+        let frames = 0;
+        const start = performance.now();
+        const count = () => (++frames, performance.now() - start < 1000 ? requestAnimationFrame(count) : done((1000 * frames) / (performance.now() - start)));
+        requestAnimationFrame(count);
+      }),
+  );
+
 for (const { name, scene, set, least = 1 } of LOAD_SCENES) {
   test(`${scene} loads without a message and moves with the slider`, async (context) => {
     const out = run(name, scene, set);
@@ -144,20 +156,43 @@ for (const { name, scene, set, least = 1 } of LOAD_SCENES) {
     for (const line of lines) assert.ok(Math.abs(line - share) < 0.02, `the chart shows ${line} of the time, not ${share}`);
     // frames while it plays
     await page.click("#play");
-    const rate = await page.evaluate(
-      () =>
-        new Promise((done) => {
-          let frames = 0;
-          const start = performance.now();
-          const count = () => (++frames, performance.now() - start < 1000 ? requestAnimationFrame(count) : done((1000 * frames) / (performance.now() - start)));
-          requestAnimationFrame(count);
-        }),
-    );
+    const rate = await frames(page);
     context.diagnostic(`${compared} places at most ${worst.toFixed(3)} px off; ${rate.toFixed(0)} frames/s; ${(statSync(file).size / 1e6).toFixed(2)} MB`);
     assert.deepEqual(messages, []);
     await page.close();
   });
 }
+
+test("charts of 100,000 rows follow, zoom and play", async (context) => {
+  const set = ["simulation.duration=10.0", "integrator.step=1e-4", "output.interval=1e-4"];
+  const out = run("long", "pendulum.toml", set, ["points.rod.bob.*", "pivot.force"]);
+  const { page, messages } = await open(join(out, "view.html"));
+  const columns = channels(out);
+  assert.equal(columns.t.length, 100001);
+  /** Where the line that shows the time stands in the first chart, as a part of its width. */
+  const line = () =>
+    page.evaluate(() => {
+      const line = document.querySelector(".now");
+      const over = line.parentElement.getBoundingClientRect();
+      return (line.getBoundingClientRect().left - over.left) / over.width;
+    });
+  await seek(page, columns.t[50000]);
+  assert.ok(Math.abs((await line()) - 0.5) < 0.005);
+  // a drag from 0.4 to 0.6 of the width shows 4 s to 6 s: the time 5.5 s then stands at three quarters
+  const box = await page.locator(".u-over").first().boundingBox();
+  const [from, to] = [0.4, 0.6].map((part) => box.x + part * box.width);
+  await page.mouse.move(from, box.y + 20);
+  await page.mouse.down();
+  await page.mouse.move(to, box.y + 20, { steps: 5 });
+  await page.mouse.up();
+  await seek(page, columns.t[55000]);
+  assert.ok(Math.abs((await line()) - 0.75) < 0.02, `the line stands at ${await line()}`);
+  await page.click("#play");
+  const rate = await frames(page);
+  context.diagnostic(`${rate.toFixed(0)} frames/s with ${columns.t.length} rows`);
+  assert.deepEqual(messages, []);
+  await page.close();
+});
 
 test("eccentricities are right to a thousandth of the clearance", async () => {
   const out = run("loose", "3rrr/case3.toml", ["simulation.duration=0.05"]);
@@ -203,6 +238,22 @@ test("a ghost, a phone, the dark, the keyboard and names for screen readers", as
       .map((e) => e.outerHTML.slice(0, 80)),
   );
   assert.deepEqual(nameless, []);
+  assert.deepEqual(messages, []);
+  await page.close();
+});
+
+test("a mode swings beside the pose at rest", async () => {
+  const pages = join(folder, "modes");
+  execFileSync(PROGRAM, ["modes", join(ROOT, "scenes/slider-crank/flexible.toml"), "--count", "1", "--view", pages], { stdio: "ignore" });
+  const { page, messages } = await open(join(pages, "mode-01.html"));
+  const shape = () => page.evaluate(() => [".run", ".ghost"].map((part) => document.querySelector(part).innerHTML));
+  const [swung, rest] = await shape();
+  // half a period after the start the mode swings to the other side
+  const end = await page.evaluate(() => Number(document.getElementById("time").max));
+  await seek(page, end / 8);
+  const [other, still] = await shape();
+  assert.notEqual(swung, other, "the mode stands still");
+  assert.equal(rest, still, "the pose at rest moves");
   assert.deepEqual(messages, []);
   await page.close();
 });
