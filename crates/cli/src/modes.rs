@@ -100,7 +100,10 @@ pub fn modes(arguments: &Arguments) -> Result<(), CommandFailure> {
     let mut simulation = Simulation::new(&scene)?;
     if at > 0.0 || scene.simulation.analysis == Analysis::Static {
         let mut approach = Approach(Display::new(arguments.json, 0.0), Ticker::new());
-        let reached = simulation.advance_to(at, &mut approach);
+        // rows on the way, as the run of the scene has them: warnings are relative to the motion that they show
+        let rows = (0..).map(|k| f64::from(k) * scene.output.interval);
+        let mut times = rows.take_while(|t| *t < at).chain([at]);
+        let reached = times.try_for_each(|t| simulation.advance_to(t, &mut approach));
         approach.0.finish("");
         let warnings = simulation.report().warnings();
         warnings.iter().for_each(|warning| warn(warning));
