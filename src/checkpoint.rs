@@ -1,6 +1,6 @@
 //! What a run carries from step to step, as bytes from which it goes on bit for bit.
 //!
-//! One function writes and reads a value, so that the two cannot differ. [`carried!`] makes it from the names of the fields:
+//! One function writes and reads a value, so that the two cannot differ. `carried!` makes it from the names of the fields:
 //! first those that are carried, then those that follow from the scene or are computed anew in every step. A field in neither
 //! list does not compile.
 
