@@ -158,14 +158,20 @@ impl<T: Carried + ?Sized> Carried for Box<T> {
     }
 }
 
-/// Carries some fields of a type; the others follow from the scene or are computed anew in every step.
+/// Carries some fields of a type, lists among them up to a length; the others follow from the scene or are computed anew in every
+/// step.
 macro_rules! carried {
-    ($type:ident { $($carried:ident),* $(,)? } but { $($other:ident),* $(,)? }) => {
+    (
+        $type:ident { $($carried:ident),* $(,)? }
+        $(and up to $most:ident of { $($list:ident),* })?
+        but { $($other:ident),* $(,)? }
+    ) => {
         impl $crate::checkpoint::Carried for $type {
             #[allow(unused_variables, reason = "some carry nothing")]
             fn carry(&mut self, checkpoint: &mut $crate::checkpoint::Checkpoint) {
-                let $type { $($carried,)* $($other: _,)* } = self;
+                let $type { $($carried,)* $($($list,)*)? $($other: _,)* } = self;
                 $($crate::checkpoint::Carried::carry($carried, checkpoint);)*
+                $($($crate::checkpoint::carry_list($list, $most, checkpoint);)*)?
             }
         }
     };

@@ -127,12 +127,18 @@ impl Linearised {
         }
     }
 
-    /// |x| . (|M| + |B|) |x| of a column of x: what rounding in the difference of M + B and M is relative to.
-    fn magnitude(&self, b: &Mat<f64>, x: ColRef<f64>) -> f64 {
+    /// x . B x of a displacement x; zero where that is rounding in B, which is the difference of M + B and M. Unlike an
+    /// eigenvalue it keeps the digits of a slow mode beside fast ones.
+    fn form(&self, b: &Mat<f64>, x: ColRef<f64>) -> f64 {
         let n = x.nrows();
         let entry = |i: usize, j: usize| self.mass[(i, j)].abs() + b[(i, j)].abs();
         let row = |i: usize| (0..n).map(move |j| (x[i] * entry(i, j) * x[j]).abs());
-        (0..n).flat_map(row).sum()
+        let magnitude: f64 = (0..n).flat_map(row).sum();
+        let value = x.transpose() * b * x;
+        match value.abs() > ROUNDING * f64::EPSILON * magnitude {
+            true => value,
+            false => 0.0,
+        }
     }
 
     /// An orthonormal basis of the displacements that the constraints allow, as columns.
@@ -161,16 +167,14 @@ fn largest_entry(x: ColRef<f64>) -> usize {
     indices.unwrap_or_default()
 }
 
-/// Eigenvalues in ascending order and eigenvectors of a symmetric matrix, by nalgebra. faer's solver gave -6e5 1/s2 for a zero of a
+/// Eigenvectors of a symmetric matrix in the order of their eigenvalues, by nalgebra. faer's solver gave -6e5 1/s2 for a zero of a
 /// free bar of 64 elements, whose largest square of a frequency is 2e13 1/s2.
-fn eigen(matrix: &Mat<f64>) -> (Vec<f64>, Mat<f64>) {
+fn eigenvectors(matrix: &Mat<f64>) -> Mat<f64> {
     let n = matrix.nrows();
     let eigen = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)]).symmetric_eigen();
-    let (values, vectors) = (eigen.eigenvalues, eigen.eigenvectors);
     let mut order: Vec<usize> = (0..n).collect();
-    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-    let sorted = Mat::from_fn(n, n, |i, k| vectors[(i, order[k])]);
-    (order.iter().map(|k| values[*k]).collect(), sorted)
+    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+    Mat::from_fn(n, n, |i, k| eigen.eigenvectors[(i, order[k])])
 }
 
 /// The modes of a mechanism about the pose of a consistent state. With `lengths`, the largest distance by which a unit of each
@@ -187,8 +191,7 @@ pub fn modes(
     let linearised = Linearised::new(model, at, work);
     let z = linearised.allowed(model)?;
     let reduced = |matrix: &Mat<f64>| z.transpose() * matrix * &z;
-    let [mass, damping, stiffness] =
-        [&linearised.mass, &linearised.damping, &linearised.stiffness].map(reduced);
+    let [mass, stiffness] = [&linearised.mass, &linearised.stiffness].map(reduced);
     let size = |m: &Mat<f64>| m.norm_max();
     let odd = Mat::from_fn(z.ncols(), z.ncols(), |i, j| {
         0.5 * (stiffness[(i, j)] - stiffness[(j, i)])
@@ -198,38 +201,23 @@ pub fn modes(
         largest => size(&odd) / largest,
     };
     let factor = mass.llt(Side::Lower).map_err(|_| {
-        let (_, vectors) = eigen(&mass);
-        let x = &z * vectors.col(0);
+        let x = &z * eigenvectors(&mass).col(0);
         let most = linearised.positions[largest_entry(x.as_ref())];
         ModesError::Massless(model.unknown_name(most))
     })?;
     let lower = factor.L();
-    let symmetric = &stiffness - &odd;
     // L^-1 K L^-T
-    let mut half = symmetric.to_owned();
+    let mut half = &stiffness - &odd;
     lower.solve_lower_triangular_in_place(&mut half);
     let mut scaled = half.transpose().to_owned();
     lower.solve_lower_triangular_in_place(&mut scaled);
-    let (_, mut y) = eigen(&scaled);
+    let mut y = eigenvectors(&scaled);
     lower.transpose().solve_upper_triangular_in_place(&mut y);
     let x = &z * &y;
     let of = |k: usize| {
         let x = x.col(k);
-        // x . K x keeps the digits of a slow mode beside fast ones, which the eigenvalue loses
-        let square = x.transpose() * &linearised.stiffness * x;
-        let rounding = ROUNDING * f64::EPSILON * linearised.magnitude(&linearised.stiffness, x);
-        let frequency = match square > rounding {
-            true => square.sqrt(),
-            false => 0.0,
-        };
-        let growth = match square < -rounding {
-            true => (-square).sqrt(),
-            false => 0.0,
-        };
-        let y = y.col(k);
-        let power = y.transpose() * &damping * y;
-        let rounding = ROUNDING * f64::EPSILON * linearised.magnitude(&linearised.damping, x);
-        let is_damped = power.abs() > rounding;
+        let square = linearised.form(&linearised.stiffness, x);
+        let frequency = square.max(0.0).sqrt();
         let distances = linearised.positions.iter().enumerate();
         let distances = distances.map(|(j, &i)| (i, lengths[i] * x[j]));
         let largest = distances.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
@@ -240,9 +228,9 @@ pub fn modes(
         }
         NaturalMode {
             frequency: frequency / std::f64::consts::TAU,
-            growth,
-            damping: match is_damped && frequency > 0.0 {
-                true => 0.5 * power / frequency,
+            growth: (-square).max(0.0).sqrt(),
+            damping: match frequency > 0.0 {
+                true => 0.5 * linearised.form(&linearised.damping, x) / frequency,
                 false => 0.0,
             },
             moves_most: model.unknown_names()[most].clone(),

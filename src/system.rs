@@ -7,7 +7,7 @@
 //! with the coordinates q (unknown ones first, then known ones), their first and second derivatives v and a, the multipliers
 //! lambda, and the contact memory z, which changes only between accepted steps.
 
-use crate::checkpoint::{Carried, Checkpoint, carried};
+use crate::checkpoint::{Carried, carried};
 use crate::math::lu::Symbolic;
 
 /// Sizes of a system.
@@ -133,15 +133,7 @@ pub struct Work {
     pub prescribed: Vec<Box<dyn Prescribed>>,
 }
 
-impl Carried for Work {
-    fn carry(&mut self, checkpoint: &mut Checkpoint) {
-        let Work { tally, prescribed } = self;
-        tally.carry(checkpoint);
-        for motion in prescribed {
-            motion.carry(checkpoint);
-        }
-    }
-}
+carried!(Work { tally, prescribed } but {});
 
 /// A prescribed motion that is found by solving, with its own memory.
 pub trait Prescribed: Carried + std::fmt::Debug + Send + Sync {

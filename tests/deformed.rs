@@ -1,6 +1,6 @@
 //! Starts of deformed links, states at any point of a body, and loads along straight lines.
 
-use crate::support::{load, path, run};
+use crate::support::{load, path, rising_zeros, run};
 use ladder::{Rung, Worst};
 use looselink::scene::Scene;
 use looselink::simulate::Simulation;
@@ -35,12 +35,8 @@ fn a_stretched_string_has_the_frequencies_of_its_tension() {
 fn a_plucked_string_vibrates_with_its_first_frequency() {
     let (recording, _) = run(STRING, &[]);
     let (t, y) = (recording.get("t"), recording.get("points.string.middle.y"));
-    let mut zeros = Vec::new();
-    for i in recording.row(0.0102)..t.len() {
-        if y[i - 1] < 0.0 && y[i] >= 0.0 {
-            zeros.push(t[i - 1] + (t[i] - t[i - 1]) * y[i - 1] / (y[i - 1] - y[i]));
-        }
-    }
+    let released = recording.row(0.0102) - 1;
+    let zeros = rising_zeros(&t[released..], &y[released..]);
     assert!(zeros.len() >= 5, "{zeros:?}");
     let frequency = (zeros.len() - 1) as f64 / (zeros[zeros.len() - 1] - zeros[0]);
     Rung::Routes
@@ -82,9 +78,13 @@ fn a_deformed_start_has_its_energies_and_no_momentum() {
 fn a_ringing_bar_flies_as_a_rigid_one() {
     let (recording, _) = run(BAR, &[]);
     let worst = Worst::new();
-    for (i, t) in recording.get("t").iter().enumerate() {
-        worst.see(recording.get("bar.x")[i] - t);
-        worst.see(recording.get("bar.y")[i] - (2.0 * t - 0.5 * 9.81 * t * t));
+    let places = recording
+        .get("bar.x")
+        .into_iter()
+        .zip(recording.get("bar.y"));
+    for (t, (x, y)) in recording.get("t").into_iter().zip(places) {
+        worst.see(x - t);
+        worst.see(y - (2.0 * t - 0.5 * 9.81 * t * t));
     }
     Rung::Balance
         .asks("Ringing bar in free flight: distance of its centre of mass from the parabola [m]")
@@ -103,15 +103,9 @@ fn a_state_may_be_that_of_any_point() {
         let change = format!("initial.bodies.{body}={{{state}}}");
         let simulation = Simulation::new(&load(scene, &[&change])).unwrap();
         let (state, model) = (simulation.state(), simulation.model());
-        let names = simulation
-            .model()
-            .bodies()
-            .iter()
-            .position(|b| b.name == body)
-            .unwrap();
-        let points: Vec<_> = (0..model.bodies()[names].points.len())
-            .map(|p| model.point(names, p, state))
-            .collect();
+        let index = model.bodies().iter().position(|b| b.name == body).unwrap();
+        let points = (0..model.bodies()[index].points.len()).map(|p| model.point(index, p, state));
+        let points: Vec<_> = points.collect();
         ([state.q.clone(), state.v.clone()].concat(), points)
     };
     let deformed = "theta=0.5,omega=3.0,bending_rate=40.0,strain=0.003";

@@ -1,6 +1,6 @@
 //! Natural frequencies and mode shapes against closed forms, over meshes, and against motions.
 
-use crate::support::{load, run_scene};
+use crate::support::{load, rising_zeros, run_scene};
 use ladder::{Rung, Worst};
 use looselink::modes::Modes;
 use looselink::scene::Scene;
@@ -86,7 +86,7 @@ fn a_bar_between_pins_vibrates_along_its_axis() {
     });
     Rung::OrderInElements
         .asks("Bar between pins: error of the first frequency of axial vibrations over the length of the elements")
-        .falls("length of an element over that of the bar", &errors, 5.0..7.0, "cubics: the square of the error of a slope, h^6");
+        .falls("Element length l/L", &errors, 5.0..7.0, "cubics: the square of the error of a slope, h^6");
 }
 
 /// cos(b) cosh(b) = 1, and three motions without vibration.
@@ -114,7 +114,7 @@ fn a_free_bar_has_three_free_motions() {
                 k + 1
             ))
             .falls(
-                "elements",
+                "Element length l/L",
                 errors,
                 3.5..4.5,
                 "cubics: the square of the error of a curvature, h^4",
@@ -177,12 +177,7 @@ fn a_mode_is_what_a_small_motion_shows() {
     let scene = parallelogram(1.0, start);
     let (recording, _) = run_scene(&scene);
     let (t, speed) = (recording.get("t"), recording.get("left.omega"));
-    let mut zeros = Vec::new();
-    for i in 1..t.len() {
-        if speed[i - 1] > 0.0 && speed[i] <= 0.0 {
-            zeros.push(t[i - 1] + (t[i] - t[i - 1]) * speed[i - 1] / (speed[i - 1] - speed[i]));
-        }
-    }
+    let zeros = rising_zeros(&t, &speed);
     assert!(zeros.len() > 2, "{zeros:?}");
     let period = (zeros[zeros.len() - 1] - zeros[0]) / (zeros.len() - 1) as f64;
     let damped = modes.modes[0].frequency * (1.0 - modes.modes[0].damping.powi(2)).sqrt();
@@ -279,7 +274,7 @@ fn case_4_with_closed_contacts_converges_with_the_elements() {
     for k in [0, 3] {
         Rung::OrderInElements
             .asks(format!("Case 4 with six closed contacts: error of vibration {} over the length of the elements, against 16", k + 1))
-            .falls("length of an element over that of the bar", &errors(k), 3.3..4.7, "cubics: h^4; the reference adds a sixteenth at the finest mesh");
+            .falls("Element length l/L", &errors(k), 3.3..4.7, "cubics: h^4; the reference adds a sixteenth at the finest mesh");
     }
 }
 

@@ -107,6 +107,15 @@ pub fn difference<N: AsRef<str>>(
     worst
 }
 
+/// Times at which a series rises through zero, on the straight line between two rows.
+pub fn rising_zeros(t: &[f64], x: &[f64]) -> Vec<f64> {
+    let rows = t.windows(2).zip(x.windows(2));
+    let rising = rows.filter(|(_, x)| x[0] < 0.0 && x[1] >= 0.0);
+    rising
+        .map(|(t, x)| t[0] + (t[1] - t[0]) * x[0] / (x[0] - x[1]))
+        .collect()
+}
+
 /// Root mean square of the difference of two series of the same length.
 pub fn rms_difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());

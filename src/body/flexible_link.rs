@@ -187,15 +187,15 @@ impl Body for FlexibleLink {
     }
 
     fn place_deformed(&self, frame: &Frame, deformation: &Deformation) -> Vec<[[f64; 3]; 2]> {
-        let ([.., theta], [.., omega]) = (frame.position, frame.velocity);
-        let length = self.link.length;
-        let (e, n) = (unit(theta), quarter_turn(unit(theta)));
-        let stretched = deformation.stretch() - 1.0;
         let mut values = self.place(frame);
         // adding zero would change the sign of a negative zero
         if *deformation == Deformation::default() {
             return values;
         }
+        let ([.., theta], [.., omega]) = (frame.position, frame.velocity);
+        let length = self.link.length;
+        let (e, n) = (unit(theta), quarter_turn(unit(theta)));
+        let stretched = deformation.stretch() - 1.0;
         for (k, node) in values.chunks_exact_mut(2).enumerate() {
             let xi = length * (k as f64 / self.elements as f64 - 0.5);
             let [rate, slope_rate] = deformation.bending(length, xi);

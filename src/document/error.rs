@@ -71,11 +71,7 @@ impl Sources {
             hasher.update((source.inner().len() as u64).to_le_bytes());
             hasher.update(source.inner().as_bytes());
         }
-        hasher
-            .finalize()
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect()
+        numbers::hexadecimal(&hasher.finalize())
     }
 }
 

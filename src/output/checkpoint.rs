@@ -1,11 +1,12 @@
 //! The checkpoint of a run on disk: a line of JSON that says what it belongs to, then the bytes from which the run goes on.
 
-use super::SCENE;
 use super::folder::{Folder, OutputError};
 use super::timing::Elapsed;
+use super::{Header, SCENE};
 use crate::registry::Registry;
 use crate::scene::{Scene, SceneError};
 use crate::simulate::Simulation;
+use numbers::hexadecimal;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -18,22 +19,14 @@ pub(super) const CHECKPOINT: &str = "checkpoint.bin";
 /// Digits of a program's SHA-256 in a message.
 const DIGITS: usize = 12;
 
-/// What a checkpoint belongs to.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct CheckpointOrigin {
-    version: String,
-    /// SHA-256 of the program.
-    program: String,
-    scene_hash: String,
-    overrides: Vec<String>,
-}
-
 #[derive(Debug, Serialize, Deserialize)]
 struct CheckpointHeader {
     /// Time reached \[s\].
     t: f64,
     #[serde(flatten)]
-    origin: CheckpointOrigin,
+    run: Header,
+    /// SHA-256 of the program.
+    program: String,
     /// True where the run may replace an earlier result.
     replaces: bool,
     /// Bytes of every table that belong to it; later ones are cut.
@@ -63,48 +56,37 @@ fn refused(folder: &Path, why: String) -> OutputError {
     }
 }
 
-impl CheckpointOrigin {
-    /// That of a run of a scene by this program.
-    pub(super) fn of(scene: &Scene) -> io::Result<CheckpointOrigin> {
-        Ok(CheckpointOrigin {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            program: sha256(&program()?),
-            scene_hash: scene.hash(),
-            overrides: scene.overrides().map(str::to_owned).collect(),
-        })
-    }
-}
-
-/// The bytes of this program. On Linux they can be read after its file has been replaced, by a build for example.
-fn program() -> io::Result<Vec<u8>> {
+/// SHA-256 of this program. On Linux it can be read after its file has been replaced, by a build for example.
+pub(super) fn program() -> io::Result<String> {
     let path = match cfg!(target_os = "linux") {
         true => PathBuf::from("/proc/self/exe"),
         false => std::env::current_exe()?,
     };
-    let named = |e: io::Error| {
+    let bytes = fs::read(&path).map_err(|e| {
         let message = format!("cannot read the program `{}`: {e}", path.display());
         io::Error::new(e.kind(), message)
-    };
-    fs::read(&path).map_err(named)
+    })?;
+    Ok(sha256(&bytes))
 }
 
 fn sha256(bytes: &[u8]) -> String {
-    let digits = Sha256::digest(bytes);
-    digits.iter().map(|byte| format!("{byte:02x}")).collect()
+    hexadecimal(&Sha256::digest(bytes))
 }
 
 /// Writes a checkpoint at time `t`; `tables` are the sizes of the tables on disk.
 pub(super) fn write(
     folder: &Folder,
     t: f64,
-    origin: &CheckpointOrigin,
+    run: &Header,
+    program: &str,
     tables: BTreeMap<String, u64>,
     elapsed: Elapsed,
     bytes: &[u8],
 ) -> Result<(), OutputError> {
     let header = CheckpointHeader {
         t,
-        origin: origin.clone(),
+        run: run.clone(),
+        program: program.to_owned(),
         replaces: folder.replaces,
         tables,
         elapsed,
@@ -168,21 +150,24 @@ impl StoredCheckpoint {
     /// A scene that cannot be read.
     pub fn scene(&self, registry: &Registry) -> Result<Scene, SceneError> {
         let scene = self.folder.join(SCENE);
-        Scene::load_with(registry, &scene, &self.header.origin.overrides)
+        Scene::load_with(registry, &scene, &self.header.run.overrides)
     }
 
     /// Refuses a scene and a program that are not those of the run.
-    pub(super) fn check(&self, origin: &CheckpointOrigin) -> Result<(), OutputError> {
-        let was = &self.header.origin;
-        let program = |origin: &CheckpointOrigin| {
-            let digits = origin.program.get(..DIGITS).unwrap_or_default();
-            format!("looselink {} with SHA-256 {digits}...", origin.version)
+    pub(super) fn check(&self, run: &Header, program: &str) -> Result<(), OutputError> {
+        let was = &self.header;
+        let named = |version: &str, program: &str| {
+            let digits = program.get(..DIGITS).unwrap_or_default();
+            format!("looselink {version} with SHA-256 {digits}...")
         };
-        let why = if was.scene_hash != origin.scene_hash {
+        let why = if was.run.scene_hash != run.scene_hash {
             let scene = self.folder.join(SCENE);
             format!("`{}` has been changed since it began", scene.display())
-        } else if was.program != origin.program {
-            let (was, is) = (program(was), program(origin));
+        } else if was.program != program {
+            let (was, is) = (
+                named(&was.run.version, &was.program),
+                named(&run.version, program),
+            );
             format!("it was begun by another program ({was}; this is {is})")
         } else {
             return Ok(());

@@ -27,10 +27,10 @@ use crate::scene::Scene;
 use crate::simulate::{ContactEvent, Report, Simulation, Status};
 use crate::system::State;
 use crate::table::{Cell, Format, float64};
+use checkpoint::CHECKPOINT;
 pub use checkpoint::StoredCheckpoint;
-use checkpoint::{CHECKPOINT, CheckpointOrigin};
 pub use folder::{Folder, OutputError, earlier_result, json, naming, replace};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -78,9 +78,8 @@ pub struct Results {
     folder: Folder,
     header: Header,
     tables: Tables,
-    scene: Scene,
-    /// Known from the first checkpoint on.
-    origin: Option<CheckpointOrigin>,
+    /// SHA-256 of the program, known from the first checkpoint on.
+    program: Option<String>,
     /// A row of motion, and one of cells.
     values: Vec<f64>,
     cells: Vec<Cell<'static>>,
@@ -132,12 +131,24 @@ impl Tables {
 }
 
 /// What is known of a run before it starts.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 struct Header {
     title: String,
     scene_hash: String,
     overrides: Vec<String>,
-    version: &'static str,
+    version: String,
+}
+
+impl Header {
+    /// That of a run of a scene by this program.
+    fn new(scene: &Scene) -> Header {
+        Header {
+            title: scene.title.clone(),
+            scene_hash: scene.hash(),
+            overrides: scene.overrides().map(str::to_owned).collect(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -180,7 +191,7 @@ impl Results {
             },
             _ => e.into(),
         })?;
-        let results = Results::new(folder, scene, tables, Elapsed::NONE)?;
+        let results = Results::new(folder, Header::new(scene), tables, Elapsed::NONE)?;
         let text = scene.text().as_bytes();
         results.folder.replace(SCENE, text)?;
         Ok(results)
@@ -198,8 +209,8 @@ impl Results {
         simulation: &mut Simulation,
         from: StoredCheckpoint,
     ) -> Result<Results, OutputError> {
-        let origin = CheckpointOrigin::of(scene)?;
-        from.check(&origin)?;
+        let (header, program) = (Header::new(scene), checkpoint::program()?);
+        from.check(&header, &program)?;
         let open = |path: PathBuf, format, columns| {
             let name = path.file_name().unwrap_or_default();
             let size = from.size(&name.to_string_lossy());
@@ -218,32 +229,25 @@ impl Results {
             table.cut(from.size(&table.name()))?;
         }
         folder.replaces = from.replaces();
-        let mut results = Results::new(folder, scene, tables, from.elapsed())?;
-        results.origin = Some(origin);
+        let mut results = Results::new(folder, header, tables, from.elapsed())?;
+        results.program = Some(program);
         Ok(results)
     }
 
     /// A result whose tables are open; its summary says that it is incomplete.
     fn new(
         folder: Folder,
-        scene: &Scene,
+        header: Header,
         tables: Tables,
         elapsed: Elapsed,
     ) -> Result<Results, OutputError> {
-        let header = Header {
-            title: scene.title.clone(),
-            scene_hash: scene.hash(),
-            overrides: scene.overrides().map(str::to_owned).collect(),
-            version: env!("CARGO_PKG_VERSION"),
-        };
         let pending = BTreeMap::from([("status", Status::Incomplete)]);
         write_summary(&folder, &header, pending)?;
         Ok(Results {
             folder,
             header,
             tables,
-            scene: scene.clone(),
-            origin: None,
+            program: None,
             values: Vec::new(),
             cells: Vec::new(),
             stopwatch: Stopwatch::start(elapsed),
@@ -255,9 +259,9 @@ impl Results {
     /// # Errors
     /// When it cannot be stored; the message names the file.
     pub fn checkpoint(&mut self, t: f64, bytes: &[u8]) -> Result<(), OutputError> {
-        let origin = match &self.origin {
-            Some(origin) => origin,
-            None => self.origin.insert(CheckpointOrigin::of(&self.scene)?),
+        let program = match &self.program {
+            Some(program) => program,
+            None => self.program.insert(checkpoint::program()?),
         };
         let sizes = self.tables.all().map(|table| {
             let size = table.sync()?;
@@ -265,7 +269,8 @@ impl Results {
         });
         let sizes = sizes.collect::<Result<_, _>>()?;
         let elapsed = self.stopwatch.elapsed();
-        checkpoint::write(&self.folder, t, origin, sizes, elapsed, bytes)
+        let Results { folder, header, .. } = self;
+        checkpoint::write(folder, t, header, program, sizes, elapsed, bytes)
     }
 
     /// Appends a row of channels.
@@ -338,9 +343,9 @@ impl Results {
         write_summary(&self.folder, &self.header, Ended { report, warnings })?;
         if report.status == Status::Complete {
             self.folder.remove(CHECKPOINT)?;
-        }
-        if self.folder.replaces && report.status == Status::Complete {
-            self.folder.forget()?;
+            if self.folder.replaces {
+                self.folder.forget()?;
+            }
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 mod channels;
 mod motion;
 
-use crate::checkpoint::{Carried, Checkpoint, carried};
+use crate::checkpoint::carried;
 use crate::model::{Energies, Model};
 use crate::scene::{Scene, SceneError};
 use crate::system::{State, Work};
@@ -32,7 +32,7 @@ pub struct Recorder {
 }
 
 /// An angle that is followed over full turns.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Turning {
     /// Where its speed stands among the values of the parts.
     speed: usize,
@@ -57,21 +57,7 @@ impl Turning {
     }
 }
 
-impl Carried for Recorder {
-    fn carry(&mut self, checkpoint: &mut Checkpoint) {
-        let Recorder {
-            channels: _,
-            parts: _,
-            places: _,
-            turning,
-            values: _,
-            row: _,
-            initial_energy: _,
-        } = self;
-        let angles = turning.iter_mut().flatten();
-        angles.for_each(|angle| angle.carry(checkpoint));
-    }
-}
+carried!(Recorder { turning } but { channels, parts, places, values, row, initial_energy });
 
 /// What is measured at every row, whether a channel shows it or not.
 #[derive(Debug, Clone, Default)]

@@ -376,14 +376,13 @@ fn state(field: &Field, names: &Names) -> Result<BodyState, SceneError> {
     for component in (0..components).filter(|_| velocity_given) {
         velocity[component] = table.number(RATES[component])?;
     }
-    let or_zero = |key: &Key| Ok(table.optional_number(key.name)?.unwrap_or_default());
-    let numbers: Result<Vec<f64>, SceneError> = deformed.iter().map(or_zero).collect();
-    let deformation = match numbers?[..] {
-        [strain, bending_rate] => Deformation {
-            strain,
-            bending_rate,
+    let or_zero = |key| table.optional_number(key).map(Option::unwrap_or_default);
+    let deformation = match kind.is_rigid() {
+        true => Deformation::default(),
+        false => Deformation {
+            strain: or_zero("strain")?,
+            bending_rate: or_zero("bending_rate")?,
         },
-        _ => Deformation::default(),
     };
     if turns && let Some(named) = table.optional("point") {
         let [from_centre, rate] = off_centre(&named, &**kind, &deformation, position, velocity)?;

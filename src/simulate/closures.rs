@@ -1,6 +1,6 @@
 //! Contacts that the steps do not resolve: closed for a few steps only, or closing and opening repeatedly (chatter).
 
-use crate::checkpoint::{Carried, Checkpoint, carried, carry_list};
+use crate::checkpoint::carried;
 use crate::model::Model;
 use serde::Serialize;
 
@@ -36,20 +36,7 @@ pub(super) struct Closures {
     listed: Vec<Stretch>,
 }
 
-impl Carried for Closures {
-    fn carry(&mut self, checkpoint: &mut Checkpoint) {
-        let Closures {
-            contacts,
-            ended,
-            brief,
-            listed,
-        } = self;
-        contacts.carry(checkpoint);
-        ended.carry(checkpoint);
-        brief.carry(checkpoint);
-        carry_list(listed, LISTED, checkpoint);
-    }
-}
+carried!(Closures { contacts, ended, brief } and up to LISTED of { listed } but {});
 
 /// A period of chatter of a contact; see [`Chatter`].
 #[derive(Debug, Clone, Copy, Default)]

@@ -2,7 +2,7 @@
 
 use super::observer::{ContactEnd, ContactEvent, Observer, Onset};
 use super::top::top;
-use crate::checkpoint::{Carried, Checkpoint, carried, carry_list};
+use crate::checkpoint::carried;
 use crate::model::Model;
 use crate::scene::Scene;
 use crate::system::State;
@@ -63,18 +63,7 @@ pub(super) struct Impacts {
     depths: Vec<[f64; 2]>,
 }
 
-impl Carried for Impacts {
-    fn carry(&mut self, checkpoint: &mut Checkpoint) {
-        let Impacts {
-            closed,
-            listed,
-            depths,
-        } = self;
-        closed.carry(checkpoint);
-        carry_list(listed, LISTED, checkpoint);
-        depths.carry(checkpoint);
-    }
-}
+carried!(Impacts { closed, depths } and up to LISTED of { listed } but {});
 
 /// A journal that has gone deeper into its bearing than the radius of the bearing: no contact law holds there.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -153,19 +153,19 @@ impl SceneArguments {
 fn main() -> ExitCode {
     let arguments = Arguments::try_parse()
         .unwrap_or_else(|error| suggestion::added(error, &Arguments::command()).exit());
-    let result = match arguments.command {
-        Command::New(arguments) => new::new(&arguments),
-        Command::Run(arguments) => run::run(&arguments),
-        Command::Plot(arguments) => plot::plot(&arguments),
+    let result = match &arguments.command {
+        Command::New(arguments) => new::new(arguments),
+        Command::Run(arguments) => run::run(arguments),
+        Command::Plot(arguments) => plot::plot(arguments),
         Command::Resume(arguments) => resume::resume(arguments),
-        Command::View(arguments) => view::view(&arguments),
-        Command::Modes(arguments) => modes::modes(&arguments),
-        Command::Inspect(arguments) => inspect::inspect(&arguments),
-        Command::Check(arguments) => check(&arguments),
-        Command::Precision(arguments) => precision::precision(&arguments),
-        Command::Ablate(arguments) => ablate::ablate(&arguments),
+        Command::View(arguments) => view::view(arguments),
+        Command::Modes(arguments) => modes::modes(arguments),
+        Command::Inspect(arguments) => inspect::inspect(arguments),
+        Command::Check(arguments) => check(arguments),
+        Command::Precision(arguments) => precision::precision(arguments),
+        Command::Ablate(arguments) => ablate::ablate(arguments),
         Command::Schema => schema::show(),
-        Command::Completions(arguments) => completions::completions(&arguments),
+        Command::Completions(arguments) => completions::completions(arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

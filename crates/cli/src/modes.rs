@@ -15,8 +15,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use studies::ablation::SceneEffect;
-use view::{StoredResult, StoredRun, page};
+use view::{StoredRun, StoredSummary, page};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -113,9 +114,9 @@ pub fn modes(arguments: &Arguments) -> Result<(), CommandFailure> {
     let mut found = found.map_err(CommandFailure::cannot_go_on)?;
     let all = found.modes.len();
     found.modes.truncate(arguments.count.into());
-    let model = simulation.model();
+    let simulation = Rc::new(simulation);
     match arguments.json {
-        true => print(json(&output(&scene, model, at, &found))?)?,
+        true => print(json(&output(&scene, simulation.model(), at, &found))?)?,
         false => print(text(arguments, &scene, &simulation, &found, all))?,
     }
     match &arguments.view {
@@ -129,9 +130,9 @@ fn scene(arguments: &Arguments) -> Result<Scene, CommandFailure> {
     let path = &arguments.scene.scene;
     let scene = match path.is_dir() {
         true => {
-            let stored = StoredResult::load(path)?.summary.overrides;
+            let (_, stored) = StoredSummary::load(path)?;
             let file = path.join("scene.toml");
-            arguments.scene.scene_with(&file, stored)?
+            arguments.scene.scene_with(&file, stored.overrides)?
         }
         false => arguments.scene.scene_with(path, Vec::new())?,
     };
@@ -224,7 +225,7 @@ fn contacts(arguments: &Arguments, simulation: &Simulation) -> String {
 fn pages(
     folder: &Path,
     scene: &Scene,
-    simulation: &Simulation,
+    simulation: &Rc<Simulation>,
     found: &Modes,
 ) -> Result<(), CommandFailure> {
     let made = fs::create_dir_all(folder).map_err(naming(folder));
@@ -234,7 +235,7 @@ fn pages(
     for (k, mode) in modes.filter(|(_, mode)| mode.frequency > 0.0) {
         let frequency = number(mode.frequency, 4);
         let title = format!("Mode {}, {frequency} Hz: {}", k + 1, scene.title);
-        let runs = StoredRun::swinging(scene, title, simulation, mode)?;
+        let runs = StoredRun::swinging(scene, title, simulation, mode);
         let file = folder.join(format!("mode-{:02}.html", k + 1));
         replace(&file, page(&runs).as_bytes())?;
         count += 1;

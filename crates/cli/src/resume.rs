@@ -15,25 +15,26 @@ pub struct Arguments {
     /// The folder of a run that was interrupted or killed.
     folder: PathBuf,
     #[command(flatten)]
-    course: RunOptions,
+    options: RunOptions,
 }
 
 /// Goes on with a run as if it had never stopped: its files are those of a run without interruption.
-pub fn resume(mut arguments: Arguments) -> Result<(), CommandFailure> {
+pub fn resume(arguments: &Arguments) -> Result<(), CommandFailure> {
     let stop = stop_on_interrupt()?;
-    let Arguments { folder, course } = &mut arguments;
+    let Arguments { folder, options } = arguments;
+    let mut options = options.clone();
     let replaced = Folder::new(folder, &all_files(), true)?;
     let checkpoint = StoredCheckpoint::read(&replaced)?;
     let scene = checkpoint.scene(&Registry::standard())?;
-    course.check(&scene)?;
+    options.check(&scene)?;
     let mut simulation = Simulation::new(&scene)?;
     // a page of the part so far would be out of date
-    course.view |= folder.join(view::PAGE).exists();
+    options.view |= folder.join(view::PAGE).exists();
     let t = checkpoint.t();
     let results = Results::resume(replaced, &scene, &mut simulation, checkpoint);
     let results = results.map_err(|error| not_stored(error, folder, true))?;
-    if !course.quiet {
+    if !options.quiet {
         say(&format!("resumed at t = {t} s"));
     }
-    to_the_end(simulation, results, folder, true, course, stop)
+    to_the_end(simulation, results, folder, true, &options, stop)
 }

@@ -29,11 +29,11 @@ pub struct Arguments {
     #[arg(long)]
     force: bool,
     #[command(flatten)]
-    course: RunOptions,
+    options: RunOptions,
 }
 
 /// How a run is shown and kept.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct RunOptions {
     /// Write `view.html` into the folder, in which the mechanism moves.
     #[arg(long)]
@@ -129,10 +129,10 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
         error => error.into(),
     })?;
     let (scene, simulation) = arguments.scene.load()?;
-    arguments.course.check(&scene)?;
+    arguments.options.check(&scene)?;
     let results = Results::begin(folder, &scene, &simulation);
     let results = results.map_err(|error| not_stored(error, out, *force))?;
-    to_the_end(simulation, results, out, *force, &arguments.course, stop)
+    to_the_end(simulation, results, out, *force, &arguments.options, stop)
 }
 
 /// The files of a run and its page.
@@ -148,18 +148,18 @@ pub fn to_the_end(
     results: Results,
     out: &Path,
     replaces: bool,
-    course: &RunOptions,
+    options: &RunOptions,
     stop: Arc<AtomicBool>,
 ) -> Result<(), CommandFailure> {
     let started = Instant::now();
     let before = simulation.report().steps;
     let mut observer = RunObserver {
         results,
-        display: Display::new(course.quiet, simulation.state().t),
+        display: Display::new(options.quiet, simulation.state().t),
         ticker: Ticker::new(),
         flushed: started,
         kept: started,
-        every: Duration::from_secs_f64(course.checkpoint),
+        every: Duration::from_secs_f64(options.checkpoint),
         stop,
     };
     let ended = simulation.run(&mut observer);
@@ -177,7 +177,7 @@ pub fn to_the_end(
             false => String::new(),
         };
         let kept = match stored {
-            Ok(()) if course.view => match view::beside(out) {
+            Ok(()) if options.view => match view::beside(out) {
                 Ok(page) => format!("; the motion up to that time is in `{}`", page.display()),
                 Err(second) => second.after("the page could not be written"),
             },
@@ -199,7 +199,7 @@ pub fn to_the_end(
         observer.display.finish(&line);
     }
     warn_of_all();
-    if course.view {
+    if options.view {
         let page = view::beside(out)?;
         observer
             .display

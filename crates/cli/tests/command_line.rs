@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
 
 const SCENE: &str = "scenes/bouncing-journal.toml";
 
@@ -18,6 +18,15 @@ pub fn program() -> Command {
 
 pub fn looselink(arguments: &[&str]) -> Output {
     program().args(arguments).output().unwrap()
+}
+
+/// Interrupts a program as Ctrl-C does; it may have ended by itself.
+#[cfg(unix)]
+pub fn interrupt(child: &Child) {
+    let process = child.id().to_string();
+    let mut kill = Command::new("kill");
+    let kill = kill.args(["-INT", &process]).stderr(Stdio::null());
+    kill.status().unwrap();
 }
 
 pub fn run(out: &Path, more: &[&str]) -> Output {
@@ -679,10 +688,7 @@ mod unix {
             std::thread::sleep(Duration::from_millis(20));
         }
         assert_eq!(summary(out)["status"], "incomplete");
-        Command::new("kill")
-            .args(["-INT", &child.id().to_string()])
-            .status()
-            .unwrap();
+        interrupt(&child);
         let mut stderr = String::new();
         child
             .stderr

@@ -86,6 +86,11 @@ pub fn percent(value: f64) -> String {
     format!("{}\u{a0}%", digits(100.0 * value))
 }
 
+/// Bytes as hexadecimal digits, such as those of a digest.
+pub fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// An integer as superscript characters.
 pub fn superscript(n: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];

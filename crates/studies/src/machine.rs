@@ -54,12 +54,11 @@ pub fn machine() -> Machine {
     let commit = commit.ok().filter(|output| output.status.success());
     let digest = |bytes: Vec<u8>| Sha256::digest(&bytes);
     let digest = std::fs::read(root.join("Cargo.lock")).ok().map(digest);
-    let hex = |byte: &u8| format!("{byte:02x}");
     Machine {
         processor: looselink::output::machine(),
         compiler: env!("LOOSELINK_COMPILER"),
         commit: commit.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()),
-        lock: digest.map(|digest| digest[..8].iter().map(hex).collect()),
+        lock: digest.map(|digest| numbers::hexadecimal(&digest[..8])),
     }
 }
 

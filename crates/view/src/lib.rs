@@ -10,7 +10,7 @@ pub mod pack;
 pub mod stored;
 pub mod tracks;
 
-pub use stored::{StoredChannel, StoredResult, StoredRun, ViewError};
+pub use stored::{StoredChannel, StoredResult, StoredRun, StoredSummary, ViewError};
 
 use drawing::RunDrawing;
 use pack::Pack;

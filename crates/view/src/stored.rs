@@ -12,6 +12,7 @@ use std::f64::consts::TAU;
 use std::fs;
 use std::io;
 use std::path::Path;
+use std::rc::Rc;
 
 /// Why a result cannot be shown.
 #[derive(Debug, thiserror::Error)]
@@ -47,8 +48,8 @@ pub struct StoredResult {
 pub struct StoredRun {
     /// Scene, summary and channels.
     pub result: StoredResult,
-    /// The compiled mechanism at its start.
-    pub simulation: Simulation,
+    /// The compiled mechanism.
+    pub simulation: Rc<Simulation>,
     /// What stands in a row of motion.
     pub layout: MotionLayout,
     /// Rows of motion.
@@ -81,12 +82,12 @@ pub struct StoredSummary {
     pub warnings: Vec<String>,
 }
 
-impl StoredResult {
-    /// Reads the result in a folder. Of a run that was stopped or is under way the rows so far are read.
+impl StoredSummary {
+    /// Reads the scene of the result in a folder, and what was kept of the run beside its rows.
     ///
     /// # Errors
     /// A folder without a result, and files that do not belong together.
-    pub fn load(folder: &Path) -> Result<StoredResult, ViewError> {
+    pub fn load(folder: &Path) -> Result<(Scene, StoredSummary), ViewError> {
         let summary: StoredSummary = serde_json::from_slice(&read(folder, "summary.json")?)
             .map_err(|e| damaged(&folder.join("summary.json"), &e.to_string()))?;
         read(folder, "scene.toml")?;
@@ -95,6 +96,17 @@ impl StoredResult {
             let message = "it is not the scene of the run that wrote `summary.json`";
             return Err(damaged(&folder.join("scene.toml"), message));
         }
+        Ok((scene, summary))
+    }
+}
+
+impl StoredResult {
+    /// Reads the result in a folder. Of a run that was stopped or is under way the rows so far are read.
+    ///
+    /// # Errors
+    /// A folder without a result, and files that do not belong together.
+    pub fn load(folder: &Path) -> Result<StoredResult, ViewError> {
+        let (scene, summary) = StoredSummary::load(folder)?;
         let format = scene.output.format;
         let table = format.file("channels");
         let bytes = read(folder, &table)?;
@@ -155,7 +167,7 @@ impl StoredRun {
         }
         Ok(StoredRun {
             result,
-            simulation,
+            simulation: Rc::new(simulation),
             layout,
             motion,
         })
@@ -171,17 +183,14 @@ const AMPLITUDE: f64 = 0.05;
 impl StoredRun {
     /// A mode that swings about the pose that a simulation has reached, and the pose at rest. Loose joints are drawn as they are
     /// in the pose.
-    ///
-    /// # Errors
-    /// That of a scene that cannot be compiled.
     pub fn swinging(
         scene: &Scene,
         title: String,
-        about: &Simulation,
+        about: &Rc<Simulation>,
         mode: &NaturalMode,
-    ) -> Result<[StoredRun; 2], SceneError> {
-        let pose = || StoredRun::pose(scene.clone(), about);
-        let (mut run, mut rest) = (pose()?, pose()?);
+    ) -> [StoredRun; 2] {
+        let pose = || StoredRun::pose(scene.clone(), about.clone());
+        let (mut run, mut rest) = (pose(), pose());
         let at_rest = rest.motion[0].clone();
         let [least_x, least_y, greatest_x, greatest_y] = bounds(&rest);
         let amplitude = AMPLITUDE * (greatest_x - least_x).max(greatest_y - least_y);
@@ -204,17 +213,17 @@ impl StoredRun {
         run.motion = (0..=rows).map(moved).collect();
         rest.result.times.push(time(rows));
         rest.motion.push(at_rest);
-        Ok([run, rest])
+        [run, rest]
     }
 
     /// The pose that a simulation has reached, as a run of one row.
-    fn pose(scene: Scene, at: &Simulation) -> Result<StoredRun, SceneError> {
-        let simulation = Simulation::new(&scene)?;
-        let layout = MotionLayout::new(simulation.model());
+    fn pose(scene: Scene, simulation: Rc<Simulation>) -> StoredRun {
+        let (model, at) = (simulation.model(), simulation.state());
+        let layout = MotionLayout::new(model);
         let mut row = Vec::new();
-        layout.measure(at.model(), at.state(), &mut row);
+        layout.measure(model, at, &mut row);
         let result = StoredResult {
-            name: format!("pose at t = {} s", exact(at.state().t)),
+            name: format!("pose at t = {} s", exact(at.t)),
             summary: StoredSummary {
                 scene_hash: scene.hash(),
                 overrides: scene.overrides().map(str::to_owned).collect(),
@@ -226,12 +235,12 @@ impl StoredRun {
             times: vec![0.0],
             channels: Vec::new(),
         };
-        Ok(StoredRun {
+        StoredRun {
             result,
             simulation,
             layout,
             motion: vec![row],
-        })
+        }
     }
 }
 

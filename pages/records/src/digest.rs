@@ -2,6 +2,7 @@
 
 use crate::{cpp, rust};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use numbers::hexadecimal;
 use sha2::{Digest, Sha256};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -84,9 +85,7 @@ impl Tree {
             .into_diagnostic()
             .wrap_err_with(|| format!("cannot read {path}"))?;
         let meaning = meaning(&path, &text).wrap_err_with(|| path.clone())?;
-        let hash = Sha256::digest(meaning);
-        let hex: String = hash.iter().map(|byte| format!("{byte:02x}")).collect();
-        let digest = hex[..DIGITS].to_owned();
+        let digest = hexadecimal(&Sha256::digest(meaning))[..DIGITS].to_owned();
         self.known.borrow_mut().insert(path, digest.clone());
         Ok(digest)
     }

@@ -73,9 +73,10 @@ fn arguments<'a>(out: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
     [&RUN[..], more, &["--out", out.to_str().unwrap()]].concat()
 }
 
-fn start(out: &Path, more: &[&str]) -> Child {
+/// Starts the program; nobody reads its messages.
+fn start(arguments: &[&str]) -> Child {
     program()
-        .args(arguments(out, more))
+        .args(arguments)
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
@@ -84,7 +85,7 @@ fn start(out: &Path, more: &[&str]) -> Child {
 
 /// Runs and kills; true when the run had ended by itself.
 fn run_and_kill(out: &Path, more: &[&str], moment: Moment) -> bool {
-    let mut child = start(out, more);
+    let mut child = start(&arguments(out, more));
     let time = match moment {
         Moment::After(time) => time,
         Moment::Closing(time) => {

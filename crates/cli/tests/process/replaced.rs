@@ -61,7 +61,7 @@ fn a_run_that_fails_names_the_earlier_result() {
 fn a_running_result_is_not_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    let mut first = start(&out, &["simulation.duration=3.0"]);
+    let mut first = start(&arguments(&out, &["simulation.duration=3.0"]));
     let limit = Instant::now() + Duration::from_secs(20);
     while status(&out).is_none() {
         assert!(Instant::now() < limit, "no summary after 20 s");

@@ -1,12 +1,12 @@
 //! Runs that are interrupted or killed, and resumed.
 
-use super::{FILES, Random, twice};
-use crate::command_line::{expect, files, looselink, program, read};
+use super::{FILES, Random, start, twice};
+use crate::command_line::{expect, files, interrupt, looselink, program, read};
 use serde_json::Value;
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Output, Stdio};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
@@ -26,27 +26,12 @@ const METHODS: [&str; 4] = [
 /// Interruptions of every scene with every method.
 const INTERRUPTIONS: usize = 5;
 
-/// Runs of the program with some arguments, whose messages nobody reads.
-fn start(arguments: &[&str]) -> Child {
-    program()
-        .args(arguments)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap()
-}
-
 /// Interrupts as Ctrl-C does, or kills, after a time; true if the program has ended by itself before.
 fn stop(mut child: Child, after: Duration, kills: bool) -> bool {
     std::thread::sleep(after);
     match kills {
         true => child.kill().unwrap(),
-        false => {
-            let process = child.id().to_string();
-            let mut interrupt = Command::new("kill");
-            let interrupt = interrupt.args(["-INT", &process]).stderr(Stdio::null());
-            interrupt.status().unwrap();
-        }
+        false => interrupt(&child),
     }
     let status = child.wait().unwrap();
     // a signal ends a program that does not watch for it yet
@@ -66,17 +51,17 @@ fn result(folder: &Path) -> Vec<(&'static str, Vec<u8>)> {
 /// it was resumed.
 fn check(folder: &Path, changes: [&str; 3], scene: &str, random: &mut Random) -> [usize; 2] {
     let [whole, parts] = ["whole", "parts"].map(|part| folder.join(part));
-    let course = ["--quiet", "--checkpoint", "0"];
+    let options = ["--quiet", "--checkpoint", "0"];
     let run = |out| {
         let changes = changes.iter().flat_map(|change| ["--set", change]);
         let arguments = ["run", scene, "--force", "--out", path(out)];
-        let arguments = arguments.into_iter().chain(course).chain(changes);
+        let arguments = arguments.into_iter().chain(options).chain(changes);
         arguments.collect::<Vec<_>>()
     };
     let began = Instant::now();
     expect(&looselink(&run(&whole)), 0, "");
     let time = began.elapsed();
-    let resume = [&["resume", path(&parts)], &course[..]].concat();
+    let resume = [&["resume", path(&parts)], &options[..]].concat();
     let next = || match parts.join("checkpoint.bin").exists() {
         true => resume.clone(),
         false => run(&parts),
@@ -136,11 +121,7 @@ fn interrupted(out: &Path) -> Output {
         assert!(began.elapsed() < Duration::from_secs(60), "no rows");
         std::thread::sleep(Duration::from_millis(1));
     }
-    let process = child.id().to_string();
-    Command::new("kill")
-        .args(["-INT", &process])
-        .status()
-        .unwrap();
+    interrupt(&child);
     child.wait_with_output().unwrap()
 }
 
