@@ -303,6 +303,19 @@ impl Spin {
         }
     }
 
+    /// d(omega)/dt \[rad/s2\].
+    pub fn acceleration(&self, q: &[f64], v: &[f64], a: &[f64]) -> f64 {
+        match (*self, self.direction(q, v)) {
+            (Spin::Angle { theta }, _) => a[theta],
+            (_, Some((d, d_dot))) => {
+                let square = d.dot(&d);
+                let stretching = 2.0 * d.dot(&d_dot) / square;
+                d.perp(&self.vector(a)) / square - stretching * d.perp(&d_dot) / square
+            }
+            _ => 0.0,
+        }
+    }
+
     /// Number of coordinates it depends on.
     #[inline]
     pub fn width(&self) -> usize {

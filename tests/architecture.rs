@@ -42,8 +42,8 @@ const LAYERS: [&str; 26] = [
 /// What writes the results of a simulation.
 const ABOVE: &str = "output";
 
-/// Crates that the solver is made of.
-const CRATES: [&str; 14] = [
+/// Crates that the solver is made of. winnow is compiled for toml in any case.
+const CRATES: [&str; 15] = [
     "cpu-time",
     "faer",
     "indexmap",
@@ -58,6 +58,7 @@ const CRATES: [&str; 14] = [
     "thiserror",
     "toml",
     "wildmatch",
+    "winnow",
 ];
 
 /// Folders with the files of the workspace; `fuzz` lies outside it.

@@ -7,7 +7,8 @@ use looselink::body::RigidBody;
 use looselink::scene::Scene;
 
 /// A chain of a rigid link, a flexible link and a rigid body under gravity, with every kind of joint in it: the first
-/// fixed to ground by a shared node, two links sharing a node, a constraint, and a second link on the same node.
+/// fixed to ground by a shared node, two links sharing a node, a constraint, and a second link on the same node. A point mass
+/// is a third body on that node, another hangs on an end of a link, a third one on a rigid body, by a constraint.
 const CHAIN: &str = r#"
 format = 1
 title = "a chain"
@@ -20,11 +21,17 @@ bodies.ground = { type = "ground", points.O = [0.1, 0.2] }
 bodies.upper = { type = "link", model = "rigid", length = 0.3, section = "bar", material = "steel" }
 bodies.lower = { type = "link", model = "flexible", elements = 3, length = 0.2, section = "bar", material = "steel" }
 bodies.side = { type = "link", model = "rigid", length = 0.1, section = "bar", material = "steel" }
-bodies.bob = { type = "rigid_body", mass = 0.4, inertia = 1e-3, points.top = [0.01, 0.05] }
+bodies.bob = { type = "rigid_body", mass = 0.4, inertia = 1e-3, points.top = [0.01, 0.05], points.low = [0.0, -0.05] }
+bodies.weight = { type = "point_mass", mass = 0.1 }
+bodies.tip = { type = "point_mass", mass = 0.2 }
+bodies.drop = { type = "point_mass", mass = 0.3 }
 joints.O = { type = "revolute", bearing = "ground.O", journal = "upper.start", model = "ideal" }
 joints.P = { type = "revolute", bearing = "lower.start", journal = "upper.end", model = "ideal" }
 joints.R = { type = "revolute", bearing = "upper.end", journal = "side.start", model = "ideal" }
 joints.Q = { type = "revolute", bearing = "lower.end", journal = "bob.top", model = "ideal" }
+joints.W = { type = "revolute", bearing = "upper.end", journal = "weight.center", model = "ideal" }
+joints.T = { type = "revolute", bearing = "tip.center", journal = "side.end", model = "ideal" }
+joints.D = { type = "revolute", bearing = "bob.low", journal = "drop.center", model = "ideal" }
 [initial.bodies]
 upper = { x = 0.25, y = 0.2, theta = 0.0, vx = 0.0, vy = 0.0, omega = 0.0 }
 lower = { x = 0.4877582561890373, y = 0.2479425538604203, theta = 0.5, vx = 0.0, vy = 0.0, omega = 0.0 }
@@ -102,7 +109,7 @@ fn forces_on_every_body_are_mass_times_acceleration() {
     let (run, report) = run_scene(&scene);
     check(&worst, &scene, &run);
     Rung::Balance
-        .asks("3-RRR (six scenes) and a chain of links: joint forces on every body against its inertia and weight, over the sum of forces + 1")
+        .asks("3-RRR (six scenes) and a chain of links, bodies and point masses: joint forces on every body against its inertia and weight, over the sum of forces + 1")
         .within(&worst,
             1e-12,
             "reactions come from a linear solve of well conditioned poses: rounding of the largest force",

@@ -11,6 +11,7 @@ mod deformed;
 mod disc;
 mod documents;
 mod drift;
+mod expressions;
 mod good_input;
 mod hostile_input;
 mod ideal;

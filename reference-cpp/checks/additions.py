@@ -2,59 +2,14 @@
 """Discs, rods, loose guides, Maxwell elements, piecewise linear loads, states at named points, and links that start stretched
 or bending, against closed forms, and scenes with them that must be refused:
 make && make build/libreference.so && python3 checks/additions.py"""
-import csv
 import math
-import pathlib
 import subprocess
 import sys
-import tempfile
 
 import numpy as np
 
-HERE = pathlib.Path(__file__).resolve().parent
-DRIVER = HERE.parent / "build/reference"
-SPACE = tempfile.TemporaryDirectory()
-FOLDER = pathlib.Path(SPACE.name)
-TIGHT = ["--relative", "1e-11", "--position", "1e-12", "--velocity", "1e-10"]
-failures = 0
-
-
-def scene(duration, interval, body, gravity=(0.0, 0.0), clearance=False, analysis="dynamic"):
-    onset = ", onset_tolerance = 1e-12" if clearance else ""
-    return (f'format = 1\ntitle = "check"\n'
-            f'simulation = {{ duration = {duration}, gravity = {list(gravity)}, analysis = "{analysis}" }}\n'
-            f'integrator = {{ method = "bathe", step = {interval}, newton_tolerance = 1e-10{onset} }}\n'
-            f'output = {{ interval = {interval}, channels = ["*"] }}\n{body}')
-
-
-def path_of(name, text):
-    path = FOLDER / f"{name}.toml"
-    path.write_text(text)
-    return path
-
-
-def run(name, text, options=()):
-    """Channels as arrays by name, and the onsets as a list of dictionaries."""
-    out, onsets = FOLDER / "out.csv", FOLDER / "onsets.csv"
-    result = subprocess.run([DRIVER, path_of(name, text), "--out", out, "--onsets", onsets, "--all", *TIGHT, *options],
-                            capture_output=True, text=True)
-    if result.returncode:
-        raise RuntimeError(name + ": " + result.stderr)
-    with open(out) as file:
-        names = file.readline().strip().split(",")
-        rows = np.loadtxt(file, delimiter=",", ndmin=2)
-    with open(onsets) as file:
-        events = [{k: v if k == "joint" else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
-    return dict(zip(names, rows.T)), events
-
-
-def expect(what, deviation, limit):
-    global failures
-    deviation = float(np.max(np.abs(deviation)))
-    good = deviation <= limit
-    failures += not good
-    print(f"{'ok    ' if good else 'WRONG '} {what}: {deviation:.1e} (at most {limit:.0e})")
-
+import driver
+from driver import FOLDER, HERE, expect, path_of, refused, run, scene
 
 # ---- disc: a pendulum that hangs at its rim ---------------------------------------------------------------------------
 
@@ -589,16 +544,12 @@ REFUSED = [
 ]
 for text, old, new, expected in REFUSED:
     assert old in text, old
-    result = subprocess.run([DRIVER, path_of("refused", text.replace(old, new, 1)), "--start"], capture_output=True, text=True)
-    message = result.stderr.strip().replace(str(FOLDER) + "/", "")
-    good = result.returncode == 1 and expected in message
-    failures += not good
-    print(f"{'ok    ' if good else 'WRONG '} {message or 'accepted: ' + new}")
+    refused([path_of("refused", text.replace(old, new, 1))], expected)
 (FOLDER / "refused.toml").unlink()
 
 # ---- derivatives of forces and rows -------------------------------------------------------------------------------------------------
 
 scenes = sorted(FOLDER.glob("*.toml"))
-failures += subprocess.run([sys.executable, HERE / "derivatives.py", *scenes]).returncode != 0
-print(f"{failures} failures")
-sys.exit(failures != 0)
+driver.failures += subprocess.run([sys.executable, HERE / "derivatives.py", *scenes]).returncode != 0
+print(f"{driver.failures} failures")
+sys.exit(driver.failures != 0)

@@ -14,6 +14,17 @@ struct Motion {
     }
 };
 
+// The angular velocity of an attachment and its rate.
+Dual<double, 1> turning(const Attachment &a, const Snapshot &s) {
+    std::array<Dual<double, 1>, attachment_size> q, v;
+    for (int i = 0; i < a.size; ++i) {
+        q[i].value = s.q[a.offset + i];
+        q[i].slope[0] = v[i].value = s.v[a.offset + i];
+        v[i].slope[0] = s.a[a.offset + i];
+    }
+    return spin(a, q.data(), v.data());
+}
+
 const double *part(const VectorXd &x, const Attachment &a) { return x.data() + a.offset; }
 
 void put(double *out, std::initializer_list<double> values) { std::copy(values.begin(), values.end(), out); }
@@ -119,10 +130,9 @@ void Channels::add_joint_kinematics(const std::string &prefix, int number) {
             });
     }
     if (joint.driven)
-        add(prefix, {"angle", "speed"}, [&joint, number](const Snapshot &s, double *out) {
-            const double speed = spin(joint.journal, part(s.q, joint.journal), part(s.v, joint.journal)) -
-                                 spin(joint.bearing, part(s.q, joint.bearing), part(s.v, joint.bearing));
-            put(out, {s.angles.joint[number], speed});
+        add(prefix, {"angle", "speed", "acceleration"}, [&joint, number](const Snapshot &s, double *out) {
+            const Dual<double, 1> speed = turning(joint.journal, s) - turning(joint.bearing, s);
+            put(out, {s.angles.joint[number], speed.value, speed.slope[0]});
         });
     if (joint.driven || joint.holds_angle)
         add(prefix, {"torque"}, [this, number](const Snapshot &s, double *out) {

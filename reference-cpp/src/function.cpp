@@ -60,6 +60,15 @@ Spline natural_spline(std::vector<double> t, std::vector<double> y) {
     return {std::move(t), std::move(y), std::move(c)};
 }
 
+// Beyond the end a parabola goes on.
+Prescribed Formula::at(double t) const {
+    const double inside = std::min(t, end), h = t - inside;
+    const std::vector<double> results = expression.at(inside);
+    auto of = [&](int i) { return results[static_cast<std::size_t>(i)]; };
+    const double r = of(rate), a = of(acceleration);
+    return {of(value) + h * (r + 0.5 * h * a), r + h * a, a};
+}
+
 Jet at(const TimeFunction &function, const Jet &t) {
     return std::visit(
         Overloaded{
@@ -81,6 +90,10 @@ Jet at(const TimeFunction &function, const Jet &t) {
                 return f.start + f.speed / f.duration * (0.5 * t * t + (cos(k * t) - 1.0) * (1.0 / (k * k)));
             },
             [&](const Spline &f) { return interpolate(f, t); },
+            [&](const Formula &f) { // t is the time itself, of rate 1
+                const Prescribed p = f.at(value_of(t));
+                return jet(p.value, p.rate, p.acceleration);
+            },
         },
         function);
 }
@@ -103,6 +116,10 @@ void add_breaks(const TimeFunction &function, std::vector<double> &times) {
                    [&](const SpinUp &f) { times.push_back(f.duration); },
                    [&](const PiecewiseLinear &f) { insert(f.t); },
                    [&](const Spline &f) { insert(f.t); },
+                   [&](const Formula &f) {
+                       insert(f.kinks);
+                       times.push_back(f.end);
+                   },
                },
                function);
 }

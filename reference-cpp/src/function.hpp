@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dual.hpp"
+#include "expression.hpp"
 
 // A quantity given at one instant, with its derivatives by time.
 struct Prescribed {
@@ -38,7 +39,17 @@ struct Spline { // natural cubic
 };
 Spline natural_spline(std::vector<double> t, std::vector<double> y);
 
-using TimeFunction = std::variant<Constant, Polynomial, Harmonic, Ramp, SmoothStep, PiecewiseLinear, SpinUp, Spline>;
+struct Formula { // an expression of the scene
+    Expression expression;
+    int value = 0, rate = 0, acceleration = 0; // places in it; the last two of a load are zero
+    std::vector<double> kinks;
+    double end = 0.0; // of the run; the expression need not have a value beyond
+
+    Prescribed at(double t) const;
+};
+
+using TimeFunction =
+    std::variant<Constant, Polynomial, Harmonic, Ramp, SmoothStep, PiecewiseLinear, SpinUp, Spline, Formula>;
 
 Jet at(const TimeFunction &function, const Jet &t);
 Prescribed evaluate(const TimeFunction &function, double t);

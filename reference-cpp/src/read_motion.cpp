@@ -26,6 +26,8 @@ std::vector<std::vector<double>> read_rows(const Value &value, std::size_t colum
 
 TimeFunction read_function(const Value &value, double duration) {
     if (value.is_number()) return Constant{as_number(value)};
+    if (value.kind == Value::string) return read_expression(value, duration, Use::load);
+    require(value.kind == Value::table, value.source, "must be a number, an expression in quotes or a table");
     enum class Type { polynomial, harmonic, ramp, smooth_step, piecewise, spin_up, table };
     Fields f(value);
     TimeFunction function;
@@ -66,6 +68,7 @@ TimeFunction read_function(const Value &value, double duration) {
 }
 
 TimeFunction read_motion(const Value &value, double duration) {
+    if (value.kind == Value::string) return read_expression(value, duration, Use::motion);
     TimeFunction function = read_function(value, duration);
     require(!std::holds_alternative<Ramp>(function), value.source, "a ramp cannot prescribe a motion, because its rate jumps");
     require(!std::holds_alternative<PiecewiseLinear>(function), value.source,

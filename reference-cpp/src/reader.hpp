@@ -53,6 +53,8 @@ JointDescription read_joint(const std::string &name, const Value &value, const S
 // A revolute joint whose sides both have a direction.
 int read_turning_joint(const Value &value, const Scene &scene, const Library &library);
 
+enum class Use { load, motion };
+TimeFunction read_expression(const Value &value, double duration, Use use);
 TimeFunction read_function(const Value &value, double duration);
 TimeFunction read_motion(const Value &value, double duration); // a function with a finite acceleration
 Path read_path(const Value &value, double duration);

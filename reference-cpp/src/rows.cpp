@@ -37,6 +37,7 @@ void System::add_constraints(const Scene &scene) {
         if (drive.y) add_row(place_constraint(point, 1, add_function(*drive.y)), drive.name + ".y", drive.source);
     }
     if (!driven_angles_) return;
+    for (const TimeFunction &function : scene.inverse_kinematics->path) add_breaks(function, breaks_);
     int given = static_cast<int>(functions_.size());
     for (int j : scene.inverse_kinematics->joints) {
         Joint &joint = joints_[j];

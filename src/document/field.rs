@@ -234,6 +234,11 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// True of text.
+    pub fn is_text(&self) -> bool {
+        matches!(self.node.value, Value::Text(_))
+    }
+
     /// True of a table.
     pub fn is_table(&self) -> bool {
         matches!(self.node.value, Value::Table(_))

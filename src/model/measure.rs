@@ -131,14 +131,16 @@ impl Model {
         })
     }
 
-    /// Angle (up to full turns) and speed of the second side of a joint relative to the first, if a motion prescribes them by a
-    /// constraint.
-    pub fn turned(&self, index: usize, at: &State) -> [f64; 2] {
+    /// Angle (up to full turns), speed and acceleration of the second side of a joint relative to the first, if a motion
+    /// prescribes them by a constraint.
+    pub fn turned(&self, index: usize, at: &State) -> [f64; 3] {
         let turned = self.joints[index].terms.turned;
-        turned.map_or([0.0; 2], |[first, second]| {
+        turned.map_or([0.0; 3], |[first, second]| {
             let (a, b) = (first.vector(&at.q), second.vector(&at.q));
             let speed = second.rate(&at.q, &at.v) - first.rate(&at.q, &at.v);
-            [a.perp(&b).atan2(a.dot(&b)), speed]
+            let [before, after] =
+                [first, second].map(|spin| spin.acceleration(&at.q, &at.v, &at.a));
+            [a.perp(&b).atan2(a.dot(&b)), speed, after - before]
         })
     }
 
@@ -169,8 +171,8 @@ impl Model {
         Some((gap, rate, at.z[i] > 0.0))
     }
 
-    /// Angle (up to full turns), speed and torque of an actuated joint.
-    pub fn actuator(&self, actuator: &Actuator, at: &State, work: &mut Work) -> [f64; 3] {
+    /// Angle (up to full turns), speed, acceleration and torque of an actuated joint.
+    pub fn actuator(&self, actuator: &Actuator, at: &State, work: &mut Work) -> [f64; 4] {
         let [bearing, journal] = actuator.bodies.map(|b| self.pose(b, at));
         let centre = actuator.centre.position(&at.q, actuator.centre.arm(&at.q));
         let mut torque = 0.0;
@@ -183,6 +185,7 @@ impl Model {
         [
             journal.position[2] - bearing.position[2],
             journal.velocity[2] - bearing.velocity[2],
+            journal.acceleration[2] - bearing.acceleration[2],
             torque,
         ]
     }

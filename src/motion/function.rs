@@ -1,6 +1,6 @@
 //! Scalar functions of time with exact first and second derivatives: prescribed coordinates, angles, loads.
 
-use super::{CubicSpline, line::quintic};
+use super::{CubicSpline, Expression, line::quintic};
 use std::f64::consts::TAU;
 
 /// A function of time.
@@ -37,6 +37,8 @@ pub enum Function {
     },
     /// A natural cubic spline through (t, value).
     Table(CubicSpline<1>),
+    /// A formula in t.
+    Expression(Expression),
     /// Straight lines between rows (t, value), two at least, constant before and after; its second derivative is left at zero.
     Piecewise(Vec<[f64; 2]>),
 }
@@ -126,6 +128,7 @@ impl Function {
                 ]
             }
             Function::Table(table) => table.derivatives(t).map(|[x]| x),
+            Function::Expression(expression) => expression.at(t),
             Function::Piecewise(rows) => {
                 let after = rows.partition_point(|[time, _]| *time <= t);
                 match rows.get(after.wrapping_sub(1)..=after) {

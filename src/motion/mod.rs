@@ -2,6 +2,7 @@
 
 mod circle;
 mod coordinates;
+mod expression;
 mod function;
 mod line;
 mod read_function;
@@ -9,6 +10,7 @@ mod read_path;
 mod table;
 
 pub use circle::Circle;
+pub use expression::Expression;
 pub use function::{Function, Step};
 pub use line::Line;
 pub use read_function::{FUNCTIONS, FunctionKind, Use, read_function};

@@ -1,6 +1,6 @@
-//! Functions of time: a number, or an inline table with a `type`.
+//! Functions of time: a number, a formula, or an inline table with a `type`.
 
-use super::{Function, Step};
+use super::{Expression, Function, Step, expression};
 use crate::document::{Field, Fields, Key, Kind, SceneError, Takes};
 
 /// What the function is for: motions must have an acceleration, loads need not.
@@ -85,22 +85,24 @@ static RAMP: FunctionKind = FunctionKind {
     name: "ramp",
     keys: &STEP,
     read: |table, purpose, _| {
-        refuse_kinks(table, purpose, "ramp", "use \"smooth_step\"")?;
+        refuse_kinks(&kind(table), purpose, "a ramp", "use \"smooth_step\"")?;
         Ok(Function::Ramp(step(table)?))
     },
 };
 
-/// Refuses a function whose rate jumps for a motion, which needs an acceleration.
-fn refuse_kinks(table: &Fields, purpose: Use, name: &str, instead: &str) -> Result<(), SceneError> {
+/// The value that says which kind a table is.
+fn kind<'a>(table: &Fields<'a>) -> Field<'a> {
+    table.optional("type").expect("a kind is named")
+}
+
+/// Refuses a function whose rate jumps for a motion, which needs an acceleration. `field` says that it is such a function.
+fn refuse_kinks(field: &Field, purpose: Use, shape: &str, instead: &str) -> Result<(), SceneError> {
     if purpose == Use::Load {
         return Ok(());
     }
-    let message = format!(
-        "`{}` cannot follow a {name} function: its speed would jump",
-        table.path()
-    );
-    let kind = table.optional("type").expect("a kind is named");
-    let error = kind.fault(message, "no acceleration");
+    let path = field.path.trim_end_matches(".type");
+    let message = format!("`{path}` cannot follow {shape}: its speed would jump");
+    let error = field.fault(message, "no acceleration");
     Err(error.with_help(instead))
 }
 
@@ -143,7 +145,7 @@ static PIECEWISE: FunctionKind = FunctionKind {
     name: "piecewise",
     keys: &[rows_key("s, value", "[t, value]")],
     read: |table, purpose, duration| {
-        refuse_kinks(table, purpose, "piecewise", "use \"table\"")?;
+        refuse_kinks(&kind(table), purpose, "straight lines", "use \"table\"")?;
         let rows = rows(&table.field("rows")?, duration)?;
         Ok(Function::Piecewise(rows))
     },
@@ -154,11 +156,50 @@ static PIECEWISE: FunctionKind = FunctionKind {
 /// # Errors
 /// The first fault found.
 pub fn read_function(field: &Field, purpose: Use, duration: f64) -> Result<Function, SceneError> {
+    if field.is_text() {
+        return read_expression(field, purpose, duration).map(Function::Expression);
+    }
     if !field.is_table() {
         return Ok(Function::Constant(field.number()?));
     }
     let (kind, table) = Kind::of(field, "function of time", &FUNCTIONS)?;
     (kind.read)(&table, purpose, duration)
+}
+
+/// Number of equal intervals at whose ends a formula is tried.
+const INTERVALS: u32 = 1000;
+
+/// Reads a formula, which must be finite throughout the duration, for a motion with its derivatives.
+fn read_expression(field: &Field, purpose: Use, duration: f64) -> Result<Expression, SceneError> {
+    let path = &field.path;
+    let expression = Expression::parse(field.text()?).map_err(|what| {
+        let message = format!("the formula of `{path}` cannot be read: {what}");
+        let known = expression::names().collect::<Vec<_>>().join(", ");
+        let error = field.fault(message, "not a formula");
+        error.with_help(format!("known: {known}"))
+    })?;
+    if let Some(name) = expression.kink() {
+        refuse_kinks(
+            field,
+            purpose,
+            &format!("`{name}`"),
+            "use functions without kinks",
+        )?;
+    }
+    let levels = match purpose {
+        Use::Motion => ["value", "rate", "acceleration"].as_slice(),
+        Use::Load => &["value"],
+    };
+    for k in 0..=INTERVALS {
+        let t = duration * f64::from(k) / f64::from(INTERVALS);
+        let values = expression.at(t);
+        let mut levels = levels.iter().zip(values);
+        if let Some((level, value)) = levels.find(|(_, value)| !value.is_finite()) {
+            let message = format!("the {level} of `{path}` is {value} at t = {t} s");
+            return Err(field.fault(message, "not finite"));
+        }
+    }
+    Ok(expression)
 }
 
 /// Rows of a table over time: times increase and cover the duration.

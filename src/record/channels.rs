@@ -41,9 +41,18 @@ const GAP: &Quantities = &[
     ("eccentricity_rate", "m/s"),
     ("contact", "1"),
 ];
-const TURNED: &Quantities = &[("angle", "rad"), ("speed", "rad/s")];
+const TURNED: &Quantities = &[
+    ("angle", "rad"),
+    ("speed", "rad/s"),
+    ("acceleration", "rad/s2"),
+];
 const TRAVEL: &Quantities = &[("travel", "m"), ("travel_rate", "m/s")];
-const ACTUATOR: &Quantities = &[("angle", "rad"), ("speed", "rad/s"), ("torque", "N m")];
+const ACTUATOR: &Quantities = &[
+    ("angle", "rad"),
+    ("speed", "rad/s"),
+    ("acceleration", "rad/s2"),
+    ("torque", "N m"),
+];
 
 /// How an energy is read from a ledger.
 type Term = fn(&Ledger) -> f64;

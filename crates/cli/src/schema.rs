@@ -30,7 +30,11 @@ fn schema(registry: &Registry) -> Value {
     scene["title"] = json!("A scene of Looselink");
     scene["$defs"] = json!({
         "path": language.any("path"),
-        "function": { "anyOf": [{ "type": "number" }, language.any("function of time")] },
+        "function": { "anyOf": [
+            { "type": "number" },
+            { "type": "string" },
+            language.any("function of time"),
+        ] },
     });
     scene
 }

@@ -118,3 +118,49 @@ fn what_has_no_modes_is_refused() {
     );
     refused(&["nowhere.toml"], 2, "nowhere.toml");
 }
+
+/// A free bar that is let go bent vibrates at its first bending frequency, the slowest that is not a free motion: the largest
+/// amplitude of `plot --spectrum` is that of `modes`.
+#[test]
+fn the_spectrum_of_a_motion_has_its_peak_at_a_mode() {
+    let still =
+        "initial.bodies.bar={x=0.0,y=0.0,theta=0.0,vx=0.0,vy=0.0,omega=0.0,bending_rate=4.0}";
+    let change = ["--set", "simulation.gravity=[0.0,0.0]", "--set", still];
+    let scene = ["scenes/ringing-bar.toml", "--json"];
+    let output = looselink(&[&["modes"], &scene[..], &change].concat());
+    let modes: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let frequencies = modes["modes"].as_array().unwrap().iter();
+    let mut frequencies = frequencies.filter_map(|mode| mode["frequency"].as_f64());
+    let frequency = frequencies.find(|f| *f > 1.0).unwrap();
+
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let long = [
+        "--set",
+        "simulation.duration=0.2",
+        "--set",
+        "integrator.step=2e-5",
+    ];
+    let run = looselink(
+        &[
+            &["run", scene[0], "--out", out, "--force"],
+            &change[..],
+            &long,
+        ]
+        .concat(),
+    );
+    expect(&run, 0, "");
+    let figure = folder.path().join("spectrum.svg");
+    let channel = [
+        "--spectrum",
+        "points.bar.middle.y",
+        "-o",
+        figure.to_str().unwrap(),
+    ];
+    expect(&looselink(&[&["plot", out], &channel[..]].concat()), 0, "");
+    let figure = read(folder.path(), "spectrum.svg");
+    let (_, peak) = figure.split_once("largest at ").unwrap();
+    let peak: f64 = peak.split(' ').next().unwrap().parse().unwrap();
+    // the peak is one of the multiples of 1/(0.2 s), the nearest one
+    assert!((peak - frequency).abs() <= 2.5, "{peak} Hz, {frequency} Hz");
+}

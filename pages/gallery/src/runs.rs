@@ -48,7 +48,7 @@ impl Show {
 }
 
 /// The first entry whose name begins that of the scene counts.
-const SHOWN: [Show; 31] = [
+const SHOWN: [Show; 32] = [
     show("3rrr/case1", "A1.torque", "Torque of motor A1").cut(0.5),
     show("3rrr/", "error.x", "Error of the platform, x").cut(0.5),
     show("ablation/", "rocker.alpha", "Acceleration of the rocker"),
@@ -74,6 +74,7 @@ const SHOWN: [Show; 31] = [
     )
     .drawn(0.08),
     show("frame", "load.theta", "Angle of the body"),
+    show("harmonic-slider", "main.torque", "Torque of the motor").drawn(0.4),
     show(
         "hard/slope-on",
         "weld.torque",

@@ -15,7 +15,7 @@ pub const CLASSES: [(&str, &[&str]); KINDS] = [
     ("slopes of links", &["slope_x", "slope_y"]),
     (ANGLES, &["theta", "angle"]),
     ("angular velocities", &["omega", "speed"]),
-    ("angular accelerations", &["alpha"]),
+    ("angular accelerations", &["alpha", "acceleration"]),
     ("strains of links", &["strain"]),
     ("eccentricities of joints", &["ex", "ey", "eccentricity", "penetration"]),
     ("rates of eccentricities", &["ex_rate", "ey_rate", "eccentricity_rate"]),

@@ -28,11 +28,18 @@ pub fn panel(times: &[f64], channel: &StoredChannel) -> Result<Panel, CommandFai
         Axis::new("Frequency", "Hz", 1.0),
         axis(&label, channel).log(),
     );
-    panel.note = format!("Hann window over {count} rows, mean removed, resolution {step:.4} Hz");
     // the mean is gone
+    let (frequencies, amplitudes) = (&frequencies[1..], &amplitudes[1..]);
+    let peaks = frequencies.iter().zip(amplitudes);
+    let peak = peaks
+        .max_by(|a, b| a.1.total_cmp(b.1))
+        .map_or(0.0, |p| *p.0);
+    panel.note = format!(
+        "Hann window over {count} rows, mean removed, resolution {step:.4} Hz; largest at {peak:.4} Hz"
+    );
     panel
         .marks
-        .push(Mark::series("", BLUE, &frequencies[1..], &amplitudes[1..]));
+        .push(Mark::series("", BLUE, frequencies, amplitudes));
     Ok(panel)
 }
 
