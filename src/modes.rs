@@ -62,7 +62,9 @@ pub struct Modes {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ModesError {
     /// Nothing can move.
-    #[error("constraints and drives leave nothing that can move")]
+    #[error(
+        "constraints and drives leave nothing that can move: links that bend have `model = \"flexible\"`"
+    )]
     Rigid,
     /// The constraints lose rank; the one that depends most on the others.
     #[error("the pose is singular: {0} depends on the other constraints")]

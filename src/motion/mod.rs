@@ -5,6 +5,7 @@ mod coordinates;
 mod expression;
 mod function;
 mod line;
+mod parse_expression;
 mod read_function;
 mod read_path;
 mod table;

@@ -1,6 +1,6 @@
 //! Functions of time: a number, a formula, or an inline table with a `type`.
 
-use super::{Expression, Function, Step, expression};
+use super::{Expression, Function, Step, parse_expression};
 use crate::document::{Field, Fields, Key, Kind, SceneError, Takes};
 
 /// What the function is for: motions must have an acceleration, loads need not.
@@ -174,7 +174,7 @@ fn read_expression(field: &Field, purpose: Use, duration: f64) -> Result<Express
     let path = &field.path;
     let expression = Expression::parse(field.text()?).map_err(|what| {
         let message = format!("the formula of `{path}` cannot be read: {what}");
-        let known = expression::names().collect::<Vec<_>>().join(", ");
+        let known = parse_expression::names().collect::<Vec<_>>().join(", ");
         let error = field.fault(message, "not a formula");
         error.with_help(format!("known: {known}"))
     })?;
@@ -183,7 +183,7 @@ fn read_expression(field: &Field, purpose: Use, duration: f64) -> Result<Express
             field,
             purpose,
             &format!("`{name}`"),
-            "use functions without kinks",
+            "a motion needs an acceleration at all times: use functions without kinks, or \"smooth_step\"",
         )?;
     }
     let levels = match purpose {

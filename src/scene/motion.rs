@@ -52,7 +52,7 @@ static ANGLE: DriveKind = DriveKind {
     name: "angle",
     keys: &[
         Key::name_in("joint", "joints", "the name of a revolute joint"),
-        Key::function("angle", "rad", "the angle (no ramp)"),
+        Key::function("angle", "rad", "the angle, without kinks"),
     ],
     read: |table, names, drives| {
         let name = table.field("joint")?;
@@ -70,8 +70,8 @@ static POINT: DriveKind = DriveKind {
     name: "point",
     keys: &[
         Key::point("point", "the point"),
-        Key::function("x", "m", "x (no ramp)").or("free"),
-        Key::function("y", "m", "y (no ramp)").or("free; one of the two is needed"),
+        Key::function("x", "m", "x, without kinks").or("free"),
+        Key::function("y", "m", "y, without kinks").or("free; one of the two is needed"),
     ],
     read: |table, names, drives| {
         let point_field = table.field("point")?;

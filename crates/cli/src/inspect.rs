@@ -4,7 +4,7 @@ use super::failure::CommandFailure;
 use super::{SceneArguments, print};
 use clap::Args;
 use looselink::output::json;
-use looselink::scene::{Analysis, Pace, Scene};
+use looselink::scene::{Analysis, MotionKind, Pace, Scene};
 use looselink::simulate::{Inspection, Simulation};
 use numbers::{exact, number};
 
@@ -73,6 +73,7 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
     let channels = channels.map(|c| format!("{} [{}]", c.name, c.unit));
     for (title, entries) in [
         ("Masses and poses at the start", &bodies(scene, simulation)),
+        ("Drives at the start", &drives(scene)),
         ("Joints with clearance", &clearances(scene)),
         ("Assumptions and notes", &inspection.assumptions),
         ("Unknown coordinates", &inspection.coordinates),
@@ -106,6 +107,44 @@ fn bodies(scene: &Scene, simulation: &Simulation) -> Vec<String> {
         ));
     }
     lines.push(format!("{:<20}{} kg", "all bodies", number(total, 4)));
+    lines
+}
+
+/// What drives prescribe at t = 0, in degrees, too: a motion in degrees instead of radians is seen at once.
+fn drives(scene: &Scene) -> Vec<String> {
+    let mut lines = Vec::new();
+    for motion in &scene.motions {
+        match &motion.kind {
+            MotionKind::Angle { joint, angle } => {
+                let [angle, speed, _] = angle.at(0.0);
+                lines.push(format!(
+                    "{:<20}turns {}: angle {} rad, {} degrees, speed {} rad/s",
+                    motion.name,
+                    scene.joints[*joint].name,
+                    number(angle, 4),
+                    number(angle.to_degrees(), 4),
+                    number(speed, 4)
+                ));
+            }
+            MotionKind::Point { point, coordinates } => {
+                let body = &scene.bodies[point.body];
+                let name = &body.kind.points()[point.point].name;
+                for (axis, coordinate) in ["x", "y"].iter().zip(coordinates) {
+                    let Some(coordinate) = coordinate else {
+                        continue;
+                    };
+                    let [value, speed, _] = coordinate.at(0.0);
+                    lines.push(format!(
+                        "{:<20}moves {}.{name}: {axis} = {} m, speed {} m/s",
+                        motion.name,
+                        body.name,
+                        number(value, 4),
+                        number(speed, 4)
+                    ));
+                }
+            }
+        }
+    }
     lines
 }
 

@@ -1,4 +1,4 @@
-//! How far a run is: a bar on a terminal, a line now and then elsewhere.
+//! How far a run is: a bar on a terminal, a line at every tenth elsewhere and when none has come for a while.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use looselink::simulate::{Notice, Progress};
@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 const FINE: f64 = 1000.0;
 /// Lines of a whole run elsewhere.
 const LINES: f64 = 10.0;
+/// The longest time without a line there.
+const SILENCE: Duration = Duration::from_secs(10);
 
 /// Where progress is shown.
 pub enum Display {
@@ -17,8 +19,8 @@ pub enum Display {
     /// On a terminal.
     Bar(ProgressBar, Start),
     /// On standard error that is no terminal; the next line is due at this part of the duration, which is
-    /// known from the first step on.
-    Lines(Option<f64>, Start),
+    /// known from the first step on, or a while after the last one.
+    Lines(Option<f64>, Instant, Start),
 }
 
 /// When a run began or was resumed: on the clock, and in simulated time \[s\].
@@ -32,7 +34,7 @@ impl Display {
             return Display::None;
         }
         if !std::io::stderr().is_terminal() {
-            return Display::Lines(None, start);
+            return Display::Lines(None, Instant::now(), start);
         }
         let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}")
             .expect("the template is valid");
@@ -47,10 +49,13 @@ impl Display {
                 bar.set_position((part * FINE) as u64);
                 bar.set_message(message(progress, started));
             }
-            Display::Lines(next, started) if next.is_none_or(|next| part >= next) => {
+            Display::Lines(next, last, started)
+                if next.is_none_or(|next| part >= next) || (tick && last.elapsed() > SILENCE) =>
+            {
                 let following = ((part * LINES).floor() + 1.0) / LINES;
                 if next.replace(following).is_some() && part < 1.0 {
                     say(&message(progress, started));
+                    *last = Instant::now();
                 }
             }
             _ => {}

@@ -159,7 +159,7 @@ fn the_spectrum_of_a_motion_has_its_peak_at_a_mode() {
     ];
     expect(&looselink(&[&["plot", out], &channel[..]].concat()), 0, "");
     let figure = read(folder.path(), "spectrum.svg");
-    let (_, peak) = figure.split_once("largest at ").unwrap();
+    let (_, peak) = figure.split_once("largest peak at ").unwrap();
     let peak: f64 = peak.split(' ').next().unwrap().parse().unwrap();
     // the peak is one of the multiples of 1/(0.2 s), the nearest one
     assert!((peak - frequency).abs() <= 2.5, "{peak} Hz, {frequency} Hz");

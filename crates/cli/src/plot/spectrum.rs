@@ -30,17 +30,26 @@ pub fn panel(times: &[f64], channel: &StoredChannel) -> Result<Panel, CommandFai
     );
     // the mean is gone
     let (frequencies, amplitudes) = (&frequencies[1..], &amplitudes[1..]);
-    let peaks = frequencies.iter().zip(amplitudes);
-    let peak = peaks
-        .max_by(|a, b| a.1.total_cmp(b.1))
-        .map_or(0.0, |p| *p.0);
+    let highest = 0.5 / interval;
+    let peak = peak(frequencies, amplitudes);
+    let peak = peak.map_or(String::new(), |f| format!(", largest peak at {f:.4} Hz"));
     panel.note = format!(
-        "Hann window over {count} rows, mean removed, resolution {step:.4} Hz; largest at {peak:.4} Hz"
+        "Hann window over {count} rows, mean removed, frequencies {step:.4} Hz apart{peak}; \
+         vibrations faster than {highest:.4} Hz, half the rate of the rows, appear folded below it"
     );
     panel
         .marks
         .push(Mark::series("", BLUE, frequencies, amplitudes));
     Ok(panel)
+}
+
+/// Frequency of the largest amplitude that is larger than its neighbours: a slow motion falls off from the lowest frequency on and
+/// has no peak.
+fn peak(frequencies: &[f64], amplitudes: &[f64]) -> Option<f64> {
+    let peaks = (1..amplitudes.len().saturating_sub(1))
+        .filter(|&k| amplitudes[k] > amplitudes[k - 1] && amplitudes[k] > amplitudes[k + 1]);
+    let largest = peaks.max_by(|&a, &b| amplitudes[a].total_cmp(&amplitudes[b]));
+    largest.map(|k| frequencies[k])
 }
 
 /// Amplitudes at multiples of 1/(n dt): with the window w and its sum W, 2 |sum w_k (x_k - mean) exp(-i omega t_k)|/W, which is A
