@@ -382,3 +382,37 @@ pub struct SpinDerivatives {
     /// d(b_i)/d(q_j).
     pub b_q: [[f64; 4]; 4],
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Along q + v t + a t^2/2, on which chords and slopes turn and stretch.
+    #[test]
+    fn the_acceleration_of_a_spin_is_the_derivative_of_its_rate() {
+        let (q, v, a) = (
+            [0.3, -0.2, 0.9, 0.4],
+            [0.5, 0.1, -0.6, 0.8],
+            [-0.4, 0.7, 1.1, 0.2],
+        );
+        let spins = [
+            Spin::Fixed,
+            Spin::Angle { theta: 2 },
+            Spin::Chord { from: 0, to: 2 },
+            Spin::Slope { x: 2 },
+        ];
+        for spin in spins {
+            let rate = |t: f64| {
+                let moved: [f64; 4] = std::array::from_fn(|i| q[i] + v[i] * t + a[i] * t * t / 2.0);
+                let velocity: [f64; 4] = std::array::from_fn(|i| v[i] + a[i] * t);
+                spin.rate(&moved, &velocity)
+            };
+            let difference = (rate(1e-5) - rate(-1e-5)) / 2e-5;
+            // rounding 1e-16/1e-5, and 1e-10 times a third derivative
+            assert!(
+                (spin.acceleration(&q, &v, &a) - difference).abs() < 1e-8,
+                "{spin:?}"
+            );
+        }
+    }
+}

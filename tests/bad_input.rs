@@ -206,6 +206,80 @@ fn numbers_that_are_not_physical() {
 }
 
 #[test]
+fn functions_of_time() {
+    let circle = "{ type = \"circle\", center = [0.0, 0.0], radius = 0.1, frequency = 1.0, phase = 0.0, theta = 0.0 }";
+    let motion = |x: &str, message: &str, underlined: &str| {
+        let path = format!("{{ type = \"coordinates\", x = {x}, y = 0.0, theta = 0.0 }}");
+        check(&fault(&edited(circle, &path), &[]), x, message, underlined);
+    };
+    let text = |text: &str, message: &str| {
+        let text = format!("\"{text}\"");
+        motion(&text, message, &text);
+    };
+    text(
+        "sin(t",
+        "the expression of `drives.input.path.x` cannot be read: a `(` is not closed",
+    );
+    text("sine(t)", "`sine` is not known; did you mean `sin`?");
+    text("", "`drives.input.path.x` must not be empty");
+    text(
+        "0.1 * abs(t)",
+        "`drives.input.path.x` cannot contain `abs`: its speed would jump",
+    );
+    text("t^max(2, 3)", "cannot contain `max`");
+    text(
+        "sqrt(t)",
+        "the rate of `drives.input.path.x` is inf at t = 0 s",
+    );
+    text(
+        "t^1.5",
+        "the acceleration of `drives.input.path.x` is inf at t = 0 s",
+    );
+    // 0.9 s of 3 s is one of the times
+    text(
+        "sqrt((t - 0.9)^2 - 1e-9)",
+        "the value of `drives.input.path.x` is NaN at t = 0.9 s",
+    );
+    text("1 / (3 - t)", "is inf at t = 3 s");
+    let ramp = "{ type = \"ramp\", from = 0, to = 1, start = 0, duration = 1 }";
+    motion(
+        ramp,
+        "`drives.input.path.x` cannot follow a ramp: its speed would jump",
+        "\"ramp\"",
+    );
+    let lines = "{ type = \"piecewise\", rows = [[0, 0], [3, 1]] }";
+    motion(
+        lines,
+        "`drives.input.path.x` cannot follow straight lines",
+        "\"piecewise\"",
+    );
+
+    // of a load the value alone must be finite
+    let load = |x: &str| {
+        let force =
+            "[forces.push]\ntype = \"force\"\npoint = \"platform.C1\"\nframe = \"ground\"\ny = 0.0";
+        edited("[initial]", &format!("{force}\nx = {x}\n[initial]"))
+    };
+    for x in [
+        ramp,
+        lines,
+        "\"sqrt(t)\"",
+        "\"max(0, sin(t))\"",
+        "\"sqrt(3 - t)\"",
+    ] {
+        let scene = Scene::parse("scene.toml", &load(x), &[]);
+        assert!(scene.is_ok(), "{x}: {}", scene.unwrap_err());
+    }
+    let fault = fault(&load("\"log(t)\""), &[]);
+    check(
+        &fault,
+        "log(t)",
+        "the value of `forces.push.x` is -inf at t = 0 s",
+        "\"log(t)\"",
+    );
+}
+
+#[test]
 fn combinations_that_make_no_sense() {
     let circle = "{ type = \"circle\", center = [0.0, 0.0], radius = 0.1, frequency = 1.0, phase = 0.0, theta = 0.0 }";
     let platform = "plate = { shape = \"equilateral_triangle\", circumradius = 0.112, thickness = 0.01, material = \"aluminium\" }";

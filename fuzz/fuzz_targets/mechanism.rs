@@ -3,7 +3,8 @@
 
 use fuzz::{Pool, mutate, scene, scenes, show};
 use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target};
-use looselink::scene::{BodyKind, LinkModel, Scene};
+use looselink::body::FlexibleLink;
+use looselink::scene::Scene;
 use looselink::simulate::Simulation;
 use std::sync::LazyLock;
 
@@ -34,11 +35,9 @@ fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
 });
 
 fn is_small(scene: &Scene) -> bool {
-    scene.bodies.iter().all(|body| match &body.kind {
-        BodyKind::Link(link) => match link.model {
-            LinkModel::Flexible { elements, .. } => elements <= ELEMENTS,
-            LinkModel::Rigid => true,
-        },
-        _ => true,
-    })
+    let links = scene
+        .bodies
+        .iter()
+        .filter_map(|body| body.kind.get::<FlexibleLink>());
+    links.map(|link| link.elements).all(|n| n <= ELEMENTS)
 }

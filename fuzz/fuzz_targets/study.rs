@@ -3,9 +3,9 @@
 
 use fuzz::{Pool, is_toml, mutate, show, studies};
 use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target};
-use studies::precision::{Study, StudyError};
 use std::path::Path;
 use std::sync::LazyLock;
+use studies::precision::{Study, StudyError};
 
 static POOL: LazyLock<Pool> = LazyLock::new(studies);
 

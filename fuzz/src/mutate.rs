@@ -5,7 +5,7 @@ use crate::{OVERRIDE, Pool};
 use libfuzzer_sys::fuzzer_mutate;
 
 /// Values on the edges of what numbers and types allow.
-const VALUES: [&str; 36] = [
+const VALUES: [&str; 42] = [
     "0",
     "-0.0",
     "1",
@@ -42,6 +42,12 @@ const VALUES: [&str; 36] = [
     "\"é\"",
     "\"*\"",
     "[\"*\"]",
+    "\"0.1 * sin(5 * t)\"",
+    "\"t^-2\"",
+    "\"1e308 * exp(t)\"",
+    "\"((((t\"",
+    "\"2·t\"",
+    "\"max(0, log(t))\"",
 ];
 
 /// Sebastiano Vigna's splitmix64.

@@ -8,9 +8,13 @@ type Jet = [f64; 3];
 
 /// A formula in t.
 #[derive(Debug, Clone)]
-pub struct Expression(pub(super) Formula);
+pub struct Expression {
+    pub(super) formula: Formula,
+    /// The name of a function in it whose rate can jump.
+    pub(super) kink: Option<&'static str>,
+}
 
-/// A node of the tree that a formula is.
+/// A node of the tree that a formula is. What does not depend on t is a number.
 #[derive(Debug, Clone)]
 pub(super) enum Formula {
     Number(f64),
@@ -30,7 +34,6 @@ pub(super) struct Univariate {
     pub name: &'static str,
     /// Value, first and second derivative by the argument.
     at: fn(f64) -> Jet,
-    has_kink: bool,
 }
 
 /// An operator, or a function of two arguments.
@@ -38,62 +41,52 @@ pub(super) struct Univariate {
 pub(super) struct Bivariate {
     pub name: &'static str,
     at: fn(Jet, Jet) -> Jet,
-    has_kink: bool,
 }
 
-const fn smooth(name: &'static str, at: fn(f64) -> Jet) -> Univariate {
-    Univariate {
-        name,
-        at,
-        has_kink: false,
-    }
+/// Functions whose rate can jump.
+pub(super) static KINKED: [&str; 3] = ["abs", "min", "max"];
+
+const fn of_one(name: &'static str, at: fn(f64) -> Jet) -> Univariate {
+    Univariate { name, at }
+}
+
+const fn of_two(name: &'static str, at: fn(Jet, Jet) -> Jet) -> Bivariate {
+    Bivariate { name, at }
 }
 
 pub(super) static UNIVARIATE: [Univariate; 13] = [
-    smooth("sin", |u| [u.sin(), u.cos(), -u.sin()]),
-    smooth("cos", |u| [u.cos(), -u.sin(), -u.cos()]),
-    smooth("tan", |u| {
+    of_one("sin", |u| [u.sin(), u.cos(), -u.sin()]),
+    of_one("cos", |u| [u.cos(), -u.sin(), -u.cos()]),
+    of_one("tan", |u| {
         let (tan, slope) = (u.tan(), 1.0 + u.tan() * u.tan());
         [tan, slope, 2.0 * tan * slope]
     }),
-    smooth("asin", |u| {
+    of_one("asin", |u| {
         let slope = 1.0 / ((1.0 - u) * (1.0 + u)).sqrt();
         [u.asin(), slope, u * slope * slope * slope]
     }),
-    smooth("acos", |u| {
+    of_one("acos", |u| {
         let slope = -1.0 / ((1.0 - u) * (1.0 + u)).sqrt();
         [u.acos(), slope, u * slope * slope * slope]
     }),
-    smooth("atan", |u| {
+    of_one("atan", |u| {
         let slope = 1.0 / (1.0 + u * u);
         [u.atan(), slope, -2.0 * u * slope * slope]
     }),
-    smooth("sinh", |u| [u.sinh(), u.cosh(), u.sinh()]),
-    smooth("cosh", |u| [u.cosh(), u.sinh(), u.cosh()]),
-    smooth("tanh", |u| {
+    of_one("sinh", |u| [u.sinh(), u.cosh(), u.sinh()]),
+    of_one("cosh", |u| [u.cosh(), u.sinh(), u.cosh()]),
+    of_one("tanh", |u| {
         let slope = 1.0 / (u.cosh() * u.cosh());
         [u.tanh(), slope, -2.0 * u.tanh() * slope]
     }),
-    smooth("exp", exponential),
-    smooth("log", logarithm),
-    smooth("sqrt", |u| power(u, 0.5)),
-    Univariate {
-        name: "abs",
-        at: |u| [u.abs(), u.signum(), 0.0],
-        has_kink: true,
-    },
+    of_one("exp", exponential),
+    of_one("log", logarithm),
+    of_one("sqrt", |u| power(u, 0.5)),
+    of_one("abs", |u| [u.abs(), u.signum(), 0.0]),
 ];
 
-const fn operator(name: &'static str, at: fn(Jet, Jet) -> Jet) -> Bivariate {
-    Bivariate {
-        name,
-        at,
-        has_kink: false,
-    }
-}
-
 pub(super) static BIVARIATE: [Bivariate; 3] = [
-    operator("atan2", |y, x| {
+    of_two("atan2", |y, x| {
         let square = x[0] * x[0] + y[0] * y[0];
         let rate = (x[0] * y[1] - y[0] * x[1]) / square;
         let turning = x[0] * y[2] - y[0] * x[2];
@@ -104,31 +97,24 @@ pub(super) static BIVARIATE: [Bivariate; 3] = [
             (turning - 2.0 * stretching * rate) / square,
         ]
     }),
-    Bivariate {
-        name: "min",
-        at: |a, b| match a[0].partial_cmp(&b[0]) {
-            Some(Less | Equal) => a,
-            Some(Greater) => b,
-            None => [f64::NAN; 3],
-        },
-        has_kink: true,
-    },
-    Bivariate {
-        name: "max",
-        at: |a, b| match a[0].partial_cmp(&b[0]) {
-            Some(Greater | Equal) => a,
-            Some(Less) => b,
-            None => [f64::NAN; 3],
-        },
-        has_kink: true,
-    },
+    // neither hides what is not a number
+    of_two("min", |a, b| match a[0].partial_cmp(&b[0]) {
+        Some(Less | Equal) => a,
+        Some(Greater) => b,
+        None => [f64::NAN; 3],
+    }),
+    of_two("max", |a, b| match a[0].partial_cmp(&b[0]) {
+        Some(Greater | Equal) => a,
+        Some(Less) => b,
+        None => [f64::NAN; 3],
+    }),
 ];
 
-pub(super) static SUM: Bivariate = operator("+", |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
+pub(super) static SUM: Bivariate = of_two("+", |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
 pub(super) static DIFFERENCE: Bivariate =
-    operator("-", |a, b| [a[0] - b[0], a[1] - b[1], a[2] - b[2]]);
-pub(super) static PRODUCT: Bivariate = operator("*", product);
-pub(super) static QUOTIENT: Bivariate = operator("/", |a, b| {
+    of_two("-", |a, b| [a[0] - b[0], a[1] - b[1], a[2] - b[2]]);
+pub(super) static PRODUCT: Bivariate = of_two("*", product);
+pub(super) static QUOTIENT: Bivariate = of_two("/", |a, b| {
     let value = a[0] / b[0];
     let rate = (a[1] - value * b[1]) / b[0];
     [
@@ -138,8 +124,9 @@ pub(super) static QUOTIENT: Bivariate = operator("/", |a, b| {
     ]
 });
 /// u^v = exp(v log u), for exponents that change.
-pub(super) static POWER: Bivariate = operator("^", |u, v| {
-    chain(exponential, product(v, chain(logarithm, u)))
+pub(super) static POWER: Bivariate = of_two("^", |u, v| match u[0] > 0.0 {
+    true => chain(exponential, product(v, chain(logarithm, u))),
+    false => [f64::NAN; 3],
 });
 
 fn product(a: Jet, b: Jet) -> Jet {
@@ -171,29 +158,21 @@ fn power(u: f64, n: f64) -> Jet {
     ]
 }
 
-/// f(u(t)). A constant u has no rate, even where f has an infinite one.
+/// f(u(t)).
 fn chain(f: impl Fn(f64) -> Jet, u: Jet) -> Jet {
     let [value, slope, curvature] = f(u[0]);
-    match u {
-        [_, 0.0, 0.0] => [value, 0.0, 0.0],
-        _ => [value, slope * u[1], curvature * u[1] * u[1] + slope * u[2]],
-    }
+    [value, slope * u[1], curvature * u[1] * u[1] + slope * u[2]]
 }
 
 impl Expression {
     /// Value, first and second derivative at time t \[s\].
     pub fn at(&self, t: f64) -> [f64; 3] {
-        self.0.at(t)
-    }
-
-    /// The name of a function in it whose rate can jump.
-    pub fn kink(&self) -> Option<&'static str> {
-        self.0.kink()
+        self.formula.at(t)
     }
 }
 
 impl Formula {
-    pub fn at(&self, t: f64) -> Jet {
+    fn at(&self, t: f64) -> Jet {
         match self {
             Formula::Number(value) => [*value, 0.0, 0.0],
             Formula::Time => [t, 1.0, 0.0],
@@ -203,24 +182,30 @@ impl Formula {
         }
     }
 
-    fn kink(&self) -> Option<&'static str> {
-        match self {
-            Formula::Number(_) | Formula::Time => None,
-            Formula::Applied(f, u) => u.kink().or(f.has_kink.then_some(f.name)),
-            Formula::Power(u, _) => u.kink(),
-            Formula::Joined(f, pair) => {
-                let mut kinks = pair.iter().filter_map(Formula::kink);
-                kinks.next().or(f.has_kink.then_some(f.name))
-            }
+    /// f(u).
+    pub fn applied(f: &'static Univariate, u: Formula) -> Formula {
+        match u {
+            Formula::Number(u) => Formula::Number((f.at)(u)[0]),
+            u => Formula::Applied(f, Box::new(u)),
         }
     }
 
-    pub fn is_constant(&self) -> bool {
-        match self {
-            Formula::Number(_) => true,
-            Formula::Time => false,
-            Formula::Applied(_, u) | Formula::Power(u, _) => u.is_constant(),
-            Formula::Joined(_, pair) => pair.iter().all(Formula::is_constant),
+    /// f(a, b).
+    pub fn joined(f: &'static Bivariate, a: Formula, b: Formula) -> Formula {
+        match (a, b) {
+            (Formula::Number(a), Formula::Number(b)) => {
+                Formula::Number((f.at)([a, 0.0, 0.0], [b, 0.0, 0.0])[0])
+            }
+            (a, b) => Formula::Joined(f, Box::new([a, b])),
+        }
+    }
+
+    /// base^exponent.
+    pub fn raised(base: Formula, exponent: Formula) -> Formula {
+        match (base, exponent) {
+            (Formula::Number(u), Formula::Number(n)) => Formula::Number(u.powf(n)),
+            (u, Formula::Number(n)) => Formula::Power(Box::new(u), n),
+            (u, v) => Formula::joined(&POWER, u, v),
         }
     }
 }
@@ -242,7 +227,7 @@ mod tests {
             "t^3 - 2 * t / (1 + t) + 4 ^ t",
             "(1 + t^2) ** (sin(t) - 0.3)",
             "atan2(t^2, cos(3 * t))",
-            "min(t, 10) * max(t^3, -4)",
+            "min(t, 10) * max(t^3, -4) + min(9, t) * max(-1, t^2)",
             "-(exp(-t) / sqrt(1 + t))^-2.5",
         ];
         for text in formulas.chain(others.map(str::to_owned)) {
@@ -260,18 +245,30 @@ mod tests {
     }
 
     #[test]
-    fn powers_of_zero_are_finite() {
+    fn derivatives_are_finite_where_those_of_all_operations_are() {
         for (text, expected) in [
             ("t", [0.0, 1.0, 0.0]),
             ("t^1", [0.0, 1.0, 0.0]),
             ("t^2", [0.0, 0.0, 2.0]),
             ("t^0", [1.0, 0.0, 0.0]),
+            ("t^max(2, 1)", [0.0, 0.0, 2.0]),
             ("sqrt(0) + t", [0.0, 1.0, 0.0]),
+            ("atan2(0, 0) + 0^0 * t", [0.0, 1.0, 0.0]),
         ] {
             assert_eq!(read(text).at(0.0), expected, "{text}");
         }
-        // what has no finite derivative says so
-        assert!(!read("sqrt(t)").at(0.0)[1].is_finite());
-        assert!(read("min(log(-1), t)").at(0.0)[0].is_nan());
+        for text in [
+            "sqrt(t)",
+            "sqrt(t^3)",
+            "sqrt(t^4)",
+            "acos(1 - t^4)",
+            "t^(1 + t)",
+        ] {
+            let [value, rate, acceleration] = read(text).at(0.0);
+            assert!(!(value + rate + acceleration).is_finite(), "{text}");
+        }
+        for text in ["min(log(-1), t)", "max(t, 0/0)", "(-t)^t"] {
+            assert!(!read(text).at(0.0)[0].is_finite(), "{text}");
+        }
     }
 }

@@ -2,7 +2,7 @@
 //! than sums and differences.
 
 use super::expression::{
-    BIVARIATE, Bivariate, DIFFERENCE, Expression, Formula, POWER, PRODUCT, QUOTIENT, SUM,
+    BIVARIATE, Bivariate, DIFFERENCE, Expression, Formula, KINKED, PRODUCT, QUOTIENT, SUM,
     UNIVARIATE,
 };
 use crate::document::did_you_mean;
@@ -27,19 +27,29 @@ impl Expression {
             return Err(format!("it is longer than {LONGEST} characters"));
         }
         let parsed = preceded(multispace0, term).parse(text);
-        parsed.map(Expression).map_err(|error| {
+        let formula = parsed.map_err(|error| {
             let (read, rest) = text.split_at(error.offset());
             match error.inner().cause() {
                 Some(fault) => fault.to_string(),
                 None => misplaced(read, rest.trim_start()),
             }
-        })
+        })?;
+        let mut words = text.split(|c: char| !c.is_ascii_alphanumeric());
+        let kink = words.find_map(|word| KINKED.into_iter().find(|name| *name == word));
+        Ok(Expression { formula, kink })
     }
 }
+
+/// Characters of the rest of a formula in a message.
+const SHOWN: usize = 20;
 
 /// What is wrong between the part of a formula that can be read and the rest.
 fn misplaced(read: &str, rest: &str) -> String {
     let is_open = read.matches('(').count() > read.matches(')').count();
+    let rest = match rest.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{} ...", &rest[..end]),
+        None => rest.to_owned(),
+    };
     match rest.chars().next() {
         None if is_open => "a `(` is not closed".to_owned(),
         None => "an operand is missing at its end".to_owned(),
@@ -60,7 +70,11 @@ fn misplaced(read: &str, rest: &str) -> String {
 struct Senseless(String);
 
 fn joined(f: &'static Bivariate, a: Formula, b: Formula) -> ModalResult<Formula> {
-    Ok(Formula::Joined(f, Box::new([a, b])))
+    Ok(Formula::joined(f, a, b))
+}
+
+fn raised(_: &mut &str, base: Formula, exponent: Formula) -> ModalResult<Formula> {
+    Ok(Formula::raised(base, exponent))
 }
 
 /// Operands and operators, each with the space that follows it.
@@ -87,13 +101,6 @@ fn term(input: &mut &str) -> ModalResult<Formula> {
         .parse_next(input)
 }
 
-fn raised(_: &mut &str, base: Formula, exponent: Formula) -> ModalResult<Formula> {
-    match exponent.is_constant() {
-        true => Ok(Formula::Power(Box::new(base), exponent.at(0.0)[0])),
-        false => joined(&POWER, base, exponent),
-    }
-}
-
 fn operand(input: &mut &str) -> ModalResult<Formula> {
     let parenthesis = || ('(', multispace0);
     dispatch! { peek(any);
@@ -109,7 +116,9 @@ fn operand(input: &mut &str) -> ModalResult<Formula> {
 fn number(input: &mut &str) -> ModalResult<Formula> {
     let sign = opt(one_of(['+', '-']));
     let exponent = (one_of(['e', 'E']), sign, digit1);
-    let digits = alt(((digit1, opt(('.', digit0))).void(), ('.', digit1).void()));
+    let fraction = || ('.', digit1).void();
+    let whole = (digit1, opt(('.', digit0))).void();
+    let digits = alt((whole, preceded(peek(fraction()), fraction())));
     let value = (digits, opt(exponent)).take().try_map(|text: &str| {
         let value = text.parse().ok().filter(|x: &f64| x.is_finite());
         value.ok_or_else(|| Senseless(format!("`{text}` is too large")))
@@ -155,13 +164,13 @@ fn understood(name: &str, arguments: Option<Vec<Formula>>) -> Result<Formula, Se
     let arguments = arguments.unwrap_or_default();
     if let Some(f) = UNIVARIATE.iter().find(|f| f.name == name) {
         return match <[Formula; 1]>::try_from(arguments) {
-            Ok([u]) => Ok(Formula::Applied(f, Box::new(u))),
+            Ok([u]) => Ok(Formula::applied(f, u)),
             Err(_) => takes("one argument in parentheses"),
         };
     }
     if let Some(f) = BIVARIATE.iter().find(|f| f.name == name) {
         return match <[Formula; 2]>::try_from(arguments) {
-            Ok(pair) => Ok(Formula::Joined(f, Box::new(pair))),
+            Ok([a, b]) => Ok(Formula::joined(f, a, b)),
             Err(_) => takes("two arguments in parentheses"),
         };
     }
@@ -232,7 +241,11 @@ mod tests {
             ("t) + 1", "no `(` is open before `) + 1`"),
             ("sin(t; 2)", "`; 2)` means nothing there"),
             ("2 \u{b7} t", "`\u{b7} t` means nothing there"),
-            (". + t", "an operand is missing before `+ t`"),
+            (". + t", "`. + t` means nothing there"),
+            (
+                "t 34567890123456789012345",
+                "an operator is missing before `34567890123456789012 ...`; a product needs its `*`",
+            ),
             ("1e999", "`1e999` is too large"),
             ("sine(t)", "`sine` is not known; did you mean `sin`?"),
             ("f + 1", "`f` is not known"),
@@ -257,6 +270,13 @@ mod tests {
         ];
         for text in texts {
             assert!(read(&text).at(1.0)[0].is_finite());
+        }
+        for text in [
+            "(".repeat(LONGEST),
+            "-(".repeat(LONGEST / 2),
+            "2^(".repeat(LONGEST / 3),
+        ] {
+            assert_eq!(Expression::parse(&text).unwrap_err(), "a `(` is not closed");
         }
         assert!(Expression::parse(&" ".repeat(LONGEST + 1)).is_err());
     }

@@ -1,7 +1,8 @@
-//! Functions of time: a number, a formula, or an inline table with a `type`.
+//! Functions of time: a number, an expression, or an inline table with a `type`.
 
 use super::{Expression, Function, Step, parse_expression};
 use crate::document::{Field, Fields, Key, Kind, SceneError, Takes};
+use numbers::number;
 
 /// What the function is for: motions must have an acceleration, loads need not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +86,12 @@ static RAMP: FunctionKind = FunctionKind {
     name: "ramp",
     keys: &STEP,
     read: |table, purpose, _| {
-        refuse_kinks(&kind(table), purpose, "a ramp", "use \"smooth_step\"")?;
+        refuse_kinks(
+            &kind(table),
+            purpose,
+            "follow a ramp",
+            "use \"smooth_step\"",
+        )?;
         Ok(Function::Ramp(step(table)?))
     },
 };
@@ -100,8 +106,8 @@ fn refuse_kinks(field: &Field, purpose: Use, shape: &str, instead: &str) -> Resu
     if purpose == Use::Load {
         return Ok(());
     }
-    let path = field.path.trim_end_matches(".type");
-    let message = format!("`{path}` cannot follow {shape}: its speed would jump");
+    let path = field.path.strip_suffix(".type").unwrap_or(&field.path);
+    let message = format!("`{path}` cannot {shape}: its speed would jump");
     let error = field.fault(message, "no acceleration");
     Err(error.with_help(instead))
 }
@@ -145,7 +151,12 @@ static PIECEWISE: FunctionKind = FunctionKind {
     name: "piecewise",
     keys: &[rows_key("s, value", "[t, value]")],
     read: |table, purpose, duration| {
-        refuse_kinks(&kind(table), purpose, "straight lines", "use \"table\"")?;
+        refuse_kinks(
+            &kind(table),
+            purpose,
+            "follow straight lines",
+            "use \"table\"",
+        )?;
         let rows = rows(&table.field("rows")?, duration)?;
         Ok(Function::Piecewise(rows))
     },
@@ -166,23 +177,23 @@ pub fn read_function(field: &Field, purpose: Use, duration: f64) -> Result<Funct
     (kind.read)(&table, purpose, duration)
 }
 
-/// Number of equal intervals at whose ends a formula is tried.
+/// Number of equal intervals at whose ends an expression is tried.
 const INTERVALS: u32 = 1000;
 
-/// Reads a formula, which must be finite throughout the duration, for a motion with its derivatives.
+/// Reads an expression, which must be finite throughout the duration, for a motion with its derivatives.
 fn read_expression(field: &Field, purpose: Use, duration: f64) -> Result<Expression, SceneError> {
     let path = &field.path;
     let expression = Expression::parse(field.text()?).map_err(|what| {
-        let message = format!("the formula of `{path}` cannot be read: {what}");
+        let message = format!("the expression of `{path}` cannot be read: {what}");
         let known = parse_expression::names().collect::<Vec<_>>().join(", ");
-        let error = field.fault(message, "not a formula");
+        let error = field.fault(message, "not an expression");
         error.with_help(format!("known: {known}"))
     })?;
-    if let Some(name) = expression.kink() {
+    if let Some(name) = expression.kink {
         refuse_kinks(
             field,
             purpose,
-            &format!("`{name}`"),
+            &format!("contain `{name}`"),
             "a motion needs an acceleration at all times: use functions without kinks, or \"smooth_step\"",
         )?;
     }
@@ -191,11 +202,14 @@ fn read_expression(field: &Field, purpose: Use, duration: f64) -> Result<Express
         Use::Load => &["value"],
     };
     for k in 0..=INTERVALS {
-        let t = duration * f64::from(k) / f64::from(INTERVALS);
+        let t = duration * (f64::from(k) / f64::from(INTERVALS));
         let values = expression.at(t);
         let mut levels = levels.iter().zip(values);
         if let Some((level, value)) = levels.find(|(_, value)| !value.is_finite()) {
-            let message = format!("the {level} of `{path}` is {value} at t = {t} s");
+            let message = format!(
+                "the {level} of `{path}` is {value} at t = {} s",
+                number(t, 6)
+            );
             return Err(field.fault(message, "not finite"));
         }
     }

@@ -118,7 +118,7 @@ fn drives(scene: &Scene) -> Vec<String> {
             MotionKind::Angle { joint, angle } => {
                 let [angle, speed, _] = angle.at(0.0);
                 lines.push(format!(
-                    "{:<20}turns {}: angle {} rad, {} degrees, speed {} rad/s",
+                    "{:<19} turns {}: angle {} rad, {} degrees, speed {} rad/s",
                     motion.name,
                     scene.joints[*joint].name,
                     number(angle, 4),
@@ -135,7 +135,7 @@ fn drives(scene: &Scene) -> Vec<String> {
                     };
                     let [value, speed, _] = coordinate.at(0.0);
                     lines.push(format!(
-                        "{:<20}moves {}.{name}: {axis} = {} m, speed {} m/s",
+                        "{:<19} moves {}.{name}: {axis} = {} m, speed {} m/s",
                         motion.name,
                         body.name,
                         number(value, 4),

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 /// Steps of the bar.
 const FINE: f64 = 1000.0;
-/// Lines of a whole run elsewhere.
+/// A line comes after every tenth of the duration,
 const LINES: f64 = 10.0;
-/// The longest time without a line there.
+/// and after this time without one.
 const SILENCE: Duration = Duration::from_secs(10);
 
 /// Where progress is shown.
@@ -18,8 +18,8 @@ pub enum Display {
     None,
     /// On a terminal.
     Bar(ProgressBar, Start),
-    /// On standard error that is no terminal; the next line is due at this part of the duration, which is
-    /// known from the first step on, or a while after the last one.
+    /// On standard error that is no terminal: the part of the duration at which the next line is due, known from the first step
+    /// on, and the time of the last one.
     Lines(Option<f64>, Instant, Start),
 }
 

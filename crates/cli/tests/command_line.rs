@@ -487,9 +487,15 @@ fn check_and_inspect() {
     for line in [
         "rod                 0.21 kg, centre of mass at x = 0.11 m",
         "slider              0.14 kg",
+        "motor               turns main: angle 0 rad, 0 degrees, speed 523.6 rad/s",
     ] {
         assert!(text.contains(line), "{text}");
     }
+    let point = "drives.motor={ type = \"point\", point = \"slider.pin\", x = \"0.3 + t / 8\" }";
+    let output = looselink(&["inspect", "scenes/harmonic-slider.toml", "--set", point]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let line = "motor               moves slider.pin: x = 0.3 m, speed 0.125 m/s";
+    assert!(text.contains(line), "{text}");
     let output = looselink(&["inspect", SCENE, "--json"]);
     expect(&output, 0, "");
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();

@@ -119,8 +119,8 @@ fn what_has_no_modes_is_refused() {
     refused(&["nowhere.toml"], 2, "nowhere.toml");
 }
 
-/// A free bar that is let go bent vibrates at its first bending frequency, the slowest that is not a free motion: the largest
-/// amplitude of `plot --spectrum` is that of `modes`.
+/// A free bar whose shape bends at the start vibrates at its first bending frequency, the slowest that is not a free motion: the
+/// largest peak of `plot --spectrum` is that of `modes`.
 #[test]
 fn the_spectrum_of_a_motion_has_its_peak_at_a_mode() {
     let still =
@@ -161,6 +161,6 @@ fn the_spectrum_of_a_motion_has_its_peak_at_a_mode() {
     let figure = read(folder.path(), "spectrum.svg");
     let (_, peak) = figure.split_once("largest peak at ").unwrap();
     let peak: f64 = peak.split(' ').next().unwrap().parse().unwrap();
-    // the peak is one of the multiples of 1/(0.2 s), the nearest one
+    // the frequencies are 5 Hz apart, the inverse of 0.2 s and a row
     assert!((peak - frequency).abs() <= 2.5, "{peak} Hz, {frequency} Hz");
 }

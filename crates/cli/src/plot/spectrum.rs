@@ -81,6 +81,17 @@ fn amplitudes(values: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
 
+    #[test]
+    fn a_peak_is_larger_than_its_neighbours() {
+        let frequencies = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+        let of = |amplitudes: &[f64]| peak(&frequencies[..amplitudes.len()], amplitudes);
+        assert_eq!(of(&[9.0, 5.0, 2.0, 3.0, 1.0, 4.0, 1.0]), Some(6.0));
+        assert_eq!(of(&[9.0, 5.0, 3.0, 2.0]), None);
+        assert_eq!(of(&[1.0, 2.0, 3.0]), None);
+        assert_eq!(of(&[1.0]), None);
+        assert_eq!(of(&[]), None);
+    }
+
     /// Two oscillations in whole periods on a mean: their amplitudes come out, whatever their phases.
     #[test]
     fn amplitudes_are_those_of_the_oscillations() {
