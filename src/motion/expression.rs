@@ -211,10 +211,10 @@ impl Formula {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn read(text: &str) -> Expression {
+    pub fn read(text: &str) -> Expression {
         Expression::parse(text).unwrap_or_else(|fault| panic!("{text}: {fault}"))
     }
 

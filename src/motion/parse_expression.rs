@@ -184,11 +184,8 @@ fn understood(name: &str, arguments: Option<Vec<Formula>>) -> Result<Formula, Se
 
 #[cfg(test)]
 mod tests {
+    use super::super::expression::tests::read;
     use super::*;
-
-    fn read(text: &str) -> Expression {
-        Expression::parse(text).unwrap_or_else(|fault| panic!("{text}: {fault}"))
-    }
 
     #[test]
     fn operators_bind_as_in_a_book() {

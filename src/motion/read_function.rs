@@ -86,30 +86,24 @@ static RAMP: FunctionKind = FunctionKind {
     name: "ramp",
     keys: &STEP,
     read: |table, purpose, _| {
-        refuse_kinks(
-            &kind(table),
-            purpose,
-            "follow a ramp",
-            "use \"smooth_step\"",
-        )?;
+        if purpose == Use::Motion {
+            return Err(kinked(table, "a ramp", "use \"smooth_step\""));
+        }
         Ok(Function::Ramp(step(table)?))
     },
 };
 
-/// The value that says which kind a table is.
-fn kind<'a>(table: &Fields<'a>) -> Field<'a> {
-    table.optional("type").expect("a kind is named")
+/// The fault of a motion whose kind has kinks.
+fn kinked(table: &Fields, shape: &str, instead: &str) -> SceneError {
+    let kind = table.optional("type").expect("a kind is named");
+    jumps(&kind, table.path(), &format!("follow {shape}"), instead)
 }
 
-/// Refuses a function whose rate jumps for a motion, which needs an acceleration. `field` says that it is such a function.
-fn refuse_kinks(field: &Field, purpose: Use, shape: &str, instead: &str) -> Result<(), SceneError> {
-    if purpose == Use::Load {
-        return Ok(());
-    }
-    let path = field.path.strip_suffix(".type").unwrap_or(&field.path);
-    let message = format!("`{path}` cannot {shape}: its speed would jump");
-    let error = field.fault(message, "no acceleration");
-    Err(error.with_help(instead))
+/// The fault of a motion whose rate jumps: it needs an acceleration. `place` says that it is such a motion.
+fn jumps(place: &Field, path: &str, what: &str, instead: &str) -> SceneError {
+    let message = format!("`{path}` cannot {what}: its speed would jump");
+    let error = place.fault(message, "no acceleration");
+    error.with_help(instead)
 }
 
 static SMOOTH_STEP: FunctionKind = FunctionKind {
@@ -151,12 +145,9 @@ static PIECEWISE: FunctionKind = FunctionKind {
     name: "piecewise",
     keys: &[rows_key("s, value", "[t, value]")],
     read: |table, purpose, duration| {
-        refuse_kinks(
-            &kind(table),
-            purpose,
-            "follow straight lines",
-            "use \"table\"",
-        )?;
+        if purpose == Use::Motion {
+            return Err(kinked(table, "straight lines", "use \"table\""));
+        }
         let rows = rows(&table.field("rows")?, duration)?;
         Ok(Function::Piecewise(rows))
     },
@@ -189,13 +180,9 @@ fn read_expression(field: &Field, purpose: Use, duration: f64) -> Result<Express
         let error = field.fault(message, "not an expression");
         error.with_help(format!("known: {known}"))
     })?;
-    if let Some(name) = expression.kink {
-        refuse_kinks(
-            field,
-            purpose,
-            &format!("contain `{name}`"),
-            "a motion needs an acceleration at all times: use functions without kinks, or \"smooth_step\"",
-        )?;
+    if let (Use::Motion, Some(name)) = (purpose, expression.kink) {
+        let instead = "a motion needs an acceleration at all times: use functions without kinks, or \"smooth_step\"";
+        return Err(jumps(field, path, &format!("contain `{name}`"), instead));
     }
     let levels = match purpose {
         Use::Motion => ["value", "rate", "acceleration"].as_slice(),

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 /// Steps of the bar.
 const FINE: f64 = 1000.0;
-/// A line comes after every tenth of the duration,
+/// Lines of a run that is fast: one after every tenth of its duration.
 const LINES: f64 = 10.0;
-/// and after this time without one.
+/// A slow run has a line after this time without one.
 const SILENCE: Duration = Duration::from_secs(10);
 
 /// Where progress is shown.

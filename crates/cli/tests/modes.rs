@@ -126,8 +126,8 @@ fn the_spectrum_of_a_motion_has_its_peak_at_a_mode() {
     let still =
         "initial.bodies.bar={x=0.0,y=0.0,theta=0.0,vx=0.0,vy=0.0,omega=0.0,bending_rate=4.0}";
     let change = ["--set", "simulation.gravity=[0.0,0.0]", "--set", still];
-    let scene = ["scenes/ringing-bar.toml", "--json"];
-    let output = looselink(&[&["modes"], &scene[..], &change].concat());
+    let scene = "scenes/ringing-bar.toml";
+    let output = looselink(&[&["modes", scene, "--json"], &change[..]].concat());
     let modes: Value = serde_json::from_slice(&output.stdout).unwrap();
     let frequencies = modes["modes"].as_array().unwrap().iter();
     let mut frequencies = frequencies.filter_map(|mode| mode["frequency"].as_f64());
@@ -141,14 +141,7 @@ fn the_spectrum_of_a_motion_has_its_peak_at_a_mode() {
         "--set",
         "integrator.step=2e-5",
     ];
-    let run = looselink(
-        &[
-            &["run", scene[0], "--out", out, "--force"],
-            &change[..],
-            &long,
-        ]
-        .concat(),
-    );
+    let run = looselink(&[&["run", scene, "--out", out, "--force"], &change[..], &long].concat());
     expect(&run, 0, "");
     let figure = folder.path().join("spectrum.svg");
     let channel = [
