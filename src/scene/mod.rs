@@ -130,6 +130,15 @@ impl Integrator {
             Pace::Accuracy(_) => None,
         }
     }
+
+    /// Method, and step or accuracy, as captions of pictures say it.
+    pub fn description(&self) -> String {
+        let pace = match self.pace {
+            Pace::Step(step) => format!("step {}", numbers::si(step, "s")),
+            Pace::Accuracy(accuracy) => format!("accuracy {accuracy}"),
+        };
+        format!("{}, {pace}", self.method.name())
+    }
 }
 
 /// `[output]`

@@ -7,7 +7,8 @@ use miette::MietteHandlerOpts;
 use std::fmt::Display;
 use std::io::Write;
 use std::process::ExitCode;
-use studies::precision::StudyError;
+use studies::StudyError;
+use studies::sweep::SweepError;
 use view::ViewError;
 
 const SYSTEM: u8 = 1;
@@ -99,6 +100,21 @@ impl From<StudyError> for CommandFailure {
         match error {
             StudyError::Plain(message) => CommandFailure::bad_input(message),
             StudyError::Scene(error) => error.into(),
+        }
+    }
+}
+
+impl From<SweepError> for CommandFailure {
+    fn from(error: SweepError) -> CommandFailure {
+        match error {
+            SweepError::Study(error) => error.into(),
+            SweepError::Output(OutputError::Busy(folder)) => CommandFailure::bad_input(format!(
+                "another process is making this part of the sweep in `{}`",
+                folder.display()
+            )),
+            SweepError::Output(error) => error.into(),
+            SweepError::Interrupted { .. } => CommandFailure::new(INTERRUPTED, error),
+            SweepError::Stuck(_) => CommandFailure::cannot_go_on(error),
         }
     }
 }

@@ -14,6 +14,7 @@ mod resume;
 mod run;
 mod schema;
 mod suggestion;
+mod sweep;
 mod templates;
 mod view;
 
@@ -81,6 +82,13 @@ enum Command {
         after_help = "Example:\n  looselink ablate scenes/3rrr/case4.toml --set simulation.duration=0.05 --out out/ablation"
     )]
     Ablate(ablate::Arguments),
+    /// Run a scene at many values of its fields: tables, pictures, and the value at which a measure reaches a target.
+    #[command(
+        after_help = "Examples:\n  looselink sweep studies/play-and-speed.toml --out out/sweep\n  \
+        looselink sweep studies/play-and-speed.toml --out out/sweep --shard 3/16\n  \
+        looselink sweep studies/play-and-speed.toml --out out/sweep --merge"
+    )]
+    Sweep(sweep::Arguments),
     /// Show the scene language as a JSON schema, for editors.
     #[command(after_help = "Example:\n  looselink schema > looselink.schema.json")]
     Schema,
@@ -164,6 +172,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check(arguments),
         Command::Precision(arguments) => precision::precision(arguments),
         Command::Ablate(arguments) => ablate::ablate(arguments),
+        Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Schema => schema::show(),
         Command::Completions(arguments) => completions::completions(arguments),
     };

@@ -88,6 +88,71 @@ fn message(progress: &Progress, Start(clock, from): &Start) -> String {
     format!("t = {t:.4} s of {duration} s, {factor:.3} x real time, closed contacts: {contacts}")
 }
 
+/// How far a number of runs is: a bar on a terminal, a line after every tenth elsewhere and when none has come for a while.
+pub enum RunsDisplay {
+    /// Nowhere.
+    Quiet,
+    /// On a terminal.
+    Bar(ProgressBar),
+    /// On standard error that is no terminal: the number of runs at which the next line is due, and the time of the last one.
+    Lines(Option<usize>, Instant),
+}
+
+impl RunsDisplay {
+    /// A display on standard error.
+    pub fn new(quiet: bool) -> RunsDisplay {
+        if quiet {
+            return RunsDisplay::Quiet;
+        }
+        if !std::io::stderr().is_terminal() {
+            return RunsDisplay::Lines(None, Instant::now());
+        }
+        let style = ProgressStyle::with_template("{bar:30} {pos} of {len} runs, {eta} left")
+            .expect("the template is valid");
+        RunsDisplay::Bar(ProgressBar::new(0).with_style(style))
+    }
+
+    /// Called after every run with the number of runs that are made and to be made.
+    pub fn show(&mut self, done: usize, left: usize) {
+        let all = done + left;
+        match self {
+            RunsDisplay::Quiet => {}
+            RunsDisplay::Bar(bar) => {
+                if bar.length() != Some(all as u64) {
+                    // runs that were there when the sweep went on take no time
+                    bar.set_length(all as u64);
+                    bar.set_position(done as u64 - 1);
+                    bar.reset_eta();
+                }
+                bar.set_position(done as u64);
+            }
+            RunsDisplay::Lines(due, last) => {
+                let tenth = all.div_ceil(LINES as usize);
+                let line = done >= *due.get_or_insert((done / tenth + 1) * tenth);
+                if (line && left > 0) || last.elapsed() > SILENCE {
+                    say(&format!("{done} of {all} runs"));
+                    (*due, *last) = (Some((done / tenth + 1) * tenth), Instant::now());
+                }
+            }
+        }
+    }
+
+    /// A line beside the display, with `--quiet` too.
+    pub fn say(&self, line: &str) {
+        match self {
+            RunsDisplay::Bar(bar) => bar.suspend(|| say(line)),
+            _ => say(line),
+        }
+    }
+
+    /// The bar disappears.
+    pub fn finish(&self) {
+        if let RunsDisplay::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 /// A warning, shown with `--quiet` too.
 pub fn warn(warning: &str) {
     say(&format!("warning: {warning}"));

@@ -18,6 +18,8 @@ const HOW_TO: (&str, &str) = ("docs/how-to", "my.toml");
 enum Action {
     /// Appends to the scene.
     Scene(String),
+    /// Writes another file, whose name is the comment in its first line.
+    File(String, String),
     /// Types a command.
     Command(String),
     /// Runs a script with a program and its arguments.
@@ -36,7 +38,10 @@ fn actions(page: &str) -> Vec<Action> {
             let block: Vec<_> = lines.by_ref().take_while(|l| *l != "```").collect();
             let text = block.join("\n") + "\n";
             actions.push(match language {
-                "toml" => Action::Scene(text),
+                "toml" => match block.first().and_then(|line| line.strip_prefix("# ")) {
+                    Some(name) if name.ends_with(".toml") => Action::File(name.to_owned(), text),
+                    _ => Action::Scene(text),
+                },
                 "python" => Action::Script(["python3", "-c"], text),
                 "matlab" => Action::Script(["octave-cli", "--eval"], text),
                 "rust" => Action::Example(text),
@@ -107,6 +112,7 @@ fn follow(page: &str, scene_file: &str, folder: &Path) -> Followed {
                 scene += &format!("{text}\n");
                 fs::write(folder.join(scene_file), &scene).unwrap();
             }
+            Action::File(name, text) => fs::write(folder.join(name), text).unwrap(),
             Action::Command(command) => {
                 followed.commands += 1;
                 let mut shell = Command::new("sh");

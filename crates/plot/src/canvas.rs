@@ -38,6 +38,17 @@ impl Canvas {
         );
     }
 
+    /// The inside of a polygon; `opacity` is in per cent.
+    pub fn area(&mut self, corners: &[(i32, i32)], color: Color, opacity: u32) {
+        let color = code(color);
+        let corners = corners.iter().map(|(x, y)| format!("{x},{y} "));
+        self.0 += &format!(
+            "<polygon fill=\"{color}\" opacity=\"{:.2}\" stroke=\"none\" points=\"{}\"/>\n",
+            f64::from(opacity) / 100.0,
+            corners.collect::<String>()
+        );
+    }
+
     /// A dashed horizontal line.
     pub fn dashes(&mut self, from: i32, to: i32, y: i32, color: Color) {
         for x in (from..to).step_by(24) {

@@ -150,6 +150,11 @@ pub enum MarkShape {
     Cross,
     /// A horizontal dashed line over the width of the panel; it takes part in the automatic range.
     Level,
+    /// The inside of a polygon, so opaque \[%\]; what lies outside the frame is pushed to its edge.
+    Area {
+        /// 100 hides what is drawn before.
+        opacity: u32,
+    },
 }
 
 impl Axis {
@@ -242,6 +247,24 @@ impl Mark {
     /// A dashed horizontal line.
     pub fn level(label: &str, color: Color, y: f64) -> Mark {
         Mark::new(label, color, MarkShape::Level, &[], &[y])
+    }
+
+    /// What lies between two curves over an increasing abscissa, so pale that curves in the same colour stand out from it.
+    pub fn band(label: &str, color: Color, x: &[f64], low: &[f64], high: &[f64]) -> Mark {
+        let back = |values: &[f64]| values.iter().rev().copied().collect::<Vec<f64>>();
+        let shape = MarkShape::Area { opacity: 22 };
+        let (x, y) = ([x, &back(x)].concat(), [high, &back(low)].concat());
+        Mark::new(label, color, shape, &x, &y)
+    }
+
+    /// A filled rectangle between two corners.
+    pub fn cell(label: &str, color: Color, low: (f64, f64), high: (f64, f64)) -> Mark {
+        let shape = MarkShape::Area { opacity: 100 };
+        let (x, y) = (
+            [low.0, high.0, high.0, low.0],
+            [low.1, low.1, high.1, high.1],
+        );
+        Mark::new(label, color, shape, &x, &y)
     }
 
     /// The same mark with another line width in pixels.

@@ -73,6 +73,11 @@ impl PlacedPanel<'_> {
                 inside.for_each(|at| canvas.dot(at, radius, mark.color))
             }
             MarkShape::Cross => inside.for_each(|at| canvas.cross(at, mark.color)),
+            MarkShape::Area { opacity } => {
+                let within = |(x, y): (i32, i32)| (x.clamp(left, right), y.clamp(top, bottom));
+                let corners = points.iter().map(|point| within(pixel(point)));
+                canvas.area(&corners.collect::<Vec<_>>(), mark.color, opacity);
+            }
             MarkShape::Level => {
                 let y = self.up(self.y.place(mark.y[0])).round() as i32;
                 if (top..=bottom).contains(&y) {
@@ -135,6 +140,11 @@ impl PlacedPanel<'_> {
             }
             MarkShape::Level => canvas.dashes(x, x + SAMPLE, y, mark.color),
             MarkShape::Cross => canvas.cross(middle, mark.color),
+            MarkShape::Area { opacity } => {
+                let (low, high) = (y - 12, y + 12);
+                let corners = [(x, low), (x + SAMPLE, low), (x + SAMPLE, high), (x, high)];
+                canvas.area(&corners, mark.color, opacity);
+            }
             MarkShape::Points { radius } => canvas.dot(middle, radius.max(6), mark.color),
         }
         canvas.text(&mark.label, (x + SAMPLE + 12, y), SMALL, "start");

@@ -1,10 +1,14 @@
-//! Studies of a scene: how much processor time each accuracy costs ([`precision`]), and what each effect contributes and
-//! costs ([`ablation`]).
+//! Studies of a scene: how much processor time each accuracy costs ([`precision`]), what each effect contributes and costs
+//! ([`ablation`]), and what a scene does over ranges of its values ([`sweep`]).
 #![forbid(unsafe_code)]
 
 pub mod ablation;
 pub mod machine;
 pub mod precision;
+mod study_file;
+pub mod sweep;
+
+pub use study_file::StudyError;
 
 use looselink::output::OutputError;
 use plot::Figure;

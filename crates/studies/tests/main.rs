@@ -5,3 +5,4 @@ mod precision;
 #[expect(dead_code, reason = "the tests of the solver use the rest")]
 #[path = "../../../tests/support.rs"]
 mod support;
+mod sweep;

@@ -4,9 +4,9 @@ use super::moved::bounds;
 use indexmap::IndexMap;
 use looselink::modes::NaturalMode;
 use looselink::record::MotionLayout;
-use looselink::scene::{Pace, Scene, SceneError};
+use looselink::scene::{Scene, SceneError};
 use looselink::simulate::Simulation;
-use numbers::{exact, si};
+use numbers::exact;
 use serde::Deserialize;
 use std::f64::consts::TAU;
 use std::fs;
@@ -129,11 +129,7 @@ impl StoredResult {
 
     /// The method and what its steps follow.
     pub fn method(&self) -> String {
-        let pace = match self.scene.integrator.pace {
-            Pace::Step(step) => format!("step {}", si(step, "s")),
-            Pace::Accuracy(accuracy) => format!("accuracy {accuracy}"),
-        };
-        format!("{}, {pace}", self.scene.integrator.method.name())
+        self.scene.integrator.description()
     }
 }
 

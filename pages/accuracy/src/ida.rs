@@ -2,7 +2,8 @@
 
 use looselink::simulate::Notice;
 use miette::{Result, miette};
-use studies::precision::{CompletedRun, RunTiming, Study, StudyError, StudyPace, WorkCounts};
+use studies::StudyError;
+use studies::precision::{CompletedRun, RunTiming, Study, StudyPace, WorkCounts};
 use verify::trajectory::{ComparisonPlan, Trajectory, tolerances};
 
 /// Name of its curve.

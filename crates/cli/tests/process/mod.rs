@@ -6,6 +6,7 @@ mod killed;
 mod no_room;
 mod replaced;
 mod resumed;
+mod swept;
 
 use crate::command_line::{expect, looselink, program, read};
 use std::fs;

@@ -2,7 +2,8 @@
 
 use super::diagram::figure;
 use super::table::table;
-use super::{ColumnLookup, Compared, Found, Study, StudyError, WorkCounts, column};
+use super::{ColumnLookup, Compared, Found, Study, WorkCounts, column};
+use crate::StudyError;
 use plot::Figure;
 use serde::Serialize;
 

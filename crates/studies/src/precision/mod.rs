@@ -17,8 +17,9 @@ pub use crate::machine::RunTiming;
 pub use errors::{Errors, MeasuredRun, MotionReference};
 pub use files::{FILES, Time};
 pub use statistics::{RunStatistics, StatisticsReference};
-pub use study::{ReferenceRuns, Sampling, Study, StudyCurve, StudyError, StudyPace};
+pub use study::{ReferenceRuns, Sampling, Study, StudyCurve, StudyPace};
 
+use crate::StudyError;
 use crate::machine::count_instructions;
 use cpu_time::ThreadTime;
 use looselink::scene::Scene;

@@ -5,7 +5,8 @@
 //! loses. The first two are compared with a reference, relative; the third too, as it is; the last with the one before it.
 
 use super::errors::larger;
-use super::{ColumnLookup, Compared, CurvePoint, Study, StudyError, Survey, WorkCounts, column};
+use super::{ColumnLookup, Compared, CurvePoint, Study, Survey, WorkCounts, column};
+use crate::StudyError;
 use numbers::{digits, percent, si};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 use serde::Serialize;

@@ -1,24 +1,13 @@
 //! What a study file says.
 
-use looselink::document::did_you_mean;
-use looselink::scene::{Scene, SceneError, read_file};
+use crate::study_file::{StudyError, parsed, text_of};
+use looselink::scene::{Scene, SceneError};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// A smoke test of a study of statistics simulates this part of the time.
 const SMOKE: f64 = 0.02;
-
-/// Why a study cannot be made.
-#[derive(Debug, Clone, thiserror::Error)]
-pub enum StudyError {
-    /// A fault of the study file or of what it asks for.
-    #[error("{0}")]
-    Plain(String),
-    /// A fault of its scene.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-}
 
 /// A scene, a reference and the curves that are compared with it.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -152,27 +141,13 @@ impl StudyCurve {
     }
 }
 
-/// What was meant by a key that a message calls unknown; it quotes that key and then those that there are.
-fn suggestion(message: &str) -> String {
-    let mut quoted = message.split('`').skip(1).step_by(2);
-    match quoted.next() {
-        Some(unknown) if message.starts_with("unknown field") => did_you_mean(unknown, quoted),
-        _ => String::new(),
-    }
-}
-
 impl Study {
     /// Reads a study and checks what can be seen without its scene.
     ///
     /// # Errors
     /// A file that cannot be read, or a fault with its line.
     pub fn load(path: &Path) -> Result<Study, StudyError> {
-        let unreadable = |cause: &dyn fmt::Display| {
-            StudyError::Plain(format!("cannot read `{}`: {cause}", path.display()))
-        };
-        let bytes = read_file(path).map_err(|e| unreadable(&e))?;
-        let text = String::from_utf8(bytes).map_err(|e| unreadable(&e))?;
-        Study::parse(path, &text)
+        Study::parse(path, &text_of(path)?)
     }
 
     /// Reads a study from text; `path` stands for the file in errors, and the scene is looked for beside it.
@@ -180,12 +155,8 @@ impl Study {
     /// # Errors
     /// The first fault found, with its line.
     pub fn parse(path: &Path, text: &str) -> Result<Study, StudyError> {
-        let name = path.display();
-        let mut study: Study = toml::from_str(text).map_err(|e| {
-            let hint = suggestion(e.message());
-            StudyError::Plain(format!("`{name}`: {}{hint}", e.to_string().trim_end()))
-        })?;
-        let fault = |message: String| Err(StudyError::Plain(format!("`{name}`: {message}")));
+        let mut study: Study = parsed(path, text)?;
+        let fault = |message: String| Err(StudyError::of(path, message));
         for (key, value) in [("duration", study.duration), ("interval", study.interval)] {
             if !(value > 0.0 && value.is_finite()) {
                 return fault(format!("`{key}` must be greater than zero, not {value}"));

@@ -1,0 +1,372 @@
+//! Sweeps: a scene at many points of its parameters, one row a run.
+//!
+//! A [`Sweep`] says what each run is ([`Task`]); [`execute`] makes runs on all cores and [`Store`] keeps their rows, each on the
+//! disk before the next run of its thread begins; [`merge`] makes tables and pictures of them. Rows do not depend on the number
+//! of threads or processes, nor on interruptions.
+
+pub mod bisection;
+pub mod columns;
+mod csv_table;
+pub mod design;
+mod envelope;
+mod execute;
+mod measure;
+mod merge;
+mod page;
+mod parameter;
+mod parquet_table;
+mod pictures;
+mod recorded;
+mod row;
+mod run;
+mod sobol_indices;
+mod starts;
+mod statistics;
+mod store;
+mod study;
+mod value;
+
+pub use bisection::{Crossing, SweepTarget};
+pub use envelope::{Envelope, EnvelopePlan};
+pub use execute::{SweepProgress, execute};
+pub use measure::{CONTACTS, ContactMeasure, Measure, SERIES, SeriesMeasure};
+pub use merge::{FILES, Merged, merge};
+pub use parameter::{ParameterField, ScaledField, Spacing, SweepParameter};
+pub use recorded::Recorded;
+pub use row::{RowTiming, RunStatus, SweepRow};
+pub use sobol_indices::{Estimated, SobolIndices, sobol_indices};
+pub use starts::Starts;
+pub use statistics::{EnsembleMean, quantile};
+pub use store::{Shard, Store};
+pub use study::SweepStudy;
+pub use value::FieldValue;
+
+use crate::study_file::{StudyError, text_of};
+use bisection::{Search, search};
+use design::Design;
+use looselink::output::OutputError;
+use looselink::scene::{Scene, SceneError};
+use looselink::simulate::Simulation;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Why a sweep ends early.
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    /// A fault of the study or of what it asks for.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// It was interrupted; the same command goes on.
+    #[error("interrupted: {done} of {total} runs are made; the same command goes on")]
+    Interrupted {
+        /// Runs made so far.
+        done: usize,
+        /// Runs of the sweep, in words: those of a bisection are not known.
+        total: String,
+    },
+    /// A bisection cannot go on.
+    #[error("the bisection cannot go on: {0}")]
+    Stuck(String),
+}
+
+impl From<SceneError> for SweepError {
+    fn from(error: SceneError) -> SweepError {
+        StudyError::from(error).into()
+    }
+}
+
+impl From<std::io::Error> for SweepError {
+    fn from(error: std::io::Error) -> SweepError {
+        OutputError::from(error).into()
+    }
+}
+
+/// The texts that a sweep is made of: equal texts are the same sweep on every machine.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct SweepSource {
+    /// Path of the study, for messages.
+    pub path: PathBuf,
+    /// Text of the study.
+    pub study: String,
+    /// Text of its scene.
+    pub scene: String,
+    /// A target that replaces that of the study.
+    pub target: Option<SweepTarget>,
+}
+
+/// A run of a sweep that is to be made.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Task {
+    /// Its number: points one after the other, all starts of a point together.
+    pub run: usize,
+    /// Number of its start.
+    pub start: usize,
+    /// Values of the parameters.
+    pub values: Vec<FieldValue>,
+}
+
+/// A study with its scene, checked.
+#[derive(Debug)]
+pub struct Sweep {
+    /// What the study says.
+    pub study: SweepStudy,
+    source: SweepSource,
+    /// None for a bisection.
+    design: Option<Box<dyn Design>>,
+    runs: Option<usize>,
+    /// Units of the measures.
+    units: Vec<String>,
+    /// Units of the envelopes.
+    envelope_units: Vec<String>,
+    digest: String,
+    /// Method and step of the scene.
+    method: String,
+}
+
+impl Sweep {
+    /// Reads a study and its scene.
+    ///
+    /// # Errors
+    /// See [`Sweep::new`]; or a file that cannot be read.
+    pub fn load(path: &Path, target: Option<SweepTarget>) -> Result<Sweep, SweepError> {
+        let text = text_of(path)?;
+        let study = SweepStudy::parse(path, &text, target.as_ref())?;
+        // a scene that cannot be read is reported with the advice of the scene reader
+        Scene::load(&study.scene, &study.set)?;
+        Sweep::new(SweepSource {
+            path: path.to_owned(),
+            scene: text_of(&study.scene)?,
+            study: text,
+            target,
+        })
+    }
+
+    /// Checks a study: its scene must start as it is, and be readable with the values at both ends of every parameter.
+    ///
+    /// # Errors
+    /// The first fault of the study or the scene.
+    pub fn new(source: SweepSource) -> Result<Sweep, SweepError> {
+        let study = SweepStudy::parse(&source.path, &source.study, source.target.as_ref())?;
+        let fault = |message: String| StudyError::of(&source.path, message);
+        let parameters = study.parameter_list();
+        let samples = study.samples.unwrap_or(0);
+        let design = study.design.design(&parameters, samples, study.seed);
+        let design = design.map_err(fault)?;
+        let runs = design.as_ref().map(|design| study.runs(design.points()));
+        let runs = runs.transpose().map_err(fault)?;
+        let mut sweep = Sweep {
+            digest: digest(&source, &study),
+            units: Vec::new(),
+            envelope_units: Vec::new(),
+            method: String::new(),
+            study,
+            source,
+            design,
+            runs,
+        };
+        let scene = sweep.scene(&[])?;
+        let base = Simulation::new(&scene)?;
+        sweep.method = scene.integrator.description();
+        sweep.check_joints(&base)?;
+        let unit_of = |name: &str| {
+            let channel = base.channels().iter().find(|c| c.name == name);
+            channel.map_or(String::new(), |channel| channel.unit.to_owned())
+        };
+        let measures = sweep.study.measures.values();
+        sweep.units = measures.map(|measure| measure.unit(unit_of)).collect();
+        let envelopes = sweep.study.envelopes.values();
+        sweep.envelope_units = envelopes.map(|plan| unit_of(&plan.channels[0])).collect();
+        for end in [0.0, 1.0] {
+            let parameters = sweep.study.parameters.values();
+            let values: Vec<FieldValue> = parameters.map(|p| p.at(end)).collect();
+            sweep.scene(&values)?;
+        }
+        Ok(sweep)
+    }
+
+    /// Refuses a measure of contacts of a joint that the scene does not have.
+    fn check_joints(&self, base: &Simulation) -> Result<(), StudyError> {
+        let known = || {
+            base.model()
+                .joints()
+                .iter()
+                .map(|joint| joint.name.as_str())
+        };
+        for (name, measure) in &self.study.measures {
+            let mut joints = measure.joints.iter();
+            if let Some(joint) = joints.find(|joint| known().all(|known| known != *joint)) {
+                let hint = looselink::document::did_you_mean(joint, known());
+                let message = format!("`measures.{name}` names an unknown joint `{joint}`{hint}");
+                return Err(StudyError::of(&self.source.path, message));
+            }
+        }
+        Ok(())
+    }
+
+    /// The texts it is made of.
+    pub fn source(&self) -> &SweepSource {
+        &self.source
+    }
+
+    /// Hexadecimal SHA-256 of the study, its scene and its target.
+    pub fn digest(&self) -> &str {
+        &self.digest
+    }
+
+    /// Number of runs; unknown for a bisection.
+    pub fn runs(&self) -> Option<usize> {
+        self.runs
+    }
+
+    /// Units of the measures, in their order.
+    pub fn units(&self) -> &[String] {
+        &self.units
+    }
+
+    /// Units of the envelopes, in their order.
+    pub fn envelope_units(&self) -> &[String] {
+        &self.envelope_units
+    }
+
+    /// Method and step of the scene as the study changes it.
+    pub(crate) fn method(&self) -> &str {
+        &self.method
+    }
+
+    /// The scene with these values of the parameters; as the study changes it with none.
+    fn scene(&self, values: &[FieldValue]) -> Result<Scene, SceneError> {
+        let name = self.study.scene.display().to_string();
+        Scene::parse(&name, &self.source.scene, &self.study.overrides(values))
+    }
+
+    /// Numbers of the runs that can be made now and are not in the store, those of a shard alone.
+    ///
+    /// # Errors
+    /// A bisection that cannot go on; a row that cannot be read.
+    pub fn pending(&self, store: &Store, shard: Shard) -> Result<Vec<usize>, SweepError> {
+        let runs = match self.runs {
+            Some(runs) => 0..runs,
+            None => match self.searched(store)? {
+                (Search::Visit(_), places) => {
+                    let starts = self.study.starts_of_a_point();
+                    (places.len() - 1) * starts..places.len() * starts
+                }
+                (Search::Found(_), _) => 0..0,
+                (Search::NoCrossing(ends), _) => return Err(self.no_crossing(ends)),
+                (Search::NoValue(place), places) => {
+                    return Err(self.no_value(store, place, places.len() - 1));
+                }
+            },
+        };
+        let open = runs.filter(|run| shard.has(*run) && !store.has(*run));
+        Ok(open.collect())
+    }
+
+    /// A run.
+    ///
+    /// # Errors
+    /// A row on which the run depends cannot be read.
+    pub fn task(&self, store: &Store, run: usize) -> Result<Task, SweepError> {
+        let starts = self.study.starts_of_a_point();
+        let (point, start) = (run / starts, run % starts);
+        let parameters = self.study.parameter_list();
+        let values = match &self.design {
+            Some(design) => design.values(&parameters, point),
+            None => {
+                let (_, places) = self.searched(store)?;
+                vec![parameters[0].at(places[point])]
+            }
+        };
+        Ok(Task { run, start, values })
+    }
+
+    /// What a bisection has found so far, and the places it has visited or wants to.
+    fn searched(&self, store: &Store) -> Result<(Search, Vec<f64>), SweepError> {
+        let target = self.target();
+        let place = self.study.measures.get_index_of(&target.measure);
+        let place = place.expect("checked when the study was read");
+        let starts = self.study.starts_of_a_point();
+        let mut means = Vec::new();
+        for point in 0.. {
+            let runs = point * starts..(point + 1) * starts;
+            if !runs.clone().all(|run| store.has(run)) {
+                break;
+            }
+            let rows = runs.map(|run| store.row(run));
+            let rows: Vec<SweepRow> = rows.collect::<Result<_, _>>()?;
+            let values = rows.iter().map(|row| row.measures.get(place).copied()?);
+            let values: Option<Vec<f64>> = values.collect();
+            means.push(values.and_then(|values| EnsembleMean::of(&values)));
+        }
+        Ok(search(target, |point| means.get(point).copied()))
+    }
+
+    fn target(&self) -> &SweepTarget {
+        let target = self.study.target.as_ref();
+        target.expect("only a bisection has no design, and it has a target")
+    }
+
+    /// Where the measure reaches the target; none in other designs, and before the search is at its end.
+    ///
+    /// # Errors
+    /// A row that cannot be read.
+    pub fn crossing(&self, store: &Store) -> Result<Option<Crossing>, SweepError> {
+        if self.design.is_some() {
+            return Ok(None);
+        }
+        Ok(match self.searched(store)?.0 {
+            Search::Found(ends) => Some(Crossing::new(&self.study, self.target(), ends)),
+            _ => None,
+        })
+    }
+
+    fn no_crossing(&self, ends: [bisection::Visited; 2]) -> SweepError {
+        let target = self.target();
+        let crossing = Crossing::new(&self.study, target, ends);
+        let place = self.study.measures.get_index_of(&target.measure);
+        let unit = place.map_or("", |place| self.units[place].as_str());
+        let [low, high] = crossing.means.map(|mean| numbers::number(mean, 4));
+        let [from, to] = &crossing.between;
+        SweepError::Stuck(format!(
+            "`{}` does not cross {} {unit}: it is {low} {unit} with `{}` = {from} and {high} {unit} with {to}",
+            target.measure,
+            numbers::number(target.value, 4),
+            crossing.parameter,
+        ))
+    }
+
+    fn no_value(&self, store: &Store, place: f64, point: usize) -> SweepError {
+        let (name, parameter) = self.study.parameters.first().expect("checked");
+        let starts = self.study.starts_of_a_point();
+        let rows = (point * starts..(point + 1) * starts).filter_map(|run| store.row(run).ok());
+        let why = rows.filter_map(|row| row.error).next();
+        let why = why.unwrap_or_else(|| "the measure has no value".to_owned());
+        SweepError::Stuck(format!("with `{name}` = {}: {why}", parameter.at(place)))
+    }
+}
+
+/// That of all texts, each preceded by its length, so that no two lists of texts collide.
+fn digest(source: &SweepSource, study: &SweepStudy) -> String {
+    let mut hasher = Sha256::new();
+    let target = study.target.as_ref().map(|target| {
+        let SweepTarget {
+            measure,
+            value,
+            tolerance,
+        } = target;
+        format!("{measure} {value:?} {tolerance:?}")
+    });
+    for text in [&source.study, &source.scene, &target.unwrap_or_default()] {
+        hasher.update((text.len() as u64).to_le_bytes());
+        hasher.update(text.as_bytes());
+    }
+    numbers::hexadecimal(&hasher.finalize())
+}
+
+/// Rows of a store by run.
+pub(crate) type RowPlaces = BTreeMap<usize, store::RowPlace>;

@@ -1,0 +1,95 @@
+//! The page of a sweep.
+
+use super::Sweep;
+use super::merge::{Merged, Points};
+use numbers::number;
+
+/// Runs without results that a page lists.
+const LISTED: usize = 20;
+
+/// Pictures, extremes, indices, faults and warnings in Markdown.
+pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
+    let mut page = format!("# {}\n\n![{}](sweep.png)\n\n", merged.title, merged.title);
+    page += &format!("{} runs of `{}`", merged.runs, merged.scene);
+    let others = ["failed", "refused"].map(|name| (name, merged.status[name]));
+    for (name, count) in others.iter().filter(|(_, count)| *count > 0) {
+        page += &format!(", {count} {name}");
+    }
+    page += &format!(", {} with warnings.\n", merged.warned);
+    if let Some(answer) = crossing_text(sweep, merged) {
+        page += &format!("\n{answer}\n");
+    }
+    page += "\n| measure | unit | least | run | largest | run |\n| --- | --- | ---: | ---: | ---: | ---: |\n";
+    for (name, extremes) in &merged.extremes {
+        let unit = merged.units.get(name).map_or("", String::as_str);
+        let [(least, at_least), (largest, at_largest)] = [extremes.least, extremes.largest];
+        let [least, largest] = [least, largest].map(|x| number(x, 4));
+        page += &format!("| {name} | {unit} | {least} | {at_least} | {largest} | {at_largest} |\n");
+    }
+    for (measure, indices) in &merged.indices {
+        page += &format!(
+            "\nShare of the variance of `{measure}` that each parameter explains alone, and in which it takes part (Sobol indices, \
+             {} samples; in brackets the 95 % interval):\n\n| parameter | alone | takes part |\n| --- | ---: | ---: |\n",
+            indices.samples
+        );
+        for (name, of) in &indices.parameters {
+            let [alone, total] = [of.first_order, of.total].map(|e| {
+                // no minus in front of zero
+                let [value, low, high] =
+                    [e.value, e.low, e.high].map(|x| (x * 100.0).round() / 100.0 + 0.0);
+                format!("{value:.2} ({low:.2} to {high:.2})")
+            });
+            page += &format!("| {name} | {alone} | {total} |\n");
+        }
+    }
+    if !points.faults.is_empty() {
+        page += "\nRuns without results:\n\n";
+        for (run, error) in points.faults.iter().take(LISTED) {
+            page += &format!("* run {run}: {error}\n");
+        }
+        if points.faults.len() > LISTED {
+            page += &format!(
+                "* and {} more, see `sweep.csv`\n",
+                points.faults.len() - LISTED
+            );
+        }
+    }
+    if !points.warnings.is_empty() {
+        page += "\nWarnings, each with the number of runs that have it and an example:\n\n";
+        for (count, example) in points.warnings.values() {
+            page += &format!("* {count}: {example}\n");
+        }
+    }
+    page
+}
+
+/// The answer of a bisection in words.
+pub fn crossing_text(sweep: &Sweep, merged: &Merged) -> Option<String> {
+    let crossing = merged.crossing.as_ref()?;
+    let target = &crossing.target;
+    let unit = &sweep.units()[sweep.study.measures.get_index_of(&target.measure)?];
+    let sides = crossing.between.iter().zip(&crossing.means);
+    let sides = sides.zip(&crossing.half_widths);
+    let sides = sides.map(|((value, mean), half)| {
+        let value = value.number().map_or(value.to_string(), |x| number(x, 4));
+        let half = half.map_or(String::new(), |half| format!(" ± {}", number(half, 2)));
+        format!(
+            "{value} {} ({}{half} {unit})",
+            crossing.unit,
+            number(*mean, 4)
+        )
+    });
+    let sides = sides.collect::<Vec<_>>().join(" and ");
+    let doubt = match crossing.is_certain() {
+        true => "",
+        false => {
+            " The interval of one of these means includes the target: more starts are needed to be sure."
+        }
+    };
+    Some(format!(
+        "`{}` reaches {} {unit} between `{}` = {sides}.{doubt}",
+        target.measure,
+        number(target.value, 4),
+        crossing.parameter,
+    ))
+}

@@ -1,0 +1,102 @@
+//! A measure over two parameters of a grid, one rectangle for each point, darker where the measure is larger.
+
+use super::{MeasurePoints, empty, parameter_axis};
+use crate::sweep::{Spacing, SweepParameter};
+use plot::{Color, Mark, Panel};
+
+/// From the least value to the largest: pale to dark, so that it reads in grey too.
+const RAMP: [Color; 3] = [(230, 240, 250), (0, 114, 178), (5, 20, 60)];
+/// Values whose colours the legend explains.
+const EXPLAINED: usize = 5;
+
+pub fn panel(
+    of: &MeasurePoints,
+    first: (&String, &SweepParameter),
+    second: (&String, &SweepParameter),
+) -> Panel {
+    let [x, y] = [first, second].map(parameter_axis);
+    let [across, up] = [first.1, second.1].map(edges);
+    let ends = |edges: &[(f64, f64)]| {
+        let low = edges.iter().map(|e| e.0).fold(f64::INFINITY, f64::min);
+        (
+            low,
+            edges.iter().map(|e| e.1).fold(f64::NEG_INFINITY, f64::max),
+        )
+    };
+    let [(left, right), (low, high)] = [ends(&across), ends(&up)];
+    let mut panel = empty(of.name, x.over(left, right), y.over(low, high));
+    let points = 0..of.points.values.len();
+    let values: Vec<Option<f64>> = points.map(|point| Some(of.at(point)?.0)).collect();
+    let known = values.iter().flatten();
+    let least = known.clone().copied().fold(f64::INFINITY, f64::min);
+    let largest = known.copied().fold(f64::NEG_INFINITY, f64::max);
+    for (point, value) in values.iter().enumerate() {
+        let Some(value) = value else { continue };
+        let part = if largest > least {
+            (value - least) / (largest - least)
+        } else {
+            0.0
+        };
+        let ((left, right), (low, high)) = (across[point / up.len()], up[point % up.len()]);
+        panel
+            .marks
+            .push(Mark::cell("", shade(part), (left, low), (right, high)));
+    }
+    if least.is_finite() {
+        for k in 0..EXPLAINED {
+            let part = k as f64 / (EXPLAINED - 1) as f64;
+            let value = least + part * (largest - least);
+            let unit = if of.unit == "1" { "" } else { of.unit };
+            let label = match unit {
+                "" => numbers::digits(value),
+                unit => numbers::si(value, unit),
+            };
+            panel
+                .marks
+                .push(Mark::cell(&label, shade(part), (left, low), (left, low)));
+        }
+    }
+    panel
+}
+
+/// The colour of a part of the range.
+fn shade(part: f64) -> Color {
+    let place = (part * 2.0).clamp(0.0, 2.0);
+    let k = (place as usize).min(1);
+    let (from, to, u) = (RAMP[k], RAMP[k + 1], place - k as f64);
+    let mix = |a: u8, b: u8| (f64::from(a) + u * (f64::from(b) - f64::from(a))).round() as u8;
+    (mix(from.0, to.0), mix(from.1, to.1), mix(from.2, to.2))
+}
+
+/// Where the rectangle of each value begins and ends: halfway between neighbours.
+fn edges(parameter: &SweepParameter) -> Vec<(f64, f64)> {
+    let is_log = parameter.spacing == Spacing::Log;
+    let to = |x: f64| if is_log { x.ln() } else { x };
+    let from = |x: f64| if is_log { x.exp() } else { x };
+    let levels = (0..parameter.levels()).map(|k| parameter.level(k).number());
+    let levels: Vec<f64> = levels.map(|x| to(x.unwrap_or(f64::NAN))).collect();
+    let mut sorted = levels.clone();
+    sorted.sort_by(f64::total_cmp);
+    let half = |k: usize| 0.5 * (sorted[k + 1] - sorted[k]);
+    let last = sorted.len() - 1;
+    let edge = |x: &f64| {
+        let k = sorted.iter().position(|y| y == x).unwrap_or(0);
+        let below = half(k.saturating_sub(1).min(last - 1));
+        let above = half(k.min(last - 1));
+        (from(x - below), from(x + above))
+    };
+    levels.iter().map(edge).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shades_go_from_pale_to_dark() {
+        assert_eq!([0.0, 0.5, 1.0].map(shade), RAMP);
+        let grey = |(r, g, b): Color| u32::from(r) + u32::from(g) + u32::from(b);
+        let greys: Vec<u32> = (0..=20).map(|k| grey(shade(f64::from(k) / 20.0))).collect();
+        assert!(greys.windows(2).all(|pair| pair[1] < pair[0]), "{greys:?}");
+    }
+}

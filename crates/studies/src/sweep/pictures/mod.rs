@@ -1,0 +1,191 @@
+//! The picture of a sweep: what each measure does, and the course of the runs.
+
+mod course;
+mod heat_map;
+mod influence;
+mod response;
+mod scatter;
+
+use super::design::DesignKind;
+use super::merge::{Merged, Points};
+use super::{FieldValue, Spacing, Sweep, SweepParameter};
+use plot::{Axis, Color, Figure, Panel, palette};
+
+/// Curves of a panel; more values of a second parameter are a map.
+const CURVES: usize = 6;
+
+/// Colours of curves.
+const COLORS: [Color; CURVES] = [
+    palette::BLUE,
+    palette::VERMILION,
+    palette::GREEN,
+    palette::PURPLE,
+    palette::ORANGE,
+    palette::SKY,
+];
+
+/// All panels of a sweep, two or three beside each other, and what they show.
+pub fn figure(sweep: &Sweep, merged: &Merged, points: &Points) -> Figure {
+    let study = &sweep.study;
+    let parameters: Vec<(&String, &SweepParameter)> = study.parameters.iter().collect();
+    let mut panels = Vec::new();
+    let mut notes = Vec::new();
+    let numeric = |p: &SweepParameter| p.at(0.0).number().is_some() && p.at(1.0).number().is_some();
+    for m in 0..study.measures.len() {
+        let of = MeasurePoints::new(sweep, points, m);
+        match (study.design, &parameters[..]) {
+            (DesignKind::Grid, [(_, x), (_, y)])
+                if numeric(x) && numeric(y) && y.levels() > CURVES =>
+            {
+                panels.push(heat_map::panel(&of, parameters[0], parameters[1]));
+            }
+            (DesignKind::Grid, [(_, x), ..]) if numeric(x) && curves(&parameters) <= CURVES => {
+                panels.push(response::panel(&of, &parameters, x.levels()));
+            }
+            _ => {
+                let shown = parameters.iter().enumerate();
+                let shown = shown.filter(|(_, (_, parameter))| numeric(parameter));
+                panels
+                    .extend(shown.map(|(j, p)| scatter::panel(&of, j, *p, study.target.as_ref())));
+            }
+        }
+    }
+    if study.starts_of_a_point() > 1 {
+        notes.push(format!(
+            "Bands and vertical lines: 95 % interval of the mean over {} starts.",
+            study.starts_of_a_point()
+        ));
+    }
+    let charts = merged.indices.iter();
+    let charts = charts.map(|(name, of)| vec![influence::panel(name, of)]);
+    let mut rows: Vec<Vec<Panel>> = charts.collect();
+    if let Some(of) = merged.indices.values().map(|of| of.samples).min() {
+        notes.push(format!(
+            "Sobol indices from {of} samples with their 95 % intervals; what chaos adds to a measure counts as taking part."
+        ));
+    }
+    panels.extend((0..study.envelopes.len()).map(|k| course::panel(sweep, points, k)));
+    if !study.envelopes.is_empty() {
+        notes.push(
+            "Courses: dark from the mean least to the mean largest value of a run, pale from the least to the largest of all."
+                .to_owned(),
+        );
+    }
+    let columns = if panels.len() > 4 {
+        3
+    } else {
+        2.min(panels.len())
+    };
+    rows.extend(Figure::grid(panels, columns, String::new()).rows);
+    Figure {
+        rows,
+        caption: caption(sweep, merged, &notes),
+    }
+}
+
+/// Curves of a grid over its first parameter.
+fn curves(parameters: &[(&String, &SweepParameter)]) -> usize {
+    let others = parameters[1..].iter().map(|(_, p)| p.levels());
+    others.fold(1, usize::saturating_mul)
+}
+
+/// A measure at every point.
+struct MeasurePoints<'a> {
+    name: &'a str,
+    unit: &'a str,
+    points: &'a Points,
+    measure: usize,
+}
+
+impl<'a> MeasurePoints<'a> {
+    fn new(sweep: &'a Sweep, points: &'a Points, measure: usize) -> MeasurePoints<'a> {
+        let (name, _) = sweep.study.measures.get_index(measure).expect("in range");
+        MeasurePoints {
+            name,
+            unit: &sweep.units()[measure],
+            points,
+            measure,
+        }
+    }
+
+    /// Its mean at a point, and the ends of the interval.
+    fn at(&self, point: usize) -> Option<(f64, f64, f64)> {
+        let mean = self.points.means[self.measure][point]?;
+        let (low, high) = mean.interval();
+        Some((mean.mean, low, high))
+    }
+
+    /// The number that a parameter has at a point.
+    fn abscissa(&self, point: usize, parameter: usize) -> f64 {
+        let value = &self.points.values[point][parameter];
+        value.number().unwrap_or(f64::NAN)
+    }
+
+    fn axis(&self) -> Axis {
+        axis(self.name, self.unit)
+    }
+}
+
+/// A value of a parameter for a legend.
+fn label(name: &str, parameter: &SweepParameter, value: &FieldValue) -> String {
+    let name = name.replace('_', " ");
+    match (value.number(), parameter.unit.as_str()) {
+        (None, _) | (_, "" | "1") => format!("{name} {value}"),
+        // half a hertz is not 500 mHz
+        (Some(x), unit) if (0.1..1.0).contains(&x.abs()) => format!("{name} {value} {unit}"),
+        (Some(x), unit) => format!("{name} {}", numbers::si(x, unit)),
+    }
+}
+
+/// An axis with the name of a column as its label.
+fn axis(name: &str, unit: &str) -> Axis {
+    let unit = if unit == "1" { "" } else { unit };
+    Axis::new(&name.replace('_', " "), unit, 1.0)
+}
+
+/// The axis of a parameter.
+fn parameter_axis((name, parameter): (&String, &SweepParameter)) -> Axis {
+    let axis = axis(name, &parameter.unit);
+    match parameter.spacing {
+        Spacing::Log => axis.log(),
+        Spacing::Linear => axis,
+    }
+}
+
+/// A panel without marks.
+fn empty(title: &str, x: Axis, y: Axis) -> Panel {
+    Panel {
+        title: title.replace('_', " "),
+        note: String::new(),
+        x,
+        y,
+        marks: Vec::new(),
+    }
+}
+
+/// Scene, number of runs, what changed in every run, and the notes of the panels.
+fn caption(sweep: &Sweep, merged: &Merged, notes: &[String]) -> String {
+    let study = &sweep.study;
+    let mut text = format!("{}. Scene {}", merged.title, merged.scene);
+    // the method is said in words
+    let changes = study.set.iter();
+    for change in changes.filter(|change| !change.starts_with("integrator.")) {
+        text += &format!(", {change}");
+    }
+    text += &format!("; {}; {} runs", sweep.method(), merged.runs);
+    let without = merged.status["failed"] + merged.status["refused"];
+    if without > 0 {
+        text += &format!(", {without} of them without result");
+    }
+    if merged.warned > 0 {
+        text += &format!(", {} with warnings", merged.warned);
+    }
+    text += ".";
+    if let Some(answer) = super::page::crossing_text(sweep, merged) {
+        text += &format!(" {}", answer.replace('`', ""));
+    }
+    for note in notes {
+        text += &format!(" {note}");
+    }
+    text
+}

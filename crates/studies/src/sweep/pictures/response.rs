@@ -1,0 +1,42 @@
+//! A measure over the first parameter of a grid, one curve for each combination of the others.
+
+use super::{COLORS, MeasurePoints, empty, label, parameter_axis};
+use crate::sweep::SweepParameter;
+use plot::{Mark, Panel};
+
+/// Radius of a dot \[pixels\].
+const DOT: u32 = 7;
+
+pub fn panel(
+    of: &MeasurePoints,
+    parameters: &[(&String, &SweepParameter)],
+    levels: usize,
+) -> Panel {
+    let mut panel = empty(of.name, parameter_axis(parameters[0]), of.axis());
+    let curves = of.points.values.len() / levels;
+    for (curve, color) in (0..curves).zip(COLORS) {
+        // the first parameter varies slowest
+        let points = (0..levels).map(|level| level * curves + curve);
+        let known = points.filter_map(|point| {
+            let (mean, low, high) = of.at(point)?;
+            Some((of.abscissa(point, 0), mean, low, high))
+        });
+        let mut known: Vec<(f64, f64, f64, f64)> = known.collect();
+        known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let column = |k: fn(&(f64, f64, f64, f64)) -> f64| known.iter().map(k).collect::<Vec<_>>();
+        let (x, mean) = (column(|p| p.0), column(|p| p.1));
+        let (low, high) = (column(|p| p.2), column(|p| p.3));
+        let others = parameters.iter().enumerate().skip(1);
+        let others = others
+            .map(|(j, (name, parameter))| label(name, parameter, &of.points.values[curve][j]));
+        let label = others.collect::<Vec<_>>().join(", ");
+        if low != high {
+            panel.marks.push(Mark::band("", color, &x, &low, &high));
+        }
+        panel.marks.push(Mark::curve("", color, &x, &mean).width(3));
+        panel
+            .marks
+            .push(Mark::points(&label, color, &x, &mean, DOT));
+    }
+    panel
+}

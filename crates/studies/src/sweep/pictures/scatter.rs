@@ -1,0 +1,36 @@
+//! A measure against one parameter, a dot for each point with the interval of its mean.
+
+use super::{MeasurePoints, empty, parameter_axis};
+use crate::sweep::{SweepParameter, SweepTarget};
+use plot::{Mark, Panel, palette};
+
+/// More dots are drawn smaller.
+const MANY: usize = 300;
+
+/// The panel; the value of a target is a dashed line.
+pub fn panel(
+    of: &MeasurePoints,
+    place: usize,
+    parameter: (&String, &SweepParameter),
+    target: Option<&SweepTarget>,
+) -> Panel {
+    let mut panel = empty(of.name, parameter_axis(parameter), of.axis());
+    let points = 0..of.points.values.len();
+    let known = points.filter_map(|point| Some((of.abscissa(point, place), of.at(point)?)));
+    let known: Vec<(f64, (f64, f64, f64))> = known.collect();
+    for (x, (_, low, high)) in known.iter().filter(|(_, (_, low, high))| low < high) {
+        let interval = Mark::curve("", palette::SKY, &[*x, *x], &[*low, *high]);
+        panel.marks.push(interval.width(3));
+    }
+    let (x, y): (Vec<f64>, Vec<f64>) = known.iter().map(|(x, (mean, ..))| (*x, *mean)).unzip();
+    let radius = if x.len() > MANY { 3 } else { 6 };
+    panel
+        .marks
+        .push(Mark::points("", palette::BLUE, &x, &y, radius));
+    if let Some(target) = target.filter(|target| target.measure == of.name) {
+        panel
+            .marks
+            .push(Mark::level("target", palette::VERMILION, target.value));
+    }
+    panel
+}
