@@ -5,7 +5,8 @@ use fuzz::{Pool, is_toml, mutate, show, studies};
 use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target};
 use std::path::Path;
 use std::sync::LazyLock;
-use studies::precision::{Study, StudyError};
+use studies::StudyError;
+use studies::precision::Study;
 
 static POOL: LazyLock<Pool> = LazyLock::new(studies);
 

@@ -9,7 +9,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::thread::available_parallelism;
-use studies::sweep::{Shard, Store, Sweep, SweepTarget, execute, merge};
+use studies::sweep::{Shard, Store, Sweep, SweepRow, SweepTarget, execute, merge};
 
 /// Runs without results that are reported as they come.
 const REPORTED: usize = 20;
@@ -94,19 +94,27 @@ fn make(
                 _ => {}
             }
         }
-        // how many runs a bisection takes is not known
         match sweep.runs() {
             Some(_) => display.show(progress.done, progress.left),
-            None if progress.left == 0 && !arguments.quiet => {
-                let values = progress.row.values.iter().zip(&sweep.study.parameters);
-                let value = values.map(|(value, (name, _))| format!("{name} = {value}"));
-                say(&format!("{}: visited", value.collect::<String>()));
-            }
-            None => {}
+            None if arguments.quiet => {}
+            None => say(&visited(sweep, progress.row)),
         }
     });
     display.finish();
     Ok(ended?)
+}
+
+/// A run of a bisection, of which nobody knows how many runs it takes.
+fn visited(sweep: &Sweep, row: &SweepRow) -> String {
+    let short = |x: f64| numbers::number(x, 4);
+    let values = row.values.iter().zip(sweep.study.parameters.keys());
+    let values = values.map(|(value, name)| {
+        let value = value.number().map_or(value.to_string(), short);
+        format!("{name} = {value}")
+    });
+    let measures = row.measures.iter().zip(sweep.study.measures.keys());
+    let measures = measures.filter_map(|(m, name)| Some(format!("{name} = {}", short((*m)?))));
+    values.chain(measures).collect::<Vec<_>>().join(", ")
 }
 
 fn write(arguments: &Arguments, sweep: &Sweep, store: &Store) -> Result<(), CommandFailure> {

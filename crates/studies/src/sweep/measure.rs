@@ -227,6 +227,27 @@ impl Measure {
         }
     }
 
+    /// In words, for captions.
+    pub fn description(&self) -> String {
+        let names = [&self.channels[..], &self.joints[..]].concat();
+        let names = match names.len() {
+            0..=2 => names.join(", "),
+            n => format!("{}, {} and {} more", names[0], names[1], n - 2),
+        };
+        let of = match self.quantile {
+            Some(quantile) => format!("{quantile} quantile"),
+            None => self.of.replace('_', " "),
+        };
+        let from = (self.from > 0.0).then(|| format!(", from {} s", self.from));
+        let to = self.to.map(|to| format!(", to {to} s"));
+        [
+            format!("{of} of {names}"),
+            from.unwrap_or_default(),
+            to.unwrap_or_default(),
+        ]
+        .concat()
+    }
+
     /// Its value in a run that has come to its end; none where the part of the run has no row, or the number is not finite.
     pub fn value(&self, recorded: &Recorded) -> Option<f64> {
         let end = recorded.t.last().copied().unwrap_or(0.0);

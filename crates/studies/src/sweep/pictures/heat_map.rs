@@ -1,6 +1,6 @@
 //! A measure over two parameters of a grid, one rectangle for each point, darker where the measure is larger.
 
-use super::{MeasurePoints, empty, parameter_axis};
+use super::{MeasurePoints, parameter_axis};
 use crate::sweep::{Spacing, SweepParameter};
 use plot::{Color, Mark, Panel};
 
@@ -24,7 +24,7 @@ pub fn panel(
         )
     };
     let [(left, right), (low, high)] = [ends(&across), ends(&up)];
-    let mut panel = empty(of.name, x.over(left, right), y.over(low, high));
+    let mut panel = of.panel_over(x.over(left, right), y.over(low, high));
     let points = 0..of.points.values.len();
     let values: Vec<Option<f64>> = points.map(|point| Some(of.at(point)?.0)).collect();
     let known = values.iter().flatten();

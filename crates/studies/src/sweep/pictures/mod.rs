@@ -92,6 +92,7 @@ fn curves(parameters: &[(&String, &SweepParameter)]) -> usize {
 /// A measure at every point.
 struct MeasurePoints<'a> {
     name: &'a str,
+    description: String,
     unit: &'a str,
     points: &'a Points,
     measure: usize,
@@ -99,9 +100,11 @@ struct MeasurePoints<'a> {
 
 impl<'a> MeasurePoints<'a> {
     fn new(sweep: &'a Sweep, points: &'a Points, measure: usize) -> MeasurePoints<'a> {
-        let (name, _) = sweep.study.measures.get_index(measure).expect("in range");
+        let measures = &sweep.study.measures;
+        let (name, kind) = measures.get_index(measure).expect("in range");
         MeasurePoints {
             name,
+            description: kind.description(),
             unit: &sweep.units()[measure],
             points,
             measure,
@@ -121,8 +124,17 @@ impl<'a> MeasurePoints<'a> {
         value.number().unwrap_or(f64::NAN)
     }
 
-    fn axis(&self) -> Axis {
-        axis(self.name, self.unit)
+    /// A panel with its name and description, over some abscissa.
+    fn panel(&self, x: Axis) -> Panel {
+        self.panel_over(x, axis(self.name, self.unit))
+    }
+
+    /// The same with another ordinate.
+    fn panel_over(&self, x: Axis, y: Axis) -> Panel {
+        Panel {
+            note: self.description.clone(),
+            ..empty(self.name, x, y)
+        }
     }
 }
 

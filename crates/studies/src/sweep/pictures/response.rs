@@ -1,6 +1,6 @@
 //! A measure over the first parameter of a grid, one curve for each combination of the others.
 
-use super::{COLORS, MeasurePoints, empty, label, parameter_axis};
+use super::{COLORS, MeasurePoints, label, parameter_axis};
 use crate::sweep::SweepParameter;
 use plot::{Mark, Panel};
 
@@ -12,7 +12,7 @@ pub fn panel(
     parameters: &[(&String, &SweepParameter)],
     levels: usize,
 ) -> Panel {
-    let mut panel = empty(of.name, parameter_axis(parameters[0]), of.axis());
+    let mut panel = of.panel(parameter_axis(parameters[0]));
     let curves = of.points.values.len() / levels;
     for (curve, color) in (0..curves).zip(COLORS) {
         // the first parameter varies slowest

@@ -1,6 +1,6 @@
 //! A measure against one parameter, a dot for each point with the interval of its mean.
 
-use super::{MeasurePoints, empty, parameter_axis};
+use super::{MeasurePoints, parameter_axis};
 use crate::sweep::{SweepParameter, SweepTarget};
 use plot::{Mark, Panel, palette};
 
@@ -14,7 +14,7 @@ pub fn panel(
     parameter: (&String, &SweepParameter),
     target: Option<&SweepTarget>,
 ) -> Panel {
-    let mut panel = empty(of.name, parameter_axis(parameter), of.axis());
+    let mut panel = of.panel(parameter_axis(parameter));
     let points = 0..of.points.values.len();
     let known = points.filter_map(|point| Some((of.abscissa(point, place), of.at(point)?)));
     let known: Vec<(f64, (f64, f64, f64))> = known.collect();
