@@ -61,6 +61,14 @@ def command_line(out):
     return used(resource.RUSAGE_CHILDREN) - before
 
 
+def names(count):
+    """The first channels of the scene, with the time as many as this."""
+    import looselink
+
+    scene = looselink.load(SCENE).set("output.channels", ["*"]).set("simulation.duration", 1e-4)
+    return scene.run().channels[1:count]
+
+
 def main():
     series = {"looselink run": [], "scene.run(out=...)": [], "scene.run()": []}
     with tempfile.TemporaryDirectory() as folder:
@@ -73,7 +81,7 @@ def main():
         median = statistics.median(times)
         print(f"{name:20} {median:6.2f} s  {median / whole:.3f}  (from {min(times):.2f} to {max(times):.2f} s)")
     for motion in (False, True):
-        overrides = OVERRIDES | {"output": {"interval": 1e-5, "channels": ["*"], "motion": motion}}
+        overrides = OVERRIDES | {"output": {"interval": 1e-5, "channels": names(82), "motion": motion}}
         seen = in_python(overrides)
         kept = "with its motion" if motion else "without its motion"
         print(
