@@ -89,9 +89,24 @@ site() {
     lychee --offline --include-fragments --no-progress "target/site/**/*.html"
 }
 
+# The Python package: compiled and installed into an environment in target/, with its tests. Needs Python 3.10 or newer.
+python() {
+    python3 -c "import ensurepip" 2> /dev/null || install python3-venv
+    # the profile of the tests, which have built it already
+    cargo build --profile test -p looselink-cli
+    python3 -m venv target/tools/looselink-python
+    CARGO_TARGET_DIR="$PWD/target" target/tools/looselink-python/bin/pip install --quiet "./python[test]"
+    # away from the sources, so that the package that was installed is tested
+    LOOSELINK_PROGRAM="$PWD/target/debug/looselink" target/tools/looselink-python/bin/python -P -m pytest -q python/tests
+}
+
 case "${1:-}" in
     --web)
         web
+        exit
+        ;;
+    --python)
+        python
         exit
         ;;
     --site)
@@ -105,7 +120,7 @@ case "${1:-}" in
     "") quick ;;
     --all) everything ;;
     *)
-        echo "usage: ./test.sh [--all | --web | --site]" >&2
+        echo "usage: ./test.sh [--all | --web | --site | --python]" >&2
         exit 2
         ;;
 esac

@@ -3,6 +3,7 @@
 use crate::body::{self, BodyKind};
 use crate::contact::normal::{LAWS, NormalLawKind};
 use crate::interaction::{FORCES, ForceKind, JOINTS, JointKind, contact};
+use crate::motion::{FUNCTIONS, FunctionKind};
 use crate::stepper::{SCHEMES, Scheme};
 use crate::table::{FORMATS, Format};
 
@@ -16,6 +17,8 @@ pub struct Registry {
     pub joints: Vec<&'static JointKind>,
     /// Springs and loads.
     pub forces: Vec<&'static ForceKind>,
+    /// Functions of time.
+    pub functions: Vec<&'static FunctionKind>,
     /// Normal contact laws.
     pub laws: Vec<&'static NormalLawKind>,
     /// Integration schemes.
@@ -31,6 +34,7 @@ impl Registry {
             bodies: body::KINDS.to_vec(),
             joints: JOINTS.to_vec(),
             forces: FORCES.to_vec(),
+            functions: FUNCTIONS.to_vec(),
             laws: LAWS.to_vec(),
             schemes: SCHEMES.to_vec(),
             formats: FORMATS.to_vec(),
@@ -55,6 +59,13 @@ impl Registry {
     #[must_use]
     pub fn with_force(mut self, kind: &'static ForceKind) -> Registry {
         self.forces.push(kind);
+        self
+    }
+
+    /// The same with a kind of function of time.
+    #[must_use]
+    pub fn with_function(mut self, kind: &'static FunctionKind) -> Registry {
+        self.functions.push(kind);
         self
     }
 

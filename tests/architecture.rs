@@ -62,11 +62,12 @@ const CRATES: [&str; 15] = [
 ];
 
 /// Folders with the files of the workspace; `fuzz` lies outside it.
-const WORKSPACE: [&str; 8] = [
+const WORKSPACE: [&str; 9] = [
     "src",
     "crates",
     "pages",
     "paper-figures",
+    "python",
     "verify",
     "tests",
     "benches",

@@ -3,10 +3,12 @@
 use crate::support::run_scene;
 use looselink::contact::normal::{NormalForce, NormalLaw, NormalLawKind, NormalParameters};
 use looselink::document::Key;
+use looselink::motion::{Function, FunctionKind, FunctionOfTime};
 use looselink::registry::Registry;
 use looselink::scene::Scene;
 use looselink::simulate::{Recording, Simulation};
 use looselink::stepper::{Method, Parameter, Scheme};
+use std::sync::Arc;
 
 #[path = "../examples/own_contact_law.rs"]
 #[allow(dead_code, reason = "the example is a program")]
@@ -180,4 +182,59 @@ fn a_scene_names_a_joint_of_the_user() {
             assert!((a - b).abs() < 1e-9 * size, "{name}: {a} {b}");
         }
     }
+}
+
+/// height t^2
+#[derive(Debug)]
+struct Parabola(f64);
+
+impl FunctionOfTime for Parabola {
+    fn at(&self, t: f64) -> [f64; 3] {
+        [self.0 * t * t, 2.0 * self.0 * t, 2.0 * self.0]
+    }
+}
+
+static PARABOLA: FunctionKind = FunctionKind {
+    name: "parabola",
+    keys: &[Key::number("height", "value/s2", "the value at one second")],
+    read: |table, _, _| Ok(Function::Own(Arc::new(Parabola(table.number("height")?)))),
+};
+
+/// A load, a driven angle and a path follow a function of the user as they follow that of the library.
+#[test]
+fn a_scene_names_a_function_of_the_user() {
+    const SCENE: &str = r#"
+        format = 1
+        title = "a pendulum on a crank and a mass that is pushed"
+        simulation = { duration = 0.5, gravity = [0.0, -9.81] }
+        integrator = { method = "trapezoidal", step = 1e-3, newton_tolerance = 1e-10 }
+        output = { interval = 0.1, channels = ["*"] }
+        bodies.ground = { type = "ground", points.O = [0.0, 0.0] }
+        bodies.crank = { type = "rigid_body", mass = 1.0, inertia = 0.1, points.A = [0.0, 0.0], points.B = [0.5, 0.0] }
+        bodies.stage = { type = "moving", path = { type = "coordinates", x = F, y = 0.0, theta = 0.0 }, points.P = [1.0, 0.0] }
+        bodies.mass = { type = "point_mass", mass = 2.0 }
+        joints.O = { type = "revolute", model = "ideal", bearing = "ground.O", journal = "crank.A" }
+        drives.turn = { type = "angle", joint = "O", angle = F }
+        forces.spring = { type = "spring_damper", from = "stage.P", to = "mass.center", stiffness = 50.0, damping = 1.0, rest_length = 0.0 }
+        forces.push = { type = "force", point = "mass.center", x = F, y = 0.0, frame = "ground" }
+        forces.twist = { type = "torque", point = "crank.B", value = F }
+        initial.bodies.mass = { x = 1.0, y = 0.0 }
+    "#;
+    let registry = Registry::standard().with_function(&PARABOLA);
+    let run = |function: &str| {
+        let text = SCENE.replace("= F", &format!("= {function}"));
+        let scene = Scene::parse_with(&registry, "scene", &text, &[]).unwrap();
+        run_scene(&scene).0
+    };
+    let own = run("{ type = \"parabola\", height = 3.0 }");
+    let polynomial = run("{ type = \"polynomial\", coefficients = [0.0, 0.0, 3.0] }");
+    for name in own.names() {
+        let (a, b) = (own.get(name), polynomial.get(name));
+        let size = a.iter().fold(1e-9_f64, |m, x| m.max(x.abs()));
+        for (a, b) in a.iter().zip(&b) {
+            // rounding of some hundred steps
+            assert!((a - b).abs() < 1e-10 * size, "{name}: {a} {b}");
+        }
+    }
+    assert!(own.get("mass.x")[5] > 1.0, "nothing moved");
 }

@@ -1,6 +1,7 @@
 //! `[materials]` and `[sections]`.
 
 use crate::document::{Field, Fields, Key, NumberRange, SceneError, derived, named};
+use crate::motion::FunctionReader;
 use indexmap::IndexMap;
 
 /// `[materials.NAME]`
@@ -23,13 +24,13 @@ pub struct Section {
     pub second_moment: f64,
 }
 
-/// What bodies and contacts are made of, and how long the run lasts.
+/// What bodies and contacts are made of, and what reads the functions of time by which bodies move.
 #[derive(Debug)]
 pub struct Materials {
     materials: IndexMap<String, Material>,
     sections: IndexMap<String, Section>,
-    /// Duration of the run \[s\]: tables over time must cover it.
-    pub duration: f64,
+    /// What reads functions of time.
+    pub functions: FunctionReader,
 }
 
 /// The keys of a material.
@@ -57,11 +58,11 @@ pub static SECTION: [Key; 2] = [
 
 impl Materials {
     /// The tables of a scene.
-    pub(crate) fn read(root: &Fields, duration: f64) -> Result<Materials, SceneError> {
+    pub(crate) fn read(root: &Fields, functions: FunctionReader) -> Result<Materials, SceneError> {
         Ok(Materials {
             materials: named(root.optional("materials"), material)?,
             sections: named(root.optional("sections"), section)?,
-            duration,
+            functions,
         })
     }
 

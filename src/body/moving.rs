@@ -22,7 +22,7 @@ pub(super) static KIND: BodyKind = BodyKind {
         .or("none"),
     ],
     read: |table, known| {
-        let path = read_path(&table.field("path")?, known.duration)?;
+        let path = read_path(&table.field("path")?, &known.functions)?;
         let points = points::read(table)?;
         Ok(Arc::new(Moving { path, points }))
     },

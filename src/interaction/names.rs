@@ -3,6 +3,7 @@
 use super::Joint;
 use crate::body::{Body, PointRef};
 use crate::document::{Field, Fields, SceneError};
+use crate::motion::FunctionReader;
 use indexmap::IndexMap;
 use std::sync::Arc;
 
@@ -16,8 +17,8 @@ pub struct Names<'a> {
     pub bodies: &'a IndexMap<String, Arc<dyn Body>>,
     /// Joints.
     pub joints: &'a IndexMap<String, Joint>,
-    /// Duration of the run \[s\].
-    pub duration: f64,
+    /// What reads functions of time.
+    pub functions: &'a FunctionReader,
 }
 
 impl Names<'_> {

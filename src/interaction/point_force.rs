@@ -7,7 +7,7 @@ use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
 use crate::marker::{Marker, Spin};
 use crate::math::plane::{Vec2, quarter_turn};
-use crate::motion::{Function, Use, read_function};
+use crate::motion::{Function, Use};
 use crate::system::{INTEGRALS, Integral, State, Weights};
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub(super) static KIND: ForceKind = ForceKind {
     read: |table, names| {
         let field = table.field("point")?;
         let point = names.point(&field)?;
-        let component = |key| read_function(&table.field(key)?, Use::Load, names.duration);
+        let component = |key| names.functions.read(&table.field(key)?, Use::Load);
         let components = [component("x")?, component("y")?];
         let follower = table.word("frame")? == 1;
         if follower {

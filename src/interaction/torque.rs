@@ -6,7 +6,7 @@ use crate::document::Key;
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
 use crate::marker::Spin;
-use crate::motion::{Function, Use, read_function};
+use crate::motion::{Function, Use};
 use crate::system::{INTEGRALS, Integral, State, Weights};
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ pub(super) static KIND: ForceKind = ForceKind {
         Ok(Arc::new(TorqueModel {
             point,
             reaction,
-            value: read_function(&table.field("value")?, Use::Load, names.duration)?,
+            value: names.functions.read(&table.field("value")?, Use::Load)?,
         }))
     },
 };

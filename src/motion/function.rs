@@ -2,6 +2,14 @@
 
 use super::{CubicSpline, Expression, line::quintic};
 use std::f64::consts::TAU;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// A function of time that the library does not have. Its values must be finite throughout a run.
+pub trait FunctionOfTime: Debug + Send + Sync {
+    /// Value, first and second derivative at time t \[s\]. Of a load the derivatives are not used.
+    fn at(&self, t: f64) -> [f64; 3];
+}
 
 /// A function of time.
 #[derive(Debug, Clone)]
@@ -41,6 +49,8 @@ pub enum Function {
     Expression(Expression),
     /// Straight lines between rows (t, value), two at least, constant before and after; its second derivative is left at zero.
     Piecewise(Vec<[f64; 2]>),
+    /// One of the program that uses the library.
+    Own(Arc<dyn FunctionOfTime>),
 }
 
 /// From one value to another.
@@ -129,6 +139,7 @@ impl Function {
             }
             Function::Table(table) => table.derivatives(t).map(|[x]| x),
             Function::Expression(expression) => expression.at(t),
+            Function::Own(function) => function.at(t),
             Function::Piecewise(rows) => {
                 let after = rows.partition_point(|[time, _]| *time <= t);
                 match rows.get(after.wrapping_sub(1)..=after) {

@@ -12,9 +12,9 @@ mod table;
 
 pub use circle::Circle;
 pub use expression::Expression;
-pub use function::{Function, Step};
+pub use function::{Function, FunctionOfTime, Step};
 pub use line::Line;
-pub use read_function::{FUNCTIONS, FunctionKind, Use, read_function};
+pub use read_function::{FUNCTIONS, FunctionKind, FunctionReader, Use};
 pub(crate) use read_path::read_path;
 pub use read_path::{PATHS, PathKind};
 pub use table::CubicSpline;

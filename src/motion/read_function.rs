@@ -153,19 +153,30 @@ static PIECEWISE: FunctionKind = FunctionKind {
     },
 };
 
-/// Reads a function of time; `duration` is what a table must cover \[s\].
-///
-/// # Errors
-/// The first fault found.
-pub fn read_function(field: &Field, purpose: Use, duration: f64) -> Result<Function, SceneError> {
-    if field.is_text() {
-        return read_expression(field, purpose, duration).map(Function::Expression);
+/// Reads functions of time.
+#[derive(Debug, Clone)]
+pub struct FunctionReader {
+    /// The kinds that a scene can name.
+    pub kinds: Vec<&'static FunctionKind>,
+    /// Duration of the run \[s\]: tables over time must cover it.
+    pub duration: f64,
+}
+
+impl FunctionReader {
+    /// The function that a field describes.
+    ///
+    /// # Errors
+    /// The first fault found.
+    pub fn read(&self, field: &Field, purpose: Use) -> Result<Function, SceneError> {
+        if field.is_text() {
+            return read_expression(field, purpose, self.duration).map(Function::Expression);
+        }
+        if !field.is_table() {
+            return Ok(Function::Constant(field.number()?));
+        }
+        let (kind, table) = Kind::of(field, "function of time", &self.kinds)?;
+        (kind.read)(&table, purpose, self.duration)
     }
-    if !field.is_table() {
-        return Ok(Function::Constant(field.number()?));
-    }
-    let (kind, table) = Kind::of(field, "function of time", &FUNCTIONS)?;
-    (kind.read)(&table, purpose, duration)
 }
 
 /// Number of equal intervals at whose ends an expression is tried.

@@ -1,6 +1,6 @@
 //! Paths of bodies: `type` and its keys.
 
-use super::read_function::{Use, read_function, rows, rows_key};
+use super::read_function::{FunctionReader, Use, rows, rows_key};
 use super::{Circle, CubicSpline, Line, Path};
 use crate::document::{Field, Fields, Key, Kind, SceneError};
 use std::f64::consts::TAU;
@@ -9,8 +9,8 @@ use std::sync::Arc;
 const POSE: &str = "[x, y, theta]";
 const POSE_UNITS: &str = "m, m, rad";
 
-/// A kind of path. It is read for a run of a duration \[s\].
-pub type PathKind = Kind<fn(&Fields, f64) -> Result<Arc<dyn Path>, SceneError>>;
+/// A kind of path. It is read with the functions of time that a scene can name.
+pub type PathKind = Kind<fn(&Fields, &FunctionReader) -> Result<Arc<dyn Path>, SceneError>>;
 
 /// The kinds that a scene can name.
 pub static PATHS: [&PathKind; 4] = [&CIRCLE, &LINE, &TABLE, &COORDINATES];
@@ -58,8 +58,8 @@ static LINE: PathKind = PathKind {
 static TABLE: PathKind = PathKind {
     name: "table",
     keys: &[rows_key("s, m, m, rad", "[t, x, y, theta]")],
-    read: |fields, duration| {
-        let rows: Vec<[f64; 4]> = rows(&fields.field("rows")?, duration)?;
+    read: |fields, functions| {
+        let rows: Vec<[f64; 4]> = rows(&fields.field("rows")?, functions.duration)?;
         let rows = rows.iter();
         let rows = rows.map(|&[t, x, y, theta]| (t, [x, y, theta]));
         Ok(Arc::new(CubicSpline::new(rows)))
@@ -73,15 +73,18 @@ static COORDINATES: PathKind = PathKind {
         Key::function("y", "m", "y"),
         Key::function("theta", "rad", "theta"),
     ],
-    read: |fields, duration| {
-        let coordinate = |key| read_function(&fields.field(key)?, Use::Motion, duration);
-        let functions = [coordinate("x")?, coordinate("y")?, coordinate("theta")?];
-        Ok(Arc::new(functions))
+    read: |fields, functions| {
+        let coordinate = |key| functions.read(&fields.field(key)?, Use::Motion);
+        let coordinates = [coordinate("x")?, coordinate("y")?, coordinate("theta")?];
+        Ok(Arc::new(coordinates))
     },
 };
 
-/// Reads a path of a run of this duration.
-pub(crate) fn read_path(field: &Field, duration: f64) -> Result<Arc<dyn Path>, SceneError> {
+/// Reads a path; its coordinates may be functions of time.
+pub(crate) fn read_path(
+    field: &Field,
+    functions: &FunctionReader,
+) -> Result<Arc<dyn Path>, SceneError> {
     let (kind, fields) = Kind::of(field, "path", &PATHS)?;
-    (kind.read)(&fields, duration)
+    (kind.read)(&fields, functions)
 }

@@ -166,6 +166,25 @@ struct Ended<'a> {
     warnings: Vec<String>,
 }
 
+impl Ended<'_> {
+    fn new(report: &Report) -> Ended<'_> {
+        Ended {
+            report,
+            warnings: report.warnings(),
+        }
+    }
+}
+
+/// The summary of a run that has ended, as `summary.json` holds it.
+///
+/// # Errors
+/// A number that JSON cannot hold.
+pub fn summary(scene: &Scene, report: &Report) -> Result<Vec<u8>, OutputError> {
+    let header = &Header::new(scene);
+    let report = Ended::new(report);
+    json(&Summary { header, report })
+}
+
 impl Results {
     /// Starts a result; files that are not part of one are left alone.
     ///
@@ -339,8 +358,7 @@ impl Results {
             .try_for_each(|table| table.sync().map(drop))?;
         let timing = self.stopwatch.stop(report.t);
         self.folder.replace(TIMING, &json(&timing)?)?;
-        let warnings = report.warnings();
-        write_summary(&self.folder, &self.header, Ended { report, warnings })?;
+        write_summary(&self.folder, &self.header, Ended::new(report))?;
         if report.status == Status::Complete {
             self.folder.remove(CHECKPOINT)?;
             if self.folder.replaces {

@@ -4,7 +4,7 @@ use super::{integrator, motion, reader};
 use crate::body::{MATERIAL, PLATES, POLAR, RAYLEIGH, SECTION};
 use crate::document::{Key, Kind};
 use crate::interaction::contact;
-use crate::motion::{FUNCTIONS, PATHS};
+use crate::motion::PATHS;
 use crate::registry::Registry;
 
 /// A table of the language.
@@ -62,7 +62,7 @@ pub fn language(registry: &Registry) -> Vec<Sheet> {
     add(&mut sheets, "drives.NAME", &motion::KINDS);
     add(&mut sheets, "forces.NAME", &registry.forces);
     add(&mut sheets, "path", &PATHS);
-    add(&mut sheets, "function of time", &FUNCTIONS);
+    add(&mut sheets, "function of time", &registry.functions);
     sheets
 }
 

@@ -7,7 +7,7 @@ use crate::body::{Body, Deformation, Known, PointRef, RigidBody};
 use crate::document::{Field, Fields, Key, Kind, NumberRange, SceneError, Takes, named};
 use crate::interaction::Names;
 use crate::math::plane::{Vec2, pair, quarter_turn, unit};
-use crate::motion::{Use, read_function, read_path};
+use crate::motion::{Use, read_path};
 
 /// What drives prescribe.
 #[derive(Default)]
@@ -60,7 +60,7 @@ static ANGLE: DriveKind = DriveKind {
         for side in names.joints[joint].points() {
             names.check_turns(&name, side)?;
         }
-        let angle = read_function(&table.field("angle")?, Use::Motion, names.duration)?;
+        let angle = names.functions.read(&table.field("angle")?, Use::Motion)?;
         drives.prescribe(table, MotionKind::Angle { joint, angle });
         Ok(())
     },
@@ -85,7 +85,7 @@ static POINT: DriveKind = DriveKind {
         }
         let coordinate = |key| {
             let field = table.optional(key);
-            let read = field.map(|f| read_function(&f, Use::Motion, names.duration));
+            let read = field.map(|f| names.functions.read(&f, Use::Motion));
             read.transpose()
         };
         let coordinates = [coordinate("x")?, coordinate("y")?];
@@ -156,7 +156,7 @@ fn inverse_kinematics(
         span: table.whole.span(),
         joints,
         body,
-        path: read_path(&path_field, names.duration)?,
+        path: read_path(&path_field, names.functions)?,
         path_span: path_field.span(),
     });
     Ok(())

@@ -8,6 +8,7 @@ use crate::document::{
     Field, Fields, Key, SceneError, Sources, Span, Takes, apply_overrides, document,
 };
 use crate::interaction::Names;
+use crate::motion::FunctionReader;
 use crate::registry::Registry;
 use indexmap::IndexMap;
 use std::path::Path;
@@ -154,14 +155,18 @@ impl Scene {
         root.declare(&[], &SCENE)?;
         let title = root.field("title")?.text()?.to_owned();
         let simulation = simulation(&root)?;
-        let materials = Materials::read(&root, simulation.duration)?;
+        let functions = FunctionReader {
+            kinds: registry.functions.clone(),
+            duration: simulation.duration,
+        };
+        let materials = Materials::read(&root, functions)?;
         let bodies = kinds::bodies(&root, &materials, registry)?;
         let by_name = bodies.iter().map(|b| (b.name.clone(), b.kind.clone()));
         let by_name = by_name.collect();
         let mut names = Names {
             bodies: &by_name,
             joints: &IndexMap::new(),
-            duration: simulation.duration,
+            functions: &materials.functions,
         };
         let joints = kinds::joints(&root, &names, &materials, registry)?;
         names.joints = &joints;

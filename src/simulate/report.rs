@@ -6,12 +6,11 @@ use crate::checkpoint::carried;
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, Scene};
 use crate::system::System;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 
 /// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
     /// To the end of the scene.
     Complete,
@@ -19,6 +18,23 @@ pub enum Status {
     Incomplete,
     /// It could not go on.
     Failed,
+}
+
+impl Status {
+    /// Its name, as the summary has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Status::Complete => "complete",
+            Status::Incomplete => "incomplete",
+            Status::Failed => "failed",
+        }
+    }
+}
+
+impl Serialize for Status {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
 }
 
 /// Least and greatest recorded value of a channel, and when.

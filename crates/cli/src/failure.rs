@@ -3,7 +3,7 @@
 use looselink::output::OutputError;
 use looselink::scene::SceneError;
 use looselink::simulate::RunError;
-use miette::MietteHandlerOpts;
+use messages::{Colors, run_failure, scene_fault};
 use std::fmt::Display;
 use std::io::Write;
 use std::process::ExitCode;
@@ -49,18 +49,12 @@ impl CommandFailure {
 
     /// A run that ended early.
     pub fn run(error: &RunError) -> CommandFailure {
-        let (code, message) = match error {
-            RunError::Interrupted { .. } => (INTERRUPTED, error.to_string()),
-            RunError::Output(_) => (SYSTEM, error.to_string()),
-            RunError::Unaffordable { .. } => (
-                CANNOT_GO_ON,
-                format!(
-                    "the run stops at its first step: {error}; another method may take fewer steps"
-                ),
-            ),
-            _ => (CANNOT_GO_ON, format!("the run cannot go on: {error}")),
+        let code = match error {
+            RunError::Interrupted { .. } => INTERRUPTED,
+            RunError::Output(_) => SYSTEM,
+            _ => CANNOT_GO_ON,
         };
-        CommandFailure::new(code, message)
+        CommandFailure::new(code, run_failure(error))
     }
 
     /// The same failure with more to say.
@@ -84,13 +78,9 @@ impl CommandFailure {
 
 impl From<SceneError> for CommandFailure {
     fn from(error: SceneError) -> CommandFailure {
-        // Whole lines: a message that is cut in two cannot be searched for.
-        let hook = |_: &_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build()) as _;
-        // Fails only when a hook is there already.
-        let _ = miette::set_hook(Box::new(hook));
         CommandFailure {
             code: BAD_INPUT,
-            text: format!("{:?}", miette::Report::new(error)),
+            text: scene_fault(&error, Colors::OfTerminal),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `looselink modes`
 
 use super::failure::CommandFailure;
-use super::progress::{Display, Ticker, say, warn};
+use super::progress::{Display, say, warn};
 use super::{SceneArguments, print};
 use clap::{Args, ValueEnum};
 use looselink::model::Model;
@@ -9,6 +9,7 @@ use looselink::modes::{Modes, NaturalMode};
 use looselink::output::{json, naming, replace};
 use looselink::scene::{Analysis, Scene};
 use looselink::simulate::{Control, Observer, Progress, Simulation};
+use messages::Ticker;
 use numbers::{exact, number};
 use serde::Serialize;
 use std::collections::BTreeMap;

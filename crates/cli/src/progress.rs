@@ -2,6 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 use looselink::simulate::{Notice, Progress};
+use messages::Start;
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
@@ -23,13 +24,10 @@ pub enum Display {
     Lines(Option<f64>, Instant, Start),
 }
 
-/// When a run began or was resumed: on the clock, and in simulated time \[s\].
-pub struct Start(Instant, f64);
-
 impl Display {
     /// A display on standard error of a run from a simulated time on.
     pub fn new(quiet: bool, from: f64) -> Display {
-        let start = Start(Instant::now(), from);
+        let start = Start::at(from);
         if quiet {
             return Display::None;
         }
@@ -47,14 +45,14 @@ impl Display {
         match self {
             Display::Bar(bar, started) if tick => {
                 bar.set_position((part * FINE) as u64);
-                bar.set_message(message(progress, started));
+                bar.set_message(started.line(progress));
             }
             Display::Lines(next, last, started)
                 if next.is_none_or(|next| part >= next) || (tick && last.elapsed() > SILENCE) =>
             {
                 let following = ((part * LINES).floor() + 1.0) / LINES;
                 if next.replace(following).is_some() && part < 1.0 {
-                    say(&message(progress, started));
+                    say(&started.line(progress));
                     *last = Instant::now();
                 }
             }
@@ -73,19 +71,6 @@ impl Display {
             say(message);
         }
     }
-}
-
-fn message(progress: &Progress, Start(clock, from): &Start) -> String {
-    let Progress {
-        t,
-        duration,
-        contacts,
-    } = progress;
-    let Some(contacts) = contacts else {
-        return format!("equilibrium at t = {t:.4} of {duration}");
-    };
-    let factor = (t - from) / clock.elapsed().as_secs_f64();
-    format!("t = {t:.4} s of {duration} s, {factor:.3} x real time, closed contacts: {contacts}")
 }
 
 /// How far a number of runs is: a bar on a terminal, a line after every tenth elsewhere and when none has come for a while.
@@ -171,43 +156,4 @@ pub fn show(notice: Notice, quiet: bool) {
 pub fn say(line: &str) {
     // A run does not fail because nobody listens.
     let _ = writeln!(std::io::stderr(), "{line}");
-}
-
-/// Looks at the clock every 256 steps or so, more often when steps are slow.
-pub struct Ticker {
-    every: u32,
-    count: u32,
-    last: Instant,
-}
-
-const TICK: Duration = Duration::from_millis(100);
-
-impl Ticker {
-    /// Starts with a look at every step.
-    pub fn new() -> Ticker {
-        Ticker {
-            every: 1,
-            count: 0,
-            last: Instant::now(),
-        }
-    }
-
-    /// True about ten times a second.
-    pub fn tick(&mut self) -> bool {
-        self.count += 1;
-        if self.count < self.every {
-            return false;
-        }
-        self.count = 0;
-        let due = self.last.elapsed() >= TICK;
-        self.every = if due {
-            (self.every / 2).max(1)
-        } else {
-            (self.every * 2).min(256)
-        };
-        if due {
-            self.last = Instant::now();
-        }
-        due
-    }
 }

@@ -3,7 +3,7 @@
 use super::SceneArguments;
 use super::closing;
 use super::failure::{CommandFailure, INTERRUPTED};
-use super::progress::{Display, Ticker, warn};
+use super::progress::{Display, warn};
 use super::view;
 use clap::Args;
 use looselink::model::Model;
@@ -12,6 +12,7 @@ use looselink::registry::Registry;
 use looselink::scene::Scene;
 use looselink::simulate::{ContactEvent, Control, Observer, Progress, RunError, Simulation};
 use looselink::system::State;
+use messages::Ticker;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -3,9 +3,10 @@
 use super::moved::bounds;
 use indexmap::IndexMap;
 use looselink::modes::NaturalMode;
+use looselink::output::summary;
 use looselink::record::MotionLayout;
 use looselink::scene::{Scene, SceneError};
-use looselink::simulate::Simulation;
+use looselink::simulate::{Report, Simulation};
 use numbers::exact;
 use serde::Deserialize;
 use std::f64::consts::TAU;
@@ -165,6 +166,41 @@ impl StoredRun {
             result,
             simulation: Rc::new(simulation),
             layout,
+            motion,
+        })
+    }
+}
+
+impl StoredRun {
+    /// A run that a program has kept in memory, as [`StoredRun::load`] reads it from a folder called `name`: its channels, first
+    /// the time, and its rows of motion, as many as rows of channels.
+    ///
+    /// # Errors
+    /// A scene that does not compile, and a run without a row.
+    pub fn kept(
+        name: String,
+        scene: Scene,
+        report: &Report,
+        mut channels: Vec<StoredChannel>,
+        motion: Vec<Vec<f64>>,
+    ) -> Result<StoredRun, ViewError> {
+        let simulation = Simulation::new(&scene)?;
+        let times = channels.remove(0).values;
+        if times.is_empty() {
+            return Err(ViewError::Result("the run holds no row yet".to_owned()));
+        }
+        let summary = summary(&scene, report).map_err(io::Error::other)?;
+        let result = StoredResult {
+            name,
+            scene,
+            summary: serde_json::from_slice(&summary).map_err(io::Error::from)?,
+            times,
+            channels,
+        };
+        Ok(StoredRun {
+            result,
+            layout: MotionLayout::new(simulation.model()),
+            simulation: Rc::new(simulation),
             motion,
         })
     }

@@ -1,0 +1,8 @@
+//! What users read while a scene is loaded and run, in the words that all programs share: faults of a scene, the end of a run that
+//! could not go on, how far a run is.
+
+mod failure;
+mod progress;
+
+pub use failure::{Colors, run_failure, scene_fault};
+pub use progress::{Start, Ticker};

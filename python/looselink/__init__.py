@@ -1,0 +1,33 @@
+"""Elastodynamics of planar mechanisms with flexible links and joint clearance.
+
+>>> import looselink
+>>> run = looselink.load("scenes/pendulum.toml").run()
+>>> run.t, run["bar.theta"]
+
+`load` and `loads` read a `Scene`; `Scene.set` changes it and `Scene.run` simulates it; a `Run` maps names of channels to NumPy
+arrays. All quantities are in SI units.
+"""
+
+from ._looselink import (
+    Run,
+    RunError,
+    RunWarning,
+    Scene,
+    SceneError,
+    View,
+    __version__,
+    load,
+    loads,
+)
+
+__all__ = [
+    "Run",
+    "RunError",
+    "RunWarning",
+    "Scene",
+    "SceneError",
+    "View",
+    "__version__",
+    "load",
+    "loads",
+]

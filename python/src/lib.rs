@@ -1,0 +1,31 @@
+//! Looselink as a Python package. `looselink/_looselink.pyi` has the names with their types.
+
+mod callable;
+mod errors;
+mod load;
+mod memory;
+mod progress;
+mod run;
+mod scene;
+mod value;
+mod view;
+
+use pyo3::prelude::*;
+
+#[pymodule(name = "_looselink")]
+mod module {
+    #[pymodule_export]
+    use super::errors::raised::{RunError, RunWarning, SceneError};
+    #[pymodule_export]
+    use super::run::PyRun;
+    #[pymodule_export]
+    use super::scene::{PyScene, load, loads};
+    #[pymodule_export]
+    use super::view::PyView;
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,383 @@
+//! A run and its results.
+
+use super::callable::take_raised;
+use super::errors::{output_error, raised, scene_error};
+use super::memory::Memory;
+use super::progress::ProgressDisplay;
+use super::scene::from_json;
+use super::view::PyView;
+use looselink::document::nearest;
+use looselink::output::{Folder, Results, files, summary};
+use looselink::registry::Registry;
+use looselink::scene::Scene;
+use looselink::simulate::{Channel, Impact, Report, RunError, Simulation};
+use messages::run_failure;
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyIterator, PyList};
+use std::ffi::CString;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use view::{StoredChannel, StoredRun, page};
+use wildmatch::WildMatchPattern;
+
+/// What has become of a run.
+struct FinishedRun {
+    channels: Vec<Channel>,
+    memory: Memory,
+    report: Report,
+    error: Option<RunError>,
+    /// What a callable, a signal or the shown progress has raised.
+    raised: Option<PyErr>,
+}
+
+/// Simulates a scene.
+pub fn run(
+    py: Python,
+    scene: Arc<Scene>,
+    shown: ProgressDisplay,
+    out: Option<PathBuf>,
+    force: bool,
+) -> PyResult<Py<PyRun>> {
+    let ended = py.detach(|| simulate(&scene, shown, out.as_deref(), force))?;
+    let FinishedRun {
+        channels,
+        mut memory,
+        report,
+        error,
+        raised,
+    } = ended;
+    let last = memory.last.filter(|_| error.is_none());
+    let shown = memory.shown.finish(py, last.as_ref());
+    let name = out.and_then(|out| out.canonicalize().ok());
+    let name = name.and_then(|out| Some(out.file_name()?.to_string_lossy().into_owned()));
+    let kept = PyRun::new(
+        py,
+        scene,
+        name.unwrap_or_default(),
+        channels,
+        memory,
+        report,
+    )?;
+    let warnings = kept.warnings.clone();
+    let kept = Py::new(py, kept)?;
+    let with_rows = |error: PyErr| {
+        let set = error.value(py).setattr("run", &kept);
+        set.err().unwrap_or(error)
+    };
+    if let Some(raised) = raised.or(shown.err()) {
+        return Err(with_rows(raised));
+    }
+    match error {
+        Some(RunError::Output(error)) => {
+            return Err(with_rows(PyOSError::new_err(error.to_string())));
+        }
+        Some(error) => return Err(with_rows(raised::RunError::new_err(run_failure(&error)))),
+        None => {}
+    }
+    let category = py.get_type::<raised::RunWarning>();
+    for warning in warnings {
+        PyErr::warn(py, &category, &CString::new(warning)?, 1)?;
+    }
+    Ok(kept)
+}
+
+/// Runs without Python, up to callables, signals and progress.
+fn simulate(
+    scene: &Scene,
+    shown: ProgressDisplay,
+    out: Option<&Path>,
+    force: bool,
+) -> PyResult<FinishedRun> {
+    let files = files(&Registry::standard().formats);
+    let folder = out.map(|out| Folder::new(out, &files, force)).transpose();
+    let folder = folder.map_err(|error| output_error(&error))?;
+    let simulation = Simulation::new(scene);
+    if let Some(raised) = take_raised() {
+        return Err(raised);
+    }
+    let mut simulation =
+        simulation.map_err(|error| Python::attach(|py| scene_error(py, &error)))?;
+    let results = folder.map(|folder| Results::begin(folder, scene, &simulation));
+    let results = results.transpose();
+    let results = results.map_err(|error| output_error(&error))?;
+    let mut memory = Memory::new(scene, &simulation, results, shown);
+    let error = simulation.run(&mut memory).err();
+    let raised = take_raised().or(memory.raised.take());
+    let report = simulation.report();
+    if let Some(results) = memory.results.take() {
+        let finished = results.finish(&report);
+        finished.map_err(|error| output_error(&error))?;
+    }
+    Ok(FinishedRun {
+        channels: simulation.channels().to_vec(),
+        memory,
+        report,
+        error,
+        raised,
+    })
+}
+
+/// The results of a run: a mapping from the names of channels to arrays over time.
+///
+/// `run["error.x"]` is a float64 array of shape (rows,) in the unit `run.units["error.x"]`. It holds the memory that the solver has
+/// filled, without a copy, and is read-only; `.copy()` gives one that can be changed.
+#[pyclass(module = "looselink", name = "Run", frozen, mapping)]
+pub struct PyRun {
+    scene: Arc<Scene>,
+    /// The folder of its files, without where it is.
+    name: String,
+    channels: Vec<Channel>,
+    columns: Vec<Py<PyArray1<f64>>>,
+    onsets: Py<PyDict>,
+    summary: Py<PyAny>,
+    warnings: Vec<String>,
+    report: Report,
+    /// Numbers in a row of the motion, and the rows one after the other.
+    motion: Option<(usize, Vec<f64>)>,
+}
+
+impl PyRun {
+    fn new(
+        py: Python,
+        scene: Arc<Scene>,
+        name: String,
+        channels: Vec<Channel>,
+        memory: Memory,
+        report: Report,
+    ) -> PyResult<PyRun> {
+        let bytes = summary(&scene, &report).map_err(|error| output_error(&error))?;
+        let columns = memory.columns.into_iter();
+        let columns = columns.map(|column| read_only(PyArray1::from_vec(py, column)));
+        Ok(PyRun {
+            columns: columns.collect(),
+            onsets: onsets(py, &memory.contacts)?.unbind(),
+            summary: from_json(py, &bytes)?.unbind(),
+            warnings: report.warnings(),
+            motion: memory
+                .motion
+                .map(|(layout, numbers)| (layout.names().len(), numbers)),
+            scene,
+            name,
+            channels,
+            report,
+        })
+    }
+
+    fn column(&self, name: &str) -> PyResult<&Py<PyArray1<f64>>> {
+        let names = self.channels.iter().map(|channel| channel.name.as_str());
+        if let Some(place) = names.clone().position(|known| known == name) {
+            return Ok(&self.columns[place]);
+        }
+        let near = nearest(name, names).map_or_else(
+            || "; `run.channels` names all".to_owned(),
+            |near| format!("; did you mean {near:?}?"),
+        );
+        let message = format!("no channel of this run is named {name:?}{near}");
+        Err(PyKeyError::new_err(message))
+    }
+
+    /// The columns under the headings of `channels.csv`.
+    fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let table = PyDict::new(py);
+        for (channel, column) in self.channels.iter().zip(&self.columns) {
+            table.set_item(format!("{} [{}]", channel.name, channel.unit), column)?;
+        }
+        Ok(table)
+    }
+}
+
+fn read_only(array: Bound<'_, PyArray1<f64>>) -> Py<PyArray1<f64>> {
+    array.readwrite().make_nonwriteable();
+    array.unbind()
+}
+
+/// The columns of `onsets.csv`.
+fn onsets<'py>(py: Python<'py>, contacts: &[Impact]) -> PyResult<Bound<'py, PyDict>> {
+    let column = |value: fn(&Impact) -> f64| {
+        let values = contacts.iter().map(value).collect();
+        read_only(PyArray1::from_vec(py, values))
+    };
+    let joints = contacts.iter().map(|contact| contact.joint.as_str());
+    let joints = PyList::new(py, joints.collect::<Vec<_>>())?;
+    let joints = py.import("numpy")?.call_method1("array", (joints, "str"))?;
+    joints.call_method1("setflags", (false,))?;
+    let table = PyDict::new(py);
+    table.set_item("t", column(|c| c.t))?;
+    table.set_item("joint", joints)?;
+    table.set_item("impact_velocity", column(|c| c.impact_velocity))?;
+    table.set_item("delta", column(|c| c.delta))?;
+    table.set_item("angle", column(|c| c.angle))?;
+    table.set_item("deepest_penetration", column(|c| c.deepest_penetration))?;
+    table.set_item("end", column(|c| c.end.unwrap_or(f64::NAN)))?;
+    let exit_velocity = column(|c| c.exit_velocity.unwrap_or(f64::NAN));
+    table.set_item("exit_velocity", exit_velocity)?;
+    Ok(table)
+}
+
+#[pymethods]
+impl PyRun {
+    /// The channel `name` over time.
+    ///
+    /// Raises KeyError for an unknown name, with the nearest known one.
+    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(self.column(name)?.bind(py).clone())
+    }
+
+    fn __contains__(&self, name: &Bound<PyAny>) -> bool {
+        let name = name.extract::<String>();
+        name.is_ok_and(|name| self.column(&name).is_ok())
+    }
+
+    /// The number of channels.
+    fn __len__(&self) -> usize {
+        self.channels.len()
+    }
+
+    /// The names of the channels.
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        PyList::new(py, self.channels())?.try_iter()
+    }
+
+    fn __repr__(&self, py: Python) -> String {
+        let rows = self.columns[0].bind(py).len().unwrap_or_default();
+        format!(
+            "<looselink.Run {:?}, {}: {} channels, {rows} rows to t = {} s>",
+            self.scene.title,
+            self.status(),
+            self.channels.len(),
+            numbers::exact(self.report.t)
+        )
+    }
+
+    /// The names of the channels, the time "t" first.
+    #[getter]
+    fn channels(&self) -> Vec<&str> {
+        let names = self.channels.iter();
+        names.map(|channel| channel.name.as_str()).collect()
+    }
+
+    /// The names of the channels, so that `dict(run)` works.
+    fn keys(&self) -> Vec<&str> {
+        self.channels()
+    }
+
+    /// The time of every row [s].
+    #[getter]
+    fn t<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.columns[0].bind(py).clone()
+    }
+
+    /// The unit of every channel; "1" of a number without one.
+    #[getter]
+    fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let units = PyDict::new(py);
+        for channel in &self.channels {
+            units.set_item(&channel.name, channel.unit)?;
+        }
+        Ok(units)
+    }
+
+    /// The contacts in the order in which they ended, as in onsets.csv: a dict of read-only arrays t [s], joint (str),
+    /// impact_velocity [m/s], delta [m], angle [rad], deepest_penetration [m], end [s] and exit_velocity [m/s]. The last two are
+    /// NaN of a contact that is closed when the run ends.
+    #[getter]
+    fn onsets(&self, py: Python) -> Py<PyDict> {
+        self.onsets.clone_ref(py)
+    }
+
+    /// What summary.json says: title, overrides, status, counts of the work done, energy ledger, extremes, warnings.
+    #[getter]
+    fn summary(&self, py: Python) -> Py<PyAny> {
+        self.summary.clone_ref(py)
+    }
+
+    /// Why the results may be less accurate than they look, one line each.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+
+    /// "complete", "incomplete" (stopped) or "failed".
+    #[getter]
+    fn status(&self) -> &'static str {
+        self.report.status.name()
+    }
+
+    /// The channels whose names match `pattern`, as a dict from names to arrays; `*` stands for any sequence of characters, as in
+    /// `output.channels` of a scene.
+    ///
+    /// Raises KeyError where none matches.
+    fn select<'py>(&self, py: Python<'py>, pattern: &str) -> PyResult<Bound<'py, PyDict>> {
+        let wanted = WildMatchPattern::<'*', '\0'>::new(pattern);
+        let selected = PyDict::new(py);
+        for (channel, column) in self.channels.iter().zip(&self.columns) {
+            if wanted.matches(&channel.name) {
+                selected.set_item(&channel.name, column)?;
+            }
+        }
+        if selected.is_empty() {
+            self.column(pattern)?;
+        }
+        Ok(selected)
+    }
+
+    /// The channels as a pandas.DataFrame without a copy. Its columns are called "name [unit]", as in channels.csv;
+    /// `.attrs["units"]` has the units by name.
+    ///
+    /// Raises ImportError without pandas (`pip install looselink[pandas]`).
+    fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let options = PyDict::new(py);
+        options.set_item("copy", false)?;
+        let pandas = py.import("pandas")?;
+        let frame = pandas.call_method("DataFrame", (self.table(py)?,), Some(&options))?;
+        let attributes = frame.getattr("attrs")?;
+        attributes.set_item("title", &self.scene.title)?;
+        attributes.set_item("units", self.units(py)?)?;
+        Ok(frame)
+    }
+
+    /// The channels as a polars.DataFrame. Its columns are called "name [unit]", as in channels.csv.
+    ///
+    /// Raises ImportError without Polars (`pip install looselink[polars]`).
+    fn to_polars<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("polars")?
+            .call_method1("DataFrame", (self.table(py)?,))
+    }
+
+    /// The run as a page in which the mechanism moves, as `looselink view` writes it. In a notebook it is shown with this `height`
+    /// [pixels].
+    ///
+    /// Raises ValueError where the run has no motion, because the scene says `output.motion = false`, or no row yet.
+    #[pyo3(signature = (height=600))]
+    fn view(&self, py: Python, height: u32) -> PyResult<PyView> {
+        let Some((width, motion)) = &self.motion else {
+            let message = "the run has no motion to show: the scene says `output.motion = false`";
+            return Err(PyValueError::new_err(message));
+        };
+        let mut channels = Vec::new();
+        let rows = motion.len() / width;
+        for (channel, column) in self.channels.iter().zip(&self.columns) {
+            let column = column.bind(py).try_readonly()?;
+            let values = column.as_slice()?;
+            channels.push(StoredChannel {
+                name: channel.name.clone(),
+                unit: channel.unit.to_owned(),
+                values: values[..values.len().min(rows)].to_vec(),
+            });
+        }
+        let motion = motion.chunks_exact(*width).take(channels[0].values.len());
+        let motion = motion.map(<[f64]>::to_vec).collect();
+        let scene = Scene::clone(&self.scene);
+        let kept = StoredRun::kept(self.name.clone(), scene, &self.report, channels, motion);
+        if let Some(raised) = take_raised() {
+            return Err(raised);
+        }
+        let kept = kept.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok(PyView {
+            page: page(&[kept]),
+            height,
+        })
+    }
+}
