@@ -5,7 +5,7 @@
 >>> run.t, run["bar.theta"]
 
 `load` and `loads` read a `Scene`; `Scene.set` changes it and `Scene.run` simulates it; a `Run` maps names of channels to NumPy
-arrays. All quantities are in SI units.
+arrays. `sweep` runs a scene at many values of its fields. All quantities are in SI units.
 """
 
 from ._looselink import (
@@ -14,11 +14,13 @@ from ._looselink import (
     RunWarning,
     Scene,
     SceneError,
+    StudyError,
     View,
     __version__,
     load,
     loads,
 )
+from .sweeps import SweepResult, sweep
 
 __all__ = [
     "Run",
@@ -26,8 +28,11 @@ __all__ = [
     "RunWarning",
     "Scene",
     "SceneError",
+    "StudyError",
+    "SweepResult",
     "View",
     "__version__",
     "load",
     "loads",
+    "sweep",
 ]

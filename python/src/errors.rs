@@ -20,6 +20,12 @@ pub mod raised {
     );
     create_exception!(
         looselink,
+        StudyError,
+        PyValueError,
+        "A fault of a study. The text is that of the command line."
+    );
+    create_exception!(
+        looselink,
         RunError,
         PyRuntimeError,
         "A run that could not go on. `run` is the `Run` up to there, with status \"failed\"."

@@ -7,6 +7,7 @@ mod memory;
 mod progress;
 mod run;
 mod scene;
+mod sweep;
 mod value;
 mod view;
 
@@ -15,11 +16,13 @@ use pyo3::prelude::*;
 #[pymodule(name = "_looselink")]
 mod module {
     #[pymodule_export]
-    use super::errors::raised::{RunError, RunWarning, SceneError};
+    use super::errors::raised::{RunError, RunWarning, SceneError, StudyError};
     #[pymodule_export]
     use super::run::PyRun;
     #[pymodule_export]
     use super::scene::{PyScene, load, loads};
+    #[pymodule_export]
+    use super::sweep::{PySweep, make_tasks};
     #[pymodule_export]
     use super::view::PyView;
     use pyo3::prelude::*;

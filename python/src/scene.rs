@@ -141,6 +141,12 @@ impl PyScene {
         &self.scene.title
     }
 
+    /// Where the scene was read from, as messages call it.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.name
+    }
+
     /// The TOML text that the scene was read from, without the changes in `overrides`.
     #[getter]
     fn text(&self) -> &str {
@@ -299,6 +305,32 @@ impl PyScene {
         });
         let modes: PyResult<Vec<_>> = modes.collect();
         modes?.into_pyobject(py)
+    }
+
+    /// Runs the scene at many values of its fields; see `looselink.sweep`.
+    ///
+    /// `study` are the tables of docs/sweep.md without `scene`: parameters, measures, design and others. `options` are the keyword
+    /// arguments of `looselink.sweep`, such as out and threads. A scene with callables cannot be swept, because their values are not
+    /// in its text.
+    ///
+    /// Returns a SweepResult. Raises ValueError for a scene with callables; otherwise as `looselink.sweep`.
+    #[pyo3(signature = (client=None, *, options=None, **study))]
+    fn sweep<'py>(
+        slf: Bound<'py, Self>,
+        client: Option<Bound<'py, PyAny>>,
+        options: Option<Bound<'py, PyDict>>,
+        study: Option<Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if !slf.borrow().given.is_empty() {
+            return Err(PyValueError::new_err(
+                "a scene with callables cannot be swept: their values are not in its text",
+            ));
+        }
+        let py = slf.py();
+        let study = study.unwrap_or_else(|| PyDict::new(py));
+        let options = options.unwrap_or_else(|| PyDict::new(py));
+        let sweeps = py.import("looselink.sweeps")?;
+        sweeps.call_method1("of_scene", (slf, client, study, options))
     }
 
     /// Simulates the scene and returns its `Run`. Other threads of Python go on meanwhile.

@@ -1,0 +1,214 @@
+"""Sweeps: a scene at many values of its fields, on the cores of this machine or on the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ._looselink import Scene, _make_tasks, _Sweep, load
+
+if TYPE_CHECKING:
+    import pandas
+    import polars
+
+# Batches that wait at the workers: enough to keep them busy, few enough that a million runs do not burden the scheduler.
+AHEAD = 3
+
+
+class SweepResult:
+    """Tables and pictures of a sweep.
+
+    `folder` holds the files that docs/sweep.md lists; `summary` is what `sweep.json` says. In a notebook the pictures are shown.
+    """
+
+    def __init__(self, folder: Path, kept: Any = None) -> None:
+        self.folder = folder
+        # a temporary folder lives as long as the result
+        self._kept = kept
+        self.summary: dict[str, Any] = json.loads((folder / "sweep.json").read_text(encoding="utf-8"))
+
+    def __repr__(self) -> str:
+        return f"<looselink.SweepResult {self.summary['title']!r}, {self.summary['runs']} runs in {str(self.folder)!r}>"
+
+    @property
+    def page(self) -> str:
+        """Extremes, answers, runs without results and warnings, in Markdown."""
+        return (self.folder / "sweep.md").read_text(encoding="utf-8")
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """One row a run as a pandas.DataFrame; columns are called "name [unit]", `.attrs["units"]` has the units by name.
+
+        Raises ImportError without pandas.
+        """
+        import pandas
+
+        frame = pandas.read_csv(self.folder / "sweep.csv", float_precision="round_trip", keep_default_na=False, na_values=[""])
+        frame.attrs["title"] = self.summary["title"]
+        frame.attrs["units"] = self.summary["units"]
+        return frame
+
+    def to_polars(self) -> polars.DataFrame:
+        """One row a run as a polars.DataFrame; columns are called by their names alone, as in `sweep.parquet`.
+
+        Raises ImportError without Polars.
+        """
+        import polars
+
+        return polars.read_parquet(self.folder / "sweep.parquet")
+
+    def _repr_svg_(self) -> str:
+        return (self.folder / "sweep.svg").read_text(encoding="utf-8")
+
+
+def sweep(
+    study: str | os.PathLike[str] | dict[str, Any],
+    client: Any = None,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    target: tuple[str, float] | None = None,
+    threads: int | None = None,
+    batch: int | None = None,
+    progress: bool | Callable[[int, int], object] = False,
+    force: bool = False,
+    copy_to: str | None = None,
+) -> SweepResult:
+    """Make all runs of a study that are missing, then tables and pictures.
+
+    `study` is a study file, or a dict with the tables of docs/sweep.md whose `scene` is a path or a `Scene`.
+    `client` is a `distributed.Client`: the runs are made by its workers; without one by `threads` threads of this process.
+    `out` is the folder that receives rows, tables and pictures; the same call goes on with rows that are there. Without it the
+    files are in a temporary folder, which the result keeps.
+    `target` is (measure, value): the study becomes a bisection.
+    `batch` is the number of runs of a task of Dask; by default tasks take about a second.
+    `progress` is True, or a callable that receives the numbers of runs made and left.
+    `force` deletes rows that are there.
+    `copy_to` is an address that pyarrow's file systems reach, such as "s3://bucket/folder": tables and pictures are copied there.
+
+    The tables have the same bytes as those of `looselink sweep`, whatever the number of threads, workers and interruptions.
+
+    Raises StudyError for a fault of the study, SceneError for a fault of its scene, OSError for files that cannot be written,
+    RuntimeError for a bisection that cannot go on, KeyboardInterrupt after Ctrl-C; rows that are made stay in `out`.
+    """
+    prepared = _prepared(study, target)
+    kept = None if out is not None else tempfile.TemporaryDirectory(prefix="looselink-sweep-")
+    folder = Path(out if kept is None else kept.name)
+    prepared.open(folder, force)
+    shown = _shown(progress)
+    if client is None:
+        prepared.make(threads, shown)
+    else:
+        _distribute(prepared, client, batch, shown)
+    prepared.merge()
+    result = SweepResult(folder, kept)
+    if copy_to is not None:
+        _copy(folder, copy_to)
+    return result
+
+
+def of_scene(scene: Scene, client: Any, study: dict[str, Any], options: dict[str, Any]) -> SweepResult:
+    """`Scene.sweep`."""
+    return sweep({"title": scene.title, **study, "scene": scene}, client, **options)
+
+
+def _prepared(study: str | os.PathLike[str] | dict[str, Any], target: tuple[str, float] | None) -> _Sweep:
+    if not isinstance(study, dict):
+        return _Sweep.load(os.fspath(study), target)
+    rest = dict(study)
+    scene = rest.pop("scene", None)
+    if scene is None:
+        raise ValueError("a study needs a `scene`, a path or a looselink.Scene")
+    if not isinstance(scene, Scene):
+        scene = load(scene)
+    return _Sweep.of(rest, scene.name, scene.text, scene.overrides, target)
+
+
+def _shown(progress: bool | Callable[[int, int], object]) -> Callable[[int, int], object] | None:
+    if callable(progress):
+        return progress
+    if not progress:
+        return None
+    terminal = sys.stderr.isatty()
+    tenths = 0
+
+    def show(done: int, left: int) -> None:
+        nonlocal tenths
+        if terminal:
+            print(f"\r{done} of {done + left} runs\033[K", end="" if left else "\n", file=sys.stderr, flush=True)
+        elif 10 * done // (done + left) > tenths:
+            tenths = 10 * done // (done + left)
+            print(f"{done} of {done + left} runs", file=sys.stderr, flush=True)
+
+    return show
+
+
+def _batches(runs: list[int], size: Callable[[], int]) -> Iterator[list[int]]:
+    first = 0
+    while first < len(runs):
+        last = first + size()
+        yield runs[first:last]
+        first = last
+
+
+def _distribute(prepared: _Sweep, client: Any, batch: int | None, shown: Callable[[int, int], object] | None) -> None:
+    """Make runs on the workers of a Dask cluster.
+
+    Tasks do not depend on each other: those of a worker that dies are made again by others. Rows are kept by this process as they
+    come, so that nothing but the runs under way is lost when it dies.
+    """
+    from distributed import as_completed
+
+    # a task, not scattered data: a worker that has lost it can make it again
+    source = client.submit(_same, prepared.source(), pure=False)
+    seconds: list[float] = []
+
+    def size() -> int:
+        if batch is not None:
+            return batch
+        # one run at first; then tasks of about a second
+        mean = sum(seconds) / len(seconds) if seconds else 1.0
+        return max(1, min(1000, round(1.0 / max(mean, 1e-6))))
+
+    while runs := prepared.pending():
+        left = len(runs)
+        batches = _batches(runs, size)
+        running = as_completed(with_results=True)
+
+        def start() -> bool:
+            chosen = next(batches, None)
+            if chosen is not None:
+                running.add(client.submit(_make_tasks, source, prepared.tasks(chosen), pure=False))
+            return chosen is not None
+
+        wanted = AHEAD * max(1, sum(client.nthreads().values()))
+        while wanted > 0 and start():
+            wanted -= 1
+        for _, rows in running:
+            for row, timing in rows:
+                prepared.append(row, timing)
+                seconds[:] = [*seconds[-99:], json.loads(timing)["wall"]]
+            left -= len(rows)
+            if shown is not None:
+                shown(prepared.done(), left)
+            start()
+
+
+def _same(text: str) -> str:
+    return text
+
+
+def _copy(folder: Path, address: str) -> None:
+    from pyarrow import fs
+
+    place, path = fs.FileSystem.from_uri(address)
+    place.create_dir(path, recursive=True)
+    files = [file for file in folder.iterdir() if file.suffix != ".jsonl"]
+    # the summary comes last: without it there is no result
+    files.sort(key=lambda file: (file.name == "sweep.json", file.name))
+    for file in files:
+        with place.open_output_stream(f"{path}/{file.name}") as stream:
+            stream.write(file.read_bytes())
