@@ -2,7 +2,7 @@
 
 >>> import looselink
 >>> run = looselink.load("scenes/pendulum.toml").run()
->>> run.t, run["bar.theta"]
+>>> run.t, run["points.rod.pivot.x"]
 
 `load` and `loads` read a `Scene`; `Scene.set` changes it and `Scene.run` simulates it; a `Run` maps names of channels to NumPy
 arrays. `sweep` runs a scene at many values of its fields. All quantities are in SI units.

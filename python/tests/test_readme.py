@@ -31,3 +31,12 @@ def test_the_readme_names_everything():
         for name in vars(kind):
             if not name.startswith("_") and name not in ("keys", "html"):
                 assert re.search(rf"\b{name}\b", text), f"{kind.__name__}.{name}"
+
+
+def test_the_example_of_the_package_runs(monkeypatch):
+    import looselink
+
+    monkeypatch.chdir(TOP)
+    lines = [line[4:] for line in looselink.__doc__.splitlines() if line.startswith(">>> ")]
+    assert lines
+    exec("\n".join(lines), {})
