@@ -52,20 +52,19 @@ everything() {
     fi
 
     # records of long campaigns may be older than the sources; their pages must say so
-    cargo run --quiet --profile test -p records -- --check
+    cargo run --quiet -p records -- --check
 
     # the tests leave their answers in a folder; VERIFICATION.md must have all of them and no others
     export LOOSELINK_LADDER="$PWD/target/ladder"
     rm -rf "$LOOSELINK_LADDER"
     cargo test --workspace
-    cargo run --quiet --profile test -p ladder -- --from "$LOOSELINK_LADDER" --check
+    cargo run --quiet -p ladder -- --from "$LOOSELINK_LADDER" --check
 }
 
 # The viewer: its page is that of its sources, and works in a browser. Needs node 20 or newer.
 web() {
     [ -n "${CHROMIUM:-}" ] || install chromium fonts-dejavu-core
-    # the profile of the tests, which have built it already
-    cargo build --profile test -p looselink-cli
+    cargo build -p looselink-cli
     cd crates/view/web
     npm ci --silent
     npx tsc --noEmit
@@ -92,10 +91,10 @@ site() {
 # The Python package: compiled and installed into an environment in target/, with its tests. Needs Python 3.10 or newer.
 python() {
     python3 -c "import ensurepip" 2> /dev/null || install python3-venv
-    # the profile of the tests, which have built it already
-    cargo build --profile test -p looselink-cli
+    cargo build -p looselink-cli
     python3 -m venv target/tools/looselink-python
-    CARGO_TARGET_DIR="$PWD/target" target/tools/looselink-python/bin/pip install --quiet "./python[test]"
+    # with the profile of the tests, which have compiled the libraries already
+    MATURIN_PEP517_ARGS="--profile dev" CARGO_TARGET_DIR="$PWD/target" target/tools/looselink-python/bin/pip install --quiet "./python[test]"
     # away from the sources, so that the package that was installed is tested
     LOOSELINK_PROGRAM="$PWD/target/debug/looselink" target/tools/looselink-python/bin/python -P -m pytest -q python/tests
 }

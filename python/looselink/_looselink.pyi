@@ -11,7 +11,20 @@ import polars
 
 from .sweeps import SweepResult
 
-__all__ = ["Run", "RunError", "RunWarning", "Scene", "SceneError", "StudyError", "View", "__version__", "load", "loads"]
+__all__ = [
+    "Run",
+    "RunError",
+    "RunWarning",
+    "Scene",
+    "SceneError",
+    "StudyError",
+    "View",
+    "_Sweep",
+    "__version__",
+    "_make_tasks",
+    "load",
+    "loads",
+]
 
 __version__: str
 
@@ -59,7 +72,7 @@ class Scene:
     def set(self, path: str, value: Any) -> Scene: ...
     def add_load(self, name: str, point: str, load: _Load, tangent: _Tangent | None = None) -> Scene: ...
     def inspect(self) -> dict[str, Any]: ...
-    def sweep(self, client: Any = None, *, options: dict[str, Any] = {}, **study: Any) -> SweepResult: ...
+    def sweep(self, client: Any = None, *, options: dict[str, Any] | None = None, **study: Any) -> SweepResult: ...
     def modes(self, at: float = 0.0, opens: bool = False) -> list[dict[str, Any]]: ...
     def run(
         self,

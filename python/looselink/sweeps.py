@@ -47,7 +47,9 @@ class SweepResult:
         """
         import pandas
 
-        frame = pandas.read_csv(self.folder / "sweep.csv", float_precision="round_trip", keep_default_na=False, na_values=[""])
+        # pandas 2 reads numbers with an error of the last digit unless it is told not to; later ones do not know the option
+        exact: dict[str, Any] = {} if int(pandas.__version__.split(".")[0]) > 2 else {"float_precision": "round_trip"}
+        frame = pandas.read_csv(self.folder / "sweep.csv", keep_default_na=False, na_values=[""], **exact)
         frame.attrs["title"] = self.summary["title"]
         frame.attrs["units"] = self.summary["units"]
         return frame
@@ -95,8 +97,11 @@ def sweep(
     RuntimeError for a bisection that cannot go on, KeyboardInterrupt after Ctrl-C; rows that are made stay in `out`.
     """
     prepared = _prepared(study, target)
-    kept = None if out is not None else tempfile.TemporaryDirectory(prefix="looselink-sweep-")
-    folder = Path(out if kept is None else kept.name)
+    kept = None
+    if out is None:
+        kept = tempfile.TemporaryDirectory(prefix="looselink-sweep-")
+        out = kept.name
+    folder = Path(out)
     prepared.open(folder, force)
     shown = _shown(progress)
     if client is None:
@@ -202,7 +207,7 @@ def _same(text: str) -> str:
 
 
 def _copy(folder: Path, address: str) -> None:
-    from pyarrow import fs
+    from pyarrow import fs  # type: ignore[import-untyped]
 
     place, path = fs.FileSystem.from_uri(address)
     place.create_dir(path, recursive=True)

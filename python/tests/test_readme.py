@@ -15,19 +15,22 @@ def test_the_examples_of_the_readme_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"^```python\n(.*?)^```$", README.read_text("utf-8"), re.DOTALL | re.MULTILINE)
     assert len(blocks) > 10
-    names = {}
+    # as a script: parts that start processes ask for it
+    names = {"__name__": "__main__"}
     for block in blocks:
         exec(compile(block, str(README), "exec"), names)
     assert (tmp_path / "eccentricity.png").stat().st_size > 1000
     assert (tmp_path / "journal.html").exists()
     assert (tmp_path / "out/spring/summary.json").exists()
+    assert (tmp_path / "out/clearance/sweep.json").exists()
+    assert (tmp_path / "copied/sweep.parquet").exists()
 
 
 def test_the_readme_names_everything():
     import looselink
 
     text = README.read_text("utf-8")
-    for kind in (looselink.Scene, looselink.Run, looselink.View):
+    for kind in (looselink.Scene, looselink.Run, looselink.View, looselink.SweepResult):
         for name in vars(kind):
             if not name.startswith("_") and name not in ("keys", "html"):
                 assert re.search(rf"\b{name}\b", text), f"{kind.__name__}.{name}"
