@@ -84,9 +84,9 @@ enum Command {
     Ablate(ablate::Arguments),
     /// Run a scene at many values of its fields: tables, pictures, and the value at which a measure reaches a target.
     #[command(
-        after_help = "Examples:\n  looselink sweep studies/play-and-speed.toml --out out/sweep\n  \
-        looselink sweep studies/play-and-speed.toml --out out/sweep --shard 3/16\n  \
-        looselink sweep studies/play-and-speed.toml --out out/sweep --merge"
+        after_help = "Examples:\n  looselink sweep studies/sweeps/clearance-speed.toml --out out/sweep\n  \
+        looselink sweep studies/sweeps/clearance-speed.toml --out out/sweep --shard 3/16\n  \
+        looselink sweep studies/sweeps/clearance-speed.toml --out out/sweep --merge"
     )]
     Sweep(sweep::Arguments),
     /// Show the scene language as a JSON schema, for editors.

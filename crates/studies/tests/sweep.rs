@@ -137,7 +137,7 @@ fn sampled_designs_stay_within_ranges_and_depend_on_the_seed() {
 #[test]
 fn whole_numbers_words_and_scaled_fields_are_set() {
     let study = format!(
-        "{HEAD}{MASS}from = 1\nto = 4\ncount = 4\n[parameters.method]\nfields = [\"integrator.method\"]\nvalues = [\"velocity_verlet\", \"bathe\"]\n\
+        "{HEAD}{MASS}from = 1\nto = 4\ncount = 4\nwhole = true\n[parameters.method]\nfields = [\"integrator.method\"]\nvalues = [\"velocity_verlet\", \"bathe\"]\n\
          [parameters.rate]\nfields = [{{ path = \"simulation.duration\", factor = 2.0, power = -1.0 }}]\nvalues = [4.0]\n{LAST}"
     );
     let sweep = sweep(&study, GLIDER);
@@ -183,7 +183,7 @@ fn measures_of_a_uniform_motion() {
     let tables = kinds.iter().enumerate().map(|(k, (of, more, ..))| {
         format!("[measures.m{k}]\nof = \"{of}\"\nchannels = [\"body.x\"]\n{more}\n")
     });
-    let magnitude = "[measures.size]\nof = \"largest\"\nchannels = [\"body.x\", \"body.vx\"]\n";
+    let magnitude = "[measures.size]\nof = \"largest\"\nchannels = [\"body.x\", \"body.x\"]\n";
     let study = format!(
         "{HEAD}{MASS}values = [1.0]\n{}{magnitude}",
         tables.collect::<String>()
@@ -307,6 +307,21 @@ fn faults_of_a_study_name_the_place() {
         (
             format!("{HEAD}{parameter}{}", LAST.replace("body.x", "bdy.x")),
             "bdy.x",
+        ),
+        (
+            format!("{HEAD}{MASS}from = 1\nto = 3\ncount = 4\nwhole = true\n{LAST}"),
+            "`count` above the number of whole numbers",
+        ),
+        (
+            format!("{HEAD}{parameter}{LAST}from = 50.0\n"),
+            "`measures.path` begins at 50 s, and the runs end at 1 s",
+        ),
+        (
+            format!(
+                "{HEAD}{parameter}{}",
+                LAST.replace("[\"body.x\"]", "[\"body.x\", \"body.vx\"]")
+            ),
+            "channels with different units: m and m/s",
         ),
         (
             format!("{HEAD}{parameter}{LAST}quantile = 0.5\n"),

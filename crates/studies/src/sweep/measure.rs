@@ -252,6 +252,9 @@ impl Measure {
     pub fn value(&self, recorded: &Recorded) -> Option<f64> {
         let end = recorded.t.last().copied().unwrap_or(0.0);
         let (from, to) = (self.from, self.to.unwrap_or(end).min(end));
+        if from >= to {
+            return None;
+        }
         let value = match self.kind()? {
             MeasureKind::Series(kind) => {
                 let first = recorded.t.partition_point(|t| *t < from);

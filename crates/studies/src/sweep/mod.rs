@@ -172,37 +172,84 @@ impl Sweep {
         let scene = sweep.scene(&[])?;
         let base = Simulation::new(&scene)?;
         sweep.method = scene.integrator.description();
-        sweep.check_joints(&base)?;
+        let ends = [0.0, 1.0].map(|end| {
+            let parameters = sweep.study.parameters.values();
+            let values: Vec<FieldValue> = parameters.map(|p| p.at(end)).collect();
+            sweep.scene(&values)
+        });
+        let [first, last] = ends;
+        let scenes = [scene, first?, last?];
+        sweep.check_joints(&scenes)?;
+        sweep.check_times(&scenes)?;
         let unit_of = |name: &str| {
             let channel = base.channels().iter().find(|c| c.name == name);
             channel.map_or(String::new(), |channel| channel.unit.to_owned())
         };
         let measures = sweep.study.measures.values();
         sweep.units = measures.map(|measure| measure.unit(unit_of)).collect();
+        sweep.check_units(unit_of)?;
         let envelopes = sweep.study.envelopes.values();
         sweep.envelope_units = envelopes.map(|plan| unit_of(&plan.channels[0])).collect();
-        for end in [0.0, 1.0] {
-            let parameters = sweep.study.parameters.values();
-            let values: Vec<FieldValue> = parameters.map(|p| p.at(end)).collect();
-            sweep.scene(&values)?;
-        }
         Ok(sweep)
     }
 
-    /// Refuses a measure of contacts of a joint that the scene does not have.
-    fn check_joints(&self, base: &Simulation) -> Result<(), StudyError> {
-        let known = || {
-            base.model()
-                .joints()
-                .iter()
-                .map(|joint| joint.name.as_str())
+    fn fault(&self, message: String) -> StudyError {
+        StudyError::of(&self.source.path, message)
+    }
+
+    /// Refuses a measure of contacts of a joint that has clearance in none of some scenes.
+    fn check_joints(&self, scenes: &[Scene]) -> Result<(), StudyError> {
+        let known = || scenes[0].joints.iter().map(|joint| joint.name.as_str());
+        let loose = |name: &String| {
+            let joints = scenes.iter().flat_map(|scene| &scene.joints);
+            let mut own = joints.filter(|joint| joint.name == *name);
+            own.any(|joint| joint.contact().is_some())
         };
         for (name, measure) in &self.study.measures {
             let mut joints = measure.joints.iter();
-            if let Some(joint) = joints.find(|joint| known().all(|known| known != *joint)) {
-                let hint = looselink::document::did_you_mean(joint, known());
-                let message = format!("`measures.{name}` names an unknown joint `{joint}`{hint}");
-                return Err(StudyError::of(&self.source.path, message));
+            let Some(joint) = joints.find(|joint| !loose(joint)) else {
+                continue;
+            };
+            return Err(self.fault(match known().any(|known| known == *joint) {
+                true => {
+                    format!("`measures.{name}` is of contacts of `{joint}`, which has no clearance")
+                }
+                false => {
+                    let hint = looselink::document::did_you_mean(joint, known());
+                    format!("`measures.{name}` names an unknown joint `{joint}`{hint}")
+                }
+            }));
+        }
+        Ok(())
+    }
+
+    /// Refuses a measure that begins after the end of all of some scenes.
+    fn check_times(&self, scenes: &[Scene]) -> Result<(), StudyError> {
+        let durations = scenes.iter().map(|scene| scene.simulation.duration);
+        let longest = durations.fold(0.0, f64::max);
+        let mut measures = self.study.measures.iter();
+        match measures.find(|(_, measure)| measure.from >= longest) {
+            Some((name, measure)) => Err(self.fault(format!(
+                "`measures.{name}` begins at {} s, and the runs end at {longest} s",
+                measure.from
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses a magnitude of quantities with different units.
+    fn check_units(&self, unit_of: impl Fn(&str) -> String) -> Result<(), StudyError> {
+        let measures = self.study.measures.iter();
+        let measures = measures.map(|(name, m)| (format!("measures.{name}"), &m.channels));
+        let envelopes = self.study.envelopes.iter();
+        let envelopes = envelopes.map(|(name, e)| (format!("envelopes.{name}"), &e.channels));
+        for (name, channels) in measures.chain(envelopes) {
+            let mut units: Vec<String> = channels.iter().map(|c| unit_of(c)).collect();
+            units.dedup();
+            if units.len() > 1 {
+                let units = units.join(" and ");
+                let message = format!("`{name}` has channels with different units: {units}");
+                return Err(self.fault(message));
             }
         }
         Ok(())

@@ -21,6 +21,9 @@ pub struct SweepParameter {
     /// and how they are spaced.
     #[serde(default)]
     pub spacing: Spacing,
+    /// True where all values of the range are whole numbers.
+    #[serde(default)]
+    pub whole: bool,
     /// Its unit in tables and pictures.
     #[serde(default)]
     pub unit: String,
@@ -61,6 +64,16 @@ pub struct ScaledField {
     pub power: f64,
 }
 
+impl ParameterField {
+    /// Its path.
+    pub fn path(&self) -> &str {
+        match self {
+            ParameterField::Same(path) => path,
+            ParameterField::Scaled(scaled) => &scaled.path,
+        }
+    }
+}
+
 fn one() -> f64 {
     1.0
 }
@@ -84,6 +97,9 @@ impl SweepParameter {
         if words && self.fields.iter().any(scaled) {
             return Err("has words as values, which cannot be scaled".to_owned());
         }
+        if !has_range && self.whole {
+            return Err("has `values`, so it needs no `whole`".to_owned());
+        }
         if !has_range {
             return match self.count {
                 Some(_) => Err("has `values`, so it needs no `count`".to_owned()),
@@ -98,6 +114,14 @@ impl SweepParameter {
             return Err(format!(
                 "has log spacing, so `from` must be above 0, not {low}"
             ));
+        }
+        if self.whole && (low.fract() != 0.0 || high.fract() != 0.0) {
+            return Err(format!(
+                "is whole, so `from` and `to` must be, not {low} and {high}"
+            ));
+        }
+        if self.whole && self.count.is_some_and(|n| n as f64 > high - low + 1.0) {
+            return Err("has a `count` above the number of whole numbers in its range".to_owned());
         }
         match self.count {
             None if needs_count => Err("needs a `count` of 2 at least in a grid".to_owned()),
@@ -128,8 +152,7 @@ impl SweepParameter {
         }
     }
 
-    /// The value at u of its range, 0 <= u <= 1. Both ends are exact. Where both are whole numbers, so is the value; a list of
-    /// values is divided into equal parts.
+    /// The value at u of its range, 0 <= u <= 1. Both ends are exact; a list of values is divided into equal parts.
     pub fn at(&self, u: f64) -> FieldValue {
         let Some((low, high)) = self.range() else {
             let count = self.values.len();
@@ -142,11 +165,9 @@ impl SweepParameter {
             Spacing::Linear => low + u * (high - low),
             Spacing::Log => low * (high / low).powf(u),
         };
-        match (&self.from, &self.to) {
-            (Some(FieldValue::Whole(_)), Some(FieldValue::Whole(_))) => {
-                FieldValue::Whole(value.round() as i64)
-            }
-            _ => FieldValue::Number(value),
+        match self.whole {
+            true => FieldValue::Whole(value.round() as i64),
+            false => FieldValue::Number(value),
         }
     }
 

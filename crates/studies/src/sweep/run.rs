@@ -117,10 +117,20 @@ impl Sweep {
         }
         let recorded = Recorded::new(&observer.recording);
         let (measures, envelopes) = (&self.study.measures, &self.study.envelopes);
-        let measures = measures.values().map(|measure| measure.value(&recorded));
+        let values = measures.values().map(|measure| measure.value(&recorded));
+        let values: Vec<Option<f64>> = values.collect();
+        let missing = measures
+            .keys()
+            .zip(&values)
+            .filter(|(_, value)| value.is_none());
+        let mut warnings = row.warnings;
+        warnings.extend(missing.map(|(name, _)| {
+            format!("`{name}` has no value: the run has no finite row in the part that is measured")
+        }));
         let envelopes = envelopes.values().map(|plan| plan.of(&recorded));
         Ok(SweepRow {
-            measures: measures.collect(),
+            measures: values,
+            warnings,
             envelopes: envelopes.map(Option::unwrap_or_default).collect(),
             ..row
         })

@@ -6,7 +6,7 @@ use crate::sweep::merge::Points;
 use plot::{Axis, Mark, Panel, palette};
 
 pub fn panel(sweep: &Sweep, points: &Points, place: usize) -> Panel {
-    let (name, _) = sweep.study.envelopes.get_index(place).expect("in range");
+    let (name, plan) = sweep.study.envelopes.get_index(place).expect("in range");
     let (duration, same) = points.duration;
     // runs of different lengths are compared at equal parts of their time
     let (x, scale) = match same {
@@ -14,6 +14,7 @@ pub fn panel(sweep: &Sweep, points: &Points, place: usize) -> Panel {
         false => (Axis::new("Time / duration", "", 1.0), 1.0),
     };
     let mut panel = empty(name, x, axis(name, &sweep.envelope_units()[place]));
+    panel.note = plan.channels.join(", ");
     let parts = &points.envelopes[place].parts;
     let known = parts.iter().enumerate().filter(|(_, part)| part.runs > 0);
     let width = scale / parts.len() as f64;

@@ -64,7 +64,6 @@ pub fn figure(sweep: &Sweep, merged: &Merged, points: &Points) -> Figure {
             "Sobol indices from {of} samples with their 95 % intervals; what chaos adds to a measure counts as taking part."
         ));
     }
-    panels.extend((0..study.envelopes.len()).map(|k| course::panel(sweep, points, k)));
     if !study.envelopes.is_empty() {
         notes.push(
             "Courses: dark from the mean least to the mean largest value of a run, pale from the least to the largest of all."
@@ -77,6 +76,8 @@ pub fn figure(sweep: &Sweep, merged: &Merged, points: &Points) -> Figure {
         2.min(panels.len())
     };
     rows.extend(Figure::grid(panels, columns, String::new()).rows);
+    let courses = 0..study.envelopes.len();
+    rows.extend(courses.map(|k| vec![course::panel(sweep, points, k)]));
     Figure {
         rows,
         caption: caption(sweep, merged, &notes),
@@ -181,7 +182,14 @@ fn caption(sweep: &Sweep, merged: &Merged, notes: &[String]) -> String {
     let mut text = format!("{}. Scene {}", merged.title, merged.scene);
     // the method is said in words
     let changes = study.set.iter();
-    for change in changes.filter(|change| !change.starts_with("integrator.")) {
+    let varies = |change: &str| {
+        let path = change.split('=').next().unwrap_or_default().trim();
+        let parameters = study.parameters.values();
+        parameters
+            .flat_map(|p| &p.fields)
+            .any(|field| field.path() == path)
+    };
+    for change in changes.filter(|c| !c.starts_with("integrator.") && !varies(c)) {
         text += &format!(", {change}");
     }
     text += &format!("; {}; {} runs", sweep.method(), merged.runs);
