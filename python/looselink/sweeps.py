@@ -20,6 +20,20 @@ if TYPE_CHECKING:
 AHEAD = 3
 
 
+# The tables and pictures. The summary comes last: without it there is no result.
+FILES = [
+    "sweep.csv",
+    "sweep.parquet",
+    "points.csv",
+    "envelopes.csv",
+    "sweep.svg",
+    "sweep.png",
+    "sweep.md",
+    "times.csv",
+    "sweep.json",
+]
+
+
 class SweepResult:
     """Tables and pictures of a sweep.
 
@@ -96,19 +110,25 @@ def sweep(
     Raises StudyError for a fault of the study, SceneError for a fault of its scene, OSError for files that cannot be written,
     RuntimeError for a bisection that cannot go on, KeyboardInterrupt after Ctrl-C; rows that are made stay in `out`.
     """
+    if batch is not None and batch < 1:
+        raise ValueError(f"batch must be 1 at least, not {batch}")
     prepared = _prepared(study, target)
     kept = None
     if out is None:
         kept = tempfile.TemporaryDirectory(prefix="looselink-sweep-")
         out = kept.name
     folder = Path(out)
-    prepared.open(folder, force)
     shown = _shown(progress)
-    if client is None:
-        prepared.make(threads, shown)
-    else:
-        _distribute(prepared, client, batch, shown)
-    prepared.merge()
+    prepared.open(folder, force)
+    try:
+        if client is None:
+            prepared.make(threads, shown)
+        else:
+            _distribute(prepared, client, batch, shown)
+        prepared.merge()
+    finally:
+        # a traceback that is kept would keep the lock of the folder
+        prepared.close()
     result = SweepResult(folder, kept)
     if copy_to is not None:
         _copy(folder, copy_to)
@@ -211,9 +231,10 @@ def _copy(folder: Path, address: str) -> None:
 
     place, path = fs.FileSystem.from_uri(address)
     place.create_dir(path, recursive=True)
-    files = [file for file in folder.iterdir() if file.suffix != ".jsonl"]
-    # the summary comes last: without it there is no result
-    files.sort(key=lambda file: (file.name == "sweep.json", file.name))
+    files = [folder / name for name in FILES if (folder / name).exists()]
+    closing = f"{path}/{FILES[-1]}"
+    if place.get_file_info(closing).type != fs.FileType.NotFound:
+        place.delete_file(closing)
     for file in files:
         with place.open_output_stream(f"{path}/{file.name}") as stream:
             stream.write(file.read_bytes())

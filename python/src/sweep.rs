@@ -137,6 +137,11 @@ impl PySweep {
         Ok(())
     }
 
+    /// Closes the folder, so that another sweep can write to it.
+    fn close(&self) {
+        *self.store.lock().expect("no thread panics") = None;
+    }
+
     /// Numbers of the runs that can be made now.
     fn pending(&self) -> PyResult<Vec<usize>> {
         self.with_store(|_, store| self.sweep.pending(store, Shard::WHOLE))

@@ -160,6 +160,19 @@ def contents_of(result):
     return {file.name: file.read_bytes() for file in result.folder.iterdir() if file.suffix in (".csv", ".json") and file.name != "times.csv"}
 
 
+def test_a_sweep_that_was_broken_off_goes_on_in_the_same_process(study, expected, tmp_path):
+    def stop(done, left):
+        if done >= 5:
+            raise LookupError("enough")
+
+    with pytest.raises(LookupError) as kept:
+        looselink.sweep(study, out=tmp_path, threads=1, progress=stop)
+    looselink.sweep(study, out=tmp_path)
+    assert contents(tmp_path) == expected and kept.value.args == ("enough",)
+    with pytest.raises(ValueError, match="batch must be 1"):
+        looselink.sweep(study, out=tmp_path, batch=0)
+
+
 def test_results_are_copied_to_any_place_that_pyarrow_reaches(study, tmp_path):
     pytest.importorskip("pyarrow")
     looselink.sweep(study, out=tmp_path / "out", copy_to=f"file://{tmp_path}/elsewhere/results")

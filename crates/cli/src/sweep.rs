@@ -26,7 +26,7 @@ pub struct Arguments {
     threads: Option<NonZeroUsize>,
     /// Make the i-th of n parts of the runs alone, and no table: for several machines that write to the same folder, or to
     /// folders whose files are brought together. `--merge` makes the table.
-    #[arg(long, value_name = "i/n", conflicts_with_all = ["merge", "target"])]
+    #[arg(long, value_name = "i/n", conflicts_with_all = ["merge", "target", "force"])]
     shard: Option<Shard>,
     /// Make no run; write tables and pictures of the rows that are there, which must be all of them.
     #[arg(long, conflicts_with_all = ["threads", "force"])]

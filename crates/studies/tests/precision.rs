@@ -25,6 +25,9 @@ fn studies_of_the_project_work() {
     let mut count = 0;
     for entry in std::fs::read_dir(folder()).unwrap() {
         let path = entry.unwrap().path();
+        if path.is_dir() {
+            continue;
+        }
         let study = Study::load(&path).unwrap_or_else(|e| panic!("{e}"));
         if study.statistics.is_some() {
             continue;

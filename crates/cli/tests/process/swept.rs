@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-/// 200 runs of some milliseconds each, in which a pin bounces; with the lowest restitution they are refused.
+/// 200 runs of some milliseconds each, in which a pin bounces; with a restitution above 1 they are refused.
 const STUDY: &str = r#"
 title = "many short runs"
 scene = "SCENE"
@@ -172,7 +172,8 @@ fn faults_of_the_command_line_of_a_sweep() {
     let folder = tempfile::tempdir().unwrap();
     let study = study(folder.path());
     let out = folder.path().join("out");
-    let cases: [(&[&str], &str); 5] = [
+    let cases: [(&[&str], &str); 6] = [
+        (&["--shard", "1/4", "--force"], "cannot be used with"),
         (&["--shard", "5/4"], "write i/n with 1 <= i <= n"),
         (&["--shard", "1/4", "--merge"], "cannot be used with"),
         (&["--target", "force"], "write measure=value"),

@@ -131,7 +131,7 @@ impl Sweep {
         cells.push(SweepCell::Text(row.status.name().to_owned()));
         cells.push(SweepCell::Number(Some(row.t)));
         cells.extend(row.measures.iter().map(|value| SweepCell::Number(*value)));
-        let energy = |k: usize| SweepCell::Number(row.energies.map(|energies| energies[k]));
+        let energy = |k: usize| SweepCell::Number(row.energies.and_then(|energies| energies[k]));
         cells.extend((0..ENERGIES.len()).map(energy));
         cells.extend([row.steps, row.onsets].map(|n| SweepCell::Whole(n as i64)));
         cells.push(SweepCell::Text(row.warnings.join("; ")));

@@ -93,6 +93,10 @@ fn round(
             let task = sweep.task(shared.lock().expect("no thread panics").store, *run);
             let made = task.map(|task| sweep.run(&task, stop));
             let mut shared = shared.lock().expect("no thread panics");
+            // a row behind one that could not be written is not tried
+            if shared.error.is_some() {
+                return;
+            }
             let kept = made.and_then(|made| match made {
                 Some((row, timing)) => shared.store.append(&row, &timing).map(|()| Some(row)),
                 None => Ok(None),
@@ -114,7 +118,10 @@ fn round(
     };
     thread::scope(|scope| {
         for _ in 1..threads.get().min(pending.len()) {
-            scope.spawn(work);
+            // fewer threads do where the system allows no more
+            if thread::Builder::new().spawn_scoped(scope, work).is_err() {
+                break;
+            }
         }
         work();
     });

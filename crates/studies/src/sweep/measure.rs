@@ -204,6 +204,12 @@ impl Measure {
         if let Some(channel) = self.channels.iter().find(|name| name.contains('*')) {
             return Err(format!("needs names of single channels, not `{channel}`"));
         }
+        if let Some(name) = (1..wanted.len())
+            .map(|k| &wanted[k])
+            .find(|name| wanted.iter().filter(|other| other == name).count() > 1)
+        {
+            return Err(format!("names `{name}` twice"));
+        }
         match (self.of.as_str(), self.quantile) {
             ("quantile", Some(q)) if (0.0..=1.0).contains(&q) => {}
             ("quantile", _) => return Err("needs a `quantile` from 0 to 1".to_owned()),
@@ -250,8 +256,7 @@ impl Measure {
 
     /// Its value in a run that has come to its end; none where the part of the run has no row, or the number is not finite.
     pub fn value(&self, recorded: &Recorded) -> Option<f64> {
-        let end = recorded.t.last().copied().unwrap_or(0.0);
-        let (from, to) = (self.from, self.to.unwrap_or(end).min(end));
+        let (from, to) = (self.from, self.to.unwrap_or(recorded.end).min(recorded.end));
         if from >= to {
             return None;
         }

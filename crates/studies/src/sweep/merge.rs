@@ -17,7 +17,7 @@ use super::columns::{Column, ColumnType, SweepCell};
 use super::csv_table::CsvTable;
 use super::parquet_table::ParquetTable;
 use super::pictures::figure;
-use super::store::timings;
+use super::store::{remove, timings};
 use super::{
     Crossing, EnsembleMean, RunStatus, SobolIndices, Store, Sweep, SweepError, SweepRow,
     sobol_indices,
@@ -25,10 +25,9 @@ use super::{
 use crate::pictures;
 use crate::study_file::StudyError;
 use indexmap::IndexMap;
-use looselink::output::{json, naming, replace};
+use looselink::output::{json, replace};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fs;
 use std::io;
 use std::path::Path;
 
@@ -168,11 +167,10 @@ pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, Swee
         gathered.add(row);
     }
     let (merged, points) = gathered.finish(sweep, store, &columns)?;
-    let last = folder.join(FILES[0]);
-    match fs::remove_file(&last) {
-        Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(naming(&last)(e).into()),
-        _ => {}
-    }
+    // first the file that closes a result; tables that this sweep does not have may be of another one
+    FILES
+        .iter()
+        .try_for_each(|name| remove(&folder.join(name)))?;
     let write = |name: &str, bytes: &[u8]| replace(&folder.join(name), bytes);
     write("sweep.csv", &csv.finish()?)?;
     write("sweep.parquet", &parquet.finish().map_err(|e| failed(&e))?)?;

@@ -45,7 +45,7 @@ use crate::study_file::{StudyError, text_of};
 use bisection::{Search, search};
 use design::Design;
 use looselink::output::OutputError;
-use looselink::scene::{Scene, SceneError};
+use looselink::scene::{Analysis, Scene, SceneError};
 use looselink::simulate::Simulation;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -179,6 +179,10 @@ impl Sweep {
         });
         let [first, last] = ends;
         let scenes = [scene, first?, last?];
+        if sweep.study.starts.is_some() && scenes[0].simulation.analysis == Analysis::Static {
+            let message = "`starts` change velocities, which a static analysis does not have";
+            return Err(sweep.fault(message.to_owned()).into());
+        }
         sweep.check_joints(&scenes)?;
         sweep.check_times(&scenes)?;
         let unit_of = |name: &str| {
@@ -298,6 +302,11 @@ impl Sweep {
     pub fn pending(&self, store: &Store, shard: Shard) -> Result<Vec<usize>, SweepError> {
         let runs = match self.runs {
             Some(runs) => 0..runs,
+            None if shard != Shard::WHOLE => {
+                let message =
+                    "a bisection has no shards: each of its points depends on those before it";
+                return Err(self.fault(message.to_owned()).into());
+            }
             None => match self.searched(store)? {
                 (Search::Visit(_), places) => {
                     let starts = self.study.starts_of_a_point();

@@ -81,6 +81,9 @@ pub fn crossing_text(sweep: &Sweep, merged: &Merged) -> Option<String> {
     });
     let sides = sides.collect::<Vec<_>>().join(" and ");
     let doubt = match crossing.is_certain() {
+        _ if crossing.half_widths == [None; 2] => {
+            " Each mean is of a single start: where the motion is chaotic, use `starts`."
+        }
         true => "",
         false => {
             " The interval of one of these means includes the target: more starts are needed to be sure."

@@ -87,6 +87,17 @@ impl SweepParameter {
         if self.fields.is_empty() {
             return Err("needs at least one path in `fields`".to_owned());
         }
+        let finite = |value: &FieldValue| value.number().is_none_or(f64::is_finite);
+        let scales = self.fields.iter().filter_map(|field| match field {
+            ParameterField::Same(_) => None,
+            ParameterField::Scaled(scaled) => Some([scaled.factor, scaled.power]),
+        });
+        if !self.values.iter().all(finite) || !scales.flatten().all(f64::is_finite) {
+            return Err("has a number that is not finite".to_owned());
+        }
+        if self.spacing == Spacing::Log && self.values.iter().any(|v| v.number() <= Some(0.0)) {
+            return Err("has log spacing, so its values must be numbers above 0".to_owned());
+        }
         let ends = [&self.from, &self.to];
         let has_range = ends.iter().any(|end| end.is_some());
         if self.values.is_empty() != has_range {

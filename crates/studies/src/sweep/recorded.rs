@@ -8,15 +8,18 @@ use std::ops::Range;
 pub struct Recorded<'a> {
     /// Time of every row \[s\].
     pub t: &'a [f64],
+    /// Time that the run has reached \[s\].
+    pub end: f64,
     /// Contacts in the order of their onsets.
     pub contacts: &'a [Impact],
     recording: &'a Recording,
 }
 
 impl Recorded<'_> {
-    /// What a recording holds.
-    pub fn new(recording: &Recording) -> Recorded<'_> {
+    /// What a recording holds of a run that has reached some time \[s\].
+    pub fn new(recording: &Recording, end: f64) -> Recorded<'_> {
         Recorded {
+            end,
             t: recording.get("t").unwrap_or(&[]),
             contacts: &recording.onsets,
             recording,

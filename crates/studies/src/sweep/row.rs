@@ -26,9 +26,10 @@ pub struct SweepRow {
     pub steps: u64,
     /// Contacts closed.
     pub onsets: u64,
-    /// The energy ledger, in the order of [`super::columns::ENERGIES`]; absent without one.
+    /// The energy ledger, in the order of [`super::columns::ENERGIES`]; absent without one, none where a
+    /// failed run has no finite number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub energies: Option<[f64; 6]>,
+    pub energies: Option<[Option<f64>; 6]>,
     /// The measures of a run that came to its end; none where one has no value.
     pub measures: Vec<Option<f64>>,
     /// The envelopes of such a run.

@@ -107,7 +107,9 @@ impl Sweep {
             t: report.t,
             steps: report.steps,
             onsets: report.onsets,
-            energies: ledger.map(|ledger| super::columns::ENERGIES.map(|(_, of)| of(ledger))),
+            energies: ledger.map(|ledger| {
+                super::columns::ENERGIES.map(|(_, of)| Some(of(ledger)).filter(|e| e.is_finite()))
+            }),
             ..empty(self, task)
         };
         match ended {
@@ -115,7 +117,7 @@ impl Sweep {
             Err(RunError::Interrupted { .. }) => return Err(Early::Stopped),
             Err(error) => return Err(Early::Failed(error, Box::new(row))),
         }
-        let recorded = Recorded::new(&observer.recording);
+        let recorded = Recorded::new(&observer.recording, report.t);
         let (measures, envelopes) = (&self.study.measures, &self.study.envelopes);
         let values = measures.values().map(|measure| measure.value(&recorded));
         let values: Vec<Option<f64>> = values.collect();

@@ -4,7 +4,7 @@
 //! A line is on the disk before the next run of its thread begins. A kill or a full disk may cut the last line, which is cut off
 //! when its file is opened again; its run is made again.
 
-use super::{RowPlaces, RowTiming, Sweep, SweepError, SweepRow};
+use super::{FILES, RowPlaces, RowTiming, Sweep, SweepError, SweepRow};
 use crate::study_file::StudyError;
 use looselink::output::{OutputError, naming};
 use serde::{Deserialize, Serialize};
@@ -108,8 +108,8 @@ impl Store {
         Ok(store)
     }
 
-    /// As [`Store::read`], and opens the file of a shard for more rows; the folder is created. With `anew` all rows that are there
-    /// are deleted first.
+    /// As [`Store::read`], and opens the file of a shard for more rows; the folder is created. With `anew` all rows and
+    /// tables that are there are deleted first.
     ///
     /// # Errors
     /// As [`Store::read`]; another process writes the same shard; the files cannot be written.
@@ -134,14 +134,9 @@ impl Store {
             }
             Err(TryLockError::Error(e)) => return Err(naming(&path)(e).into()),
         }
-        let times = folder.join(shard.file(TIMES));
         if anew {
+            clear(folder, &path)?;
             own.set_len(0).map_err(naming(&path))?;
-            for other in row_files(folder)?.into_iter().chain(time_files(folder)?) {
-                if other != path {
-                    fs::remove_file(&other).map_err(naming(&other))?;
-                }
-            }
         }
         cut_torn_line(&mut own).map_err(naming(&path))?;
         if own.metadata().map_err(naming(&path))?.len() == 0 {
@@ -154,8 +149,10 @@ impl Store {
         let place = store.files.iter().position(|(known, _)| *known == path);
         let place = place.expect("the file has been created");
         store.files[place].1 = own;
-        let times = options.open(&times).map_err(naming(&times))?;
-        store.own = Some((place, end, times));
+        let times = folder.join(shard.file(TIMES));
+        let mut file = options.open(&times).map_err(naming(&times))?;
+        cut_torn_line(&mut file).map_err(naming(&times))?;
+        store.own = Some((place, end, file));
         Ok(store)
     }
 
@@ -243,8 +240,12 @@ impl Store {
         let (file, end, times) = self.own.as_mut().expect("a store opened for writing");
         let (path, rows) = &mut self.files[*file];
         let line = line_of(row)?;
-        rows.write_all(&line).map_err(naming(path))?;
-        rows.sync_data().map_err(naming(path))?;
+        let written = rows.write_all(&line).and_then(|()| rows.sync_data());
+        if let Err(error) = written {
+            // a part of a line would make the next one unreadable; if this fails too, the line is cut when the file is opened
+            let _ = rows.set_len(*end);
+            return Err(naming(path)(error).into());
+        }
         let place = RowPlace {
             file: *file as u32,
             from: *end,
@@ -252,6 +253,7 @@ impl Store {
         };
         *end += line.len() as u64;
         self.places.insert(row.run, place);
+        // it may be lost: it is no result
         Ok(times.write_all(&line_of(timing)?)?)
     }
 }
@@ -302,6 +304,37 @@ pub(super) fn timings(folder: &Path) -> Result<Vec<RowTiming>, SweepError> {
         }
     }
     Ok(all.into_values().collect())
+}
+
+/// Deletes the rows, times and tables of a folder but one file of rows, which is open.
+///
+/// # Errors
+/// Another process writes to one of the files; nothing is then deleted.
+fn clear(folder: &Path, own: &Path) -> Result<(), SweepError> {
+    let mut others = row_files(folder)?;
+    others.retain(|path| path != own);
+    let mut locked = Vec::new();
+    for path in &others {
+        let file = File::open(path).map_err(naming(path))?;
+        match file.try_lock() {
+            Ok(()) => locked.push(file),
+            Err(TryLockError::WouldBlock) => {
+                return Err(OutputError::Busy(folder.to_owned()).into());
+            }
+            Err(TryLockError::Error(e)) => return Err(naming(path)(e).into()),
+        }
+    }
+    let tables = FILES.iter().map(|name| folder.join(name));
+    let all = tables.chain(others).chain(time_files(folder)?);
+    all.into_iter().try_for_each(|path| remove(&path))
+}
+
+/// Deletes a file that may not be there.
+pub(super) fn remove(path: &Path) -> Result<(), SweepError> {
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(naming(path)(e).into()),
+        _ => Ok(()),
+    }
 }
 
 fn row_files(folder: &Path) -> Result<Vec<PathBuf>, SweepError> {

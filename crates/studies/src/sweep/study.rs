@@ -7,8 +7,8 @@ use indexmap::IndexMap;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-/// Runs of a sweep are numbered by integers that every format of tables can hold.
-const MOST_RUNS: usize = 1 << 40;
+/// More runs than anybody makes; the numbers of this many fit into memory.
+const MOST_RUNS: usize = 100_000_000;
 
 /// A scene, what is changed in it, and what is measured.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -59,7 +59,11 @@ impl SweepStudy {
             study.samples = None;
             let parameters = study.parameters.values_mut();
             parameters.for_each(|parameter| parameter.count = None);
-            study.target = Some(target.clone());
+            let tolerance = study.target.map_or(target.tolerance, |own| own.tolerance);
+            study.target = Some(SweepTarget {
+                tolerance,
+                ..target.clone()
+            });
         }
         study.scene = path.with_file_name(&study.scene);
         match study.check() {
@@ -90,6 +94,8 @@ impl SweepStudy {
             envelope.check().map_err(fault)?;
         }
         self.check_names()?;
+        let points = self.samples.unwrap_or(1);
+        self.runs(points)?;
         match (kind.is_sampled(), self.samples) {
             (true, None | Some(0 | 1)) => {
                 return Err("this design needs `samples`, two or more".to_owned());
@@ -125,6 +131,18 @@ impl SweepStudy {
     /// Columns of the table have one name each.
     fn check_names(&self) -> Result<(), String> {
         let mut names: Vec<&str> = super::columns::OWN.to_vec();
+        let mut paths: Vec<&str> = vec!["output.channels", "output.motion"];
+        for (name, parameter) in &self.parameters {
+            for field in &parameter.fields {
+                if paths.contains(&field.path()) {
+                    return Err(format!(
+                        "`parameters.{name}` sets `{}`, which the sweep or another parameter sets already",
+                        field.path()
+                    ));
+                }
+                paths.push(field.path());
+            }
+        }
         for name in self.parameters.keys().chain(self.measures.keys()) {
             if names.contains(&name.as_str()) {
                 return Err(format!(

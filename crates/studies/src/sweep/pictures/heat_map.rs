@@ -68,7 +68,7 @@ fn shade(part: f64) -> Color {
     (mix(from.0, to.0), mix(from.1, to.1), mix(from.2, to.2))
 }
 
-/// Where the rectangle of each value begins and ends: halfway between neighbours.
+/// Where the rectangle of each value begins and ends: halfway between neighbours. There are two different values at least.
 fn edges(parameter: &SweepParameter) -> Vec<(f64, f64)> {
     let is_log = parameter.spacing == Spacing::Log;
     let to = |x: f64| if is_log { x.ln() } else { x };
@@ -77,11 +77,12 @@ fn edges(parameter: &SweepParameter) -> Vec<(f64, f64)> {
     let levels: Vec<f64> = levels.map(|x| to(x.unwrap_or(f64::NAN))).collect();
     let mut sorted = levels.clone();
     sorted.sort_by(f64::total_cmp);
-    let half = |k: usize| 0.5 * (sorted[k + 1] - sorted[k]);
+    sorted.dedup();
     let last = sorted.len() - 1;
+    let half = |k: usize| 0.5 * (sorted[k + 1] - sorted[k]);
     let edge = |x: &f64| {
-        let k = sorted.iter().position(|y| y == x).unwrap_or(0);
-        let below = half(k.saturating_sub(1).min(last - 1));
+        let k = sorted.partition_point(|y| y < x);
+        let below = half(k.saturating_sub(1));
         let above = half(k.min(last - 1));
         (from(x - below), from(x + above))
     };

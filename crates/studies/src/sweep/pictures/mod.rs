@@ -30,12 +30,12 @@ pub fn figure(sweep: &Sweep, merged: &Merged, points: &Points) -> Figure {
     let parameters: Vec<(&String, &SweepParameter)> = study.parameters.iter().collect();
     let mut panels = Vec::new();
     let mut notes = Vec::new();
-    let numeric = |p: &SweepParameter| p.at(0.0).number().is_some() && p.at(1.0).number().is_some();
+    let numeric = |p: &SweepParameter| p.values.iter().all(|value| value.number().is_some());
     for m in 0..study.measures.len() {
         let of = MeasurePoints::new(sweep, points, m);
         match (study.design, &parameters[..]) {
             (DesignKind::Grid, [(_, x), (_, y)])
-                if numeric(x) && numeric(y) && y.levels() > CURVES =>
+                if numeric(x) && numeric(y) && distinct(x) > 1 && distinct(y) > CURVES =>
             {
                 panels.push(heat_map::panel(&of, parameters[0], parameters[1]));
             }
@@ -82,6 +82,15 @@ pub fn figure(sweep: &Sweep, merged: &Merged, points: &Points) -> Figure {
         rows,
         caption: caption(sweep, merged, &notes),
     }
+}
+
+/// Different values of a parameter with numbers.
+fn distinct(parameter: &SweepParameter) -> usize {
+    let levels = (0..parameter.levels()).filter_map(|k| parameter.level(k).number());
+    let mut levels: Vec<f64> = levels.collect();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    levels.len()
 }
 
 /// Curves of a grid over its first parameter.
