@@ -20,20 +20,6 @@ if TYPE_CHECKING:
 AHEAD = 3
 
 
-# The tables and pictures. The summary comes last: without it there is no result.
-FILES = [
-    "sweep.csv",
-    "sweep.parquet",
-    "points.csv",
-    "envelopes.csv",
-    "sweep.svg",
-    "sweep.png",
-    "sweep.md",
-    "times.csv",
-    "sweep.json",
-]
-
-
 class SweepResult:
     """Tables and pictures of a sweep.
 
@@ -231,10 +217,11 @@ def _copy(folder: Path, address: str) -> None:
 
     place, path = fs.FileSystem.from_uri(address)
     place.create_dir(path, recursive=True)
-    files = [folder / name for name in FILES if (folder / name).exists()]
-    closing = f"{path}/{FILES[-1]}"
-    if place.get_file_info(closing).type != fs.FileType.NotFound:
-        place.delete_file(closing)
-    for file in files:
-        with place.open_output_stream(f"{path}/{file.name}") as stream:
-            stream.write(file.read_bytes())
+    # the first file closes a result: without it there is none
+    closing, *others = _Sweep.files()
+    if place.get_file_info(f"{path}/{closing}").type != fs.FileType.NotFound:
+        place.delete_file(f"{path}/{closing}")
+    for name in [*others, closing]:
+        if (folder / name).exists():
+            with place.open_output_stream(f"{path}/{name}") as stream:
+                stream.write((folder / name).read_bytes())

@@ -13,7 +13,8 @@ use std::thread;
 use std::time::Duration;
 use studies::StudyError;
 use studies::sweep::{
-    RowTiming, Shard, Store, Sweep, SweepError, SweepSource, SweepTarget, Task, execute, merge,
+    FILES, RowTiming, Shard, Store, Sweep, SweepError, SweepSource, SweepTarget, Task, execute,
+    merge,
 };
 
 /// Time between two looks at signals.
@@ -106,6 +107,12 @@ impl PySweep {
             target: target_of(target),
         };
         py.detach(|| PySweep::new(Sweep::new(source)))
+    }
+
+    /// Names of the tables and pictures, first the one that closes a result.
+    #[staticmethod]
+    fn files() -> [&'static str; FILES.len()] {
+        FILES
     }
 
     /// What it is made of, as JSON.

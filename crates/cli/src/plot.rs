@@ -8,18 +8,12 @@ use super::print;
 use clap::{ArgGroup, Args};
 use looselink::document::did_you_mean;
 use looselink::output::replace;
-use plot::palette::{
-    BLUE, BROWN, GREEN, INDIGO, OLIVE, ORANGE, PURPLE, SKY, TEAL, VERMILION, WINE,
-};
-use plot::{Axis, Color, Figure, Mark, Panel, png, svg};
+use plot::palette::SERIES;
+use plot::{Axis, Figure, Mark, Panel, png, svg};
 use std::collections::HashSet;
 use std::path::PathBuf;
 use view::{StoredChannel, StoredResult};
 use wildmatch::WildMatch;
-
-const COLORS: [Color; 11] = [
-    BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, INDIGO, BROWN, OLIVE, WINE, TEAL,
-];
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("what").required(true)))]
@@ -158,7 +152,7 @@ fn over_time(result: &StoredResult, patterns: &[String]) -> Result<Vec<Panel>, C
             panels.len() - 1
         });
         let marks = &mut panels[place].1.marks;
-        let color = COLORS[marks.len() % COLORS.len()];
+        let color = SERIES[marks.len() % SERIES.len()];
         marks.push(Mark::series(
             &channel.name,
             color,

@@ -118,11 +118,7 @@ fn visited(sweep: &Sweep, row: &SweepRow) -> String {
 }
 
 fn write(arguments: &Arguments, sweep: &Sweep, store: &Store) -> Result<(), CommandFailure> {
-    merge(sweep, store, &arguments.out)?;
-    let page = arguments.out.join("sweep.md");
-    let text = std::fs::read(&page)
-        .map_err(|e| CommandFailure::system(format!("cannot read `{}`: {e}", page.display())))?;
-    print(text)?;
+    print(merge(sweep, store, &arguments.out)?.page)?;
     if !arguments.quiet {
         say(&format!(
             "tables and pictures in `{}`",

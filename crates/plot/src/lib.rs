@@ -43,6 +43,10 @@ pub mod palette {
     pub const WINE: Color = (136, 34, 85);
     /// Eleventh series.
     pub const TEAL: Color = (68, 170, 153);
+    /// The colours of series in their order; the first six are those of Okabe and Ito.
+    pub const SERIES: [Color; 11] = [
+        BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, INDIGO, BROWN, OLIVE, WINE, TEAL,
+    ];
     /// Reference curves such as the ideal mechanism.
     pub const GREY: Color = (130, 130, 130);
     /// Bounds and reference lines.

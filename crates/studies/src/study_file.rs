@@ -50,14 +50,9 @@ pub(crate) fn parsed<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, 
 /// What was meant by a key that a message calls unknown; it quotes that key and then those that there are.
 fn suggestion(message: &str) -> String {
     let mut quoted = message.split('`').skip(1).step_by(2);
+    let is_unknown = message.starts_with("unknown field") || message.starts_with("unknown variant");
     match quoted.next() {
-        Some(unknown)
-            if ["unknown field", "unknown variant"]
-                .iter()
-                .any(|start| message.starts_with(start)) =>
-        {
-            did_you_mean(unknown, quoted)
-        }
+        Some(unknown) if is_unknown => did_you_mean(unknown, quoted),
         _ => String::new(),
     }
 }

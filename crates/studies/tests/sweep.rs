@@ -49,19 +49,16 @@ fn threads(n: usize) -> NonZeroUsize {
     NonZeroUsize::new(n).unwrap()
 }
 
+/// Makes the runs of a shard on two threads.
+fn executed(sweep: &Sweep, store: &mut Store, shard: Shard) -> Result<(), SweepError> {
+    let stop = AtomicBool::new(false);
+    execute(sweep, store, shard, threads(2), &stop, &mut |_| {})
+}
+
 /// Makes all runs of a sweep in a folder.
 fn made(sweep: &Sweep, folder: &Path) -> Store {
     let mut store = Store::open(folder, sweep, Shard::WHOLE, false).unwrap();
-    let stop = AtomicBool::new(false);
-    execute(
-        sweep,
-        &mut store,
-        Shard::WHOLE,
-        threads(2),
-        &stop,
-        &mut |_| {},
-    )
-    .unwrap();
+    executed(sweep, &mut store, Shard::WHOLE).unwrap();
     store
 }
 
@@ -480,11 +477,10 @@ fn rows_of_shards_make_the_same_bytes() {
     let sweep = sweep(&study, &scene);
     let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
     merge(&sweep, &made(&sweep, whole.path()), whole.path()).unwrap();
-    let stop = AtomicBool::new(false);
     for shard in ["3/4", "1/4", "4/4"] {
         let shard: Shard = shard.parse().unwrap();
         let mut store = Store::open(parts.path(), &sweep, shard, false).unwrap();
-        execute(&sweep, &mut store, shard, threads(1), &stop, &mut |_| {}).unwrap();
+        executed(&sweep, &mut store, shard).unwrap();
     }
     let store = Store::read(parts.path(), &sweep).unwrap();
     let missing = merge(&sweep, &store, parts.path()).unwrap_err().to_string();
@@ -553,15 +549,7 @@ fn bisection(target: f64) -> (Result<Merged, SweepError>, Vec<SweepRow>) {
     let sweep = Sweep::new(source).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let mut store = Store::open(folder.path(), &sweep, Shard::WHOLE, false).unwrap();
-    let stop = AtomicBool::new(false);
-    let ended = execute(
-        &sweep,
-        &mut store,
-        Shard::WHOLE,
-        threads(2),
-        &stop,
-        &mut |_| {},
-    );
+    let ended = executed(&sweep, &mut store, Shard::WHOLE);
     let merged = ended.and_then(|()| merge(&sweep, &store, folder.path()));
     let rows = store.numbers().map(|run| store.row(run).unwrap());
     (merged, rows.collect())

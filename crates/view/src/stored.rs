@@ -169,9 +169,7 @@ impl StoredRun {
             motion,
         })
     }
-}
 
-impl StoredRun {
     /// A run that a program has kept in memory, as [`StoredRun::load`] reads it from a folder called `name`: its channels, first
     /// the time, and its rows of motion, as many as rows of channels.
     ///

@@ -5,6 +5,8 @@ use plot::{Axis, Figure, Mark, Panel, palette};
 
 /// Panels a row.
 const COLUMNS: usize = 3;
+/// Colours of curves; a seventh curve has the first again.
+const COLORS: usize = 6;
 /// A panel with more curves than this has no legend for them.
 const LABELLED: usize = 6;
 
@@ -62,19 +64,11 @@ fn panel(family: &[&Answer]) -> Option<Panel> {
         .into();
     let questions: Vec<&str> = family.iter().map(|a| a.question.as_str()).collect();
     let (common, own) = common(&questions);
-    let colors = [
-        palette::BLUE,
-        palette::VERMILION,
-        palette::GREEN,
-        palette::PURPLE,
-        palette::ORANGE,
-        palette::SKY,
-    ];
     for (i, curve) in curves.iter().enumerate() {
         let (_, first) = curve.start()?;
         let unit = if alone { 1.0 } else { first };
         let (x, y): (Vec<f64>, Vec<f64>) = curve.errors.iter().map(|e| (e.0, e.1 / unit)).unzip();
-        let color = colors[i % colors.len()];
+        let color = palette::SERIES[i % COLORS];
         let label = match (alone, family.len() <= LABELLED) {
             (false, true) => own[i].as_str(),
             _ => "",

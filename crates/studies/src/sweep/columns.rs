@@ -115,13 +115,12 @@ impl Sweep {
         columns
     }
 
-    /// The cells of a row, in the order of [`Sweep::columns`].
-    pub fn cells(&self, row: &SweepRow) -> Vec<SweepCell> {
+    /// The cells of a row in the order of `columns`, which are those of [`Sweep::columns`].
+    pub fn cells(&self, columns: &[Column], row: &SweepRow) -> Vec<SweepCell> {
         let whole = |n: usize| SweepCell::Whole(n as i64);
         let point = row.run / self.study.starts_of_a_point();
         let mut cells = vec![whole(row.run), whole(point), whole(row.start)];
-        let takes = self.columns();
-        for (value, column) in row.values.iter().zip(&takes[3..]) {
+        for (value, column) in row.values.iter().zip(&columns[3..]) {
             cells.push(match (value, column.takes) {
                 (FieldValue::Whole(n), ColumnType::Whole) => SweepCell::Whole(*n),
                 (value, ColumnType::Text) => SweepCell::Text(value.to_string()),

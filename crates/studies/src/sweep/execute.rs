@@ -84,13 +84,18 @@ fn round(
         left: pending.len(),
         error: None,
     });
-    let failed = AtomicBool::new(false);
     let work = || {
-        while !stop.load(Ordering::Relaxed) && !failed.load(Ordering::Relaxed) {
+        while !stop.load(Ordering::Relaxed) {
             let Some(run) = pending.get(next.fetch_add(1, Ordering::Relaxed)) else {
                 return;
             };
-            let task = sweep.task(shared.lock().expect("no thread panics").store, *run);
+            let task = {
+                let shared = shared.lock().expect("no thread panics");
+                if shared.error.is_some() {
+                    return;
+                }
+                sweep.task(shared.store, *run)
+            };
             let made = task.map(|task| sweep.run(&task, stop));
             let mut shared = shared.lock().expect("no thread panics");
             // a row behind one that could not be written is not tried
@@ -109,10 +114,7 @@ fn round(
                     let row = &row;
                     (shared.told)(SweepProgress { done, left, row });
                 }
-                Err(error) => {
-                    shared.error.get_or_insert(error);
-                    failed.store(true, Ordering::Relaxed);
-                }
+                Err(error) => shared.error = Some(error),
             }
         }
     };

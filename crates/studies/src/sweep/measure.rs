@@ -118,10 +118,7 @@ pub static CONTACTS: [ContactMeasure; 4] = [
         name: "contacts",
         purpose: "the number of contacts that begin",
         unit: "1",
-        of: |contacts, _, [from, to]| {
-            let begun = contacts.iter().filter(|c| (from..=to).contains(&c.t));
-            begun.count() as f64
-        },
+        of: |contacts, _, part| begun(contacts, part).count() as f64,
     },
     ContactMeasure {
         name: "contact_share",
@@ -136,21 +133,24 @@ pub static CONTACTS: [ContactMeasure; 4] = [
         name: "largest_impact_velocity",
         purpose: "the largest velocity at which a contact begins; 0 where none begins",
         unit: "m/s",
-        of: |contacts, _, [from, to]| {
-            let begun = contacts.iter().filter(|c| (from..=to).contains(&c.t));
-            begun.fold(0.0, |most: f64, c| most.max(c.impact_velocity))
+        of: |contacts, _, part| {
+            begun(contacts, part).fold(0.0, |most: f64, c| most.max(c.impact_velocity))
         },
     },
     ContactMeasure {
         name: "deepest_penetration",
         purpose: "the largest penetration of the contacts that begin; 0 where none begins",
         unit: "m",
-        of: |contacts, _, [from, to]| {
-            let begun = contacts.iter().filter(|c| (from..=to).contains(&c.t));
-            begun.fold(0.0, |most: f64, c| most.max(c.deepest_penetration))
+        of: |contacts, _, part| {
+            begun(contacts, part).fold(0.0, |most: f64, c| most.max(c.deepest_penetration))
         },
     },
 ];
+
+/// The contacts that begin within a part of a run.
+fn begun(contacts: &[Impact], [from, to]: [f64; 2]) -> impl Iterator<Item = &Impact> {
+    contacts.iter().filter(move |c| (from..=to).contains(&c.t))
+}
 
 fn same(unit: &str) -> String {
     unit.to_owned()

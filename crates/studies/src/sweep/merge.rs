@@ -15,6 +15,7 @@
 
 use super::columns::{Column, ColumnType, SweepCell};
 use super::csv_table::CsvTable;
+use super::page::page;
 use super::parquet_table::ParquetTable;
 use super::pictures::figure;
 use super::store::{remove, timings};
@@ -74,6 +75,9 @@ pub struct Merged {
     /// Where a bisection has led.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossing: Option<Crossing>,
+    /// The text of `sweep.md`.
+    #[serde(skip)]
+    pub page: String,
 }
 
 /// Least and largest value of a measure.
@@ -161,12 +165,12 @@ pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, Swee
     let mut gathered = Gathered::new(sweep);
     for run in 0..runs {
         let row = store.row(run)?;
-        let cells = sweep.cells(&row);
+        let cells = sweep.cells(&columns, &row);
         csv.row(&cells).map_err(|e| failed(&e))?;
         parquet.row(cells).map_err(|e| failed(&e))?;
         gathered.add(row);
     }
-    let (merged, points) = gathered.finish(sweep, store, &columns)?;
+    let (mut merged, points) = gathered.finish(sweep, store, &columns)?;
     // first the file that closes a result; tables that this sweep does not have may be of another one
     FILES
         .iter()
@@ -177,7 +181,7 @@ pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, Swee
     if sweep.study.starts_of_a_point() > 1 {
         write(
             "points.csv",
-            &point_table(sweep, &points).map_err(|e| failed(&e))?,
+            &point_table(sweep, &columns, &points).map_err(|e| failed(&e))?,
         )?;
     }
     if !points.envelopes.is_empty() {
@@ -189,10 +193,8 @@ pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, Swee
     let [svg, png] = pictures(&figure(sweep, &merged, &points))?;
     write("sweep.svg", &svg)?;
     write("sweep.png", &png)?;
-    write(
-        "sweep.md",
-        super::page::page(sweep, &merged, &points).as_bytes(),
-    )?;
+    merged.page = page(sweep, &merged, &points);
+    write("sweep.md", merged.page.as_bytes())?;
     write("times.csv", &time_table(folder)?)?;
     write(FILES[0], &json(&merged)?)?;
     Ok(merged)
@@ -360,6 +362,7 @@ impl Gathered {
             extremes: extremes.collect(),
             indices,
             crossing: sweep.crossing(store)?,
+            page: String::new(),
         };
         Ok((merged, points))
     }
@@ -378,11 +381,10 @@ fn kind_of(warning: &str) -> String {
 }
 
 /// One row a point: parameters, then number of runs, mean, deviation and interval of every measure.
-fn point_table(sweep: &Sweep, points: &Points) -> csv::Result<Vec<u8>> {
-    let all = sweep.columns();
+fn point_table(sweep: &Sweep, all: &[Column], points: &Points) -> csv::Result<Vec<u8>> {
     let parameters = 3..3 + sweep.study.parameters.len();
     let mut columns = vec![all[1].clone()];
-    columns.extend_from_slice(&all[parameters.clone()]);
+    columns.extend_from_slice(&all[parameters]);
     let number = |name: String, unit: &str, takes| Column {
         name,
         unit: unit.to_owned(),

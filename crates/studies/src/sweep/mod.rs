@@ -137,10 +137,10 @@ impl Sweep {
         let text = text_of(path)?;
         let study = SweepStudy::parse(path, &text, target.as_ref())?;
         // a scene that cannot be read is reported with the advice of the scene reader
-        Scene::load(&study.scene, &study.set)?;
+        let scene = Scene::load(&study.scene, &study.set)?;
         Sweep::new(SweepSource {
             path: path.to_owned(),
-            scene: text_of(&study.scene)?,
+            scene: scene.text().to_owned(),
             study: text,
             target,
         })
@@ -152,7 +152,7 @@ impl Sweep {
     /// The first fault of the study or the scene.
     pub fn new(source: SweepSource) -> Result<Sweep, SweepError> {
         let study = SweepStudy::parse(&source.path, &source.study, source.target.as_ref())?;
-        let fault = |message: String| StudyError::of(&source.path, message);
+        let fault = |message| StudyError::of(&source.path, message);
         let parameters = study.parameter_list();
         let samples = study.samples.unwrap_or(0);
         let design = study.design.design(&parameters, samples, study.seed);

@@ -3,9 +3,6 @@
 use super::Design;
 use crate::sweep::{FieldValue, SweepParameter};
 
-/// More points are a mistake.
-const MOST: usize = 1_000_000_000;
-
 /// A grid with so many values of every parameter.
 #[derive(Debug)]
 pub struct GridDesign {
@@ -13,14 +10,11 @@ pub struct GridDesign {
 }
 
 impl GridDesign {
-    /// # Errors
-    /// More than a thousand million points.
-    pub fn new(parameters: &[&SweepParameter]) -> Result<GridDesign, String> {
-        let mut counts = parameters.iter().map(|parameter| parameter.levels());
-        let points = counts.try_fold(1_usize, usize::checked_mul);
-        match points.filter(|points| *points <= MOST) {
-            Some(points) => Ok(GridDesign { points }),
-            None => Err(format!("the grid has more than {MOST} points")),
+    /// All combinations; a number of points that cannot be counted is the largest there is.
+    pub fn new(parameters: &[&SweepParameter]) -> GridDesign {
+        let counts = parameters.iter().map(|parameter| parameter.levels());
+        GridDesign {
+            points: counts.fold(1, usize::saturating_mul),
         }
     }
 }

@@ -60,7 +60,7 @@ impl DesignKind {
         seed: u64,
     ) -> Result<Option<Box<dyn Design>>, String> {
         Ok(Some(match self {
-            DesignKind::Grid => Box::new(grid::GridDesign::new(parameters)?),
+            DesignKind::Grid => Box::new(grid::GridDesign::new(parameters)),
             DesignKind::List => Box::new(list::ListDesign::new(parameters)?),
             DesignKind::LatinHypercube => Box::new(latin_hypercube::LatinHypercubeDesign::new(
                 parameters.len(),

@@ -9,20 +9,10 @@ mod scatter;
 use super::design::DesignKind;
 use super::merge::{Merged, Points};
 use super::{FieldValue, Spacing, Sweep, SweepParameter};
-use plot::{Axis, Color, Figure, Panel, palette};
+use plot::{Axis, Figure, Panel};
 
 /// Curves of a panel; more values of a second parameter are a map.
 const CURVES: usize = 6;
-
-/// Colours of curves.
-const COLORS: [Color; CURVES] = [
-    palette::BLUE,
-    palette::VERMILION,
-    palette::GREEN,
-    palette::PURPLE,
-    palette::ORANGE,
-    palette::SKY,
-];
 
 /// All panels of a sweep, two or three beside each other, and what they show.
 pub fn figure(sweep: &Sweep, merged: &Merged, points: &Points) -> Figure {

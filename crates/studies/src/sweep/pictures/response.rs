@@ -1,8 +1,8 @@
 //! A measure over the first parameter of a grid, one curve for each combination of the others.
 
-use super::{COLORS, MeasurePoints, label, parameter_axis};
+use super::{MeasurePoints, label, parameter_axis};
 use crate::sweep::SweepParameter;
-use plot::{Mark, Panel};
+use plot::{Mark, Panel, palette};
 
 /// Radius of a dot \[pixels\].
 const DOT: u32 = 7;
@@ -14,7 +14,7 @@ pub fn panel(
 ) -> Panel {
     let mut panel = of.panel(parameter_axis(parameters[0]));
     let curves = of.points.values.len() / levels;
-    for (curve, color) in (0..curves).zip(COLORS) {
+    for (curve, color) in (0..curves).zip(palette::SERIES) {
         // the first parameter varies slowest
         let points = (0..levels).map(|level| level * curves + curve);
         let known = points.filter_map(|point| {
