@@ -22,16 +22,20 @@ install() {
     DEBIAN_FRONTEND=noninteractive "${root[@]}" apt-get install -y -qq --no-install-recommends "$@" > /dev/null
 }
 
-install_libraries() {
-    # runs the MATLAB script of a how-to page
+# runs the MATLAB scripts of the pages
+install_octave() {
     command -v octave-cli > /dev/null || install octave
+}
+
+install_libraries() {
+    install_octave
     # an environment variable names a place of one's own
     if [ -n "${EIGEN_INCLUDE_DIR:-}" ] && [ -n "${SUNDIALS_DIR:-}" ]; then return; fi
     install g++ libeigen3-dev libsundials-dev libsuitesparse-dev libtomlplusplus-dev
 }
 
 quick() {
-    local packages=(-p looselink -p looselink-cli -p studies -p numbers -p plot -p verify)
+    local packages=(-p looselink -p looselink-cli -p looselink-studies -p looselink-numbers -p looselink-plot -p verify)
     cargo clippy "${packages[@]}" --all-targets -- -D warnings
     cargo test "${packages[@]}" -- "${slow[@]/#/--skip=}"
 }
@@ -41,6 +45,8 @@ everything() {
     # the fuzz targets, a workspace of their own
     cargo check --quiet --locked --manifest-path fuzz/Cargo.toml --target-dir target
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
+    oldest_rust
+    packages
 
     cargo test --workspace --no-run
     local count
@@ -59,6 +65,35 @@ everything() {
     rm -rf "$LOOSELINK_LADDER"
     cargo test --workspace
     cargo run --quiet -p ladder -- --from "$LOOSELINK_LADDER" --check
+}
+
+# The packages for crates.io: the solver, the command line, and what they are made of.
+packages() {
+    local names=(looselink looselink-cli looselink-messages looselink-numbers looselink-plot looselink-studies looselink-view)
+    local said
+    said=$(cargo package "${names[@]/#/-p}" --no-verify --allow-dirty --color never 2>&1) || {
+        echo "$said" >&2
+        exit 1
+    }
+    if grep '^warning' <<< "$said" >&2; then exit 1; fi
+}
+
+# The oldest Rust that Cargo.toml promises: no library asks for a newer one, and clippy has refused functions of a newer standard
+# library. Where that toolchain is installed, it compiles everything.
+oldest_rust() {
+    local oldest host
+    oldest=$(sed -n 's/^rust-version = "\(.*\)"$/\1/p' Cargo.toml)
+    host=$(rustc -vV | sed -n 's/^host: //p')
+    cargo metadata --format-version 1 --locked --filter-platform "$host" | python3 -c '
+import json, sys
+number = lambda version: [int(part) for part in version.split(".")[:2]]
+newer = [p for p in json.load(sys.stdin)["packages"] if p["rust_version"] and number(p["rust_version"]) > number(sys.argv[1])]
+sys.exit("\n".join("{name} {version} needs Rust {rust_version}".format(**p) for p in newer) or 0)' "$oldest"
+    if RUSTUP_AUTO_INSTALL=0 cargo "+$oldest" --version > /dev/null 2>&1; then
+        cargo "+$oldest" check --workspace --target-dir "target/rust-$oldest"
+    else
+        echo "Rust $oldest is not installed: nothing was compiled with it"
+    fi
 }
 
 # The viewer: its page is that of its sources, and works in a browser. Needs node 20 or newer.
@@ -88,8 +123,10 @@ site() {
     lychee --offline --include-fragments --no-progress "target/site/**/*.html"
 }
 
-# The Python package: compiled and installed into an environment in target/, with its tests. Needs Python 3.10 or newer.
+# The Python package: compiled and installed into an environment in target/, with its tests, which also run the sweeps of Dask, the
+# script for Octave and the examples. Needs Python 3.10 or newer.
 python() {
+    install_octave
     python3 -c "import ensurepip" 2> /dev/null || install python3-venv
     cargo build -p looselink-cli
     python3 -m venv target/tools/looselink-python

@@ -9,13 +9,13 @@ use looselink::{newton::Newton, registry::Registry, scene::Scene, simulate::Simu
 #[derive(Debug)]
 struct SymplecticEuler;
 
-/// Nothing that a checkpoint has to hold: each step depends on its start alone.
 impl Carried for SymplecticEuler {
+    /// Nothing that a checkpoint has to hold: each step depends on its start alone.
     fn carry(&mut self, _: &mut Checkpoint) {}
 }
 
+#[rustfmt::skip]
 impl Stepper for SymplecticEuler {
-    #[rustfmt::skip]
     fn step(&mut self, system: &dyn System, from: &State, t: f64, to: &mut State, newton: &mut Newton, work: &mut Work)
         -> Result<usize, StepError> {
         let h = t - from.t;
@@ -30,36 +30,28 @@ impl Stepper for SymplecticEuler {
         Ok(system.powers(to, work))
     }
 
-    fn estimate(&self) -> Estimate {
-        Estimate {
-            order: 2.0,
-            is_error: true,
-            implicit: false,
-        }
-    }
+    fn estimate(&self) -> Estimate { Estimate { order: 2.0, is_error: true, implicit: false } }
 
+    /// The trapezoidal rule minus this one.
     fn local_error(&self, from: &State, to: &State, _: &State, error: &mut LocalError) {
         let h = to.t - from.t;
-        for i in 0..error.q.len() {
-            error.q[i] = -0.5 * h * h * from.a[i];
-            error.v[i] = 0.5 * h * (to.a[i] - from.a[i]);
+        for (i, (q, v)) in error.q.iter_mut().zip(&mut error.v).enumerate() {
+            (*q, *v) = (-0.5 * h * h * from.a[i], 0.5 * h * (to.a[i] - from.a[i]));
         }
     }
 }
 
-/// What a scene has to know of it.
+/// As a scene names it.
+#[rustfmt::skip]
 pub static SCHEME: Scheme = Scheme {
-    name: "symplectic_euler",
-    is_explicit: true,
-    keeps_constraints: false,
-    parameters: &[],
+    name: "symplectic_euler", parameters: &[], is_explicit: true, keeps_constraints: false,
     build: |_, _| Box::new(SymplecticEuler),
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let method = [r#"integrator={method="symplectic_euler",step=1e-5}"#.to_owned()];
     let registry = Registry::standard().with_scheme(&SCHEME);
-    let overrides = ["integrator={method=\"symplectic_euler\",step=1e-5}".to_owned()];
-    let scene = Scene::load_with(&registry, "scenes/soft-pendulum.toml".as_ref(), &overrides)?;
+    let scene = Scene::load_with(&registry, "scenes/soft-pendulum.toml".as_ref(), &method)?;
     let mut simulation = Simulation::new(&scene)?;
     simulation.run(&mut ())?;
     println!("{:#?}", simulation.report().ledger);

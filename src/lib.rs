@@ -31,7 +31,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`simulate::Recording`] is an observer that keeps everything in memory. EQUATIONS.md maps the equations of the paper
+//! [`simulate::Recording`] is an observer that keeps everything in memory.
+//!
+//! # Kinds of one's own
+//!
+//! A [`registry::Registry`] holds what a scene can name. A program adds kinds to it and reads scenes with
+//! [`scene::Scene::load_with`]; each of these examples is less than sixty lines:
+//!
+//! | what | trait | example |
+//! |---|---|---|
+//! | normal contact law | [`contact::normal::NormalLaw`], or a factor for [`contact::normal::DampedPower`] | `own_contact_law` |
+//! | force on a point | [`interaction::PointLaw`] | `own_interaction` |
+//! | any other force, joint, body | [`interaction::ForceModel`], [`interaction::JointModel`], [`body::Body`] | |
+//! | integration scheme | [`stepper::Stepper`] | `own_integrator` |
+//! | function of time | [`motion::FunctionOfTime`] | |
+//! | format of tables | [`table::Format`] | |
+//! | receiver of results | [`simulate::Observer`] | `own_observer` |
+//!
+//! EQUATIONS.md maps the equations of the paper
 //! to functions; ARCHITECTURE.md maps the mechanics to folders.
 #![forbid(unsafe_code)]
 

@@ -6,7 +6,7 @@ use looselink::document::Key;
 use looselink::motion::{Function, FunctionKind, FunctionOfTime};
 use looselink::registry::Registry;
 use looselink::scene::Scene;
-use looselink::simulate::{Recording, Simulation};
+use looselink::simulate::{Recording, RunError, Simulation};
 use looselink::stepper::{Method, Parameter, Scheme};
 use std::sync::Arc;
 
@@ -21,6 +21,12 @@ mod own_integrator;
 #[path = "../examples/own_interaction.rs"]
 #[allow(dead_code, reason = "the example is a program")]
 mod own_interaction;
+
+#[path = "../examples/own_observer.rs"]
+#[allow(dead_code, reason = "the example is a program")]
+mod own_observer;
+
+mod slot;
 
 /// A wall that pushes with a constant force.
 #[derive(Debug)]
@@ -155,11 +161,11 @@ fn parameters_and_names_of_the_user_are_checked_as_all_others() {
     assert_eq!(Method::new(&SYMPLECTIC_EULER).get("gamma"), None);
 }
 
-/// The joint of the example is the loose guide of the library, on a body that does not turn.
+/// A joint with a contact geometry of its own is the loose guide of the library, on a body that does not turn.
 #[test]
 fn a_scene_names_a_joint_of_the_user() {
-    let registry = Registry::standard().with_joint(&own_interaction::KIND);
-    let text = own_interaction::SCENE;
+    let registry = Registry::standard().with_joint(&slot::KIND);
+    let text = slot::SCENE;
     let guide = text
         .replace(
             "type = \"slot\", middle =",
@@ -182,6 +188,60 @@ fn a_scene_names_a_joint_of_the_user() {
             assert!((a - b).abs() < 1e-9 * size, "{name}: {a} {b}");
         }
     }
+}
+
+/// Quadratic drag alone on a mass: v = v_0/(1 + c v_0 t/m).
+#[test]
+fn a_scene_names_the_force_of_the_example() {
+    const SCENE: &str = r#"
+        format = 1
+        title = "a mass in water"
+        simulation = { duration = 1.0 }
+        integrator = { method = "bathe", step = 1e-3, newton_tolerance = 1e-12 }
+        output = { interval = 0.1, channels = ["mass.*", "water.*", "energy.*"] }
+        bodies.ground = { type = "ground", points.O = [0.0, 0.0] }
+        bodies.mass = { type = "point_mass", mass = 2.0 }
+        forces.water = { type = "drag", point = "mass.center", coefficient = 0.5 }
+        initial.bodies.mass = { x = 0.0, y = 0.0, vx = 2.4, vy = 3.2 }
+    "#;
+    let registry = Registry::standard().with_force(&own_interaction::DRAG);
+    let scene = Scene::parse_with(&registry, "scene", SCENE, &[]).unwrap();
+    let (recording, _) = run_scene(&scene);
+    let (t, fy) = (recording.get("t"), recording.get("water.fy"));
+    let (vx, work) = (recording.get("mass.vx"), recording.get("energy.work"));
+    for i in 0..t.len() {
+        // c v_0/m is 1/s
+        let v = 4.0 / (1.0 + t[i]);
+        // order 2 with steps of a thousandth of the time in which the speed halves
+        assert!((vx[i] - 0.6 * v).abs() < 1e-6 * v, "{}", vx[i]);
+        assert!((fy[i] + 0.8 * 0.5 * v * v).abs() < 1e-5, "{}", fy[i]);
+        assert!((work[i] - (v * v - 16.0)).abs() < 1e-5, "{}", work[i]);
+    }
+}
+
+/// The observer of the example sees the impacts that a recording keeps, and stops the run.
+#[test]
+fn an_observer_of_the_user_sees_all_contacts() {
+    let overrides = ["simulation.duration=0.02".to_owned()];
+    let path = "scenes/slider-crank/loose.toml".as_ref();
+    let scene = Scene::load(path, &overrides).unwrap();
+    let mut hardest = own_observer::HardestImpacts::default();
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let ended = simulation.run(&mut hardest).unwrap_err();
+    assert!(matches!(ended, RunError::Interrupted { .. }), "{ended}");
+    let recording = run_scene(&scene).0;
+    let ended = recording.onsets.iter().filter(|onset| onset.end.is_some());
+    let velocities: Vec<f64> = ended
+        .take(hardest.contacts)
+        .map(|onset| onset.impact_velocity)
+        .collect();
+    assert!(hardest.contacts >= 20, "{hardest:?}");
+    assert_eq!(velocities.len(), hardest.contacts);
+    let largest = velocities.into_iter().fold(0.0, f64::max);
+    assert_eq!(
+        hardest.by_joint,
+        [("slider_pin".to_owned(), largest)].into()
+    );
 }
 
 /// height t^2

@@ -5,13 +5,19 @@ use ladder::{Rung, Worst};
 use looselink::constraint::{
     Align, ClampSlope, Coincide, Constraint, Curvature, Length, Place, Slide,
 };
+use looselink::effect::Effect;
 use looselink::force::{ElementDamping, Force, MassDamping, WIDTH};
+use looselink::interaction::point_law::{LoadGradient, PointLaw, differences};
 use looselink::interaction::rod::Distance;
-use looselink::interaction::{Maxwell, PointForce, SpringDamper, Torque, TorsionSpring};
+use looselink::interaction::{
+    ForceByLaw, Maxwell, PointForce, SpringDamper, Torque, TorsionSpring,
+};
 use looselink::marker::{Marker, Separation, Spin};
 use looselink::math::plane::Vec2;
 use looselink::motion::Function;
 use looselink::system::{INTEGRALS, Integral, Shape, State, Weights};
+use nalgebra::Matrix2;
+use std::sync::Arc;
 
 /// Coordinates: two bodies (0..3, 3..6), nodes and slopes of an element (6..14), two more nodes (14..18).
 const COUNT: usize = 18;
@@ -473,7 +479,65 @@ fn travel_is_measured_along_the_line() {
     }
 }
 
+/// F = -0.6 |v| v - 2 |r|^2 r + t (0.3, -0.2).
+#[derive(Debug)]
+struct DragAndSpring;
+
+impl PointLaw for DragAndSpring {
+    fn effect(&self) -> Effect {
+        "drag_and_spring"
+    }
+
+    fn force(&self, t: f64, r: Vec2, v: Vec2) -> Vec2 {
+        -0.6 * v.norm() * v - 2.0 * r.norm_squared() * r + t * Vec2::new(0.3, -0.2)
+    }
+
+    fn gradient(&self, _: f64, r: Vec2, v: Vec2, _: Vec2) -> LoadGradient {
+        let one = Matrix2::identity();
+        let by_r = -2.0 * (r.norm_squared() * one + 2.0 * r * r.transpose());
+        let by_v = -0.6 * (v.norm() * one + v * v.transpose() / v.norm());
+        LoadGradient::from_columns(&[
+            by_r.column(0),
+            by_r.column(1),
+            by_v.column(0),
+            by_v.column(1),
+        ])
+    }
+}
+
+/// The differences that stand in for derivatives are as exact as their step promises, also where the point rests at the origin.
+#[test]
+fn differences_of_a_law_are_its_derivatives() {
+    let law = DragAndSpring;
+    let worst = Worst::new();
+    for (r, v) in [
+        ([0.4, -0.7], [0.3, 0.9]),
+        ([0.0, 0.0], [1e-3, 0.0]),
+        ([-1.0, 1e-3], [0.0, -0.8]),
+    ] {
+        let (r, v) = (Vec2::from(r), Vec2::from(v));
+        let force = law.force(0.5, r, v);
+        let differenced = differences(|r, v| law.force(0.5, r, v), r, v, force);
+        worst.see((differenced - law.gradient(0.5, r, v, force)).amax());
+    }
+    Rung::Derivatives
+        .asks(
+            "Do the differences that replace the derivatives of a law of the user agree with them?",
+        )
+        .within(
+            &worst,
+            1e-5,
+            "rounding of two newtons over a step of 1.5e-10, the step of arguments near zero",
+        );
+}
+
 fn forces() -> Vec<(&'static str, Box<dyn Force>)> {
+    let by_law = |marker| {
+        Box::new(ForceByLaw {
+            marker,
+            law: Arc::new(DragAndSpring),
+        })
+    };
     let element: Vec<usize> = (6..14).collect();
     vec![
         (
@@ -558,6 +622,16 @@ fn forces() -> Vec<(&'static str, Box<dyn Force>)> {
                 marker: body(3, [0.3, 0.2]),
                 spin: Spin::Angle { theta: 5 },
                 components: [Function::Constant(0.4), Function::Constant(-0.9)],
+            }),
+        ),
+        ("law at a point of a body", by_law(body(3, [0.3, 0.2]))),
+        ("law at a node of a beam", by_law(Marker::Node { x: 10 })),
+        (
+            "law at a point of a chord",
+            by_law(Marker::OnChord {
+                from: 14,
+                to: 16,
+                share: 0.3,
             }),
         ),
         (
@@ -795,6 +869,15 @@ fn forces_tell_what_they_do() {
     compare(
         &reported(&*by_name("dead force on a body")),
         &[("fx", 1.3), ("fy", 0.2)],
+    );
+    let law = DragAndSpring.force(
+        s.t,
+        Vec2::new(s.q[10], s.q[11]),
+        Vec2::new(s.v[10], s.v[11]),
+    );
+    compare(
+        &reported(&*by_name("law at a node of a beam")),
+        &[("fx", law.x), ("fy", law.y)],
     );
     compare(
         &reported(&*by_name("torque on a slope")),

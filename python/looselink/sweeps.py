@@ -6,11 +6,12 @@ import json
 import os
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ._looselink import Scene, _make_tasks, _Sweep, load
+from ._looselink import Scene, __version__, _make_tasks, _Sweep, load
 
 if TYPE_CHECKING:
     import pandas
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 # Batches that wait at the workers: enough to keep them busy, few enough that a million runs do not burden the scheduler.
 AHEAD = 3
+# Time between two counts of the workers [s].
+LOOK = 1.0
 
 
 class SweepResult:
@@ -85,7 +88,7 @@ def sweep(
     `client` is a `distributed.Client`: the runs are made by its workers; without one by `threads` threads of this process.
     `out` is the folder that receives rows, tables and pictures; the same call goes on with rows that are there. Without it the
     files are in a temporary folder, which the result keeps.
-    `target` is (measure, value): the study becomes a bisection.
+    `target` is (measure, value): the study becomes a bisection for the value of its one parameter at which the measure has the value.
     `batch` is the number of runs of a task of Dask; by default tasks take about a second.
     `progress` is True, or a callable that receives the numbers of runs made and left.
     `force` deletes rows that are there.
@@ -94,7 +97,8 @@ def sweep(
     The tables have the same bytes as those of `looselink sweep`, whatever the number of threads, workers and interruptions.
 
     Raises StudyError for a fault of the study, SceneError for a fault of its scene, OSError for files that cannot be written,
-    RuntimeError for a bisection that cannot go on, KeyboardInterrupt after Ctrl-C; rows that are made stay in `out`.
+    RuntimeError for a bisection without an answer and for workers with another version of Looselink, KeyboardInterrupt after
+    Ctrl-C; rows that are made stay in `out`.
     """
     if batch is not None and batch < 1:
         raise ValueError(f"batch must be 1 at least, not {batch}")
@@ -121,9 +125,35 @@ def sweep(
     return result
 
 
-def of_scene(scene: Scene, client: Any, study: dict[str, Any], options: dict[str, Any]) -> SweepResult:
+def of_scene(
+    scene: Scene,
+    client: Any,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    target: tuple[str, float] | dict[str, Any] | None = None,
+    threads: int | None = None,
+    batch: int | None = None,
+    progress: bool | Callable[[int, int], object] = False,
+    force: bool = False,
+    copy_to: str | None = None,
+    **study: Any,
+) -> SweepResult:
     """`Scene.sweep`."""
-    return sweep({"title": scene.title, **study, "scene": scene}, client, **options)
+    study = {"title": scene.title, **study, "scene": scene}
+    if isinstance(target, dict):
+        # the table `[target]` of a study
+        study["target"], target = target, None
+    return sweep(
+        study,
+        client,
+        out=out,
+        target=target,
+        threads=threads,
+        batch=batch,
+        progress=progress,
+        force=force,
+        copy_to=copy_to,
+    )
 
 
 def _prepared(study: str | os.PathLike[str] | dict[str, Any], target: tuple[str, float] | None) -> _Sweep:
@@ -188,24 +218,35 @@ def _distribute(prepared: _Sweep, client: Any, batch: int | None, shown: Callabl
         left = len(runs)
         batches = _batches(runs, size)
         running = as_completed(with_results=True)
+        under_way: set[Any] = set()
+        looked = -LOOK
 
-        def start() -> bool:
-            chosen = next(batches, None)
-            if chosen is not None:
-                running.add(client.submit(_make_tasks, source, prepared.tasks(chosen), pure=False))
-            return chosen is not None
+        def start() -> None:
+            """Start as many tasks as the workers of this moment need."""
+            nonlocal looked, wanted
+            if time.monotonic() - looked > LOOK:
+                looked = time.monotonic()
+                wanted = AHEAD * max(1, sum(client.nthreads().values()))
+            while len(under_way) < wanted and (chosen := next(batches, None)) is not None:
+                task = client.submit(_make_tasks, __version__, source, prepared.tasks(chosen), pure=False)
+                under_way.add(task)
+                running.add(task)
 
-        wanted = AHEAD * max(1, sum(client.nthreads().values()))
-        while wanted > 0 and start():
-            wanted -= 1
-        for _, rows in running:
-            for row, timing in rows:
-                prepared.append(row, timing)
-                seconds[:] = [*seconds[-99:], json.loads(timing)["wall"]]
-            left -= len(rows)
-            if shown is not None:
-                shown(prepared.done(), left)
+        wanted = 0
+        try:
             start()
+            for task, rows in running:
+                under_way.discard(task)
+                for row, timing in rows:
+                    prepared.append(row, timing)
+                    seconds[:] = [*seconds[-99:], json.loads(timing)["wall"]]
+                left -= len(rows)
+                if shown is not None:
+                    shown(prepared.done(), left)
+                start()
+        except BaseException:
+            client.cancel(list(under_way))
+            raise
 
 
 def _same(text: str) -> str:

@@ -309,17 +309,15 @@ impl PyScene {
 
     /// Runs the scene at many values of its fields; see `looselink.sweep`.
     ///
-    /// `study` are the tables of docs/sweep.md without `scene`: parameters, measures, design and others. `options` are the keyword
-    /// arguments of `looselink.sweep`, such as out and threads. A scene with callables cannot be swept, because their values are not
-    /// in its text.
+    /// Keyword arguments are those of `looselink.sweep`, such as out and threads, and the tables of docs/sweep.md without `scene`:
+    /// parameters, measures, design and others. A scene with callables cannot be swept, because their values are not in its text.
     ///
     /// Returns a SweepResult. Raises ValueError for a scene with callables; otherwise as `looselink.sweep`.
-    #[pyo3(signature = (client=None, *, options=None, **study))]
+    #[pyo3(signature = (client=None, **keywords))]
     fn sweep<'py>(
         slf: Bound<'py, Self>,
         client: Option<Bound<'py, PyAny>>,
-        options: Option<Bound<'py, PyDict>>,
-        study: Option<Bound<'py, PyDict>>,
+        keywords: Option<Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         if !slf.borrow().given.is_empty() {
             return Err(PyValueError::new_err(
@@ -327,10 +325,8 @@ impl PyScene {
             ));
         }
         let py = slf.py();
-        let study = study.unwrap_or_else(|| PyDict::new(py));
-        let options = options.unwrap_or_else(|| PyDict::new(py));
         let sweeps = py.import("looselink.sweeps")?;
-        sweeps.call_method1("of_scene", (slf, client, study, options))
+        sweeps.call_method("of_scene", (slf, client), keywords.as_ref())
     }
 
     /// Simulates the scene and returns its `Run`. Other threads of Python go on meanwhile.

@@ -234,16 +234,42 @@ fn make(
     }
 }
 
-/// Makes some runs of a sweep; all arguments and results are JSON. Returns a row and its time for each.
+/// The sweep of which this process has made runs last, and its source: a worker reads a scene once, not in every task.
+static LATEST: Mutex<Option<(String, Arc<Sweep>)>> = Mutex::new(None);
+
+/// The sweep with this source.
+fn sweep_of(source: String) -> PyResult<Arc<Sweep>> {
+    let mut latest = LATEST.lock().expect("no thread panics");
+    if let Some((_, sweep)) = latest.as_ref().filter(|(latest, _)| *latest == source) {
+        return Ok(sweep.clone());
+    }
+    let read: SweepSource = serde_json::from_str(&source).map_err(|error| not_json(&error))?;
+    let sweep = Arc::new(Sweep::new(read).map_err(|error| sweep_error(&error))?);
+    *latest = Some((source, sweep.clone()));
+    Ok(sweep)
+}
+
+/// Makes some runs of a sweep; sources, tasks and results are JSON. Returns a row and its time for each. `version` is that of the
+/// package that asks.
 #[pyfunction]
 #[pyo3(name = "_make_tasks")]
-pub fn make_tasks(py: Python, source: &str, tasks: Vec<String>) -> PyResult<Vec<(String, String)>> {
-    let source: SweepSource = serde_json::from_str(source).map_err(|error| not_json(&error))?;
+pub fn make_tasks(
+    py: Python,
+    version: &str,
+    source: String,
+    tasks: Vec<String>,
+) -> PyResult<Vec<(String, String)>> {
+    let own = env!("CARGO_PKG_VERSION");
+    if version != own {
+        return Err(PyRuntimeError::new_err(format!(
+            "a worker has version {own} of Looselink, the client {version}: install the same"
+        )));
+    }
     let tasks = tasks.iter().map(|task| serde_json::from_str(task));
     let tasks: Result<Vec<Task>, _> = tasks.collect();
     let tasks = tasks.map_err(|error| not_json(&error))?;
     py.detach(|| {
-        let sweep = Sweep::new(source).map_err(|error| sweep_error(&error))?;
+        let sweep = sweep_of(source)?;
         let never = AtomicBool::new(false);
         let made = tasks.iter().filter_map(|task| sweep.run(task, &never));
         let written = made.map(|(row, timing): (_, RowTiming)| {

@@ -80,7 +80,7 @@ def test_a_target_is_found():
     result = scene.sweep(
         parameters={"gravity": {"fields": ["simulation.gravity.1"], "from": -20.0, "to": -1.0}},
         measures={"kinetic": {"of": "last", "channels": ["energy.kinetic"]}},
-        options={"target": ("kinetic", 0.01)},
+        target=("kinetic", 0.01),
     )
     low, high = result.summary["crossing"]["means"]
     assert low > 0.01 > high
@@ -150,8 +150,8 @@ def test_workers_that_die_make_the_same_table(study, expected, tmp_path):
             scene = looselink.load(TOP / "scenes/pendulum.toml").set("simulation.duration", 0.02)
             study_of = dict(parameters={"g": gravity}, measures={"v": {"of": "last", "channels": ["energy.kinetic"]}})
             target = ("v", 4e-4)
-            found = scene.sweep(client, options={"target": target}, **study_of)
-            alone = scene.sweep(options={"target": target}, **study_of)
+            found = scene.sweep(client, target=target, **study_of)
+            alone = scene.sweep(target=target, **study_of)
             assert contents_of(found) == contents_of(alone)
             assert result.summary["runs"] == RUNS
 

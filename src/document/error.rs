@@ -6,6 +6,9 @@ use sha2::{Digest, Sha256};
 use std::ops::Range;
 use std::sync::Arc;
 
+/// What changes of a scene are called.
+const CHANGE: &str = "--set";
+
 /// Letters of a name that may be taken for another.
 const LONGEST: usize = 64;
 
@@ -42,7 +45,7 @@ pub(crate) struct Sources(Vec<Arc<Text>>);
 impl Sources {
     pub(crate) fn new(name: &str, text: &str, overrides: &[String]) -> Sources {
         let mut sources = vec![Arc::new(Text::new(name, text))];
-        sources.extend(overrides.iter().map(|o| Arc::new(Text::new("--set", o))));
+        sources.extend(overrides.iter().map(|o| Arc::new(Text::new(CHANGE, o))));
         Sources(sources)
     }
 
@@ -157,6 +160,12 @@ impl SceneError {
         let (text, span) = (self.text.as_ref()?, self.labels.first()?);
         let (line, column, _) = text.place(span.offset())?;
         Some((text.name(), line + 1, column + 1))
+    }
+
+    /// The change `path=value` in which it stands, if it does not stand in the file.
+    pub fn change(&self) -> Option<&str> {
+        let text = self.text.as_ref()?;
+        (text.name() == CHANGE).then(|| text.inner())
     }
 
     /// The text that is underlined.

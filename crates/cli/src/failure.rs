@@ -104,7 +104,7 @@ impl From<SweepError> for CommandFailure {
             )),
             SweepError::Output(error) => error.into(),
             SweepError::Interrupted { .. } => CommandFailure::new(INTERRUPTED, error),
-            SweepError::Stuck(_) => CommandFailure::cannot_go_on(error),
+            SweepError::NoAnswer(_) => CommandFailure::cannot_go_on(error),
         }
     }
 }

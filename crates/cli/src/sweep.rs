@@ -9,7 +9,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::thread::available_parallelism;
-use studies::sweep::{Shard, Store, Sweep, SweepRow, SweepTarget, execute, merge};
+use studies::sweep::{Shard, Store, Sweep, SweepError, SweepRow, SweepTarget, execute, merge};
 
 /// Runs without results that are reported as they come.
 const REPORTED: usize = 20;
@@ -65,7 +65,15 @@ pub fn sweep(arguments: &Arguments) -> Result<(), CommandFailure> {
     make(arguments, &sweep, &mut store, shard, &stop)?;
     match arguments.shard {
         None => write(arguments, &sweep, &store),
-        Some(_) => Ok(()),
+        Some(shard) => {
+            if !arguments.quiet {
+                let runs = store.numbers().filter(|run| shard.has(*run)).count();
+                say(&format!(
+                    "shard {shard} is complete, {runs} runs; when all are, `--merge` in place of `--shard` makes tables and pictures"
+                ));
+            }
+            Ok(())
+        }
     }
 }
 
@@ -78,8 +86,9 @@ fn make(
 ) -> Result<(), CommandFailure> {
     let cores = || available_parallelism().unwrap_or(NonZeroUsize::MIN);
     let threads = arguments.threads.unwrap_or_else(cores);
-    if !store.is_empty() && !arguments.quiet {
-        say(&format!("{} runs are there already", store.len()));
+    let there = store.numbers().filter(|run| shard.has(*run)).count();
+    if there > 0 && !arguments.quiet {
+        say(&format!("{there} runs are there already"));
     }
     let mut display = RunsDisplay::new(arguments.quiet);
     let mut faults = 0;
@@ -118,12 +127,10 @@ fn visited(sweep: &Sweep, row: &SweepRow) -> String {
 }
 
 fn write(arguments: &Arguments, sweep: &Sweep, store: &Store) -> Result<(), CommandFailure> {
-    print(merge(sweep, store, &arguments.out)?.page)?;
-    if !arguments.quiet {
-        say(&format!(
-            "tables and pictures in `{}`",
-            arguments.out.display()
-        ));
+    let merged = merge(sweep, store, &arguments.out);
+    if !arguments.quiet && matches!(merged, Ok(_) | Err(SweepError::NoAnswer(_))) {
+        let folder = arguments.out.display();
+        say(&format!("tables and pictures in `{folder}`"));
     }
-    Ok(())
+    print(merged?.page)
 }

@@ -5,6 +5,7 @@ use looselink::scene::{SceneError, read_file};
 use serde::de::DeserializeOwned;
 use std::fmt;
 use std::path::Path;
+use toml::de::DeTable;
 
 /// Why a study cannot be made.
 #[derive(Debug, Clone, thiserror::Error)]
@@ -22,6 +23,33 @@ impl StudyError {
     pub(crate) fn of(path: &Path, message: impl fmt::Display) -> StudyError {
         StudyError::Plain(format!("`{}`: {message}", path.display()))
     }
+
+    /// A fault of a study with this text. The message begins with the key that it is about, in quotes; its line is named, unless
+    /// the text is not that of a file.
+    pub(crate) fn of_key(path: &Path, text: &str, message: &str) -> StudyError {
+        let key = message.split('`').nth(1).unwrap_or_default();
+        let line = line_of(text, key).filter(|_| path.extension().is_some());
+        let line = line.map_or(String::new(), |line| format!(", line {line}"));
+        StudyError::Plain(format!("`{}`{line}: {message}", path.display()))
+    }
+}
+
+/// The line of a key, or of the table in which it would stand.
+fn line_of(text: &str, path: &str) -> Option<usize> {
+    let document = DeTable::parse(text).ok()?;
+    let mut table = document.get_ref();
+    let mut start = None;
+    for name in path.split('.') {
+        let Some((key, value)) = table.get_key_value(name) else {
+            break;
+        };
+        start = Some(key.span().start);
+        let Some(inner) = value.get_ref().as_table() else {
+            break;
+        };
+        table = inner;
+    }
+    Some(text[..start?].matches('\n').count() + 1)
 }
 
 /// The text of a study or of its scene.
@@ -42,6 +70,13 @@ pub(crate) fn text_of(path: &Path) -> Result<String, StudyError> {
 /// The first fault, with its line.
 pub(crate) fn parsed<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, StudyError> {
     toml::from_str(text).map_err(|e| {
+        let is_scene =
+            DeTable::parse(text).is_ok_and(|table| table.get_ref().contains_key("bodies"));
+        if is_scene {
+            let message =
+                "this is a scene; a study is a file of its own that names one with `scene`";
+            return StudyError::of(path, message);
+        }
         let hint = suggestion(e.message());
         StudyError::of(path, format!("{}{hint}", e.to_string().trim_end()))
     })

@@ -369,6 +369,55 @@ fn faults_of_a_study_name_the_place() {
         let message = refused(&study);
         assert!(message.contains(wanted), "{wanted}: {message}");
     }
+    // faults of the scene that the study makes are its own; all name the line of their key
+    let changed = [
+        (
+            format!("{HEAD}{MASS}values = [1.0, -1.0]\n{LAST}"),
+            "`study.toml`, line 3: `parameters.mass`: `bodies.body.mass` must be",
+        ),
+        (
+            format!("{HEAD}{parameter}{}", LAST.replace("body.x", "bdy.x")),
+            "`study.toml`, line 6: `measures`: ",
+        ),
+        (
+            format!("{HEAD}set = [\"simulation.duratoin=1\"]\n{parameter}{LAST}"),
+            "`study.toml`, line 3: `set`: unknown key `duratoin`",
+        ),
+        (
+            format!("{HEAD}{MASS}from = 2.0\nto = 1.0\ncount = 2\n{LAST}"),
+            "`study.toml`, line 3: `parameters.mass` needs `from` below `to`",
+        ),
+        (GLIDER.to_owned(), "`study.toml`: this is a scene"),
+    ];
+    for (study, wanted) in changed {
+        let message = refused(&study);
+        assert!(message.starts_with(wanted), "{wanted}: {message}");
+    }
+}
+
+/// Each of 729 points of a Latin hypercube lies in a part of its own of the range.
+#[test]
+fn whole_numbers_have_equal_parts_of_a_range() {
+    for spacing in ["linear", "log"] {
+        let range = format!("from = 2\nto = 4\nwhole = true\nspacing = \"{spacing}\"\n");
+        let study =
+            format!("{HEAD}design = \"latin_hypercube\"\nsamples = 729\n{MASS}{range}{LAST}");
+        let drawn = numbers(&points(&study));
+        let count = |n: f64| drawn.iter().filter(|row| row[0] == n).count();
+        let counts = [2.0, 3.0, 4.0].map(count);
+        assert_eq!(counts.iter().sum::<usize>(), 729);
+        match spacing {
+            "linear" => assert_eq!(counts, [243; 3]),
+            // equal ratios from 2 to 5; a part may lie on both sides of a bound
+            _ => {
+                let parts =
+                    [1.5_f64, 4.0 / 3.0, 1.25].map(|ratio| 729.0 * ratio.ln() / 2.5_f64.ln());
+                for (count, part) in counts.iter().zip(parts) {
+                    assert!((*count as f64 - part).abs() < 2.0, "{counts:?}");
+                }
+            }
+        }
+    }
 }
 
 /// A loose pin that is thrown against its bearing again and again: its motion depends on the start.
@@ -574,6 +623,24 @@ fn a_bisection_encloses_its_target() {
     assert_eq!(rows.len(), 2);
 }
 
+/// What was visited is drawn all the same.
+#[test]
+fn a_bisection_without_an_answer_leaves_its_picture() {
+    let study = format!(
+        "{HEAD}design = \"bisection\"\n{SPEED}from = 1.0\nto = 9.0\n{LAST}[target]\nmeasure = \"path\"\nvalue = 10.0\n"
+    );
+    let sweep = sweep(&study, GLIDER);
+    let folder = tempfile::tempdir().unwrap();
+    let store = made(&sweep, folder.path());
+    let error = merge(&sweep, &store, folder.path()).unwrap_err();
+    assert!(matches!(error, SweepError::NoAnswer(_)), "{error}");
+    let text = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    assert!(text("sweep.md").contains("The bisection has no answer: `path` does not cross 10 m"));
+    assert!(text("sweep.svg").contains("<svg"));
+    assert_eq!(text("sweep.csv").lines().count(), 1 + 2);
+    assert!(text("sweep.json").contains("\"no_answer\""));
+}
+
 #[test]
 fn studies_of_the_project_can_be_made() {
     let entries = fs::read_dir("../../studies/sweeps").unwrap();
@@ -598,6 +665,44 @@ fn maps_are_drawn_of_any_grid() {
         let wanted = if rows.contains('4') { 3 * 8 + 2 * 5 } else { 0 };
         assert_eq!(cells, wanted, "{rows}");
     }
+}
+
+/// A grid is drawn over its first parameter with numbers, wherever that stands; one without numbers has a line for each word.
+#[test]
+fn words_are_told_apart() {
+    const LAWS: &str = "[parameters.method]\nfields = [\"integrator.method\"]\nvalues = [\"velocity_verlet\", \"bathe\"]\n";
+    for (parameters, wanted) in [
+        (
+            format!("{LAWS}{SPEED}values = [1.0, 2.0, 4.0]\n"),
+            ["method velocity_verlet", "method bathe"],
+        ),
+        (LAWS.to_owned(), ["method velocity_verlet", "method bathe"]),
+    ] {
+        let sweep = sweep(&format!("{HEAD}{parameters}{LAST}"), GLIDER);
+        let folder = tempfile::tempdir().unwrap();
+        merge(&sweep, &made(&sweep, folder.path()), folder.path()).unwrap();
+        let picture = fs::read_to_string(folder.path().join("sweep.svg")).unwrap();
+        for label in wanted {
+            assert!(picture.contains(label), "{label}");
+        }
+        let page = fs::read_to_string(folder.path().join("sweep.md")).unwrap();
+        assert!(page.contains("| method = velocity_verlet"), "{page}");
+    }
+}
+
+/// Of many points some are drawn, and the caption says so.
+#[test]
+fn pictures_of_many_points_stay_small() {
+    let study = format!(
+        "{HEAD}set = [\"simulation.duration=0.01\"]\ndesign = \"sobol\"\nsamples = 8192\n{SPEED}from = 1.0\nto = 4.0\n{LAST}"
+    );
+    let sweep = sweep(&study, GLIDER);
+    let folder = tempfile::tempdir().unwrap();
+    merge(&sweep, &made(&sweep, folder.path()), folder.path()).unwrap();
+    let picture = fs::read_to_string(folder.path().join("sweep.svg")).unwrap();
+    assert!(picture.contains("some are drawn"));
+    let dots = picture.matches("<circle").count();
+    assert!((4096..5000).contains(&dots), "{dots}");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use std::thread;
 /// A run has ended.
 #[derive(Debug, Clone, Copy)]
 pub struct SweepProgress<'a> {
-    /// Runs of the store now.
+    /// Runs of this part of the sweep that are made.
     pub done: usize,
     /// Runs of this part of the sweep that are still to be made, as far as that is known.
     pub left: usize,
@@ -32,8 +32,7 @@ impl SweepProgress<'_> {
 /// Makes all runs of a shard that the store does not have. `told` is called after every run, by one thread at a time.
 ///
 /// # Errors
-/// [`SweepError::Interrupted`] after `stop` was raised; a row that cannot be written; a bisection that cannot go on. Rows made
-/// before stay in the store.
+/// [`SweepError::Interrupted`] after `stop` was raised; a row that cannot be written. Rows made before stay in the store.
 pub fn execute(
     sweep: &Sweep,
     store: &mut Store,
@@ -47,7 +46,8 @@ pub fn execute(
         if pending.is_empty() {
             return Ok(());
         }
-        round(sweep, store, &pending, threads, stop, told)?;
+        let done = store.numbers().filter(|run| shard.has(*run)).count();
+        round(sweep, store, (&pending, done), threads, stop, told)?;
         if stop.load(Ordering::Relaxed) && pending.iter().any(|run| !store.has(*run)) {
             return Err(SweepError::Interrupted {
                 done: store.len(),
@@ -63,16 +63,17 @@ pub fn execute(
 struct Shared<'a> {
     store: &'a mut Store,
     told: &'a mut (dyn FnMut(SweepProgress) + Send),
+    done: usize,
     left: usize,
     /// The first error ends all threads.
     error: Option<SweepError>,
 }
 
-/// Makes some runs, the next one on the first thread that is free.
+/// Makes some runs after those that are done, the next one on the first thread that is free.
 fn round(
     sweep: &Sweep,
     store: &mut Store,
-    pending: &[usize],
+    (pending, done): (&[usize], usize),
     threads: NonZeroUsize,
     stop: &AtomicBool,
     told: &mut (dyn FnMut(SweepProgress) + Send),
@@ -81,6 +82,7 @@ fn round(
     let shared = Mutex::new(Shared {
         store,
         told,
+        done,
         left: pending.len(),
         error: None,
     });
@@ -109,8 +111,9 @@ fn round(
             match kept {
                 Ok(None) => {}
                 Ok(Some(row)) => {
+                    shared.done += 1;
                     shared.left -= 1;
-                    let (done, left) = (shared.store.len(), shared.left);
+                    let (done, left) = (shared.done, shared.left);
                     let row = &row;
                     (shared.told)(SweepProgress { done, left, row });
                 }

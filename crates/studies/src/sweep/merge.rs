@@ -75,6 +75,9 @@ pub struct Merged {
     /// Where a bisection has led.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossing: Option<Crossing>,
+    /// Why a bisection has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub no_answer: Option<String>,
     /// The text of `sweep.md`.
     #[serde(skip)]
     pub page: String,
@@ -151,7 +154,8 @@ impl EnvelopePart {
 /// Writes all files.
 ///
 /// # Errors
-/// Runs that have not been made; rows that cannot be read; files that cannot be written.
+/// Runs that have not been made; rows that cannot be read; files that cannot be written; and, after all files are written, a
+/// bisection without an answer.
 pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, SweepError> {
     let runs = all_runs(sweep, store)?;
     let columns = sweep.columns();
@@ -197,7 +201,10 @@ pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, Swee
     write("sweep.md", merged.page.as_bytes())?;
     write("times.csv", &time_table(folder)?)?;
     write(FILES[0], &json(&merged)?)?;
-    Ok(merged)
+    match merged.no_answer {
+        Some(why) => Err(SweepError::NoAnswer(why)),
+        None => Ok(merged),
+    }
 }
 
 /// The number of runs, which must all be there.
@@ -345,6 +352,11 @@ impl Gathered {
         let units = columns.iter().filter(|column| !column.unit.is_empty());
         let extremes = names.zip(self.extremes);
         let extremes = extremes.filter_map(|(name, e)| Some((name.clone(), e?)));
+        let (crossing, no_answer) = match sweep.crossing(store)? {
+            Some(Ok(crossing)) => (Some(crossing), None),
+            Some(Err(why)) => (None, Some(why)),
+            None => (None, None),
+        };
         let merged = Merged {
             title: study.title.clone(),
             scene: study
@@ -361,7 +373,8 @@ impl Gathered {
             units: units.map(|c| (c.name.clone(), c.unit.clone())).collect(),
             extremes: extremes.collect(),
             indices,
-            crossing: sweep.crossing(store)?,
+            crossing,
+            no_answer,
             page: String::new(),
         };
         Ok((merged, points))

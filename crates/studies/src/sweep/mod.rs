@@ -69,9 +69,9 @@ pub enum SweepError {
         /// Runs of the sweep, in words: those of a bisection are not known.
         total: String,
     },
-    /// A bisection cannot go on.
-    #[error("the bisection cannot go on: {0}")]
-    Stuck(String),
+    /// A bisection has ended without an answer; its tables and pictures are written.
+    #[error("the bisection has no answer: {0}")]
+    NoAnswer(String),
 }
 
 impl From<SceneError> for SweepError {
@@ -137,7 +137,8 @@ impl Sweep {
         let text = text_of(path)?;
         let study = SweepStudy::parse(path, &text, target.as_ref())?;
         // a scene that cannot be read is reported with the advice of the scene reader
-        let scene = Scene::load(&study.scene, &study.set)?;
+        let scene = Scene::load(&study.scene, &study.set);
+        let scene = scene.map_err(|error| fault_of_scene(path, &text, &study, error))?;
         Sweep::new(SweepSource {
             path: path.to_owned(),
             scene: scene.text().to_owned(),
@@ -169,16 +170,20 @@ impl Sweep {
             design,
             runs,
         };
-        let scene = sweep.scene(&[])?;
-        let base = Simulation::new(&scene)?;
-        sweep.method = scene.integrator.description();
+        let SweepSource {
+            path, study: text, ..
+        } = &sweep.source;
+        let at_study = |error| fault_of_scene(path, text, &sweep.study, error);
+        let scene = sweep.scene(&[]).map_err(at_study)?;
+        let base = Simulation::new(&scene).map_err(at_study)?;
         let ends = [0.0, 1.0].map(|end| {
             let parameters = sweep.study.parameters.values();
             let values: Vec<FieldValue> = parameters.map(|p| p.at(end)).collect();
             sweep.scene(&values)
         });
-        let [first, last] = ends;
+        let [first, last] = ends.map(|scene| scene.map_err(at_study));
         let scenes = [scene, first?, last?];
+        sweep.method = scenes[0].integrator.description();
         if sweep.study.starts.is_some() && scenes[0].simulation.analysis == Analysis::Static {
             let message = "`starts` change velocities, which a static analysis does not have";
             return Err(sweep.fault(message.to_owned()).into());
@@ -198,7 +203,7 @@ impl Sweep {
     }
 
     fn fault(&self, message: String) -> StudyError {
-        StudyError::of(&self.source.path, message)
+        StudyError::of_key(&self.source.path, &self.source.study, &message)
     }
 
     /// Refuses a measure of contacts of a joint that has clearance in none of some scenes.
@@ -298,7 +303,7 @@ impl Sweep {
     /// Numbers of the runs that can be made now and are not in the store, those of a shard alone.
     ///
     /// # Errors
-    /// A bisection that cannot go on; a row that cannot be read.
+    /// A shard of a bisection; a row that cannot be read.
     pub fn pending(&self, store: &Store, shard: Shard) -> Result<Vec<usize>, SweepError> {
         let runs = match self.runs {
             Some(runs) => 0..runs,
@@ -312,11 +317,7 @@ impl Sweep {
                     let starts = self.study.starts_of_a_point();
                     (places.len() - 1) * starts..places.len() * starts
                 }
-                (Search::Found(_), _) => 0..0,
-                (Search::NoCrossing(ends), _) => return Err(self.no_crossing(ends)),
-                (Search::NoValue(place), places) => {
-                    return Err(self.no_value(store, place, places.len() - 1));
-                }
+                _ => 0..0,
             },
         };
         let open = runs.filter(|run| shard.has(*run) && !store.has(*run));
@@ -367,43 +368,64 @@ impl Sweep {
         target.expect("only a bisection has no design, and it has a target")
     }
 
-    /// Where the measure reaches the target; none in other designs, and before the search is at its end.
+    /// Where the measure reaches the target, or why the search has ended without an answer; none in other designs, and before the
+    /// search is at its end.
     ///
     /// # Errors
     /// A row that cannot be read.
-    pub fn crossing(&self, store: &Store) -> Result<Option<Crossing>, SweepError> {
+    pub fn crossing(&self, store: &Store) -> Result<Option<Result<Crossing, String>>, SweepError> {
         if self.design.is_some() {
             return Ok(None);
         }
-        Ok(match self.searched(store)?.0 {
-            Search::Found(ends) => Some(Crossing::new(&self.study, self.target(), ends)),
-            _ => None,
+        Ok(match self.searched(store)? {
+            (Search::Found(ends), _) => Some(Ok(Crossing::new(&self.study, self.target(), ends))),
+            (Search::NoCrossing(ends), _) => Some(Err(self.no_crossing(ends))),
+            (Search::NoValue(place), places) => {
+                Some(Err(self.no_value(store, place, places.len() - 1)))
+            }
+            (Search::Visit(_), _) => None,
         })
     }
 
-    fn no_crossing(&self, ends: [bisection::Visited; 2]) -> SweepError {
+    fn no_crossing(&self, ends: [bisection::Visited; 2]) -> String {
         let target = self.target();
         let crossing = Crossing::new(&self.study, target, ends);
         let place = self.study.measures.get_index_of(&target.measure);
         let unit = place.map_or("", |place| self.units[place].as_str());
         let [low, high] = crossing.means.map(|mean| numbers::number(mean, 4));
         let [from, to] = &crossing.between;
-        SweepError::Stuck(format!(
+        format!(
             "`{}` does not cross {} {unit}: it is {low} {unit} with `{}` = {from} and {high} {unit} with {to}",
             target.measure,
             numbers::number(target.value, 4),
             crossing.parameter,
-        ))
+        )
     }
 
-    fn no_value(&self, store: &Store, place: f64, point: usize) -> SweepError {
+    fn no_value(&self, store: &Store, place: f64, point: usize) -> String {
         let (name, parameter) = self.study.parameters.first().expect("checked");
         let starts = self.study.starts_of_a_point();
         let rows = (point * starts..(point + 1) * starts).filter_map(|run| store.row(run).ok());
         let why = rows.filter_map(|row| row.error).next();
         let why = why.unwrap_or_else(|| "the measure has no value".to_owned());
-        SweepError::Stuck(format!("with `{name}` = {}: {why}", parameter.at(place)))
+        format!("with `{name}` = {}: {why}", parameter.at(place))
     }
+}
+
+/// A fault of the scene: of the study where it stands in a change that the study makes.
+fn fault_of_scene(path: &Path, text: &str, study: &SweepStudy, error: SceneError) -> StudyError {
+    let Some(change) = error.change() else {
+        return error.into();
+    };
+    let field = change.split('=').next().unwrap_or_default().trim();
+    let mut parameters = study.parameters.iter();
+    let sets = |p: &SweepParameter| p.fields.iter().any(|own| own.path() == field);
+    let key = match parameters.find(|(_, parameter)| sets(parameter)) {
+        Some((name, _)) => format!("parameters.{name}"),
+        None if field == "output.channels" => "measures".to_owned(),
+        None => "set".to_owned(),
+    };
+    StudyError::of_key(path, text, &format!("`{key}`: {error}"))
 }
 
 /// That of all texts, each preceded by its length, so that no two lists of texts collide.

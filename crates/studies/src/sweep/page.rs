@@ -1,6 +1,7 @@
 //! The page of a sweep.
 
 use super::Sweep;
+use super::design::DesignKind;
 use super::merge::{Merged, Points};
 use numbers::number;
 
@@ -16,15 +17,24 @@ pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
         page += &format!(", {count} {name}");
     }
     page += &format!(", {} with warnings.\n", merged.warned);
-    if let Some(answer) = crossing_text(sweep, merged) {
+    if let Some(answer) = answer(sweep, merged) {
         page += &format!("\n{answer}\n");
     }
-    page += "\n| measure | unit | least | run | largest | run |\n| --- | --- | ---: | ---: | ---: | ---: |\n";
+    page += "\n| measure | unit | least | at | largest | at |\n| --- | --- | ---: | --- | ---: | --- |\n";
     for (name, extremes) in &merged.extremes {
         let unit = merged.units.get(name).map_or("", String::as_str);
         let [(least, at_least), (largest, at_largest)] = [extremes.least, extremes.largest];
         let [least, largest] = [least, largest].map(|x| number(x, 4));
+        let [at_least, at_largest] = [at_least, at_largest].map(|run| place(sweep, points, run));
         page += &format!("| {name} | {unit} | {least} | {at_least} | {largest} | {at_largest} |\n");
+    }
+    if sweep.study.design == DesignKind::Sensitivity {
+        let measures = sweep.study.measures.keys();
+        for name in measures.filter(|name| !merged.indices.contains_key(*name)) {
+            page += &format!(
+                "\n`{name}` has no Sobol indices: fewer than two samples have it, or it does not vary.\n"
+            );
+        }
     }
     for (measure, indices) in &merged.indices {
         page += &format!(
@@ -63,8 +73,23 @@ pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
     page
 }
 
-/// The answer of a bisection in words.
-pub fn crossing_text(sweep: &Sweep, merged: &Merged) -> Option<String> {
+/// A run and the values of the parameters there.
+fn place(sweep: &Sweep, points: &Points, run: usize) -> String {
+    let values = &points.values[run / sweep.study.starts_of_a_point()];
+    let values = sweep.study.parameters.iter().zip(values);
+    let values = values.map(|((name, parameter), value)| {
+        let value = value.number().map_or(value.to_string(), |x| number(x, 4));
+        format!("{name} = {value} {}", parameter.unit)
+    });
+    let values = values.collect::<Vec<_>>().join(", ");
+    format!("{} (run {run})", values.trim_end())
+}
+
+/// The answer of a bisection in words, or why it has none.
+pub fn answer(sweep: &Sweep, merged: &Merged) -> Option<String> {
+    if let Some(why) = &merged.no_answer {
+        return Some(format!("The bisection has no answer: {why}."));
+    }
     let crossing = merged.crossing.as_ref()?;
     let target = &crossing.target;
     let unit = &sweep.units()[sweep.study.measures.get_index_of(&target.measure)?];

@@ -163,21 +163,23 @@ impl SweepParameter {
         }
     }
 
-    /// The value at u of its range, 0 <= u <= 1. Both ends are exact; a list of values is divided into equal parts.
+    /// The value at u of its range, 0 <= u <= 1. Both ends are exact; a list of values is divided into equal parts, and so is a
+    /// range of whole numbers.
     pub fn at(&self, u: f64) -> FieldValue {
         let Some((low, high)) = self.range() else {
             let count = self.values.len();
             let place = (u * count as f64) as usize;
             return self.values[place.min(count - 1)].clone();
         };
+        let end = if self.whole { high + 1.0 } else { high };
         let value = match self.spacing {
             _ if u <= 0.0 => low,
             _ if u >= 1.0 => high,
-            Spacing::Linear => low + u * (high - low),
-            Spacing::Log => low * (high / low).powf(u),
+            Spacing::Linear => low + u * (end - low),
+            Spacing::Log => low * (end / low).powf(u),
         };
         match self.whole {
-            true => FieldValue::Whole(value.round() as i64),
+            true => FieldValue::Whole(value.min(high).floor() as i64),
             false => FieldValue::Number(value),
         }
     }

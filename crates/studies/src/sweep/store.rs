@@ -8,6 +8,7 @@ use super::{FILES, RowPlaces, RowTiming, Sweep, SweepError, SweepRow};
 use crate::study_file::StudyError;
 use looselink::output::{OutputError, naming};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -24,6 +25,12 @@ const EXTENSION: &str = ".jsonl";
 pub struct Shard {
     index: usize,
     count: usize,
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.count)
+    }
 }
 
 impl Shard {

@@ -68,7 +68,7 @@ impl SweepStudy {
         study.scene = path.with_file_name(&study.scene);
         match study.check() {
             Ok(()) => Ok(study),
-            Err(message) => Err(StudyError::of(path, message)),
+            Err(message) => Err(StudyError::of_key(path, text, &message)),
         }
     }
 

@@ -8,6 +8,8 @@ use plot::{Color, Mark, Panel};
 const RAMP: [Color; 3] = [(230, 240, 250), (0, 114, 178), (5, 20, 60)];
 /// Values whose colours the legend explains.
 const EXPLAINED: usize = 5;
+/// Rectangles beside each other; of more levels some are drawn.
+pub const MOST: usize = 150;
 
 pub fn panel(
     of: &MeasurePoints,
@@ -15,7 +17,9 @@ pub fn panel(
     second: (&String, &SweepParameter),
 ) -> Panel {
     let [x, y] = [first, second].map(parameter_axis);
-    let [across, up] = [first.1, second.1].map(edges);
+    let [columns, rows] = [first.1, second.1].map(drawn_levels);
+    let across = edges(first.1, &columns);
+    let up = edges(second.1, &rows);
     let ends = |edges: &[(f64, f64)]| {
         let low = edges.iter().map(|e| e.0).fold(f64::INFINITY, f64::min);
         (
@@ -25,19 +29,20 @@ pub fn panel(
     };
     let [(left, right), (low, high)] = [ends(&across), ends(&up)];
     let mut panel = of.panel_over(x.over(left, right), y.over(low, high));
-    let points = 0..of.points.values.len();
-    let values: Vec<Option<f64>> = points.map(|point| Some(of.at(point)?.0)).collect();
-    let known = values.iter().flatten();
-    let least = known.clone().copied().fold(f64::INFINITY, f64::min);
-    let largest = known.copied().fold(f64::NEG_INFINITY, f64::max);
-    for (point, value) in values.iter().enumerate() {
-        let Some(value) = value else { continue };
+    let cells = columns.iter().zip(&across).flat_map(|(column, x)| {
+        let cells = rows.iter().zip(&up);
+        cells.filter_map(move |(row, y)| Some((of.at(column * second.1.levels() + row)?.0, *x, *y)))
+    });
+    let cells: Vec<_> = cells.collect();
+    let values = cells.iter().map(|cell| cell.0);
+    let least = values.clone().fold(f64::INFINITY, f64::min);
+    let largest = values.fold(f64::NEG_INFINITY, f64::max);
+    for (value, (left, right), (low, high)) in cells {
         let part = if largest > least {
             (value - least) / (largest - least)
         } else {
             0.0
         };
-        let ((left, right), (low, high)) = (across[point / up.len()], up[point % up.len()]);
         panel
             .marks
             .push(Mark::cell("", shade(part), (left, low), (right, high)));
@@ -68,12 +73,18 @@ fn shade(part: f64) -> Color {
     (mix(from.0, to.0), mix(from.1, to.1), mix(from.2, to.2))
 }
 
-/// Where the rectangle of each value begins and ends: halfway between neighbours. There are two different values at least.
-fn edges(parameter: &SweepParameter) -> Vec<(f64, f64)> {
+/// The levels that are drawn, at equal distances: all of them unless there are many.
+fn drawn_levels(parameter: &SweepParameter) -> Vec<usize> {
+    let stride = parameter.levels().div_ceil(MOST);
+    (0..parameter.levels()).step_by(stride).collect()
+}
+
+/// Where the rectangle of each level begins and ends: halfway between neighbours. There are two different values at least.
+fn edges(parameter: &SweepParameter, levels: &[usize]) -> Vec<(f64, f64)> {
     let is_log = parameter.spacing == Spacing::Log;
     let to = |x: f64| if is_log { x.ln() } else { x };
     let from = |x: f64| if is_log { x.exp() } else { x };
-    let levels = (0..parameter.levels()).map(|k| parameter.level(k).number());
+    let levels = levels.iter().map(|k| parameter.level(*k).number());
     let levels: Vec<f64> = levels.map(|x| to(x.unwrap_or(f64::NAN))).collect();
     let mut sorted = levels.clone();
     sorted.sort_by(f64::total_cmp);

@@ -1,5 +1,6 @@
 //! The picture of a sweep: what each measure does, and the course of the runs.
 
+mod comparison;
 mod course;
 mod heat_map;
 mod influence;
@@ -20,25 +21,39 @@ pub fn figure(sweep: &Sweep, merged: &Merged, points: &Points) -> Figure {
     let parameters: Vec<(&String, &SweepParameter)> = study.parameters.iter().collect();
     let mut panels = Vec::new();
     let mut notes = Vec::new();
+    let mut thinned = false;
     let numeric = |p: &SweepParameter| p.values.iter().all(|value| value.number().is_some());
+    // place of the first parameter with numbers, over which a grid is drawn
+    let numbers = parameters.iter().position(|(_, p)| numeric(p));
+    let numbers = numbers.unwrap_or(parameters.len());
     for m in 0..study.measures.len() {
         let of = MeasurePoints::new(sweep, points, m);
         match (study.design, &parameters[..]) {
             (DesignKind::Grid, [(_, x), (_, y)])
                 if numeric(x) && numeric(y) && distinct(x) > 1 && distinct(y) > CURVES =>
             {
+                thinned |= x.levels().max(y.levels()) > heat_map::MOST;
                 panels.push(heat_map::panel(&of, parameters[0], parameters[1]));
             }
-            (DesignKind::Grid, [(_, x), ..]) if numeric(x) && curves(&parameters) <= CURVES => {
-                panels.push(response::panel(&of, &parameters, x.levels()));
+            (DesignKind::Grid, _) if curves(&parameters, numbers) <= CURVES => {
+                panels.push(response::panel(&of, &parameters, numbers));
+            }
+            (DesignKind::Grid, _)
+                if numbers == parameters.len() && points.values.len() <= comparison::MOST =>
+            {
+                panels.push(comparison::panel(&of, &parameters));
             }
             _ => {
+                thinned |= points.values.len() > scatter::MOST;
                 let shown = parameters.iter().enumerate();
                 let shown = shown.filter(|(_, (_, parameter))| numeric(parameter));
                 panels
                     .extend(shown.map(|(j, p)| scatter::panel(&of, j, *p, study.target.as_ref())));
             }
         }
+    }
+    if thinned {
+        notes.push("Of many points some are drawn, at equal distances.".to_owned());
     }
     if study.starts_of_a_point() > 1 {
         notes.push(format!(
@@ -83,9 +98,13 @@ fn distinct(parameter: &SweepParameter) -> usize {
     levels.len()
 }
 
-/// Curves of a grid over its first parameter.
-fn curves(parameters: &[(&String, &SweepParameter)]) -> usize {
-    let others = parameters[1..].iter().map(|(_, p)| p.levels());
+/// Curves of a grid over the parameter with this place; as many as one can imagine if there is none.
+fn curves(parameters: &[(&String, &SweepParameter)], place: usize) -> usize {
+    if place == parameters.len() {
+        return usize::MAX;
+    }
+    let others = parameters.iter().enumerate().filter(|(j, _)| *j != place);
+    let others = others.map(|(_, (_, p))| p.levels());
     others.fold(1, usize::saturating_mul)
 }
 
@@ -200,7 +219,7 @@ fn caption(sweep: &Sweep, merged: &Merged, notes: &[String]) -> String {
         text += &format!(", {} with warnings", merged.warned);
     }
     text += ".";
-    if let Some(answer) = super::page::crossing_text(sweep, merged) {
+    if let Some(answer) = super::page::answer(sweep, merged) {
         text += &format!(" {}", answer.replace('`', ""));
     }
     for note in notes {

@@ -6,6 +6,8 @@ use plot::{Mark, Panel, palette};
 
 /// More dots are drawn smaller.
 const MANY: usize = 300;
+/// Of more points some are drawn, at equal distances in the order of their numbers.
+pub const MOST: usize = 5000;
 
 /// The panel; the value of a target is a dashed line.
 pub fn panel(
@@ -15,7 +17,8 @@ pub fn panel(
     target: Option<&SweepTarget>,
 ) -> Panel {
     let mut panel = of.panel(parameter_axis(parameter));
-    let points = 0..of.points.values.len();
+    let count = of.points.values.len();
+    let points = (0..count).step_by(count.div_ceil(MOST).max(1));
     let known = points.filter_map(|point| Some((of.abscissa(point, place), of.at(point)?)));
     let known: Vec<(f64, (f64, f64, f64))> = known.collect();
     for (x, (_, low, high)) in known.iter().filter(|(_, (_, low, high))| low < high) {
