@@ -219,7 +219,7 @@ def _distribute(prepared: _Sweep, client: Any, batch: int | None, shown: Callabl
         batches = _batches(runs, size)
         running = as_completed(with_results=True)
         under_way: set[Any] = set()
-        looked = -LOOK
+        looked, wanted = -LOOK, 0
 
         def start() -> None:
             """Start as many tasks as the workers of this moment need."""
@@ -232,7 +232,6 @@ def _distribute(prepared: _Sweep, client: Any, batch: int | None, shown: Callabl
                 under_way.add(task)
                 running.add(task)
 
-        wanted = 0
         try:
             start()
             for task, rows in running:

@@ -79,10 +79,11 @@ fn place(sweep: &Sweep, points: &Points, run: usize) -> String {
     let values = sweep.study.parameters.iter().zip(values);
     let values = values.map(|((name, parameter), value)| {
         let value = value.number().map_or(value.to_string(), |x| number(x, 4));
-        format!("{name} = {value} {}", parameter.unit)
+        let text = format!("{name} = {value} {}", parameter.unit);
+        text.trim_end().to_owned()
     });
     let values = values.collect::<Vec<_>>().join(", ");
-    format!("{} (run {run})", values.trim_end())
+    format!("{values} (run {run})")
 }
 
 /// The answer of a bisection in words, or why it has none.

@@ -21,7 +21,7 @@ pub fn figure(sweep: &Sweep, merged: &Merged, points: &Points) -> Figure {
     let parameters: Vec<(&String, &SweepParameter)> = study.parameters.iter().collect();
     let mut panels = Vec::new();
     let mut notes = Vec::new();
-    let mut thinned = false;
+    let (mut mapped, mut thinned) = (false, false);
     let numeric = |p: &SweepParameter| p.values.iter().all(|value| value.number().is_some());
     // place of the first parameter with numbers, over which a grid is drawn
     let numbers = parameters.iter().position(|(_, p)| numeric(p));
@@ -32,6 +32,7 @@ pub fn figure(sweep: &Sweep, merged: &Merged, points: &Points) -> Figure {
             (DesignKind::Grid, [(_, x), (_, y)])
                 if numeric(x) && numeric(y) && distinct(x) > 1 && distinct(y) > CURVES =>
             {
+                mapped = true;
                 thinned |= x.levels().max(y.levels()) > heat_map::MOST;
                 panels.push(heat_map::panel(&of, parameters[0], parameters[1]));
             }
@@ -56,10 +57,11 @@ pub fn figure(sweep: &Sweep, merged: &Merged, points: &Points) -> Figure {
         notes.push("Of many points some are drawn, at equal distances.".to_owned());
     }
     if study.starts_of_a_point() > 1 {
-        notes.push(format!(
-            "Bands and vertical lines: 95 % interval of the mean over {} starts.",
-            study.starts_of_a_point()
-        ));
+        let starts = study.starts_of_a_point();
+        notes.push(match mapped {
+            true => format!("Values are means over {starts} starts."),
+            false => format!("Bands and lines: 95 % interval of the mean over {starts} starts."),
+        });
     }
     let charts = merged.indices.iter();
     let charts = charts.map(|(name, of)| vec![influence::panel(name, of)]);
