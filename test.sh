@@ -67,11 +67,11 @@ everything() {
     cargo run --quiet -p ladder -- --from "$LOOSELINK_LADDER" --check
 }
 
-# The packages for crates.io: the solver, the command line, and what they are made of.
+# The sources for crates.io: the solver, the command line, and what they are made of.
 packages() {
     local names=(looselink looselink-cli looselink-messages looselink-numbers looselink-plot looselink-studies looselink-view)
     local said
-    said=$(cargo package "${names[@]/#/-p}" --no-verify --allow-dirty --color never 2>&1) || {
+    said=$(cargo package "${names[@]/#/-p}" --no-verify --exclude-lockfile --allow-dirty --color never 2>&1) || {
         echo "$said" >&2
         exit 1
     }
@@ -79,7 +79,7 @@ packages() {
 }
 
 # The oldest Rust that Cargo.toml promises: no library asks for a newer one, and clippy has refused functions of a newer standard
-# library. Where that toolchain is installed, it compiles everything.
+# library. Where that toolchain is installed, it compiles all programs. Needs Python 3.
 oldest_rust() {
     local oldest host
     oldest=$(sed -n 's/^rust-version = "\(.*\)"$/\1/p' Cargo.toml)
@@ -90,7 +90,7 @@ number = lambda version: [int(part) for part in version.split(".")[:2]]
 newer = [p for p in json.load(sys.stdin)["packages"] if p["rust_version"] and number(p["rust_version"]) > number(sys.argv[1])]
 sys.exit("\n".join("{name} {version} needs Rust {rust_version}".format(**p) for p in newer) or 0)' "$oldest"
     if RUSTUP_AUTO_INSTALL=0 cargo "+$oldest" --version > /dev/null 2>&1; then
-        cargo "+$oldest" check --workspace --target-dir "target/rust-$oldest"
+        cargo "+$oldest" check --locked --workspace --target-dir "target/rust-$oldest"
     else
         echo "Rust $oldest is not installed: nothing was compiled with it"
     fi

@@ -6,7 +6,7 @@ use looselink::simulate::{ContactEvent, Control, Observer, Progress, RunError, S
 use std::collections::BTreeMap;
 use std::io::Result;
 
-/// Of the contacts that have ended.
+/// Statistics of the contacts that have ended.
 #[derive(Debug, Default)]
 pub struct HardestImpacts {
     /// The largest velocity of approach of each joint \[m/s\].

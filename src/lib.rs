@@ -33,10 +33,10 @@
 //!
 //! [`simulate::Recording`] is an observer that keeps everything in memory.
 //!
-//! # Kinds of one's own
+//! # User-defined kinds
 //!
 //! A [`registry::Registry`] holds what a scene can name. A program adds kinds to it and reads scenes with
-//! [`scene::Scene::load_with`]; each of these examples is less than sixty lines:
+//! [`scene::Scene::load_with`]:
 //!
 //! | what | trait | example |
 //! |---|---|---|

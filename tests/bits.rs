@@ -147,6 +147,7 @@ fn every_number_of_a_run_reads_back_to_the_same_bits() {
             Some(kept.delta),
             Some(kept.angle),
             Some(kept.deepest_penetration),
+            Some(kept.largest_force),
             kept.end,
             kept.exit_velocity,
         ];

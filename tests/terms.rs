@@ -505,7 +505,7 @@ impl PointLaw for DragAndSpring {
     }
 }
 
-/// The differences that stand in for derivatives are as exact as their step promises, also where the point rests at the origin.
+/// The differences that stand in for derivatives are as exact as their step promises, also where the point is at the origin.
 #[test]
 fn differences_of_a_law_are_its_derivatives() {
     let law = DragAndSpring;
@@ -522,7 +522,7 @@ fn differences_of_a_law_are_its_derivatives() {
     }
     Rung::Derivatives
         .asks(
-            "Do the differences that replace the derivatives of a law of the user agree with them?",
+            "Do the differences that replace the derivatives of a user-defined law agree with them?",
         )
         .within(
             &worst,

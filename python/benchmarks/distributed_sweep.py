@@ -3,7 +3,7 @@
     python python/benchmarks/distributed_sweep.py
 
 It makes runs of a pendulum of half a millisecond on a local cluster of two workers with one thread each, in batches of 1, 10 and 100.
-Runs are so short that the scheduler and the process that keeps the rows, which share the cores, are what is measured.
+The runs are short, so that the time of the scheduler and of the process that keeps the rows dominates.
 """
 
 import json
@@ -66,6 +66,9 @@ def main():
                     f"batches of {batch}: {1e3 * seconds / runs:.2f} ms a run, {tasks / seconds:.0f} tasks a second, "
                     f"{1e3 * overhead:.1f} ms of a worker a task beyond its runs"
                 )
+            begun = time.monotonic()
+            looselink.sweep(study(100_000), client, out=f"{folder}/usual")
+            print(f"100 000 runs in tasks of the usual length: {time.monotonic() - begun:.0f} s, {memory():.0f} MB in this process")
             print(f"memory of a worker: {idle:.0f} MB at rest, {max(client.run(memory).values()):.0f} MB after the sweeps")
 
 

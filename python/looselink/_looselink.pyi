@@ -40,6 +40,7 @@ class _Onsets(TypedDict):
     delta: _Array
     angle: _Array
     deepest_penetration: _Array
+    largest_force: _Array
     end: _Array
     exit_velocity: _Array
 

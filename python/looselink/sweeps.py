@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import math
 import os
 import sys
 import tempfile
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ._looselink import Scene, __version__, _make_tasks, _Sweep, load
+from ._looselink import RunWarning, Scene, __version__, _make_tasks, _Sweep, load
 
 if TYPE_CHECKING:
     import pandas
@@ -21,6 +24,8 @@ if TYPE_CHECKING:
 AHEAD = 3
 # Time between two counts of the workers [s].
 LOOK = 1.0
+# Time between two looks at tasks while none has ended [s].
+POLL = 0.005
 
 
 class SweepResult:
@@ -36,7 +41,12 @@ class SweepResult:
         self.summary: dict[str, Any] = json.loads((folder / "sweep.json").read_text(encoding="utf-8"))
 
     def __repr__(self) -> str:
-        return f"<looselink.SweepResult {self.summary['title']!r}, {self.summary['runs']} runs in {str(self.folder)!r}>"
+        return f"<looselink.SweepResult {self.summary['title']!r}, {', '.join(self._counts())} in {str(self.folder)!r}>"
+
+    def _counts(self) -> list[str]:
+        others = {"failed": self.summary["status"]["failed"], "refused": self.summary["status"]["refused"]}
+        counts = [f"{self.summary['runs']} runs", *(f"{count} {name}" for name, count in others.items() if count)]
+        return [*counts, f"{self.summary['warned']} with warnings"] if self.summary["warned"] else counts
 
     @property
     def page(self) -> str:
@@ -96,12 +106,18 @@ def sweep(
 
     The tables have the same bytes as those of `looselink sweep`, whatever the number of threads, workers and interruptions.
 
-    Raises StudyError for a fault of the study, SceneError for a fault of its scene, OSError for files that cannot be written,
-    RuntimeError for a bisection without an answer and for workers with another version of Looselink, KeyboardInterrupt after
-    Ctrl-C; rows that are made stay in `out`.
+    Warns by the category RunWarning of runs without results and of runs with warnings.
+
+    Raises StudyError for a fault of the study or of a value that it gives the scene, SceneError for other faults of the scene,
+    OSError for files that cannot be written, RuntimeError for a bisection without an answer and for workers with another version
+    of Looselink, KeyboardInterrupt after Ctrl-C; rows that are made stay in `out`.
     """
     if batch is not None and batch < 1:
         raise ValueError(f"batch must be 1 at least, not {batch}")
+    if client is not None and not hasattr(client, "submit"):
+        raise TypeError(f"client must be a distributed.Client, not {type(client).__name__}; tables of a study are keyword arguments")
+    if copy_to is not None:
+        _place(copy_to)
     prepared = _prepared(study, target)
     kept = None
     if out is None:
@@ -120,40 +136,25 @@ def sweep(
         # a traceback that is kept would keep the lock of the folder
         prepared.close()
     result = SweepResult(folder, kept)
+    counts = result._counts()
+    if len(counts) > 1:
+        warnings.warn(f"{', '.join(counts)}: see `page` of the result", RunWarning, stacklevel=2)
     if copy_to is not None:
         _copy(folder, copy_to)
     return result
 
 
-def of_scene(
-    scene: Scene,
-    client: Any,
-    *,
-    out: str | os.PathLike[str] | None = None,
-    target: tuple[str, float] | dict[str, Any] | None = None,
-    threads: int | None = None,
-    batch: int | None = None,
-    progress: bool | Callable[[int, int], object] = False,
-    force: bool = False,
-    copy_to: str | None = None,
-    **study: Any,
-) -> SweepResult:
+# Keyword arguments of `sweep`, which are not tables of a study.
+OPTIONS = ("out", "threads", "batch", "progress", "force", "copy_to")
+
+
+def of_scene(scene: Scene, client: Any, **keywords: Any) -> SweepResult:
     """`Scene.sweep`."""
-    study = {"title": scene.title, **study, "scene": scene}
-    if isinstance(target, dict):
-        # the table `[target]` of a study
-        study["target"], target = target, None
-    return sweep(
-        study,
-        client,
-        out=out,
-        target=target,
-        threads=threads,
-        batch=batch,
-        progress=progress,
-        force=force,
-        copy_to=copy_to,
-    )
+    options = {name: keywords.pop(name) for name in OPTIONS if name in keywords}
+    if not isinstance(keywords.get("target", {}), dict):
+        # (measure, value); a dict is the table `[target]` of a study
+        options["target"] = keywords.pop("target")
+    return sweep({"title": scene.title, **keywords, "scene": scene}, client, **options)
 
 
 def _prepared(study: str | os.PathLike[str] | dict[str, Any], target: tuple[str, float] | None) -> _Sweep:
@@ -219,7 +220,7 @@ def _distribute(prepared: _Sweep, client: Any, batch: int | None, shown: Callabl
         batches = _batches(runs, size)
         running = as_completed(with_results=True)
         under_way: set[Any] = set()
-        looked, wanted = -LOOK, 0
+        looked, wanted = -math.inf, 0
 
         def start() -> None:
             """Start as many tasks as the workers of this moment need."""
@@ -234,8 +235,17 @@ def _distribute(prepared: _Sweep, client: Any, batch: int | None, shown: Callabl
 
         try:
             start()
-            for task, rows in running:
+            while under_way:
+                if not running.has_ready():
+                    # workers may come while all tasks are long
+                    time.sleep(POLL)
+                    start()
+                    continue
+                task, rows = next(running)
                 under_way.discard(task)
+                if isinstance(rows, BaseException):
+                    # the scheduler is lost, or somebody has cancelled the task
+                    raise rows
                 for row, timing in rows:
                     prepared.append(row, timing)
                     seconds[:] = [*seconds[-99:], json.loads(timing)["wall"]]
@@ -244,7 +254,9 @@ def _distribute(prepared: _Sweep, client: Any, batch: int | None, shown: Callabl
                     shown(prepared.done(), left)
                 start()
         except BaseException:
-            client.cancel(list(under_way))
+            # a scheduler that is lost has no tasks
+            with contextlib.suppress(Exception):
+                client.cancel(list(under_way))
             raise
 
 
@@ -252,14 +264,22 @@ def _same(text: str) -> str:
     return text
 
 
-def _copy(folder: Path, address: str) -> None:
-    from pyarrow import fs  # type: ignore[import-untyped]
-
+def _place(address: str) -> tuple[Any, str]:
+    """The file system and the path of an address."""
+    try:
+        from pyarrow import fs  # type: ignore[import-untyped]
+    except ImportError as error:
+        raise ImportError("copy_to needs pyarrow: pip install pyarrow") from error
     place, path = fs.FileSystem.from_uri(address)
+    return place, path
+
+
+def _copy(folder: Path, address: str) -> None:
+    place, path = _place(address)
     place.create_dir(path, recursive=True)
     # the first file closes a result: without it there is none
     closing, *others = _Sweep.files()
-    if place.get_file_info(f"{path}/{closing}").type != fs.FileType.NotFound:
+    if place.get_file_info(f"{path}/{closing}").is_file:
         place.delete_file(f"{path}/{closing}")
     for name in [*others, closing]:
         if (folder / name).exists():

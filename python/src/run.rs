@@ -210,6 +210,7 @@ fn onsets<'py>(py: Python<'py>, contacts: &[Impact]) -> PyResult<Bound<'py, PyDi
     table.set_item("delta", column(|c| c.delta))?;
     table.set_item("angle", column(|c| c.angle))?;
     table.set_item("deepest_penetration", column(|c| c.deepest_penetration))?;
+    table.set_item("largest_force", column(|c| c.largest_force))?;
     table.set_item("end", column(|c| c.end.unwrap_or(f64::NAN)))?;
     let exit_velocity = column(|c| c.exit_velocity.unwrap_or(f64::NAN));
     table.set_item("exit_velocity", exit_velocity)?;
@@ -280,8 +281,8 @@ impl PyRun {
     }
 
     /// The contacts in the order in which they ended, as in onsets.csv: a dict of read-only arrays t [s], joint (str),
-    /// impact_velocity [m/s], delta [m], angle [rad], deepest_penetration [m], end [s] and exit_velocity [m/s]. The last two are
-    /// NaN of a contact that is closed when the run ends.
+    /// impact_velocity [m/s], delta [m], angle [rad], deepest_penetration [m], largest_force [N], end [s] and exit_velocity
+    /// [m/s]. The last two are NaN of a contact that is closed when the run ends.
     #[getter]
     fn onsets(&self, py: Python) -> Py<PyDict> {
         self.onsets.clone_ref(py)

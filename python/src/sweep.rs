@@ -234,7 +234,7 @@ fn make(
     }
 }
 
-/// The sweep of which this process has made runs last, and its source: a worker reads a scene once, not in every task.
+/// The sweep that this process used last, and its source: a worker reads a scene once, not in every task.
 static LATEST: Mutex<Option<(String, Arc<Sweep>)>> = Mutex::new(None);
 
 /// The sweep with this source.

@@ -15,7 +15,7 @@ def test_octave_reads_the_table_of_a_sweep(tmp_path):
     assert shutil.which("octave-cli"), "install GNU Octave"
     play = {"fields": ["contacts.pin.clearance"], "values": [1e-4, 2e-4, 4e-4], "unit": "m"}
     scene = looselink.load(TOP / "scenes/slider-crank/loose.toml").set("simulation.duration", 0.004)
-    restitution = {"fields": ["contacts.pin.restitution"], "values": [0.6, 0.9]}
+    restitution = {"fields": ["contacts.pin.restitution"], "values": [0.6, 1.5, 0.9]}
     result = scene.sweep(
         parameters={"play": play, "restitution": restitution},
         measures={"force": {"of": "largest", "channels": ["slider_pin.force"]}},

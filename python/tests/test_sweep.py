@@ -155,6 +155,36 @@ def test_workers_that_die_make_the_same_table(study, expected, tmp_path):
             assert contents_of(found) == contents_of(alone)
             assert result.summary["runs"] == RUNS
 
+            def stop(done, left):
+                raise LookupError("enough")
+
+            with pytest.raises(LookupError):
+                looselink.sweep(study, client, out=tmp_path / "stopped", batch=1, progress=stop)
+            deadline = time.monotonic() + 20
+            while client.run_on_scheduler(open_tasks):
+                assert time.monotonic() < deadline
+                time.sleep(0.05)
+
+
+def open_tasks(dask_scheduler):
+    return sum(task.state not in ("memory", "released", "forgotten") for task in dask_scheduler.tasks.values())
+
+
+def test_what_is_no_client_or_another_version_is_refused(study):
+    with pytest.raises(TypeError, match="tables of a study are keyword arguments"):
+        looselink.load(TOP / "scenes/pendulum.toml").sweep({"parameters": {}})
+    with pytest.raises(RuntimeError, match="install the same"):
+        looselink._looselink._make_tasks("0.0.0", "", [])
+    with pytest.raises(Exception, match="nowhere"):
+        # refused before the runs are made
+        looselink.sweep(study, copy_to="nowhere://bucket", progress=lambda done, left: pytest.fail("a run was made"))
+
+
+def test_a_sweep_warns_of_runs_without_results(study):
+    with pytest.warns(looselink.RunWarning, match="60 runs, 20 refused"):
+        result = looselink.sweep(study)
+    assert "60 runs, 20 refused" in repr(result)
+
 
 def contents_of(result):
     return {file.name: file.read_bytes() for file in result.folder.iterdir() if file.suffix in (".csv", ".json") and file.name != "times.csv"}

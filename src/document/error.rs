@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What changes of a scene are called.
+/// Name of the text of an override.
 const CHANGE: &str = "--set";
 
 /// Letters of a name that may be taken for another.
@@ -162,7 +162,12 @@ impl SceneError {
         Some((text.name(), line + 1, column + 1))
     }
 
-    /// The change `path=value` in which it stands, if it does not stand in the file.
+    /// The advice that was added.
+    pub fn advice(&self) -> Option<&str> {
+        self.help.as_deref()
+    }
+
+    /// The override `path=value` in which it stands, if it does not stand in the file.
     pub fn change(&self) -> Option<&str> {
         let text = self.text.as_ref()?;
         (text.name() == CHANGE).then(|| text.inner())

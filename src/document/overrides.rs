@@ -40,7 +40,11 @@ fn apply_one(sources: &Sources, source: usize, root: &mut Node) -> Result<(), Sc
             let error = SceneError::new(sources, *span, message, "not in the scene");
             return Err(match node.keys() {
                 known if known.is_empty() => error,
-                known => error.with_help(format!("known here: {}", known.join(", "))),
+                known => {
+                    let known = format!("known here: {}", known.join(", "));
+                    let whole = format!("a new table is set as a whole: `{above}{name}={{...}}`");
+                    error.with_help(known).with_help(whole)
+                }
             });
         }
         node = node.child_mut(name).expect("just seen");

@@ -12,7 +12,7 @@ use nalgebra::{Matrix2, Matrix2x4};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Smallest scale of a difference \[m, m/s\]: forces change over shorter ways than the distance of a point from the origin.
+/// Smallest scale of a difference \[m, m/s\], for points near the origin and slow ones.
 const SCALE: f64 = 1e-2;
 
 /// dF/d(x, y, vx, vy), a row for each component of F \[N/m, N s/m\].
@@ -32,9 +32,9 @@ pub trait PointLaw: Debug + Send + Sync {
     }
 }
 
-/// Forward differences of F(r, v) with the step h = sqrt(eps) max(|x|, 0.01) in every argument x, at which truncation (h/2 times
-/// the second derivative) and rounding (eps |F|/h) are about equal. Newton's method needs derivatives only to converge: an error
-/// of a millionth of F per metre costs no iteration, and the solution does not depend on it.
+/// Forward differences of F(r, v) with the step h = sqrt(eps) max(|x|, 0.01) in every argument x. Truncation is h/2 times the second
+/// derivative, rounding eps |F|/h, at most 1.5e-6 |F| per metre. Newton's method needs derivatives only to converge: the solution
+/// does not depend on them.
 pub fn differences(f: impl Fn(Vec2, Vec2) -> Vec2, r: Vec2, v: Vec2, force: Vec2) -> LoadGradient {
     let at = [r.x, r.y, v.x, v.y];
     LoadGradient::from_columns(&[0, 1, 2, 3].map(|i| {

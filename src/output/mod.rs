@@ -47,13 +47,14 @@ const SUMMARY: &str = "summary.json";
 /// The file of what differs when a run is repeated.
 pub const TIMING: &str = "timing.json";
 /// The columns of the table of onsets.
-const CONTACT: [&str; 8] = [
+const CONTACT: [&str; 9] = [
     "t [s]",
     "joint",
     "impact_velocity [m/s]",
     "delta [m]",
     "angle [rad]",
     "deepest_penetration [m]",
+    "largest_force [N]",
     "end [s]",
     "exit_velocity [m/s]",
 ];
@@ -321,6 +322,7 @@ impl Results {
         let ContactEvent {
             onset,
             deepest_penetration,
+            largest_force,
             end,
         } = contact;
         let [t, exit_velocity] = match end {
@@ -334,6 +336,7 @@ impl Results {
             Cell::Number(onset.delta),
             Cell::Number(onset.angle),
             Cell::Number(*deepest_penetration),
+            Cell::Number(*largest_force),
             t,
             exit_velocity,
         ])

@@ -36,6 +36,7 @@
 //! A closed contact has a time scale far below that of free flight. The first step after an onset therefore has the length
 //! that was accepted after the previous onset of the same contact; the controller increases the step from there.
 
+use super::failure::ENERGY_BALANCE;
 use super::meter::lengths;
 use crate::checkpoint::{Carried, Checkpoint, carried, carry_list};
 use crate::model::Model;
@@ -354,7 +355,7 @@ impl Controller {
     pub fn name(&self, model: &Model, index: usize) -> String {
         let names = &model.unknown_names()[..self.lengths.len()];
         let name = names.get(index).map(String::as_str);
-        name.unwrap_or("the energy balance").to_owned()
+        name.unwrap_or(ENERGY_BALANCE).to_owned()
     }
 
     /// What happened so far.

@@ -9,6 +9,9 @@ use crate::scene::{Accuracy, Pace};
 use crate::stepper::StepError;
 use crate::system::{PrescribeError, System};
 
+/// The name of the error that is not one of a coordinate.
+pub(super) const ENERGY_BALANCE: &str = "the energy balance";
+
 /// Why a run ended early.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
@@ -27,13 +30,14 @@ pub enum RunError {
     /// Even the shortest step is too long for the accuracy of the scene.
     #[error(
         "the accuracy of {accuracy} cannot be reached at t = {t} s: the estimated error of {name} is too large even with a step of \
-         {} s{}; a larger `position`, a shorter `horizon` or a method of higher order may help",
+         {} s{}; a larger `{}`, a shorter `horizon` or a method of higher order may help",
         short(step),
         if *in_singular_pose {
             ", in a singular pose, near which rounding moves the mechanism"
         } else {
             ""
-        }
+        },
+        if name == ENERGY_BALANCE { "energy" } else { "position" },
     )]
     Accuracy {
         /// Coordinate with the largest error, or the energy balance.

@@ -28,6 +28,8 @@ pub struct Impact {
     pub angle: f64,
     /// Largest penetration \[m\]; so far, for a contact that is still closed.
     pub deepest_penetration: f64,
+    /// Largest force at the end of a step \[N\]; so far, for a contact that is still closed.
+    pub largest_force: f64,
     /// When the contact was lost \[s\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub end: Option<f64>,
@@ -46,6 +48,7 @@ impl From<&ContactEvent<'_>> for Impact {
             delta: onset.delta,
             angle: onset.angle,
             deepest_penetration: contact.deepest_penetration,
+            largest_force: contact.largest_force,
             end: contact.end.map(|end| end.t),
             exit_velocity: contact.end.map(|end| end.exit_velocity),
         }
@@ -83,6 +86,7 @@ struct Course {
     delta: f64,
     angle: f64,
     deepest: f64,
+    largest_force: f64,
     end: Option<ContactEnd>,
     /// Penetration and its rate at the last accepted step.
     before: [f64; 2],
@@ -90,7 +94,7 @@ struct Course {
     listed: Option<usize>,
 }
 
-carried!(Course { joint, t, impact_velocity, delta, angle, deepest, end, before, listed } but {});
+carried!(Course { joint, t, impact_velocity, delta, angle, deepest, largest_force, end, before, listed } but {});
 
 impl Course {
     fn onset<'a>(&self, model: &'a Model) -> Onset<'a> {
@@ -107,6 +111,7 @@ impl Course {
         ContactEvent {
             onset: self.onset(model),
             deepest_penetration: self.deepest,
+            largest_force: self.largest_force,
             end: self.end,
         }
     }
@@ -143,6 +148,7 @@ impl Impacts {
             delta,
             angle: gap.e[1].atan2(gap.e[0]),
             deepest: delta,
+            largest_force: model.contact_force(contact, at).norm(),
             end: None,
             before: [delta, rate],
             listed: None,
@@ -171,7 +177,8 @@ impl Impacts {
         at: &State,
         observer: &mut dyn Observer,
     ) -> io::Result<()> {
-        for (slot, [_, deepest]) in self.closed.iter_mut().zip(&mut self.depths) {
+        let depths = self.depths.iter_mut();
+        for (contact, (slot, [_, deepest])) in self.closed.iter_mut().zip(depths).enumerate() {
             let Some(course) = slot else { continue };
             let Some((gap, rate, closed)) = model.gap(course.joint, at) else {
                 continue;
@@ -181,6 +188,8 @@ impl Impacts {
             let top = top(h, [before, delta], [rate_before, rate]).map_or(delta, |(_, top)| top);
             course.deepest = course.deepest.max(delta).max(top);
             *deepest = deepest.max(course.deepest);
+            let force = model.contact_force(contact, at).norm();
+            course.largest_force = course.largest_force.max(force);
             course.before = [delta, rate];
             course.end = (!closed).then_some(ContactEnd {
                 t: at.t,

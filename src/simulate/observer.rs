@@ -26,6 +26,8 @@ pub struct ContactEvent<'a> {
     pub onset: Onset<'a>,
     /// Largest penetration \[m\].
     pub deepest_penetration: f64,
+    /// Largest force at the end of a step, normal force and friction together \[N\].
+    pub largest_force: f64,
     /// How it ended; absent when it is still closed.
     pub end: Option<ContactEnd>,
 }

@@ -66,6 +66,7 @@ impl Observer for Recording {
         self.onsets.push(Impact::from(&ContactEvent {
             onset: *onset,
             deepest_penetration: onset.delta,
+            largest_force: 0.0,
             end: None,
         }));
         Ok(())

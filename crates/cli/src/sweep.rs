@@ -67,9 +67,9 @@ pub fn sweep(arguments: &Arguments) -> Result<(), CommandFailure> {
         None => write(arguments, &sweep, &store),
         Some(shard) => {
             if !arguments.quiet {
-                let runs = store.numbers().filter(|run| shard.has(*run)).count();
                 say(&format!(
-                    "shard {shard} is complete, {runs} runs; when all are, `--merge` in place of `--shard` makes tables and pictures"
+                    "shard {shard} is complete, {} runs; when all shards are, run the command with `--merge` instead of `--shard`",
+                    store.made(shard)
                 ));
             }
             Ok(())
@@ -86,7 +86,7 @@ fn make(
 ) -> Result<(), CommandFailure> {
     let cores = || available_parallelism().unwrap_or(NonZeroUsize::MIN);
     let threads = arguments.threads.unwrap_or_else(cores);
-    let there = store.numbers().filter(|run| shard.has(*run)).count();
+    let there = store.made(shard);
     if there > 0 && !arguments.quiet {
         say(&format!("{there} runs are there already"));
     }

@@ -107,7 +107,7 @@ fn a_run_leaves_a_result() {
     assert_eq!(
         lines.next(),
         Some(
-            "t [s],joint,impact_velocity [m/s],delta [m],angle [rad],deepest_penetration [m],end [s],exit_velocity [m/s]"
+            "t [s],joint,impact_velocity [m/s],delta [m],angle [rad],deepest_penetration [m],largest_force [N],end [s],exit_velocity [m/s]"
         )
     );
     let onset: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -138,17 +138,21 @@ fn every_contact_is_a_row_from_its_onset_to_its_end() {
     assert_eq!(summary["onsets"].as_u64(), Some(rows.len() as u64));
     assert!(rows.len() > 30);
     let number = |cell: &String| cell.parse::<f64>().unwrap();
-    let (ended, closed): (Vec<_>, Vec<_>) = rows.iter().partition(|row| !row[6].is_empty());
+    let (ended, closed): (Vec<_>, Vec<_>) = rows.iter().partition(|row| !row[7].is_empty());
     assert_eq!(ended.len() as u64, summary["ended_contacts"]);
-    assert!(rows.is_sorted_by_key(|row| row[6].is_empty()));
-    assert!(closed.iter().all(|row| row[7].is_empty()));
-    assert!(ended.is_sorted_by_key(|row| number(&row[6])));
+    assert!(rows.is_sorted_by_key(|row| row[7].is_empty()));
+    assert!(closed.iter().all(|row| row[8].is_empty()));
+    assert!(ended.is_sorted_by_key(|row| number(&row[7])));
     for row in &ended {
         assert!(
-            number(&row[6]) > number(&row[0]) && number(&row[7]) > 0.0,
+            number(&row[7]) > number(&row[0]) && number(&row[8]) > 0.0,
             "{row:?}"
         );
-        assert!(number(&row[5]) > 0.0 && number(&row[4]).abs() <= std::f64::consts::PI);
+        assert!(
+            number(&row[5]) > 0.0
+                && number(&row[6]) > 0.0
+                && number(&row[4]).abs() <= std::f64::consts::PI
+        );
     }
     let mut by_onset: Vec<_> = rows.iter().collect();
     by_onset.sort_by(|a, b| number(&a[0]).total_cmp(&number(&b[0])));
@@ -161,6 +165,7 @@ fn every_contact_is_a_row_from_its_onset_to_its_end() {
         "delta",
         "angle",
         "deepest_penetration",
+        "largest_force",
         "end",
         "exit_velocity",
     ];
@@ -186,7 +191,7 @@ fn a_contact_that_is_closed_when_the_run_ends_has_no_end() {
     expect(&run(out, &["--set", "simulation.duration=1.04e-3"]), 0, "");
     let rows = contacts(out);
     assert_eq!(rows.len(), 1, "{rows:?}");
-    assert_eq!((rows[0][6].as_str(), rows[0][7].as_str()), ("", ""));
+    assert_eq!((rows[0][7].as_str(), rows[0][8].as_str()), ("", ""));
     assert!((rows[0][0].parse::<f64>().unwrap() - 1e-3).abs() < 1e-11);
     let summary = summary(out);
     assert_eq!(

@@ -122,11 +122,18 @@ pub struct Crossing {
     pub means: [f64; 2],
     /// which are known to so much (half of the 95 % interval); absent with a single start.
     pub half_widths: [Option<f64>; 2],
+    /// False where the means at the points that were visited rise and fall by more than their intervals.
+    pub monotone: bool,
 }
 
 impl Crossing {
     /// In the words of a study with one parameter.
-    pub(super) fn new(study: &SweepStudy, target: &SweepTarget, ends: [Visited; 2]) -> Crossing {
+    pub(super) fn new(
+        study: &SweepStudy,
+        target: &SweepTarget,
+        ends: [Visited; 2],
+        visited: &[Visited],
+    ) -> Crossing {
         let (name, parameter): (&String, &SweepParameter) = study
             .parameters
             .first()
@@ -138,6 +145,7 @@ impl Crossing {
             between: ends.map(|end| parameter.at(end.place)),
             means: ends.map(|end| end.mean.mean),
             half_widths: ends.map(|end| end.mean.half_width),
+            monotone: is_monotone(visited),
         }
     }
 
@@ -148,9 +156,53 @@ impl Crossing {
     }
 }
 
+/// True where the means rise or fall all the way from the start of the range to its end, as far as their intervals tell.
+fn is_monotone(visited: &[Visited]) -> bool {
+    let mut sorted = visited.to_vec();
+    sorted.sort_by(|a, b| a.place.total_cmp(&b.place));
+    let steps = sorted.windows(2).map(|pair| {
+        let [(low, a), (high, b)] = [pair[0], pair[1]].map(|v| (v.mean.interval(), v.mean.mean));
+        // the sign of a change that is longer than both intervals together
+        match b - a {
+            change if change > 0.0 && high.0 > low.1 => 1,
+            change if change < 0.0 && high.1 < low.0 => -1,
+            _ => 0,
+        }
+    });
+    let steps: Vec<i32> = steps.collect();
+    !(steps.contains(&1) && steps.contains(&-1))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn means_that_rise_and_fall_are_not_monotone() {
+        let visited = |means: &[f64]| -> Vec<Visited> {
+            let count = means.len() as f64;
+            let places = (0..means.len()).map(|k| k as f64 / count);
+            let of = |(place, mean): (f64, &f64)| Visited {
+                place,
+                mean: EnsembleMean::of(&[*mean]).unwrap(),
+            };
+            places.zip(means).map(of).rev().collect()
+        };
+        assert!(is_monotone(&visited(&[1.0, 2.0, 2.0, 5.0])));
+        assert!(is_monotone(&visited(&[3.0, 1.0])));
+        assert!(!is_monotone(&visited(&[1.0, 3.0, 2.0, 5.0])));
+        // within their intervals
+        let noisy = |place, values: &[f64]| Visited {
+            place,
+            mean: EnsembleMean::of(values).unwrap(),
+        };
+        let points = [
+            noisy(0.0, &[1.0, 1.1]),
+            noisy(0.5, &[2.0, 3.0]),
+            noisy(1.0, &[2.2, 2.4]),
+        ];
+        assert!(is_monotone(&points));
+    }
 
     fn target() -> SweepTarget {
         SweepTarget {

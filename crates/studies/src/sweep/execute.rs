@@ -46,8 +46,14 @@ pub fn execute(
         if pending.is_empty() {
             return Ok(());
         }
-        let done = store.numbers().filter(|run| shard.has(*run)).count();
-        round(sweep, store, (&pending, done), threads, stop, told)?;
+        let shared = Shared {
+            done: store.made(shard),
+            left: pending.len(),
+            store,
+            told,
+            error: None,
+        };
+        round(sweep, shared, &pending, threads, stop)?;
         if stop.load(Ordering::Relaxed) && pending.iter().any(|run| !store.has(*run)) {
             return Err(SweepError::Interrupted {
                 done: store.len(),
@@ -69,23 +75,16 @@ struct Shared<'a> {
     error: Option<SweepError>,
 }
 
-/// Makes some runs after those that are done, the next one on the first thread that is free.
+/// Makes some runs, the next one on the first thread that is free.
 fn round(
     sweep: &Sweep,
-    store: &mut Store,
-    (pending, done): (&[usize], usize),
+    shared: Shared,
+    pending: &[usize],
     threads: NonZeroUsize,
     stop: &AtomicBool,
-    told: &mut (dyn FnMut(SweepProgress) + Send),
 ) -> Result<(), SweepError> {
     let next = AtomicUsize::new(0);
-    let shared = Mutex::new(Shared {
-        store,
-        told,
-        done,
-        left: pending.len(),
-        error: None,
-    });
+    let shared = Mutex::new(shared);
     let work = || {
         while !stop.load(Ordering::Relaxed) {
             let Some(run) = pending.get(next.fetch_add(1, Ordering::Relaxed)) else {

@@ -45,6 +45,8 @@ pub struct ContactMeasure {
     /// What it is, in a line.
     pub purpose: &'static str,
     unit: &'static str,
+    /// The channel of a joint whose rows count as well: what is known of a contact that is closed when the part begins.
+    channel: Option<&'static str>,
     of: fn(contacts: &[Impact], joints: usize, part: [f64; 2]) -> f64,
 }
 
@@ -113,17 +115,19 @@ pub static SERIES: [SeriesMeasure; 8] = [
 ];
 
 /// All measures of contacts.
-pub static CONTACTS: [ContactMeasure; 4] = [
+pub static CONTACTS: [ContactMeasure; 5] = [
     ContactMeasure {
         name: "contacts",
         purpose: "the number of contacts that begin",
         unit: "1",
+        channel: None,
         of: |contacts, _, part| begun(contacts, part).count() as f64,
     },
     ContactMeasure {
         name: "contact_share",
         purpose: "the share of time in contact, mean over the joints",
         unit: "1",
+        channel: None,
         of: |contacts, joints, [from, to]| {
             let within = |c: &Impact| (c.end.unwrap_or(to).min(to) - c.t.max(from)).max(0.0);
             contacts.iter().map(within).sum::<f64>() / (joints as f64 * (to - from))
@@ -133,14 +137,25 @@ pub static CONTACTS: [ContactMeasure; 4] = [
         name: "largest_impact_velocity",
         purpose: "the largest velocity at which a contact begins; 0 where none begins",
         unit: "m/s",
+        channel: None,
         of: |contacts, _, part| {
             begun(contacts, part).fold(0.0, |most: f64, c| most.max(c.impact_velocity))
         },
     },
     ContactMeasure {
+        name: "largest_contact_force",
+        purpose: "the largest force of the contacts that begin, and of the rows",
+        unit: "N",
+        channel: Some("force"),
+        of: |contacts, _, part| {
+            begun(contacts, part).fold(0.0, |most: f64, c| most.max(c.largest_force))
+        },
+    },
+    ContactMeasure {
         name: "deepest_penetration",
-        purpose: "the largest penetration of the contacts that begin; 0 where none begins",
+        purpose: "the largest penetration of the contacts that begin, and of the rows",
         unit: "m",
+        channel: Some("penetration"),
         of: |contacts, _, part| {
             begun(contacts, part).fold(0.0, |most: f64, c| most.max(c.deepest_penetration))
         },
@@ -224,6 +239,17 @@ impl Measure {
         Ok(())
     }
 
+    /// The channels that must be recorded for it.
+    pub(super) fn recorded(&self) -> Vec<String> {
+        match self.kind() {
+            Some(MeasureKind::Contacts(kind)) => {
+                let of_joint = |channel| self.joints.iter().map(move |j| format!("{j}.{channel}"));
+                kind.channel.into_iter().flat_map(of_joint).collect()
+            }
+            _ => self.channels.clone(),
+        }
+    }
+
     /// Its unit, where that of a channel is known.
     pub(super) fn unit(&self, unit_of: impl Fn(&str) -> String) -> String {
         match self.kind() {
@@ -260,10 +286,10 @@ impl Measure {
         if from >= to {
             return None;
         }
+        let first = recorded.t.partition_point(|t| *t < from);
+        let behind = recorded.t.partition_point(|t| *t <= to);
         let value = match self.kind()? {
             MeasureKind::Series(kind) => {
-                let first = recorded.t.partition_point(|t| *t < from);
-                let behind = recorded.t.partition_point(|t| *t <= to);
                 let series = recorded.magnitude(&self.channels, first..behind)?;
                 if series.is_empty() {
                     return None;
@@ -275,7 +301,12 @@ impl Measure {
                 let contacts = recorded.contacts.iter();
                 let own = contacts.filter(|contact| self.joints.contains(&contact.joint));
                 let own: Vec<Impact> = own.cloned().collect();
-                (kind.of)(&own, self.joints.len(), [from, to])
+                let mut value = (kind.of)(&own, self.joints.len(), [from, to]);
+                for channel in self.recorded() {
+                    let rows = recorded.magnitude(&[channel], first..behind)?;
+                    value = rows.into_iter().fold(value, f64::max);
+                }
+                value
             }
         };
         Some(value).filter(|value| value.is_finite())

@@ -114,6 +114,8 @@ pub(super) struct Points {
     pub faults: Vec<(usize, String)>,
     /// Warnings of all runs, each kind once: the number of runs and the first of them.
     pub warnings: IndexMap<String, (usize, String)>,
+    /// True where a run had contacts.
+    pub contacts: bool,
     /// The longest time that a run has reached \[s\], and whether all complete runs have.
     pub duration: (f64, bool),
 }
@@ -255,6 +257,7 @@ impl Gathered {
                 envelopes: envelopes.collect(),
                 faults: Vec::new(),
                 warnings: IndexMap::new(),
+                contacts: false,
                 duration: (0.0, true),
             },
         }
@@ -275,6 +278,7 @@ impl Gathered {
         if let Some(error) = row.error {
             points.faults.push((row.run, error));
         }
+        points.contacts |= row.onsets > 0;
         if row.status == RunStatus::Complete {
             let (longest, same) = &mut points.duration;
             *same &= *longest == 0.0 || *longest == row.t;

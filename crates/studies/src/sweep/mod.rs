@@ -42,7 +42,7 @@ pub use study::SweepStudy;
 pub use value::FieldValue;
 
 use crate::study_file::{StudyError, text_of};
-use bisection::{Search, search};
+use bisection::{Search, Visited, search};
 use design::Design;
 use looselink::output::OutputError;
 use looselink::scene::{Analysis, Scene, SceneError};
@@ -110,6 +110,15 @@ pub struct Task {
     pub values: Vec<FieldValue>,
 }
 
+/// How far a bisection is.
+struct Searched {
+    next: Search,
+    /// The places that were visited, and the one that is wanted next.
+    places: Vec<f64>,
+    /// Means at those that were visited.
+    visited: Vec<Visited>,
+}
+
 /// A study with its scene, checked.
 #[derive(Debug)]
 pub struct Sweep {
@@ -153,7 +162,7 @@ impl Sweep {
     /// The first fault of the study or the scene.
     pub fn new(source: SweepSource) -> Result<Sweep, SweepError> {
         let study = SweepStudy::parse(&source.path, &source.study, source.target.as_ref())?;
-        let fault = |message| StudyError::of(&source.path, message);
+        let fault = |message: String| StudyError::of_key(&source.path, &source.study, &message);
         let parameters = study.parameter_list();
         let samples = study.samples.unwrap_or(0);
         let design = study.design.design(&parameters, samples, study.seed);
@@ -312,13 +321,14 @@ impl Sweep {
                     "a bisection has no shards: each of its points depends on those before it";
                 return Err(self.fault(message.to_owned()).into());
             }
-            None => match self.searched(store)? {
-                (Search::Visit(_), places) => {
-                    let starts = self.study.starts_of_a_point();
-                    (places.len() - 1) * starts..places.len() * starts
+            None => {
+                let searched = self.searched(store)?;
+                let (starts, points) = (self.study.starts_of_a_point(), searched.places.len());
+                match searched.next {
+                    Search::Visit(_) => (points - 1) * starts..points * starts,
+                    _ => 0..0,
                 }
-                _ => 0..0,
-            },
+            }
         };
         let open = runs.filter(|run| shard.has(*run) && !store.has(*run));
         Ok(open.collect())
@@ -335,15 +345,15 @@ impl Sweep {
         let values = match &self.design {
             Some(design) => design.values(&parameters, point),
             None => {
-                let (_, places) = self.searched(store)?;
+                let Searched { places, .. } = self.searched(store)?;
                 vec![parameters[0].at(places[point])]
             }
         };
         Ok(Task { run, start, values })
     }
 
-    /// What a bisection has found so far, and the places it has visited or wants to.
-    fn searched(&self, store: &Store) -> Result<(Search, Vec<f64>), SweepError> {
+    /// What a bisection has found so far.
+    fn searched(&self, store: &Store) -> Result<Searched, SweepError> {
         let target = self.target();
         let place = self.study.measures.get_index_of(&target.measure);
         let place = place.expect("checked when the study was read");
@@ -360,7 +370,19 @@ impl Sweep {
             let values: Option<Vec<f64>> = values.collect();
             means.push(values.and_then(|values| EnsembleMean::of(&values)));
         }
-        Ok(search(target, |point| means.get(point).copied()))
+        let (next, places) = search(target, |point| means.get(point).copied());
+        let known = places.iter().zip(means);
+        let visited = known.filter_map(|(place, mean)| {
+            Some(Visited {
+                place: *place,
+                mean: mean?,
+            })
+        });
+        Ok(Searched {
+            next,
+            visited: visited.collect(),
+            places,
+        })
     }
 
     fn target(&self) -> &SweepTarget {
@@ -377,19 +399,20 @@ impl Sweep {
         if self.design.is_some() {
             return Ok(None);
         }
-        Ok(match self.searched(store)? {
-            (Search::Found(ends), _) => Some(Ok(Crossing::new(&self.study, self.target(), ends))),
-            (Search::NoCrossing(ends), _) => Some(Err(self.no_crossing(ends))),
-            (Search::NoValue(place), places) => {
-                Some(Err(self.no_value(store, place, places.len() - 1)))
+        let searched = self.searched(store)?;
+        let crossing = |ends| Crossing::new(&self.study, self.target(), ends, &searched.visited);
+        Ok(match searched.next {
+            Search::Found(ends) => Some(Ok(crossing(ends))),
+            Search::NoCrossing(ends) => Some(Err(self.no_crossing(&crossing(ends)))),
+            Search::NoValue(place) => {
+                Some(Err(self.no_value(store, place, searched.places.len() - 1)))
             }
-            (Search::Visit(_), _) => None,
+            Search::Visit(_) => None,
         })
     }
 
-    fn no_crossing(&self, ends: [bisection::Visited; 2]) -> String {
+    fn no_crossing(&self, crossing: &Crossing) -> String {
         let target = self.target();
-        let crossing = Crossing::new(&self.study, target, ends);
         let place = self.study.measures.get_index_of(&target.measure);
         let unit = place.map_or("", |place| self.units[place].as_str());
         let [low, high] = crossing.means.map(|mean| numbers::number(mean, 4));
@@ -418,14 +441,24 @@ fn fault_of_scene(path: &Path, text: &str, study: &SweepStudy, error: SceneError
         return error.into();
     };
     let field = change.split('=').next().unwrap_or_default().trim();
-    let mut parameters = study.parameters.iter();
+    let channel = error.underlined().trim_matches('"');
     let sets = |p: &SweepParameter| p.fields.iter().any(|own| own.path() == field);
-    let key = match parameters.find(|(_, parameter)| sets(parameter)) {
-        Some((name, _)) => format!("parameters.{name}"),
-        None if field == "output.channels" => "measures".to_owned(),
-        None => "set".to_owned(),
+    let records = |channels: &[String]| channels.iter().any(|name| name == channel);
+    let parameter = study.parameters.iter().find(|(_, p)| sets(p));
+    let parameter = parameter.filter(|_| !study.set.iter().any(|own| own == change));
+    let measure = study.measures.iter().find(|(_, m)| records(&m.recorded()));
+    let envelope = study.envelopes.iter().find(|(_, e)| records(&e.channels));
+    let key = match (parameter, measure, envelope) {
+        (Some((name, _)), ..) => format!("parameters.{name}"),
+        _ if field != "output.channels" => "set".to_owned(),
+        (_, Some((name, _)), _) => format!("measures.{name}"),
+        (_, _, Some((name, _))) => format!("envelopes.{name}"),
+        _ => "measures".to_owned(),
     };
-    StudyError::of_key(path, text, &format!("`{key}`: {error}"))
+    let advice = error
+        .advice()
+        .map_or(String::new(), |advice| format!("\n{advice}"));
+    StudyError::of_key(path, text, &format!("`{key}`: {error}{advice}"))
 }
 
 /// That of all texts, each preceded by its length, so that no two lists of texts collide.

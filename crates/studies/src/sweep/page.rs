@@ -1,10 +1,12 @@
 //! The page of a sweep.
 
-use super::Sweep;
 use super::design::DesignKind;
 use super::merge::{Merged, Points};
+use super::{EnsembleMean, Sweep};
 use numbers::number;
 
+/// Starts have parted when their values differ by this part of the differences between points.
+const PARTED: f64 = 0.01;
 /// Runs without results that a page lists.
 const LISTED: usize = 20;
 
@@ -20,7 +22,7 @@ pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
     if let Some(answer) = answer(sweep, merged) {
         page += &format!("\n{answer}\n");
     }
-    page += "\n| measure | unit | least | at | largest | at |\n| --- | --- | ---: | --- | ---: | --- |\n";
+    page += "\n| measure | unit | least | at (least) | largest | at (largest) |\n| --- | --- | ---: | --- | ---: | --- |\n";
     for (name, extremes) in &merged.extremes {
         let unit = merged.units.get(name).map_or("", String::as_str);
         let [(least, at_least), (largest, at_largest)] = [extremes.least, extremes.largest];
@@ -32,7 +34,7 @@ pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
         let measures = sweep.study.measures.keys();
         for name in measures.filter(|name| !merged.indices.contains_key(*name)) {
             page += &format!(
-                "\n`{name}` has no Sobol indices: fewer than two samples have it, or it does not vary.\n"
+                "\n`{name}` has no Sobol indices: fewer than two samples have a value, or all values are equal.\n"
             );
         }
     }
@@ -51,6 +53,16 @@ pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
             });
             page += &format!("| {name} | {alone} | {total} |\n");
         }
+    }
+    let (alike, all) = (alike_points(sweep, points), points.values.len());
+    // at single points all starts may give the same value, such as contact all the time
+    if 2 * alike > all {
+        page += &format!(
+            "\nAt {alike} of {all} points no measure depends on the start by more than {} % of its differences between points. If the \
+             motion is chaotic, these starts have not parted, and the intervals are too short: take a larger `starts.velocity` or a \
+             later `from`.\n",
+            100.0 * PARTED
+        );
     }
     if !points.faults.is_empty() {
         page += "\nRuns without results:\n\n";
@@ -71,6 +83,27 @@ pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
         }
     }
     page
+}
+
+/// Number of points at which the values of no measure depend on the start; 0 in a sweep of a single start or without contacts.
+fn alike_points(sweep: &Sweep, points: &Points) -> usize {
+    if !points.contacts || sweep.study.starts_of_a_point() == 1 {
+        return 0;
+    }
+    let limits = points.means.iter().map(|means| {
+        let means: Vec<f64> = means.iter().flatten().map(|mean| mean.mean).collect();
+        let between = EnsembleMean::of(&means).and_then(|all| all.deviation);
+        PARTED * between.unwrap_or(0.0)
+    });
+    let limits: Vec<f64> = limits.collect();
+    let is_alike = |point: &usize| {
+        let mut measures = points.means.iter().zip(&limits);
+        measures.all(|(means, limit)| {
+            let deviation = means[*point].and_then(|mean| mean.deviation);
+            deviation.is_some_and(|deviation| deviation < *limit)
+        })
+    };
+    (0..points.values.len()).filter(is_alike).count()
 }
 
 /// A run and the values of the parameters there.
@@ -94,19 +127,27 @@ pub fn answer(sweep: &Sweep, merged: &Merged) -> Option<String> {
     let crossing = merged.crossing.as_ref()?;
     let target = &crossing.target;
     let unit = &sweep.units()[sweep.study.measures.get_index_of(&target.measure)?];
+    let unit = if unit == "1" {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
     let sides = crossing.between.iter().zip(&crossing.means);
     let sides = sides.zip(&crossing.half_widths);
     let sides = sides.map(|((value, mean), half)| {
         let value = value.number().map_or(value.to_string(), |x| number(x, 4));
         let half = half.map_or(String::new(), |half| format!(" ± {}", number(half, 2)));
         format!(
-            "{value} {} ({}{half} {unit})",
+            "{value} {} ({}{half}{unit})",
             crossing.unit,
             number(*mean, 4)
         )
     });
     let sides = sides.collect::<Vec<_>>().join(" and ");
     let doubt = match crossing.is_certain() {
+        _ if !crossing.monotone => {
+            " The values at the points that were visited rise and fall: there may be several crossings, which a grid shows."
+        }
         _ if crossing.half_widths == [None; 2] => {
             " Each mean is of a single start: where the motion is chaotic, use `starts`."
         }
@@ -116,7 +157,7 @@ pub fn answer(sweep: &Sweep, merged: &Merged) -> Option<String> {
         }
     };
     Some(format!(
-        "`{}` reaches {} {unit} between `{}` = {sides}.{doubt}",
+        "`{}` reaches {}{unit} between `{}` = {sides}.{doubt}",
         target.measure,
         number(target.value, 4),
         crossing.parameter,

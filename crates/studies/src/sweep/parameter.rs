@@ -159,7 +159,27 @@ impl SweepParameter {
     pub fn level(&self, k: usize) -> FieldValue {
         match self.values.get(k) {
             Some(value) => value.clone(),
-            None => self.at(k as f64 / (self.levels() - 1) as f64),
+            None => {
+                let (low, high) = self
+                    .range()
+                    .expect("a parameter without values has a range");
+                let u = k as f64 / (self.levels() - 1) as f64;
+                let value = self.between(u, low, high);
+                match self.whole {
+                    true => FieldValue::Whole(value.round() as i64),
+                    false => FieldValue::Number(value),
+                }
+            }
+        }
+    }
+
+    /// The number at u between two others; both ends are exact.
+    fn between(&self, u: f64, low: f64, high: f64) -> f64 {
+        match self.spacing {
+            _ if u <= 0.0 => low,
+            _ if u >= 1.0 => high,
+            Spacing::Linear => low + u * (high - low),
+            Spacing::Log => low * (high / low).powf(u),
         }
     }
 
@@ -171,16 +191,12 @@ impl SweepParameter {
             let place = (u * count as f64) as usize;
             return self.values[place.min(count - 1)].clone();
         };
-        let end = if self.whole { high + 1.0 } else { high };
-        let value = match self.spacing {
-            _ if u <= 0.0 => low,
-            _ if u >= 1.0 => high,
-            Spacing::Linear => low + u * (end - low),
-            Spacing::Log => low * (end / low).powf(u),
-        };
         match self.whole {
-            true => FieldValue::Whole(value.min(high).floor() as i64),
-            false => FieldValue::Number(value),
+            true => {
+                let value = self.between(u, low, high + 1.0).min(high);
+                FieldValue::Whole(value.floor() as i64)
+            }
+            false => FieldValue::Number(self.between(u, low, high)),
         }
     }
 

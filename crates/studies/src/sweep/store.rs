@@ -201,6 +201,11 @@ impl Store {
         self.places.contains_key(&run)
     }
 
+    /// Number of rows of a shard.
+    pub fn made(&self, shard: Shard) -> usize {
+        self.places.keys().filter(|run| shard.has(**run)).count()
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.places.len()
@@ -279,14 +284,14 @@ impl FileHead {
         let now = FileHead::of(sweep);
         if self.sweep != now.sweep {
             return Err(format!(
-                "it holds rows of another study, scene or target (\"{}\"); choose another folder, or begin anew with --force",
+                "it holds rows of another study, scene or target (\"{}\"); choose another folder, or begin anew with --force (in Python `force=True`)",
                 self.title
             ));
         }
         match self.version == now.version {
             true => Ok(()),
             false => Err(format!(
-                "it holds rows of version {} of the program, and this is {}; choose another folder, or begin anew with --force",
+                "it holds rows of version {} of the program, and this is {}; choose another folder, or begin anew with --force (in Python `force=True`)",
                 self.version, now.version
             )),
         }

@@ -80,6 +80,16 @@ impl SweepStudy {
             );
         }
         let kind = self.design;
+        match (&self.target, kind == DesignKind::Bisection) {
+            (None, true) => {
+                return Err("`design` is a bisection, which needs a table `[target]`".to_owned());
+            }
+            (Some(_), false) => {
+                let message = "`target` belongs to a bisection: add `design = \"bisection\"`";
+                return Err(message.to_owned());
+            }
+            _ => {}
+        }
         let grid = kind == DesignKind::Grid || kind == DesignKind::List;
         for (name, parameter) in &self.parameters {
             let fault = |message| format!("`parameters.{name}` {message}");
@@ -108,15 +118,8 @@ impl SweepStudy {
             }
             _ => {}
         }
-        match (&self.target, kind) {
-            (Some(target), DesignKind::Bisection) => target.check(self)?,
-            (None, DesignKind::Bisection) => {
-                return Err("a bisection needs a table `[target]`".to_owned());
-            }
-            (Some(_), _) => {
-                return Err("`[target]` belongs to the design bisection".to_owned());
-            }
-            (None, _) => {}
+        if let Some(target) = &self.target {
+            target.check(self)?;
         }
         match self.starts {
             Some(Starts { count, velocity })
@@ -143,10 +146,12 @@ impl SweepStudy {
                 paths.push(field.path());
             }
         }
-        for name in self.parameters.keys().chain(self.measures.keys()) {
+        let parameters = self.parameters.keys().map(|name| ("parameters", name));
+        let measures = self.measures.keys().map(|name| ("measures", name));
+        for (table, name) in parameters.chain(measures) {
             if names.contains(&name.as_str()) {
                 return Err(format!(
-                    "the table has a column `{name}` already: choose another name"
+                    "`{table}.{name}` needs another name: the table of runs has a column `{name}` already"
                 ));
             }
             names.push(name);
@@ -166,12 +171,13 @@ impl SweepStudy {
 
     /// All channels that are measured.
     pub(super) fn channels(&self) -> Vec<String> {
-        let measured = self.measures.values().flat_map(|measure| &measure.channels);
-        let kept = self.envelopes.values().flat_map(|plan| &plan.channels);
+        let measured = self.measures.values().flat_map(Measure::recorded);
+        let kept = self.envelopes.values();
+        let kept = kept.flat_map(|plan| plan.channels.iter().cloned());
         let mut names = vec!["t".to_owned()];
         for name in measured.chain(kept) {
-            if !names.contains(name) {
-                names.push(name.clone());
+            if !names.contains(&name) {
+                names.push(name);
             }
         }
         names

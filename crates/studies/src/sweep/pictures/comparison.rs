@@ -1,6 +1,6 @@
 //! A measure over words, such as the names of contact laws: one line for each combination of them.
 
-use super::{MeasurePoints, axis, empty, label};
+use super::{MeasurePoints, axis, label};
 use crate::sweep::SweepParameter;
 use plot::{Axis, Mark, Panel, palette};
 
@@ -16,12 +16,8 @@ pub fn panel(of: &MeasurePoints, parameters: &[(&String, &SweepParameter)]) -> P
         let labels = labels.map(|((name, parameter), value)| label(name, parameter, value));
         labels.collect::<Vec<_>>().join(", ")
     });
-    let mut panel = empty(
-        of.name,
-        axis(of.name, of.unit),
-        Axis::categories(names.collect()),
-    );
-    panel.note.clone_from(&of.description);
+    let names = Axis::categories(names.collect());
+    let mut panel = of.panel_over(axis(of.name, of.unit), names);
     let (mut x, mut y) = (Vec::new(), Vec::new());
     for point in 0..points.len() {
         let Some((mean, low, high)) = of.at(point) else {

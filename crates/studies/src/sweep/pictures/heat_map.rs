@@ -1,6 +1,6 @@
 //! A measure over two parameters of a grid, one rectangle for each point, darker where the measure is larger.
 
-use super::{MeasurePoints, parameter_axis};
+use super::{MeasurePoints, parameter_axis, stride};
 use crate::sweep::{Spacing, SweepParameter};
 use plot::{Color, Mark, Panel};
 
@@ -73,13 +73,13 @@ fn shade(part: f64) -> Color {
     (mix(from.0, to.0), mix(from.1, to.1), mix(from.2, to.2))
 }
 
-/// The levels that are drawn, at equal distances: all of them unless there are many.
+/// The levels that are drawn: all of them unless there are many.
 fn drawn_levels(parameter: &SweepParameter) -> Vec<usize> {
-    let stride = parameter.levels().div_ceil(MOST);
-    (0..parameter.levels()).step_by(stride).collect()
+    let levels = parameter.levels();
+    (0..levels).step_by(stride(levels, MOST)).collect()
 }
 
-/// Where the rectangle of each level begins and ends: halfway between neighbours. There are two different values at least.
+/// Where the rectangle of each level begins and ends: halfway between neighbours.
 fn edges(parameter: &SweepParameter, levels: &[usize]) -> Vec<(f64, f64)> {
     let is_log = parameter.spacing == Spacing::Log;
     let to = |x: f64| if is_log { x.ln() } else { x };
@@ -90,11 +90,15 @@ fn edges(parameter: &SweepParameter, levels: &[usize]) -> Vec<(f64, f64)> {
     sorted.sort_by(f64::total_cmp);
     sorted.dedup();
     let last = sorted.len() - 1;
-    let half = |k: usize| 0.5 * (sorted[k + 1] - sorted[k]);
+    let half = |k: usize| match last {
+        // one value is left of those that are drawn
+        0 => 0.5,
+        _ => 0.5 * (sorted[k + 1] - sorted[k]),
+    };
     let edge = |x: &f64| {
         let k = sorted.partition_point(|y| y < x);
         let below = half(k.saturating_sub(1));
-        let above = half(k.min(last - 1));
+        let above = half(k.min(last.saturating_sub(1)));
         (from(x - below), from(x + above))
     };
     levels.iter().map(edge).collect()

@@ -10,7 +10,7 @@ mod scatter;
 use super::design::DesignKind;
 use super::merge::{Merged, Points};
 use super::{FieldValue, Spacing, Sweep, SweepParameter};
-use plot::{Axis, Figure, Panel};
+use plot::{Axis, Figure, Panel, palette};
 
 /// Curves of a panel; more values of a second parameter are a map.
 const CURVES: usize = 6;
@@ -23,38 +23,51 @@ pub fn figure(sweep: &Sweep, merged: &Merged, points: &Points) -> Figure {
     let mut notes = Vec::new();
     let (mut mapped, mut thinned) = (false, false);
     let numeric = |p: &SweepParameter| p.values.iter().all(|value| value.number().is_some());
-    // place of the first parameter with numbers, over which a grid is drawn
-    let numbers = parameters.iter().position(|(_, p)| numeric(p));
-    let numbers = numbers.unwrap_or(parameters.len());
+    // the first parameter with numbers, over which a grid is drawn
+    let abscissa = parameters.iter().position(|(_, p)| numeric(p));
+    let curves = abscissa.map(|place| curves(&parameters, place));
+    // words cannot be the ordinate of a map, so they have more curves
+    let worded = parameters.iter().filter(|(_, p)| !numeric(p)).count();
+    let most_curves = match worded + 1 == parameters.len() {
+        true => palette::SERIES.len(),
+        false => CURVES,
+    };
+    let ends = merged.crossing.as_ref().and_then(|crossing| {
+        let [from, to] = &crossing.between;
+        Some([from.number()?, to.number()?])
+    });
     for m in 0..study.measures.len() {
         let of = MeasurePoints::new(sweep, points, m);
-        match (study.design, &parameters[..]) {
-            (DesignKind::Grid, [(_, x), (_, y)])
-                if numeric(x) && numeric(y) && distinct(x) > 1 && distinct(y) > CURVES =>
+        match (study.design, &parameters[..], abscissa) {
+            (DesignKind::Grid, [(_, x), (_, y)], _)
+                if worded == 0 && distinct(x) > 1 && distinct(y) > CURVES =>
             {
                 mapped = true;
                 thinned |= x.levels().max(y.levels()) > heat_map::MOST;
                 panels.push(heat_map::panel(&of, parameters[0], parameters[1]));
             }
-            (DesignKind::Grid, _) if curves(&parameters, numbers) <= CURVES => {
-                panels.push(response::panel(&of, &parameters, numbers));
+            (DesignKind::Grid, _, Some(place)) if curves <= Some(most_curves) => {
+                thinned |= parameters[place].1.levels() > response::MOST;
+                panels.push(response::panel(&of, &parameters, place));
             }
-            (DesignKind::Grid, _)
-                if numbers == parameters.len() && points.values.len() <= comparison::MOST =>
-            {
+            (_, _, None) if points.values.len() <= comparison::MOST => {
                 panels.push(comparison::panel(&of, &parameters));
             }
             _ => {
-                thinned |= points.values.len() > scatter::MOST;
+                thinned |= points.values.len() > scatter::MOST && abscissa.is_some();
+                let target = study.target.as_ref();
                 let shown = parameters.iter().enumerate();
                 let shown = shown.filter(|(_, (_, parameter))| numeric(parameter));
-                panels
-                    .extend(shown.map(|(j, p)| scatter::panel(&of, j, *p, study.target.as_ref())));
+                let shown = shown.map(|(j, p)| scatter::panel(&of, j, *p, target, ends));
+                panels.extend(shown);
             }
         }
     }
+    if panels.is_empty() {
+        notes.push("Parameters with so many words are not drawn: see sweep.csv.".to_owned());
+    }
     if thinned {
-        notes.push("Of many points some are drawn, at equal distances.".to_owned());
+        notes.push("Of many points some are drawn.".to_owned());
     }
     if study.starts_of_a_point() > 1 {
         let starts = study.starts_of_a_point();
@@ -73,14 +86,16 @@ pub fn figure(sweep: &Sweep, merged: &Merged, points: &Points) -> Figure {
     }
     if !study.envelopes.is_empty() {
         notes.push(
-            "Courses: dark from the mean least to the mean largest value of a run, pale from the least to the largest of all."
+            "Courses, over the runs of all points: dark from the mean least to the mean largest value of a run, pale from the least \
+             to the largest of all."
                 .to_owned(),
         );
     }
-    let columns = if panels.len() > 4 {
-        3
-    } else {
-        2.min(panels.len())
+    let columns = match panels.len() {
+        // names of lines take the room of a panel
+        _ if panels.iter().any(|panel| !panel.y.names.is_empty()) => 1,
+        n if n > 4 => 3,
+        n => n.min(2),
     };
     rows.extend(Figure::grid(panels, columns, String::new()).rows);
     let courses = 0..study.envelopes.len();
@@ -100,14 +115,26 @@ fn distinct(parameter: &SweepParameter) -> usize {
     levels.len()
 }
 
-/// Curves of a grid over the parameter with this place; as many as one can imagine if there is none.
+/// Curves of a grid over the parameter with this place.
 fn curves(parameters: &[(&String, &SweepParameter)], place: usize) -> usize {
-    if place == parameters.len() {
-        return usize::MAX;
-    }
     let others = parameters.iter().enumerate().filter(|(j, _)| *j != place);
     let others = others.map(|(_, (_, p))| p.levels());
     others.fold(1, usize::saturating_mul)
+}
+
+/// The least distance at which at most `most` of `count` points are drawn and the values of no parameter of a grid are passed
+/// over: it has no divisor in common with the number of points.
+fn stride(count: usize, most: usize) -> usize {
+    let divisor = |a: usize, b: usize| {
+        let (mut a, mut b) = (a, b);
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    let mut strides = count.div_ceil(most).max(1)..;
+    let found = strides.find(|stride| divisor(*stride, count.max(1)) == 1);
+    found.expect("there are numbers that do not divide another")
 }
 
 /// A measure at every point.
@@ -199,7 +226,13 @@ fn empty(title: &str, x: Axis, y: Axis) -> Panel {
 /// Scene, number of runs, what changed in every run, and the notes of the panels.
 fn caption(sweep: &Sweep, merged: &Merged, notes: &[String]) -> String {
     let study = &sweep.study;
-    let mut text = format!("{}. Scene {}", merged.title, merged.scene);
+    let title = &merged.title;
+    let stop = if title.ends_with(['.', '?', '!']) {
+        ""
+    } else {
+        "."
+    };
+    let mut text = format!("{title}{stop} Scene {}", merged.scene);
     // the method is said in words
     let changes = study.set.iter();
     let varies = |change: &str| {
@@ -228,4 +261,26 @@ fn caption(sweep: &Sweep, merged: &Merged, notes: &[String]) -> String {
         text += &format!(" {note}");
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::stride;
+
+    #[test]
+    fn points_that_are_drawn_have_all_values_of_a_grid() {
+        for (levels, most) in [([70, 70, 5], 5000), ([20, 20, 20], 5000), ([3, 3, 3], 5000)] {
+            let count: usize = levels.iter().product();
+            let drawn = (0..count).step_by(stride(count, most));
+            let drawn: Vec<usize> = drawn.collect();
+            assert!(drawn.len() <= most && 4 * drawn.len() > count.min(most));
+            // the last parameter varies fastest
+            let mut seen = vec![false; levels[2]];
+            drawn
+                .iter()
+                .for_each(|point| seen[point % levels[2]] = true);
+            assert!(seen.iter().all(|seen| *seen), "{levels:?}");
+        }
+        assert_eq!([stride(0, 9), stride(1, 9), stride(9, 9)], [1; 3]);
+    }
 }

@@ -1,11 +1,13 @@
 //! A measure over one parameter of a grid, one curve for each combination of the others.
 
-use super::{MeasurePoints, label, parameter_axis};
+use super::{MeasurePoints, label, parameter_axis, stride};
 use crate::sweep::SweepParameter;
 use plot::{Mark, Panel, palette};
 
 /// Radius of a dot \[pixels\].
 const DOT: u32 = 7;
+/// Points of a curve; of more some are drawn.
+pub const MOST: usize = 500;
 
 /// The panel over the parameter with this place.
 pub fn panel(of: &MeasurePoints, parameters: &[(&String, &SweepParameter)], place: usize) -> Panel {
@@ -19,7 +21,8 @@ pub fn panel(of: &MeasurePoints, parameters: &[(&String, &SweepParameter)], plac
     let curves = of.points.values.len() / levels;
     for (curve, color) in (0..curves).zip(palette::SERIES) {
         let first = curve / later * later * levels + curve % later;
-        let points = (0..levels).map(|level| first + level * later);
+        let drawn = (0..levels).step_by(stride(levels, MOST));
+        let points = drawn.map(|level| first + level * later);
         let known = points.filter_map(|point| {
             let (mean, low, high) = of.at(point)?;
             Some((of.abscissa(point, place), mean, low, high))
