@@ -32,7 +32,7 @@ impl Stepper for SymplecticEuler {
 
     fn estimate(&self) -> Estimate { Estimate { order: 2.0, is_error: true, implicit: false } }
 
-    /// The trapezoidal rule minus this one.
+    /// The step of the trapezoidal rule minus this step, to leading order.
     fn local_error(&self, from: &State, to: &State, _: &State, error: &mut LocalError) {
         let h = to.t - from.t;
         for (i, (q, v)) in error.q.iter_mut().zip(&mut error.v).enumerate() {

@@ -22,7 +22,7 @@ pub static DRAG: ForceKind = ForceKind {
     },
 };
 
-/// F = -c |v| v. The library differences it; a method `gradient` would return the exact derivatives.
+/// F = -c |v| v. Its derivatives are finite differences, unless the law has a method `gradient` that returns them.
 #[derive(Debug)]
 struct Drag(f64);
 

@@ -11,7 +11,7 @@ use std::io::Result;
 pub struct HardestImpacts {
     /// The largest velocity of approach of each joint \[m/s\].
     pub by_joint: BTreeMap<String, f64>,
-    /// Their number.
+    /// The number of contacts that have ended.
     pub contacts: usize,
 }
 

@@ -35,18 +35,19 @@
 //!
 //! # User-defined kinds
 //!
-//! A [`registry::Registry`] holds what a scene can name. A program adds kinds to it and reads scenes with
+//! A [`registry::Registry`] holds the kinds of laws, forces, joints and methods that a scene can name. A program can add kinds of
+//! its own and read scenes with
 //! [`scene::Scene::load_with`]:
 //!
 //! | what | trait | example |
 //! |---|---|---|
-//! | normal contact law | [`contact::normal::NormalLaw`], or a factor for [`contact::normal::DampedPower`] | `own_contact_law` |
-//! | force on a point | [`interaction::PointLaw`] | `own_interaction` |
+//! | normal contact law | [`contact::normal::NormalLaw`], or a factor for [`contact::normal::DampedPower`] | `examples/own_contact_law.rs` |
+//! | force on a point | [`interaction::PointLaw`] | `examples/own_interaction.rs` |
 //! | any other force, joint, body | [`interaction::ForceModel`], [`interaction::JointModel`], [`body::Body`] | |
-//! | integration scheme | [`stepper::Stepper`] | `own_integrator` |
+//! | integration scheme | [`stepper::Stepper`] | `examples/own_integrator.rs` |
 //! | function of time | [`motion::FunctionOfTime`] | |
 //! | format of tables | [`table::Format`] | |
-//! | receiver of results | [`simulate::Observer`] | `own_observer` |
+//! | receiver of results | [`simulate::Observer`] | `examples/own_observer.rs` |
 //!
 //! EQUATIONS.md maps the equations of the paper
 //! to functions; ARCHITECTURE.md maps the mechanics to folders.

@@ -17,6 +17,7 @@ mod hostile_input;
 mod ideal;
 mod language;
 mod library;
+mod long_chains;
 mod loose;
 mod loose_guide;
 mod malformed;

@@ -33,7 +33,7 @@ def test_the_example_of_the_project_runs(tmp_path, monkeypatch):
     (block,) = re.findall(r"^```python\n(.*?)^```$", (TOP / "README.md").read_text("utf-8"), re.DOTALL | re.MULTILINE)
     exec(compile(block, "README.md", "exec"), {})
     assert (tmp_path / "force.png").stat().st_size > 1000
-    assert (tmp_path / "out/play/sweep.png").stat().st_size > 1000
+    assert (tmp_path / "out/slider-play/sweep.png").stat().st_size > 1000
 
 
 def test_the_readme_names_everything():

@@ -113,7 +113,7 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
         name(placed),
         opening(&placed.term, off, "/s")
     );
-    let silent = scene.initial.bodies.iter().filter(|s| !s.velocity_given);
+    let silent = scene.initial.bodies.values().filter(|s| !s.velocity_given);
     let silent: Vec<&BodyState> = silent.collect();
     let Some(first) = silent.first() else {
         return Err(scene.error(scene.initial.span, message, "this start"));
@@ -161,7 +161,7 @@ fn starts(
     let exact = |b: usize| given(b).map(|g| scene.bodies[b].kind.frame(g.position, g.velocity));
     let incomplete = (0..scene.bodies.len()).any(|b| free[b] && given(b).is_none());
     let asked = !scene.initial.sketch.is_empty() || !scene.initial.velocities.is_empty();
-    let deformed = scene.initial.bodies.iter();
+    let deformed = scene.initial.bodies.values();
     let mut deformed = deformed.filter(|given| given.deformation != Deformation::default());
     if let (None, true, Some(given)) = (kinematics, incomplete || asked, deformed.next()) {
         let name = &scene.bodies[given.body].name;

@@ -1,7 +1,8 @@
 //! Redundant constraints: found at the start, left out of the equations, reported by name.
 
-use crate::compile::assembly::{closing_step, row};
+use crate::compile::assembly::{closing_step, row, sparse_rows};
 use crate::math::dense::{Added, Equations};
+use crate::math::sparse_rows::SparseRows;
 use crate::model::Model;
 use crate::system::State;
 
@@ -39,11 +40,15 @@ pub(crate) enum Redundancy {
 /// The row of a redundant bar of a parallelogram depends on the others in every pose; a row of a mechanism at a dead centre
 /// does so in that pose only.
 pub(crate) fn find(model: &Model, start: &State) -> Redundancy {
+    let n = model.shape().unknowns;
+    let rows = sparse_rows(model, start);
+    if rows.is_some_and(|rows| SparseRows::independent(n, &rows).is_some()) {
+        return Redundancy::Rows(Vec::new());
+    }
     let (here, equations) = dependent(model, start);
     if here.is_empty() {
         return Redundancy::Rows(here);
     }
-    let n = model.shape().unknowns;
     // any direction that the constraints permit and that shares no symmetry with a mechanism
     let direction: Vec<f64> = (0..n).map(|i| (1.0 + 2.4 * i as f64).sin()).collect();
     let free = equations.free_part(&direction);

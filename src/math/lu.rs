@@ -66,21 +66,35 @@ impl Symbolic {
                 neighbours[i].extend(clique.iter().copied().filter(|&j| j != i));
             }
         }
-        let mut gone = vec![false; n];
+        // how many unknowns must still go before each one, and those that wait for each one
+        let mut awaited: Vec<usize> = after.iter().map(Vec::len).collect();
+        let mut waiting = vec![Vec::new(); n];
+        for (i, before) in after.iter().enumerate() {
+            before.iter().for_each(|&j| waiting[j].push(i));
+        }
+        // the unknowns that can go, by their number of neighbours
+        let free = (0..n).filter(|&i| awaited[i] == 0);
+        let mut ready: BTreeSet<(usize, usize)> = free.map(|i| (neighbours[i].len(), i)).collect();
         let mut order = Vec::with_capacity(n);
         let mut eliminated_with = Vec::with_capacity(n);
         for _ in 0..n {
-            let ready = |i: &usize| !gone[*i] && after[*i].iter().all(|&j| gone[j]);
-            let pivot = (0..n)
-                .filter(ready)
-                .min_by_key(|&i| neighbours[i].len())
-                .expect("the orders asked for do not contradict each other");
+            let next = ready.pop_first();
+            let (_, pivot) = next.expect("the orders asked for do not contradict each other");
             let front: Vec<usize> = std::mem::take(&mut neighbours[pivot]).into_iter().collect();
             for &i in &front {
+                let before = neighbours[i].len();
                 neighbours[i].remove(&pivot);
                 neighbours[i].extend(front.iter().copied().filter(|&j| j != i));
+                if ready.remove(&(before, i)) {
+                    ready.insert((neighbours[i].len(), i));
+                }
             }
-            gone[pivot] = true;
+            for &i in &waiting[pivot] {
+                awaited[i] -= 1;
+                if awaited[i] == 0 {
+                    ready.insert((neighbours[i].len(), i));
+                }
+            }
             order.push(pivot);
             eliminated_with.push(front);
         }
@@ -212,6 +226,11 @@ impl Symbolic {
             }
         }
         Ok(())
+    }
+
+    /// The pivot of an unknown in the factors of [`Symbolic::factor`].
+    pub fn pivot(&self, values: &[f64], unknown: usize) -> f64 {
+        1.0 / values[self.pivots[self.position[unknown]].start]
     }
 
     /// Smallest over largest pivot of the unknowns from `first` on, in the factors of [`Symbolic::factor`].

@@ -4,3 +4,4 @@ pub mod dense;
 pub mod lu;
 pub mod plane;
 pub mod quadrature;
+pub mod sparse_rows;

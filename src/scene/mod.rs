@@ -17,6 +17,7 @@ use crate::math::plane::Vec2;
 use crate::motion::{Function, Path};
 pub use crate::stepper::Method;
 pub use file::read_file;
+use indexmap::IndexMap;
 
 use crate::body::{Body, Deformation};
 use crate::document::Sources;
@@ -226,8 +227,8 @@ pub struct NamedBody {
 pub struct Initial {
     /// Approximate positions of joints and points \[m\]: they choose the branch.
     pub sketch: Vec<SketchPoint>,
-    /// Exact states of bodies, for mechanisms without a drive.
-    pub bodies: Vec<BodyState>,
+    /// Exact states by the indices of their bodies, for mechanisms without a drive.
+    pub bodies: IndexMap<usize, BodyState>,
     /// Single velocities; the others follow with the least kinetic energy.
     pub velocities: Vec<GivenVelocity>,
     /// The start is the equilibrium under the loads at t = 0.
@@ -239,7 +240,7 @@ pub struct Initial {
 impl Initial {
     /// The state that the scene gives to a body.
     pub(crate) fn state_of(&self, body: usize) -> Option<&BodyState> {
-        self.bodies.iter().find(|state| state.body == body)
+        self.bodies.get(&body)
     }
 }
 

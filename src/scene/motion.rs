@@ -8,6 +8,7 @@ use crate::document::{Field, Fields, Key, Kind, NumberRange, SceneError, Takes, 
 use crate::interaction::Names;
 use crate::math::plane::{Vec2, pair, quarter_turn, unit};
 use crate::motion::{Use, read_path};
+use indexmap::IndexMap;
 
 /// What drives prescribe.
 #[derive(Default)]
@@ -250,7 +251,7 @@ pub(super) fn initial(root: &Fields, names: &Names) -> Result<Initial, SceneErro
     let Some(field) = root.optional("initial") else {
         return Ok(Initial {
             sketch: Vec::new(),
-            bodies: Vec::new(),
+            bodies: IndexMap::new(),
             velocities: Vec::new(),
             equilibrium: false,
             span: root.whole.span(),
@@ -265,7 +266,10 @@ pub(super) fn initial(root: &Fields, names: &Names) -> Result<Initial, SceneErro
     })?;
     Ok(Initial {
         sketch: sketch.into_values().flatten().collect(),
-        bodies: states.into_values().collect(),
+        bodies: states
+            .into_values()
+            .map(|state| (state.body, state))
+            .collect(),
         velocities: velocities.into_values().flatten().collect(),
         equilibrium: table.optional_boolean("equilibrium")?.unwrap_or(false),
         span: field.span(),

@@ -48,7 +48,7 @@ pub(super) fn prepare(
         let message = "a static analysis cannot have inverse kinematics";
         return Err(scene.error(drive.span, message, "remove this"));
     }
-    let mut bending = scene.initial.bodies.iter();
+    let mut bending = scene.initial.bodies.values();
     if let Some(given) = bending.find(|given| given.deformation.bending_rate != 0.0) {
         let message = "an equilibrium is at rest: it has no `bending_rate`";
         return Err(scene.error(given.span, message, "this link bends"));
@@ -59,7 +59,7 @@ pub(super) fn prepare(
         return Err(scene.error(scene.initial.span, message, "remove it"));
     }
     if start {
-        let moving = scene.initial.bodies.iter().map(|b| (b.velocity, b.span));
+        let moving = scene.initial.bodies.values().map(|b| (b.velocity, b.span));
         if let Some((_, span)) = moving.into_iter().find(|(v, _)| *v != [0.0; 3]) {
             let message = "a start in equilibrium is at rest";
             return Err(scene.error(span, message, "this body moves"));

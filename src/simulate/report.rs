@@ -194,7 +194,7 @@ fn notes(scene: &Scene) -> Vec<String> {
     let unsaid = |s: &&BodyState| {
         !s.velocity_given && !assembled && scene.simulation.analysis == Analysis::Dynamic
     };
-    for state in scene.initial.bodies.iter().filter(unsaid) {
+    for state in scene.initial.bodies.values().filter(unsaid) {
         notes.push(format!(
             "{} starts at rest, because the scene gives no velocity",
             scene.bodies[state.body].name

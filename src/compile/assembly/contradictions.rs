@@ -93,7 +93,7 @@ fn wrong_length(c: &Compiler, placed: &PlacedConstraint, state: &State) -> Optio
 
 /// An error for a joint or a drive that a given pose violates, if there is one.
 fn misfit(c: &Compiler, placed: &PlacedConstraint, whole: &str, open: f64) -> Option<SceneError> {
-    let mut poses = c.scene.initial.bodies.iter();
+    let mut poses = c.scene.initial.bodies.values();
     let pose = poses.find(|s| placed.owners.contains(&s.body))?;
     let message = format!(
         "the given pose of {} does not fit {whole}, which stays open by {}",
@@ -120,7 +120,7 @@ pub(super) fn blame(
     held: &[bool],
     (open, placed): (f64, &PlacedConstraint),
 ) -> Option<SceneError> {
-    let pose = c.scene.initial.bodies.iter().find(|pose| {
+    let pose = c.scene.initial.bodies.values().find(|pose| {
         let (mut free, mut state) = (held.to_vec(), guessed.clone());
         for i in coordinates(model, pose.body) {
             free[i] = false;

@@ -177,7 +177,7 @@ pub(super) fn guess(
         done: c.roles.iter().map(|r| *r != Role::Free).collect(),
         held: vec![false; n],
     };
-    for given in &c.scene.initial.bodies {
+    for given in c.scene.initial.bodies.values() {
         let frame = c.bodies[given.body].frame(given.position, given.velocity);
         assembly.write(given.body, frame.position, state);
         for i in coordinates(mechanism, given.body) {

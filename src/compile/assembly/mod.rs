@@ -13,6 +13,7 @@ use super::{Compiler, Mode, build, known_roles, numbering};
 use crate::body::PointRef;
 use crate::math::dense::Equations;
 use crate::math::plane::Vec2;
+use crate::math::sparse_rows::{SparseRow, SparseRows};
 use crate::model::{Model, PlacedConstraint};
 use crate::newton::{Update, iterate};
 use crate::scene::{Scene, SceneError, SketchPoint, Sketched};
@@ -28,6 +29,8 @@ pub(crate) const CENTRE: &str = "`x` and `y` locate the centre of mass, the midp
 
 /// Largest violation of an assembled constraint \[m\]: far above rounding, far below anything measurable.
 const CLOSED: f64 = 1e-12;
+/// Unknowns and constraint rows from which on sparse algebra is used: both take some milliseconds there.
+const LARGE: usize = 300;
 /// Steps of Newton's method.
 const ITERATIONS: usize = 80;
 /// Largest distance between a joint and its sketch, relative to the smaller body.
@@ -62,37 +65,69 @@ pub(crate) fn assemble(scene: &Scene) -> Result<(Model, State), SceneError> {
 
 /// The gradient of one constraint row with respect to the unknown coordinates.
 pub(crate) fn row(model: &Model, state: &State, constraint: usize, d: usize) -> Vec<f64> {
-    let n = model.shape().unknowns;
-    let placed = &model.constraints[constraint];
-    let gradient = placed.term.gradient(state);
-    let mut dense = vec![0.0; n];
-    for (g, &i) in gradient[d].iter().zip(&placed.block.coordinates) {
-        if i < n {
-            dense[i] += g;
-        }
+    let mut dense = vec![0.0; model.shape().unknowns];
+    for (i, g) in sparse_row(model, state, constraint, d) {
+        dense[i] += g;
     }
     dense
+}
+
+/// The same as its entries.
+fn sparse_row(model: &Model, state: &State, constraint: usize, d: usize) -> SparseRow {
+    let placed = &model.constraints[constraint];
+    let gradient = placed.term.gradient(state);
+    let entries = placed.block.coordinates.iter().zip(gradient[d]);
+    let entries = entries.filter(|(i, _)| **i < model.shape().unknowns);
+    entries.map(|(i, g)| (*i, g)).collect()
+}
+
+/// All rows of the constraints of a large mechanism; none of a small one, for which dense algebra is as fast.
+pub(crate) fn sparse_rows(model: &Model, state: &State) -> Option<Vec<SparseRow>> {
+    let shape = model.shape();
+    if shape.unknowns + shape.multipliers < LARGE {
+        return None;
+    }
+    let constraints = model.constraints.iter().enumerate();
+    let rows = constraints.flat_map(|(i, placed)| (0..placed.rows).map(move |d| (i, d)));
+    Some(rows.map(|(i, d)| sparse_row(model, state, i, d)).collect())
 }
 
 /// One step of Newton's method of least norm on Phi = 0 over the coordinates that are not held; returns the largest move.
 pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> Update {
     let n = model.shape().unknowns;
-    let mut equations = Equations::default();
-    for (i, placed) in model.constraints.iter().enumerate() {
-        let value = placed.term.value(state);
-        for d in 0..placed.rows {
-            let mut gradient = row(model, state, i, d);
-            for (g, held) in gradient.iter_mut().zip(held) {
-                *g = if *held { 0.0 } else { *g };
+    let step = sparse_step(model, state, held).unwrap_or_else(|| {
+        let mut equations = Equations::default();
+        for (i, placed) in model.constraints.iter().enumerate() {
+            let value = placed.term.value(state);
+            for d in 0..placed.rows {
+                let mut gradient = row(model, state, i, d);
+                for (g, held) in gradient.iter_mut().zip(held) {
+                    *g = if *held { 0.0 } else { *g };
+                }
+                equations.add(&gradient, -value[d]);
             }
-            equations.add(&gradient, -value[d]);
         }
-    }
-    let step = equations.least_norm(n);
+        equations.least_norm(n)
+    });
     for (q, dq) in state.q.iter_mut().zip(&step) {
         *q += dq;
     }
     Update::largest(step.iter().copied())
+}
+
+/// The step of a large mechanism whose rows are certainly independent.
+fn sparse_step(model: &Model, state: &State, held: &[bool]) -> Option<Vec<f64>> {
+    let mut rows = sparse_rows(model, state)?;
+    for row in &mut rows {
+        row.retain(|(i, _)| !held[*i]);
+    }
+    let n = model.shape().unknowns;
+    let values = model.constraints.iter().flat_map(|placed| {
+        let value = placed.term.value(state);
+        (0..placed.rows).map(move |d| -value[d])
+    });
+    let values: Vec<f64> = values.collect();
+    Some(SparseRows::independent(n, &rows)?.solve(&vec![0.0; n], &values))
 }
 
 /// The largest violation of a constraint, and the constraint.

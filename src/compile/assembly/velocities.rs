@@ -1,8 +1,9 @@
 //! Velocities at the start, from a few given ones.
 
 use super::super::{Compiler, Role};
-use super::{AGREEING, opening, row};
+use super::{AGREEING, opening, row, sparse_rows};
 use crate::math::dense::{Added, Equations};
+use crate::math::sparse_rows::{Block, SparseRow, SparseRows};
 use crate::model::Model;
 use crate::scene::SceneError;
 use crate::system::{State, System};
@@ -21,6 +22,11 @@ pub(super) fn velocities(
     state.v[..n].fill(0.0);
     let mut rates = vec![0.0; mechanism.shape().multipliers];
     mechanism.constraint_velocity(state, &mut rates);
+    if let Some(v) = sparse_velocities(c, mechanism, state, &rates) {
+        state.v[..n].copy_from_slice(&v);
+        mechanism.move_driven_nodes(state);
+        return Ok(());
+    }
     let mut equations = Equations::default();
     for (i, placed) in mechanism.constraints.iter().enumerate() {
         for d in 0..placed.rows {
@@ -37,12 +43,12 @@ pub(super) fn velocities(
             }
         }
     }
-    for given in c.scene.initial.bodies.iter().filter(|g| g.velocity_given) {
+    for given in c.scene.initial.bodies.values().filter(|g| g.velocity_given) {
         for (component, (key, unit)) in RATES.into_iter().enumerate() {
             let Some((a, known)) = velocity_row(mechanism, state, given.body, component) else {
                 continue;
             };
-            let added = equations.add(&a, given.velocity[component] - known);
+            let added = equations.add(&full(n, &a), given.velocity[component] - known);
             if let Added::Dependent(off) = added
                 && off.abs() > AGREEING
             {
@@ -65,7 +71,7 @@ pub(super) fn velocities(
         let Some((a, known)) = velocity_row(mechanism, state, given.body, given.component) else {
             continue;
         };
-        if let Added::Dependent(off) = equations.add(&a, given.value - known) {
+        if let Added::Dependent(off) = equations.add(&full(n, &a), given.value - known) {
             let verb = match off.abs() > AGREEING {
                 true => "contradicts",
                 false => "repeats",
@@ -84,6 +90,69 @@ pub(super) fn velocities(
     Ok(())
 }
 
+/// The same of a large mechanism whose constraints and given velocities are certainly independent.
+fn sparse_velocities(
+    c: &Compiler,
+    mechanism: &Model,
+    state: &State,
+    rates: &[f64],
+) -> Option<Vec<f64>> {
+    let n = mechanism.shape().unknowns;
+    let mut rows = sparse_rows(mechanism, state)?;
+    let constraints = mechanism.constraints.iter();
+    let wanted = constraints.flat_map(|p| (p.row..p.row + p.rows).map(|row| -rates[row]));
+    let mut wanted: Vec<f64> = wanted.collect();
+    let whole = c.scene.initial.bodies.values().filter(|g| g.velocity_given);
+    let whole = whole.flat_map(|g| (0..RATES.len()).map(|k| (g.body, k, g.velocity[k])));
+    let single = c.scene.initial.velocities.iter();
+    // the velocity of a body whose motion is prescribed is refused below
+    let free = |body: usize| c.roles[body] == Role::Free;
+    if !single.clone().all(|g| free(g.body)) {
+        return None;
+    }
+    let single = single.map(|g| (g.body, g.component, g.value));
+    for (body, component, value) in whole.chain(single) {
+        if let Some((row, known)) = velocity_row(mechanism, state, body, component) {
+            rows.push(row);
+            wanted.push(value - known);
+        }
+    }
+    SparseRows::independent(n, &rows)?;
+    let mut against = vec![0.0; n];
+    let mut blocks = Vec::new();
+    for part in &mechanism.mass.parts {
+        let count = part.coordinates.len();
+        let is_unknown = |k: &usize| part.coordinates[*k] < n;
+        let own: Vec<usize> = (0..count).filter(is_unknown).collect();
+        let block = own
+            .iter()
+            .flat_map(|r| own.iter().map(move |s| part.values[r * count + s]));
+        blocks.push((
+            own.iter().map(|k| part.coordinates[*k]).collect(),
+            block.collect(),
+        ));
+        for s in (0..count).filter(|k| !is_unknown(k)) {
+            let speed = state.v[part.coordinates[s]];
+            for r in &own {
+                against[part.coordinates[*r]] -= part.values[r * count + s] * speed;
+            }
+        }
+    }
+    let blocks: Vec<(Vec<usize>, Vec<f64>)> = blocks;
+    let blocks: Vec<Block> = blocks
+        .iter()
+        .map(|(own, block)| (&own[..], &block[..]))
+        .collect();
+    Some(SparseRows::factor(n, &rows, &blocks)?.solve(&against, &wanted))
+}
+
+/// A row with all its entries.
+fn full(n: usize, row: &SparseRow) -> Vec<f64> {
+    let mut full = vec![0.0; n];
+    row.iter().for_each(|(i, value)| full[*i] += value);
+    full
+}
+
 /// A velocity of a body as a linear function of the unknown velocities, and the contribution of known ones. `None` for the
 /// angular velocity of a point mass.
 fn velocity_row(
@@ -91,18 +160,12 @@ fn velocity_row(
     state: &State,
     body: usize,
     component: usize,
-) -> Option<(Vec<f64>, f64)> {
+) -> Option<(SparseRow, f64)> {
     let n = mechanism.shape().unknowns;
     let placed = &mechanism.bodies()[body].placed;
     let entries = placed.kind.velocity(component, &placed.x, &state.q)?;
-    let (mut row, mut known) = (vec![0.0; n], 0.0);
-    for (i, value) in entries {
-        if i < n {
-            row[i] += value;
-        } else {
-            known += value * state.v[i];
-        }
-    }
+    let (row, known): (Vec<_>, Vec<_>) = entries.into_iter().partition(|(i, _)| *i < n);
+    let known = known.iter().map(|(i, value)| value * state.v[*i]).sum();
     Some((row, known))
 }
 
