@@ -11,7 +11,7 @@ const INDEPENDENT: f64 = 1e-10;
 pub type SparseRow = Vec<(usize, f64)>;
 
 /// A symmetric block of a positive definite matrix on some indices, row by row.
-pub type Block<'a> = (&'a [usize], &'a [f64]);
+pub type SymmetricBlock<'a> = (&'a [usize], &'a [f64]);
 
 /// The factors of [M G^T; G 0] for rows G.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ impl SparseRows {
     /// distance from the span of the rows that were eliminated before it.
     pub fn independent(n: usize, rows: &[SparseRow]) -> Option<SparseRows> {
         let identity: Vec<usize> = (0..n).collect();
-        let identity: Vec<Block> = identity.chunks(1).map(|i| (i, &[1.0][..])).collect();
+        let identity: Vec<SymmetricBlock> = identity.chunks(1).map(|i| (i, &[1.0][..])).collect();
         let factors = SparseRows::factor(n, rows, &identity)?;
         let is_far = |(k, row): (usize, &SparseRow)| {
             let distance = -factors.symbolic.pivot(&factors.values, n + k);
@@ -36,7 +36,7 @@ impl SparseRows {
     }
 
     /// With M the sum of some blocks. None where a pivot is too small.
-    pub fn factor(n: usize, rows: &[SparseRow], blocks: &[Block]) -> Option<SparseRows> {
+    pub fn factor(n: usize, rows: &[SparseRow], blocks: &[SymmetricBlock]) -> Option<SparseRows> {
         let size = n + rows.len();
         let mut after = vec![Vec::new(); size];
         let mut cliques: Vec<Vec<usize>> = blocks.iter().map(|(own, _)| own.to_vec()).collect();
@@ -134,7 +134,7 @@ mod tests {
         // least energy: masses of pairs, coupled
         let pairs: Vec<usize> = (0..n).collect();
         let block = [2.0, 0.5, 0.5, 1.0];
-        let blocks: Vec<Block> = pairs.chunks(2).map(|own| (own, &block[..])).collect();
+        let blocks: Vec<SymmetricBlock> = pairs.chunks(2).map(|own| (own, &block[..])).collect();
         let energy = Mat::from_fn(n, n, |i, j| match (i / 2 == j / 2, i == j) {
             (true, true) => [2.0, 1.0][i % 2],
             (true, false) => 0.5,

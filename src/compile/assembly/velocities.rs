@@ -3,7 +3,7 @@
 use super::super::{Compiler, Role};
 use super::{AGREEING, opening, row, sparse_rows};
 use crate::math::dense::{Added, Equations};
-use crate::math::sparse_rows::{Block, SparseRow, SparseRows};
+use crate::math::sparse_rows::{SparseRow, SparseRows, SymmetricBlock};
 use crate::model::Model;
 use crate::scene::SceneError;
 use crate::system::{State, System};
@@ -139,7 +139,7 @@ fn sparse_velocities(
         }
     }
     let blocks: Vec<(Vec<usize>, Vec<f64>)> = blocks;
-    let blocks: Vec<Block> = blocks
+    let blocks: Vec<SymmetricBlock> = blocks
         .iter()
         .map(|(own, block)| (&own[..], &block[..]))
         .collect();
