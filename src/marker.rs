@@ -92,7 +92,7 @@ impl Marker {
     }
 
     /// A(theta) s; zero for a node and on a chord.
-    #[inline]
+    #[inline(always)]
     pub fn arm(&self, q: &[f64]) -> Vec2 {
         match *self {
             Marker::Node { .. } | Marker::OnChord { .. } => Vec2::zeros(),
@@ -101,7 +101,7 @@ impl Marker {
     }
 
     /// Position \[m\], given the arm.
-    #[inline]
+    #[inline(always)]
     pub fn position(&self, q: &[f64], arm: Vec2) -> Vec2 {
         match *self {
             Marker::Node { x } | Marker::OnBody { x, .. } => pair(q, x) + arm,
@@ -124,7 +124,7 @@ impl Marker {
     }
 
     /// Velocity \[m/s\], given the arm.
-    #[inline]
+    #[inline(always)]
     pub fn velocity(&self, v: &[f64], arm: Vec2) -> Vec2 {
         match *self {
             Marker::Node { x } => pair(v, x),
@@ -134,7 +134,7 @@ impl Marker {
     }
 
     /// Acceleration \[m/s2\], given the arm.
-    #[inline]
+    #[inline(always)]
     pub fn acceleration(&self, v: &[f64], a: &[f64], arm: Vec2) -> Vec2 {
         match *self {
             Marker::Node { x } => pair(a, x),

@@ -4,6 +4,7 @@ mod change;
 mod checkpoint;
 mod closures;
 mod control;
+mod cubic;
 mod equilibrium;
 mod failure;
 mod foresight;
@@ -17,7 +18,6 @@ mod report;
 mod stall;
 mod start;
 mod stepwise;
-mod top;
 mod warnings;
 
 pub use crate::record::Channel;
@@ -115,10 +115,12 @@ pub struct Simulation {
     counters: LoopCounters,
     /// Failed steps by the unknown or multiplier they failed for.
     halved: Vec<u64>,
-    delta: Vec<f64>,
-    rate: Vec<f64>,
-    /// Distance of every contact to its next change, and its rate, at the last state examined.
+    /// Penetration of every contact and its rate at the trial state, at the accepted one ...
+    gaps: Vec<[f64; 2]>,
+    first_gaps: Vec<[f64; 2]>,
+    /// ... and at two neighbouring states within the step.
     last_gaps: Vec<[f64; 2]>,
+    inner_gaps: Vec<[f64; 2]>,
     started: Vec<(usize, f64, f64)>,
     status: Status,
     error: Option<String>,
@@ -183,6 +185,7 @@ impl Simulation {
         if !std::mem::replace(&mut self.is_between_rows, true) {
             self.pacer.begin(self.state.t);
         }
+        self.model.gaps(&self.state, &mut self.first_gaps);
         while self.state.t < target {
             let goal = self.pacer.goal(self.state.t, target);
             let (mut clamps, mut reached) = self.try_step(goal)?;
@@ -214,6 +217,8 @@ impl Simulation {
                 if self.trial.t != reached {
                     self.estimate_error();
                 }
+            } else {
+                self.model.gaps(&self.trial, &mut self.gaps);
             }
             self.meter.step(&self.state, &self.trial, &self.local_error);
             self.stepper.accept();
@@ -228,6 +233,7 @@ impl Simulation {
             let impacts = &mut self.impacts;
             impacts.step(&self.model, taken, &self.state, observer)?;
             let (before, after) = (&self.trial.z, &self.state.z);
+            std::mem::swap(&mut self.gaps, &mut self.first_gaps);
             self.closures.step(self.state.t, before, after);
             self.stall
                 .step(self.state.t, before, after)
@@ -355,11 +361,12 @@ impl Simulation {
             model,
             state,
             started,
+            gaps,
             ..
         } = self;
         started.clear();
         let tolerance = self.scene.integrator.onset_tolerance;
-        let onsets = model.commit(state, tolerance, &mut |c, velocity, delta| {
+        let onsets = model.commit(state, gaps, tolerance, &mut |c, velocity, delta| {
             started.push((c, velocity, delta))
         });
         self.counters.onsets += onsets as u64;

@@ -9,6 +9,7 @@
 
 use crate::checkpoint::{Carried, carried};
 use crate::math::lu::Symbolic;
+use crate::math::saddle_point::SaddlePoint;
 
 /// Sizes of a system.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -164,17 +165,16 @@ pub struct PrescribeError {
 
 /// The physics, as seen by time integration.
 ///
-/// `r` and `phi` are overwritten. `r` has a row for every coordinate; the rows of known coordinates hold the force
-/// that must act on them. The tangent is the matrix of the stage equations in (a, lambda),
+/// `r` and `phi` are overwritten. `r` has a row for every coordinate, but only the rows of unknown coordinates are complete. The tangent is the matrix of the stage equations in (a, lambda),
 /// \[\[M + w.v C + w.q K, Phi_q^T\], \[Phi_q, 0\]\] with C = df/dv and K = d(f + Phi_q^T lambda)/dq. The matrix of the
-/// acceleration level is \[\[M, Phi_q^T\], \[Phi_q, 0\]\]; it couples fewer unknowns, so it has a pattern of its own.
+/// acceleration level is \[\[M, Phi_q^T\], \[Phi_q, 0\]\], of which M is constant.
 pub trait System {
     /// Sizes.
     fn shape(&self) -> Shape;
     /// Pattern of the tangent: unknown coordinates, then multipliers.
     fn symbolic(&self) -> &Symbolic;
-    /// Pattern of the matrix of the acceleration level, in the same order of unknowns.
-    fn acceleration_symbolic(&self) -> &Symbolic;
+    /// The matrix of the acceleration level.
+    fn acceleration_matrix(&self) -> &SaddlePoint;
     /// Fresh work memory.
     fn work(&self) -> Work;
     /// Sets the known coordinates and their rates in `to` at time `to.t`; `from` is a nearby state.
@@ -201,8 +201,8 @@ pub trait System {
         k: &mut [f64],
         work: &mut Work,
     );
-    /// phi = Phi and the matrix of the acceleration level.
-    fn acceleration_level(&self, at: &State, phi: &mut [f64], k: &mut [f64]);
+    /// phi = Phi and the entries of Phi_q in the matrix of the acceleration level.
+    fn acceleration_level(&self, at: &State, phi: &mut [f64], gradient: &mut [f64]);
     /// The residual of the unknown coordinates without their accelerations and without multipliers, in the first rows of r.
     fn free_residual(&self, at: &State, r: &mut [f64], work: &mut Work);
     /// d(Phi)/dt = Phi_q v + Phi_t.
@@ -210,17 +210,20 @@ pub trait System {
     /// d2(Phi)/dt2, with the accelerations in `at`.
     fn constraint_acceleration(&self, at: &State, out: &mut [f64]);
     /// Penetration delta of every contact \[m\] and its rate \[m/s\].
-    fn gaps(&self, at: &State, delta: &mut [f64], rate: &mut [f64]);
-    /// Opens and closes contacts and counts turns: the only place where memory changes. Returns the number of onsets, and
-    /// calls `onset(contact, impact velocity, delta)` for each.
+    fn gaps(&self, at: &State, gaps: &mut [[f64; 2]]);
+    /// Opens and closes contacts and counts turns: the only place where memory changes. `gaps` are those of the state. Returns
+    /// the number of onsets, and calls `onset(contact, impact velocity, delta)` for each.
     fn commit(
         &self,
         at: &mut State,
+        gaps: &[[f64; 2]],
         tolerance: f64,
         onset: &mut dyn FnMut(usize, f64, f64),
     ) -> usize;
     /// Integrands of the ledger \[W\]; returns the number of contacts whose force is clamped.
     fn powers(&self, at: &mut State, work: &mut Work) -> usize;
+    /// True where the tangent is a differentiable function of the state.
+    fn is_smooth(&self, at: &State) -> bool;
     /// The name of an unknown or of a multiplier, for messages.
     fn unknown_name(&self, index: usize) -> String;
 }

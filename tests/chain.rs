@@ -1,6 +1,7 @@
 //! A linear system against the trait that mechanisms implement: masses and springs in a row.
 
 use looselink::math::lu::Symbolic;
+use looselink::math::saddle_point::SaddlePoint;
 use looselink::stepper::Method;
 use looselink::system::{PrescribeError, Shape, State, System, Weights, Work};
 
@@ -16,7 +17,7 @@ pub struct Chain {
     /// States after this time cannot be prescribed.
     pub prescribed_until: f64,
     symbolic: Symbolic,
-    acceleration_symbolic: Symbolic,
+    acceleration_matrix: SaddlePoint,
 }
 
 impl Chain {
@@ -26,14 +27,15 @@ impl Chain {
         let cliques: Vec<Vec<usize>> = (0..n)
             .map(|i| if i + 1 < n { vec![i, i + 1] } else { vec![i] })
             .collect();
+        let diagonal = masses.iter().enumerate().map(|(i, m)| (i, i, *m));
         Chain {
-            masses,
             springs,
             damping: 0.0,
             contacts: 0,
             prescribed_until: f64::INFINITY,
             symbolic: Symbolic::analyse(n, &cliques, &vec![vec![]; n]),
-            acceleration_symbolic: Symbolic::analyse(n, &[], &vec![vec![]; n]),
+            acceleration_matrix: SaddlePoint::new(n, diagonal.collect(), &[]),
+            masses,
         }
     }
 
@@ -58,8 +60,8 @@ impl System for Chain {
     fn symbolic(&self) -> &Symbolic {
         &self.symbolic
     }
-    fn acceleration_symbolic(&self) -> &Symbolic {
-        &self.acceleration_symbolic
+    fn acceleration_matrix(&self) -> &SaddlePoint {
+        &self.acceleration_matrix
     }
     fn work(&self) -> Work {
         Work {
@@ -108,11 +110,7 @@ impl System for Chain {
             }
         }
     }
-    fn acceleration_level(&self, _: &State, _: &mut [f64], k: &mut [f64]) {
-        for (i, m) in self.masses.iter().enumerate() {
-            k[self.acceleration_symbolic.slot(i, i) as usize] = *m;
-        }
-    }
+    fn acceleration_level(&self, _: &State, _: &mut [f64], _: &mut [f64]) {}
     fn free_residual(&self, at: &State, r: &mut [f64], work: &mut Work) {
         let still = State {
             a: vec![0.0; self.masses.len()],
@@ -122,14 +120,23 @@ impl System for Chain {
     }
     fn constraint_velocity(&self, _: &State, _: &mut [f64]) {}
     fn constraint_acceleration(&self, _: &State, _: &mut [f64]) {}
-    fn gaps(&self, _: &State, _: &mut [f64], _: &mut [f64]) {}
-    fn commit(&self, _: &mut State, _: f64, _: &mut dyn FnMut(usize, f64, f64)) -> usize {
+    fn gaps(&self, _: &State, _: &mut [[f64; 2]]) {}
+    fn commit(
+        &self,
+        _: &mut State,
+        _: &[[f64; 2]],
+        _: f64,
+        _: &mut dyn FnMut(usize, f64, f64),
+    ) -> usize {
         0
     }
     /// Integrands of known integrals, the first three powers of t; one clamp a state.
     fn powers(&self, at: &mut State, _: &mut Work) -> usize {
         at.powers[..3].copy_from_slice(&[1.0, at.t, at.t * at.t]);
         1
+    }
+    fn is_smooth(&self, _: &State) -> bool {
+        true
     }
     fn unknown_name(&self, index: usize) -> String {
         format!("mass {index}")

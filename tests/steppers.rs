@@ -22,7 +22,8 @@ fn integrate(
     v: &[f64],
     see: &mut dyn FnMut(&State),
 ) {
-    let mut newton = Newton::new(chain, 1e-13);
+    // modes decay by many orders of magnitude, and every amplitude is compared with the one before
+    let mut newton = Newton::new(chain, f64::MIN_POSITIVE);
     let mut work = chain.work();
     let mut from = State::zeros(chain.shape());
     from.q.copy_from_slice(q);

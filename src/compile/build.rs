@@ -12,6 +12,7 @@ use crate::interaction::{Ends, JointEnds, Placed};
 use crate::kinematics::Kinematics;
 use crate::link::AncfCable;
 use crate::math::lu::Symbolic;
+use crate::math::saddle_point::SaddlePoint;
 use crate::model::{
     Block, Border, Mass, Model, PlacedBody, PlacedConstraint, PlacedContact, PlacedElement,
     PlacedForce, PlacedPoint,
@@ -89,9 +90,9 @@ pub(super) fn build(
         Vec::new()
     };
     let mut mass = mass(std::mem::take(&mut terms.inertia), &numbering, c.mode);
-    let acceleration_symbolic = analyse_level(&terms, &mass, n);
-    mass.tangent = mass.matrix(n, &symbolic, c.mode);
-    mass.acceleration_level = mass.matrix(n, &acceleration_symbolic, c.mode);
+    let entries = mass.entries(n, c.mode);
+    mass.tangent = Mass::placed(&entries, &symbolic);
+    let acceleration_matrix = SaddlePoint::new(n, entries, &unknown_columns(&terms, n));
     let shape = Shape {
         unknowns: n,
         coordinates: numbering.coordinates,
@@ -101,7 +102,7 @@ pub(super) fn build(
     };
     let places = Places {
         tangent: &symbolic,
-        acceleration_level: &acceleration_symbolic,
+        acceleration_level: &acceleration_matrix,
         unknowns: n,
     };
     let mut model = Model {
@@ -128,7 +129,7 @@ pub(super) fn build(
         bodies: Vec::new(),
         joints: Vec::new(),
         symbolic,
-        acceleration_symbolic,
+        acceleration_matrix,
     };
     model.count_effects();
     let bodies = numbering.bodies.into_iter().zip(parts).enumerate();
@@ -166,7 +167,7 @@ fn placed_body(
 /// Finds the places of terms in the matrices.
 struct Places<'a> {
     tangent: &'a Symbolic,
-    acceleration_level: &'a Symbolic,
+    acceleration_level: &'a SaddlePoint,
     unknowns: usize,
 }
 
@@ -191,13 +192,11 @@ impl Places<'_> {
             let sides = r.term.sides();
             let (owners, coordinates) = (owners(&sides, r.sides), sides.concat());
             let rows = r.term.rows();
-            let borders = |symbolic| {
-                let border = |d| Border::new(&coordinates, row + d, symbolic, self.unknowns);
-                (0..rows).map(border).collect()
-            };
+            let border = |d| Border::new(&coordinates, row + d, self.tangent, self.unknowns);
+            let entries = |d| self.entries(&coordinates, row + d);
             let placed = PlacedConstraint {
-                border: borders(self.tangent),
-                acceleration_border: borders(self.acceleration_level),
+                border: (0..rows).map(border).collect(),
+                entries: (0..rows).map(entries).collect(),
                 owners,
                 block: self.block(coordinates),
                 row,
@@ -209,6 +208,19 @@ impl Places<'_> {
             placed
         });
         constraints.collect()
+    }
+
+    /// The entries of a row of Phi_q in the matrix of the acceleration level.
+    fn entries(&self, coordinates: &[usize], row: usize) -> Vec<u32> {
+        let mut next = self.acceleration_level.first_entry(row) as u32;
+        let entry = coordinates.iter().map(|&i| match i < self.unknowns {
+            true => {
+                next += 1;
+                next - 1
+            }
+            false => self.acceleration_level.discarded_entry(),
+        });
+        entry.collect()
     }
 
     fn forces(
@@ -379,79 +391,32 @@ impl Compiler<'_> {
     }
 }
 
-/// Cliques of a pattern, and the unknowns after which each unknown is eliminated.
-struct Pattern {
-    unknowns: usize,
-    cliques: Vec<Vec<usize>>,
-    after: Vec<Vec<usize>>,
+/// The unknown coordinates of every row of Phi_q.
+fn unknown_columns(terms: &Terms, unknowns: usize) -> Vec<Vec<usize>> {
+    let rows = terms.constraints.iter().flat_map(|row| {
+        let coordinates = row.term.coordinates().into_iter();
+        let coordinates: Vec<usize> = coordinates.filter(|i| *i < unknowns).collect();
+        std::iter::repeat_n(coordinates, row.names.len())
+    });
+    rows.collect()
 }
 
-impl Pattern {
-    /// A pattern without cliques, multipliers after the coordinates of their constraints.
-    fn new(terms: &Terms, unknowns: usize) -> Pattern {
-        let mut after = vec![Vec::new(); unknowns];
-        for row in &terms.constraints {
-            let coordinates = row.term.coordinates().into_iter();
-            let coordinates: Vec<usize> = coordinates.filter(|i| *i < unknowns).collect();
-            after.extend(std::iter::repeat_n(coordinates, row.names.len()));
-        }
-        Pattern {
-            unknowns,
-            cliques: Vec::new(),
-            after,
-        }
-    }
-
-    /// The multipliers, each with the unknown coordinates of its constraint.
-    fn rows(&self) -> Vec<(usize, Vec<usize>)> {
-        let rows = self.after.iter().cloned().enumerate();
-        rows.skip(self.unknowns).collect()
-    }
-
-    fn add(&mut self, coordinates: &[usize]) {
-        let unknown = coordinates.iter().copied().filter(|i| *i < self.unknowns);
-        self.cliques.push(unknown.collect());
-    }
-
-    fn analyse(&self) -> Symbolic {
-        Symbolic::analyse(self.after.len(), &self.cliques, &self.after)
-    }
-}
-
-/// Pattern and pivot order of the tangent.
+/// Pattern and pivot order of the tangent: a multiplier after the coordinates of its constraint.
 fn analyse(terms: &Terms, n: usize) -> Symbolic {
-    let mut pattern = Pattern::new(terms, n);
-    for (row, mut coordinates) in pattern.rows() {
-        coordinates.push(row);
-        pattern.cliques.push(coordinates);
-    }
-    for part in &terms.inertia {
-        pattern.add(&part.coordinates);
-    }
-    for (_, coordinates) in &terms.elements {
-        pattern.add(coordinates);
-    }
-    for (force, _) in &terms.forces {
-        pattern.add(&force.coordinates());
-    }
-    for pair in &terms.contacts {
-        pattern.add(&pair.coordinates());
-    }
-    pattern.analyse()
-}
-
-/// Pattern and pivot order of the matrix of the acceleration level: x and y of a node share no mass, and the coordinates of a
-/// constraint meet only in its row.
-fn analyse_level(terms: &Terms, mass: &Mass, n: usize) -> Symbolic {
-    let mut pattern = Pattern::new(terms, n);
-    for (row, coordinates) in pattern.rows() {
-        let pairs = coordinates.into_iter().map(|i| vec![i, row]);
-        pattern.cliques.extend(pairs);
-    }
-    for i in 0..n {
-        for (&j, _) in mass.row(i) {
-            pattern.add(&[i, j]);
-        }
-    }
-    pattern.analyse()
+    let mut after = vec![Vec::new(); n];
+    after.extend(unknown_columns(terms, n));
+    let borders = after.iter().enumerate().skip(n);
+    let borders = borders.map(|(row, coordinates)| [&coordinates[..], &[row]].concat());
+    let blocks = (terms.inertia.iter().map(|part| part.coordinates.clone()))
+        .chain(
+            terms
+                .elements
+                .iter()
+                .map(|(_, coordinates)| coordinates.clone()),
+        )
+        .chain(terms.forces.iter().map(|(force, _)| force.coordinates()))
+        .chain(terms.contacts.iter().map(|pair| pair.coordinates()));
+    let blocks = blocks.map(|coordinates| coordinates.into_iter().filter(|i| *i < n).collect());
+    let cliques: Vec<Vec<usize>> = borders.chain(blocks).collect();
+    Symbolic::analyse(after.len(), &cliques, &after)
 }

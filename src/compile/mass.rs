@@ -42,38 +42,41 @@ pub(super) fn mass(parts: Vec<Inertia>, numbering: &Numbering, mode: Mode) -> Ma
     }
     let mut mass = Mass {
         parts,
-        row_start: vec![0],
-        columns: Vec::new(),
-        values: Vec::new(),
+        entries: Vec::new(),
+        ends: Vec::new(),
         tangent: Vec::new(),
-        acceleration_level: Vec::new(),
         known: Vec::new(),
     };
     let n = numbering.unknowns;
     for (i, row) in rows.iter().enumerate() {
         for (&j, &m) in row {
-            mass.columns.push(j);
-            mass.values.push(m);
+            mass.entries.push((j as u32, m));
             if i < n && j >= n {
                 mass.known.push((i, j, m));
             }
         }
-        mass.row_start.push(mass.columns.len());
+        mass.ends.push(mass.entries.len() as u32);
     }
     mass
 }
 
 impl Mass {
-    /// The sum over unknowns in the layout of a matrix; the unit matrix in the ideal mechanism.
-    pub(super) fn matrix(&self, unknowns: usize, symbolic: &Symbolic, mode: Mode) -> Vec<f64> {
+    /// The sum over unknowns as (row, column, mass); the unit matrix in the ideal mechanism.
+    pub(super) fn entries(&self, unknowns: usize, mode: Mode) -> Vec<(usize, usize, f64)> {
+        match mode {
+            Mode::Ideal => (0..unknowns).map(|i| (i, i, 1.0)).collect(),
+            Mode::Real => {
+                let rows = (0..unknowns).flat_map(|i| self.row(i).map(move |(j, m)| (i, j, m)));
+                rows.filter(|(_, j, _)| *j < unknowns).collect()
+            }
+        }
+    }
+
+    /// Entries of a matrix in its layout.
+    pub(super) fn placed(entries: &[(usize, usize, f64)], symbolic: &Symbolic) -> Vec<f64> {
         let mut matrix = vec![0.0; symbolic.len()];
-        for i in 0..unknowns {
-            if mode == Mode::Ideal {
-                matrix[symbolic.slot(i, i) as usize] = 1.0;
-            }
-            for (&j, m) in self.row(i).filter(|(j, _)| **j < unknowns) {
-                matrix[symbolic.slot(i, j) as usize] = *m;
-            }
+        for &(i, j, m) in entries {
+            matrix[symbolic.slot(i, j) as usize] = m;
         }
         matrix
     }

@@ -90,6 +90,10 @@ impl Force for ElementDamping {
         "element_damping"
     }
 
+    fn is_smooth(&self) -> bool {
+        true
+    }
+
     fn sides(&self) -> [Vec<usize>; 2] {
         [vec![], self.coordinates.clone()]
     }

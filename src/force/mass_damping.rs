@@ -33,6 +33,10 @@ impl Force for MassDamping {
         "mass_damping"
     }
 
+    fn is_smooth(&self) -> bool {
+        true
+    }
+
     fn sides(&self) -> [Vec<usize>; 2] {
         [vec![], self.coordinates.clone()]
     }

@@ -39,6 +39,11 @@ pub trait Force: std::fmt::Debug + Send + Sync {
     fn stores_energy(&self) -> bool {
         false
     }
+    /// True if its tangent is a differentiable function of the state; then the first update with a new tangent leaves an error
+    /// that is the square of the update.
+    fn is_smooth(&self) -> bool {
+        false
+    }
     /// Why it is not defined in a state, if it is not.
     fn fault(&self, _at: &State) -> Option<&'static str> {
         None

@@ -8,9 +8,11 @@
 mod series;
 
 use crate::checkpoint::carried;
+use crate::math::lu::WeakPivot;
 use crate::math::plane::pair;
+use crate::math::saddle_point::SaddleFactors;
 use crate::model::Model;
-use crate::newton::{Factors, Failure, Update, iterate};
+use crate::newton::{Failure, Update, iterate};
 use crate::system::{PrescribeError, Prescribed, State, System};
 use numbers::number;
 use series::Series;
@@ -57,7 +59,7 @@ pub struct Inner {
     /// Constraint values.
     phi: Vec<f64>,
     /// Matrix of the acceleration level.
-    factors: Factors,
+    factors: SaddleFactors,
     /// Right side, unknowns and multipliers.
     b: Vec<f64>,
     /// Its motion over a span of time.
@@ -101,7 +103,7 @@ impl Kinematics {
         Inner {
             state: self.mechanism.blank_state(),
             phi: vec![0.0; shape.multipliers],
-            factors: Factors::new(self.mechanism.acceleration_symbolic()),
+            factors: self.mechanism.acceleration_matrix().factors(),
             b: vec![0.0; size],
             series: Series::new(self.moving.len(), self.period),
         }
@@ -207,10 +209,16 @@ impl Kinematics {
     /// Phi and the factors of \[\[I, Phi_q^T\], \[Phi_q, 0\]\] at the current coordinates. A weak pivot is that of a singular pose,
     /// which no exchange of rows removes.
     fn factor(&self, inner: &mut Inner) -> Result<(), Failure> {
-        let (state, phi) = (&inner.state, &mut inner.phi);
-        let fill = |k: &mut [f64]| self.mechanism.acceleration_level(state, phi, k);
-        let symbolic = self.mechanism.acceleration_symbolic();
-        inner.factors.renew_in_order(symbolic, fill)
+        let Inner {
+            state,
+            phi,
+            factors,
+            ..
+        } = inner;
+        let mechanism = &self.mechanism;
+        mechanism.acceleration_level(state, phi, &mut factors.gradient);
+        let factored = mechanism.acceleration_matrix().factor(factors);
+        factored.map_err(|weak: WeakPivot| Failure::Singular { index: weak.index })
     }
 
     /// Why the mechanism has no pose.
@@ -230,12 +238,11 @@ impl Kinematics {
     /// Solves Phi_q x = -phi for the x of least norm: the first entries of `inner.b`.
     fn least_norm(&self, inner: &mut Inner) {
         let n = self.mechanism.shape().unknowns;
-        inner.b[..n].fill(0.0);
         for (b, phi) in inner.b[n..].iter_mut().zip(&inner.phi) {
             *b = -phi;
         }
-        let symbolic = self.mechanism.acceleration_symbolic();
-        inner.factors.solve(symbolic, &mut inner.b);
+        let matrix = self.mechanism.acceleration_matrix();
+        matrix.solve_rows(&mut inner.factors, &mut inner.b);
     }
 
     fn cannot_close(&self, at: &State) -> PrescribeError {

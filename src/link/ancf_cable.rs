@@ -23,10 +23,7 @@
 use super::ElasticRoute;
 use crate::math::plane::{Vec2, pair};
 
-/// Index pairs (a, b) of a symmetric 3 x 3 matrix, in storage order.
-const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
-
-/// T_abcd, rows ab and columns cd in the order of [`PAIRS`]; columns with c != d carry the factor 2 of their twin dc.
+/// T_abcd, rows ab and columns cd in the order of [`of_pairs`]; columns with c != d carry the factor 2 of their twin dc.
 #[rustfmt::skip]
 const T: [[f64; 6]; 6] = [
     [72.0 / 35.0, -18.0 / 35.0,  -18.0 / 35.0,   3.0 / 35.0,          0.0,   3.0 / 35.0],
@@ -60,19 +57,24 @@ pub struct AncfCable {
     bending_stiffness: f64,
 }
 
-/// T contracted with a symmetric matrix.
-#[inline]
-fn contract(m: &[f64; 6]) -> [f64; 6] {
-    let mut out = [0.0; 6];
-    for (row, o) in T.iter().zip(&mut out) {
-        *o = row[0] * m[0]
-            + row[1] * m[1]
-            + row[2] * m[2]
-            + row[3] * m[3]
-            + row[4] * m[4]
-            + row[5] * m[5];
+/// T contracted with N symmetric matrices side by side.
+#[inline(always)]
+fn contract<const N: usize>(m: &[[f64; N]; 6]) -> [[f64; N]; 6] {
+    let mut out = [[0.0; N]; 6];
+    for (row, out) in T.iter().zip(&mut out) {
+        for (t, m) in row.iter().zip(m) {
+            for lane in 0..N {
+                out[lane] += t * m[lane];
+            }
+        }
     }
     out
+}
+
+/// A function of the six pairs.
+#[inline(always)]
+fn of_pairs<T>(f: impl Fn(usize, usize) -> T) -> [T; 6] {
+    [f(0, 0), f(0, 1), f(0, 2), f(1, 1), f(1, 2), f(2, 2)]
 }
 
 impl AncfCable {
@@ -86,7 +88,7 @@ impl AncfCable {
     /// u_a . u_b - 1 for the six pairs: twice the strain that each pair stands for.
     #[inline]
     fn stretches(u: &[Vec2; 3]) -> [f64; 6] {
-        PAIRS.map(|(a, b)| u[a].dot(&u[b]) - 1.0)
+        of_pairs(|a, b| u[a].dot(&u[b]) - 1.0)
     }
 
     /// u_2 - u_1 and u_3 - u_1. B annihilates equal vectors, so bending depends on these alone: a straight element has
@@ -128,9 +130,9 @@ impl AncfCable {
     pub fn energy(&self, q: &[f64; 8]) -> (f64, f64) {
         let u = self.slopes(q);
         let d = Self::stretches(&u);
-        let w = contract(&d);
+        let w = contract(&d.map(|d| [d]));
         let weights = [1.0, 2.0, 2.0, 1.0, 2.0, 1.0];
-        let axial: f64 = (0..6).map(|p| weights[p] * d[p] * w[p]).sum();
+        let axial: f64 = (0..6).map(|p| weights[p] * d[p] * w[p][0]).sum();
         let [start, end] = Self::bends(&u);
         let bending = B[1][1] * start.dot(&start)
             + (B[1][2] + B[2][1]) * start.dot(&end)
@@ -185,56 +187,69 @@ impl ElasticRoute for AncfCable {
     #[inline]
     fn force(&self, q: &[f64; 8], f: &mut [f64; 8]) {
         let u = self.slopes(q);
-        let w = contract(&Self::stretches(&u)).map(|x| 0.5 * x);
+        let w = contract(&Self::stretches(&u).map(|x| [x])).map(|[x]| 0.5 * x);
         self.add_force(&u, &w, f);
     }
 
     #[inline]
     fn force_and_tangent(&self, q: &[f64; 8], f: &mut [f64; 8], k: &mut [[f64; 8]; 8]) {
-        let u = self.slopes(q);
-        let w = contract(&Self::stretches(&u)).map(|x| 0.5 * x);
-        self.add_force(&u, &w, f);
+        for (k, tangent) in k.iter_mut().zip(self.linearised(q, f)) {
+            k.iter_mut().zip(tangent).for_each(|(k, x)| *k += x);
+        }
+    }
+}
 
-        let xx = contract(&PAIRS.map(|(a, b)| u[a][0] * u[b][0]));
-        let yy = contract(&PAIRS.map(|(a, b)| u[a][1] * u[b][1]));
-        let xy = contract(&PAIRS.map(|(a, b)| 0.5 * (u[a][0] * u[b][1] + u[a][1] * u[b][0])));
+impl AncfCable {
+    /// Adds the elastic force to `f`; returns its Jacobian dF/dq, row by row.
+    #[inline]
+    pub fn linearised(&self, q: &[f64; 8], f: &mut [f64; 8]) -> [[f64; 8]; 8] {
+        let u = self.slopes(q);
+        let contracted = contract(&of_pairs(|a, b| {
+            let (xx, yy) = (u[a][0] * u[b][0], u[a][1] * u[b][1]);
+            let xy = 0.5 * (u[a][0] * u[b][1] + u[a][1] * u[b][0]);
+            [xx + yy - 1.0, xx, yy, xy]
+        }));
+        self.add_force(&u, &contracted.map(|[s, ..]| 0.5 * s), f);
+
         let axial = self.axial_stiffness * self.length;
         let bending = self.bending_stiffness / self.length;
-        let block = |p: usize, (a, b): (usize, usize)| {
-            let s = w[p];
-            let bend = bending * B[a][b];
+        // second derivatives by u, for the pairs of u: xx, xy, yy
+        let bends = [B[0][0], B[0][1], B[0][2], B[1][1], B[1][2], B[2][2]];
+        let chord = 1.0 / self.length;
+        let sizes = [chord * chord, chord, chord, 1.0, 1.0, 1.0];
+        let h: [[f64; 3]; 6] = std::array::from_fn(|p| {
+            let [stretch, xx, yy, xy] = contracted[p];
+            let straight = 0.5 * axial * stretch + bending * bends[p];
             [
-                axial * (s + xx[p]) + bend,
-                axial * xy[p],
-                axial * (s + yy[p]) + bend,
+                sizes[p] * (straight + axial * xx),
+                sizes[p] * (axial * xy),
+                sizes[p] * (straight + axial * yy),
             ]
+        });
+        // the chord is (r_j - r_i)/l
+        let row = |signs: [f64; 4], [a, b, c]: [usize; 3], first: usize| -> [f64; 8] {
+            let block = |p: usize| [h[p][first], h[p][first + 1]];
+            let [chord, start, end] = [block(a), block(b), block(c)];
+            std::array::from_fn(|column| {
+                let part = column % 2;
+                match column / 2 {
+                    0 => signs[0] * chord[part],
+                    1 => signs[1] * start[part],
+                    2 => signs[2] * chord[part],
+                    _ => signs[3] * end[part],
+                }
+            })
         };
-        let mut put = |row: usize, column: usize, sign: f64, h: [f64; 3]| {
-            k[row][column] += sign * h[0];
-            k[row][column + 1] += sign * h[1];
-            k[row + 1][column] += sign * h[1];
-            k[row + 1][column + 1] += sign * h[2];
-        };
-        let inverse = 1.0 / self.length;
-        // chord with chord
-        let h = block(0, (0, 0)).map(|x| x * inverse * inverse);
-        put(0, 0, 1.0, h);
-        put(4, 4, 1.0, h);
-        put(0, 4, -1.0, h);
-        put(4, 0, -1.0, h);
-        // chord with the slopes, and the slopes with the chord
-        for (p, slope) in [(1, 2), (2, 6)] {
-            let h = block(p, (0, p)).map(|x| x * inverse);
-            put(0, slope, -1.0, h);
-            put(4, slope, 1.0, h);
-            let h = block(p, (p, 0)).map(|x| x * inverse);
-            put(slope, 0, -1.0, h);
-            put(slope, 4, 1.0, h);
-        }
-        // slopes with slopes
-        put(2, 2, 1.0, block(3, (1, 1)));
-        put(2, 6, 1.0, block(4, (1, 2)));
-        put(6, 2, 1.0, block(4, (2, 1)));
-        put(6, 6, 1.0, block(5, (2, 2)));
+        let (far, near) = ([-1.0, 1.0, 1.0, 1.0], [1.0, -1.0, -1.0, -1.0]);
+        [
+            row(near, [0, 1, 2], 0),
+            row(near, [0, 1, 2], 1),
+            row(far, [1, 3, 4], 0),
+            row(far, [1, 3, 4], 1),
+            row(far, [0, 1, 2], 0),
+            row(far, [0, 1, 2], 1),
+            row(far, [2, 4, 5], 0),
+            row(far, [2, 4, 5], 1),
+        ]
     }
 }

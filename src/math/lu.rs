@@ -2,7 +2,8 @@
 //!
 //! The tangent of a mechanism keeps its pattern for the whole run and is dominated by a positive definite mass
 //! matrix bordered by constraints, so the pivot order can be chosen once: minimum degree, a multiplier only after the
-//! coordinates of its constraint. The numeric work is then a list of multiply-subtracts with precomputed targets.
+//! coordinates of its constraint. The numeric work is then that of small dense blocks, whose products are subtracted at
+//! precomputed places.
 //! A pivot that turns out weak is reported; the caller falls back to a factorisation with row exchanges
 //! ([`DenseLu`]) and counts it.
 
@@ -14,34 +15,52 @@ const LARGEST_MULTIPLIER: f64 = 1e9;
 
 /// Structure of the matrix: pattern with fill, pivot order, positions of the entries in the value array.
 ///
-/// The values of pivot k stand together: the diagonal, which its inverse replaces, the row of U right of it, the column of L
-/// below it. One more entry at the end of the array takes what is scattered to known coordinates and is never read.
+/// Neighbouring pivots whose columns have the same pattern form a front: dense blocks that are eliminated together. The values
+/// of a front with s pivots, to which r later unknowns are coupled, stand together: the s x s block of the pivots, row by row,
+/// whose diagonal its inverse replaces; the r x s block of L below it, row by row; the s x r block of U right of it, column by
+/// column. One more entry at the end of the array takes what is scattered to known coordinates and is never read.
 #[derive(Debug)]
 pub struct Symbolic {
-    pivots: Vec<Pivot>,
-    /// Place of each unknown among the pivots.
+    fronts: Vec<Front>,
+    /// Unknowns in the order of elimination.
+    order: Vec<usize>,
+    /// Place of each unknown in this order.
     position: Vec<usize>,
-    /// Places of the unknowns coupled to a pivot and eliminated after it, ascending; pivot after pivot.
+    /// Front of each place.
+    front_of: Vec<usize>,
+    /// Places of the unknowns that are coupled to a front and eliminated after it, ascending; front after front.
     structure: Vec<usize>,
     /// The same unknowns by their indices.
     coupled: Vec<usize>,
-    /// For every (row, column) pair of a pivot's structure, row by row, where its value stands behind those of the pivot.
+    /// For every (row, column) pair of a front's structure, row by row, where its value stands behind those of the front.
     targets: Vec<u32>,
 }
 
-/// What elimination needs to know of one pivot.
+/// What elimination needs to know of one front.
 #[derive(Debug)]
-struct Pivot {
-    /// Its unknown.
-    index: usize,
-    /// Start of its values.
-    start: usize,
+struct Front {
+    /// Place of its first pivot.
+    first: usize,
+    /// Number of its pivots.
+    size: usize,
     /// How many unknowns are coupled to it.
     count: usize,
-    /// Start of them in the structure.
+    /// Start of its values.
+    start: usize,
+    /// Start of its unknowns in the structure.
     structure: usize,
     /// Start of its targets.
     targets: usize,
+}
+
+/// Most pivots of a front: kernels are compiled for every size.
+const LARGEST_FRONT: usize = 9;
+
+impl Front {
+    /// End of its values.
+    fn end(&self) -> usize {
+        self.start + self.size * (self.size + 2 * self.count)
+    }
 }
 
 /// A pivot too small to divide by, in the row and column of unknown `index`.
@@ -101,73 +120,112 @@ impl Symbolic {
         Self::layout(order, &eliminated_with)
     }
 
+    /// Collects the pivots in fronts and gives every entry its place; `fronts` are the unknowns coupled to each pivot.
     fn layout(order: Vec<usize>, fronts: &[Vec<usize>]) -> Symbolic {
+        let n = order.len();
+        let (order, fronts) = depth_first(&order, fronts);
+        let mut position = vec![0; n];
+        for (k, &i) in order.iter().enumerate() {
+            position[i] = k;
+        }
+        let places = |k: usize| {
+            let mut places: Vec<usize> = fronts[k].iter().map(|&i| position[i]).collect();
+            places.sort_unstable();
+            places
+        };
         let mut symbolic = Symbolic {
-            pivots: Vec::with_capacity(order.len()),
-            position: vec![0; order.len()],
+            fronts: Vec::new(),
+            front_of: Vec::with_capacity(n),
             structure: Vec::new(),
             coupled: Vec::new(),
             targets: Vec::new(),
+            position: Vec::new(),
+            order: Vec::new(),
         };
-        for (k, &i) in order.iter().enumerate() {
-            symbolic.position[i] = k;
-        }
-        let mut start = 0;
-        for (&index, front) in order.iter().zip(fronts) {
-            let mut places: Vec<usize> = front.iter().map(|&i| symbolic.position[i]).collect();
-            places.sort_unstable();
-            symbolic.pivots.push(Pivot {
-                index,
+        let (mut first, mut start) = (0, 0);
+        while first < n {
+            let mut last = first;
+            let mut structure = places(first);
+            while last + 1 < n && last + 1 - first < LARGEST_FRONT {
+                let next = places(last + 1);
+                if structure.first() != Some(&(last + 1)) || structure[1..] != next {
+                    break;
+                }
+                last += 1;
+                structure = next;
+            }
+            let front = Front {
+                first,
+                size: last + 1 - first,
+                count: structure.len(),
                 start,
-                count: front.len(),
                 structure: symbolic.structure.len(),
                 targets: 0,
-            });
-            start += 1 + 2 * front.len();
-            symbolic.coupled.extend(places.iter().map(|&p| order[p]));
-            symbolic.structure.extend(places);
+            };
+            start = front.end();
+            let index = symbolic.fronts.len();
+            symbolic
+                .front_of
+                .extend(std::iter::repeat_n(index, front.size));
+            symbolic.coupled.extend(structure.iter().map(|&p| order[p]));
+            symbolic.structure.extend(structure);
+            symbolic.fronts.push(front);
+            first = last + 1;
         }
-        for k in 0..order.len() {
-            let places = symbolic.structure(k).to_vec();
-            symbolic.pivots[k].targets = symbolic.targets.len();
-            let Pivot { start, count, .. } = symbolic.pivots[k];
+        (symbolic.order, symbolic.position) = (order, position);
+        for f in 0..symbolic.fronts.len() {
+            let places = symbolic.structure(f).to_vec();
+            symbolic.fronts[f].targets = symbolic.targets.len();
+            let end = symbolic.fronts[f].end();
             for &i in &places {
                 for &j in &places {
                     let entry = symbolic.entry(i, j);
                     let entry = entry.expect("the pattern is closed under elimination");
-                    let behind = entry as usize - (start + 1 + 2 * count);
-                    symbolic.targets.push(behind as u32);
+                    symbolic.targets.push((entry - end) as u32);
                 }
             }
         }
         symbolic
     }
 
-    fn structure(&self, k: usize) -> &[usize] {
-        let Pivot {
+    /// Places of the unknowns coupled to front `f`.
+    fn structure(&self, f: usize) -> &[usize] {
+        let Front {
             structure, count, ..
-        } = self.pivots[k];
+        } = self.fronts[f];
         &self.structure[structure..structure + count]
     }
 
     /// Value index of the entry in rows and columns counted in pivot order.
-    fn entry(&self, i: usize, j: usize) -> Option<u32> {
-        let k = i.min(j);
-        let rows = self.structure(k);
-        let offset = match i.cmp(&j) {
-            std::cmp::Ordering::Equal => 0,
-            std::cmp::Ordering::Less => 1 + rows.binary_search(&j).ok()?,
-            std::cmp::Ordering::Greater => 1 + rows.len() + rows.binary_search(&i).ok()?,
+    fn entry(&self, i: usize, j: usize) -> Option<usize> {
+        let f = self.front_of[i.min(j)];
+        let front = &self.fronts[f];
+        let Front {
+            first, size, start, ..
+        } = *front;
+        let local = |place: usize| match place - first {
+            own if own < size => Some(own),
+            _ => Some(size + self.structure(f).binary_search(&place).ok()?),
         };
-        u32::try_from(self.pivots[k].start + offset).ok()
+        let (row, column) = (local(i)?, local(j)?);
+        Some(
+            start
+                + match (row < size, column < size) {
+                    // rows of the pivots, then rows of L
+                    (_, true) => row * size + column,
+                    // columns of U
+                    (true, false) => (front.count + column) * size + row,
+                    (false, false) => return None,
+                },
+        )
     }
 
     /// Number of unknowns.
     pub fn n(&self) -> usize {
-        self.pivots.len()
+        self.order.len()
     }
 
-    /// Length of the value array, the discarded_slot last entry included.
+    /// Length of the value array, the discarded last entry included.
     pub fn len(&self) -> usize {
         self.discarded_slot() as usize + 1
     }
@@ -179,11 +237,10 @@ impl Symbolic {
 
     /// Index of the value that takes what is scattered to known coordinates.
     pub fn discarded_slot(&self) -> u32 {
-        let last = self.pivots.last();
-        last.map_or(0, |p| p.start + 1 + 2 * p.count) as u32
+        self.fronts.last().map_or(0, Front::end) as u32
     }
 
-    /// Value index of entry (row, column), or of the discarded_slot entry where one of them is not an unknown (index >= n).
+    /// Value index of entry (row, column), or of the discarded entry where one of them is not an unknown (index >= n).
     ///
     /// # Panics
     /// If the entry is not in the pattern.
@@ -192,7 +249,7 @@ impl Symbolic {
             return self.discarded_slot();
         }
         self.entry(self.position[row], self.position[column])
-            .expect("the entry belongs to a clique")
+            .expect("the entry belongs to a clique") as u32
     }
 
     /// Factorises in place: A = L U.
@@ -201,76 +258,276 @@ impl Symbolic {
     /// The first pivot that is zero, not finite, or much smaller than its column.
     pub fn factor(&self, values: &mut [f64]) -> Result<(), WeakPivot> {
         assert_eq!(values.len(), self.len());
-        for p in &self.pivots {
-            let (here, behind) = values.split_at_mut(p.start + 1 + 2 * p.count);
-            let (diagonal, here) = here[p.start..].split_at_mut(1);
-            let (upper, lower) = here.split_at_mut(p.count);
-            let inverse = 1.0 / diagonal[0];
-            diagonal[0] = inverse;
-            let mut largest = 0.0_f64;
-            for l in lower.iter_mut() {
-                *l *= inverse;
-                // f64::max drops NaN
-                largest = if l.abs() <= largest { largest } else { l.abs() };
-            }
-            if !inverse.is_finite() || largest.is_nan() || largest > LARGEST_MULTIPLIER {
-                return Err(WeakPivot { index: p.index });
-            }
-            if p.count > 0 {
-                let targets = &self.targets[p.targets..p.targets + p.count * p.count];
-                for (l, targets) in lower.iter().zip(targets.chunks_exact(p.count)) {
-                    for (u, &target) in upper.iter().zip(targets) {
-                        behind[target as usize] -= l * u;
-                    }
-                }
+        for front in &self.fronts {
+            let (here, behind) = values.split_at_mut(front.end());
+            let here = &mut here[front.start..];
+            let targets = &self.targets[front.targets..][..front.count * front.count];
+            let weak = match front.size {
+                1 => eliminate::<1>(here, behind, targets),
+                2 => eliminate::<2>(here, behind, targets),
+                3 => eliminate::<3>(here, behind, targets),
+                4 => eliminate::<4>(here, behind, targets),
+                5 => eliminate::<5>(here, behind, targets),
+                6 => eliminate::<6>(here, behind, targets),
+                7 => eliminate::<7>(here, behind, targets),
+                8 => eliminate::<8>(here, behind, targets),
+                _ => eliminate::<LARGEST_FRONT>(here, behind, targets),
+            };
+            if let Err(pivot) = weak {
+                let index = self.order[front.first + pivot];
+                return Err(WeakPivot { index });
             }
         }
         Ok(())
     }
 
+    /// Multiply-subtracts of a factorisation.
+    pub fn operations(&self) -> usize {
+        let fronts = self.fronts.iter();
+        fronts.map(|f| f.size * (f.size + f.count).pow(2)).sum()
+    }
+
+    /// Index of the value of a pivot.
+    fn diagonal(&self, unknown: usize) -> usize {
+        let place = self.position[unknown];
+        let front = &self.fronts[self.front_of[place]];
+        front.start + (place - front.first) * (front.size + 1)
+    }
+
     /// The pivot of an unknown in the factors of [`Symbolic::factor`].
     pub fn pivot(&self, values: &[f64], unknown: usize) -> f64 {
-        1.0 / values[self.pivots[self.position[unknown]].start]
+        1.0 / values[self.diagonal(unknown)]
     }
 
     /// Smallest over largest pivot of the unknowns from `first` on, in the factors of [`Symbolic::factor`].
     pub fn pivot_range(&self, values: &[f64], first: usize) -> f64 {
-        let inverses = (first..self.n()).map(|i| values[self.pivots[self.position[i]].start].abs());
+        let inverses = (first..self.n()).map(|i| values[self.diagonal(i)].abs());
         let (low, high) = inverses.fold((f64::INFINITY, 0.0_f64), |(l, h), p| (l.min(p), h.max(p)));
         low / high
     }
 
     /// Solves L U x = b with the factors of [`Symbolic::factor`]; `b` in, x out.
     pub fn solve(&self, values: &[f64], b: &mut [f64]) {
-        for p in &self.pivots {
-            let coupled = &self.coupled[p.structure..p.structure + p.count];
-            let lower = &values[p.start + 1 + p.count..];
-            let pivot = b[p.index];
-            for (&row, l) in coupled.iter().zip(lower) {
-                b[row] -= l * pivot;
+        for front in &self.fronts {
+            let (own, coupled, values) = self.parts(front, values);
+            match front.size {
+                1 => forward::<1>(own, coupled, values, b),
+                2 => forward::<2>(own, coupled, values, b),
+                3 => forward::<3>(own, coupled, values, b),
+                4 => forward::<4>(own, coupled, values, b),
+                5 => forward::<5>(own, coupled, values, b),
+                6 => forward::<6>(own, coupled, values, b),
+                7 => forward::<7>(own, coupled, values, b),
+                8 => forward::<8>(own, coupled, values, b),
+                _ => forward::<LARGEST_FRONT>(own, coupled, values, b),
             }
         }
-        for p in self.pivots.iter().rev() {
-            let coupled = &self.coupled[p.structure..p.structure + p.count];
-            let (inverse, upper) = (values[p.start], &values[p.start + 1..]);
-            let sum: f64 = coupled.iter().zip(upper).map(|(&j, u)| u * b[j]).sum();
-            b[p.index] = (b[p.index] - sum) * inverse;
+        for front in self.fronts.iter().rev() {
+            let (own, coupled, values) = self.parts(front, values);
+            match front.size {
+                1 => backward::<1>(own, coupled, values, b),
+                2 => backward::<2>(own, coupled, values, b),
+                3 => backward::<3>(own, coupled, values, b),
+                4 => backward::<4>(own, coupled, values, b),
+                5 => backward::<5>(own, coupled, values, b),
+                6 => backward::<6>(own, coupled, values, b),
+                7 => backward::<7>(own, coupled, values, b),
+                8 => backward::<8>(own, coupled, values, b),
+                _ => backward::<LARGEST_FRONT>(own, coupled, values, b),
+            }
         }
+    }
+
+    /// The pivots of a front, the unknowns coupled to it, and its values.
+    #[inline]
+    fn parts<'a>(&'a self, f: &Front, values: &'a [f64]) -> (&'a [usize], &'a [usize], &'a [f64]) {
+        (
+            &self.order[f.first..f.first + f.size],
+            &self.coupled[f.structure..f.structure + f.count],
+            &values[f.start..f.end()],
+        )
     }
 
     /// The matrix in full, before it is factorised.
     pub fn to_dense(&self, values: &[f64]) -> faer::Mat<f64> {
         let mut dense = faer::Mat::zeros(self.n(), self.n());
-        for p in &self.pivots {
-            let i = p.index;
-            dense[(i, i)] = values[p.start];
-            let coupled = &self.coupled[p.structure..p.structure + p.count];
-            for (b, &j) in coupled.iter().enumerate() {
-                dense[(i, j)] = values[p.start + 1 + b];
-                dense[(j, i)] = values[p.start + 1 + p.count + b];
+        for (f, front) in self.fronts.iter().enumerate() {
+            let own = front.first..front.first + front.size;
+            for i in own.clone() {
+                for j in own.clone().chain(self.structure(f).iter().copied()) {
+                    for (i, j) in [(i, j), (j, i)] {
+                        let value = self.entry(i, j).map_or(0.0, |entry| values[entry]);
+                        dense[(self.order[i], self.order[j])] = value;
+                    }
+                }
             }
         }
         dense
+    }
+}
+
+/// The same elimination with every pivot behind those that it waits for, as late as possible: pivots of one part of the matrix
+/// follow each other. Pivots and the unknowns coupled to them in, the same out.
+fn depth_first(order: &[usize], fronts: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<usize>>) {
+    let n = order.len();
+    let mut position = vec![0; n];
+    for (k, &i) in order.iter().enumerate() {
+        position[i] = k;
+    }
+    let parent = |k: usize| fronts[k].iter().map(|&i| position[i]).min();
+    let mut children = vec![Vec::new(); n];
+    let mut pending = Vec::new();
+    for k in (0..n).rev() {
+        match parent(k) {
+            Some(parent) => children[parent].push(k),
+            None => pending.push(k),
+        }
+    }
+    // a pivot is visited twice: first its children are put before it, then it follows them
+    let mut visited = vec![false; n];
+    let mut sorted = Vec::with_capacity(n);
+    while let Some(&k) = pending.last() {
+        if std::mem::replace(&mut visited[k], true) {
+            pending.pop();
+            sorted.push(k);
+        } else {
+            pending.append(&mut children[k]);
+        }
+    }
+    (
+        sorted.iter().map(|&k| order[k]).collect(),
+        sorted.iter().map(|&k| fronts[k].clone()).collect(),
+    )
+}
+
+/// The blocks of a front with S pivots: of the pivots, of L row by row, of U column by column.
+struct FrontBlocks<'a, const S: usize> {
+    pivots: &'a [[f64; S]; S],
+    lower: &'a [[f64; S]],
+    upper: &'a [[f64; S]],
+}
+
+#[inline(always)]
+fn blocks<const S: usize>(values: &[f64]) -> FrontBlocks<'_, S> {
+    let (rows, _) = values.as_chunks::<S>();
+    let (pivots, rest) = rows.split_first_chunk().expect("a front has S pivots");
+    let (lower, upper) = rest.split_at(rest.len() / 2);
+    FrontBlocks {
+        pivots,
+        lower,
+        upper,
+    }
+}
+
+/// Eliminates the pivots of a front; the error is the number of a weak one.
+#[inline]
+fn eliminate<const S: usize>(
+    here: &mut [f64],
+    behind: &mut [f64],
+    targets: &[u32],
+) -> Result<(), usize> {
+    let (rows, _) = here.as_chunks_mut::<S>();
+    let (pivots, rest) = rows
+        .split_first_chunk_mut::<S>()
+        .expect("a front has S pivots");
+    let mut largest = [0.0_f64; S];
+    // f64::max drops NaN
+    let see = |largest: &mut f64, l: f64| {
+        *largest = if l.abs() <= *largest {
+            *largest
+        } else {
+            l.abs()
+        }
+    };
+    for k in 0..S {
+        let inverse = 1.0 / pivots[k][k];
+        pivots[k][k] = inverse;
+        for i in k + 1..S {
+            let l = pivots[i][k] * inverse;
+            pivots[i][k] = l;
+            see(&mut largest[k], l);
+            for j in k + 1..S {
+                pivots[i][j] -= l * pivots[k][j];
+            }
+        }
+    }
+    let (lower, upper) = rest.split_at_mut(rest.len() / 2);
+    for row in lower.iter_mut() {
+        for k in 0..S {
+            for m in 0..k {
+                row[k] -= row[m] * pivots[m][k];
+            }
+            row[k] *= pivots[k][k];
+            see(&mut largest[k], row[k]);
+        }
+    }
+    for k in 0..S {
+        if !pivots[k][k].is_finite() || largest[k].is_nan() || largest[k] > LARGEST_MULTIPLIER {
+            return Err(k);
+        }
+    }
+    for column in upper.iter_mut() {
+        for k in 1..S {
+            for m in 0..k {
+                column[k] -= pivots[k][m] * column[m];
+            }
+        }
+    }
+    if lower.is_empty() {
+        return Ok(());
+    }
+    for (row, targets) in lower.iter().zip(targets.chunks_exact(lower.len())) {
+        for (column, &target) in upper.iter().zip(targets) {
+            behind[target as usize] -= dot(row, column);
+        }
+    }
+    Ok(())
+}
+
+#[inline]
+fn dot<const S: usize>(x: &[f64; S], y: &[f64; S]) -> f64 {
+    let mut sum = x[0] * y[0];
+    for k in 1..S {
+        sum += x[k] * y[k];
+    }
+    sum
+}
+
+/// L x = b for the pivots of a front; subtracts from b what they contribute to later rows.
+#[inline]
+fn forward<const S: usize>(own: &[usize], coupled: &[usize], values: &[f64], b: &mut [f64]) {
+    let FrontBlocks { pivots, lower, .. } = blocks::<S>(values);
+    let own: &[usize; S] = own.try_into().expect("a front has S pivots");
+    let mut x = own.map(|i| b[i]);
+    for k in 0..S {
+        for m in 0..k {
+            x[k] -= pivots[k][m] * x[m];
+        }
+        b[own[k]] = x[k];
+    }
+    for (&row, l) in coupled.iter().zip(lower) {
+        b[row] -= dot(l, &x);
+    }
+}
+
+/// U x = b for the pivots of a front, with the later unknowns known.
+#[inline]
+fn backward<const S: usize>(own: &[usize], coupled: &[usize], values: &[f64], b: &mut [f64]) {
+    let FrontBlocks { pivots, upper, .. } = blocks::<S>(values);
+    let own: &[usize; S] = own.try_into().expect("a front has S pivots");
+    let mut x = own.map(|i| b[i]);
+    for (&column, u) in coupled.iter().zip(upper) {
+        let known = b[column];
+        for k in 0..S {
+            x[k] -= u[k] * known;
+        }
+    }
+    for k in (0..S).rev() {
+        for m in k + 1..S {
+            x[k] -= pivots[k][m] * x[m];
+        }
+        x[k] *= pivots[k][k];
+        b[own[k]] = x[k];
     }
 }
 
@@ -288,10 +545,9 @@ pub struct DenseLu {
 }
 
 impl DenseLu {
-    /// Factorises the matrix that `values` holds before [`Symbolic::factor`]; `None` when it is singular to rounding.
-    pub fn factor(symbolic: &Symbolic, values: &[f64]) -> Option<DenseLu> {
-        let n = symbolic.n();
-        let mut matrix = symbolic.to_dense(values);
+    /// Factorises a matrix; `None` when it is singular to rounding.
+    pub fn factor(mut matrix: faer::Mat<f64>) -> Option<DenseLu> {
+        let n = matrix.nrows();
         let mut scale = vec![1.0; n];
         for _ in 0..EQUILIBRATIONS {
             let size = |i: usize| (0..n).fold(0.0_f64, |m, j| m.max(matrix[(i, j)].abs()));
@@ -356,7 +612,7 @@ mod tests {
     #[test]
     fn agrees_with_dense_elimination() {
         let (symbolic, mut values) = bordered();
-        let dense = DenseLu::factor(&symbolic, &values).unwrap();
+        let dense = DenseLu::factor(symbolic.to_dense(&values)).unwrap();
         let b = [1.0, -2.0, 0.5, 3.0, 0.25, -1.0];
         let (mut x, mut y) = (b, b);
         symbolic.factor(&mut values).unwrap();
@@ -375,7 +631,7 @@ mod tests {
             values[symbolic.slot(i, 5) as usize] = 0.0;
             values[symbolic.slot(5, i) as usize] = 0.0;
         }
-        assert!(DenseLu::factor(&symbolic, &values).is_none());
+        assert!(DenseLu::factor(symbolic.to_dense(&values)).is_none());
         assert_eq!(symbolic.factor(&mut values), Err(WeakPivot { index: 5 }));
     }
 

@@ -7,6 +7,7 @@ use crate::force::WIDTH;
 use crate::link::ElasticRoute;
 use crate::math::lu::Symbolic;
 use crate::math::plane::{Rotation, quarter_turn};
+use crate::math::saddle_point::SaddlePoint;
 use crate::system::{
     Equilibrium, INTEGRALS, Integral, PrescribeError, Shape, State, System, Weights, Work,
 };
@@ -18,12 +19,12 @@ fn gather8(coordinates: &[usize], q: &[f64]) -> [f64; 8] {
 }
 
 impl Model {
-    /// r = M a + weight.
+    /// r = M a + weight, in the rows of unknown coordinates.
     #[inline]
     fn inertia(&self, at: &State, r: &mut [f64]) {
-        for (i, r) in r.iter_mut().enumerate() {
-            *r = self.mass.row(i).map(|(&j, m)| m * at.a[j]).sum();
-        }
+        let (rows, others) = r.split_at_mut(self.shape.unknowns);
+        self.mass.times(&at.a, rows);
+        others.fill(0.0);
         for &(i, weight) in &self.weight {
             r[i] += at.weight * weight;
         }
@@ -111,9 +112,9 @@ impl Model {
         work: &mut Work,
     ) {
         for e in &self.elements {
-            let (mut f, mut tangent) = ([0.0; 8], [[0.0; 8]; 8]);
-            e.kernel
-                .force_and_tangent(&gather8(&e.block.coordinates, &at.q), &mut f, &mut tangent);
+            let mut f = [0.0; 8];
+            let q = gather8(&e.block.coordinates, &at.q);
+            let tangent = e.kernel.linearised(&q, &mut f);
             e.block.add_vector(&f, r);
             e.block.add_matrix(&tangent, w.q, k);
         }
@@ -244,8 +245,8 @@ impl System for Model {
         &self.symbolic
     }
 
-    fn acceleration_symbolic(&self) -> &Symbolic {
-        &self.acceleration_symbolic
+    fn acceleration_matrix(&self) -> &SaddlePoint {
+        &self.acceleration_matrix
     }
 
     fn work(&self) -> Work {
@@ -277,7 +278,7 @@ impl System for Model {
     fn momentum(&self, x: &[f64], out: &mut [f64]) {
         for (i, out) in out.iter_mut().enumerate().take(self.shape.unknowns) {
             let row = self.mass.row(i);
-            *out = row.filter_map(|(&j, m)| Some(m * x.get(j)?)).sum();
+            *out = row.filter_map(|(j, m)| Some(m * x.get(j)?)).sum();
         }
     }
 
@@ -304,14 +305,15 @@ impl System for Model {
         self.linearised_forces(at, w, r, k, work);
     }
 
-    fn acceleration_level(&self, at: &State, phi: &mut [f64], k: &mut [f64]) {
-        k.copy_from_slice(&self.mass.acceleration_level);
-        let mut gradient = [[0.0; constraint::WIDTH]; ROWS];
+    fn acceleration_level(&self, at: &State, phi: &mut [f64], gradient: &mut [f64]) {
+        let mut local = [[0.0; constraint::WIDTH]; ROWS];
         for c in &self.constraints {
-            let value = c.term.value_and_gradient(at, &mut gradient);
+            let value = c.term.value_and_gradient(at, &mut local);
             for d in 0..c.rows {
                 phi[c.row + d] = c.kept[d] * value[d];
-                c.acceleration_border[d].add(&gradient[d], k);
+                for (&entry, g) in c.entries[d].iter().zip(&local[d]) {
+                    gradient[entry as usize] = *g;
+                }
             }
         }
     }
@@ -346,23 +348,22 @@ impl System for Model {
         }
     }
 
-    fn gaps(&self, at: &State, delta: &mut [f64], rate: &mut [f64]) {
-        for (i, c) in self.contacts.iter().enumerate() {
+    fn gaps(&self, at: &State, gaps: &mut [[f64; 2]]) {
+        for (c, out) in self.contacts.iter().zip(gaps) {
             let gap = c.pair.gap(&at.q, &at.v);
-            (delta[i], rate[i]) = (gap.delta, c.pair.rate(&gap));
+            *out = [gap.delta, c.pair.rate(&gap)];
         }
     }
 
     fn commit(
         &self,
         at: &mut State,
+        gaps: &[[f64; 2]],
         tolerance: f64,
         onset: &mut dyn FnMut(usize, f64, f64),
     ) -> usize {
         let mut onsets = 0;
-        for (i, c) in self.contacts.iter().enumerate() {
-            let gap = c.pair.gap(&at.q, &at.v);
-            let (delta, rate) = (gap.delta, c.pair.rate(&gap));
+        for (i, &[delta, rate]) in gaps.iter().enumerate() {
             let open = at.z[i] == 0.0;
             if open && (delta >= -tolerance && rate > 0.0 || delta > tolerance) {
                 // a contact that starts penetrated has no impact velocity: the floor of the law replaces it
@@ -394,6 +395,11 @@ impl System for Model {
         }
         at.powers = powers;
         clamps
+    }
+
+    fn is_smooth(&self, at: &State) -> bool {
+        let is_open = at.z.iter().all(|z| *z == 0.0);
+        is_open && self.forces.iter().all(|acting| acting.term.is_smooth())
     }
 
     fn unknown_name(&self, index: usize) -> String {

@@ -83,7 +83,7 @@ impl Model {
                 .filter(|(i, _)| !self.states.contains(i))
         {
             let row = self.mass.row(i);
-            energies.kinetic += 0.5 * v * row.map(|(&j, m)| m * at.v[j]).sum::<f64>();
+            energies.kinetic += 0.5 * v * row.map(|(j, m)| m * at.v[j]).sum::<f64>();
         }
         for element in &self.elements {
             let q = std::array::from_fn(|i| at.q[element.block.coordinates[i]]);

@@ -21,6 +21,7 @@ use crate::link::AncfCable;
 use crate::marker::Marker;
 use crate::math::lu::Symbolic;
 use crate::math::plane::Vec2;
+use crate::math::saddle_point::SaddlePoint;
 use crate::motion::{Function, Path};
 use crate::system::{Prescribed, Shape, State, Work};
 use crate::terms::{ConstraintTerm, Inertia, JointTerms};
@@ -32,7 +33,7 @@ use std::sync::Arc;
 pub struct Model {
     pub(crate) shape: Shape,
     pub(crate) symbolic: Symbolic,
-    pub(crate) acceleration_symbolic: Symbolic,
+    pub(crate) acceleration_matrix: SaddlePoint,
     /// Names of the unknowns, then of the multipliers.
     pub(crate) names: Vec<String>,
     /// Unknowns that are internal states of forces, at the level of velocities.
@@ -108,8 +109,8 @@ pub(crate) struct PlacedConstraint {
     pub block: Block,
     /// Slots of the gradient of each row in the tangent ...
     pub border: Vec<Border>,
-    /// ... and in the matrix of the acceleration level.
-    pub acceleration_border: Vec<Border>,
+    /// ... and its entries in the matrix of the acceleration level.
+    pub entries: Vec<Vec<u32>>,
     /// The body that each local coordinate stands for.
     pub owners: Vec<usize>,
     /// 0 for a redundant row that is left out of the equations, otherwise 1.
@@ -117,17 +118,12 @@ pub(crate) struct PlacedConstraint {
 }
 
 impl PlacedConstraint {
-    /// Removes row `d` from the equations and replaces it by lambda = 0.
-    fn drop_row(&mut self, d: usize, symbolic: [&Symbolic; 2], unknowns: usize, mass: &mut Mass) {
-        let m = unknowns + self.row + d;
+    /// Removes row `d` from the equations; it is replaced by lambda = 0.
+    fn drop_row(&mut self, d: usize, symbolic: &Symbolic, level: &mut SaddlePoint) {
         self.kept[d] = 0.0;
-        let discarded = |symbolic| Border::discarded(self.block.coordinates.len(), symbolic);
-        let [border, acceleration_border] = symbolic.map(discarded);
-        (self.border[d], self.acceleration_border[d]) = (border, acceleration_border);
-        let matrices = [&mut mass.tangent, &mut mass.acceleration_level];
-        for (symbolic, matrix) in symbolic.into_iter().zip(matrices) {
-            matrix[symbolic.slot(m, m) as usize] = 1.0;
-        }
+        self.border[d] = Border::discarded(self.block.coordinates.len(), symbolic);
+        self.entries[d].fill(level.discarded_entry());
+        level.drop_row(self.row + d);
     }
 
     /// Its multipliers.
@@ -180,24 +176,37 @@ pub(crate) struct PlacedElement {
 #[derive(Debug, Default)]
 pub(crate) struct Mass {
     pub parts: Vec<Inertia>,
-    /// Sum over the parts, row by row, over all coordinates.
-    pub row_start: Vec<usize>,
-    pub columns: Vec<usize>,
-    pub values: Vec<f64>,
+    /// Sum over the parts, row by row, over all coordinates: columns and masses ...
+    pub entries: Vec<(u32, f64)>,
+    /// ... and the end of every row.
+    pub ends: Vec<u32>,
     /// The sum over unknowns in the layout of the tangent.
     pub tangent: Vec<f64>,
-    /// The same in the layout of the acceleration level.
-    pub acceleration_level: Vec<f64>,
     /// (unknown row, known column, mass): inertia forces on unknown coordinates from accelerations of known ones.
     pub known: Vec<(usize, usize, f64)>,
 }
 
 impl Mass {
     /// Row i of the sum: columns and masses.
+    pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        let start = if i == 0 { 0 } else { self.ends[i - 1] };
+        let row = self.entries[start as usize..self.ends[i] as usize].iter();
+        row.map(|&(j, m)| (j as usize, m))
+    }
+
+    /// The sum times x, row by row, for as many rows as `out` has.
     #[inline]
-    pub fn row(&self, i: usize) -> impl Iterator<Item = (&usize, &f64)> {
-        let range = self.row_start[i]..self.row_start[i + 1];
-        self.columns[range.clone()].iter().zip(&self.values[range])
+    pub fn times(&self, x: &[f64], out: &mut [f64]) {
+        let mut start = 0;
+        for (out, &end) in out.iter_mut().zip(&self.ends) {
+            let row = &self.entries[start..end as usize];
+            start = end as usize;
+            let mut sum = 0.0;
+            for &(j, m) in row {
+                sum += m * x[j as usize];
+            }
+            *out = sum;
+        }
     }
 }
 
@@ -287,8 +296,10 @@ impl Model {
     /// Removes rows, as (constraint, row of it), from the equations.
     pub(crate) fn drop_rows(&mut self, rows: &[(usize, usize)]) {
         for &(i, d) in rows {
-            let symbolic = [&self.symbolic, &self.acceleration_symbolic];
-            self.constraints[i].drop_row(d, symbolic, self.shape.unknowns, &mut self.mass);
+            let placed = &mut self.constraints[i];
+            placed.drop_row(d, &self.symbolic, &mut self.acceleration_matrix);
+            let m = self.shape.unknowns + placed.row + d;
+            self.mass.tangent[self.symbolic.slot(m, m) as usize] = 1.0;
         }
     }
 

@@ -21,22 +21,8 @@ impl Factors {
         }
     }
 
-    /// Fills the matrix and factorises it in the fixed pivot order.
-    ///
-    /// # Errors
-    /// A weak pivot.
-    pub fn renew_in_order(
-        &mut self,
-        symbolic: &Symbolic,
-        mut fill: impl FnMut(&mut [f64]),
-    ) -> Result<(), Failure> {
-        self.dense = None;
-        fill(&mut self.values);
-        let singular = |weak: WeakPivot| Failure::Singular { index: weak.index };
-        symbolic.factor(&mut self.values).map_err(singular)
-    }
-
-    /// As [`Factors::renew_in_order`]; after a weak pivot, once more as a dense matrix with row exchanges.
+    /// Fills the matrix and factorises it in the fixed pivot order; after a weak pivot, once more as a dense matrix with row
+    /// exchanges.
     ///
     /// # Errors
     /// The matrix is singular to rounding.
@@ -47,13 +33,14 @@ impl Factors {
         mut fill: impl FnMut(&mut [f64]),
     ) -> Result<(), Failure> {
         counters.factorisations += 1;
-        let in_order = self.renew_in_order(symbolic, &mut fill);
-        if in_order.is_err() {
+        self.dense = None;
+        fill(&mut self.values);
+        if let Err(WeakPivot { index }) = symbolic.factor(&mut self.values) {
             counters.fallbacks += 1;
             fill(&mut self.values);
-            self.dense = DenseLu::factor(symbolic, &self.values);
+            self.dense = DenseLu::factor(symbolic.to_dense(&self.values));
             if self.dense.is_none() {
-                return in_order;
+                return Err(Failure::Singular { index });
             }
         }
         Ok(())
@@ -66,7 +53,7 @@ impl Factors {
         is_dense.carry(checkpoint);
         values.carry(checkpoint);
         *dense = match is_dense {
-            true => DenseLu::factor(symbolic, values),
+            true => DenseLu::factor(symbolic.to_dense(values)),
             false => None,
         };
     }

@@ -2,9 +2,6 @@
 
 use super::Failure;
 
-/// The tangent is renewed when an update is larger than this part of the previous one.
-const SLOW: f64 = 0.1;
-
 /// What is known before an iteration.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Iteration {
@@ -12,8 +9,8 @@ pub(crate) struct Iteration {
     pub number: usize,
     /// The last update; infinite before the first.
     pub last: f64,
-    /// True where an earlier tangent would not do: at the beginning, and after updates that decrease slowly.
-    pub renew: bool,
+    /// Ratio of the last update to the one before; zero where there are not two.
+    pub rate: f64,
 }
 
 /// The largest change of an unknown.
@@ -28,18 +25,15 @@ pub(crate) struct Update {
 impl Update {
     /// The largest of some changes; what is not a number counts as larger than all numbers.
     #[inline]
-    pub fn largest(changes: impl Iterator<Item = f64>) -> Update {
-        let mut update = Update {
-            size: 0.0,
-            index: 0,
-        };
-        for (index, change) in changes.enumerate() {
-            let size = change.abs();
-            if size.is_nan() || size > update.size {
-                update = Update { size, index };
-            }
+    pub fn largest(changes: impl Iterator<Item = f64> + Clone) -> Update {
+        // f64::max drops NaN
+        let larger = |m: f64, x: f64| if x.abs() <= m { m } else { x.abs() };
+        let size = changes.clone().fold(0.0, larger);
+        let index = changes.map(f64::abs).position(|x| x.is_nan() || x >= size);
+        Update {
+            size,
+            index: index.unwrap_or(0),
         }
-        update
     }
 }
 
@@ -55,7 +49,7 @@ pub(crate) fn iterate(
     let mut iteration = Iteration {
         number: 0,
         last: f64::INFINITY,
-        renew: true,
+        rate: 0.0,
     };
     let mut worst = 0;
     while iteration.number < limit {
@@ -68,7 +62,7 @@ pub(crate) fn iterate(
             return Ok(());
         }
         iteration = Iteration {
-            renew: iteration.number > 0 && size / iteration.last > SLOW,
+            rate: size / iteration.last,
             number: iteration.number + 1,
             last: size,
         };

@@ -2,22 +2,32 @@
 
 mod factors;
 mod iteration;
+mod prediction;
 mod response;
 mod singular;
 mod statics;
+mod tangent;
 
-pub(crate) use factors::Factors;
 pub(crate) use iteration::{Update, iterate};
 pub use response::Response;
 
-use crate::checkpoint::carried;
+use crate::checkpoint::{Carried, Checkpoint, carried};
+use crate::math::lu::WeakPivot;
+use crate::math::saddle_point::SaddleFactors;
 use crate::system::{State, System, Weights, Work};
+use prediction::Prediction;
 use singular::{SINGULAR, Truncated};
+use tangent::Tangent;
 
 /// Largest number of iterations of a stage; a stage that converges needs far fewer.
 const MAX_ITERATIONS: usize = 15;
-/// Updates that no longer decrease count as rounding below this many tolerances.
+/// Updates that no longer decrease count as rounding below this many tolerances, or estimates of rounding.
 const ROUNDING_BAND: f64 = 1e4;
+/// A tangent of the same stage is renewed when an update is larger than this part of the previous one.
+const SLOW: f64 = 0.1;
+/// Part of the tolerance that the error of a stage may have after updates that decrease linearly. With a tangent of the same
+/// stage they decrease quadratically, and the last one is far more accurate than its estimate.
+const SHARE: f64 = 0.01;
 /// A projection of positions ends when its update is below this part of the largest position: the error left is the square of
 /// the update, by Newton's quadratic convergence.
 const PROJECTED: f64 = 1e-10;
@@ -75,6 +85,37 @@ impl Failure {
     }
 }
 
+/// A stage: q = q_hat + w.q a, v = v_hat + w.v a.
+struct StageEquations<'a> {
+    w: Weights,
+    q_hat: &'a [f64],
+    v_hat: &'a [f64],
+    /// Largest error left in a velocity \[m/s\].
+    tolerance: f64,
+}
+
+impl StageEquations<'_> {
+    /// What rounding of accelerations, and of positions in stiff springs, may change in velocities \[m/s\].
+    fn rounding(&self, s: &State) -> f64 {
+        let Weights { q: by_q, v: by_v } = self.w;
+        let unknown = s.q.iter().zip(&s.a).take(self.q_hat.len());
+        let sizes = unknown.map(|(q, a)| (by_v * a).abs().max((by_v / by_q * q).abs()));
+        f64::EPSILON * sizes.fold(0.0, f64::max)
+    }
+
+    /// Sets positions and velocities from the accelerations.
+    fn move_to(&self, s: &mut State) {
+        let (q, v) = (
+            s.q.iter_mut().zip(self.q_hat),
+            s.v.iter_mut().zip(self.v_hat),
+        );
+        for (((q, q_hat), (v, v_hat)), a) in q.zip(v).zip(&s.a) {
+            *q = q_hat + self.w.q * a;
+            *v = v_hat + self.w.v * a;
+        }
+    }
+}
+
 /// Solver memory: allocated once, used for every stage.
 #[derive(Debug)]
 pub struct Newton {
@@ -82,21 +123,17 @@ pub struct Newton {
     r: Vec<f64>,
     phi: Vec<f64>,
     b: Vec<f64>,
-    /// The tangent of a stage.
-    stage: Factors,
+    /// The tangents of stages, the one used last first: a step has stages of one or two weights.
+    tangents: [Tangent; 2],
+    prediction: Prediction,
     /// The matrix of the acceleration level.
-    acceleration: Factors,
+    acceleration: SaddleFactors,
     /// True where the state made consistent last is a pose in which the constraints lose rank.
     in_singular_pose: bool,
     met_singular_pose: bool,
-    /// True once `acceleration` holds the mass matrix of a system without multipliers, which never changes.
-    holds_mass: bool,
     /// Work done so far.
     pub counters: Counters,
 }
-
-// the mass matrix of a system without multipliers has been factorised at the start of the run
-carried!(Newton { in_singular_pose, met_singular_pose, counters } but { tolerance, r, phi, b, stage, acceleration, holds_mass });
 
 impl Newton {
     /// Memory for a system; `tolerance` is the largest error left in a velocity \[m/s\].
@@ -108,13 +145,36 @@ impl Newton {
             r: vec![0.0; shape.coordinates],
             phi: vec![0.0; shape.multipliers],
             b: vec![0.0; size],
-            stage: Factors::new(system.symbolic()),
-            acceleration: Factors::new(system.acceleration_symbolic()),
+            tangents: std::array::from_fn(|_| Tangent::new(system.symbolic())),
+            prediction: Prediction::new(shape),
+            acceleration: system.acceleration_matrix().factors(),
             in_singular_pose: false,
             met_singular_pose: false,
-            holds_mass: false,
             counters: Counters::default(),
         }
+    }
+
+    /// Carries what later steps depend on.
+    pub fn carry(&mut self, system: &dyn System, checkpoint: &mut Checkpoint) {
+        let Newton {
+            tolerance: _,
+            r: _,
+            phi: _,
+            b: _,
+            tangents,
+            prediction,
+            acceleration: _,
+            in_singular_pose,
+            met_singular_pose,
+            counters,
+        } = self;
+        for tangent in tangents {
+            tangent.carry(system.symbolic(), checkpoint);
+        }
+        prediction.carry(checkpoint);
+        in_singular_pose.carry(checkpoint);
+        met_singular_pose.carry(checkpoint);
+        counters.carry(checkpoint);
     }
 
     /// The residual and the factors of the tangent of a stage.
@@ -126,20 +186,30 @@ impl Newton {
         work: &mut Work,
     ) -> Result<(), Failure> {
         let (r, phi) = (&mut self.r, &mut self.phi);
-        self.stage
-            .renew(system.symbolic(), &mut self.counters, |k| {
-                system.linearise(at, w, r, phi, k, work);
-            })
+        let [tangent, _] = &mut self.tangents;
+        tangent.renewed(w);
+        let factors = &mut tangent.factors;
+        factors.renew(system.symbolic(), &mut self.counters, |k| {
+            system.linearise(at, w, r, phi, k, work);
+        })
+    }
+
+    /// A step of a scheme with stages begins at `from`.
+    pub fn begin_step(&mut self, from: &State) {
+        if self.prediction.begin_step(from) {
+            self.tangents.iter_mut().for_each(Tangent::forget);
+        }
     }
 
     /// Phi and the factors of the acceleration level.
     fn renew_level(&mut self, system: &dyn System, at: &State) -> Result<(), Failure> {
-        let phi = &mut self.phi;
-        self.acceleration
-            .renew(system.acceleration_symbolic(), &mut self.counters, |k| {
-                system.acceleration_level(at, phi, k);
-            })?;
-        self.holds_mass = system.shape().multipliers == 0;
+        let factors = &mut self.acceleration;
+        system.acceleration_level(at, &mut self.phi, &mut factors.gradient);
+        self.counters.factorisations += 1;
+        let singular = |weak: WeakPivot| Failure::Singular { index: weak.index };
+        let factored = system.acceleration_matrix().factor_any(factors);
+        self.counters.fallbacks += u64::from(factored != Ok(false));
+        factored.map_err(singular)?;
         Ok(())
     }
 
@@ -148,7 +218,10 @@ impl Newton {
     /// `s` holds the guess of (a, lambda) and the known coordinates; the solution overwrites the guess. Constraint rows are
     /// divided by w.q, so that the matrix tends to that of the acceleration level as the step decreases. The iteration has
     /// converged when the estimated error of every velocity is below the tolerance. With constraints the tolerance is at least
-    /// 16 eps |q| w.v/w.q, the rounding of Phi as an error of velocity.
+    /// 16 eps |q| w.v/w.q, the rounding of Phi as an error of velocity. Updates with the tangent of an earlier stage decrease
+    /// linearly; their error must be a hundred times smaller. In a smooth system the first update may be the only one, if the square
+    /// of such updates has been measured to leave less than the tolerance. A stage that fails with an extrapolated guess or an
+    /// earlier tangent is solved again without them.
     ///
     /// # Errors
     /// See [`Failure`].
@@ -163,31 +236,83 @@ impl Newton {
     ) -> Result<(), Failure> {
         let n = system.shape().unknowns;
         self.counters.stages += 1;
+        let constrained = system.shape().multipliers > 0;
         let mut tolerance = self.tolerance;
-        if system.shape().multipliers > 0 {
+        if constrained {
             let size = q_hat[..n].iter().fold(0.0_f64, |m, q| m.max(q.abs()));
             tolerance = tolerance.max(16.0 * f64::EPSILON * size * w.v / w.q);
         }
-        let move_to = |s: &mut State| {
-            for i in 0..n {
-                s.q[i] = q_hat[i] + w.q * s.a[i];
-                s.v[i] = v_hat[i] + w.v * s.a[i];
-            }
+        let is_predicted = self.prediction.guess(s);
+        let [last, other] = &self.tangents;
+        if other.distance(w) < last.distance(w) || !last.fits(w) {
+            self.tangents.swap(0, 1);
+        }
+        // with constraints, rounding of Phi hides how fast updates decrease with an earlier tangent
+        let is_stale = !constrained && self.tangents[0].serves(w);
+        let stage = StageEquations {
+            w,
+            q_hat,
+            v_hat,
+            tolerance,
         };
+        let mut solved = self.iterate_stage(system, &stage, is_stale, s, work);
+        if solved.is_err() && (is_predicted || is_stale) {
+            self.prediction.take_back(s);
+            solved = self.iterate_stage(system, &stage, false, s, work);
+        }
+        let [tangent, _] = &mut self.tangents;
+        match solved {
+            Ok(ratio) => tangent.served(ratio),
+            Err(failure) => {
+                tangent.discard();
+                self.prediction.failed();
+                return Err(failure);
+            }
+        }
+        stage.move_to(s);
+        self.prediction.solved(s);
+        Ok(())
+    }
+
+    /// Newton's iteration of a stage, at first with an earlier tangent if `is_stale`. Returns the ratio of the last two updates,
+    /// where it is above rounding.
+    fn iterate_stage(
+        &mut self,
+        system: &dyn System,
+        stage: &StageEquations,
+        mut is_stale: bool,
+        s: &mut State,
+        work: &mut Work,
+    ) -> Result<Option<f64>, Failure> {
+        let n = system.shape().unknowns;
+        let StageEquations { w, tolerance, .. } = *stage;
+        let linear_tolerance = SHARE * self.tolerance;
+        let (mut renewed, mut ratio, mut error) = (0, None, f64::INFINITY);
         iterate(MAX_ITERATIONS, |iteration| {
-            move_to(s);
+            stage.move_to(s);
             self.counters.newton_iterations += 1;
-            match iteration.renew {
-                true => self.renew_stage(system, s, w, work)?,
+            let is_first = iteration.number == 0;
+            let renew = match is_stale {
+                true => !is_first && iteration.last * iteration.rate.powi(3) > linear_tolerance,
+                false => is_first || iteration.rate > SLOW,
+            };
+            match renew {
+                true => {
+                    if std::mem::replace(&mut is_stale, false) {
+                        renewed = iteration.number;
+                    }
+                    self.renew_stage(system, s, w, work)?;
+                }
                 false => system.residual(s, &mut self.r, &mut self.phi, work),
             }
-            for i in 0..n {
-                self.b[i] = -self.r[i];
+            let [tangent, _] = &mut self.tangents;
+            for (b, r) in self.b[..n].iter_mut().zip(&self.r) {
+                *b = -r;
             }
             for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
                 *b = -phi / w.q;
             }
-            self.stage.solve(system.symbolic(), &mut self.b);
+            tangent.factors.solve(system.symbolic(), &mut self.b);
             for (x, d) in s.a[..n].iter_mut().zip(&self.b) {
                 *x += d;
             }
@@ -196,21 +321,51 @@ impl Newton {
             }
             let update = Update::largest(self.b[..n].iter().map(|d| w.v * d));
             let rate = update.size / iteration.last;
-            let linear = if iteration.number == 0 || rate >= 1.0 {
-                update.size
-            } else {
-                rate / (1.0 - rate) * update.size
+            if is_stale && rate >= 1.0 && update.size > ROUNDING_BAND * tolerance {
+                let Update { index, size } = update;
+                return Err(Failure::NoConvergence {
+                    index,
+                    update: size,
+                });
+            }
+            if !is_first && iteration.last > tolerance {
+                ratio = Some(rate);
+            }
+            let linear = match is_first {
+                true => update.size * tangent.ratio(w).unwrap_or(1.0),
+                false if rate >= 1.0 => update.size,
+                false => rate / (1.0 - rate) * update.size,
             };
+            // an update that does not decrease any more is rounding of an error that was small enough before
+            let is_rounding = is_stale && rate > 0.3 && error <= tolerance;
             // after one large update the rate says nothing: this is its error for constraints with a curvature of 1/m
-            let error = linear.max(update.size * update.size * w.q / w.v);
-            let rounding =
-                iteration.number >= 2 && rate > 0.3 && update.size < ROUNDING_BAND * tolerance;
-            let converged = error <= tolerance || rounding;
-            self.counters.stagnations += u64::from(converged && error > tolerance);
-            Ok((update, converged))
+            error = linear.max(update.size * update.size * w.q / w.v);
+            let is_fresh = !is_stale && renewed == 0;
+            if is_fresh && iteration.number == 1 {
+                tangent.measure(w, [iteration.last, update.size]);
+            }
+            // what constraints make of rounding is part of the measured curvature; the quadratic error itself is far smaller
+            let leaves_little = || {
+                tangent
+                    .left(w, update.size)
+                    .is_some_and(|left| left <= 0.5 * tolerance)
+            };
+            let allowed = if is_stale {
+                linear_tolerance
+            } else {
+                tolerance
+            };
+            let is_small = is_rounding
+                || error <= allowed
+                || is_fresh && is_first && leaves_little() && system.is_smooth(s);
+            let stagnates = !is_stale
+                && iteration.number >= renewed + 2
+                && rate > 0.3
+                && update.size < ROUNDING_BAND * tolerance.max(stage.rounding(s));
+            self.counters.stagnations += u64::from(stagnates && !is_small);
+            Ok((update, is_small || stagnates))
         })?;
-        move_to(s);
-        Ok(())
+        Ok(ratio)
     }
 
     /// Makes a state consistent at its q: v is projected on Phi_q v + Phi_t = 0 with the change of least kinetic energy, then
@@ -232,8 +387,9 @@ impl Newton {
         }
         if system.shape().multipliers > 0 {
             system.constraint_velocity(s, &mut self.phi);
-            self.b[..system.shape().unknowns].fill(0.0);
-            self.move_by(system, |s| &mut s.v, s);
+            self.solve_for_phi(system);
+            let change = &self.b[..system.shape().unknowns];
+            s.v.iter_mut().zip(change).for_each(|(v, d)| *v += d);
         }
         self.end_acceleration_level(system, s, work)
     }
@@ -278,18 +434,13 @@ impl Newton {
         system: &dyn System,
         s: &State,
     ) -> Result<bool, Failure> {
-        if self.holds_mass {
+        let matrix = system.acceleration_matrix();
+        if matrix.is_constant() {
             return Ok(false);
         }
         self.renew_level(system, s)?;
-        let n = system.shape().unknowns;
-        let pivots = || {
-            system
-                .acceleration_symbolic()
-                .pivot_range(&self.acceleration.values, n)
-        };
-        self.in_singular_pose = system.shape().multipliers > 0
-            && (self.acceleration.dense.is_some() || pivots() < SINGULAR);
+        self.in_singular_pose =
+            system.shape().multipliers > 0 && matrix.pivot_range(&self.acceleration) < SINGULAR;
         Ok(self.in_singular_pose)
     }
 
@@ -304,10 +455,12 @@ impl Newton {
         s.a[..n].fill(0.0);
         system.free_residual(s, &mut self.r, work);
         system.constraint_acceleration(s, &mut self.phi);
-        for i in 0..n {
-            self.b[i] = -self.r[i];
+        for (b, r) in self.b.iter_mut().zip(self.r[..n].iter().chain(&self.phi)) {
+            *b = -r;
         }
-        self.move_by(system, |s| &mut s.a, s);
+        let matrix = system.acceleration_matrix();
+        matrix.solve(&mut self.acceleration, &mut self.b);
+        s.a[..n].copy_from_slice(&self.b[..n]);
         s.lambda.copy_from_slice(&self.b[n..]);
         match s.a[..n].iter().position(|a| !a.is_finite()) {
             Some(index) => Err(Failure::NotFinite { index }),
@@ -325,7 +478,6 @@ impl Newton {
         let size = s.q[..n].iter().fold(0.0_f64, |m, q| m.max(q.abs()));
         iterate(MAX_ITERATIONS, |_| {
             self.renew_level(system, s)?;
-            self.b[..n].fill(0.0);
             self.solve_for_phi(system);
             for i in 0..n {
                 let increment = self.b[i] + s.q_low[i];
@@ -350,9 +502,9 @@ impl Newton {
         let n = system.shape().unknowns;
         self.counters.singular_poses += 1;
         self.met_singular_pose = true;
-        let k = &mut self.acceleration.values;
-        system.acceleration_level(s, &mut self.phi, k);
-        let Some(truncated) = Truncated::new(system.acceleration_symbolic(), k, n) else {
+        let matrix = system.acceleration_matrix();
+        let matrix = matrix.to_dense(&self.acceleration.gradient);
+        let Some(truncated) = Truncated::new(&matrix, n) else {
             return Err(Failure::Singular { index: n });
         };
         if project {
@@ -386,6 +538,7 @@ impl Newton {
         if system.shape().multipliers > 0 {
             self.make_consistent(system, s, work)?;
         }
+        self.prediction.finish(s);
         Ok(system.powers(s, work))
     }
 
@@ -426,35 +579,24 @@ impl Newton {
         }
         self.b[n..].fill(0.0);
         match implicit {
-            true => self.stage.solve(system.symbolic(), &mut self.b),
-            false => self
-                .acceleration
-                .solve(system.acceleration_symbolic(), &mut self.b),
+            true => self.tangents[0]
+                .factors
+                .solve(system.symbolic(), &mut self.b),
+            false => {
+                let matrix = system.acceleration_matrix();
+                matrix.solve(&mut self.acceleration, &mut self.b);
+            }
         }
         e.copy_from_slice(&self.b[..n]);
     }
 
-    /// Solves the acceleration level with the right side `b`, whose first part (unknowns) is set, and -phi.
+    /// Solves the acceleration level with the right side (0, -phi).
     fn solve_for_phi(&mut self, system: &dyn System) {
         let n = system.shape().unknowns;
         for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
             *b = -phi;
         }
-        self.acceleration
-            .solve(system.acceleration_symbolic(), &mut self.b);
-    }
-
-    /// Solves as above and adds the first part of the solution to the positions, velocities or accelerations of the state.
-    fn move_by(
-        &mut self,
-        system: &dyn System,
-        level: fn(&mut State) -> &mut Vec<f64>,
-        s: &mut State,
-    ) {
-        let n = system.shape().unknowns;
-        self.solve_for_phi(system);
-        for (x, d) in level(s).iter_mut().zip(&self.b[..n]) {
-            *x += d;
-        }
+        let matrix = system.acceleration_matrix();
+        matrix.solve_rows(&mut self.acceleration, &mut self.b);
     }
 }

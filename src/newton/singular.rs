@@ -5,7 +5,6 @@
 //! Dividing by this eigenvalue could throw the mechanism off its branch. The direction is left out: the mechanism moves on
 //! unconstrained in it until a later stage, where the constraints have full rank again.
 
-use crate::math::lu::Symbolic;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
@@ -24,11 +23,9 @@ pub struct Truncated {
 }
 
 impl Truncated {
-    /// From the acceleration-level matrix of n coordinates, as it stands before it is factorised; `None` without a positive
-    /// definite mass matrix.
-    pub fn new(symbolic: &Symbolic, values: &[f64], n: usize) -> Option<Truncated> {
-        let dense = symbolic.to_dense(values);
-        let m = symbolic.n() - n;
+    /// From the acceleration-level matrix of n coordinates; `None` without a positive definite mass matrix.
+    pub fn new(dense: &Mat<f64>, n: usize) -> Option<Truncated> {
+        let m = dense.nrows() - n;
         let mass = Mat::from_fn(n, n, |i, j| dense[(i, j)]);
         let mass = mass.llt(faer::Side::Lower).ok()?;
         let gradient = Mat::from_fn(m, n, |i, j| dense[(n + i, j)]);

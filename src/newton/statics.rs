@@ -56,7 +56,9 @@ impl Newton {
             for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
                 *b = -scale * phi;
             }
-            self.stage.solve(system.symbolic(), &mut self.b);
+            self.tangents[0]
+                .factors
+                .solve(system.symbolic(), &mut self.b);
             for (q, d) in s.q[..n].iter_mut().zip(&self.b) {
                 *q += d;
             }
@@ -83,10 +85,12 @@ impl Newton {
     ) -> Result<f64, Failure> {
         let (r, phi) = (&mut self.r, &mut self.phi);
         let mut scale = 1.0;
-        self.stage
-            .renew(system.symbolic(), &mut self.counters, |k| {
-                scale = system.stiffness(s, r, phi, k, work);
-            })?;
+        let [tangent, _] = &mut self.tangents;
+        tangent.discard();
+        let factors = &mut tangent.factors;
+        factors.renew(system.symbolic(), &mut self.counters, |k| {
+            scale = system.stiffness(s, r, phi, k, work);
+        })?;
         Ok(scale)
     }
 

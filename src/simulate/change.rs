@@ -1,6 +1,6 @@
 //! Location of contact onset and loss: the step is cut where a contact changes.
 
-use super::top::top;
+use super::cubic::{crossing, top};
 use super::{RunError, Simulation};
 use crate::system::System;
 
@@ -16,13 +16,12 @@ impl Simulation {
     /// The contact of `trial` that is furthest past its change: the distance (penetration of an open contact, gap of a closed
     /// one) and its rate.
     fn furthest_past(&mut self) -> (f64, f64) {
-        self.model
-            .gaps(&self.trial, &mut self.delta, &mut self.rate);
+        self.model.gaps(&self.trial, &mut self.gaps);
         let mut furthest = (f64::NEG_INFINITY, 0.0);
-        for (c, z) in self.trial.z.iter().enumerate() {
+        for (&[delta, rate], z) in self.gaps.iter().zip(&self.trial.z) {
             let sign = side(*z);
-            if sign * self.delta[c] > furthest.0 {
-                furthest = (sign * self.delta[c], sign * self.rate[c]);
+            if sign * delta > furthest.0 {
+                furthest = (sign * delta, sign * rate);
             }
         }
         furthest
@@ -31,40 +30,53 @@ impl Simulation {
     /// The contact that is furthest past its change inside the trial step, as (distance, time): at an interior stage of the
     /// stepper, or at the maximum of the cubic between neighbouring states.
     fn furthest_past_inside(&mut self) -> (f64, f64) {
-        let states = [&self.state]
-            .into_iter()
-            .chain(self.stepper.interior())
-            .chain([&self.trial]);
         let mut furthest = (f64::NEG_INFINITY, 0.0);
-        let mut before = f64::NAN;
-        for s in states {
-            self.model.gaps(s, &mut self.delta, &mut self.rate);
-            for (c, z) in self.state.z.iter().enumerate() {
+        let mut before = self.state.t;
+        self.last_gaps.copy_from_slice(&self.first_gaps);
+        for s in self.stepper.interior().iter().chain([&self.trial]) {
+            let is_inside = s.t < self.trial.t;
+            if is_inside {
+                self.model.gaps(s, &mut self.inner_gaps);
+            } else {
+                self.inner_gaps.copy_from_slice(&self.gaps);
+            }
+            let pairs = self.last_gaps.iter().zip(&self.inner_gaps);
+            for ((last, &[delta, rate]), z) in pairs.zip(&self.state.z) {
                 let sign = side(*z);
-                let (gap, rate) = (sign * self.delta[c], sign * self.rate[c]);
-                let last = std::mem::replace(&mut self.last_gaps[c], [gap, rate]);
-                if before.is_nan() {
-                    continue;
+                if is_inside && sign * delta > furthest.0 {
+                    furthest = (sign * delta, s.t);
                 }
-                if gap > furthest.0 && s.t < self.trial.t {
-                    furthest = (gap, s.t);
-                }
-                if let Some((t, gap)) = top(s.t - before, [last[0], gap], [last[1], rate])
+                let ends = [sign * last[0], sign * delta];
+                if let Some((t, gap)) = top(s.t - before, ends, [sign * last[1], sign * rate])
                     && gap > furthest.0
                 {
                     furthest = (gap, before + t);
                 }
             }
+            std::mem::swap(&mut self.last_gaps, &mut self.inner_gaps);
             before = s.t;
         }
         furthest
+    }
+
+    /// When the first contact changes, by the cubics through penetrations and rates at both ends of the trial step.
+    fn first_crossing(&self) -> Option<f64> {
+        let h = self.trial.t - self.state.t;
+        let ends = self.first_gaps.iter().zip(&self.gaps);
+        let crossings = ends.zip(&self.trial.z).filter_map(|((from, to), z)| {
+            let sign = side(*z);
+            let [y, v] = [0, 1].map(|i| [sign * from[i], sign * to[i]]);
+            crossing(h, y, v)
+        });
+        crossings.min_by(f64::total_cmp).map(|t| self.state.t + t)
     }
 
     /// Cuts the trial step so that the first contact to close or to open does so at its end; returns the clamps of that
     /// step.
     ///
     /// Until it changes, a contact follows one smooth law, so its penetration is a smooth function of the length of the
-    /// step: Newton's method on it, kept inside a bracket.
+    /// step: Newton's method on it, kept inside a bracket, from where the cubic through the values and rates at both ends of the
+    /// step passes zero.
     pub(super) fn locate_change(
         &mut self,
         mut clamps: usize,
@@ -88,7 +100,7 @@ impl Simulation {
             }
             high = t;
         }
-        for _ in 0..LOCATION_TRIALS {
+        for trial in 0..LOCATION_TRIALS {
             if past.abs() <= tolerance {
                 return Ok(clamps);
             }
@@ -98,10 +110,13 @@ impl Simulation {
                 low = t
             }
             let newton = t - past / rate;
-            let next = if newton > low && newton < high {
-                newton
-            } else {
-                low + 0.5 * (high - low)
+            let expected = match trial {
+                0 => self.first_crossing().unwrap_or(newton),
+                _ => newton,
+            };
+            let next = match expected > low && expected < high {
+                true => expected,
+                false => low + 0.5 * (high - low),
             };
             if next <= low || next >= high {
                 break;
@@ -114,6 +129,7 @@ impl Simulation {
         self.counters.unlocated += 1;
         if t != high {
             (clamps, _) = self.try_step(high)?;
+            self.model.gaps(&self.trial, &mut self.gaps);
         }
         Ok(clamps)
     }

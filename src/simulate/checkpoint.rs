@@ -48,17 +48,18 @@ impl Simulation {
             stall,
             counters,
             halved,
-            delta: _,
-            rate: _,
+            gaps: _,
+            first_gaps: _,
             last_gaps: _,
+            inner_gaps: _,
             started: _,
             status: _,
             error: _,
         } = self;
         pacer.carry(model, checkpoint);
-        let parts: [&mut dyn Carried; 14] = [
+        newton.carry(model, checkpoint);
+        let parts: [&mut dyn Carried; 13] = [
             stepper,
-            newton,
             is_between_rows,
             stays_in_singular_pose,
             work,

@@ -1,7 +1,7 @@
 //! Records every contact from its onset to its end, and keeps the first ones for the summary.
 
+use super::cubic::top;
 use super::observer::{ContactEnd, ContactEvent, Observer, Onset};
-use super::top::top;
 use crate::checkpoint::carried;
 use crate::model::Model;
 use crate::scene::Scene;

@@ -43,8 +43,11 @@ impl Simulation {
     ) -> Result<Simulation, SceneError> {
         let shape = model.shape();
         let mut started = Vec::with_capacity(shape.contacts);
+        let mut gaps = vec![[0.0; 2]; shape.contacts];
+        model.gaps(&state, &mut gaps);
         model.commit(
             &mut state,
+            &gaps,
             scene.integrator.onset_tolerance,
             &mut |c, v, d| started.push((c, v, d)),
         );
@@ -102,9 +105,10 @@ impl Simulation {
                 ..LoopCounters::default()
             },
             halved: vec![0; shape.unknowns + shape.multipliers],
-            delta: vec![0.0; shape.contacts],
-            rate: vec![0.0; shape.contacts],
-            last_gaps: vec![[0.0; 2]; shape.contacts],
+            first_gaps: gaps.clone(),
+            last_gaps: gaps.clone(),
+            inner_gaps: gaps.clone(),
+            gaps,
             started,
             status: Status::Incomplete,
             error: None,

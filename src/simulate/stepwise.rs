@@ -37,6 +37,7 @@ impl Simulation {
             newton,
             work,
             is_between_rows,
+            first_gaps,
             ..
         } = self;
         *is_between_rows = false;
@@ -45,7 +46,8 @@ impl Simulation {
         state.v.copy_from_slice(&other.v);
         state.z.copy_from_slice(&other.z);
         let tolerance = self.scene.integrator.onset_tolerance;
-        model.commit(state, tolerance, &mut |_, _, _| {});
+        model.gaps(state, first_gaps);
+        model.commit(state, first_gaps, tolerance, &mut |_, _, _| {});
         if let Err(failure) = newton.make_consistent(model, state, work) {
             return Err(self.failed(failure.into(), 0.0));
         }

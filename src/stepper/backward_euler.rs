@@ -48,6 +48,7 @@ impl Stepper for BackwardEuler {
         newton: &mut Newton,
         work: &mut Work,
     ) -> Result<usize, StepError> {
+        newton.begin_step(from);
         let h = t - from.t;
         self.history.begin(from);
         to.copy_from(from);

@@ -109,6 +109,7 @@ impl Stepper for Bathe {
         newton: &mut Newton,
         work: &mut Work,
     ) -> Result<usize, StepError> {
+        newton.begin_step(from);
         let n = system.shape().unknowns;
         let h = t - from.t;
         let [middle] = &mut self.middle;

@@ -81,6 +81,7 @@ impl Stepper for Esdirk3 {
         newton: &mut Newton,
         work: &mut Work,
     ) -> Result<usize, StepError> {
+        newton.begin_step(from);
         let h = t - from.t;
         let g = GAMMA * h;
         let w = Weights { q: g * g, v: g };

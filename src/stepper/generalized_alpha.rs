@@ -112,6 +112,7 @@ impl Stepper for GeneralizedAlpha {
         newton: &mut Newton,
         work: &mut Work,
     ) -> Result<usize, StepError> {
+        newton.begin_step(from);
         let n = system.shape().unknowns;
         let h = t - from.t;
         let (gamma, beta) = (self.gamma, self.beta);

@@ -53,6 +53,7 @@ impl Stepper for Trapezoidal {
         newton: &mut Newton,
         work: &mut Work,
     ) -> Result<usize, StepError> {
+        newton.begin_step(from);
         let h = t - from.t;
         let g = 0.5 * h;
         self.history.begin(from);

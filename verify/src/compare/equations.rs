@@ -20,8 +20,9 @@ pub const STATES: usize = 50;
 const TOLERANCE: f64 = 1e-11;
 /// The same where the reference's rows are differenced over [`SPAN`]: 1e-10 of truncation and rounding, and a reserve.
 const DIFFERENCING: f64 = 1e-8;
-/// 1e-15, the rounding of a coordinate, over that: forces of small strains are differences of coordinates.
-const COORDINATES: f64 = 1e-4;
+/// 2e-15, the rounding of the eight coordinates of an element, over that: forces of small strains are differences of
+/// coordinates.
+const COORDINATES: f64 = 2e-4;
 /// Span of central differences of the rows: coordinates in m, angles in rad.
 const SPAN: f64 = 1e-5;
 
@@ -404,9 +405,10 @@ fn rust_constraints(model: &Model, at: &State) -> (Vec<f64>, Vec<f64>) {
     let shape = model.shape();
     let (n, m) = (shape.unknowns, shape.multipliers);
     let mut phi = vec![0.0; m];
-    let mut k = vec![0.0; model.acceleration_symbolic().len()];
-    model.acceleration_level(at, &mut phi, &mut k);
-    let dense = model.acceleration_symbolic().to_dense(&k);
+    let matrix = model.acceleration_matrix();
+    let mut gradient = matrix.factors().gradient;
+    model.acceleration_level(at, &mut phi, &mut gradient);
+    let dense = matrix.to_dense(&gradient);
     let entries = (0..m * n).map(|e| dense[(n + e / n, e % n)]);
     (phi, entries.collect())
 }
