@@ -266,6 +266,7 @@ impl Simulation {
             match self.step_to(t) {
                 Ok(clamps) => return Ok((clamps, t)),
                 Err(error) => {
+                    self.newton.forget_step();
                     self.counters.rejected += 1;
                     self.stall.failure();
                     if let Some(index) = error.index() {
@@ -303,6 +304,7 @@ impl Simulation {
         let shorter = (1..=PASSAGES).map(|k| (reached - t) * PASSAGE_RATIO.powi(-k));
         for length in longer.filter(|length| t + length <= target).chain(shorter) {
             self.counters.singular_pose_trials += 1;
+            self.newton.forget_step();
             let step = self.try_step(t + length)?;
             if !self.newton.met_singular_pose() {
                 return Ok(step);

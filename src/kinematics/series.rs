@@ -8,6 +8,7 @@
 
 use super::{Inner, Kinematics};
 use crate::checkpoint::carried;
+use crate::math::larger;
 use crate::system::State;
 use std::f64::consts::PI;
 
@@ -87,8 +88,6 @@ impl Series {
             }
         }
         let third = width / 3;
-        // f64::max drops NaN
-        let larger = |m: f64, x: f64| if x.abs() <= m { m } else { x.abs() };
         (0..3).all(|level| {
             let functions = level * third..(level + 1) * third;
             let rows = self.values.chunks_exact(width);

@@ -15,30 +15,30 @@ const LARGEST_MULTIPLIER: f64 = 1e9;
 
 /// Structure of the matrix: pattern with fill, pivot order, positions of the entries in the value array.
 ///
-/// Neighbouring pivots whose columns have the same pattern form a front: dense blocks that are eliminated together. The values
-/// of a front with s pivots, to which r later unknowns are coupled, stand together: the s x s block of the pivots, row by row,
+/// Neighbouring pivots whose columns have the same pattern form a supernode: dense blocks that are eliminated together. The values
+/// of a supernode with s pivots, to which r later unknowns are coupled, stand together: the s x s block of the pivots, row by row,
 /// whose diagonal its inverse replaces; the r x s block of L below it, row by row; the s x r block of U right of it, column by
 /// column. One more entry at the end of the array takes what is scattered to known coordinates and is never read.
 #[derive(Debug)]
 pub struct Symbolic {
-    fronts: Vec<Front>,
+    supernodes: Vec<Supernode>,
     /// Unknowns in the order of elimination.
     order: Vec<usize>,
     /// Place of each unknown in this order.
     position: Vec<usize>,
-    /// Front of each place.
-    front_of: Vec<usize>,
-    /// Places of the unknowns that are coupled to a front and eliminated after it, ascending; front after front.
+    /// Supernode of each place.
+    supernode_of: Vec<usize>,
+    /// Places of the unknowns that are coupled to a supernode and eliminated after it, ascending; supernode after supernode.
     structure: Vec<usize>,
     /// The same unknowns by their indices.
     coupled: Vec<usize>,
-    /// For every (row, column) pair of a front's structure, row by row, where its value stands behind those of the front.
+    /// For every (row, column) pair of a supernode's structure, row by row, where its value stands behind those of the supernode.
     targets: Vec<u32>,
 }
 
-/// What elimination needs to know of one front.
+/// What elimination needs to know of one supernode.
 #[derive(Debug)]
-struct Front {
+struct Supernode {
     /// Place of its first pivot.
     first: usize,
     /// Number of its pivots.
@@ -53,10 +53,10 @@ struct Front {
     targets: usize,
 }
 
-/// Most pivots of a front: kernels are compiled for every size.
-const LARGEST_FRONT: usize = 9;
+/// Most pivots of a supernode: kernels are compiled for every size.
+const LARGEST_SUPERNODE: usize = 9;
 
-impl Front {
+impl Supernode {
     /// End of its values.
     fn end(&self) -> usize {
         self.start + self.size * (self.size + 2 * self.count)
@@ -120,22 +120,22 @@ impl Symbolic {
         Self::layout(order, &eliminated_with)
     }
 
-    /// Collects the pivots in fronts and gives every entry its place; `fronts` are the unknowns coupled to each pivot.
-    fn layout(order: Vec<usize>, fronts: &[Vec<usize>]) -> Symbolic {
+    /// Collects the pivots in supernodes and gives every entry its place; `coupled` are the unknowns coupled to each pivot.
+    fn layout(order: Vec<usize>, coupled: &[Vec<usize>]) -> Symbolic {
         let n = order.len();
-        let (order, fronts) = depth_first(&order, fronts);
+        let (order, coupled) = depth_first(&order, coupled);
         let mut position = vec![0; n];
         for (k, &i) in order.iter().enumerate() {
             position[i] = k;
         }
         let places = |k: usize| {
-            let mut places: Vec<usize> = fronts[k].iter().map(|&i| position[i]).collect();
+            let mut places: Vec<usize> = coupled[k].iter().map(|&i| position[i]).collect();
             places.sort_unstable();
             places
         };
         let mut symbolic = Symbolic {
-            fronts: Vec::new(),
-            front_of: Vec::with_capacity(n),
+            supernodes: Vec::new(),
+            supernode_of: Vec::with_capacity(n),
             structure: Vec::new(),
             coupled: Vec::new(),
             targets: Vec::new(),
@@ -146,7 +146,7 @@ impl Symbolic {
         while first < n {
             let mut last = first;
             let mut structure = places(first);
-            while last + 1 < n && last + 1 - first < LARGEST_FRONT {
+            while last + 1 < n && last + 1 - first < LARGEST_SUPERNODE {
                 let next = places(last + 1);
                 if structure.first() != Some(&(last + 1)) || structure[1..] != next {
                     break;
@@ -154,7 +154,7 @@ impl Symbolic {
                 last += 1;
                 structure = next;
             }
-            let front = Front {
+            let node = Supernode {
                 first,
                 size: last + 1 - first,
                 count: structure.len(),
@@ -162,21 +162,21 @@ impl Symbolic {
                 structure: symbolic.structure.len(),
                 targets: 0,
             };
-            start = front.end();
-            let index = symbolic.fronts.len();
+            start = node.end();
+            let index = symbolic.supernodes.len();
             symbolic
-                .front_of
-                .extend(std::iter::repeat_n(index, front.size));
+                .supernode_of
+                .extend(std::iter::repeat_n(index, node.size));
             symbolic.coupled.extend(structure.iter().map(|&p| order[p]));
             symbolic.structure.extend(structure);
-            symbolic.fronts.push(front);
+            symbolic.supernodes.push(node);
             first = last + 1;
         }
         (symbolic.order, symbolic.position) = (order, position);
-        for f in 0..symbolic.fronts.len() {
+        for f in 0..symbolic.supernodes.len() {
             let places = symbolic.structure(f).to_vec();
-            symbolic.fronts[f].targets = symbolic.targets.len();
-            let end = symbolic.fronts[f].end();
+            symbolic.supernodes[f].targets = symbolic.targets.len();
+            let end = symbolic.supernodes[f].end();
             for &i in &places {
                 for &j in &places {
                     let entry = symbolic.entry(i, j);
@@ -188,21 +188,21 @@ impl Symbolic {
         symbolic
     }
 
-    /// Places of the unknowns coupled to front `f`.
+    /// Places of the unknowns coupled to supernode `f`.
     fn structure(&self, f: usize) -> &[usize] {
-        let Front {
+        let Supernode {
             structure, count, ..
-        } = self.fronts[f];
+        } = self.supernodes[f];
         &self.structure[structure..structure + count]
     }
 
     /// Value index of the entry in rows and columns counted in pivot order.
     fn entry(&self, i: usize, j: usize) -> Option<usize> {
-        let f = self.front_of[i.min(j)];
-        let front = &self.fronts[f];
-        let Front {
+        let f = self.supernode_of[i.min(j)];
+        let node = &self.supernodes[f];
+        let Supernode {
             first, size, start, ..
-        } = *front;
+        } = *node;
         let local = |place: usize| match place - first {
             own if own < size => Some(own),
             _ => Some(size + self.structure(f).binary_search(&place).ok()?),
@@ -214,7 +214,7 @@ impl Symbolic {
                     // rows of the pivots, then rows of L
                     (_, true) => row * size + column,
                     // columns of U
-                    (true, false) => (front.count + column) * size + row,
+                    (true, false) => (node.count + column) * size + row,
                     (false, false) => return None,
                 },
         )
@@ -237,7 +237,7 @@ impl Symbolic {
 
     /// Index of the value that takes what is scattered to known coordinates.
     pub fn discarded_slot(&self) -> u32 {
-        self.fronts.last().map_or(0, Front::end) as u32
+        self.supernodes.last().map_or(0, Supernode::end) as u32
     }
 
     /// Value index of entry (row, column), or of the discarded entry where one of them is not an unknown (index >= n).
@@ -258,11 +258,11 @@ impl Symbolic {
     /// The first pivot that is zero, not finite, or much smaller than its column.
     pub fn factor(&self, values: &mut [f64]) -> Result<(), WeakPivot> {
         assert_eq!(values.len(), self.len());
-        for front in &self.fronts {
-            let (here, behind) = values.split_at_mut(front.end());
-            let here = &mut here[front.start..];
-            let targets = &self.targets[front.targets..][..front.count * front.count];
-            let weak = match front.size {
+        for node in &self.supernodes {
+            let (here, behind) = values.split_at_mut(node.end());
+            let here = &mut here[node.start..];
+            let targets = &self.targets[node.targets..][..node.count * node.count];
+            let weak = match node.size {
                 1 => eliminate::<1>(here, behind, targets),
                 2 => eliminate::<2>(here, behind, targets),
                 3 => eliminate::<3>(here, behind, targets),
@@ -271,10 +271,10 @@ impl Symbolic {
                 6 => eliminate::<6>(here, behind, targets),
                 7 => eliminate::<7>(here, behind, targets),
                 8 => eliminate::<8>(here, behind, targets),
-                _ => eliminate::<LARGEST_FRONT>(here, behind, targets),
+                _ => eliminate::<LARGEST_SUPERNODE>(here, behind, targets),
             };
             if let Err(pivot) = weak {
-                let index = self.order[front.first + pivot];
+                let index = self.order[node.first + pivot];
                 return Err(WeakPivot { index });
             }
         }
@@ -283,15 +283,15 @@ impl Symbolic {
 
     /// Multiply-subtracts of a factorisation.
     pub fn operations(&self) -> usize {
-        let fronts = self.fronts.iter();
-        fronts.map(|f| f.size * (f.size + f.count).pow(2)).sum()
+        let nodes = self.supernodes.iter();
+        nodes.map(|f| f.size * (f.size + f.count).pow(2)).sum()
     }
 
     /// Index of the value of a pivot.
     fn diagonal(&self, unknown: usize) -> usize {
         let place = self.position[unknown];
-        let front = &self.fronts[self.front_of[place]];
-        front.start + (place - front.first) * (front.size + 1)
+        let node = &self.supernodes[self.supernode_of[place]];
+        node.start + (place - node.first) * (node.size + 1)
     }
 
     /// The pivot of an unknown in the factors of [`Symbolic::factor`].
@@ -308,9 +308,9 @@ impl Symbolic {
 
     /// Solves L U x = b with the factors of [`Symbolic::factor`]; `b` in, x out.
     pub fn solve(&self, values: &[f64], b: &mut [f64]) {
-        for front in &self.fronts {
-            let (own, coupled, values) = self.parts(front, values);
-            match front.size {
+        for node in &self.supernodes {
+            let (own, coupled, values) = self.parts(node, values);
+            match node.size {
                 1 => forward::<1>(own, coupled, values, b),
                 2 => forward::<2>(own, coupled, values, b),
                 3 => forward::<3>(own, coupled, values, b),
@@ -319,12 +319,12 @@ impl Symbolic {
                 6 => forward::<6>(own, coupled, values, b),
                 7 => forward::<7>(own, coupled, values, b),
                 8 => forward::<8>(own, coupled, values, b),
-                _ => forward::<LARGEST_FRONT>(own, coupled, values, b),
+                _ => forward::<LARGEST_SUPERNODE>(own, coupled, values, b),
             }
         }
-        for front in self.fronts.iter().rev() {
-            let (own, coupled, values) = self.parts(front, values);
-            match front.size {
+        for node in self.supernodes.iter().rev() {
+            let (own, coupled, values) = self.parts(node, values);
+            match node.size {
                 1 => backward::<1>(own, coupled, values, b),
                 2 => backward::<2>(own, coupled, values, b),
                 3 => backward::<3>(own, coupled, values, b),
@@ -333,14 +333,18 @@ impl Symbolic {
                 6 => backward::<6>(own, coupled, values, b),
                 7 => backward::<7>(own, coupled, values, b),
                 8 => backward::<8>(own, coupled, values, b),
-                _ => backward::<LARGEST_FRONT>(own, coupled, values, b),
+                _ => backward::<LARGEST_SUPERNODE>(own, coupled, values, b),
             }
         }
     }
 
-    /// The pivots of a front, the unknowns coupled to it, and its values.
+    /// The pivots of a supernode, the unknowns coupled to it, and its values.
     #[inline]
-    fn parts<'a>(&'a self, f: &Front, values: &'a [f64]) -> (&'a [usize], &'a [usize], &'a [f64]) {
+    fn parts<'a>(
+        &'a self,
+        f: &Supernode,
+        values: &'a [f64],
+    ) -> (&'a [usize], &'a [usize], &'a [f64]) {
         (
             &self.order[f.first..f.first + f.size],
             &self.coupled[f.structure..f.structure + f.count],
@@ -351,8 +355,8 @@ impl Symbolic {
     /// The matrix in full, before it is factorised.
     pub fn to_dense(&self, values: &[f64]) -> faer::Mat<f64> {
         let mut dense = faer::Mat::zeros(self.n(), self.n());
-        for (f, front) in self.fronts.iter().enumerate() {
-            let own = front.first..front.first + front.size;
+        for (f, node) in self.supernodes.iter().enumerate() {
+            let own = node.first..node.first + node.size;
             for i in own.clone() {
                 for j in own.clone().chain(self.structure(f).iter().copied()) {
                     for (i, j) in [(i, j), (j, i)] {
@@ -368,13 +372,13 @@ impl Symbolic {
 
 /// The same elimination with every pivot behind those that it waits for, as late as possible: pivots of one part of the matrix
 /// follow each other. Pivots and the unknowns coupled to them in, the same out.
-fn depth_first(order: &[usize], fronts: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<usize>>) {
+fn depth_first(order: &[usize], coupled: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<usize>>) {
     let n = order.len();
     let mut position = vec![0; n];
     for (k, &i) in order.iter().enumerate() {
         position[i] = k;
     }
-    let parent = |k: usize| fronts[k].iter().map(|&i| position[i]).min();
+    let parent = |k: usize| coupled[k].iter().map(|&i| position[i]).min();
     let mut children = vec![Vec::new(); n];
     let mut pending = Vec::new();
     for k in (0..n).rev() {
@@ -396,30 +400,30 @@ fn depth_first(order: &[usize], fronts: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<u
     }
     (
         sorted.iter().map(|&k| order[k]).collect(),
-        sorted.iter().map(|&k| fronts[k].clone()).collect(),
+        sorted.iter().map(|&k| coupled[k].clone()).collect(),
     )
 }
 
-/// The blocks of a front with S pivots: of the pivots, of L row by row, of U column by column.
-struct FrontBlocks<'a, const S: usize> {
+/// The blocks of a supernode with S pivots: of the pivots, of L row by row, of U column by column.
+struct SupernodeBlocks<'a, const S: usize> {
     pivots: &'a [[f64; S]; S],
     lower: &'a [[f64; S]],
     upper: &'a [[f64; S]],
 }
 
 #[inline(always)]
-fn blocks<const S: usize>(values: &[f64]) -> FrontBlocks<'_, S> {
+fn blocks<const S: usize>(values: &[f64]) -> SupernodeBlocks<'_, S> {
     let (rows, _) = values.as_chunks::<S>();
-    let (pivots, rest) = rows.split_first_chunk().expect("a front has S pivots");
+    let (pivots, rest) = rows.split_first_chunk().expect("a supernode has S pivots");
     let (lower, upper) = rest.split_at(rest.len() / 2);
-    FrontBlocks {
+    SupernodeBlocks {
         pivots,
         lower,
         upper,
     }
 }
 
-/// Eliminates the pivots of a front; the error is the number of a weak one.
+/// Eliminates the pivots of a supernode; the error is the number of a weak one.
 #[inline]
 fn eliminate<const S: usize>(
     here: &mut [f64],
@@ -429,7 +433,7 @@ fn eliminate<const S: usize>(
     let (rows, _) = here.as_chunks_mut::<S>();
     let (pivots, rest) = rows
         .split_first_chunk_mut::<S>()
-        .expect("a front has S pivots");
+        .expect("a supernode has S pivots");
     let mut largest = [0.0_f64; S];
     // f64::max drops NaN
     let see = |largest: &mut f64, l: f64| {
@@ -493,11 +497,11 @@ fn dot<const S: usize>(x: &[f64; S], y: &[f64; S]) -> f64 {
     sum
 }
 
-/// L x = b for the pivots of a front; subtracts from b what they contribute to later rows.
+/// L x = b for the pivots of a supernode; subtracts from b what they contribute to later rows.
 #[inline]
 fn forward<const S: usize>(own: &[usize], coupled: &[usize], values: &[f64], b: &mut [f64]) {
-    let FrontBlocks { pivots, lower, .. } = blocks::<S>(values);
-    let own: &[usize; S] = own.try_into().expect("a front has S pivots");
+    let SupernodeBlocks { pivots, lower, .. } = blocks::<S>(values);
+    let own: &[usize; S] = own.try_into().expect("a supernode has S pivots");
     let mut x = own.map(|i| b[i]);
     for k in 0..S {
         for m in 0..k {
@@ -510,11 +514,11 @@ fn forward<const S: usize>(own: &[usize], coupled: &[usize], values: &[f64], b: 
     }
 }
 
-/// U x = b for the pivots of a front, with the later unknowns known.
+/// U x = b for the pivots of a supernode, with the later unknowns known.
 #[inline]
 fn backward<const S: usize>(own: &[usize], coupled: &[usize], values: &[f64], b: &mut [f64]) {
-    let FrontBlocks { pivots, upper, .. } = blocks::<S>(values);
-    let own: &[usize; S] = own.try_into().expect("a front has S pivots");
+    let SupernodeBlocks { pivots, upper, .. } = blocks::<S>(values);
+    let own: &[usize; S] = own.try_into().expect("a supernode has S pivots");
     let mut x = own.map(|i| b[i]);
     for (&column, u) in coupled.iter().zip(upper) {
         let known = b[column];

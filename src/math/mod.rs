@@ -6,3 +6,12 @@ pub mod plane;
 pub mod quadrature;
 pub mod saddle_point;
 pub mod sparse_rows;
+
+/// The larger of m and |x|; not a number if one of them is not, where `f64::max` would drop it.
+#[inline]
+pub fn larger(m: f64, x: f64) -> f64 {
+    match x.abs() <= m || m.is_nan() {
+        true => m,
+        false => x.abs(),
+    }
+}

@@ -1,6 +1,6 @@
 //! The saddle-point matrix of the acceleration level, \[\[M, G^T\], \[G, 0\]\], whose M is constant.
 //!
-//! M is factorised once. What changes with the pose is G = Phi_q, so only the complement S = G M^-1 G^T is formed and
+//! M is factorised once. What changes with the pose is G = Phi_q, so only the Schur complement S = G M^-1 G^T is formed and
 //! factorised anew: one row for each multiplier, whatever the number of elements. It needs no more of M^-1 than its entries
 //! between coordinates that constraints depend on, which are constant:
 //!
@@ -16,7 +16,7 @@ use faer::Mat;
 use std::collections::BTreeMap;
 
 /// With more entries an unknown, columns of M^-1 cost more than a solve with its factors.
-const LONGEST_SPREAD: usize = 6;
+const LONGEST_COLUMNS: usize = 6;
 /// With fewer products a row, S is formed without a comparison of the operations.
 const FEW_PRODUCTS: usize = 64;
 
@@ -55,7 +55,7 @@ struct Complement {
     mass: Symbolic,
     mass_factors: Vec<f64>,
     /// Columns of M^-1 for the unknowns that G depends on, unless they are too long.
-    spread: Option<Spread>,
+    inverse: Option<InverseColumns>,
     symbolic: Symbolic,
     products: Vec<Product>,
     /// The entries of S that are sums of products, in the order of the products.
@@ -64,7 +64,7 @@ struct Complement {
 
 /// Columns of M^-1, one after the other.
 #[derive(Debug, Default)]
-struct Spread {
+struct InverseColumns {
     /// The unknown of a column, and the end of its entries.
     columns: Vec<(u32, u32)>,
     /// Rows and values.
@@ -201,7 +201,7 @@ impl SaddleEntries {
     }
 
     /// The rows of G with the range of their entries.
-    fn rows(&self) -> impl DoubleEndedIterator<Item = (usize, std::ops::Range<usize>)> {
+    fn rows(&self) -> impl Iterator<Item = (usize, std::ops::Range<usize>)> {
         let start = |row: usize| if row == 0 { 0 } else { self.ends[row - 1] };
         (0..self.ends.len()).map(move |row| (row, start(row)..self.ends[row]))
     }
@@ -220,7 +220,8 @@ impl SaddleEntries {
         for &(i, j, m) in &self.mass {
             masses[place[i].0].push((place[i].1, place[j].1, m));
         }
-        let mut spread = Spread::default();
+        let mut inverse = InverseColumns::default();
+        let longest = LONGEST_COLUMNS * self.unknowns;
         for (group, masses) in groups.iter().zip(masses) {
             let (symbolic, factors) = factored(group.unknowns.len(), masses.into_iter())?;
             let local = |entry: usize| place[self.columns[entry]].1;
@@ -234,13 +235,16 @@ impl SaddleEntries {
                 });
             }
             for (&own, column) in &columns {
+                if inverse.entries.len() > longest {
+                    break;
+                }
                 let rows = group.unknowns.iter().zip(column);
-                let entries = rows.map(|(&i, value)| (i as u32, *value));
-                spread
+                let rows = rows.filter(|(_, value)| **value != 0.0);
+                inverse
                     .entries
-                    .extend(entries.filter(|(_, value)| *value != 0.0));
-                let end = spread.entries.len() as u32;
-                spread.columns.push((group.unknowns[own] as u32, end));
+                    .extend(rows.map(|(&i, value)| (i as u32, *value)));
+                let end = inverse.entries.len() as u32;
+                inverse.columns.push((group.unknowns[own] as u32, end));
             }
             for &(row, first) in &group.entries {
                 let column = &columns[&local(first)];
@@ -267,7 +271,7 @@ impl SaddleEntries {
         let mut complement = Complement {
             mass,
             mass_factors,
-            spread: (spread.entries.len() <= LONGEST_SPREAD * self.unknowns).then_some(spread),
+            inverse: (inverse.entries.len() <= longest).then_some(inverse),
             products: Vec::new(),
             sums: Vec::new(),
             symbolic,
@@ -476,8 +480,8 @@ impl SaddlePoint {
                 .zip(&self.entries.columns[entries]);
             terms.for_each(|(g, &i)| scratch[i] += g * mu[row]);
         }
-        match &complement.spread {
-            Some(Spread { columns, entries }) => {
+        match &complement.inverse {
+            Some(InverseColumns { columns, entries }) => {
                 let mut start = 0;
                 for &(own, end) in columns {
                     let factor = scratch[own as usize];
@@ -660,7 +664,7 @@ mod tests {
         let SaddleForm::Complement(complement) = &mut matrix.form else {
             panic!("masses couple few unknowns");
         };
-        assert!(complement.spread.take().is_some());
+        assert!(complement.inverse.take().is_some());
         let left = residual(&matrix, &gradient);
         assert!(left < 1e3 * f64::EPSILON, "{left:e}");
     }

@@ -1,6 +1,7 @@
 //! Newton's iteration, which stages, projections, equilibria, poses of a mechanism and its assembly share.
 
 use super::Failure;
+use crate::math::larger;
 
 /// What is known before an iteration.
 #[derive(Debug, Clone, Copy)]
@@ -26,8 +27,6 @@ impl Update {
     /// The largest of some changes; what is not a number counts as larger than all numbers.
     #[inline]
     pub fn largest(changes: impl Iterator<Item = f64> + Clone) -> Update {
-        // f64::max drops NaN
-        let larger = |m: f64, x: f64| if x.abs() <= m { m } else { x.abs() };
         let size = changes.clone().fold(0.0, larger);
         let index = changes.map(f64::abs).position(|x| x.is_nan() || x >= size);
         Update {

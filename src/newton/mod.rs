@@ -25,9 +25,9 @@ const MAX_ITERATIONS: usize = 15;
 const ROUNDING_BAND: f64 = 1e4;
 /// A tangent of the same stage is renewed when an update is larger than this part of the previous one.
 const SLOW: f64 = 0.1;
-/// Part of the tolerance that the error of a stage may have after updates that decrease linearly. With a tangent of the same
-/// stage they decrease quadratically, and the last one is far more accurate than its estimate.
-const SHARE: f64 = 0.01;
+/// Part of the tolerance that the error of a stage may have that was solved with the tangent of an earlier stage. With a tangent
+/// of the same stage the first update leaves a quadratic error, which is far below the estimate.
+const LINEAR_SHARE: f64 = 0.01;
 /// A projection of positions ends when its update is below this part of the largest position: the error left is the square of
 /// the update, by Newton's quadratic convergence.
 const PROJECTED: f64 = 1e-10;
@@ -197,7 +197,7 @@ impl Newton {
     /// A step of a scheme with stages begins at `from`.
     pub fn begin_step(&mut self, from: &State) {
         if self.prediction.begin_step(from) {
-            self.tangents.iter_mut().for_each(Tangent::forget);
+            self.tangents.iter_mut().for_each(Tangent::discard);
         }
     }
 
@@ -265,7 +265,7 @@ impl Newton {
             Ok(ratio) => tangent.served(ratio),
             Err(failure) => {
                 tangent.discard();
-                self.prediction.failed();
+                self.prediction.forget_step();
                 return Err(failure);
             }
         }
@@ -286,7 +286,7 @@ impl Newton {
     ) -> Result<Option<f64>, Failure> {
         let n = system.shape().unknowns;
         let StageEquations { w, tolerance, .. } = *stage;
-        let linear_tolerance = SHARE * self.tolerance;
+        let linear_tolerance = LINEAR_SHARE * self.tolerance;
         let (mut renewed, mut ratio, mut error) = (0, None, f64::INFINITY);
         iterate(MAX_ITERATIONS, |iteration| {
             stage.move_to(s);
@@ -300,6 +300,7 @@ impl Newton {
                 true => {
                     if std::mem::replace(&mut is_stale, false) {
                         renewed = iteration.number;
+                        ratio = None;
                     }
                     self.renew_stage(system, s, w, work)?;
                 }
@@ -328,7 +329,7 @@ impl Newton {
                     update: size,
                 });
             }
-            if !is_first && iteration.last > tolerance {
+            if iteration.number > renewed && iteration.last > tolerance {
                 ratio = Some(rate);
             }
             let linear = match is_first {
@@ -337,7 +338,10 @@ impl Newton {
                 false => rate / (1.0 - rate) * update.size,
             };
             // an update that does not decrease any more is rounding of an error that was small enough before
-            let is_rounding = is_stale && rate > 0.3 && error <= tolerance;
+            let is_rounding = is_stale
+                && rate > 0.3
+                && error <= tolerance
+                && update.size <= tolerance.max(4.0 * stage.rounding(s));
             // after one large update the rate says nothing: this is its error for constraints with a curvature of 1/m
             error = linear.max(update.size * update.size * w.q / w.v);
             let is_fresh = !is_stale && renewed == 0;
@@ -540,6 +544,17 @@ impl Newton {
         }
         self.prediction.finish(s);
         Ok(system.powers(s, work))
+    }
+
+    /// The last step is not to be continued: forgets what its stages have found.
+    pub fn forget_step(&mut self) {
+        self.prediction.forget_step();
+    }
+
+    /// The motion goes on from a state that no step has led to.
+    pub fn forget_motion(&mut self) {
+        self.prediction.forget_all();
+        self.tangents.iter_mut().for_each(Tangent::discard);
     }
 
     /// True where a state has been made consistent in a singular pose since [`Newton::forget_singular_pose`].

@@ -14,6 +14,8 @@ use crate::system::{Shape, State};
 
 /// Number of earlier times.
 const NODES: usize = 3;
+/// Two times nearly coincide if their distance is below this part of the distance to the time before them.
+const COINCIDE: f64 = 1e-3;
 /// Number of stages of a step whose shifts are remembered.
 const STAGES: usize = 4;
 
@@ -90,11 +92,10 @@ impl Prediction {
         let has_changed = self.z != from.z;
         if has_changed {
             self.z.copy_from_slice(&from.z);
-            self.known = 0;
-            self.shifts.iter_mut().for_each(|shift| shift.h = 0.0);
+            self.forget_all();
         }
         if self.start != from.t || self.known == 0 {
-            self.forget_from(from.t);
+            self.forget(|t| t >= from.t);
             self.add(from);
         }
         self.start = from.t;
@@ -102,23 +103,35 @@ impl Prediction {
         has_changed
     }
 
-    /// Forgets times from t on.
-    fn forget_from(&mut self, t: f64) {
-        while self.known > 0 && self.nodes[0].t >= t {
+    /// Forgets the latest times as long as they are `late`.
+    fn forget(&mut self, late: impl Fn(f64) -> bool) {
+        while self.known > 0 && late(self.nodes[0].t) {
             self.nodes[..self.known].rotate_left(1);
             self.known -= 1;
         }
     }
 
-    /// A stage has failed: forgets the times of its step.
-    pub fn failed(&mut self) {
-        self.forget_from(self.start);
+    /// The step has failed: forgets what its stages have found.
+    pub fn forget_step(&mut self) {
+        let start = self.start;
+        self.forget(|t| t > start);
+        self.shifts.iter_mut().for_each(|shift| shift.h = 0.0);
     }
 
-    /// Adds a later time.
+    /// Forgets everything.
+    pub fn forget_all(&mut self) {
+        self.known = 0;
+        self.shifts.iter_mut().for_each(|shift| shift.h = 0.0);
+    }
+
+    /// Adds a later time, in place of the last one if the two nearly coincide.
     fn add(&mut self, at: &State) {
-        self.nodes.rotate_right(1);
-        self.known = NODES.min(self.known + 1);
+        let [last, before, _] = &self.nodes;
+        let nearly_coincide = self.known > 1 && at.t - last.t < COINCIDE * (last.t - before.t);
+        if !nearly_coincide {
+            self.nodes.rotate_right(1);
+            self.known = NODES.min(self.known + 1);
+        }
         let (a, lambda) = self.nodes[0].values.split_at_mut(self.unknowns);
         a.copy_from_slice(&at.a[..self.unknowns]);
         lambda.copy_from_slice(&at.lambda);
@@ -169,7 +182,7 @@ impl Prediction {
     /// The stage is solved on the position level.
     pub fn solved(&mut self, s: &State) {
         if let Some(Shift { h, values }) = self.shifts.get_mut(self.stage) {
-            *h = s.t - self.start;
+            *h = 0.0;
             let (a, lambda) = values.split_at_mut(self.unknowns);
             a.copy_from_slice(&s.a[..self.unknowns]);
             lambda.copy_from_slice(&s.lambda);
@@ -178,7 +191,8 @@ impl Prediction {
 
     /// The solved stage has the accelerations and multipliers of the acceleration level.
     pub fn finish(&mut self, s: &State) {
-        if let Some(Shift { values, .. }) = self.shifts.get_mut(self.stage) {
+        if let Some(Shift { h, values }) = self.shifts.get_mut(self.stage) {
+            *h = s.t - self.start;
             let (a, lambda) = values.split_at_mut(self.unknowns);
             a.iter_mut().zip(&s.a).for_each(|(d, a)| *d -= a);
             let multipliers = lambda.iter_mut().zip(&s.lambda);
@@ -276,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_stage_leaves_the_last_values() {
+    fn after_a_failure_the_beginning_of_the_step_is_known() {
         let mut prediction = Prediction::new(SHAPE);
         for t in [0.0, 0.1, 0.2] {
             step(&mut prediction, &state(t), t + 0.1, 0.0);
@@ -287,6 +301,10 @@ mod tests {
         guess.t = 0.4;
         assert!(prediction.guess(&mut guess));
         assert_ne!(guess.a, from.a);
+        prediction.solved(&guess);
+        prediction.finish(&guess);
+        prediction.forget_step();
+        prediction.begin_step(&from);
         prediction.take_back(&mut guess);
         assert_eq!((&guess.a, &guess.lambda), (&from.a, &from.lambda));
     }

@@ -2,8 +2,8 @@
 //!
 //! From stage to stage the tangent changes little: bodies turn, contacts stiffen. With an earlier tangent Newton's method
 //! converges linearly; the ratio of successive updates is measured and kept with the tangent. Where it is known, the first
-//! update already tells the error that it leaves, as in codes of variable order (Hairer & Wanner 1996, Solving Ordinary
-//! Differential Equations II, IV.8). A tangent ages: until it is measured again, the ratio is taken to grow in proportion to
+//! update already tells the error that it leaves, as in the simplified Newton method of implicit Runge-Kutta codes (Hairer &
+//! Wanner 1996, Solving Ordinary Differential Equations II, IV.8). A tangent ages: until it is measured again, the ratio is taken to grow in proportion to
 //! the number of stages that the tangent has served.
 
 use super::factors::Factors;
@@ -32,7 +32,7 @@ pub(super) struct Tangent {
 /// What is known of a tangent.
 #[derive(Debug, Clone, Copy, Default)]
 struct TangentRecord {
-    /// The weights of its stage; zero before there is one.
+    /// The weight of q in its stage; zero if there is none.
     weight: f64,
     /// Ratio of successive updates, where it is known.
     ratio: Option<f64>,
@@ -84,9 +84,9 @@ impl Tangent {
         };
     }
 
-    /// It must not serve another stage.
+    /// It must not serve another stage: it failed, or a contact has changed.
     pub fn discard(&mut self) {
-        self.record.weight = 0.0;
+        self.record = TangentRecord::default();
     }
 
     /// The ratio of updates that is expected of a stage. Another weight adds its relative difference at most.
@@ -105,12 +105,6 @@ impl Tangent {
     pub fn measure(&mut self, w: Weights, [first, second]: [f64; 2]) {
         let curvature = second / (first * first * w.q / w.v);
         self.record.curvature = Some(curvature.max(LEAST_CURVATURE));
-    }
-
-    /// A contact has changed: how fast updates decrease is no longer known.
-    pub fn forget(&mut self) {
-        self.record.ratio = None;
-        self.record.curvature = None;
     }
 
     /// A stage has been solved with it; `ratio` is that of its updates, if there were two.

@@ -46,6 +46,7 @@ impl Simulation {
         state.v.copy_from_slice(&other.v);
         state.z.copy_from_slice(&other.z);
         let tolerance = self.scene.integrator.onset_tolerance;
+        newton.forget_motion();
         model.gaps(state, first_gaps);
         model.commit(state, first_gaps, tolerance, &mut |_, _, _| {});
         if let Err(failure) = newton.make_consistent(model, state, work) {
