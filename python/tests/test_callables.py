@@ -94,7 +94,7 @@ def test_the_differenced_tangent_converges_as_the_exact_one(oscillator):
     exact = oscillator.copy().add_load("cubic", "mass.pin", load, tangent=tangent).run()
     assert calls["tangent"] > 0
     # four calls fewer an evaluation of the tangent
-    assert calls["load"] < of_differences["load"] / 2
+    assert calls["load"] == of_differences["load"] - 4 * calls["tangent"]
     work = ("steps", "newton_iterations", "rejected_steps")
     assert [exact.summary[key] for key in work] == [differenced.summary[key] for key in work]
     # a wrong tangent is noticed by the work
@@ -123,9 +123,11 @@ class Stop(Exception):
 def test_an_exception_ends_the_run_and_is_raised(oscillator, kind, method, tmp_path):
     oscillator.set("integrator.method", method)
     calls = []
+    # one tangent may serve a whole run, so only the first one is certain to be evaluated
+    last = 0.0 if kind == "tangent" else 0.05
 
     def fail(t, *_):
-        if t > 0.05:
+        if t > last:
             calls.append(t)
             raise Stop("not here")
         return (0.0, 0.0) if kind == "load" else 0.0 if kind == "function" else np.zeros((2, 4))
@@ -145,7 +147,7 @@ def test_an_exception_ends_the_run_and_is_raised(oscillator, kind, method, tmp_p
     assert "in fail" in "".join(traceback.format_tb(caught.value.__traceback__))
     # it is not called again
     assert len(calls) == 1
-    assert 0.03 < caught.value.run.t[-1] <= 0.05
+    assert last - 0.02 < caught.value.run.t[-1] <= last
     assert caught.value.run.status == "failed"
 
 
