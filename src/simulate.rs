@@ -231,7 +231,7 @@ impl Simulation {
             }
             self.commit(observer)?;
             let impacts = &mut self.impacts;
-            impacts.step(&self.model, taken, &self.state, observer)?;
+            impacts.step(&self.model, taken, &self.state, &self.gaps, observer)?;
             let (before, after) = (&self.trial.z, &self.state.z);
             std::mem::swap(&mut self.gaps, &mut self.first_gaps);
             self.closures.step(self.state.t, before, after);

@@ -166,8 +166,8 @@ pub struct PrescribeError {
 /// The physics, as seen by time integration.
 ///
 /// `r` and `phi` are overwritten. `r` has a row for every coordinate, but only the rows of unknown coordinates are complete. The
-/// tangent is the matrix of the stage equations in (a, lambda), \[\[M + w.v C + w.q K, Phi_q^T\], \[Phi_q, 0\]\] with C = df/dv and K = d(f + Phi_q^T lambda)/dq. The matrix of the
-/// acceleration level is \[\[M, Phi_q^T\], \[Phi_q, 0\]\], of which M is constant.
+/// tangent is the matrix of the stage equations in (a, lambda), \[\[M + w.v C + w.q K, Phi_q^T\], \[Phi_q, 0\]\] with C = df/dv
+/// and K = d(f + Phi_q^T lambda)/dq. The matrix of the acceleration level is \[\[M, Phi_q^T\], \[Phi_q, 0\]\], of which M is constant.
 pub trait System {
     /// Sizes.
     fn shape(&self) -> Shape;

@@ -14,8 +14,8 @@ use crate::link::AncfCable;
 use crate::math::lu::Symbolic;
 use crate::math::saddle_point::SaddlePoint;
 use crate::model::{
-    Block, Border, Mass, Model, PlacedBody, PlacedConstraint, PlacedContact, PlacedElement,
-    PlacedForce, PlacedPoint,
+    Block, Border, Model, PlacedBody, PlacedConstraint, PlacedContact, PlacedElement, PlacedForce,
+    PlacedPoint,
 };
 use crate::scene::{Analysis, SceneError};
 use crate::system::Shape;
@@ -91,7 +91,7 @@ pub(super) fn build(
     };
     let mut mass = mass(std::mem::take(&mut terms.inertia), &numbering, c.mode);
     let entries = mass.entries(n, c.mode);
-    mass.tangent = Mass::placed(&entries, &symbolic);
+    mass.tangent = symbolic.filled(entries.iter().copied());
     let acceleration_matrix = SaddlePoint::new(n, entries, &unknown_columns(&terms, n));
     let shape = Shape {
         unknowns: n,

@@ -2,7 +2,6 @@
 
 use super::Mode;
 use super::numbering::Numbering;
-use crate::math::lu::Symbolic;
 use crate::model::Mass;
 use crate::terms::Inertia;
 
@@ -70,14 +69,5 @@ impl Mass {
                 rows.filter(|(_, j, _)| *j < unknowns).collect()
             }
         }
-    }
-
-    /// Entries of a matrix in its layout.
-    pub(super) fn placed(entries: &[(usize, usize, f64)], symbolic: &Symbolic) -> Vec<f64> {
-        let mut matrix = vec![0.0; symbolic.len()];
-        for &(i, j, m) in entries {
-            matrix[symbolic.slot(i, j) as usize] = m;
-        }
-        matrix
     }
 }

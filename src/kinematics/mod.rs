@@ -8,7 +8,6 @@
 mod series;
 
 use crate::checkpoint::carried;
-use crate::math::lu::WeakPivot;
 use crate::math::plane::pair;
 use crate::math::saddle_point::SaddleFactors;
 use crate::model::Model;
@@ -217,8 +216,7 @@ impl Kinematics {
         } = inner;
         let mechanism = &self.mechanism;
         mechanism.acceleration_level(state, phi, &mut factors.gradient);
-        let factored = mechanism.acceleration_matrix().factor(factors);
-        factored.map_err(|weak: WeakPivot| Failure::Singular { index: weak.index })
+        Ok(mechanism.acceleration_matrix().factor(factors)?)
     }
 
     /// Why the mechanism has no pose.

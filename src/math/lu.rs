@@ -7,6 +7,7 @@
 //! A pivot that turns out weak is reported; the caller falls back to a factorisation with row exchanges
 //! ([`DenseLu`]) and counts it.
 
+use super::larger;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use std::collections::BTreeSet;
 
@@ -55,6 +56,23 @@ struct Supernode {
 
 /// Most pivots of a supernode: kernels are compiled for every size.
 const LARGEST_SUPERNODE: usize = 9;
+
+/// Calls the kernel that is compiled for a number of pivots.
+macro_rules! of_size {
+    ($size:expr, $kernel:ident($($argument:expr),*)) => {
+        match $size {
+            1 => $kernel::<1>($($argument),*),
+            2 => $kernel::<2>($($argument),*),
+            3 => $kernel::<3>($($argument),*),
+            4 => $kernel::<4>($($argument),*),
+            5 => $kernel::<5>($($argument),*),
+            6 => $kernel::<6>($($argument),*),
+            7 => $kernel::<7>($($argument),*),
+            8 => $kernel::<8>($($argument),*),
+            _ => $kernel::<LARGEST_SUPERNODE>($($argument),*),
+        }
+    };
+}
 
 impl Supernode {
     /// End of its values.
@@ -252,6 +270,15 @@ impl Symbolic {
             .expect("the entry belongs to a clique") as u32
     }
 
+    /// A matrix with these entries, each a row, a column and a value.
+    pub fn filled(&self, entries: impl IntoIterator<Item = (usize, usize, f64)>) -> Vec<f64> {
+        let mut values = vec![0.0; self.len()];
+        for (i, j, value) in entries {
+            values[self.slot(i, j) as usize] += value;
+        }
+        values
+    }
+
     /// Factorises in place: A = L U.
     ///
     /// # Errors
@@ -262,17 +289,7 @@ impl Symbolic {
             let (here, behind) = values.split_at_mut(node.end());
             let here = &mut here[node.start..];
             let targets = &self.targets[node.targets..][..node.count * node.count];
-            let weak = match node.size {
-                1 => eliminate::<1>(here, behind, targets),
-                2 => eliminate::<2>(here, behind, targets),
-                3 => eliminate::<3>(here, behind, targets),
-                4 => eliminate::<4>(here, behind, targets),
-                5 => eliminate::<5>(here, behind, targets),
-                6 => eliminate::<6>(here, behind, targets),
-                7 => eliminate::<7>(here, behind, targets),
-                8 => eliminate::<8>(here, behind, targets),
-                _ => eliminate::<LARGEST_SUPERNODE>(here, behind, targets),
-            };
+            let weak = of_size!(node.size, eliminate(here, behind, targets));
             if let Err(pivot) = weak {
                 let index = self.order[node.first + pivot];
                 return Err(WeakPivot { index });
@@ -310,31 +327,11 @@ impl Symbolic {
     pub fn solve(&self, values: &[f64], b: &mut [f64]) {
         for node in &self.supernodes {
             let (own, coupled, values) = self.parts(node, values);
-            match node.size {
-                1 => forward::<1>(own, coupled, values, b),
-                2 => forward::<2>(own, coupled, values, b),
-                3 => forward::<3>(own, coupled, values, b),
-                4 => forward::<4>(own, coupled, values, b),
-                5 => forward::<5>(own, coupled, values, b),
-                6 => forward::<6>(own, coupled, values, b),
-                7 => forward::<7>(own, coupled, values, b),
-                8 => forward::<8>(own, coupled, values, b),
-                _ => forward::<LARGEST_SUPERNODE>(own, coupled, values, b),
-            }
+            of_size!(node.size, forward(own, coupled, values, b))
         }
         for node in self.supernodes.iter().rev() {
             let (own, coupled, values) = self.parts(node, values);
-            match node.size {
-                1 => backward::<1>(own, coupled, values, b),
-                2 => backward::<2>(own, coupled, values, b),
-                3 => backward::<3>(own, coupled, values, b),
-                4 => backward::<4>(own, coupled, values, b),
-                5 => backward::<5>(own, coupled, values, b),
-                6 => backward::<6>(own, coupled, values, b),
-                7 => backward::<7>(own, coupled, values, b),
-                8 => backward::<8>(own, coupled, values, b),
-                _ => backward::<LARGEST_SUPERNODE>(own, coupled, values, b),
-            }
+            of_size!(node.size, backward(own, coupled, values, b))
         }
     }
 
@@ -435,21 +432,13 @@ fn eliminate<const S: usize>(
         .split_first_chunk_mut::<S>()
         .expect("a supernode has S pivots");
     let mut largest = [0.0_f64; S];
-    // f64::max drops NaN
-    let see = |largest: &mut f64, l: f64| {
-        *largest = if l.abs() <= *largest {
-            *largest
-        } else {
-            l.abs()
-        }
-    };
     for k in 0..S {
         let inverse = 1.0 / pivots[k][k];
         pivots[k][k] = inverse;
         for i in k + 1..S {
             let l = pivots[i][k] * inverse;
             pivots[i][k] = l;
-            see(&mut largest[k], l);
+            largest[k] = larger(largest[k], l);
             for j in k + 1..S {
                 pivots[i][j] -= l * pivots[k][j];
             }
@@ -462,7 +451,7 @@ fn eliminate<const S: usize>(
                 row[k] -= row[m] * pivots[m][k];
             }
             row[k] *= pivots[k][k];
-            see(&mut largest[k], row[k]);
+            largest[k] = larger(largest[k], row[k]);
         }
     }
     for k in 0..S {

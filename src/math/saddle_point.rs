@@ -200,10 +200,14 @@ impl SaddleEntries {
         groups
     }
 
+    /// First entry of a row of G.
+    fn start(&self, row: usize) -> usize {
+        if row == 0 { 0 } else { self.ends[row - 1] }
+    }
+
     /// The rows of G with the range of their entries.
     fn rows(&self) -> impl Iterator<Item = (usize, std::ops::Range<usize>)> {
-        let start = |row: usize| if row == 0 { 0 } else { self.ends[row - 1] };
-        (0..self.ends.len()).map(move |row| (row, start(row)..self.ends[row]))
+        (0..self.ends.len()).map(|row| (row, self.start(row)..self.ends[row]))
     }
 
     /// M and S as two matrices; `None` if a pivot of M is weak.
@@ -304,13 +308,9 @@ impl SaddleEntries {
             unknowns.map(move |&i| [symbolic.slot(n + row, i), symbolic.slot(i, n + row)])
         });
         let slots = slots.collect();
-        let mut mass = vec![0.0; symbolic.len()];
-        for &(i, j, m) in &self.mass {
-            mass[symbolic.slot(i, j) as usize] += m;
-        }
         Bordered {
+            mass: symbolic.filled(self.mass.iter().copied()),
             symbolic,
-            mass,
             slots,
         }
     }
@@ -338,11 +338,7 @@ impl SaddlePoint {
 
     /// First entry of a row of G.
     pub fn first_entry(&self, row: usize) -> usize {
-        if row == 0 {
-            0
-        } else {
-            self.entries.ends[row - 1]
-        }
+        self.entries.start(row)
     }
 
     /// The entry that is discarded.
@@ -554,10 +550,7 @@ fn factored(
 ) -> Option<(Symbolic, Vec<f64>)> {
     let cliques: Vec<Vec<usize>> = entries.clone().map(|(i, j, _)| vec![i, j]).collect();
     let symbolic = Symbolic::analyse(n, &cliques, &vec![Vec::new(); n]);
-    let mut values = vec![0.0; symbolic.len()];
-    for (i, j, m) in entries {
-        values[symbolic.slot(i, j) as usize] += m;
-    }
+    let mut values = symbolic.filled(entries);
     symbolic.factor(&mut values).ok()?;
     Some((symbolic, values))
 }

@@ -83,6 +83,13 @@ impl SparseRows {
     }
 }
 
+/// A row with all its n entries.
+pub fn full_row(n: usize, row: &SparseRow) -> Vec<f64> {
+    let mut full = vec![0.0; n];
+    row.iter().for_each(|(i, value)| full[*i] += value);
+    full
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::dense::{Added, Equations};
@@ -105,9 +112,8 @@ mod tests {
         let mut equations = Equations::default();
         let mut dependent = 0;
         for (row, b) in rows.iter().zip(b) {
-            let mut full = vec![0.0; n];
-            row.iter().for_each(|(i, g)| full[*i] += g);
-            dependent += usize::from(equations.add(&full, *b) != Added::Independent);
+            let added = equations.add(&full_row(n, row), *b);
+            dependent += usize::from(added != Added::Independent);
         }
         (equations, dependent)
     }

@@ -2,7 +2,7 @@
 
 use super::{Counters, Failure};
 use crate::checkpoint::{Carried, Checkpoint};
-use crate::math::lu::{DenseLu, Symbolic, WeakPivot};
+use crate::math::lu::{DenseLu, Symbolic};
 
 /// A matrix that is filled, factorised and solved many times.
 #[derive(Debug, Clone)]
@@ -35,12 +35,12 @@ impl Factors {
         counters.factorisations += 1;
         self.dense = None;
         fill(&mut self.values);
-        if let Err(WeakPivot { index }) = symbolic.factor(&mut self.values) {
+        if let Err(weak) = symbolic.factor(&mut self.values) {
             counters.fallbacks += 1;
             fill(&mut self.values);
             self.dense = DenseLu::factor(symbolic.to_dense(&self.values));
             if self.dense.is_none() {
-                return Err(Failure::Singular { index });
+                return Err(weak.into());
             }
         }
         Ok(())

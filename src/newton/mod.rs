@@ -74,6 +74,12 @@ pub enum Failure {
     },
 }
 
+impl From<WeakPivot> for Failure {
+    fn from(WeakPivot { index }: WeakPivot) -> Failure {
+        Failure::Singular { index }
+    }
+}
+
 impl Failure {
     /// Index of the unknown or multiplier that failed.
     pub fn index(&self) -> usize {
@@ -206,10 +212,9 @@ impl Newton {
         let factors = &mut self.acceleration;
         system.acceleration_level(at, &mut self.phi, &mut factors.gradient);
         self.counters.factorisations += 1;
-        let singular = |weak: WeakPivot| Failure::Singular { index: weak.index };
         let factored = system.acceleration_matrix().factor_any(factors);
         self.counters.fallbacks += u64::from(factored != Ok(false));
-        factored.map_err(singular)?;
+        factored?;
         Ok(())
     }
 

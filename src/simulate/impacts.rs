@@ -165,7 +165,7 @@ impl Impacts {
         self.closed[contact].map(|course| course.onset(model))
     }
 
-    /// Records an accepted step of length h and reports the contacts that it opened. Between two steps the penetration is the
+    /// Records an accepted step of length h, with the gaps at its end, and reports the contacts that it opened. Between two steps the penetration is the
     /// cubic through values and rates at both ends, whose maximum has an error of h^4.
     ///
     /// # Errors
@@ -175,15 +175,14 @@ impl Impacts {
         model: &Model,
         h: f64,
         at: &State,
+        gaps: &[[f64; 2]],
         observer: &mut dyn Observer,
     ) -> io::Result<()> {
         let depths = self.depths.iter_mut();
         for (contact, (slot, [_, deepest])) in self.closed.iter_mut().zip(depths).enumerate() {
             let Some(course) = slot else { continue };
-            let Some((gap, rate, closed)) = model.gap(course.joint, at) else {
-                continue;
-            };
-            let delta = gap.delta;
+            let [delta, rate] = gaps[contact];
+            let closed = at.z[contact] > 0.0;
             let [before, rate_before] = course.before;
             let top = top(h, [before, delta], [rate_before, rate]).map_or(delta, |(_, top)| top);
             course.deepest = course.deepest.max(delta).max(top);

@@ -13,7 +13,7 @@ use super::{Compiler, Mode, build, known_roles, numbering};
 use crate::body::PointRef;
 use crate::math::dense::Equations;
 use crate::math::plane::Vec2;
-use crate::math::sparse_rows::{SparseRow, SparseRows};
+use crate::math::sparse_rows::{SparseRow, SparseRows, full_row};
 use crate::model::{Model, PlacedConstraint};
 use crate::newton::{Update, iterate};
 use crate::scene::{Scene, SceneError, SketchPoint, Sketched};
@@ -65,11 +65,8 @@ pub(crate) fn assemble(scene: &Scene) -> Result<(Model, State), SceneError> {
 
 /// The gradient of one constraint row with respect to the unknown coordinates.
 pub(crate) fn row(model: &Model, state: &State, constraint: usize, d: usize) -> Vec<f64> {
-    let mut dense = vec![0.0; model.shape().unknowns];
-    for (i, g) in sparse_row(model, state, constraint, d) {
-        dense[i] += g;
-    }
-    dense
+    let row = sparse_row(model, state, constraint, d);
+    full_row(model.shape().unknowns, &row)
 }
 
 /// The same as its entries.

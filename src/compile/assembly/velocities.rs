@@ -3,7 +3,7 @@
 use super::super::{Compiler, Role};
 use super::{AGREEING, opening, row, sparse_rows};
 use crate::math::dense::{Added, Equations};
-use crate::math::sparse_rows::{SparseRow, SparseRows, SymmetricBlock};
+use crate::math::sparse_rows::{SparseRow, SparseRows, SymmetricBlock, full_row};
 use crate::model::Model;
 use crate::scene::SceneError;
 use crate::system::{State, System};
@@ -48,7 +48,7 @@ pub(super) fn velocities(
             let Some((a, known)) = velocity_row(mechanism, state, given.body, component) else {
                 continue;
             };
-            let added = equations.add(&full(n, &a), given.velocity[component] - known);
+            let added = equations.add(&full_row(n, &a), given.velocity[component] - known);
             if let Added::Dependent(off) = added
                 && off.abs() > AGREEING
             {
@@ -71,7 +71,7 @@ pub(super) fn velocities(
         let Some((a, known)) = velocity_row(mechanism, state, given.body, given.component) else {
             continue;
         };
-        if let Added::Dependent(off) = equations.add(&full(n, &a), given.value - known) {
+        if let Added::Dependent(off) = equations.add(&full_row(n, &a), given.value - known) {
             let verb = match off.abs() > AGREEING {
                 true => "contradicts",
                 false => "repeats",
@@ -118,39 +118,14 @@ fn sparse_velocities(
         }
     }
     SparseRows::independent(n, &rows)?;
-    let mut against = vec![0.0; n];
-    let mut blocks = Vec::new();
-    for part in &mechanism.mass.parts {
-        let count = part.coordinates.len();
-        let is_unknown = |k: &usize| part.coordinates[*k] < n;
-        let own: Vec<usize> = (0..count).filter(is_unknown).collect();
-        let block = own
-            .iter()
-            .flat_map(|r| own.iter().map(move |s| part.values[r * count + s]));
-        blocks.push((
-            own.iter().map(|k| part.coordinates[*k]).collect(),
-            block.collect(),
-        ));
-        for s in (0..count).filter(|k| !is_unknown(k)) {
-            let speed = state.v[part.coordinates[s]];
-            for r in &own {
-                against[part.coordinates[*r]] -= part.values[r * count + s] * speed;
-            }
-        }
-    }
-    let blocks: Vec<(Vec<usize>, Vec<f64>)> = blocks;
+    let (blocks, momentum) = mass_blocks(mechanism, state);
+    // not -p, which would turn a zero into a negative one
+    let against: Vec<f64> = momentum.iter().map(|p| 0.0 - p).collect();
     let blocks: Vec<SymmetricBlock> = blocks
         .iter()
         .map(|(own, block)| (&own[..], &block[..]))
         .collect();
     Some(SparseRows::factor(n, &rows, &blocks)?.solve(&against, &wanted))
-}
-
-/// A row with all its entries.
-fn full(n: usize, row: &SparseRow) -> Vec<f64> {
-    let mut full = vec![0.0; n];
-    row.iter().for_each(|(i, value)| full[*i] += value);
-    full
 }
 
 /// A velocity of a body as a linear function of the unknown velocities, and the contribution of known ones. `None` for the
@@ -172,19 +147,38 @@ fn velocity_row(
 /// Mass matrix of the unknowns, and the momentum from known velocities.
 fn mass(mechanism: &Model, state: &State) -> (Mat<f64>, Vec<f64>) {
     let n = mechanism.shape().unknowns;
-    let (mut m, mut momentum) = (Mat::zeros(n, n), vec![0.0; n]);
-    for part in &mechanism.mass.parts {
-        let count = part.coordinates.len();
-        for (r, &i) in part.coordinates.iter().enumerate().filter(|(_, i)| **i < n) {
-            for (s, &j) in part.coordinates.iter().enumerate() {
-                let value = part.values[r * count + s];
-                if j < n {
-                    m[(i, j)] += value;
-                } else {
-                    momentum[i] += value * state.v[j];
-                }
-            }
+    let (blocks, momentum) = mass_blocks(mechanism, state);
+    let mut m = Mat::zeros(n, n);
+    for (own, block) in &blocks {
+        for (&i, row) in own.iter().zip(block.chunks_exact(own.len().max(1))) {
+            own.iter()
+                .zip(row)
+                .for_each(|(&j, value)| m[(i, j)] += value);
         }
     }
     (m, momentum)
+}
+
+/// Some unknown coordinates, and their mass matrix row by row.
+type MassBlock = (Vec<usize>, Vec<f64>);
+
+/// The masses of the unknown coordinates part by part, and the momentum that known velocities add to them.
+fn mass_blocks(mechanism: &Model, state: &State) -> (Vec<MassBlock>, Vec<f64>) {
+    let n = mechanism.shape().unknowns;
+    let mut momentum = vec![0.0; n];
+    let blocks = mechanism.mass.parts.iter().map(|part| {
+        let (mut own, mut block) = (Vec::new(), Vec::new());
+        let rows = part.values.chunks_exact(part.coordinates.len());
+        for (&i, row) in part.coordinates.iter().zip(rows).filter(|(i, _)| **i < n) {
+            own.push(i);
+            for (&j, value) in part.coordinates.iter().zip(row) {
+                match j < n {
+                    true => block.push(*value),
+                    false => momentum[i] += value * state.v[j],
+                }
+            }
+        }
+        (own, block)
+    });
+    (blocks.collect(), momentum)
 }
