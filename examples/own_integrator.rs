@@ -1,7 +1,7 @@
 //! An integration scheme from outside the library: `cargo run --release --example own_integrator`.
 
 use looselink::checkpoint::{Carried, Checkpoint};
-use looselink::stepper::{Estimate, LocalError, Scheme, StepError, Stepper};
+use looselink::stepper::{Estimate, EstimatedSolution, LocalError, Scheme, StepError, Stepper};
 use looselink::system::{State, System, Work};
 use looselink::{newton::Newton, registry::Registry, scene::Scene, simulate::Simulation};
 
@@ -30,7 +30,7 @@ impl Stepper for SymplecticEuler {
         Ok(system.powers(to, work))
     }
 
-    fn estimate(&self) -> Estimate { Estimate { order: 2.0, is_error: true, implicit: false } }
+    fn estimate(&self) -> Estimate { Estimate { order: 2.0, of: EstimatedSolution::Solution, implicit: false } }
 
     /// The step of the trapezoidal rule minus this step, to leading order.
     fn local_error(&self, from: &State, to: &State, _: &State, error: &mut LocalError) {

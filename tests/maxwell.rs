@@ -45,6 +45,7 @@ fn a_block_on_a_maxwell_element_vibrates_and_creeps() {
         ("bathe", 2.0),
         ("trapezoidal", 2.0),
         ("esdirk3", 3.0),
+        ("esdirk5", 5.0),
         ("backward_euler", 1.0),
     ] {
         let measured = (error(method, 2e-3) / error(method, 1e-3)).log2();

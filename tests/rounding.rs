@@ -5,8 +5,7 @@ use crate::chain::bathe;
 use ladder::{Rung, Worst};
 use looselink::newton::Newton;
 use looselink::stepper::{
-    Method, backward_euler, dormand_prince, esdirk3, generalized_alpha, trapezoidal,
-    velocity_verlet,
+    Method, backward_euler, dormand_prince, esdirk, generalized_alpha, trapezoidal, velocity_verlet,
 };
 use looselink::system::{State, System};
 
@@ -23,7 +22,8 @@ fn displacements_below_the_rounding_of_the_position_add_up() {
         Method::new(&generalized_alpha::SCHEME).with("spectral_radius", spectral_radius),
         Method::new(&generalized_alpha::HHT).with("spectral_radius", spectral_radius),
         Method::new(&velocity_verlet::SCHEME),
-        Method::new(&esdirk3::SCHEME),
+        Method::new(&esdirk::ORDER_3),
+        Method::new(&esdirk::ORDER_5),
         Method::new(&dormand_prince::SCHEME),
     ];
     let worst = Worst::new();

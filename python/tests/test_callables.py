@@ -118,7 +118,7 @@ class Stop(Exception):
     pass
 
 
-@pytest.mark.parametrize("method", ["trapezoidal", "bathe", "velocity_verlet", "dormand_prince", "esdirk3"])
+@pytest.mark.parametrize("method", ["trapezoidal", "bathe", "velocity_verlet", "dormand_prince", "esdirk3", "esdirk5"])
 @pytest.mark.parametrize("kind", ["function", "load", "tangent"])
 def test_an_exception_ends_the_run_and_is_raised(oscillator, kind, method, tmp_path):
     oscillator.set("integrator.method", method)

@@ -24,7 +24,7 @@ void read_accuracy(const Value &value, bool has_clearance) {
 
 // The methods are those of the main program. Of this section the reference uses the step of a static analysis.
 void read_integrator(const Value &value, Scene &scene) {
-    enum class Method { bathe, trapezoidal, generalized_alpha, hht, backward_euler, esdirk3, dormand_prince,
+    enum class Method { bathe, trapezoidal, generalized_alpha, hht, backward_euler, esdirk3, esdirk5, dormand_prince,
                         velocity_verlet };
     Fields f(value);
     double least_clearance = std::numeric_limits<double>::infinity();
@@ -40,6 +40,7 @@ void read_integrator(const Value &value, Scene &scene) {
                                                           {"hht", Method::hht},
                                                           {"backward_euler", Method::backward_euler},
                                                           {"esdirk3", Method::esdirk3},
+                                                          {"esdirk5", Method::esdirk5},
                                                           {"dormand_prince", Method::dormand_prince},
                                                           {"velocity_verlet", Method::velocity_verlet}});
         if (method == Method::dormand_prince || method == Method::velocity_verlet) implicit = false;

@@ -5,29 +5,24 @@ mod iteration;
 mod prediction;
 mod response;
 mod singular;
+mod stage;
 mod statics;
 mod tangent;
 
 pub(crate) use iteration::{Update, iterate};
 pub use response::Response;
+pub use stage::{Level, StageEquations};
 
 use crate::checkpoint::{Carried, Checkpoint, carried};
 use crate::math::lu::WeakPivot;
 use crate::math::saddle_point::SaddleFactors;
-use crate::system::{State, System, Weights, Work};
+use crate::system::{State, System, Work};
 use prediction::Prediction;
 use singular::{SINGULAR, Truncated};
 use tangent::Tangent;
 
 /// Largest number of iterations of a stage; a stage that converges needs far fewer.
 const MAX_ITERATIONS: usize = 15;
-/// Updates that no longer decrease count as rounding below this many tolerances, or estimates of rounding.
-const ROUNDING_BAND: f64 = 1e4;
-/// A tangent of the same stage is renewed when an update is larger than this part of the previous one.
-const SLOW: f64 = 0.1;
-/// Part of the tolerance that the error of a stage may have that was solved with the tangent of an earlier stage. With a tangent
-/// of the same stage the first update leaves a quadratic error, which is far below the estimate.
-const LINEAR_SHARE: f64 = 0.01;
 /// A projection of positions ends when its update is below this part of the largest position: the error left is the square of
 /// the update, by Newton's quadratic convergence.
 const PROJECTED: f64 = 1e-10;
@@ -45,11 +40,13 @@ pub struct Counters {
     pub fallbacks: u64,
     /// Stages accepted because their updates had come down to rounding, above the tolerance.
     pub stagnations: u64,
+    /// Stages that had no solution on the acceleration level and were solved on the position level.
+    pub position_level_stages: u64,
     /// Stages that ended in a nearly singular pose, where the singular direction was left out.
     pub singular_poses: u64,
 }
 
-carried!(Counters { stages, newton_iterations, factorisations, fallbacks, stagnations, singular_poses } but {});
+carried!(Counters { stages, newton_iterations, factorisations, fallbacks, stagnations, position_level_stages, singular_poses } but {});
 
 /// Why there is no solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,37 +84,6 @@ impl Failure {
             Failure::NoConvergence { index, .. }
             | Failure::NotFinite { index }
             | Failure::Singular { index } => index,
-        }
-    }
-}
-
-/// A stage: q = q_hat + w.q a, v = v_hat + w.v a.
-struct StageEquations<'a> {
-    w: Weights,
-    q_hat: &'a [f64],
-    v_hat: &'a [f64],
-    /// Largest error left in a velocity \[m/s\].
-    tolerance: f64,
-}
-
-impl StageEquations<'_> {
-    /// What rounding of accelerations, and of positions in stiff springs, may change in velocities \[m/s\].
-    fn rounding(&self, s: &State) -> f64 {
-        let Weights { q: by_q, v: by_v } = self.w;
-        let unknown = s.q.iter().zip(&s.a).take(self.q_hat.len());
-        let sizes = unknown.map(|(q, a)| (by_v * a).abs().max((by_v / by_q * q).abs()));
-        f64::EPSILON * sizes.fold(0.0, f64::max)
-    }
-
-    /// Sets positions and velocities from the accelerations.
-    fn move_to(&self, s: &mut State) {
-        let (q, v) = (
-            s.q.iter_mut().zip(self.q_hat),
-            s.v.iter_mut().zip(self.v_hat),
-        );
-        for (((q, q_hat), (v, v_hat)), a) in q.zip(v).zip(&s.a) {
-            *q = q_hat + self.w.q * a;
-            *v = v_hat + self.w.v * a;
         }
     }
 }
@@ -183,23 +149,6 @@ impl Newton {
         counters.carry(checkpoint);
     }
 
-    /// The residual and the factors of the tangent of a stage.
-    fn renew_stage(
-        &mut self,
-        system: &dyn System,
-        at: &State,
-        w: Weights,
-        work: &mut Work,
-    ) -> Result<(), Failure> {
-        let (r, phi) = (&mut self.r, &mut self.phi);
-        let [tangent, _] = &mut self.tangents;
-        tangent.renewed(w);
-        let factors = &mut tangent.factors;
-        factors.renew(system.symbolic(), &mut self.counters, |k| {
-            system.linearise(at, w, r, phi, k, work);
-        })
-    }
-
     /// A step of a scheme with stages begins at `from`.
     pub fn begin_step(&mut self, from: &State) {
         if self.prediction.begin_step(from) {
@@ -216,165 +165,6 @@ impl Newton {
         self.counters.fallbacks += u64::from(factored != Ok(false));
         factored?;
         Ok(())
-    }
-
-    /// Solves M a + f + Phi_q^T lambda = 0, Phi = 0 for (a, lambda) with q = q_hat + w.q a, v = v_hat + w.v a.
-    ///
-    /// `s` holds the guess of (a, lambda) and the known coordinates; the solution overwrites the guess. Constraint rows are
-    /// divided by w.q, so that the matrix tends to that of the acceleration level as the step decreases. The iteration has
-    /// converged when the estimated error of every velocity is below the tolerance. With constraints the tolerance is at least
-    /// 16 eps |q| w.v/w.q, the rounding of Phi as an error of velocity. Updates with the tangent of an earlier stage decrease
-    /// linearly; their error must be a hundred times smaller. In a smooth system the first update may be the only one, if the square
-    /// of such updates has been measured to leave less than the tolerance. A stage that fails with an extrapolated guess or an
-    /// earlier tangent is solved again without them.
-    ///
-    /// # Errors
-    /// See [`Failure`].
-    pub fn solve_stage(
-        &mut self,
-        system: &dyn System,
-        w: Weights,
-        q_hat: &[f64],
-        v_hat: &[f64],
-        s: &mut State,
-        work: &mut Work,
-    ) -> Result<(), Failure> {
-        let n = system.shape().unknowns;
-        self.counters.stages += 1;
-        let constrained = system.shape().multipliers > 0;
-        let mut tolerance = self.tolerance;
-        if constrained {
-            let size = q_hat[..n].iter().fold(0.0_f64, |m, q| m.max(q.abs()));
-            tolerance = tolerance.max(16.0 * f64::EPSILON * size * w.v / w.q);
-        }
-        let is_predicted = self.prediction.guess(s);
-        let [last, other] = &self.tangents;
-        if other.distance(w) < last.distance(w) || !last.fits(w) {
-            self.tangents.swap(0, 1);
-        }
-        // with constraints, rounding of Phi hides how fast updates decrease with an earlier tangent
-        let is_stale = !constrained && self.tangents[0].serves(w);
-        let stage = StageEquations {
-            w,
-            q_hat,
-            v_hat,
-            tolerance,
-        };
-        let mut solved = self.iterate_stage(system, &stage, is_stale, s, work);
-        if solved.is_err() && (is_predicted || is_stale) {
-            self.prediction.take_back(s);
-            solved = self.iterate_stage(system, &stage, false, s, work);
-        }
-        let [tangent, _] = &mut self.tangents;
-        match solved {
-            Ok(ratio) => tangent.served(ratio),
-            Err(failure) => {
-                tangent.discard();
-                self.prediction.forget_step();
-                return Err(failure);
-            }
-        }
-        stage.move_to(s);
-        self.prediction.solved(s);
-        Ok(())
-    }
-
-    /// Newton's iteration of a stage, at first with an earlier tangent if `is_stale`. Returns the ratio of the last two updates,
-    /// where it is above rounding.
-    fn iterate_stage(
-        &mut self,
-        system: &dyn System,
-        stage: &StageEquations,
-        mut is_stale: bool,
-        s: &mut State,
-        work: &mut Work,
-    ) -> Result<Option<f64>, Failure> {
-        let n = system.shape().unknowns;
-        let StageEquations { w, tolerance, .. } = *stage;
-        let linear_tolerance = LINEAR_SHARE * self.tolerance;
-        let (mut renewed, mut ratio, mut error) = (0, None, f64::INFINITY);
-        iterate(MAX_ITERATIONS, |iteration| {
-            stage.move_to(s);
-            self.counters.newton_iterations += 1;
-            let is_first = iteration.number == 0;
-            let renew = match is_stale {
-                true => !is_first && iteration.last * iteration.rate.powi(3) > linear_tolerance,
-                false => is_first || iteration.rate > SLOW,
-            };
-            match renew {
-                true => {
-                    if std::mem::replace(&mut is_stale, false) {
-                        renewed = iteration.number;
-                        ratio = None;
-                    }
-                    self.renew_stage(system, s, w, work)?;
-                }
-                false => system.residual(s, &mut self.r, &mut self.phi, work),
-            }
-            let [tangent, _] = &mut self.tangents;
-            for (b, r) in self.b[..n].iter_mut().zip(&self.r) {
-                *b = -r;
-            }
-            for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
-                *b = -phi / w.q;
-            }
-            tangent.factors.solve(system.symbolic(), &mut self.b);
-            for (x, d) in s.a[..n].iter_mut().zip(&self.b) {
-                *x += d;
-            }
-            for (lambda, d) in s.lambda.iter_mut().zip(&self.b[n..]) {
-                *lambda += d;
-            }
-            let update = Update::largest(self.b[..n].iter().map(|d| w.v * d));
-            let rate = update.size / iteration.last;
-            if is_stale && rate >= 1.0 && update.size > ROUNDING_BAND * tolerance {
-                let Update { index, size } = update;
-                return Err(Failure::NoConvergence {
-                    index,
-                    update: size,
-                });
-            }
-            if iteration.number > renewed && iteration.last > tolerance {
-                ratio = Some(rate);
-            }
-            let linear = match is_first {
-                true => update.size * tangent.ratio(w).unwrap_or(1.0),
-                false if rate >= 1.0 => update.size,
-                false => rate / (1.0 - rate) * update.size,
-            };
-            // an update that does not decrease any more is rounding of an error that was small enough before
-            let is_rounding = is_stale
-                && rate > 0.3
-                && error <= tolerance
-                && update.size <= tolerance.max(4.0 * stage.rounding(s));
-            // after one large update the rate says nothing: this is its error for constraints with a curvature of 1/m
-            error = linear.max(update.size * update.size * w.q / w.v);
-            let is_fresh = !is_stale && renewed == 0;
-            if is_fresh && iteration.number == 1 {
-                tangent.measure(w, [iteration.last, update.size]);
-            }
-            // what constraints make of rounding is part of the measured curvature; the quadratic error itself is far smaller
-            let leaves_little = || {
-                tangent
-                    .left(w, update.size)
-                    .is_some_and(|left| left <= 0.5 * tolerance)
-            };
-            let allowed = if is_stale {
-                linear_tolerance
-            } else {
-                tolerance
-            };
-            let is_small = is_rounding
-                || error <= allowed
-                || is_fresh && is_first && leaves_little() && system.is_smooth(s);
-            let stagnates = !is_stale
-                && iteration.number >= renewed + 2
-                && rate > 0.3
-                && update.size < ROUNDING_BAND * tolerance.max(stage.rounding(s));
-            self.counters.stagnations += u64::from(stagnates && !is_small);
-            Ok((update, is_small || stagnates))
-        })?;
-        Ok(ratio)
     }
 
     /// Makes a state consistent at its q: v is projected on Phi_q v + Phi_t = 0 with the change of least kinetic energy, then
@@ -533,8 +323,8 @@ impl Newton {
         }
     }
 
-    /// Ends a stage: makes v and a consistent if there are constraints, then evaluates the integrands of the energy ledger.
-    /// Returns the number of clamped contacts.
+    /// Ends a stage on the position level: makes v and a consistent if there are constraints, then evaluates the integrands of
+    /// the energy ledger. Returns the number of clamped contacts.
     ///
     /// # Errors
     /// As [`Newton::make_consistent`].
@@ -545,10 +335,38 @@ impl Newton {
         work: &mut Work,
     ) -> Result<usize, Failure> {
         if system.shape().multipliers > 0 {
+            self.prediction.solved(s);
             self.make_consistent(system, s, work)?;
+            self.prediction.shifted(s);
         }
+        Ok(self.finish_consistent_stage(system, s, work))
+    }
+
+    /// Ends a stage whose a and lambda are those of the acceleration level: evaluates the integrands of the energy ledger. Returns
+    /// the number of clamped contacts.
+    pub fn finish_consistent_stage(
+        &mut self,
+        system: &dyn System,
+        s: &mut State,
+        work: &mut Work,
+    ) -> usize {
         self.prediction.finish(s);
-        Ok(system.powers(s, work))
+        system.powers(s, work)
+    }
+
+    /// Ends a step of a scheme whose stages are on the acceleration level: projects q and v on the constraints and solves for
+    /// (a, lambda) there.
+    ///
+    /// # Errors
+    /// As [`Newton::project_positions`] and [`Newton::make_consistent`].
+    pub fn return_to_constraints(
+        &mut self,
+        system: &dyn System,
+        s: &mut State,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
+        self.project_positions(system, s)?;
+        self.make_consistent(system, s, work)
     }
 
     /// The last step is not to be continued: forgets what its stages have found.

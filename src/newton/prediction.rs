@@ -6,9 +6,10 @@
 //! decide which one the next stage takes.
 //!
 //! The accelerations and multipliers of a constrained stage on the position level differ from those of the acceleration level
-//! by a term that is proportional to the step. This difference is remembered for every stage of a step and added to the
+//! by a term that is proportional to the step. This difference is remembered for the first stages of a step and added to the
 //! extrapolated values.
 
+use super::stage::Level;
 use crate::checkpoint::carried;
 use crate::system::{Shape, State};
 
@@ -139,7 +140,7 @@ impl Prediction {
     }
 
     /// Sets the guess of the next stage; false where nothing is known, and the guess remains as it is.
-    pub fn guess(&mut self, s: &mut State) -> bool {
+    pub fn guess(&mut self, level: Level, s: &mut State) -> bool {
         let weights = self.weights(s.t);
         self.guess.fill(0.0);
         for (node, weight) in self.nodes.iter().zip(weights).take(self.known) {
@@ -153,7 +154,8 @@ impl Prediction {
             s.a[..self.unknowns].copy_from_slice(a);
             s.lambda.copy_from_slice(lambda);
         }
-        if let Some(Shift { h, values }) = self.shifts.get(self.stage)
+        if level == Level::Position
+            && let Some(Shift { h, values }) = self.shifts.get(self.stage)
             && *h > 0.0
         {
             is_changed = true;
@@ -189,8 +191,8 @@ impl Prediction {
         }
     }
 
-    /// The solved stage has the accelerations and multipliers of the acceleration level.
-    pub fn finish(&mut self, s: &State) {
+    /// The solved stage now has the accelerations and multipliers of the acceleration level.
+    pub fn shifted(&mut self, s: &State) {
         if let Some(Shift { h, values }) = self.shifts.get_mut(self.stage) {
             *h = s.t - self.start;
             let (a, lambda) = values.split_at_mut(self.unknowns);
@@ -198,6 +200,10 @@ impl Prediction {
             let multipliers = lambda.iter_mut().zip(&s.lambda);
             multipliers.for_each(|(d, lambda)| *d -= lambda);
         }
+    }
+
+    /// A stage ends, with the accelerations and multipliers of the acceleration level.
+    pub fn finish(&mut self, s: &State) {
         self.stage += 1;
         if self.known > 1 {
             let error = |guess: &[f64]| {
@@ -253,12 +259,13 @@ mod tests {
         prediction.begin_step(from);
         let (mut guess, exact) = (from.clone(), state(t));
         guess.t = t;
-        prediction.guess(&mut guess);
+        prediction.guess(Level::Position, &mut guess);
         let mut solved = exact.clone();
         solved.z.copy_from_slice(&from.z);
         solved.a[0] += off;
         solved.lambda[0] += off;
         prediction.solved(&solved);
+        prediction.shifted(&exact);
         prediction.finish(&exact);
         [
             guess.a[0] - exact.a[0] - off,
@@ -299,7 +306,7 @@ mod tests {
         prediction.begin_step(&from);
         let mut guess = from.clone();
         guess.t = 0.4;
-        assert!(prediction.guess(&mut guess));
+        assert!(prediction.guess(Level::Position, &mut guess));
         assert_ne!(guess.a, from.a);
         prediction.solved(&guess);
         prediction.finish(&guess);

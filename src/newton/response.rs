@@ -26,8 +26,8 @@ const RENEWAL: usize = 16;
 #[derive(Debug)]
 pub struct Response {
     horizon: f64,
-    levels: Vec<Level>,
-    /// How many levels have been factorised.
+    matrices: Vec<TimeMatrix>,
+    /// How many matrices have been factorised.
     ready: usize,
     /// Steps since a factor was renewed, and which one was.
     age: usize,
@@ -41,7 +41,7 @@ pub struct Response {
 
 /// The matrix of one time.
 #[derive(Debug)]
-struct Level {
+struct TimeMatrix {
     factors: Factors,
     /// True if it could not be factorised; it then counts as one without stiffness.
     singular: bool,
@@ -52,13 +52,13 @@ impl Response {
     pub fn new(system: &dyn System, horizon: f64) -> Response {
         let shape = system.shape();
         let size = shape.unknowns + shape.multipliers;
-        let level = || Level {
+        let matrix = || TimeMatrix {
             factors: Factors::new(system.symbolic()),
             singular: false,
         };
         Response {
             horizon,
-            levels: std::iter::repeat_with(level).take(MOST).collect(),
+            matrices: std::iter::repeat_with(matrix).take(MOST).collect(),
             ready: 0,
             age: 0,
             renewed: 0,
@@ -74,7 +74,7 @@ impl Response {
     pub fn carry(&mut self, system: &dyn System, checkpoint: &mut Checkpoint) {
         let Response {
             horizon: _,
-            levels,
+            matrices,
             ready,
             age,
             renewed,
@@ -87,7 +87,7 @@ impl Response {
         for count in [ready, age, renewed] {
             count.carry(checkpoint);
         }
-        for Level { factors, singular } in levels {
+        for TimeMatrix { factors, singular } in matrices {
             factors.carry(system.symbolic(), checkpoint);
             singular.carry(checkpoint);
         }
@@ -110,7 +110,7 @@ impl Response {
         let (at, r, phi) = (&self.at, &mut self.r, &mut self.phi);
         let mut counters = Counters::default();
         let fill = |k: &mut [f64]| system.linearise(at, w, r, phi, k, work);
-        let level = &mut self.levels[level];
+        let level = &mut self.matrices[level];
         let renewed = level.factors.renew(system.symbolic(), &mut counters, fill);
         level.singular = renewed.is_err();
     }
@@ -138,12 +138,12 @@ impl Response {
             if level > 0 && tau < h {
                 break;
             }
-            match self.levels[level].singular {
+            match self.matrices[level].singular {
                 true => self.b[..n].copy_from_slice(error),
                 false => {
                     system.momentum(error, &mut self.b);
                     self.b[n..].fill(0.0);
-                    let factors = &self.levels[level].factors;
+                    let factors = &self.matrices[level].factors;
                     factors.solve(system.symbolic(), &mut self.b);
                 }
             }

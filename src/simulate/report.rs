@@ -98,6 +98,8 @@ pub struct Report {
     pub fallbacks: u64,
     /// Stages accepted at rounding, above the Newton tolerance.
     pub stagnations: u64,
+    /// Stages that had no solution on the acceleration level and were solved on the position level.
+    pub position_level_stages: u64,
     /// Stages that ended in a nearly singular pose, where the singular direction was left out.
     pub singular_poses: u64,
     /// Steps that the accuracy required; absent with equal steps.
@@ -252,6 +254,7 @@ impl Simulation {
             factorisations: newton.factorisations,
             fallbacks: newton.fallbacks,
             stagnations: newton.stagnations,
+            position_level_stages: newton.position_level_stages,
             singular_poses: newton.singular_poses,
             accuracy: match &self.pacer {
                 Pacer::Grid(_) => None,

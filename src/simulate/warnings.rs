@@ -70,6 +70,10 @@ impl Report {
                 "stages in which rounding kept Newton's method above newton_tolerance",
             ),
             (
+                self.position_level_stages,
+                "stages without a solution on the acceleration level, solved on the position level with a lower order",
+            ),
+            (
                 self.singular_poses,
                 "stages in a nearly singular pose, solved without the singular direction",
             ),

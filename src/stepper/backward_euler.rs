@@ -5,7 +5,9 @@
 //! ```
 
 use super::history::History;
-use super::{Estimate, LocalError, Scheme, Stage, StepError, Stepper, integrate_ends};
+use super::{
+    Estimate, EstimatedSolution, LocalError, Scheme, Stage, StepError, Stepper, integrate_ends,
+};
 use crate::checkpoint::carried;
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Weights, Work};
@@ -70,7 +72,7 @@ impl Stepper for BackwardEuler {
     fn estimate(&self) -> Estimate {
         Estimate {
             order: 2.0,
-            is_error: true,
+            of: EstimatedSolution::Solution,
             implicit: true,
         }
     }

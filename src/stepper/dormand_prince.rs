@@ -7,7 +7,9 @@
 //!
 //! The local error is the difference of the two solutions, of order h^5. The step continues with the solution of order 5.
 
-use super::{Estimate, LocalError, Scheme, StepError, Stepper, accumulate, integrate};
+use super::{
+    Estimate, EstimatedSolution, LocalError, Scheme, StepError, Stepper, accumulate, integrate,
+};
 use crate::checkpoint::carried;
 use crate::newton::Newton;
 use crate::system::{Shape, State, System, Work};
@@ -152,8 +154,7 @@ impl Stepper for DormandPrince {
         sum(h, &WEIGHTS, all(), |s| &s.v, &mut self.increment);
         accumulate(from, &self.increment, 0.0, to);
         if shape.multipliers > 0 {
-            newton.project_positions(system, to)?;
-            newton.make_consistent(system, to, work)?;
+            newton.return_to_constraints(system, to, work)?;
         } else {
             newton.accelerate(system, to, work)?;
         }
@@ -169,7 +170,7 @@ impl Stepper for DormandPrince {
     fn estimate(&self) -> Estimate {
         Estimate {
             order: 5.0,
-            is_error: false,
+            of: EstimatedSolution::Embedded { weight: 1.0 },
             implicit: false,
         }
     }

@@ -3,7 +3,7 @@
 pub mod backward_euler;
 pub mod bathe;
 pub mod dormand_prince;
-pub mod esdirk3;
+pub mod esdirk;
 pub mod generalized_alpha;
 mod history;
 mod scheme;
@@ -13,14 +13,14 @@ pub mod velocity_verlet;
 pub use backward_euler::BackwardEuler;
 pub use bathe::Bathe;
 pub use dormand_prince::DormandPrince;
-pub use esdirk3::Esdirk3;
+pub use esdirk::Esdirk;
 pub use generalized_alpha::GeneralizedAlpha;
 pub use scheme::{MOST, Method, Parameter, Scheme};
 pub use trapezoidal::Trapezoidal;
 pub use velocity_verlet::VelocityVerlet;
 
 use crate::checkpoint::Carried;
-use crate::newton::{Failure, Newton};
+use crate::newton::{Failure, Level, Newton, StageEquations};
 use crate::system::{INTEGRALS, PrescribeError, Shape, State, System, Weights, Work};
 
 /// Why a step was not taken.
@@ -105,24 +105,49 @@ pub trait Stepper: Carried + std::fmt::Debug + Send {
 pub struct Estimate {
     /// The power of the step with which the estimate falls.
     pub order: f64,
-    /// True if it is the error of the solution with which the scheme continues; false if that solution is of a higher order.
-    pub is_error: bool,
+    /// Whose error it is.
+    pub of: EstimatedSolution,
     /// True for a scheme with implicit stages, which is stable for stiff modes that its steps do not resolve.
     pub implicit: bool,
+}
+
+/// The solution whose local error is estimated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum EstimatedSolution {
+    /// The one with which the scheme continues.
+    Solution,
+    /// An embedded one of a lower order.
+    Embedded {
+        /// The error of the solution for a given estimate, as a multiple of that of [`DormandPrince`]: the ratio of the principal
+        /// error of the solution to that of the embedded one, the norms of their error coefficients of all trees (Prince &
+        /// Dormand 1981, J. Comput. Appl. Math. 7:67), divided by the same ratio of Dormand and Prince's pair, 0.337.
+        weight: f64,
+    },
 }
 
 impl Estimate {
     /// The estimate of a scheme of order 2 which continues with the solution that it estimates.
     const ERROR_OF_ORDER_2: Estimate = Estimate {
         order: 3.0,
-        is_error: true,
+        of: EstimatedSolution::Solution,
         implicit: true,
     };
 
-    /// The ratio of the error to its share of an accuracy falls with this power of the step: H/h of the errors add up where
-    /// they are those of the solution, the square root of H/h elsewhere.
+    /// The multiple of its estimate that the error of the solution reaches in so many steps.
+    pub fn sum(&self, steps: f64) -> f64 {
+        match self.of {
+            EstimatedSolution::Solution => steps,
+            EstimatedSolution::Embedded { weight } => weight * steps.sqrt(),
+        }
+    }
+
+    /// The ratio of the error to its share of an accuracy falls with this power of the step.
     pub fn order_of_ratio(&self) -> f64 {
-        self.order - if self.is_error { 1.0 } else { 0.5 }
+        let of_sum = match self.of {
+            EstimatedSolution::Solution => 1.0,
+            EstimatedSolution::Embedded { .. } => 0.5,
+        };
+        self.order - of_sum
     }
 }
 
@@ -179,13 +204,14 @@ pub fn look_ahead(
 }
 
 /// All schemes.
-pub static SCHEMES: [&Scheme; 8] = [
+pub static SCHEMES: [&Scheme; 9] = [
     &bathe::SCHEME,
     &trapezoidal::SCHEME,
     &backward_euler::SCHEME,
     &generalized_alpha::SCHEME,
     &generalized_alpha::HHT,
-    &esdirk3::SCHEME,
+    &esdirk::ORDER_3,
+    &esdirk::ORDER_5,
     &velocity_verlet::SCHEME,
     &dormand_prince::SCHEME,
 ];
@@ -215,7 +241,16 @@ impl Stage {
         self.q_hat[i] = from.q[i] + increment;
     }
 
-    /// Solves the stage into `to` and makes it consistent; returns the number of clamped contacts.
+    fn equations(&self, level: Level, w: Weights) -> StageEquations<'_> {
+        StageEquations {
+            level,
+            w,
+            q_hat: &self.q_hat,
+            v_hat: &self.v_hat,
+        }
+    }
+
+    /// Solves the stage on the position level into `to` and makes it consistent; returns the number of clamped contacts.
     fn solve(
         &self,
         system: &dyn System,
@@ -225,7 +260,8 @@ impl Stage {
         newton: &mut Newton,
         work: &mut Work,
     ) -> Result<usize, StepError> {
-        newton.solve_stage(system, w, &self.q_hat, &self.v_hat, to, work)?;
+        let equations = self.equations(Level::Position, w);
+        newton.solve_stage(system, equations, to, work)?;
         accumulate(from, &self.increment, w.q, to);
         Ok(newton.finish_stage(system, to, work)?)
     }

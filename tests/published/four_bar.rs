@@ -224,6 +224,7 @@ fn an_accuracy_is_reached_through_singular_poses() {
         for n in [2, 10, 40] {
             reach(n, "dormand_prince", accuracy);
         }
+        reach(2, "esdirk5", accuracy);
     }
     for method in ["bathe", "trapezoidal"] {
         for accuracy in [1e-3, 1e-4, 1e-5] {

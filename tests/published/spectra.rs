@@ -3,7 +3,7 @@
 use crate::chain::Chain;
 use ladder::{Rung, Worst};
 use looselink::newton::Newton;
-use looselink::stepper::{Method, bathe, esdirk3, generalized_alpha, trapezoidal};
+use looselink::stepper::{Method, bathe, esdirk, generalized_alpha, trapezoidal};
 use looselink::system::{State, System};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -141,16 +141,19 @@ fn spectra_follow_the_tables() {
 
 /// L-stability: no step of any length amplifies an oscillation, and an infinitely long one extinguishes it.
 #[test]
-fn the_method_of_order_3_is_l_stable() {
-    let method = Method::new(&esdirk3::SCHEME);
-    let radius = |dt: f64| spectrum(method, dt)[0];
-    for k in -300..=300 {
-        let dt = 10.0_f64.powf(f64::from(k) / 100.0);
-        // rounding of a matrix with entries of size 1
-        assert!(radius(dt) < 1.0 + 1e-13, "{dt} periods a step");
+fn the_methods_of_orders_3_and_5_are_l_stable() {
+    for scheme in [&esdirk::ORDER_3, &esdirk::ORDER_5] {
+        let radius = |dt: f64| spectrum(Method::new(scheme), dt)[0];
+        for k in -300..=300 {
+            let dt = 10.0_f64.powf(f64::from(k) / 100.0);
+            // rounding of a matrix with entries of size 1
+            assert!(radius(dt) < 1.0 + 1e-13, "{scheme:?}: {dt} periods a step");
+        }
+        // R decays with the inverse of the step; the next term of the expansion is a thousandth
+        let [shorter, longer] = [1e3, 1e4].map(radius);
+        assert!(shorter < 0.01, "{scheme:?}");
+        assert!((10.0 * longer / shorter - 1.0).abs() < 0.01, "{scheme:?}");
     }
-    // R decays with the inverse of the step
-    assert!(radius(1e3) < 1e-3);
 }
 
 /// Steps far longer than the period damp by the spectral radius that was asked for; the table above has no HHT.

@@ -62,7 +62,7 @@ fn studies_of_the_project_work() {
         );
         count += 1;
     }
-    assert_eq!(count, 9);
+    assert_eq!(count, 10);
 }
 
 /// Studies of statistics, a fiftieth of their time: every first point gives finite statistics, near those of the reference.

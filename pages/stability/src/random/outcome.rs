@@ -230,6 +230,7 @@ fn unguarded(
     run.open = simulation.model().worst_constraint(simulation.state());
     let stages = match scene.integrator.method.name() {
         "esdirk3" => 3,
+        "esdirk5" => 6,
         _ => 2,
     };
     bounded(&report, asked, stages)?;
@@ -280,6 +281,7 @@ fn remarks(report: &Report) -> RunOutcome {
     let counts = [
         ("energy gained without bounds", u64::from(blown_up(report))),
         ("stagnations", report.stagnations),
+        ("stages on the position level", report.position_level_stages),
         ("singular poses", report.singular_poses),
         ("row exchanges", report.fallbacks),
         ("halved steps", report.rejected_steps),

@@ -200,6 +200,7 @@ fn pace(tape: &mut Tape, m: &RandomMechanism, features: &mut Vec<&'static str>) 
         "backward_euler",
         "dormand_prince",
         "esdirk3",
+        "esdirk5",
     ];
     let mut method = tape.pick(&methods);
     // velocity Verlet keeps no constraints
@@ -220,7 +221,13 @@ fn pace(tape: &mut Tape, m: &RandomMechanism, features: &mut Vec<&'static str>) 
     }
     let follows = tape.chance(0.3);
     let (digits, energy, horizon) = (tape.decades(-8.0, -3.0), tape.chance(0.2), tape.chance(0.5));
-    let can_follow = ["bathe", "trapezoidal", "dormand_prince", "esdirk3"];
+    let can_follow = [
+        "bathe",
+        "trapezoidal",
+        "dormand_prince",
+        "esdirk3",
+        "esdirk5",
+    ];
     if follows && can_follow.contains(&method) {
         let horizon = if horizon { duration } else { 0.3 * duration };
         let energy = match energy {
