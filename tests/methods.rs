@@ -37,21 +37,9 @@ const METHODS: [(&[&str], &str, f64); 9] = [
         "HHT, spectral radius 0.8",
         2.0,
     ),
-    (
-        &["integrator.method=dormand_prince"],
-        "Dormand and Prince's pair",
-        5.0,
-    ),
-    (
-        &["integrator.method=esdirk3"],
-        "the diagonally implicit method of order 3",
-        3.0,
-    ),
-    (
-        &["integrator.method=esdirk5"],
-        "the diagonally implicit method of order 5",
-        5.0,
-    ),
+    (&["integrator.method=dormand_prince"], "Dormand-Prince", 5.0),
+    (&["integrator.method=esdirk3"], "ESDIRK 3", 3.0),
+    (&["integrator.method=esdirk5"], "ESDIRK 5", 5.0),
 ];
 
 /// A scene and what is changed in it, its duration, the time between rows, the coarsest step of methods of order 1, 2, 3 and 5, and channels that are

@@ -99,16 +99,8 @@ fn schemes() -> Vec<(Method, String, f64, f64)> {
             "Dormand and Prince's pair".to_owned(),
             5.0,
         ),
-        (
-            Method::new(&esdirk::ORDER_3),
-            "The diagonally implicit method of order 3".to_owned(),
-            3.0,
-        ),
-        (
-            Method::new(&esdirk::ORDER_5),
-            "The diagonally implicit method of order 5".to_owned(),
-            5.0,
-        ),
+        (Method::new(&esdirk::ORDER_3), "ESDIRK 3".to_owned(), 3.0),
+        (Method::new(&esdirk::ORDER_5), "ESDIRK 5".to_owned(), 5.0),
     ]
     // the higher the order, the longer the steps that stand above rounding
     .map(|(method, name, order)| {
@@ -316,13 +308,13 @@ fn local_errors_are_estimated() {
         (
             &esdirk::ORDER_3,
             3.0,
-            "The diagonally implicit method of order 3",
+            "ESDIRK 3",
             "the error of the solution of order 2 is of h³",
         ),
         (
             &esdirk::ORDER_5,
             5.0,
-            "The diagonally implicit method of order 5",
+            "ESDIRK 5",
             "the error of the solution of order 4 is of h⁵",
         ),
     ] {
