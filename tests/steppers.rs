@@ -96,7 +96,7 @@ fn schemes() -> Vec<(Method, String, f64, f64)> {
         ),
         (
             Method::new(&dormand_prince::SCHEME),
-            "Dormand and Prince's pair".to_owned(),
+            "Dormand-Prince".to_owned(),
             5.0,
         ),
         (Method::new(&esdirk::ORDER_3), "ESDIRK 3".to_owned(), 3.0),
@@ -143,7 +143,7 @@ fn every_scheme_has_its_order_in_everything() {
                 )
             };
             Rung::OrderInTime
-                .asks(format!("{name}, two masses on springs: {quantity}"))
+                .asks(format!("{name}, two masses: {quantity}"))
                 .falls(
                     "Step h [s]",
                     &[error(coarse), error(coarse / 2.0), error(coarse / 4.0)],
