@@ -42,8 +42,8 @@ const METHODS: [(&[&str], &str, f64); 9] = [
     (&["integrator.method=esdirk5"], "ESDIRK 5", 5.0),
 ];
 
-/// A scene and what is changed in it, its duration, the time between rows, the coarsest step of methods of order 1, 2, 3 and 5, and channels that are
-/// compared.
+/// A scene and what is changed in it, its duration, the time between rows, the coarsest step of methods of order 1, 2, 3 and 5,
+/// and channels that are compared.
 struct SmoothScene {
     scene: &'static str,
     changes: &'static [&'static str],

@@ -110,9 +110,9 @@ impl Response {
         let (at, r, phi) = (&self.at, &mut self.r, &mut self.phi);
         let mut counters = Counters::default();
         let fill = |k: &mut [f64]| system.linearise(at, w, r, phi, k, work);
-        let level = &mut self.matrices[level];
-        let renewed = level.factors.renew(system.symbolic(), &mut counters, fill);
-        level.singular = renewed.is_err();
+        let TimeMatrix { factors, singular } = &mut self.matrices[level];
+        let renewed = factors.renew(system.symbolic(), &mut counters, fill);
+        *singular = renewed.is_err();
     }
 
     /// Provides a matrix for every tau down to the step h, and renews one of them after every few steps.

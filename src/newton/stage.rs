@@ -40,6 +40,11 @@ pub struct StageEquations<'a> {
 }
 
 impl StageEquations<'_> {
+    /// True where there are constraints and the stage solves them on this level.
+    fn constrains(&self, system: &dyn System, level: Level) -> bool {
+        self.level == level && system.shape().multipliers > 0
+    }
+
     /// The rounding of Phi, as an error of velocity \[m/s\].
     fn rounding_of_constraints(&self) -> f64 {
         let size = self.q_hat.iter().fold(0.0_f64, |m, q| m.max(q.abs()));
@@ -99,7 +104,7 @@ impl Newton {
             self.tangents.swap(0, 1);
         }
         // on constraints, rounding of Phi hides how fast updates decrease with an earlier tangent
-        let is_on_constraints = is_constrained(system) && stage.level == Level::Position;
+        let is_on_constraints = stage.constrains(system, Level::Position);
         let is_stale = !is_on_constraints && self.tangents[0].serves(stage.w);
         let mut solved = self.iterate_stage(system, &stage, is_stale, s, work);
         if solved.is_err() && (is_predicted || is_stale) {
@@ -167,13 +172,11 @@ impl Newton {
     ) -> Result<Option<f64>, Failure> {
         let n = stage.q_hat.len();
         let w = stage.w;
-        let (mut tolerance, mut is_quadratic) = (self.tolerance, true);
-        if is_constrained(system) {
-            match stage.level {
-                Level::Position => tolerance = tolerance.max(stage.rounding_of_constraints()),
-                Level::Acceleration => is_quadratic = false,
-            }
-        }
+        let tolerance = match stage.constrains(system, Level::Position) {
+            true => self.tolerance.max(stage.rounding_of_constraints()),
+            false => self.tolerance,
+        };
+        let is_quadratic = !stage.constrains(system, Level::Acceleration);
         // the next update would only come down to rounding, unless this one shows that rounding is smaller than its estimate
         let linear_tolerance = |s: &State, update: f64| {
             let (share, rounding) = (LINEAR_SHARE * tolerance, stage.rounding(s));
@@ -259,8 +262,4 @@ impl Newton {
         })?;
         Ok(ratio)
     }
-}
-
-fn is_constrained(system: &dyn System) -> bool {
-    system.shape().multipliers > 0
 }

@@ -15,8 +15,8 @@
 //! The errors of all steps of a horizon may add up to the accuracy p. If the estimate is the error of the step itself, the H/h
 //! steps of a horizon add up directly: r = E H/(h p). A scheme that continues with a solution of higher order than its
 //! estimate has smaller errors of varying sign. H/h is then replaced by its square root times the weight of
-//! [`crate::stepper::EstimatedSolution::Embedded`], except for y: errors of a vibration shift its phase and add up. Either way the error of the run falls in proportion to p (Stetter 1979, Lect. Notes Math.
-//! 679:245; Shampine 1985, BIT 25:530).
+//! [`crate::stepper::EstimatedSolution::Embedded`], except for y: errors of a vibration shift its phase and add up. Either way
+//! the error of the run falls in proportion to p (Stetter 1979, Lect. Notes Math. 679:245; Shampine 1985, BIT 25:530).
 //!
 //! A step with r > 1 is repeated, unless its error is a small part of the allowance that earlier steps have not used. Near a
 //! singular pose rounding is divided by the distance from the pose. It does not fall with the step, so shorter steps would

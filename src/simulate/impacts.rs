@@ -165,8 +165,8 @@ impl Impacts {
         self.closed[contact].map(|course| course.onset(model))
     }
 
-    /// Records an accepted step of length h, with the gaps at its end, and reports the contacts that it opened. Between two steps the penetration is the
-    /// cubic through values and rates at both ends, whose maximum has an error of h^4.
+    /// Records an accepted step of length h, with the gaps at its end, and reports the contacts that it opened. Between two steps
+    /// the penetration is the cubic through values and rates at both ends, whose maximum has an error of h^4.
     ///
     /// # Errors
     /// When a contact cannot be reported.

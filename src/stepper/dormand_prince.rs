@@ -8,7 +8,7 @@
 //! The local error is the difference of the two solutions, of order h^5. The step continues with the solution of order 5.
 
 use super::{
-    Estimate, EstimatedSolution, LocalError, Scheme, StepError, Stepper, accumulate, integrate,
+    Estimate, EstimatedSolution, LocalError, Scheme, StepError, Stepper, accumulate, integrate, sum,
 };
 use crate::checkpoint::carried;
 use crate::newton::Newton;
@@ -92,24 +92,6 @@ impl DormandPrince {
     }
 }
 
-/// out = h sum_j w_j x_j, x the velocities or the accelerations of stages 1, 2, ...; one stage after the other.
-#[inline]
-fn sum<'a>(
-    h: f64,
-    weights: &[f64],
-    stages: impl Iterator<Item = &'a State>,
-    level: fn(&State) -> &Vec<f64>,
-    out: &mut [f64],
-) {
-    out.fill(0.0);
-    for (weight, stage) in weights.iter().zip(stages).filter(|(w, _)| **w != 0.0) {
-        let factor = h * weight;
-        for (o, x) in out.iter_mut().zip(level(stage)) {
-            *o += factor * x;
-        }
-    }
-}
-
 impl Stepper for DormandPrince {
     fn step(
         &mut self,
@@ -130,11 +112,11 @@ impl Stepper for DormandPrince {
             stage.t = if *c == 1.0 { t } else { from.t + c * h };
             system.prescribe(from, stage, work)?;
             let before = || [from].into_iter().chain(&*done);
-            sum(h, row, before(), |s| &s.v, &mut self.increment);
+            sum(h, *row, before(), |s| &s.v, &mut self.increment);
             for k in 0..shape.unknowns {
                 stage.q[k] = from.q[k] + (from.q_low[k] + self.increment[k]);
             }
-            sum(h, row, before(), |s| &s.a, &mut self.increment);
+            sum(h, *row, before(), |s| &s.a, &mut self.increment);
             for k in 0..shape.unknowns {
                 stage.v[k] = from.v[k] + self.increment[k];
             }
@@ -147,11 +129,11 @@ impl Stepper for DormandPrince {
         // the known coordinates of the last stage are those of the end
         to.copy_from(&stages[4]);
         let all = || [from].into_iter().chain(stages);
-        sum(h, &WEIGHTS, all(), |s| &s.a, &mut self.increment);
+        sum(h, WEIGHTS, all(), |s| &s.a, &mut self.increment);
         for k in 0..shape.unknowns {
             to.v[k] = from.v[k] + self.increment[k];
         }
-        sum(h, &WEIGHTS, all(), |s| &s.v, &mut self.increment);
+        sum(h, WEIGHTS, all(), |s| &s.v, &mut self.increment);
         accumulate(from, &self.increment, 0.0, to);
         if shape.multipliers > 0 {
             newton.return_to_constraints(system, to, work)?;
@@ -178,7 +160,7 @@ impl Stepper for DormandPrince {
     fn local_error(&self, from: &State, to: &State, _: &State, error: &mut LocalError) {
         let h = to.t - from.t;
         let all = || [from].into_iter().chain(&self.stages).chain([to]);
-        sum(h, &DIFFERENCE, all(), |s| &s.v, &mut error.q);
-        sum(h, &DIFFERENCE, all(), |s| &s.a, &mut error.v);
+        sum(h, DIFFERENCE, all(), |s| &s.v, &mut error.q);
+        sum(h, DIFFERENCE, all(), |s| &s.a, &mut error.v);
     }
 }

@@ -9,19 +9,19 @@
 //! t + c_i h, where c_i is the sum of its row.
 //!
 //! The stages are solved on the acceleration level, with the multipliers that keep d2(Phi)/dt2 = 0. This applies the method to the
-//! underlying ordinary differential equation for (q, v), so it keeps its full order; on the position level the order falls (Hairer & Wanner 1996,
-//! Solving Ordinary Differential Equations II, VII.4). Every step ends with a projection of q on Phi = 0 and of v on
+//! underlying ordinary differential equation for (q, v), so it keeps its full order; on the position level the order falls
+//! (Hairer & Wanner 1996, Solving Ordinary Differential Equations II, VII.4). Every step ends with a projection of q on Phi = 0 and of v on
 //! Phi_q v + Phi_t = 0 (Eich 1993, SIAM J. Numer. Anal. 30:1467).
 //!
 //! Near a singular pose a stage that lies slightly off the constraints may have no solution, because the constraints no longer
 //! determine its accelerations. Such a stage is solved on the position level, as with [`super::Bathe`].
 //!
-//! The local error is the difference from the solution of the embedded formula, of one order less. The step continues with the solution of the
-//! higher order.
+//! The local error is the difference from the solution of the embedded formula, of one order less. The step continues with the
+//! solution of the higher order.
 
 use super::{
     Estimate, EstimatedSolution, LocalError, Scheme, Stage, StepError, Stepper, accumulate,
-    integrate,
+    integrate, sum,
 };
 use crate::checkpoint::carried;
 use crate::newton::{Level, Newton};
@@ -243,21 +243,11 @@ impl Stepper for Esdirk {
 
     fn local_error(&self, from: &State, to: &State, _: &State, error: &mut LocalError) {
         let h = to.t - from.t;
-        error.q.fill(0.0);
-        error.v.fill(0.0);
-        let stages = [from].into_iter().chain(&self.middle).chain([to]);
-        for ((weight, embedded), stage) in self
-            .tableau
-            .weights()
-            .zip(self.tableau.embedded)
-            .zip(stages)
-        {
-            let weight = h * (weight - embedded);
-            for (i, (q, v)) in error.iter_mut().enumerate() {
-                *q += weight * stage.v[i];
-                *v += weight * stage.a[i];
-            }
-        }
+        let weights = || self.tableau.weights().zip(self.tableau.embedded);
+        let difference = || weights().map(|(weight, embedded)| weight - embedded);
+        let all = || [from].into_iter().chain(&self.middle).chain([to]);
+        sum(h, difference(), all(), |s| &s.v, &mut error.q);
+        sum(h, difference(), all(), |s| &s.a, &mut error.v);
     }
 }
 

@@ -277,6 +277,24 @@ fn integrate_ends(from: &State, to: &mut State) {
     );
 }
 
+/// out = h sum_j w_j x_j, x the velocities or the accelerations of stages 1, 2, ...; one stage after the other.
+#[inline]
+fn sum<'a>(
+    h: f64,
+    weights: impl IntoIterator<Item = f64>,
+    stages: impl Iterator<Item = &'a State>,
+    level: fn(&State) -> &Vec<f64>,
+    out: &mut [f64],
+) {
+    out.fill(0.0);
+    for (weight, stage) in weights.into_iter().zip(stages).filter(|(w, _)| *w != 0.0) {
+        let factor = h * weight;
+        for (o, x) in out.iter_mut().zip(level(stage)) {
+            *o += factor * x;
+        }
+    }
+}
+
 /// Adds the weighted integrands of some states to the integrals of the ledger.
 fn integrate(h: f64, weighted: &[(f64, &[f64; INTEGRALS])], integrals: &mut [f64; INTEGRALS]) {
     for (weight, powers) in weighted {

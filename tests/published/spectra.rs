@@ -142,7 +142,7 @@ fn spectra_follow_the_tables() {
 /// L-stability: no step of any length amplifies an oscillation, and an infinitely long one extinguishes it.
 #[test]
 fn the_methods_of_orders_3_and_5_are_l_stable() {
-    for scheme in [&esdirk::ORDER_3, &esdirk::ORDER_5] {
+    for (scheme, far) in [(&esdirk::ORDER_3, 1e-3), (&esdirk::ORDER_5, 1e-2)] {
         let radius = |dt: f64| spectrum(Method::new(scheme), dt)[0];
         for k in -300..=300 {
             let dt = 10.0_f64.powf(f64::from(k) / 100.0);
@@ -151,7 +151,7 @@ fn the_methods_of_orders_3_and_5_are_l_stable() {
         }
         // R decays with the inverse of the step; the next term of the expansion is a thousandth
         let [shorter, longer] = [1e3, 1e4].map(radius);
-        assert!(shorter < 0.01, "{scheme:?}");
+        assert!(shorter < far, "{scheme:?}");
         assert!((10.0 * longer / shorter - 1.0).abs() < 0.01, "{scheme:?}");
     }
 }
