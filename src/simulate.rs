@@ -2,6 +2,7 @@
 
 mod change;
 mod checkpoint;
+mod choice;
 mod closures;
 mod control;
 mod cubic;
@@ -21,6 +22,7 @@ mod stepwise;
 mod warnings;
 
 pub use crate::record::Channel;
+pub use choice::{Choice, PilotRun};
 pub use closures::Chatter;
 use closures::Closures;
 pub use control::AccuracyReport;
@@ -108,8 +110,10 @@ pub struct Simulation {
     impacts: Impacts,
     closures: Closures,
     meter: Meter,
-    /// True of the pilot that foresees how many steps a run takes.
+    /// True of the pilots that foresee how many steps a run takes or compare schemes.
     is_pilot: bool,
+    /// The scheme that was chosen, where the scene leaves it open.
+    choice: Option<Choice>,
     local_error: LocalError,
     stall: Stall,
     counters: LoopCounters,
@@ -182,6 +186,7 @@ impl Simulation {
 
     /// Steps to `target`, stopping at every contact onset and loss on the way.
     fn advance(&mut self, target: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
+        self.choose();
         if !std::mem::replace(&mut self.is_between_rows, true) {
             self.pacer.begin(self.state.t);
         }

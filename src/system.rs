@@ -125,6 +125,15 @@ pub struct Weights {
     pub v: f64,
 }
 
+/// Multiply-adds of evaluations of a system, by their order of magnitude: what methods cost beside each other, on any machine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Operations {
+    /// A residual.
+    pub residual: u64,
+    /// A residual with its tangent, before it is factorised.
+    pub tangent: u64,
+}
+
 /// Memory that a system needs while it evaluates, and the counts of what it evaluated.
 #[derive(Debug, Clone)]
 pub struct Work {
@@ -175,6 +184,8 @@ pub trait System {
     fn symbolic(&self) -> &Symbolic;
     /// The matrix of the acceleration level.
     fn acceleration_matrix(&self) -> &SaddlePoint;
+    /// What its evaluations cost.
+    fn operations(&self) -> Operations;
     /// Fresh work memory.
     fn work(&self) -> Work;
     /// Sets the known coordinates and their rates in `to` at time `to.t`; `from` is a nearby state.

@@ -3,7 +3,7 @@
 use looselink::math::lu::Symbolic;
 use looselink::math::saddle_point::SaddlePoint;
 use looselink::stepper::Method;
-use looselink::system::{PrescribeError, Shape, State, System, Weights, Work};
+use looselink::system::{Operations, PrescribeError, Shape, State, System, Weights, Work};
 
 /// Masses and springs in series between walls: m_i a_i + d v_i + (K q)_i = 0.
 #[derive(Debug)]
@@ -62,6 +62,13 @@ impl System for Chain {
     }
     fn acceleration_matrix(&self) -> &SaddlePoint {
         &self.acceleration_matrix
+    }
+    fn operations(&self) -> Operations {
+        let springs = self.springs.len() as u64;
+        Operations {
+            residual: 2 * springs,
+            tangent: 6 * springs,
+        }
     }
     fn work(&self) -> Work {
         Work {

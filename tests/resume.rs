@@ -163,6 +163,20 @@ fn every_method_goes_on_from_any_step_with_an_accuracy() {
 }
 
 #[test]
+fn a_chosen_method_goes_on_from_any_step() {
+    for (seed, name) in ["3rrr/case2.toml", "3rrr/case4.toml"].iter().enumerate() {
+        let overrides = [
+            "integrator={method=\"auto\",newton_tolerance=1e-11,onset_tolerance=1e-13,accuracy={position=1e-6,horizon=0.01}}",
+            "assumptions={}",
+            "simulation.duration=0.004",
+            "output.interval=1e-3",
+        ];
+        let report = check(name, &load(name, &overrides), seed as u64);
+        assert!(report.choice.is_some(), "{name}");
+    }
+}
+
+#[test]
 fn a_checkpoint_of_another_scene_is_refused() {
     let mut parts = Parts {
         stop: 5,

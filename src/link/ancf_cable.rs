@@ -78,6 +78,9 @@ fn of_pairs<T>(f: impl Fn(usize, usize) -> T) -> [T; 6] {
 }
 
 impl AncfCable {
+    /// Multiply-adds of a force, and of a force with its tangent: 36 and 144 are contractions with T.
+    pub(crate) const OPERATIONS: [u64; 2] = [95, 250];
+
     /// u = ((r_j - r_i)/l, r_i', r_j').
     #[inline]
     fn slopes(&self, q: &[f64; 8]) -> [Vec2; 3] {

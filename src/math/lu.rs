@@ -304,6 +304,11 @@ impl Symbolic {
         nodes.map(|f| f.size * (f.size + f.count).pow(2)).sum()
     }
 
+    /// Multiply-subtracts of a solve.
+    pub fn operations_of_solve(&self) -> usize {
+        self.len()
+    }
+
     /// Index of the value of a pivot.
     fn diagonal(&self, unknown: usize) -> usize {
         let place = self.position[unknown];

@@ -331,6 +331,29 @@ impl SaddlePoint {
         }
     }
 
+    /// Multiply-adds of a factorisation and of a solve.
+    pub fn operations(&self) -> [usize; 2] {
+        let gradient = self.entries.columns.len();
+        match &self.form {
+            SaddleForm::Complement(complement) => {
+                let Complement { mass, symbolic, .. } = &**complement;
+                let columns = complement.inverse.as_ref();
+                let inverse = columns.map_or(mass.operations_of_solve(), |c| c.entries.len());
+                [
+                    2 * complement.products.len() + symbolic.operations(),
+                    mass.operations_of_solve()
+                        + symbolic.operations_of_solve()
+                        + 2 * gradient
+                        + inverse,
+                ]
+            }
+            SaddleForm::Bordered(bordered) => [
+                bordered.symbolic.operations(),
+                bordered.symbolic.operations_of_solve(),
+            ],
+        }
+    }
+
     /// Replaces a row of G, whose entries and right sides are zero from now on, by mu = 0.
     pub fn drop_row(&mut self, row: usize) {
         self.dropped.push(row);

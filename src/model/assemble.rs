@@ -4,12 +4,13 @@ use super::{Model, Rule};
 use crate::constraint::{self, Curvature, ROWS};
 use crate::contact;
 use crate::force::WIDTH;
-use crate::link::ElasticRoute;
+use crate::link::{AncfCable, ElasticRoute};
 use crate::math::lu::Symbolic;
 use crate::math::plane::{Rotation, quarter_turn};
 use crate::math::saddle_point::SaddlePoint;
 use crate::system::{
-    Equilibrium, INTEGRALS, Integral, PrescribeError, Shape, State, System, Weights, Work,
+    Equilibrium, INTEGRALS, Integral, Operations, PrescribeError, Shape, State, System, Weights,
+    Work,
 };
 
 /// Local coordinates of an element.
@@ -247,6 +248,23 @@ impl System for Model {
 
     fn acceleration_matrix(&self) -> &SaddlePoint {
         &self.acceleration_matrix
+    }
+
+    fn operations(&self) -> Operations {
+        let elements = self.elements.len() as u64;
+        let [force, with_tangent] = AncfCable::OPERATIONS;
+        let constraints = self.constraints.iter().map(|c| &c.block);
+        let forces = self.forces.iter().map(|f| &f.block);
+        let contacts = self.contacts.iter().map(|c| &c.block);
+        let blocks = constraints.chain(forces).chain(contacts);
+        let terms = blocks.map(|block| block.coordinates.len() as u64);
+        // a term takes some operations with each local coordinate, and some with each entry of its tangent
+        let [linear, square] = terms.fold([0, 0], |[a, b], n| [a + 8 * n, b + 3 * n * n]);
+        let residual = self.mass.entries.len() as u64 + elements * force + linear;
+        Operations {
+            residual,
+            tangent: residual + elements * (with_tangent - force) + square,
+        }
     }
 
     fn work(&self) -> Work {

@@ -44,9 +44,37 @@ pub struct Counters {
     pub position_level_stages: u64,
     /// Stages that ended in a nearly singular pose, where the singular direction was left out.
     pub singular_poses: u64,
+    /// Multiply-adds of residuals, tangents, factorisations and solves, by their order of magnitude.
+    pub operations: u64,
 }
 
-carried!(Counters { stages, newton_iterations, factorisations, fallbacks, stagnations, position_level_stages, singular_poses } but {});
+carried!(Counters { stages, newton_iterations, factorisations, fallbacks, stagnations, position_level_stages, singular_poses, operations } but {});
+
+/// Multiply-adds of evaluations and of the linear algebra that goes with them.
+#[derive(Debug, Clone, Copy)]
+struct Costs {
+    residual: u64,
+    /// A tangent and its factorisation.
+    tangent: u64,
+    solve: u64,
+    /// The matrix of the acceleration level and its factorisation.
+    level: u64,
+    level_solve: u64,
+}
+
+impl Costs {
+    fn of(system: &dyn System) -> Costs {
+        let (symbolic, terms) = (system.symbolic(), system.operations());
+        let [level, level_solve] = system.acceleration_matrix().operations();
+        Costs {
+            residual: terms.residual,
+            tangent: terms.tangent + symbolic.operations() as u64,
+            solve: symbolic.operations_of_solve() as u64,
+            level: level as u64,
+            level_solve: level_solve as u64,
+        }
+    }
+}
 
 /// Why there is no solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,6 +120,7 @@ impl Failure {
 #[derive(Debug)]
 pub struct Newton {
     tolerance: f64,
+    costs: Costs,
     r: Vec<f64>,
     phi: Vec<f64>,
     b: Vec<f64>,
@@ -114,6 +143,7 @@ impl Newton {
         let size = shape.unknowns + shape.multipliers;
         Newton {
             tolerance,
+            costs: Costs::of(system),
             r: vec![0.0; shape.coordinates],
             phi: vec![0.0; shape.multipliers],
             b: vec![0.0; size],
@@ -130,6 +160,7 @@ impl Newton {
     pub fn carry(&mut self, system: &dyn System, checkpoint: &mut Checkpoint) {
         let Newton {
             tolerance: _,
+            costs: _,
             r: _,
             phi: _,
             b: _,
@@ -161,6 +192,7 @@ impl Newton {
         let factors = &mut self.acceleration;
         system.acceleration_level(at, &mut self.phi, &mut factors.gradient);
         self.counters.factorisations += 1;
+        self.counters.operations += self.costs.level;
         let factored = system.acceleration_matrix().factor_any(factors);
         self.counters.fallbacks += u64::from(factored != Ok(false));
         factored?;
@@ -252,6 +284,7 @@ impl Newton {
     ) -> Result<(), Failure> {
         let n = system.shape().unknowns;
         s.a[..n].fill(0.0);
+        self.counters.operations += self.costs.residual + self.costs.level_solve;
         system.free_residual(s, &mut self.r, work);
         system.constraint_acceleration(s, &mut self.phi);
         for (b, r) in self.b.iter_mut().zip(self.r[..n].iter().chain(&self.phi)) {
@@ -416,6 +449,7 @@ impl Newton {
             return;
         }
         self.b[n..].fill(0.0);
+        self.counters.operations += self.costs.solve;
         match implicit {
             true => self.tangents[0]
                 .factors
@@ -431,6 +465,7 @@ impl Newton {
     /// Solves the acceleration level with the right side (0, -phi).
     fn solve_for_phi(&mut self, system: &dyn System) {
         let n = system.shape().unknowns;
+        self.counters.operations += self.costs.level_solve;
         for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
             *b = -phi;
         }

@@ -10,8 +10,8 @@
 //! with tau_0 = H and each further tau a tenth of the previous one. For a mode slower than the last tau this is between 1.0 and
 //! 1.5 times min(H, 1/w) e. Contacts count as open, because they open again within the horizon.
 
-use super::Counters;
 use super::factors::Factors;
+use super::{Costs, Counters};
 use crate::checkpoint::{Carried, Checkpoint};
 use crate::system::{State, System, Weights, Work};
 
@@ -26,6 +26,9 @@ const RENEWAL: usize = 16;
 #[derive(Debug)]
 pub struct Response {
     horizon: f64,
+    costs: Costs,
+    /// Multiply-adds so far, by their order of magnitude.
+    operations: u64,
     matrices: Vec<TimeMatrix>,
     /// How many matrices have been factorised.
     ready: usize,
@@ -58,6 +61,8 @@ impl Response {
         };
         Response {
             horizon,
+            costs: Costs::of(system),
+            operations: 0,
             matrices: std::iter::repeat_with(matrix).take(MOST).collect(),
             ready: 0,
             age: 0,
@@ -74,6 +79,8 @@ impl Response {
     pub fn carry(&mut self, system: &dyn System, checkpoint: &mut Checkpoint) {
         let Response {
             horizon: _,
+            costs: _,
+            operations,
             matrices,
             ready,
             age,
@@ -87,10 +94,16 @@ impl Response {
         for count in [ready, age, renewed] {
             count.carry(checkpoint);
         }
+        operations.carry(checkpoint);
         for TimeMatrix { factors, singular } in matrices {
             factors.carry(system.symbolic(), checkpoint);
             singular.carry(checkpoint);
         }
+    }
+
+    /// Multiply-adds so far, by their order of magnitude.
+    pub fn operations(&self) -> u64 {
+        self.operations
     }
 
     fn time(&self, level: usize) -> f64 {
@@ -110,6 +123,7 @@ impl Response {
         let (at, r, phi) = (&self.at, &mut self.r, &mut self.phi);
         let mut counters = Counters::default();
         let fill = |k: &mut [f64]| system.linearise(at, w, r, phi, k, work);
+        self.operations += self.costs.tangent;
         let TimeMatrix { factors, singular } = &mut self.matrices[level];
         let renewed = factors.renew(system.symbolic(), &mut counters, fill);
         *singular = renewed.is_err();
@@ -141,6 +155,7 @@ impl Response {
             match self.matrices[level].singular {
                 true => self.b[..n].copy_from_slice(error),
                 false => {
+                    self.operations += self.costs.solve;
                     system.momentum(error, &mut self.b);
                     self.b[n..].fill(0.0);
                     let factors = &self.matrices[level].factors;

@@ -2,7 +2,7 @@
 
 use super::iteration::{Update, iterate};
 use super::tangent::Tangent;
-use super::{Failure, MAX_ITERATIONS, Newton};
+use super::{Costs, Failure, MAX_ITERATIONS, Newton};
 use crate::system::{State, System, Weights, Work};
 
 /// Updates that no longer decrease count as rounding below this many tolerances, or estimates of rounding.
@@ -144,6 +144,13 @@ impl Newton {
             }
             false => system.residual(s, r, phi, work),
         }
+        let Costs {
+            residual,
+            tangent,
+            solve,
+            ..
+        } = self.costs;
+        self.counters.operations += solve + if renew { tangent } else { residual };
         let n = stage.q_hat.len();
         let (b, rows) = self.b.split_at_mut(n);
         b.iter_mut().zip(&self.r).for_each(|(b, r)| *b = -r);

@@ -1,9 +1,9 @@
 //! `[integrator]`: scheme, step or accuracy, tolerances.
 
-use super::{Accuracy, Analysis, Integrator, Method, Pace, SimulationTable};
+use super::{AUTO, Accuracy, Analysis, Integrator, Method, Pace, SimulationTable};
 use crate::document::{Field, Fields, Key, SceneError, Span, Takes, quoted};
 use crate::registry::Registry;
-use crate::stepper::{Parameter, Scheme};
+use crate::stepper::{CANDIDATES, Parameter, Scheme};
 use indexmap::IndexMap;
 use numbers::number;
 use std::cmp::Ordering;
@@ -13,7 +13,7 @@ const MOST_STEPS: f64 = 1e10;
 
 /// The keys of `[integrator]` besides the parameters of schemes.
 pub(super) static INTEGRATOR: [Key; 6] = [
-    Key::name_in("method", "schemes", "the scheme, see below; a static analysis does not use it"),
+    Key::name_in("method", "schemes", "the scheme, see below; auto chooses one for an accuracy; a static analysis does not use it"),
     Key::positive(
         "step",
         "s",
@@ -95,12 +95,27 @@ pub(super) fn read(
     let before: Vec<_> = parameters.keys().copied().collect();
     table.declare(&before, &INTEGRATOR)?;
     let names = quoted(schemes.iter().map(|s| s.name));
-    let named = table.required("method", &format!("the integration scheme: {names}"))?;
-    let choices: Vec<_> = schemes.iter().map(|s| (s.name, *s)).collect();
-    let method = method(&table, named.choice(&choices)?, &parameters)?;
+    let named = table.required(
+        "method",
+        &format!("the integration scheme: {names}, or {AUTO:?} with an accuracy"),
+    )?;
+    let automatic = [(AUTO, None)];
+    let choices = schemes.iter().map(|s| (s.name, Some(*s))).chain(automatic);
+    let scheme = named.choice(&choices.collect::<Vec<_>>())?;
+    let method = method(&table, scheme.unwrap_or(CANDIDATES[0]), &parameters)?;
     let (pace, pace_span) = pace(&table, simulation, clearance.is_some())?;
+    let is_dynamic = simulation.analysis == Analysis::Dynamic;
+    if scheme.is_none() && is_dynamic && matches!(pace, Pace::Step(_)) {
+        let message = format!(
+            "`{}` = {AUTO:?} chooses the scheme for an accuracy",
+            named.path
+        );
+        let error = named.fault(message, "needs an `accuracy` instead of a `step`");
+        return Err(error.with_help("write `accuracy = { position = ... }`, or name a scheme"));
+    }
     Ok(Integrator {
         method,
+        automatic: scheme.is_none(),
         pace,
         newton_tolerance: match method.scheme.is_explicit {
             true => table.optional_number("newton_tolerance")?.unwrap_or(0.0),

@@ -73,11 +73,16 @@ pub struct SimulationTable {
     pub gravity: Option<[f64; 2]>,
 }
 
+/// What `integrator.method` says where a run chooses the scheme.
+pub const AUTO: &str = "auto";
+
 /// `[integrator]`
 #[derive(Debug, Clone)]
 pub struct Integrator {
     /// Scheme and its parameters.
     pub method: Method,
+    /// True with `method = "auto"`: a run chooses the scheme, and `method` is only the first candidate until then.
+    pub automatic: bool,
     /// What the length of a step follows.
     pub pace: Pace,
     /// Largest error that Newton's method may leave in a velocity \[m/s\] (slope rates 1/s, angular velocities rad/s).
@@ -138,7 +143,15 @@ impl Integrator {
             Pace::Step(step) => format!("step {}", numbers::si(step, "s")),
             Pace::Accuracy(accuracy) => format!("accuracy {accuracy}"),
         };
-        format!("{}, {pace}", self.method.name())
+        format!("{}, {pace}", self.method_name())
+    }
+
+    /// What `integrator.method` says.
+    pub fn method_name(&self) -> &'static str {
+        match self.automatic {
+            true => AUTO,
+            false => self.method.name(),
+        }
     }
 }
 

@@ -20,6 +20,12 @@ impl Simulation {
     }
 
     fn carry(&mut self, checkpoint: &mut Checkpoint) {
+        let mut has_chosen = self.choice.is_some();
+        has_chosen.carry(checkpoint);
+        if has_chosen {
+            // the pilots start from the scene again and choose the same
+            self.choose();
+        }
         let Simulation {
             scene: _,
             model,
@@ -44,6 +50,7 @@ impl Simulation {
             closures,
             meter,
             is_pilot: _,
+            choice: _,
             local_error: _,
             stall,
             counters,

@@ -231,6 +231,11 @@ impl Controller {
         sums.carry(checkpoint);
     }
 
+    /// Multiply-adds that it has taken to judge steps, by their order of magnitude.
+    pub fn operations(&self) -> u64 {
+        self.response.as_ref().map_or(0, Response::operations)
+    }
+
     /// No step is longer \[s\].
     pub fn longest(&self) -> f64 {
         self.longest

@@ -48,6 +48,14 @@ impl Pacer {
         }
     }
 
+    /// Multiply-adds that it has taken to judge steps, by their order of magnitude.
+    pub fn operations(&self) -> u64 {
+        match self {
+            Pacer::Grid(_) => 0,
+            Pacer::Controller(controller) => controller.operations(),
+        }
+    }
+
     /// Time \[s\] against which a step counts as short.
     pub fn scale(&self) -> f64 {
         match self {

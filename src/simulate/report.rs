@@ -1,7 +1,7 @@
 //! The report of a run, and the inspection of a scene before it runs.
 
 use super::pace::Pacer;
-use super::{AccuracyReport, Chatter, Impact, Integration, Overrun, Simulation};
+use super::{AccuracyReport, Chatter, Choice, Impact, Integration, Overrun, Simulation};
 use crate::checkpoint::carried;
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, Scene};
@@ -84,6 +84,9 @@ pub struct Report {
     pub error: Option<String>,
     /// Time reached \[s\].
     pub t: f64,
+    /// The scheme chosen and why, where the scene leaves it open.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub choice: Option<Choice>,
     /// Evaluations of every effect present.
     pub effects: BTreeMap<String, u64>,
     /// Accepted steps.
@@ -96,6 +99,8 @@ pub struct Report {
     pub factorisations: u64,
     /// Factorisations that needed row exchanges.
     pub fallbacks: u64,
+    /// Multiply-adds of residuals, tangents, factorisations and solves, by their order of magnitude.
+    pub operations: u64,
     /// Stages accepted at rounding, above the Newton tolerance.
     pub stagnations: u64,
     /// Stages that had no solution on the acceleration level and were solved on the position level.
@@ -241,6 +246,7 @@ impl Simulation {
             status: self.status,
             error: self.error.clone(),
             t: self.state.t,
+            choice: self.choice.clone(),
             effects: self
                 .model
                 .effects()
@@ -253,6 +259,7 @@ impl Simulation {
             newton_iterations: newton.newton_iterations,
             factorisations: newton.factorisations,
             fallbacks: newton.fallbacks,
+            operations: self.operations(),
             stagnations: newton.stagnations,
             position_level_stages: newton.position_level_stages,
             singular_poses: newton.singular_poses,

@@ -85,6 +85,7 @@ impl Simulation {
             work,
             meter: Meter::new(scene, &model, &state),
             is_pilot: false,
+            choice: None,
             trial: state.clone(),
             output: state.clone(),
             state,
@@ -119,7 +120,7 @@ impl Simulation {
 }
 
 /// What chooses the steps.
-fn pacer(scene: &Scene, model: &Model, estimate: Estimate) -> Pacer {
+pub(super) fn pacer(scene: &Scene, model: &Model, estimate: Estimate) -> Pacer {
     match scene.integrator.pace {
         Pace::Step(step) => Pacer::grid(step),
         Pace::Accuracy(accuracy) => {

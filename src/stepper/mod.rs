@@ -216,6 +216,9 @@ pub static SCHEMES: [&Scheme; 9] = [
     &dormand_prince::SCHEME,
 ];
 
+/// The schemes from which `method = "auto"` chooses.
+pub static CANDIDATES: [&Scheme; 3] = [&esdirk::ORDER_5, &dormand_prince::SCHEME, &esdirk::ORDER_3];
+
 /// The predictor of an implicit stage: q = q_hat + w.q a and v = v_hat + w.v a.
 #[derive(Debug)]
 struct Stage {

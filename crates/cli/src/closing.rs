@@ -1,7 +1,7 @@
 //! The last lines of a run: what was counted, and what the integrator did to the energy.
 
 use looselink::record::Ledger;
-use looselink::simulate::{AccuracyReport, Report};
+use looselink::simulate::{AccuracyReport, Choice, Report};
 use numbers::{number, share};
 
 /// Impacts that are shown; summary.json lists more.
@@ -11,6 +11,7 @@ const SHOWN: usize = 3;
 pub fn lines(report: &Report) -> Vec<String> {
     let mut lines = Vec::new();
     lines.extend(report.ledger.iter().map(energy));
+    lines.extend(report.choice.iter().map(choice));
     lines.extend(report.accuracy.iter().map(accuracy));
     let first = report.impacts.iter().take(SHOWN).enumerate();
     lines.extend(first.map(|(k, impact)| {
@@ -25,6 +26,19 @@ pub fn lines(report: &Report) -> Vec<String> {
         )
     }));
     lines
+}
+
+/// Which scheme was chosen, and what the others did with the same work.
+fn choice(choice: &Choice) -> String {
+    let reached = choice.pilots.iter().map(|pilot| match pilot.error {
+        None => format!("{} {} s", pilot.method, number(pilot.t, 2)),
+        Some(_) => format!("{} failed", pilot.method),
+    });
+    format!(
+        "method: {}; with equal work at the start of the motion, trial runs reached {}",
+        choice.method,
+        reached.collect::<Vec<_>>().join(", ")
+    )
 }
 
 /// What the steps were that an accuracy asked for.

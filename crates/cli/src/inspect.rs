@@ -64,7 +64,7 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
                 exact(scene.output.interval)
             ),
         ),
-        ("method", scene.integrator.method.name().to_owned()),
+        ("method", scene.integrator.method_name().to_owned()),
         ("scene hash", scene.hash()),
     ] {
         out += &format!("  {name:<22}{value}\n");

@@ -4,6 +4,7 @@ use super::failure::CommandFailure;
 use super::print;
 use looselink::document::{Key, NumberRange, Takes};
 use looselink::registry::Registry;
+use looselink::scene::AUTO;
 use looselink::scene::language::{Sheet, language};
 use serde_json::{Map, Value, json};
 
@@ -22,7 +23,12 @@ fn schema(registry: &Registry) -> Value {
     let language = Language {
         sheets: language(registry),
         laws: registry.laws.iter().map(|law| law.name).collect(),
-        schemes: registry.schemes.iter().map(|scheme| scheme.name).collect(),
+        schemes: registry
+            .schemes
+            .iter()
+            .map(|scheme| scheme.name)
+            .chain([AUTO])
+            .collect(),
         formats: registry.formats.iter().map(|format| format.name).collect(),
     };
     let mut scene = language.object(&language.sheets[0]);

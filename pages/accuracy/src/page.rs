@@ -132,52 +132,6 @@ fn asked(made: &[MadeStudy]) -> String {
     out + "\n"
 }
 
-/// Least processor time at which a curve comes below an error, on the line between neighbours in the log-log plane, and the
-/// step or accuracy there.
-fn time_at(outcome: &StudyOutcome, curve: &str, error: f64) -> Option<(f64, StudyPace)> {
-    let points: Vec<(f64, f64, StudyPace)> = outcome
-        .runs
-        .iter()
-        .zip(&outcome.timings)
-        .filter(|(run, _)| run.curve == curve)
-        .filter_map(|(run, timing)| {
-            let error = run.result.as_ref().ok()?.errors.position;
-            Some((error, timing.as_ref()?.median, run.pace))
-        })
-        .collect();
-    let reached = points.iter().filter(|p| p.0 <= error).map(|p| (p.1, p.2));
-    let crossed = points.windows(2).filter_map(|pair| {
-        let [(e0, t0, from), (e1, t1, to)] = [pair[0], pair[1]];
-        (e0 > error && e1 <= error).then(|| {
-            let share = (e0 / error).ln() / (e0 / e1).ln();
-            let between = |a: f64, b: f64| a * (b / a).powf(share);
-            (between(t0, t1), between_paces(from, to, between))
-        })
-    });
-    reached.chain(crossed).min_by(|a, b| a.0.total_cmp(&b.0))
-}
-
-/// The pace between two of a curve.
-fn between_paces(from: StudyPace, to: StudyPace, between: impl Fn(f64, f64) -> f64) -> StudyPace {
-    match (from, to) {
-        (StudyPace::Step(a), StudyPace::Step(b)) => StudyPace::Step(between(a, b)),
-        (
-            StudyPace::Accuracy { position: a, .. },
-            StudyPace::Accuracy {
-                position: b,
-                energy,
-                horizon,
-            },
-        ) => StudyPace::Accuracy {
-            position: between(a, b),
-            energy,
-            horizon,
-        },
-        (StudyPace::Tolerance(a), StudyPace::Tolerance(b)) => StudyPace::Tolerance(between(a, b)),
-        _ => to,
-    }
-}
-
 /// The curve of a study that comes below an error first, among those whose names are accepted.
 fn winner(
     one: &MadeStudy,
@@ -186,7 +140,7 @@ fn winner(
 ) -> Option<(&str, f64, StudyPace)> {
     let curves = one.outcome.curves().into_iter().filter(|c| accept(c));
     let times = curves.filter_map(|c| {
-        let (time, pace) = time_at(&one.outcome, c, error)?;
+        let (time, pace) = one.outcome.time_at(c, error)?;
         Some((c, time, pace))
     });
     times.min_by(|a, b| a.1.total_cmp(&b.1))
@@ -218,7 +172,7 @@ fn conclusions(made: &[MadeStudy], surveyed: &[Surveyed]) -> String {
                 Some(win) => win.1 += 1,
                 None => wins.push((curve, 1)),
             }
-            if let Some((paper, _)) = time_at(&one.outcome, PAPER, error) {
+            if let Some((paper, _)) = one.outcome.time_at(PAPER, error) {
                 ratios.push(paper / time);
             }
         }
@@ -344,7 +298,7 @@ fn fastest(made: &[MadeStudy]) -> String {
             let Some((curve, time, pace)) = winner(one, *error, |_| true) else {
                 return "–".to_owned();
             };
-            let paper = time_at(&one.outcome, PAPER, *error);
+            let paper = one.outcome.time_at(PAPER, *error);
             let paper = paper.map_or(String::new(), |(t, pace)| {
                 format!(" (Bathe, {pace}: {} times)", numbers::digits(t / time))
             });

@@ -250,6 +250,33 @@ impl<C: Compared> Found<C> {
     }
 }
 
+impl Found<MotionReference> {
+    /// Least processor time at which a curve comes below an error, on the line between neighbours in the log-log plane, and the
+    /// step or accuracy there.
+    pub fn time_at(&self, curve: &str, error: f64) -> Option<(f64, StudyPace)> {
+        let points: Vec<(f64, f64, StudyPace)> = self
+            .runs
+            .iter()
+            .zip(&self.timings)
+            .filter(|(run, _)| run.curve == curve)
+            .filter_map(|(run, timing)| {
+                let error = run.result.as_ref().ok()?.errors.position;
+                Some((error, timing.as_ref()?.median, run.pace))
+            })
+            .collect();
+        let reached = points.iter().filter(|p| p.0 <= error).map(|p| (p.1, p.2));
+        let crossed = points.windows(2).filter_map(|pair| {
+            let [(e0, t0, from), (e1, t1, to)] = [pair[0], pair[1]];
+            (e0 > error && e1 <= error).then(|| {
+                let share = (e0 / error).ln() / (e0 / e1).ln();
+                let between = |a: f64, b: f64| a * (b / a).powf(share);
+                (between(t0, t1), from.towards(to, between))
+            })
+        });
+        reached.chain(crossed).min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+}
+
 /// One run of the reference, and its warnings.
 fn reference<C: Compared>(
     study: &Study,

@@ -120,6 +120,31 @@ impl fmt::Display for StudyPace {
     }
 }
 
+impl StudyPace {
+    /// The pace between this one and another of the same curve.
+    pub(super) fn towards(self, other: StudyPace, between: impl Fn(f64, f64) -> f64) -> StudyPace {
+        match (self, other) {
+            (StudyPace::Step(a), StudyPace::Step(b)) => StudyPace::Step(between(a, b)),
+            (
+                StudyPace::Accuracy { position: a, .. },
+                StudyPace::Accuracy {
+                    position: b,
+                    energy,
+                    horizon,
+                },
+            ) => StudyPace::Accuracy {
+                position: between(a, b),
+                energy,
+                horizon,
+            },
+            (StudyPace::Tolerance(a), StudyPace::Tolerance(b)) => {
+                StudyPace::Tolerance(between(a, b))
+            }
+            _ => other,
+        }
+    }
+}
+
 impl ReferenceRuns {
     /// Coarse and fine.
     pub fn paces(&self) -> [StudyPace; 2] {

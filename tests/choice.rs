@@ -1,0 +1,102 @@
+//! `method = "auto"`: which scheme it chooses, what it costs, and that the run is that of the scheme.
+
+use crate::support::load;
+use looselink::scene::Scene;
+use looselink::simulate::{Recording, Report, Simulation};
+use looselink::stepper::CANDIDATES;
+
+/// A scene, changes to it, and the accuracy.
+type Case = (&'static str, &'static [&'static str], &'static str);
+
+const MESH: &[&str] = &[
+    "bodies.link1.elements=16",
+    "bodies.link2.elements=16",
+    "bodies.link3.elements=16",
+];
+const VIBRATION: Case = ("3rrr/case2.toml", &[], "position=1e-6,horizon=0.02");
+const FINE_MESH: Case = ("3rrr/case2.toml", MESH, "position=1e-9,horizon=0.02");
+const IMPACTS: Case = ("3rrr/case4.toml", &[], "position=1e-8,horizon=0.02");
+const RIGID_IMPACTS: Case = ("3rrr/case3.toml", &[], "position=1e-9,horizon=0.02");
+
+/// The first 20 ms of a case.
+fn scene((name, set, accuracy): Case, method: &str) -> Scene {
+    let integrator = format!(
+        "integrator={{method={method:?},newton_tolerance=1e-11,onset_tolerance=1e-13,accuracy={{{accuracy}}}}}"
+    );
+    let own = [
+        integrator.as_str(),
+        "assumptions={}",
+        "simulation.duration=0.02",
+        "output.interval=1e-4",
+    ];
+    load(name, &[set, &own].concat())
+}
+
+fn run(scene: &Scene) -> (Vec<u64>, Report) {
+    let mut simulation = Simulation::new(scene).unwrap();
+    let mut recording = Recording::new(&simulation);
+    simulation.run(&mut recording).unwrap();
+    let names = simulation.channels().iter().map(|c| c.name.clone());
+    let columns = names.map(|name| recording.get(&name).unwrap().to_vec());
+    let bits = columns.flatten().map(f64::to_bits).collect();
+    (bits, simulation.report())
+}
+
+/// A fifth more than the least work of any candidate tells apart what differs by more than the estimate of operations.
+#[test]
+fn the_choice_takes_little_more_work_than_the_best() {
+    for case in [VIBRATION, FINE_MESH, IMPACTS, RIGID_IMPACTS] {
+        let candidates = CANDIDATES.map(|scheme| run(&scene(case, scheme.name)).1.operations);
+        let least = candidates.into_iter().min().unwrap();
+        let (_, report) = run(&scene(case, "auto"));
+        let choice = report.choice.unwrap();
+        assert!(
+            report.operations as f64 <= 1.2 * least as f64,
+            "{case:?}: {} takes {} of {candidates:?}",
+            choice.method,
+            report.operations
+        );
+        let trials: u64 = choice.pilots.iter().map(|pilot| pilot.operations).sum();
+        assert!(
+            (trials as f64) < least as f64,
+            "{case:?}: {trials} of {least}"
+        );
+    }
+}
+
+#[test]
+fn a_fine_mesh_is_left_to_an_implicit_scheme_and_impacts_to_an_explicit_one() {
+    let chosen = |case| run(&scene(case, "auto")).1.choice.unwrap().method;
+    assert_eq!(chosen(FINE_MESH), "esdirk5");
+    assert_eq!(chosen(RIGID_IMPACTS), "dormand_prince");
+}
+
+#[test]
+fn the_run_is_that_of_the_scheme_chosen() {
+    for case in [VIBRATION, IMPACTS] {
+        let (rows, report) = run(&scene(case, "auto"));
+        let choice = report.choice.clone().unwrap();
+        assert_eq!(choice.method, choice.pilots[0].method);
+        assert_eq!(choice.pilots.len(), CANDIDATES.len());
+        let (named, of_named) = run(&scene(case, choice.method));
+        assert!(rows == named, "{case:?}");
+        let without = Report {
+            choice: None,
+            ..report
+        };
+        assert_eq!(without, of_named, "{case:?}");
+    }
+}
+
+#[test]
+fn a_step_leaves_nothing_to_choose() {
+    let overrides = ["integrator.method=auto".to_owned()];
+    let path = crate::support::path("3rrr/case2.toml");
+    let error = Scene::load(&path, &overrides).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("chooses the scheme for an accuracy"),
+        "{error}"
+    );
+}
