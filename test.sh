@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 # Tests may be added, not lost: raise this number with them.
-fewest_tests=571
+fewest_tests=584
 
 # Comparisons that take a minute or more.
 slow=(flexible_links impacts_of statistics_of first_rows_without_clearance)

@@ -39,7 +39,7 @@ pub(crate) fn local_indices(own: Vec<usize>, coordinates: &mut Vec<usize>) -> Ve
     local.collect()
 }
 
-/// A pair of surfaces that can touch.
+/// A pair of surfaces that can touch. Its force and what it dissipates are asked of closed contacts only.
 pub trait ContactPair: std::fmt::Debug + Send + Sync {
     /// The coordinates in local order. None occurs twice.
     fn coordinates(&self) -> Vec<usize>;

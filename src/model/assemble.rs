@@ -1,6 +1,6 @@
 //! The equations of a model: residual, tangent, rates, contact memory, powers.
 
-use super::{Model, Rule};
+use super::{Model, PlacedContact, Rule};
 use crate::constraint::{self, Curvature, ROWS};
 use crate::contact;
 use crate::force::WIDTH;
@@ -72,6 +72,20 @@ impl Model {
         }
     }
 
+    /// The closed contacts; open ones have no force.
+    #[inline]
+    fn closed_contacts<'a>(
+        &'a self,
+        at: &'a State,
+    ) -> impl Iterator<Item = (&'a PlacedContact, contact::At<'a>)> {
+        let contacts = self.contacts.iter().zip(&at.z);
+        let closed = contacts.filter(|(_, z)| **z > 0.0);
+        closed.map(|(c, &z)| {
+            let (q, v) = (&at.q, &at.v);
+            (c, contact::At { q, v, z })
+        })
+    }
+
     /// Adds elastic forces, forces without memory and contact forces to r.
     #[inline]
     fn forces(&self, at: &State, r: &mut [f64], work: &mut Work) {
@@ -86,16 +100,9 @@ impl Model {
             acting.term.force(at, &mut f);
             acting.block.add_vector(&f, r);
         }
-        for (c, &z) in self.contacts.iter().zip(&at.z) {
+        for (c, state) in self.closed_contacts(at) {
             let mut f = [0.0; WIDTH];
-            if c.pair.force(
-                contact::At {
-                    q: &at.q,
-                    v: &at.v,
-                    z,
-                },
-                &mut f,
-            ) {
+            if c.pair.force(state, &mut f) {
                 c.count(work);
                 c.block.add_vector(&f, r);
             }
@@ -125,13 +132,8 @@ impl Model {
             acting.block.add_vector(&f, r);
             acting.block.add_matrix(&tangent, 1.0, k);
         }
-        for (c, &z) in self.contacts.iter().zip(&at.z) {
+        for (c, state) in self.closed_contacts(at) {
             let (mut f, mut tangent) = ([0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
-            let state = contact::At {
-                q: &at.q,
-                v: &at.v,
-                z,
-            };
             if c.pair.force_and_tangent(state, w, &mut f, &mut tangent) {
                 c.count(work);
                 c.block.add_vector(&f, r);
@@ -400,12 +402,7 @@ impl System for Model {
         let mut powers = [0.0; INTEGRALS];
         let mut clamps = 0;
         powers[Integral::Work as usize] = self.drive_power(at, work) + self.drift_power(at);
-        for (c, &z) in self.contacts.iter().zip(&at.z) {
-            let state = contact::At {
-                q: &at.q,
-                v: &at.v,
-                z,
-            };
+        for (c, state) in self.closed_contacts(at) {
             clamps += usize::from(c.pair.powers(state, &mut powers));
         }
         for acting in &self.forces {

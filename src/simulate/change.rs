@@ -3,9 +3,12 @@
 use super::cubic::{crossing, top};
 use super::{RunError, Simulation};
 use crate::system::System;
+use std::ops::RangeInclusive;
 
 /// Trials of one onset or loss; bisection alone needs 60.
 const LOCATION_TRIALS: usize = 100;
+/// Slopes of a secant over the rate of the gap that can be those of the same contact.
+const SLOPES: RangeInclusive<f64> = 0.5..=2.0;
 
 /// The sign of the penetration that leads to a change: closed contacts open when it is negative.
 fn side(z: f64) -> f64 {
@@ -75,8 +78,9 @@ impl Simulation {
     /// step.
     ///
     /// Until it changes, a contact follows one smooth law, so its penetration is a smooth function of the length of the
-    /// step: Newton's method on it, kept inside a bracket, from where the cubic through the values and rates at both ends of the
-    /// step passes zero.
+    /// step. Its zero is found inside a bracket: first where the cubic through the values and rates at both ends of the step passes
+    /// zero, then by a step of Newton's method, then by the secant method. The rate of the gap is its derivative by the length of
+    /// the step only up to the error of the scheme, so Newton's method converges linearly with schemes of low order.
     pub(super) fn locate_change(
         &mut self,
         mut clamps: usize,
@@ -100,6 +104,8 @@ impl Simulation {
             }
             high = t;
         }
+        // the trial before: its end and how far the contact was past its change
+        let mut last = None;
         for trial in 0..LOCATION_TRIALS {
             if past.abs() <= tolerance {
                 return Ok(clamps);
@@ -110,9 +116,12 @@ impl Simulation {
                 low = t
             }
             let newton = t - past / rate;
-            let expected = match trial {
-                0 => self.first_crossing().unwrap_or(newton),
-                _ => newton,
+            let secant = |(before, value): (f64, f64)| (past - value) / (t - before);
+            let expected = match last.map(secant) {
+                None => self.first_crossing().unwrap_or(newton),
+                // after the first trial the secant is short; of another contact it has another slope
+                Some(slope) if trial > 1 && SLOPES.contains(&(slope / rate)) => t - past / slope,
+                Some(_) => newton,
             };
             let next = match expected > low && expected < high {
                 true => expected,
@@ -122,6 +131,7 @@ impl Simulation {
                 break;
             }
             self.counters.location_trials += 1;
+            last = Some((t, past));
             (clamps, t) = self.try_step(next)?;
             (past, rate) = self.furthest_past();
         }

@@ -1,4 +1,4 @@
-//! Compiles `../reference-cpp` and finds the libraries it needs.
+//! Compiles `../reference-cpp` and `ida`, and finds the libraries it needs.
 
 mod locate;
 
@@ -19,7 +19,10 @@ fn main() {
 
 fn compile(libraries: &Libraries) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../reference-cpp");
-    println!("cargo:rerun-if-changed={}", root.display());
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("ida");
+    for folder in [&root, &own] {
+        println!("cargo:rerun-if-changed={}", folder.display());
+    }
     let mut build = cc::Build::new();
     build
         .cpp(true)
@@ -28,7 +31,8 @@ fn compile(libraries: &Libraries) {
         .warnings(true)
         .extra_warnings(true)
         .include(root.join("include"))
-        .files(sources(&root.join("src")));
+        .files(sources(&root.join("src")))
+        .files(sources(&own));
     for include in &libraries.includes {
         // the compiler looks in /usr/include by itself, and last, where C++ wants it
         if include == Path::new("/usr/include") {

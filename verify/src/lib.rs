@@ -16,6 +16,8 @@ pub mod embedding;
 #[allow(unsafe_code, reason = "declarations of the library")]
 mod ffi;
 pub mod figures;
+#[allow(unsafe_code, reason = "hands the equations to a library in C")]
+pub mod ida_of_system;
 #[allow(unsafe_code, reason = "the only file that calls the library")]
 pub mod reference;
 pub mod report;

@@ -5,10 +5,10 @@ mod amplification;
 mod effects;
 mod guarantee;
 mod guarantee_page;
-mod ida;
 mod page;
 mod timings;
 
+use accuracy::ida;
 use clap::{Parser, Subcommand};
 use looselink::simulate::Notice;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use studies::ablation::Ablation;
 use studies::machine::{Machine, median};
 use studies::precision::{
-    Compared, CurvePoint, MotionReference, RunStatistics, StatisticsReference, StudyOutcome,
-    StudyPace, WorkCounts,
+    Compared, CurvePoint, MotionReference, RunStatistics, StatisticsReference, StudyPace,
+    WorkCounts,
 };
 
 /// Errors of position at which curves are compared \[m\].

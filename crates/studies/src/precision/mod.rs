@@ -251,30 +251,49 @@ impl<C: Compared> Found<C> {
 }
 
 impl Found<MotionReference> {
-    /// Least processor time at which a curve comes below an error, on the line between neighbours in the log-log plane, and the
-    /// step or accuracy there.
+    /// Least processor time at which a curve comes below an error of position to stay there, and the step or accuracy; see
+    /// [`reached`].
     pub fn time_at(&self, curve: &str, error: f64) -> Option<(f64, StudyPace)> {
-        let points: Vec<(f64, f64, StudyPace)> = self
-            .runs
-            .iter()
-            .zip(&self.timings)
-            .filter(|(run, _)| run.curve == curve)
-            .filter_map(|(run, timing)| {
-                let error = run.result.as_ref().ok()?.errors.position;
-                Some((error, timing.as_ref()?.median, run.pace))
-            })
-            .collect();
-        let reached = points.iter().filter(|p| p.0 <= error).map(|p| (p.1, p.2));
-        let crossed = points.windows(2).filter_map(|pair| {
-            let [(e0, t0, from), (e1, t1, to)] = [pair[0], pair[1]];
-            (e0 > error && e1 <= error).then(|| {
-                let share = (e0 / error).ln() / (e0 / e1).ln();
-                let between = |a: f64, b: f64| a * (b / a).powf(share);
-                (between(t0, t1), from.towards(to, between))
-            })
+        let runs = self.runs.iter().zip(&self.timings);
+        let own = runs.filter(|(run, _)| run.curve == curve);
+        let points = own.filter_map(|(run, timing)| {
+            let error = run.result.as_ref().ok()?.errors.position;
+            Some(([error, timing.as_ref()?.median], run.pace))
         });
-        reached.chain(crossed).min_by(|a, b| a.0.total_cmp(&b.0))
+        let (points, paces): (Vec<[f64; 2]>, Vec<StudyPace>) = points.unzip();
+        let (time, point, share) = reached(&points, error)?;
+        let pace = match point {
+            0 => paces[0],
+            _ => paces[point - 1].towards(paces[point], |a, b| a * (b / a).powf(share)),
+        };
+        Some((time, pace))
     }
+}
+
+/// Least time at which a curve comes below an error to stay there, from its points \[error, time\], coarse ones first. A coarse
+/// point may have a small error by chance, so the error of a point is the largest of its own and those of finer points. Between
+/// points it is on the straight line in the log-log plane. Returns the time, the index of the point that is below the error,
+/// and its share of the line from the point before.
+pub fn reached(points: &[[f64; 2]], error: f64) -> Option<(f64, usize, f64)> {
+    let mut best: Option<(f64, usize, f64)> = None;
+    let (mut largest, mut finer): (f64, Option<[f64; 2]>) = (0.0, None);
+    for (k, &[own, time]) in points.iter().enumerate().rev() {
+        largest = errors::larger(largest, own);
+        let candidate = match finer {
+            _ if largest <= error => Some((time, k, 1.0)),
+            Some([below, later]) if below <= error => {
+                let share = (largest / error).ln() / (largest / below).ln();
+                Some((time * (later / time).powf(share), k + 1, share))
+            }
+            _ => None,
+        };
+        best = [best, candidate]
+            .into_iter()
+            .flatten()
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        finer = Some([largest, time]);
+    }
+    best
 }
 
 /// One run of the reference, and its warnings.
@@ -321,4 +340,28 @@ fn record_and_time(
     }
     let timing = RunTiming::of(seconds).with_instructions(&counts);
     Ok((recording, simulation.report(), timing))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reached;
+
+    #[test]
+    fn the_time_of_an_error_is_between_points() {
+        let points = [[1e-4, 1.0], [1e-6, 10.0], [1e-8, 100.0]];
+        let (time, point, share) = reached(&points, 1e-7).unwrap();
+        assert!((time - 10.0 * 10_f64.sqrt()).abs() < 1e-12, "{time}");
+        assert_eq!((point, share), (2, 0.5));
+        assert_eq!(reached(&points, 1e-3), Some((1.0, 0, 1.0)));
+        assert_eq!(reached(&points, 1e-6).map(|r| r.0), Some(10.0));
+        assert_eq!(reached(&points, 1e-9), None);
+        assert_eq!(reached(&[], 1.0), None);
+    }
+
+    #[test]
+    fn a_coarse_point_that_is_lucky_does_not_count() {
+        let points = [[1e-4, 1.0], [1e-9, 2.0], [1e-6, 10.0], [1e-8, 100.0]];
+        assert!(reached(&points, 1e-8).unwrap().0 == 100.0);
+        assert!(reached(&points, 1e-5).unwrap().0 < 2.0);
+    }
 }

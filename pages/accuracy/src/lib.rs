@@ -1,0 +1,3 @@
+//! The second implementation as a rival in studies.
+
+pub mod ida;

@@ -1,0 +1,211 @@
+//! The figures of the page.
+
+use crate::Measured;
+use crate::growth::{self, ChainCost, exponent};
+use crate::meshes::ERRORS;
+use crate::rivals::{Code, STUDIES, best, levels};
+use crate::steps::StepCost;
+use numbers::{digits, si};
+use plot::{Axis, Color, Figure, Mark, Panel, palette};
+
+/// Radius of dots.
+const DOT: u32 = 6;
+
+/// Instructions and floating-point operations of every step.
+pub fn steps(measured: &Measured) -> Figure {
+    let names = measured.steps.iter().map(|step| step.name.clone());
+    let dots = |label: &str, color: Color, of: &dyn Fn(&StepCost) -> Option<u64>| {
+        let rows = measured.steps.iter().enumerate();
+        let points = rows.filter_map(|(row, step)| Some((of(step)? as f64, row as f64)));
+        let (x, y): (Vec<f64>, Vec<f64>) = points.unzip();
+        Mark::points(label, color, &x, &y, DOT)
+    };
+    let panel = Panel {
+        title: "One step of 10 µs".to_owned(),
+        note: String::new(),
+        x: Axis::new("count a step", "", 1.0).log(),
+        y: Axis::categories(names.collect()),
+        marks: vec![
+            dots("instructions, baseline", palette::GREY, &|step| {
+                Some(step.before?.instructions)
+            }),
+            dots("instructions", palette::BLUE, &|step| {
+                Some(step.now.instructions)
+            }),
+            dots("floating-point operations", palette::ORANGE, &|step| {
+                Some(step.now.operations)
+            }),
+        ],
+    };
+    let caption = format!(
+        "Instructions of a step of 10 µs and the floating-point operations among them, mean over the steps between 2 and 12 ms of \
+         motion, counted by callgrind in the release build. The baseline is commit {}.",
+        measured.baseline
+    );
+    Figure::grid(vec![panel], 1, caption)
+}
+
+/// Costs over the size.
+pub fn growth(measured: &Measured) -> Figure {
+    let panels = vec![
+        over_links(
+            measured,
+            "a) Compilation",
+            ("processor time", "s"),
+            &|chain| Some(chain.compile),
+        ),
+        over_links(measured, "b) A step", ("processor time", "s"), &|chain| {
+            Some(chain.step)
+        }),
+        over_links(
+            measured,
+            "c) Memory",
+            ("largest memory of the process", "MB"),
+            &|chain| Some(chain.memory? as f64),
+        ),
+        over_elements(measured),
+    ];
+    let caption = format!(
+        "a) to c): a chain of rigid links with ideal joints or with play, Bathe's method with a step of {}, {} steps from rest. \
+         The exponents are those of the largest decade. d): case 2, 20 ms, time to reach an error of position on the same mesh, \
+         on the line between neighbouring steps.",
+        si(growth::STEP, "s"),
+        growth::STEPS,
+    );
+    Figure::grid(panels, 2, caption)
+}
+
+fn over_links(
+    measured: &Measured,
+    title: &str,
+    (label, unit): (&str, &str),
+    cost: &dyn Fn(&ChainCost) -> Option<f64>,
+) -> Panel {
+    let mut marks = Vec::new();
+    for (loose, color) in [(false, palette::BLUE), (true, palette::VERMILION)] {
+        let (links, costs) = chain(measured, loose, cost);
+        if links.is_empty() {
+            continue;
+        }
+        let label = format!(
+            "{}, exponent {}",
+            growth::name(loose),
+            digits(exponent(&links, &costs))
+        );
+        marks.push(Mark::series(&label, color, &links, &costs));
+        marks.push(Mark::points("", color, &links, &costs, DOT));
+    }
+    let factor = if unit == "MB" { 1e-6 } else { 1.0 };
+    Panel {
+        title: title.to_owned(),
+        note: String::new(),
+        x: Axis::new("links", "", 1.0).log(),
+        y: Axis::new(label, unit, factor).log(),
+        marks,
+    }
+}
+
+/// Sizes and costs of the chains of one kind.
+pub fn chain(
+    measured: &Measured,
+    loose: bool,
+    cost: &dyn Fn(&ChainCost) -> Option<f64>,
+) -> (Vec<f64>, Vec<f64>) {
+    let chains = measured.chains.iter().filter(|chain| chain.loose == loose);
+    chains
+        .filter_map(|chain| Some((chain.links as f64, cost(chain)?)))
+        .unzip()
+}
+
+/// Elements and times of a curve at an error.
+pub fn mesh(measured: &Measured, curve: &str, error: usize) -> (Vec<f64>, Vec<f64>) {
+    let meshes = measured.meshes.iter().filter(|mesh| mesh.curve == curve);
+    meshes
+        .filter_map(|mesh| Some((mesh.elements as f64, mesh.seconds[error]?)))
+        .unzip()
+}
+
+/// Names of the curves, in their order.
+pub fn curves(measured: &Measured) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for mesh in &measured.meshes {
+        if !names.contains(&&*mesh.curve) {
+            names.push(&mesh.curve);
+        }
+    }
+    names
+}
+
+fn over_elements(measured: &Measured) -> Panel {
+    let mut marks = Vec::new();
+    let mut colors = [
+        palette::GREEN,
+        palette::PURPLE,
+        palette::ORANGE,
+        palette::SKY,
+    ]
+    .iter();
+    for curve in curves(measured) {
+        for (k, error) in ERRORS.iter().enumerate() {
+            let (elements, times) = mesh(measured, curve, k);
+            if elements.len() < 2 {
+                continue;
+            }
+            let color = *colors.next().unwrap_or(&palette::GREY);
+            let label = format!(
+                "{curve}, {}, exponent {}",
+                si(*error, "m"),
+                digits(exponent(&elements, &times))
+            );
+            marks.push(Mark::series(&label, color, &elements, &times));
+            marks.push(Mark::points("", color, &elements, &times, DOT));
+        }
+    }
+    Panel {
+        title: "d) Elements of the links".to_owned(),
+        note: String::new(),
+        x: Axis::new("elements a link", "", 1.0).log(),
+        y: Axis::new("processor time", "s", 1.0).log(),
+        marks,
+    }
+}
+
+/// Errors against processor time, a panel a study.
+pub fn rivals(measured: &Measured) -> Figure {
+    let panels = STUDIES.iter().enumerate().map(|(k, study)| {
+        let letter = char::from(b'a' + k as u8);
+        let mut marks = Vec::new();
+        for (code, color) in Code::ALL.into_iter().zip([
+            palette::BLUE,
+            palette::VERMILION,
+            palette::GREEN,
+            palette::BLACK,
+        ]) {
+            let own = measured
+                .rivals
+                .iter()
+                .filter(|c| c.study == *study && c.code == code);
+            let points = own.flat_map(|curve| curve.points.iter().filter(|p| p[0] > curve.floor));
+            let (errors, times): (Vec<f64>, Vec<f64>) = points.map(|[e, t]| (*e, *t)).unzip();
+            marks.push(Mark::points("", color, &times, &errors, 3));
+            let line = levels()
+                .filter_map(|error| Some((best(&measured.rivals, study, code, error)?.1, error)));
+            let (times, errors): (Vec<f64>, Vec<f64>) = line.unzip();
+            marks.push(Mark::curve(code.name(), color, &times, &errors).width(4));
+        }
+        Panel {
+            title: format!("{letter}) {study}"),
+            note: String::new(),
+            x: Axis::new("processor time", "s", 1.0).log(),
+            y: Axis::new("error of position", "m", 1.0)
+                .log()
+                .over(1e-12, 1e-4),
+            marks,
+        }
+    });
+    let caption = "Studies of the folder studies, of 3 to 20 ms of motion. Dots: runs of all methods. Lines: the fastest method that \
+                   comes below an error and stays there with finer steps. The error is the largest difference of position from the \
+                   converged solution of the same code; errors below the difference of two such solutions are left out."
+        .to_owned();
+    Figure::grid(panels.collect(), 2, caption)
+}

@@ -1,0 +1,132 @@
+//! The recorded numbers of instructions of every step, and whether the present program still has them.
+
+use crate::count::{OperationTable, StepCount, per_step};
+use crate::list::StepList;
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use numbers::percent;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+use studies::machine::machine;
+
+/// Relative difference of two numbers of instructions that counts as a change: the sizes of addresses and environments move
+/// counts by a few per mille.
+const CHANGE: f64 = 0.02;
+
+/// What is recorded.
+#[derive(Serialize, Deserialize)]
+struct RecordedCounts {
+    /// The compiler decides on instructions.
+    compiler: String,
+    steps: BTreeMap<String, StepCount>,
+}
+
+/// Counts all steps and records them, or checks them.
+///
+/// # Errors
+/// When Valgrind is missing, and with `check` where a count differs.
+pub fn run(root: &Path, program: &Path, check: bool) -> Result<()> {
+    let path = root.join("pages/benchmarks/counts.json");
+    let compiler = machine().compiler.to_owned();
+    let earlier = match check {
+        true => {
+            let text = std::fs::read_to_string(&path)
+                .into_diagnostic()
+                .wrap_err_with(|| format!("cannot read {}", path.display()))?;
+            Some(serde_json::from_str::<RecordedCounts>(&text).into_diagnostic()?)
+        }
+        false => None,
+    };
+    if let Some(earlier) = &earlier
+        && earlier.compiler != compiler
+    {
+        let recorded = &earlier.compiler;
+        eprintln!("instructions were not compared: recorded with {recorded}, this is {compiler}");
+        return Ok(());
+    }
+    let costs = OperationTable::of(program)?;
+    let mut steps = BTreeMap::new();
+    for row in StepList::read(root)?.steps {
+        let count = per_step(program, root, &row, &costs)?;
+        println!(
+            "{:40} {:>9} instructions a step",
+            row.name, count.instructions
+        );
+        steps.insert(row.name, count);
+    }
+    let Some(earlier) = earlier else {
+        let counts = RecordedCounts { compiler, steps };
+        let text = serde_json::to_string_pretty(&counts).into_diagnostic()?;
+        return std::fs::write(&path, text + "\n").into_diagnostic();
+    };
+    let changed = changes(&earlier.steps, &steps);
+    match changed.is_empty() {
+        true => Ok(()),
+        false => Err(miette!(
+            help = "`cargo run --release -p benchmarks -- count` records the present counts",
+            "the instructions of a step have changed:\n{}",
+            changed.join("\n")
+        )),
+    }
+}
+
+/// Steps whose counts differ by more than [`CHANGE`], in either direction, or that only one side has.
+fn changes(
+    recorded: &BTreeMap<String, StepCount>,
+    counted: &BTreeMap<String, StepCount>,
+) -> Vec<String> {
+    let mut changes = Vec::new();
+    for (name, count) in counted {
+        let Some(earlier) = recorded.get(name) else {
+            changes.push(format!("{name}: not recorded"));
+            continue;
+        };
+        let (now, before) = (count.instructions as f64, earlier.instructions as f64);
+        let change = now / before - 1.0;
+        if change.abs() > CHANGE {
+            changes.push(format!(
+                "{name}: {} instead of {} instructions, {}{}",
+                count.instructions,
+                earlier.instructions,
+                if change > 0.0 { "+" } else { "" },
+                percent(change)
+            ));
+        }
+    }
+    let gone = recorded.keys().filter(|name| !counted.contains_key(*name));
+    changes.extend(gone.map(|name| format!("{name}: recorded, but not in the list")));
+    changes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::changes;
+    use crate::count::StepCount;
+
+    #[test]
+    fn a_count_may_differ_by_two_per_cent() {
+        let counts = |instructions: &[u64]| {
+            let names = ["a", "b", "c"].map(str::to_owned).into_iter();
+            let counts = instructions.iter().map(|n| StepCount {
+                instructions: *n,
+                operations: 0,
+            });
+            names.zip(counts).collect()
+        };
+        assert!(changes(&counts(&[1000, 500]), &counts(&[1019, 491])).is_empty());
+        let changed = changes(&counts(&[1000, 500]), &counts(&[1021, 489]));
+        assert_eq!(changed.len(), 2, "{changed:?}");
+        assert!(
+            changed[0].starts_with("a: 1021 instead of 1000"),
+            "{changed:?}"
+        );
+        assert_eq!(
+            changes(&counts(&[1000]), &counts(&[1000, 5])),
+            ["b: not recorded"]
+        );
+        assert_eq!(
+            changes(&counts(&[1000, 5]), &counts(&[1000])),
+            ["b: recorded, but not in the list"]
+        );
+    }
+}

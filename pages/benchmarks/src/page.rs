@@ -1,0 +1,163 @@
+//! The page.
+
+use crate::Measured;
+use crate::figures::{chain, curves, mesh};
+use crate::growth::{self, ChainCost, exponent};
+use crate::meshes::ERRORS;
+use crate::rivals::{Code, STUDIES, best};
+use numbers::{digits, si};
+
+/// What BENCHMARKS.md says.
+pub fn page(measured: &Measured) -> String {
+    let mut out = format!(
+        "# What the program costs\n\n{}\n\
+         Instructions of a step, growth with the size of a mechanism, and the state of the program before its step loop was \
+         rewritten, built and run beside it. `cargo run --release -p benchmarks` measures all of it and writes this page; \
+         [pages/benchmarks/benchmarks.json](pages/benchmarks/benchmarks.json) has every number. Errors against processor time \
+         are in [ACCURACY.md](ACCURACY.md). Measured on {}.\n\n",
+        records::place("benchmarks"),
+        measured.machine
+    );
+    out += &short(measured);
+    out += &steps(measured);
+    out += &sizes(measured);
+    out += &rivals(measured);
+    out
+}
+
+/// Conclusions.
+fn short(measured: &Measured) -> String {
+    let ratios = measured.steps.iter().filter_map(|step| {
+        let before = step.before?.instructions as f64;
+        Some((step.now.instructions as f64 / before, step.time_ratio?))
+    });
+    let (instructions, times): (Vec<f64>, Vec<f64>) = ratios.unzip();
+    let range = |values: &[f64]| {
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = values.iter().copied().fold(0.0, f64::max);
+        format!("{} to {}", digits(least), digits(most))
+    };
+    let exponents = |cost: &dyn Fn(&ChainCost) -> Option<f64>| {
+        let each = [false, true].map(|loose| {
+            let (links, costs) = chain(measured, loose, cost);
+            digits(exponent(&links, &costs))
+        });
+        format!("{} (ideal) and {} (with play)", each[0], each[1])
+    };
+    let longest = growth::SIZES[growth::SIZES.len() - 1];
+    let compile = |loose: bool| {
+        let chains = measured.chains.iter();
+        let one = chains.filter(|chain| chain.loose == loose && chain.links == longest);
+        let seconds: Vec<String> = one.map(|chain| si(chain.compile, "s")).collect();
+        seconds.join("")
+    };
+    format!(
+        "## In short\n\n\
+         * A step takes {} of the instructions and {} of the processor time of commit {}.\n\
+         * A chain of {longest} links is compiled in {} with ideal joints and in {} with play.\n\
+         * Exponents over the largest decade of links: compilation {}, a step {}, memory {}.\n\n",
+        range(&instructions),
+        range(&times),
+        measured.baseline,
+        compile(false),
+        compile(true),
+        exponents(&|chain| Some(chain.compile)),
+        exponents(&|chain| Some(chain.step)),
+        exponents(&|chain| Some(chain.memory? as f64)),
+    )
+}
+
+/// The table of steps.
+fn steps(measured: &Measured) -> String {
+    let mut out = String::from(
+        "## A step\n\n![Instructions of a step](pages/benchmarks/figures/steps.png)\n\n\
+         The floating-point operations are additions, subtractions, multiplications, divisions and roots; those of the \
+         mathematical library are not among them. `./test.sh --all` counts the instructions again and fails where a number differs \
+         by more than 2 %.\n\n\
+         | step of 10 µs | instructions | operations | baseline | ratio of instructions | processor time | ratio of times |\n\
+         |---|---|---|---|---|---|---|\n",
+    );
+    for step in &measured.steps {
+        let now = step.now.instructions;
+        let (before, ratio) = match step.before {
+            Some(before) => {
+                let ratio = now as f64 / before.instructions as f64;
+                (before.instructions.to_string(), digits(ratio))
+            }
+            None => Default::default(),
+        };
+        out += &format!(
+            "| {} | {now} | {} | {before} | {ratio} | {} | {} |\n",
+            step.name,
+            step.now.operations,
+            si(step.seconds, "s"),
+            step.time_ratio.map_or(String::new(), digits),
+        );
+    }
+    out + "\n"
+}
+
+/// Growth.
+fn sizes(measured: &Measured) -> String {
+    let mut out = String::from(
+        "## Growth with the size\n\n![Costs over the size](pages/benchmarks/figures/growth.png)\n\n\
+         | case 2, 20 ms: elements a link | ",
+    );
+    let columns: Vec<(&str, usize)> = curves(measured)
+        .into_iter()
+        .flat_map(|curve| (0..ERRORS.len()).map(move |k| (curve, k)))
+        .collect();
+    let heads = columns
+        .iter()
+        .map(|(curve, k)| format!("{curve}, {}", si(ERRORS[*k], "m")));
+    out += &heads.collect::<Vec<String>>().join(" | ");
+    out += &format!(" |\n|---|{}\n", "---|".repeat(columns.len()));
+    for elements in crate::meshes::ELEMENTS {
+        let cells = columns.iter().map(|(curve, k)| {
+            let (sizes, times) = mesh(measured, curve, *k);
+            let found = sizes.iter().position(|n| *n == elements as f64);
+            found.map_or(String::new(), |i| si(times[i], "s"))
+        });
+        let cells: Vec<String> = cells.collect();
+        out += &format!("| {elements} | {} |\n", cells.join(" | "));
+    }
+    out
+}
+
+/// Errors at which codes are compared \[m\].
+const LEVELS: [f64; 6] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
+
+/// Other codes.
+fn rivals(measured: &Measured) -> String {
+    let mut out = String::from(
+        "\n## Other codes\n\n![Error against processor time, all codes](pages/benchmarks/figures/rivals.png)\n\n\
+         Exudyn 1.13.6 has the same mechanisms with the same data ([benches/peers/exudyn](benches/peers/exudyn)), in the fastest \
+         formulation that was found for it. IDA is the BDF code of SUNDIALS, here with KLU: once on Looselink's residual and \
+         tangent (index 1), and once in the second implementation, in full coordinates (stabilised index 2). Every code is compared with its own converged solution. The contact laws are the same, but Exudyn does not clamp forces that pull; its cable element \
+         has another strain. On one core, one after the other in one run.\n\n\
+         The table shows the fastest time, and in brackets how many times as long the other code takes.\n\n\
+         | study | error | Looselink | Exudyn | IDA on our equations | IDA, second implementation |\n|---|---|---|---|---|---|\n",
+    );
+    for study in STUDIES {
+        for error in LEVELS {
+            let of = |code| best(&measured.rivals, study, code, error);
+            let Some((method, own)) = of(Code::Looselink) else {
+                continue;
+            };
+            let cell = |code| {
+                of(code).map_or("-".to_owned(), |(method, time)| {
+                    format!("{} ({}): {method}", si(time, "s"), digits(time / own))
+                })
+            };
+            out += &format!(
+                "| {study} | {} | {}: {method} | {} | {} | {} |\n",
+                si(error, "m"),
+                si(own, "s"),
+                cell(Code::Exudyn),
+                cell(Code::IdaOnOurs),
+                cell(Code::Ida)
+            );
+        }
+    }
+    out
+}

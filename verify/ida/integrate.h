@@ -1,0 +1,47 @@
+/* IDA on equations that the caller evaluates: y = (q, v, lambda), with the constraints on the acceleration level. */
+#ifndef LOOSELINK_INTEGRATE_H
+#define LOOSELINK_INTEGRATE_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Every function returns 0, or 1 where a smaller step may help. */
+typedef struct {
+    void *data;
+    int32_t unknowns, multipliers, contacts;
+    /* the pattern of dF/dy + c dF/dy', column by column */
+    const int64_t *columns, *rows;
+    /* F(t, y, y') */
+    int32_t (*residual)(void *data, double t, const double *y, const double *yp, double *r);
+    /* the entries of dF/dy + c dF/dy' */
+    int32_t (*jacobian)(void *data, double t, double c, const double *y, const double *yp, double *entries);
+    /* the penetration of every contact */
+    int32_t (*gaps)(void *data, double t, const double *y, double *gaps);
+    /* a contact has changed: closes or opens it, and makes y and y' consistent */
+    int32_t (*change)(void *data, double t, double *y, double *yp);
+    /* the state at a multiple of the interval */
+    void (*row)(void *data, double t, const double *y);
+} li_equations;
+
+typedef struct {
+    /* largest local error of a position [m] and of a velocity [m/s] */
+    double position, velocity;
+    double duration, interval;
+} li_run;
+
+typedef struct {
+    int64_t steps, residuals, jacobians, changes;
+} li_counts;
+
+/* From y and y' at t = 0. Returns 0, or a flag of IDA with its text. */
+int32_t li_integrate(const li_equations *equations, const li_run *run, double *y, double *yp, li_counts *counts,
+                     char *message, int32_t length);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
