@@ -41,7 +41,14 @@ pub fn program(root: &Path, commit: &str) -> Result<PathBuf> {
         }
         std::fs::rename(&incomplete, &sources).into_diagnostic()?;
     }
-    let target = folder.join("target");
+    build(&sources, &folder.join("target"))
+}
+
+/// Builds `looselink` as users have it; the path is the one that Valgrind names.
+///
+/// # Errors
+/// When it cannot be built.
+pub fn build(sources: &Path, target: &Path) -> Result<PathBuf> {
     let built = Command::new("cargo")
         .args([
             "build",
@@ -50,9 +57,10 @@ pub fn program(root: &Path, commit: &str) -> Result<PathBuf> {
             "--locked",
             "-p",
             "looselink-cli",
+            "--target-dir",
         ])
-        .current_dir(&sources)
-        .env("CARGO_TARGET_DIR", &target)
+        .arg(target)
+        .current_dir(sources)
         .status()
         .into_diagnostic()?;
     match built.success() {
@@ -60,6 +68,9 @@ pub fn program(root: &Path, commit: &str) -> Result<PathBuf> {
             .join("release/looselink")
             .canonicalize()
             .into_diagnostic(),
-        false => Err(miette!("commit {commit} cannot be built")),
+        false => Err(miette!(
+            "looselink cannot be built in {}",
+            sources.display()
+        )),
     }
 }

@@ -14,12 +14,11 @@ mod steps;
 use clap::{Parser, Subcommand, ValueEnum};
 use growth::ChainCost;
 use meshes::MeshCost;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr};
 use records::RunningCampaign;
 use rivals::RivalCurve;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use steps::StepCost;
 use studies::machine::machine;
 
@@ -133,28 +132,9 @@ fn measure(root: &Path, repeats: usize, only: Option<PagePart>) -> Result<()> {
     }
 }
 
-/// Builds `looselink` as users have it.
+/// The present program.
 fn program(root: &Path) -> Result<PathBuf> {
-    let built = Command::new("cargo")
-        .args([
-            "build",
-            "--quiet",
-            "--release",
-            "--locked",
-            "-p",
-            "looselink-cli",
-        ])
-        .current_dir(root)
-        .status()
-        .into_diagnostic()?;
-    match built.success() {
-        // as Valgrind names it
-        true => root
-            .join("target/release/looselink")
-            .canonicalize()
-            .into_diagnostic(),
-        false => Err(miette!("looselink cannot be built")),
-    }
+    baseline::build(root, &root.join("target"))
 }
 
 fn record(root: &Path) -> PathBuf {
