@@ -1,5 +1,6 @@
 //! The equations of a model: residual, tangent, rates, contact memory, powers.
 
+use super::measure::contact_state;
 use super::{Model, PlacedContact, Rule};
 use crate::constraint::{self, Curvature, ROWS};
 use crate::contact;
@@ -78,12 +79,9 @@ impl Model {
         &'a self,
         at: &'a State,
     ) -> impl Iterator<Item = (&'a PlacedContact, contact::At<'a>)> {
-        let contacts = self.contacts.iter().zip(&at.z);
-        let closed = contacts.filter(|(_, z)| **z > 0.0);
-        closed.map(|(c, &z)| {
-            let (q, v) = (&at.q, &at.v);
-            (c, contact::At { q, v, z })
-        })
+        let contacts = self.contacts.iter().enumerate();
+        let closed = contacts.filter(|(i, _)| at.z[*i] > 0.0);
+        closed.map(|(i, c)| (c, contact_state(at, i)))
     }
 
     /// Adds elastic forces, forces without memory and contact forces to r.
