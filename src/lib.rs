@@ -25,7 +25,7 @@
 //! let overrides = ["simulation.duration=0.012".into(), "output.interval=0.004".into()];
 //! let scene = Scene::load("scenes/3rrr/case3.toml".as_ref(), &overrides)?;
 //! let mut simulation = Simulation::new(&scene)?;
-//! assert_eq!(simulation.inspect().unknowns, 15);
+//! assert_eq!(simulation.inspect().unknowns, 12);
 //! simulation.run(&mut Print)?;
 //! assert!(simulation.report().onsets > 10);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

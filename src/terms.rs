@@ -134,6 +134,15 @@ pub struct Inertia {
 }
 
 impl Inertia {
+    /// Mass and moment of inertia on x, y, theta from index x.
+    pub fn of_pose(x: usize, m: f64, i: f64, g: [f64; 2]) -> Inertia {
+        Inertia {
+            coordinates: vec![x, x + 1, x + 2],
+            values: vec![m, 0.0, 0.0, 0.0, m, 0.0, 0.0, 0.0, i],
+            field: vec![g[0], g[1], 0.0],
+        }
+    }
+
     /// m (x) I_2 on the positions and slopes that start at `firsts`; gravity acts on the positions.
     pub fn planar<const N: usize>(
         m: [[f64; N]; N],

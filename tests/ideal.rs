@@ -10,7 +10,7 @@ fn sizes_of_the_compiled_models() {
     for (case, sizes) in [
         (1, [9, 9, 0]),
         (2, [21, 6, 0]),
-        (3, [15, 3, 6]),
+        (3, [12, 0, 6]),
         (4, [27, 0, 6]),
     ] {
         let inspection = Simulation::new(&load(&format!("3rrr/case{case}.toml"), &[]))

@@ -7,6 +7,7 @@ mod bad_mechanism;
 mod balance;
 mod bits;
 mod choice;
+mod coordinates;
 mod couples;
 mod deformed;
 mod disc;

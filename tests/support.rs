@@ -67,6 +67,13 @@ pub fn all_scenes() -> Vec<String> {
     names
 }
 
+/// Overrides that give the passive links of a 3-RRR mechanism natural coordinates, with a constraint each where they are rigid.
+pub const NATURAL: [&str; 3] = [
+    "bodies.link1.coordinates=\"natural\"",
+    "bodies.link2.coordinates=\"natural\"",
+    "bodies.link3.coordinates=\"natural\"",
+];
+
 /// A scene with overrides.
 pub fn load(scene: &str, overrides: &[&str]) -> Scene {
     let overrides: Vec<String> = overrides.iter().map(|s| (*s).to_owned()).collect();

@@ -1,12 +1,14 @@
 //! Compiled models as a whole: tangents by differencing, no allocation, repeatable bytes.
 
-use crate::support::{all_scenes, load};
+use crate::support::{NATURAL, all_scenes, load};
 use ladder::{Rung, Worst};
-use looselink::body::FlexibleLink;
+use looselink::body::{CentredLink, FlexibleLink};
+use looselink::model::Model;
 use looselink::newton::Newton;
 use looselink::scene::{Analysis, Scene};
 use looselink::simulate::Simulation;
 use looselink::system::{State, System, Weights};
+use std::collections::BTreeMap;
 
 /// Steps that a scene takes at least, where its step is long.
 const LEAST_STEPS: f64 = 40.0;
@@ -44,6 +46,15 @@ fn axial_stiffness(scene: &Scene) -> f64 {
     stiffness.fold(0.0, f64::max)
 }
 
+/// How far a unit of the angle of each rigid link moves its ends \[m\], by the index of the angle.
+fn levers(model: &Model) -> BTreeMap<usize, f64> {
+    let links = model.bodies().iter().map(|body| &body.placed);
+    let links = links.filter(|placed| placed.kind.get::<CentredLink>().is_some());
+    links
+        .map(|placed| (placed.x[0] + 2, placed.kind.lever(0)))
+        .collect()
+}
+
 /// The stage matrix of every scene is the derivative of its residual by the acceleration.
 ///
 /// Weights of 1e-4 s and 1e-8 s2 make all parts count. The difference is over accelerations of 0.03 m/s2, which move q by
@@ -52,21 +63,27 @@ fn axial_stiffness(scene: &Scene) -> f64 {
 fn stage_matrices_are_the_derivatives() {
     let worst = Worst::new();
     for name in all_scenes() {
-        let scene = beginning(&name, 0.008);
+        // at 8 ms a contact of case 3 has a penetration of 2e-8 m, for which 3e-10 m is a coarse difference
+        let end = if name == "3rrr/case3.toml" {
+            0.011
+        } else {
+            0.008
+        };
+        let scene = beginning(&name, end);
         let (simulation, start) = state(&scene);
         let model = simulation.model();
         let shape = model.shape();
         let (n, m) = (shape.unknowns, shape.multipliers);
         let w = Weights { q: 1e-8, v: 1e-4 };
-        // an impact at 1e-6 m/s: its law bends where the velocity changes by that
-        let h = if name == "hard/grazing.toml" {
-            3e-4
-        } else {
-            0.03
+        let h = match &*name {
+            // an impact at 1e-6 m/s: its law bends where the velocity changes by that
+            "hard/grazing.toml" => 3e-4,
+            _ => 0.03,
         };
         // an axial force is a difference of terms of the size of EA, half a rounding off in each of two evaluations; above
         // 1e7 N this exceeds the bound below
         let rounding = f64::EPSILON * axial_stiffness(&scene) / (4.0 * h);
+        let levers = levers(model);
         let mut work = model.work();
         let (mut r, mut phi) = (vec![0.0; shape.coordinates], vec![0.0; m]);
         let mut k = vec![0.0; model.symbolic().len()];
@@ -99,7 +116,9 @@ fn stage_matrices_are_the_derivatives() {
             let column: Vec<f64> = (0..n + m).map(|i| (high[i] - low[i]) / (2.0 * h)).collect();
             let size = column.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             assert!(size > 0.0, "{name}: column {j} is empty");
-            let allowed = (2e-6 * size.max(1e-2)).max(rounding);
+            // rounding of positions counts for more where a unit of the coordinate moves them by less than 1 m
+            let lever = levers.get(&j).unwrap_or(&1.0);
+            let allowed = (2e-6 * size.max(1e-2) / lever).max(rounding);
             for i in 0..n + m {
                 worst.at(format!("in entry ({i}, {j}) of {name}"));
                 worst.see((column[i] - dense[(i, j)]) / allowed);
@@ -169,7 +188,8 @@ fn runs_are_repeatable() {
 fn accepted_states_are_consistent() {
     let worst = Worst::new();
     for name in ["3rrr/case1.toml", "3rrr/case2.toml", "3rrr/case3.toml"] {
-        let scene = load(name, &["simulation.duration=0.02", "output.interval=0.001"]);
+        let span = ["simulation.duration=0.02", "output.interval=0.001"];
+        let scene = load(name, &[&span[..], &NATURAL].concat());
         let (simulation, at) = state(&scene);
         let model = simulation.model();
         let mut rates = vec![1.0; model.shape().multipliers];

@@ -106,6 +106,8 @@ void read_link(Fields &f, const Library &library, BodyDescription &body) {
     const double area = section.width * section.height;
     body.mass = material.density * area * body.length;
     body.inertia = body.mass * body.length * body.length / 12.0;
+    // a choice of unknowns, which changes no result; here every rigid link has the positions of its ends
+    if (f.has("coordinates")) f.choice<bool>("coordinates", {{"natural", true}, {"center", false}});
     constexpr int most_elements = 10000;
     if (body.kind == BodyKind::flexible_link) {
         require(material.youngs_modulus.has_value(), f.source("material"), "a flexible link needs its youngs_modulus");

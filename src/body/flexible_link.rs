@@ -46,8 +46,10 @@ impl FlexibleLink {
 
     /// The same link if it were rigid.
     pub fn rigid_link(&self) -> RigidLink {
-        let link = self.link.clone();
-        RigidLink { link }
+        RigidLink {
+            link: self.link.clone(),
+            coordinates: None,
+        }
     }
 
     /// The same link without its points between the ends.

@@ -1,6 +1,6 @@
 //! `type = "link"`: a slender uniform link that is straight when undeformed.
 
-use super::{BodyKind, Damping, FlexibleLink, Point, RigidLink};
+use super::{BodyKind, Damping, FlexibleLink, LinkCoordinates, Point, RigidLink};
 use crate::document::{Fields, Key, SceneError, Takes, named};
 use crate::math::plane::Vec2;
 use std::sync::Arc;
@@ -21,6 +21,12 @@ pub(super) static KIND: BodyKind = BodyKind {
             "the number of equal elements of a flexible link, 1 to 10000; a rigid link ignores it",
         )
         .or("required if flexible"),
+        Key::word(
+            "coordinates",
+            &["natural", "center"],
+            "the unknowns of a rigid link: the positions of its two ends at a constant distance, or x, y of its centre of mass and theta; a flexible link ignores it",
+        )
+        .or("natural where an ideal joint holds one of its ends, else center"),
         Key::new(
             "points",
             Takes::Table,
@@ -48,6 +54,11 @@ pub(super) static KIND: BodyKind = BodyKind {
         let elements = elements(table, flexible)?;
         let modulus = flexible.then(|| known.youngs_modulus(table, "material"));
         let modulus = modulus.transpose()?;
+        let coordinates = table.optional_word("coordinates")?;
+        let coordinates = coordinates.map(|word| match word {
+            0 => LinkCoordinates::Natural,
+            _ => LinkCoordinates::Centre,
+        });
         let inner = inner_points(table, length, elements, flexible)?;
         let damping = damping(table, flexible)?;
         let shares: Vec<f64> = [0.0, 1.0]
@@ -68,7 +79,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             shares,
         };
         Ok(match modulus {
-            None => Arc::new(RigidLink { link }),
+            None => Arc::new(RigidLink { link, coordinates }),
             Some(youngs_modulus) => Arc::new(FlexibleLink {
                 nodes: [0, elements]
                     .into_iter()

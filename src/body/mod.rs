@@ -1,5 +1,6 @@
 //! Bodies, one kind a file: coordinates, masses, elastic elements, points and directions as functions of the coordinates.
 
+mod centred_link;
 mod disc;
 mod flexible_link;
 mod ground;
@@ -11,6 +12,7 @@ mod points;
 mod rigid_body;
 mod rigid_link;
 
+pub use centred_link::CentredLink;
 pub use flexible_link::{Damping, FlexibleLink};
 pub use ground::Ground;
 pub use link::{Link, RAYLEIGH};
@@ -19,7 +21,7 @@ pub use moving::Moving;
 pub use point_mass::PointMass;
 pub use points::{POLAR, Point};
 pub use rigid_body::{PLATES, RigidBody};
-pub use rigid_link::RigidLink;
+pub use rigid_link::{LinkCoordinates, RigidLink};
 
 use crate::document::{Fields, Kind, SceneError};
 use crate::marker::{Marker, Spin};
@@ -250,6 +252,11 @@ pub trait Body: Any + Debug + Send + Sync {
     }
     /// The body in the ideal mechanism, where it does not deform; none for a body that is the same there.
     fn rigid(&self) -> Option<Arc<dyn Body>> {
+        None
+    }
+    /// The body in the mechanism of the scene, where it has other coordinates than in the ideal one; `joined` tells whether a
+    /// joint makes a node of it one with another, or known. None for a body that is the same in both.
+    fn real(&self, _joined: bool) -> Option<Arc<dyn Body>> {
         None
     }
     /// The axial strain of largest magnitude of a body that deforms, sampled at eleven points of every element.

@@ -90,12 +90,8 @@ impl Body for RigidBody {
     }
 
     fn terms(&self, x: &[usize], _: Owner, terms: &mut Terms) {
-        let (m, i, g) = (self.mass, self.inertia, terms.gravity);
-        terms.inertia.push(Inertia {
-            coordinates: vec![x[0], x[0] + 1, x[0] + 2],
-            values: vec![m, 0.0, 0.0, 0.0, m, 0.0, 0.0, 0.0, i],
-            field: vec![g[0], g[1], 0.0],
-        });
+        let inertia = Inertia::of_pose(x[0], self.mass, self.inertia, terms.gravity);
+        terms.inertia.push(inertia);
     }
 }
 

@@ -1,17 +1,29 @@
 //! A rigid link in natural coordinates (eqs. 1-5): the positions of its two ends, at a constant distance.
 
-use super::{Body, Frame, Levels, Link, Point, Pose, Slot, carried};
+use super::{Body, CentredLink, Frame, Levels, Link, Point, Pose, Slot, carried};
 use crate::constraint::Length;
 use crate::link::natural_rigid;
 use crate::marker::{Marker, Spin};
 use crate::math::plane::{Vec2, pair, quarter_turn, unit};
 use crate::terms::{ConstraintTerm, Inertia, Owner, Terms};
+use std::sync::Arc;
 
 /// A link that does not deform.
 #[derive(Debug, Clone)]
 pub struct RigidLink {
     /// Dimensions and points.
     pub link: Link,
+    /// The coordinates that the scene asks for.
+    pub coordinates: Option<LinkCoordinates>,
+}
+
+/// What the unknowns of a rigid link are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LinkCoordinates {
+    /// The positions of its ends.
+    Natural,
+    /// x, y of its centre of mass and theta.
+    Centre,
 }
 
 impl Body for RigidLink {
@@ -100,6 +112,15 @@ impl Body for RigidLink {
 
     fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]> {
         vec![carried(frame, 0.0), carried(frame, self.link.length)]
+    }
+
+    fn real(&self, joined: bool) -> Option<Arc<dyn Body>> {
+        let centred = match self.coordinates {
+            Some(coordinates) => coordinates == LinkCoordinates::Centre,
+            None => !joined,
+        };
+        let link = || self.link.clone();
+        centred.then(|| Arc::new(CentredLink { link: link() }) as Arc<dyn Body>)
     }
 
     fn velocity(&self, component: usize, x: &[usize], q: &[f64]) -> Option<Vec<(usize, f64)>> {

@@ -80,6 +80,17 @@ impl<'a> Compiler<'a> {
 }
 
 impl Compiler<'_> {
+    /// Gives free bodies the coordinates that they have in the mechanism of the scene; `joined` are those that share a node.
+    fn choose_coordinates(&mut self, joined: &[bool]) {
+        for (b, body) in self.bodies.iter_mut().enumerate() {
+            let real = body.real(joined[b]).filter(|_| self.roles[b] == Role::Free);
+            if let Some(real) = real {
+                self.slots[b] = real.slots();
+                *body = real;
+            }
+        }
+    }
+
     pub fn is_known(&self, point: PointRef) -> bool {
         self.roles[point.body] != Role::Free
     }
@@ -222,7 +233,9 @@ pub fn compile(scene: &Scene) -> Result<Compiled, SceneError> {
             return Err(scene.error(second.span, message, "the second one"));
         }
     };
-    let compiler = Compiler::new(scene, Mode::Real, roles);
+    let mut compiler = Compiler::new(scene, Mode::Real, roles);
+    let joined = numbering::joined(&compiler)?;
+    compiler.choose_coordinates(&joined);
     let numbering = numbering::number(&compiler, kinematics.as_ref().map(|k| &*k.mechanism))?;
     let kinematics = kinematics.map(|kinematics| {
         Arc::new(Kinematics {

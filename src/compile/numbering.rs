@@ -72,6 +72,24 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<bool>), SceneError> {
     Ok((nodes, eliminated))
 }
 
+/// Of every body, whether a joint makes a node of it one with that of another body, or with a known point.
+pub(crate) fn joined(c: &Compiler) -> Result<Vec<bool>, SceneError> {
+    let (_, eliminated) = connect(c)?;
+    let mut joined = vec![false; c.bodies.len()];
+    for (joint, _) in c
+        .scene
+        .joints
+        .iter()
+        .zip(eliminated)
+        .filter(|(_, eliminated)| *eliminated)
+    {
+        for point in joint.points() {
+            joined[point.body] |= c.node(point).is_some();
+        }
+    }
+    Ok(joined)
+}
+
 /// Makes the points of joint `j` one node or one of them known, where that is possible; true if it is.
 fn connect_joint(c: &Compiler, nodes: &mut Nodes, j: usize) -> Result<bool, SceneError> {
     let joint = &c.scene.joints[j];

@@ -38,8 +38,9 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         let body = &scene.bodies[b];
         let given = scene.initial.state_of(b);
         let deformation = given.map_or(Deformation::default(), |given| given.deformation);
-        let values = body.kind.place_deformed(start, &deformation);
-        if !place(&model.bodies()[b], values, &mut state, &mut written) {
+        let placed = &model.bodies()[b];
+        let values = placed.placed.kind.place_deformed(start, &deformation);
+        if !place(placed, values, &mut state, &mut written) {
             let span = given.map_or(body.span, |g| g.span);
             let message = format!(
                 "the pose of {} does not fit the points that its ends are joined to",

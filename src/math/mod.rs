@@ -2,6 +2,7 @@
 
 pub mod dense;
 pub mod lu;
+mod mass_inverse;
 pub mod plane;
 pub mod quadrature;
 pub mod saddle_point;

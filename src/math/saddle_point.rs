@@ -12,6 +12,7 @@
 //! matrix is then factorised as a whole, in an order that keeps it sparse. The numbers of operations decide.
 
 use super::lu::{DenseLu, Symbolic, WeakPivot};
+use super::mass_inverse::{MassFactors, MassInverse};
 use faer::Mat;
 use std::collections::BTreeMap;
 
@@ -52,8 +53,7 @@ enum SaddleForm {
 /// M and S, one after the other.
 #[derive(Debug)]
 struct Complement {
-    mass: Symbolic,
-    mass_factors: Vec<f64>,
+    mass: MassInverse,
     /// Columns of M^-1 for the unknowns that G depends on, unless they are too long.
     inverse: Option<InverseColumns>,
     symbolic: Symbolic,
@@ -212,7 +212,7 @@ impl SaddleEntries {
 
     /// M and S as two matrices; `None` if a pivot of M is weak.
     fn complement(&self, groups: &[MassGroup]) -> Option<Complement> {
-        let (mass, mass_factors) = factored(self.unknowns, self.mass.iter().copied())?;
+        let whole = MassFactors::new(self.unknowns, self.mass.iter().copied())?;
         let mut sums = BTreeMap::<(usize, usize), Vec<Product>>::new();
         let mut masses = vec![Vec::new(); groups.len()];
         let mut place = vec![(0, 0); self.unknowns];
@@ -226,17 +226,18 @@ impl SaddleEntries {
         }
         let mut inverse = InverseColumns::default();
         let longest = LONGEST_COLUMNS * self.unknowns;
-        for (group, masses) in groups.iter().zip(masses) {
-            let (symbolic, factors) = factored(group.unknowns.len(), masses.into_iter())?;
+        let factors = groups.iter().zip(masses);
+        let factors =
+            factors.map(|(group, m)| MassFactors::new(group.unknowns.len(), m.into_iter()));
+        let factors: Vec<MassFactors> = factors.collect::<Option<_>>()?;
+        for (group, factors) in groups.iter().zip(&factors) {
             let local = |entry: usize| place[self.columns[entry]].1;
             let mut columns = BTreeMap::new();
             for &(_, entry) in &group.entries {
-                columns.entry(local(entry)).or_insert_with(|| {
-                    let mut column = vec![0.0; group.unknowns.len()];
-                    column[local(entry)] = 1.0;
-                    symbolic.solve(&factors, &mut column);
-                    column
-                });
+                let own = local(entry);
+                columns
+                    .entry(own)
+                    .or_insert_with(|| factors.inverse_column(own));
             }
             for (&own, column) in &columns {
                 if inverse.entries.len() > longest {
@@ -269,12 +270,13 @@ impl SaddleEntries {
                 }
             }
         }
+        let blocks = groups.iter().map(|group| &*group.unknowns);
+        let mass = MassInverse::new(whole, blocks.zip(&factors));
         let m = self.ends.len();
         let cliques: Vec<Vec<usize>> = sums.keys().map(|&(i, j)| vec![i, j]).collect();
         let symbolic = Symbolic::analyse(m, &cliques, &vec![Vec::new(); m]);
         let mut complement = Complement {
             mass,
-            mass_factors,
             inverse: (inverse.entries.len() <= longest).then_some(inverse),
             products: Vec::new(),
             sums: Vec::new(),
@@ -338,13 +340,10 @@ impl SaddlePoint {
             SaddleForm::Complement(complement) => {
                 let Complement { mass, symbolic, .. } = &**complement;
                 let columns = complement.inverse.as_ref();
-                let inverse = columns.map_or(mass.operations_of_solve(), |c| c.entries.len());
+                let inverse = columns.map_or(mass.operations(), |c| c.entries.len());
                 [
                     2 * complement.products.len() + symbolic.operations(),
-                    mass.operations_of_solve()
-                        + symbolic.operations_of_solve()
-                        + 2 * gradient
-                        + inverse,
+                    mass.operations() + symbolic.operations_of_solve() + 2 * gradient + inverse,
                 ]
             }
             SaddleForm::Bordered(bordered) => [
@@ -448,7 +447,7 @@ impl SaddlePoint {
             SaddleForm::Bordered(bordered) => bordered.symbolic.solve(values, b),
             SaddleForm::Complement(complement) => {
                 let (x, mu) = b.split_at_mut(self.entries.unknowns);
-                complement.mass.solve(&complement.mass_factors, x);
+                complement.mass.solve(x);
                 for (row, entries) in self.entries.rows() {
                     let terms = gradient[entries.clone()]
                         .iter()
@@ -511,7 +510,7 @@ impl SaddlePoint {
                 }
             }
             None => {
-                complement.mass.solve(&complement.mass_factors, scratch);
+                complement.mass.solve(scratch);
                 x.iter_mut()
                     .zip(scratch)
                     .for_each(|(x, change)| *x -= *change);
@@ -564,18 +563,6 @@ impl Complement {
         }
         self.symbolic.factor(values)
     }
-}
-
-/// A matrix and its factors; `None` if a pivot is weak.
-fn factored(
-    n: usize,
-    entries: impl Iterator<Item = (usize, usize, f64)> + Clone,
-) -> Option<(Symbolic, Vec<f64>)> {
-    let cliques: Vec<Vec<usize>> = entries.clone().map(|(i, j, _)| vec![i, j]).collect();
-    let symbolic = Symbolic::analyse(n, &cliques, &vec![Vec::new(); n]);
-    let mut values = symbolic.filled(entries);
-    symbolic.factor(&mut values).ok()?;
-    Some((symbolic, values))
 }
 
 #[cfg(test)]

@@ -170,7 +170,7 @@ impl Controller {
             .position
             .min(OF_CLEARANCE * scene.smallest_clearance().unwrap_or(f64::INFINITY));
         let longest = scene.output.interval.min(accuracy.horizon);
-        let mut lengths = lengths(scene, model);
+        let mut lengths = lengths(model);
         // an error of an internal state, the velocity of its unknown, counts as one of position
         for state in &model.states {
             lengths[*state] = 1.0 / accuracy.horizon;

@@ -155,11 +155,11 @@ impl Extent {
 }
 
 /// l_i: the largest distance \[m\] by which a unit change of each unknown moves a point of its body.
-pub fn lengths(scene: &Scene, model: &Model) -> Vec<f64> {
+pub fn lengths(model: &Model) -> Vec<f64> {
     let mut lengths = vec![1.0; model.shape().coordinates];
-    for (body, place) in scene.bodies.iter().zip(model.bodies()) {
+    for place in model.bodies() {
         for (slot, x) in place.placed.x.iter().enumerate() {
-            let lever = body.kind.lever(slot);
+            let lever = place.placed.kind.lever(slot);
             match place.contents[slot] {
                 Content::Pose => lengths[x + 2] = lever,
                 Content::Slope => lengths[*x..x + 2].fill(lever),
@@ -179,7 +179,7 @@ pub fn lengths(scene: &Scene, model: &Model) -> Vec<f64> {
 /// A gain of energy is measured against it at a start from rest, where the energy supplied is zero and the errors of the first
 /// steps are as large as the motion.
 fn plain_motion(scene: &Scene, model: &Model, start: &State) -> f64 {
-    let lengths = lengths(scene, model);
+    let lengths = lengths(model);
     let places = start.q.iter().enumerate();
     let places = places.filter(|(i, _)| lengths.get(*i).is_none_or(|length| *length == 1.0));
     let mut extent = Extent::EMPTY;
@@ -207,7 +207,7 @@ impl Meter {
     pub fn new(scene: &Scene, model: &Model, start: &State) -> Meter {
         let unknowns = model.shape().unknowns;
         Meter {
-            lengths: lengths(scene, model),
+            lengths: lengths(model),
             sums: vec![IntegrationSums::default(); unknowns],
             extents: vec![Extent::EMPTY; unknowns],
             lost: [0.0; 2],

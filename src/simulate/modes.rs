@@ -22,7 +22,7 @@ impl Simulation {
                 ModesError::SingularPose(self.model.unknown_name(failure.index()))
             })?;
         }
-        let lengths = lengths(&self.scene, &self.model);
+        let lengths = lengths(&self.model);
         modes(&self.model, &at, &lengths, &mut work)
     }
 }

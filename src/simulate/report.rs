@@ -2,6 +2,7 @@
 
 use super::pace::Pacer;
 use super::{AccuracyReport, Chatter, Choice, Impact, Integration, Overrun, Simulation};
+use crate::body::CentredLink;
 use crate::checkpoint::carried;
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, Scene};
@@ -227,6 +228,7 @@ impl Simulation {
                 .collect(),
             assumptions: notes(&self.scene)
                 .into_iter()
+                .chain(self.centred_links())
                 .chain(self.model.redundant().iter().map(|name| {
                     format!("{name} is redundant and left out: the constraint forces in its loop are not unique")
                 }))
@@ -234,6 +236,17 @@ impl Simulation {
             coordinates: coordinates.to_vec(),
             constraints: constraints.to_vec(),
         }
+    }
+
+    /// Which rigid links have the coordinates of their centres.
+    fn centred_links(&self) -> Option<String> {
+        let bodies = self.model.bodies().iter();
+        let centred = bodies.filter(|body| body.placed.kind.get::<CentredLink>().is_some());
+        let names: Vec<&str> = centred.map(|body| &*body.name).collect();
+        let list = names.join(", ");
+        (!names.is_empty()).then(|| {
+            format!("unknowns are x, y of the centre of mass and theta of the rigid links {list}")
+        })
     }
 
     /// The report at this moment.

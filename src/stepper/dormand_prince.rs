@@ -8,7 +8,8 @@
 //! The local error is the difference of the two solutions, of order h^5. The step continues with the solution of order 5.
 
 use super::{
-    Estimate, EstimatedSolution, LocalError, Scheme, StepError, Stepper, accumulate, integrate, sum,
+    Estimate, EstimatedSolution, LocalError, Scheme, StepError, Stepper, accumulate, add,
+    integrate, sum,
 };
 use crate::checkpoint::carried;
 use crate::newton::Newton;
@@ -113,13 +114,12 @@ impl Stepper for DormandPrince {
             system.prescribe(from, stage, work)?;
             let before = || [from].into_iter().chain(&*done);
             sum(h, *row, before(), |s| &s.v, &mut self.increment);
-            for k in 0..shape.unknowns {
-                stage.q[k] = from.q[k] + (from.q_low[k] + self.increment[k]);
+            let low = from.q_low.iter().zip(&self.increment);
+            for (q, (start, (low, change))) in stage.q.iter_mut().zip(from.q.iter().zip(low)) {
+                *q = start + (low + change);
             }
             sum(h, *row, before(), |s| &s.a, &mut self.increment);
-            for k in 0..shape.unknowns {
-                stage.v[k] = from.v[k] + self.increment[k];
-            }
+            add(&from.v, &self.increment, &mut stage.v);
             newton.accelerate(system, stage, work)?;
             if WEIGHTS[i + 1] != 0.0 {
                 clamps += system.powers(stage, work);
@@ -130,9 +130,7 @@ impl Stepper for DormandPrince {
         to.copy_from(&stages[4]);
         let all = || [from].into_iter().chain(stages);
         sum(h, WEIGHTS, all(), |s| &s.a, &mut self.increment);
-        for k in 0..shape.unknowns {
-            to.v[k] = from.v[k] + self.increment[k];
-        }
+        add(&from.v, &self.increment, &mut to.v);
         sum(h, WEIGHTS, all(), |s| &s.v, &mut self.increment);
         accumulate(from, &self.increment, 0.0, to);
         if shape.multipliers > 0 {

@@ -148,9 +148,12 @@ pub struct Esdirk {
     /// The stages between the first and the last.
     middle: Vec<State>,
     stage: Stage,
+    /// Changes of v and q by the stages before.
+    change: Vec<f64>,
+    increment: Vec<f64>,
 }
 
-carried!(Esdirk {} but { tableau, middle, stage });
+carried!(Esdirk {} but { tableau, middle, stage, change, increment });
 
 impl Esdirk {
     fn new(tableau: &'static Tableau, shape: Shape) -> Esdirk {
@@ -159,6 +162,8 @@ impl Esdirk {
             tableau,
             middle: middle.map(|_| State::zeros(shape)).collect(),
             stage: Stage::new(shape),
+            change: vec![0.0; shape.unknowns],
+            increment: vec![0.0; shape.unknowns],
         }
     }
 }
@@ -191,14 +196,14 @@ impl Stepper for Esdirk {
             now.t = if is_last { t } else { from.t + c * h };
             // the stages are not in the order of time
             system.prescribe(from, now, work)?;
-            for k in 0..shape.unknowns {
-                let (mut change, mut increment) = (0.0, 0.0);
-                for (a, stage) in row.iter().zip([from].into_iter().chain(&*done)) {
-                    change += a * stage.a[k];
-                    increment += a * stage.v[k];
-                }
-                let v_hat = from.v[k] + h * change;
-                self.stage.set(from, k, v_hat, h * increment + g * v_hat);
+            let before = || [from].into_iter().chain(&*done);
+            let weights = || row.iter().copied();
+            sum(h, weights(), before(), |s| &s.a, &mut self.change);
+            sum(h, weights(), before(), |s| &s.v, &mut self.increment);
+            for (k, change) in self.change.iter().enumerate() {
+                let v_hat = from.v[k] + change;
+                self.stage
+                    .set(from, k, v_hat, self.increment[k] + g * v_hat);
             }
             let equations = self.stage.equations(Level::Acceleration, w);
             let is_constrained = shape.multipliers > 0;

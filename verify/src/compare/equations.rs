@@ -5,6 +5,7 @@ use crate::check::{Agreement, LargestDifference, largest};
 use crate::embedding::Embedding;
 use crate::reference::{ReferenceScene, ReferenceState};
 use crate::trajectory::ComparisonPlan;
+use looselink::body::RigidLink;
 use looselink::interaction::{SlopeClamp, Weld};
 use looselink::model::Model;
 use looselink::scene::{Analysis, PointRef, Scene};
@@ -187,7 +188,7 @@ pub fn agreements(plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
 impl ScenePair {
     fn new(plan: &ComparisonPlan) -> Result<ScenePair> {
         let reference = plan.reference()?;
-        let scene = plan.scene(None)?;
+        let scene = natural(plan)?.scene(None)?;
         let simulation = Simulation::new(&scene)?;
         let embedding = Embedding::new(&reference, simulation.model());
         Ok(ScenePair {
@@ -355,6 +356,19 @@ impl ScenePair {
         }
         Ok(())
     }
+}
+
+/// The plan with natural coordinates for all rigid links: the full coordinates of the reference are copies of them.
+fn natural(plan: &ComparisonPlan) -> Result<ComparisonPlan> {
+    let scene = plan.scene(None)?;
+    let links = scene
+        .bodies
+        .iter()
+        .filter(|body| body.kind.get::<RigidLink>().is_some());
+    let mut natural = plan.clone();
+    let overrides = links.map(|link| format!("bodies.{}.coordinates=\"natural\"", link.name));
+    natural.overrides.extend(overrides);
+    Ok(natural)
 }
 
 /// Far enough that loose joints touch and directions change, not so far that forces of contacts dwarf all others.

@@ -2,7 +2,7 @@
 
 use super::classes::{self, KINDS};
 use crate::check::{Agreement, LargestDifference, largest};
-use crate::embedding::Embedding;
+use crate::embedding;
 use crate::reference::{ReferenceScene, ReferenceState};
 use crate::trajectory::{ComparisonPlan, tolerances};
 use looselink::scene::Analysis;
@@ -73,20 +73,19 @@ pub fn of(analysis: Analysis) -> Result<Vec<ComparisonPlan>> {
 pub fn start(plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
     let reference = plan.reference()?;
     let simulation = Simulation::new(&plan.scene(None)?)?;
-    let embedding = Embedding::new(&reference, simulation.model());
     let [q, v] = reference.start().into_diagnostic()?;
-    let state = simulation.state();
+    let [own_q, own_v] = embedding::full(&reference, simulation.model(), simulation.state());
     let mut rows = Vec::new();
     for (what, rust, cpp, reason) in [
         (
             "coordinates of the start",
-            embedding.spread(&state.q),
+            own_q,
             &q,
             "relative to the largest, at least 1 m or 1 rad; each side closes the mechanism to rounding",
         ),
         (
             "velocities of the start",
-            embedding.spread(&state.v),
+            own_v,
             &v,
             "relative to the largest, at least 1 m/s or 1 rad/s; rounding",
         ),

@@ -70,7 +70,7 @@ pub fn kept(run: &RandomRun) -> Result<(), Breach> {
             }
         }
         for (b, body) in scene.bodies.iter().enumerate() {
-            let Some(RigidLink { link }) = body.kind.get() else {
+            let Some(RigidLink { link, .. }) = body.kind.get() else {
                 continue;
             };
             let end = |point| looselink::scene::PointRef { body: b, point };

@@ -25,7 +25,7 @@ pub(super) fn inertia(kind: &dyn Body) -> Option<f64> {
         return Some(rigid.inertia);
     }
     match kind.get::<RigidLink>() {
-        Some(RigidLink { link }) => Some(mass(kind) * link.length.powi(2) / 12.0),
+        Some(RigidLink { link, .. }) => Some(mass(kind) * link.length.powi(2) / 12.0),
         None => (!kind.turns()).then_some(0.0),
     }
 }
