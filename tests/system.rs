@@ -227,7 +227,7 @@ fn the_widest_open_constraint_is_named() {
         let mut at = accepted.clone();
         at.q[i] += 1e-3 * (1.0 + i as f64);
         model.acceleration_level(&at, &mut phi, &mut factors.gradient);
-        let mut open = std::collections::BTreeMap::<String, f64>::new();
+        let mut open = BTreeMap::<String, f64>::new();
         for (row, value) in phi.iter().enumerate() {
             let distance = open
                 .entry(constraint(&model.unknown_name(shape.unknowns + row)))

@@ -89,18 +89,20 @@ fn asked(made: &[MadeStudy]) -> String {
     }
     let within = |bound: f64| rows.iter().filter(|(_, ratio, _)| *ratio <= bound).count();
     let worst = rows.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    let ratios: Vec<f64> = rows.iter().map(|(_, ratio, _)| *ratio).collect();
     let mut out = String::from("## Is the requested accuracy reached?\n\n");
     if let Some((position, ratio, name)) = worst {
         line(
             &mut out,
             &format!(
                 "The table shows the achieved error over the requested accuracy. Of {} runs with a requested accuracy {} reach \
-                 it, and {} stay within three times of it. The largest ratio is {} ({name}, {}). Runs whose error is below twice the \
+                 it, and {} stay within three times of it. The median ratio is {}, the largest is {} ({name}, {}). Runs whose error is below twice the \
                  uncertainty of the reference are left out. [pages/accuracy/GUARANTEE.md](pages/accuracy/GUARANTEE.md) has the same for \
                  every dynamic scene.\n",
                 rows.len(),
                 within(1.0),
                 within(3.0),
+                numbers::digits(median(&ratios)),
                 numbers::digits(*ratio),
                 numbers::si(*position, "m")
             ),
@@ -203,6 +205,7 @@ fn conclusions(made: &[MadeStudy], surveyed: &[Surveyed]) -> String {
             ),
         );
     }
+    out += &automatic(made);
     let level = 1e-9;
     let explicit: Vec<String> = of_methods(made)
         .filter_map(|one| {
@@ -228,6 +231,47 @@ fn conclusions(made: &[MadeStudy], surveyed: &[Surveyed]) -> String {
         );
     }
     out + "\n"
+}
+
+/// The schemes among which `method = "auto"` chooses, as their curves are called, and its own curve.
+const CANDIDATES: [&str; 3] = [
+    "ESDIRK of order 5, error controlled",
+    "Dormand-Prince, error controlled",
+    "ESDIRK of order 3, error controlled",
+];
+const AUTOMATIC: &str = "auto, error controlled";
+
+/// What the choice of `method = "auto"` costs, the trial runs included.
+fn automatic(made: &[MadeStudy]) -> String {
+    let cells = of_methods(made).flat_map(|one| LEVELS.map(|error| (one, error)));
+    let ratios = cells.filter_map(|(one, error)| {
+        let (time, _) = one.outcome.time_at(AUTOMATIC, error)?;
+        let (_, best, _) = winner(one, error, |curve| CANDIDATES.contains(&curve))?;
+        let (_, any, _) = winner(one, error, |_| true)?;
+        Some((one, error, [time / best, time / any]))
+    });
+    let ratios: Vec<_> = ratios.collect();
+    let of = |k: usize| {
+        let values: Vec<f64> = ratios.iter().map(|(.., ratios)| ratios[k]).collect();
+        let within = values.iter().filter(|ratio| **ratio <= 1.5).count();
+        let worst = ratios.iter().max_by(|a, b| a.2[k].total_cmp(&b.2[k]))?;
+        let (one, error, ratios) = worst;
+        Some(format!(
+            "{} times (median), at most {} times ({}, {}), and at most 1.5 times in {within} of {} pairs",
+            numbers::digits(median(&values)),
+            numbers::digits(ratios[k]),
+            one.name,
+            numbers::si(*error, "m"),
+            values.len()
+        ))
+    };
+    let (Some(best), Some(any)) = (of(0), of(1)) else {
+        return String::new();
+    };
+    format!(
+        "* `method = \"auto\"` takes as long as the fastest of its three candidates {best}; as long as the fastest curve of any kind \
+         {any}. Its trial runs are part of its time.\n"
+    )
 }
 
 /// Bounds within which the statistics of a long run count as converged: envelopes and rms, share of contact, energy lost over

@@ -204,8 +204,9 @@ pub fn rivals(measured: &Measured) -> Figure {
         }
     });
     let caption = "Studies of the folder studies, of 3 to 20 ms of motion. Dots: runs of all methods. Lines: the fastest method that \
-                   comes below an error and stays there with finer steps. The error is the largest difference of position from the \
-                   converged solution of the same code; errors below the difference of two such solutions are left out."
+                   comes below an error and stays there with finer steps; they are vertical where its coarsest run is already \
+                   below the error. The error is the largest difference of position from the converged solution of the same code; \
+                   errors below the difference of two such solutions are left out."
         .to_owned();
     Figure::grid(panels.collect(), 2, caption)
 }

@@ -6,7 +6,7 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use numbers::percent;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use studies::machine::machine;
 
 /// Relative difference of two numbers of instructions that counts as a change: the sizes of addresses and environments move
@@ -18,48 +18,43 @@ const CHANGE: f64 = 0.02;
 struct RecordedCounts {
     /// The compiler decides on instructions.
     compiler: String,
-    steps: BTreeMap<String, StepCount>,
+    steps: StepCounts,
 }
 
-/// Counts all steps and records them, or checks them.
+/// Counts of all steps by name.
+pub type StepCounts = BTreeMap<String, StepCount>;
+
+/// Counts all steps and records them.
 ///
 /// # Errors
-/// When Valgrind is missing, and with `check` where a count differs.
-pub fn run(root: &Path, program: &Path, check: bool) -> Result<()> {
-    let path = root.join("pages/benchmarks/counts.json");
-    let compiler = machine().compiler.to_owned();
-    let earlier = match check {
-        true => {
-            let text = std::fs::read_to_string(&path)
-                .into_diagnostic()
-                .wrap_err_with(|| format!("cannot read {}", path.display()))?;
-            Some(serde_json::from_str::<RecordedCounts>(&text).into_diagnostic()?)
-        }
-        false => None,
+/// When Valgrind is missing.
+pub fn record(root: &Path, program: &Path) -> Result<StepCounts> {
+    let counts = RecordedCounts {
+        compiler: machine().compiler.to_owned(),
+        steps: count(root, program)?,
     };
-    if let Some(earlier) = &earlier
-        && earlier.compiler != compiler
-    {
-        let recorded = &earlier.compiler;
-        eprintln!("instructions were not compared: recorded with {recorded}, this is {compiler}");
+    let text = serde_json::to_string_pretty(&counts).into_diagnostic()?;
+    std::fs::write(path(root), text + "\n").into_diagnostic()?;
+    Ok(counts.steps)
+}
+
+/// Counts all steps and compares them with those recorded by the same compiler.
+///
+/// # Errors
+/// When Valgrind is missing, and where a count differs.
+pub fn check(root: &Path, program: &Path) -> Result<()> {
+    let path = path(root);
+    let text = std::fs::read_to_string(&path)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot read {}", path.display()))?;
+    let recorded: RecordedCounts = serde_json::from_str(&text).into_diagnostic()?;
+    let compiler = machine().compiler;
+    if recorded.compiler != compiler {
+        let before = &recorded.compiler;
+        eprintln!("instructions were not compared: recorded with {before}, this is {compiler}");
         return Ok(());
     }
-    let costs = OperationTable::of(program)?;
-    let mut steps = BTreeMap::new();
-    for row in StepList::read(root)?.steps {
-        let count = per_step(program, root, &row, &costs)?;
-        println!(
-            "{:40} {:>9} instructions a step",
-            row.name, count.instructions
-        );
-        steps.insert(row.name, count);
-    }
-    let Some(earlier) = earlier else {
-        let counts = RecordedCounts { compiler, steps };
-        let text = serde_json::to_string_pretty(&counts).into_diagnostic()?;
-        return std::fs::write(&path, text + "\n").into_diagnostic();
-    };
-    let changed = changes(&earlier.steps, &steps);
+    let changed = changes(&recorded.steps, &count(root, program)?);
     match changed.is_empty() {
         true => Ok(()),
         false => Err(miette!(
@@ -70,11 +65,26 @@ pub fn run(root: &Path, program: &Path, check: bool) -> Result<()> {
     }
 }
 
+fn path(root: &Path) -> PathBuf {
+    root.join("pages/benchmarks/counts.json")
+}
+
+fn count(root: &Path, program: &Path) -> Result<StepCounts> {
+    let costs = OperationTable::of(program)?;
+    let mut steps = BTreeMap::new();
+    for row in StepList::read(root)?.steps {
+        let count = per_step(program, root, &row, &costs)?;
+        println!(
+            "{:40} {:>9} instructions a step",
+            row.name, count.instructions
+        );
+        steps.insert(row.name, count);
+    }
+    Ok(steps)
+}
+
 /// Steps whose counts differ by more than [`CHANGE`], in either direction, or that only one side has.
-fn changes(
-    recorded: &BTreeMap<String, StepCount>,
-    counted: &BTreeMap<String, StepCount>,
-) -> Vec<String> {
+fn changes(recorded: &StepCounts, counted: &StepCounts) -> Vec<String> {
     let mut changes = Vec::new();
     for (name, count) in counted {
         let Some(earlier) = recorded.get(name) else {

@@ -85,7 +85,10 @@ fn main() -> Result<()> {
     let root = records::root();
     match arguments.command {
         None => measure(&root, arguments.repeats.into(), arguments.only),
-        Some(Benchmark::Count { check }) => gate::run(&root, &program(&root)?, check),
+        Some(Benchmark::Count { check: true }) => gate::check(&root, &program(&root)?),
+        Some(Benchmark::Count { check: false }) => {
+            gate::record(&root, &program(&root)?).map(|_| ())
+        }
         Some(Benchmark::Chain { links, loose }) => {
             let cost = growth::measure(links, loose)?;
             println!("{}", serde_json::to_string(&cost).into_diagnostic()?);
@@ -112,9 +115,9 @@ fn measure(root: &Path, repeats: usize, only: Option<PagePart>) -> Result<()> {
     let program = program(root)?;
     measured.machine = machine().to_string();
     if wanted(PagePart::Steps) {
-        gate::run(root, &program, false)?;
+        let counts = gate::record(root, &program)?;
         measured.baseline = list::StepList::read(root)?.baseline;
-        measured.steps = steps::measure(root, &program, repeats)?;
+        measured.steps = steps::measure(root, &program, &counts, repeats)?;
     }
     if wanted(PagePart::Growth) {
         measured.chains = growth::all()?;

@@ -5,16 +5,19 @@ use crate::figures::{chain, curves, mesh};
 use crate::growth::{self, ChainCost, exponent};
 use crate::meshes::ERRORS;
 use crate::rivals::{Code, STUDIES, best};
+use accuracy::ida;
 use numbers::{digits, si};
+use studies::machine::median;
 
 /// What BENCHMARKS.md says.
 pub fn page(measured: &Measured) -> String {
     let mut out = format!(
         "# What the program costs\n\n{}\n\
-         Instructions of a step, growth with the size of a mechanism, and the state of the program before its step loop was \
-         rewritten, built and run beside it. `cargo run --release -p benchmarks` measures all of it and writes this page; \
-         [pages/benchmarks/benchmarks.json](pages/benchmarks/benchmarks.json) has every number. Errors against processor time \
-         are in [ACCURACY.md](ACCURACY.md). Measured on {}.\n\n",
+         How many instructions a step takes, how costs grow with the size of a mechanism, and how long other programs take for \
+         the same error. The baseline is an earlier commit of this program, built and run beside the present one. \
+         `cargo run --release -p benchmarks` measures all of it and writes this page; \
+         [pages/benchmarks/benchmarks.json](pages/benchmarks/benchmarks.json) has every number. [ACCURACY.md](ACCURACY.md) has \
+         the errors and processor times of every method of this program. Measured on {}.\n\n",
         records::place("benchmarks"),
         measured.machine
     );
@@ -55,7 +58,7 @@ fn short(measured: &Measured) -> String {
         "## In short\n\n\
          * A step takes {} of the instructions and {} of the processor time of commit {}.\n\
          * A chain of {longest} links is compiled in {} with ideal joints and in {} with play.\n\
-         * Exponents over the largest decade of links: compilation {}, a step {}, memory {}.\n\n",
+         * Exponents over the largest decade of links: compilation {}, a step {}, memory {}.\n{}\n",
         range(&instructions),
         range(&times),
         measured.baseline,
@@ -64,7 +67,54 @@ fn short(measured: &Measured) -> String {
         exponents(&|chain| Some(chain.compile)),
         exponents(&|chain| Some(chain.step)),
         exponents(&|chain| Some(chain.memory? as f64)),
+        compared(measured),
     )
+}
+
+/// How long the other codes take, and where they are faster.
+fn compared(measured: &Measured) -> String {
+    let (mut out, mut faster) = (String::new(), Vec::new());
+    for code in [Code::Exudyn, Code::IdaOnOurs, Code::Ida] {
+        let mut ratios = Vec::new();
+        for (study, error) in STUDIES
+            .iter()
+            .flat_map(|study| LEVELS.map(|error| (study, error)))
+        {
+            let [own, other] =
+                [Code::Looselink, code].map(|c| best(&measured.rivals, study, c, error));
+            let (Some((_, own)), Some((_, other))) = (own, other) else {
+                continue;
+            };
+            let ratio = other / own;
+            if ratio < 1.0 {
+                let ratio = digits(ratio);
+                faster.push(format!(
+                    "{} in {study} at {} ({ratio} times)",
+                    code.name(),
+                    si(error, "m")
+                ));
+            }
+            ratios.push(ratio);
+        }
+        if ratios.is_empty() {
+            continue;
+        }
+        ratios.sort_by(f64::total_cmp);
+        out += &format!(
+            "* {} takes {} to {} times as long as the fastest method of Looselink, {} times in the median over {} pairs of a \
+             study and an error.\n",
+            code.name(),
+            digits(ratios[0]),
+            digits(ratios[ratios.len() - 1]),
+            digits(median(&ratios)),
+            ratios.len()
+        );
+    }
+    let faster = match faster.is_empty() {
+        true => "none".to_owned(),
+        false => faster.join(", "),
+    };
+    out + &format!("* Faster than Looselink: {faster}.\n")
 }
 
 /// The table of steps.
@@ -129,14 +179,17 @@ const LEVELS: [f64; 6] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
 
 /// Other codes.
 fn rivals(measured: &Measured) -> String {
-    let mut out = String::from(
+    let mut out = format!(
         "\n## Other codes\n\n![Error against processor time, all codes](pages/benchmarks/figures/rivals.png)\n\n\
          Exudyn 1.13.6 has the same mechanisms with the same data ([benches/peers/exudyn](benches/peers/exudyn)), in the fastest \
          formulation that was found for it. IDA is the BDF code of SUNDIALS, here with KLU: once on Looselink's residual and \
-         tangent (index 1), and once in the second implementation, in full coordinates (stabilised index 2). Every code is compared with its own converged solution. The contact laws are the same, but Exudyn does not clamp forces that pull; its cable element \
-         has another strain. On one core, one after the other in one run.\n\n\
+         tangent (index 1), and once in the second implementation, in full coordinates (stabilised index 2). Its tolerances start \
+         at {:e}, so its times for large errors are those of a smaller one. Every code is compared with its own converged \
+         solution. The contact laws are the same, but Exudyn does not clamp forces that pull; its cable element has another \
+         strain. On one core, one after the other in one run.\n\n\
          The table shows the fastest time, and in brackets how many times as long the other code takes.\n\n\
          | study | error | Looselink | Exudyn | IDA on our equations | IDA, second implementation |\n|---|---|---|---|---|---|\n",
+        ida::RELATIVE[0]
     );
     for study in STUDIES {
         for error in LEVELS {

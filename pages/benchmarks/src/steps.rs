@@ -2,6 +2,7 @@
 
 use crate::baseline;
 use crate::count::{OperationTable, STEP, StepCount, command, per_step};
+use crate::gate::StepCounts;
 use crate::list::{StepList, StepRow};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::{Deserialize, Serialize};
@@ -26,18 +27,23 @@ pub struct StepCost {
     pub seconds: f64,
 }
 
-/// Counts and times all steps of the list; programs take turns in each of the timed runs.
+/// Times all steps of the list and counts those of the baseline; programs take turns in each of the timed runs.
 ///
 /// # Errors
 /// When a program cannot be built or run.
-pub fn measure(root: &Path, program: &Path, repeats: usize) -> Result<Vec<StepCost>> {
+pub fn measure(
+    root: &Path,
+    program: &Path,
+    counts: &StepCounts,
+    repeats: usize,
+) -> Result<Vec<StepCost>> {
     let list = StepList::read(root)?;
     let earlier = baseline::program(root, &list.baseline)?;
-    let (costs, earlier_costs) = (OperationTable::of(program)?, OperationTable::of(&earlier)?);
+    let earlier_costs = OperationTable::of(&earlier)?;
     let mut all = Vec::new();
     for row in &list.steps {
         eprintln!("{}", row.name);
-        let known = seconds(&earlier, root, row, STEP)?.is_some();
+        let known = seconds(&earlier, root, row, ENDS[0])?.is_some();
         let mut times = [Vec::new(), Vec::new()];
         for _ in 0..repeats {
             times[0].push(per_step_seconds(program, root, row)?);
@@ -49,13 +55,19 @@ pub fn measure(root: &Path, program: &Path, repeats: usize) -> Result<Vec<StepCo
         let now = median(&times[0]);
         all.push(StepCost {
             name: row.name.clone(),
-            now: per_step(program, root, row, &costs)?,
+            now: counts[&row.name],
             before: known.then(before).transpose()?,
             time_ratio: known.then(|| now / median(&times[1])),
             seconds: now,
         });
     }
-    Ok(all)
+    match all.iter().any(|step: &StepCost| step.before.is_some()) {
+        true => Ok(all),
+        false => Err(miette!(
+            "the baseline {} refuses every scene",
+            list.baseline
+        )),
+    }
 }
 
 /// Processor time of a step \[s\].

@@ -4,10 +4,12 @@ use crate::support::SourceCopy;
 use records::{RecordRegistry, RunningCampaign, check, root, write_notes};
 use std::fs;
 
+const BENCHMARKS: &str = "pages/benchmarks/benchmarks.json";
 /// What rests on motions.
-const MOTIONS: [&str; 9] = [
+const MOTIONS: [&str; 10] = [
     "ACCURACY.md",
     "STABILITY.md",
+    BENCHMARKS,
     "pages/accuracy/guarantee.jsonl",
     "paper-figures/figures/ensembles.json",
     "paper-figures/figures/numbers.json",
@@ -97,6 +99,7 @@ fn what_a_record_does_not_depend_on_does_not_outdate_it() {
                 "paper-figures/figures/scans.json",
                 "pages/stability/records/long.json",
                 "verify/REPORT.md",
+                BENCHMARKS,
                 FAULTS,
             ],
         ),
@@ -105,7 +108,7 @@ fn what_a_record_does_not_depend_on_does_not_outdate_it() {
             "studies/case3.toml",
             "duration = ",
             "duration = 1",
-            &["ACCURACY.md"],
+            &["ACCURACY.md", BENCHMARKS],
         ),
         (
             "pages/stability/maps/08-grazing.toml",
@@ -117,7 +120,7 @@ fn what_a_record_does_not_depend_on_does_not_outdate_it() {
             "reference-cpp/src/read_contact.cpp",
             "return ",
             "return 2 * ",
-            &["ACCURACY.md", "verify/REPORT.md", FAULTS],
+            &["ACCURACY.md", "verify/REPORT.md", BENCHMARKS, FAULTS],
         ),
         (
             "reference-cpp/src/read_contact.cpp",
@@ -183,6 +186,7 @@ fn a_page_that_does_not_say_so_fails() {
     let failures = || check(copy.root()).unwrap().failures;
     let pages = [
         "ACCURACY.md",
+        "BENCHMARKS.md",
         "STABILITY.md",
         "VERIFICATION.md",
         "pages/accuracy/GUARANTEE.md",
@@ -194,7 +198,7 @@ fn a_page_that_does_not_say_so_fails() {
     let current = pages.map(|page| copy.read(page));
     let kernel = copy.change("src/stepper/bathe.rs", "fn ", "const fn ");
     let unsaid = failures();
-    assert_eq!(unsaid.len(), 13, "{unsaid:#?}");
+    assert_eq!(unsaid.len(), 14, "{unsaid:#?}");
     write_notes(copy.root()).unwrap();
     assert_eq!(failures(), [""; 0]);
     for page in pages {
@@ -210,7 +214,7 @@ fn a_page_that_does_not_say_so_fails() {
     }
     // said without reason
     copy.write("src/stepper/bathe.rs", &kernel);
-    assert_eq!(failures().len(), 13);
+    assert_eq!(failures().len(), 14);
     write_notes(copy.root()).unwrap();
     assert_eq!(pages.map(|page| copy.read(page)), current);
     // without a place, and with one for what is no record

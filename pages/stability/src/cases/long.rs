@@ -55,7 +55,14 @@ fn case3(duration: f64) -> [f64; 3] {
     let channels = "output.channels=[\"points.link1.*\", \"points.link2.*\", \"points.link3.*\", \"energy.*\"]";
     let (recording, report) = run(
         "3rrr/case3.toml",
-        &[&duration, "output.interval=1e-2", channels],
+        &[
+            &duration,
+            "output.interval=1e-2",
+            channels,
+            "bodies.link1.coordinates=natural",
+            "bodies.link2.coordinates=natural",
+            "bodies.link3.coordinates=natural",
+        ],
     );
     let lengths = [1, 2, 3].map(|i| {
         let [x0, y0, x1, y1] = ["start.x", "start.y", "end.x", "end.y"]
