@@ -75,10 +75,11 @@ fn stage_matrices_are_the_derivatives() {
         let shape = model.shape();
         let (n, m) = (shape.unknowns, shape.multipliers);
         let w = Weights { q: 1e-8, v: 1e-4 };
-        let h = match &*name {
-            // an impact at 1e-6 m/s: its law bends where the velocity changes by that
-            "hard/grazing.toml" => 3e-4,
-            _ => 0.03,
+        // an impact at 1e-6 m/s: its law bends where the velocity changes by that
+        let h = if name == "hard/grazing.toml" {
+            3e-4
+        } else {
+            0.03
         };
         // an axial force is a difference of terms of the size of EA, half a rounding off in each of two evaluations; above
         // 1e7 N this exceeds the bound below

@@ -45,9 +45,8 @@ impl Body for CentredLink {
     fn terms(&self, x: &[usize], _: Owner, terms: &mut Terms) {
         let mass = self.link.mass();
         let inertia = mass * self.link.length.powi(2) / 12.0;
-        terms
-            .inertia
-            .push(Inertia::of_pose(x[0], mass, inertia, terms.gravity));
+        let inertia = Inertia::of_pose(x[0], mass, inertia, terms.gravity);
+        terms.inertia.push(inertia);
     }
 
     fn pose(&self, x: &[usize], levels: Levels) -> Pose {
@@ -59,13 +58,6 @@ impl Body for CentredLink {
 
     fn frame(&self, position: [f64; 3], velocity: [f64; 3]) -> Frame {
         frame(self.link.length, position, velocity)
-    }
-
-    fn frame_at(&self, x: &[usize], q: &[f64], v: &[f64]) -> Option<Frame> {
-        let Pose {
-            position, velocity, ..
-        } = Pose::of(x[0], [q, v, v]);
-        Some(self.frame(position, velocity))
     }
 
     fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]> {

@@ -236,7 +236,7 @@ pub trait Body: Any + Debug + Send + Sync {
         let Pose {
             position, velocity, ..
         } = self.pose(x, [q, v, v]);
-        Some(Frame { position, velocity })
+        Some(self.frame(position, velocity))
     }
     /// The values of all slots of the undeformed body in a frame, and their rates.
     fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]> {

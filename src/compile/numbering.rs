@@ -76,15 +76,9 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<bool>), SceneError> {
 pub(crate) fn joined(c: &Compiler) -> Result<Vec<bool>, SceneError> {
     let (_, eliminated) = connect(c)?;
     let mut joined = vec![false; c.bodies.len()];
-    for (joint, _) in c
-        .scene
-        .joints
-        .iter()
-        .zip(eliminated)
-        .filter(|(_, eliminated)| *eliminated)
-    {
+    for (joint, eliminated) in c.scene.joints.iter().zip(eliminated) {
         for point in joint.points() {
-            joined[point.body] |= c.node(point).is_some();
+            joined[point.body] |= eliminated && c.node(point).is_some();
         }
     }
     Ok(joined)

@@ -90,11 +90,12 @@ pub struct BlockInverses {
 }
 
 impl MassInverse {
-    /// Of a matrix with its coupled unknowns and the factors of each such block; `whole` are those of the matrix.
+    /// Of a matrix with its coupled unknowns and the factors of each such block; `whole` makes those of the matrix, where a block
+    /// is too large.
     pub fn new<'a>(
-        whole: MassFactors,
+        whole: impl FnOnce() -> Option<MassFactors>,
         blocks: impl Iterator<Item = (&'a [usize], &'a MassFactors)>,
-    ) -> MassInverse {
+    ) -> Option<MassInverse> {
         let mut inverses = BlockInverses::default();
         for (unknowns, factors) in blocks {
             match unknowns.len() {
@@ -102,10 +103,10 @@ impl MassInverse {
                 2 => inverses.twos.add(unknowns, factors),
                 3 => inverses.threes.add(unknowns, factors),
                 LARGEST => inverses.fours.add(unknowns, factors),
-                _ => return MassInverse::Factors(whole),
+                _ => return whole().map(MassInverse::Factors),
             }
         }
-        MassInverse::Blocks(Box::new(inverses))
+        Some(MassInverse::Blocks(Box::new(inverses)))
     }
 
     /// Solves M x = b; `b` in, x out.
@@ -157,7 +158,7 @@ mod tests {
             pairs.map(|(i, j)| (i, j, mass(i, j))).collect()
         };
         let all: Vec<_> = blocks.iter().flat_map(|block| entries(block)).collect();
-        let whole = || MassFactors::new(10, all.iter().copied()).unwrap();
+        let whole = || MassFactors::new(10, all.iter().copied());
         let own: Vec<MassFactors> = blocks
             .iter()
             .map(|block| {
@@ -167,7 +168,7 @@ mod tests {
                 MassFactors::new(block.len(), local.into_iter()).unwrap()
             })
             .collect();
-        let inverse = MassInverse::new(whole(), blocks.iter().map(Vec::as_slice).zip(&own));
+        let inverse = MassInverse::new(whole, blocks.iter().map(Vec::as_slice).zip(&own)).unwrap();
         assert!(matches!(inverse, MassInverse::Blocks(_)));
         assert_eq!(inverse.operations(), 30);
         let right: Vec<f64> = (0..10).map(|i| 1.0 - 0.3 * f64::from(i)).collect();
@@ -181,7 +182,7 @@ mod tests {
         }
         let five: Vec<usize> = (0..5).collect();
         let large = MassFactors::new(5, (0..5).map(|i| (i, i, 1.0))).unwrap();
-        let inverse = MassInverse::new(whole(), [(&five[..], &large)].into_iter());
+        let inverse = MassInverse::new(whole, [(&five[..], &large)].into_iter()).unwrap();
         assert!(matches!(inverse, MassInverse::Factors(_)));
     }
 }

@@ -212,7 +212,6 @@ impl SaddleEntries {
 
     /// M and S as two matrices; `None` if a pivot of M is weak.
     fn complement(&self, groups: &[MassGroup]) -> Option<Complement> {
-        let whole = MassFactors::new(self.unknowns, self.mass.iter().copied())?;
         let mut sums = BTreeMap::<(usize, usize), Vec<Product>>::new();
         let mut masses = vec![Vec::new(); groups.len()];
         let mut place = vec![(0, 0); self.unknowns];
@@ -271,7 +270,8 @@ impl SaddleEntries {
             }
         }
         let blocks = groups.iter().map(|group| &*group.unknowns);
-        let mass = MassInverse::new(whole, blocks.zip(&factors));
+        let whole = || MassFactors::new(self.unknowns, self.mass.iter().copied());
+        let mass = MassInverse::new(whole, blocks.zip(&factors))?;
         let m = self.ends.len();
         let cliques: Vec<Vec<usize>> = sums.keys().map(|&(i, j)| vec![i, j]).collect();
         let symbolic = Symbolic::analyse(m, &cliques, &vec![Vec::new(); m]);

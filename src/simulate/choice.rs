@@ -4,7 +4,8 @@
 //! So pilot runs with every one of [`CANDIDATES`] race through the beginning of the motion: the one with the fewest operations
 //! so far goes on. When one has seen enough, the one that has come furthest wins. Enough are [`FEWEST_STEPS`] steps and [`PART`]
 //! of the run and, in a mechanism with contacts, [`IMPACTS`] of them that have closed and opened again or a whole horizon: the
-//! steps of the free flight before the first impact say nothing of those that impacts take. What counts are operations, not seconds, so that a scene has the same choice on every machine.
+//! steps of the free flight before the first impact say nothing of those that impacts take. What counts are operations, not
+//! seconds, so that a scene has the same choice on every machine.
 
 use super::start::pacer;
 use super::{Control, Observer, Progress, RunError, Simulation};

@@ -299,6 +299,7 @@ fn sum<'a>(
         count += 1;
     }
     match count {
+        0 => out.fill(0.0),
         1 => combine::<1>(&slopes, out),
         2 => combine::<2>(&slopes, out),
         3 => combine::<3>(&slopes, out),
