@@ -91,15 +91,46 @@ fn the_run_is_that_of_the_scheme_chosen() {
     }
 }
 
+/// The error of a load with some changes.
+fn refused(scene: &str, overrides: &[&str]) -> String {
+    let overrides: Vec<String> = overrides.iter().map(|&s| s.to_owned()).collect();
+    let error = Scene::load(&crate::support::path(scene), &overrides).unwrap_err();
+    let help = miette::Diagnostic::help(&error).map(|help| help.to_string());
+    format!("{error}; {}", help.unwrap_or_default())
+}
+
 #[test]
 fn a_step_leaves_nothing_to_choose() {
-    let overrides = ["integrator.method=auto".to_owned()];
-    let path = crate::support::path("3rrr/case2.toml");
-    let error = Scene::load(&path, &overrides).unwrap_err();
+    let auto = "integrator.method=auto";
+    let said = refused("3rrr/case2.toml", &[auto]);
     assert!(
-        error
-            .to_string()
-            .contains("chooses the scheme for an accuracy"),
-        "{error}"
+        said.contains("chooses the scheme for an accuracy"),
+        "{said}"
     );
+    assert!(said.contains("`--accuracy position=1e-8`"), "{said}");
+    let said = refused("3rrr/case3.toml", &[auto]);
+    assert!(
+        said.contains("`--accuracy position=1e-8,horizon=0.01`"),
+        "{said}"
+    );
+    let bare = "integrator={method=\"auto\",newton_tolerance=1e-11,onset_tolerance=1e-13}";
+    let said = refused("3rrr/case3.toml", &["assumptions={}", bare]);
+    assert!(
+        said.contains("missing key `accuracy` in integrator"),
+        "{said}"
+    );
+}
+
+/// No trial run sees an impact here, or a 64th of the run, in a time that anybody would wait.
+#[test]
+fn an_accuracy_out_of_reach_is_refused() {
+    let mut simulation = Simulation::new(&scene(
+        ("3rrr/case3.toml", &[], "position=1e-20,horizon=0.01"),
+        "auto",
+    ))
+    .unwrap();
+    let mut recording = Recording::new(&simulation);
+    let error = simulation.run(&mut recording).unwrap_err().to_string();
+    assert!(error.contains("1e-20"), "{error}");
+    assert!(simulation.report().choice.is_some());
 }

@@ -14,8 +14,8 @@ use crate::link::AncfCable;
 use crate::math::lu::Symbolic;
 use crate::math::saddle_point::SaddlePoint;
 use crate::model::{
-    Block, Border, Model, PlacedBody, PlacedConstraint, PlacedContact, PlacedElement, PlacedForce,
-    PlacedPoint,
+    Block, Border, DrivenForces, Model, PlacedBody, PlacedConstraint, PlacedContact, PlacedElement,
+    PlacedForce, PlacedPoint,
 };
 use crate::scene::{Analysis, SceneError};
 use crate::system::Shape;
@@ -124,7 +124,7 @@ pub(super) fn build(
         fixed: numbering.fixed.clone(),
         rules: rules(c, &numbering),
         prescribed: kinematics.into_iter().map(Kinematics::motion).collect(),
-        driven: Vec::new(),
+        driven: DrivenForces::default(),
         driven_nodes: numbering.driven_nodes,
         bodies: Vec::new(),
         joints: Vec::new(),
@@ -136,7 +136,8 @@ pub(super) fn build(
     let bodies = bodies.map(|(b, (placed, parts))| placed_body(c, b, placed, parts, kinematics));
     model.bodies = bodies.collect();
     if c.mode == Mode::Real {
-        model.driven = reactions::driven_forces(c, &model, kinematics.map(|k| &**k), &own);
+        let grips = reactions::driven(c, &model, kinematics.map(|k| &**k), &own);
+        model.driven = DrivenForces::new(&grips, &model.weight);
         let joints = 0..own.len();
         let joints = joints.map(|j| reactions::joint(c, &model, &own, j));
         model.joints = joints.collect::<Result<_, _>>()?;

@@ -2,6 +2,7 @@
 
 use super::Mode;
 use super::numbering::Numbering;
+use crate::math::sparse_product::SparseProduct;
 use crate::model::Mass;
 use crate::terms::Inertia;
 
@@ -39,14 +40,19 @@ pub(super) fn mass(parts: Vec<Inertia>, numbering: &Numbering, mode: Mode) -> Ma
             }
         }
     }
+    let n = numbering.unknowns;
+    let unknown = rows[..n].iter().map(|row| {
+        let row = row.iter().filter(|(j, _)| **j < n);
+        row.map(|(&j, &m)| (j, m)).collect()
+    });
     let mut mass = Mass {
         parts,
         entries: Vec::new(),
         ends: Vec::new(),
         tangent: Vec::new(),
+        product: SparseProduct::new(&unknown.collect::<Vec<_>>()),
         known: Vec::new(),
     };
-    let n = numbering.unknowns;
     for (i, row) in rows.iter().enumerate() {
         for (&j, &m) in row {
             mass.entries.push((j as u32, m));

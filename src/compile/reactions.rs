@@ -198,8 +198,8 @@ fn is_actuated(c: &Compiler, j: usize) -> bool {
         || roles.any(|role| matches!(role, Role::Turned(m) if turned(*m)))
 }
 
-/// Forces on all known coordinates that can move: those of driven bodies, and the nodes fixed to them.
-pub(super) fn driven_forces(
+/// What acts on all known points that can move: those of driven bodies, and the nodes fixed to them.
+pub(super) fn driven(
     c: &Compiler,
     model: &Model,
     kinematics: Option<&Kinematics>,

@@ -13,12 +13,11 @@ use crate::system::State;
 use std::f64::consts::PI;
 
 /// Degree of the polynomials.
-const DEGREE: usize = 12;
+const DEGREE: usize = 10;
 const NODES: usize = DEGREE + 1;
-/// Functions that are summed side by side.
-const LANES: usize = 4;
-/// Last coefficients that must be rounding.
-const TAIL: usize = 3;
+/// Last coefficients that must be rounding, one of an even and one of an odd function; they are left out of the sums.
+const TAIL: usize = 2;
+const TERMS: usize = NODES - TAIL;
 /// What counts as rounding, relative to the largest: of a position and of rates, which solving leaves less exact.
 const ROUNDING: [f64; 3] = [2.0 * f64::EPSILON, 16.0 * f64::EPSILON, 16.0 * f64::EPSILON];
 /// A span pays if it is this many steps long.
@@ -35,17 +34,15 @@ pub(crate) struct Series {
     span: f64,
     /// Until then the path is too rough \[s\].
     rough_until: f64,
-    /// Of q of the moving coordinates, then v, then a, in groups of a few functions that are summed side by side.
-    coefficients: Vec<[[f64; LANES]; NODES]>,
+    /// Of q of the moving coordinates, then v, then a, one row for each degree.
+    coefficients: Vec<f64>,
     /// Values at the nodes, one row for each node.
     values: Vec<f64>,
     /// The values of the functions at a time.
-    sum: Vec<[f64; LANES]>,
-    /// Number of functions.
-    width: usize,
+    sum: Vec<f64>,
 }
 
-carried!(Series { start, end, span, rough_until, coefficients } but { values, sum, width });
+carried!(Series { start, end, span, rough_until, coefficients } but { values, sum });
 
 /// cos(i pi/n), n the degree, with the symmetries that make the sums over all nodes vanish.
 fn cosine(i: usize) -> f64 {
@@ -65,58 +62,58 @@ impl Series {
             end: f64::NEG_INFINITY,
             span: FIRST_SPAN * period,
             rough_until: f64::NEG_INFINITY,
-            coefficients: vec![[[0.0; LANES]; NODES]; (3 * moving).div_ceil(LANES)],
+            coefficients: vec![0.0; 3 * moving * NODES],
             values: vec![0.0; 3 * moving * NODES],
-            sum: vec![[0.0; LANES]; (3 * moving).div_ceil(LANES)],
-            width: 3 * moving,
+            sum: vec![0.0; 3 * moving],
         }
     }
 
     /// From values at the nodes cos(j pi/n), both ends among them, to coefficients, c_k = (2/n) sum_j f_j cos(k j pi/n), half of
     /// the first and the last of either; true if the last ones are rounding.
     fn fit(&mut self) -> bool {
-        let width = self.width;
-        self.coefficients.fill([[0.0; LANES]; NODES]);
-        for k in 0..NODES {
+        let width = self.sum.len();
+        self.coefficients.fill(0.0);
+        for (k, row) in self.coefficients.chunks_exact_mut(width).enumerate() {
             let half = |i: usize| if i.is_multiple_of(DEGREE) { 0.5 } else { 1.0 };
             let weight = 2.0 * half(k) / DEGREE as f64;
             for (j, values) in self.values.chunks_exact(width).enumerate() {
                 let factor = weight * half(j) * cosine(k * j);
-                for (c, x) in values.iter().enumerate() {
-                    self.coefficients[c / LANES][k][c % LANES] += factor * x;
+                for (c, x) in row.iter_mut().zip(values) {
+                    *c += factor * x;
                 }
             }
         }
         let third = width / 3;
         (0..3).all(|level| {
-            let functions = level * third..(level + 1) * third;
-            let rows = self.values.chunks_exact(width);
-            let values = rows.flat_map(|row| &row[functions.clone()]);
-            let size = values.fold(0.0, |m, x| larger(m, *x));
-            let tail = functions.flat_map(|c| {
-                let degrees = self.coefficients[c / LANES][NODES - TAIL..].iter();
-                degrees.map(move |row| row[c % LANES])
-            });
-            size.is_finite() && tail.fold(0.0, larger) <= ROUNDING[level] * size
+            let largest = |rows: &[f64]| {
+                let rows = rows.chunks_exact(width);
+                let level = rows.flat_map(|row| &row[level * third..(level + 1) * third]);
+                level.fold(0.0, |m, x| larger(m, *x))
+            };
+            let size = largest(&self.values);
+            let tail = largest(&self.coefficients[TERMS * width..]);
+            size.is_finite() && tail <= ROUNDING[level] * size
         })
     }
 
     /// Sums the series at time t: sum_k c_k T_k(x).
     fn evaluate(&mut self, t: f64) {
         let x = ((t - self.start) - (self.end - t)) / (self.end - self.start);
-        let mut polynomials = [1.0; NODES];
+        let mut polynomials = [1.0; TERMS];
         polynomials[1] = x;
-        for k in 2..NODES {
+        for k in 2..TERMS {
             polynomials[k] = 2.0 * x * polynomials[k - 1] - polynomials[k - 2];
         }
-        for (sum, coefficients) in self.sum.iter_mut().zip(&self.coefficients) {
-            let mut lanes = [0.0; LANES];
-            for (row, polynomial) in coefficients.iter().zip(&polynomials) {
-                for (lane, c) in lanes.iter_mut().zip(row) {
-                    *lane += c * polynomial;
-                }
+        let width = self.sum.len();
+        // slices of one length, so that the loop over functions needs no checks
+        let rows: [&[f64]; TERMS] =
+            std::array::from_fn(|k| &self.coefficients[k * width..][..width]);
+        for (i, sum) in self.sum.iter_mut().enumerate() {
+            let mut value = 0.0;
+            for (row, polynomial) in rows.iter().zip(&polynomials) {
+                value += row[i] * polynomial;
             }
-            *sum = lanes;
+            *sum = value;
         }
     }
 }
@@ -131,11 +128,13 @@ impl Kinematics {
         }
         inner.series.evaluate(to.t);
         let count = self.moving.len();
-        let (q, rates) = inner.series.sum.as_flattened().split_at(count);
+        let (q, rates) = inner.series.sum.split_at(count);
         let (v, a) = rates.split_at(count);
-        for (k, i) in self.moving.iter().enumerate() {
-            let i = self.offset + i;
-            (to.q[i], to.v[i], to.a[i]) = (q[k], v[k], a[k]);
+        for (all, values) in [(&mut to.q, q), (&mut to.v, v), (&mut to.a, a)] {
+            let all = &mut all[self.offset..];
+            for (&i, value) in self.moving.iter().zip(values) {
+                all[i] = *value;
+            }
         }
         true
     }

@@ -6,6 +6,7 @@ mod mass_inverse;
 pub mod plane;
 pub mod quadrature;
 pub mod saddle_point;
+pub mod sparse_product;
 pub mod sparse_rows;
 
 /// The larger of m and |x|; not a number if one of them is not, where `f64::max` would drop it.

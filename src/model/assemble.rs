@@ -25,7 +25,10 @@ impl Model {
     #[inline]
     fn inertia(&self, at: &State, r: &mut [f64]) {
         let (rows, others) = r.split_at_mut(self.shape.unknowns);
-        self.mass.times(&at.a, rows);
+        self.mass.product.times(&at.a, rows);
+        for &(i, j, m) in &self.mass.known {
+            rows[i] += m * at.a[j];
+        }
         others.fill(0.0);
         for &(i, weight) in &self.weight {
             r[i] += at.weight * weight;
@@ -294,10 +297,7 @@ impl System for Model {
     }
 
     fn momentum(&self, x: &[f64], out: &mut [f64]) {
-        for (i, out) in out.iter_mut().enumerate().take(self.shape.unknowns) {
-            let row = self.mass.row(i);
-            *out = row.filter_map(|(j, m)| Some(m * x.get(j)?)).sum();
-        }
+        self.mass.product.times(x, out);
     }
 
     fn residual(&self, at: &State, r: &mut [f64], phi: &mut [f64], work: &mut Work) {

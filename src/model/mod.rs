@@ -8,7 +8,7 @@ mod reaction;
 pub use crate::motion::Pose;
 pub use block::{Block, Border};
 pub use measure::Energies;
-pub(crate) use reaction::{Grip, Source};
+pub(crate) use reaction::{DrivenForces, Grip, Source};
 pub use reaction::{Reaction, Share};
 
 use crate::body::Content;
@@ -22,6 +22,7 @@ use crate::marker::Marker;
 use crate::math::lu::Symbolic;
 use crate::math::plane::Vec2;
 use crate::math::saddle_point::SaddlePoint;
+use crate::math::sparse_product::SparseProduct;
 use crate::motion::{Function, Path};
 use crate::system::{Prescribed, Shape, State, Work};
 use crate::terms::{ConstraintTerm, Inertia, JointTerms};
@@ -64,7 +65,7 @@ pub struct Model {
     /// Prescribed motions that need memory, before they start.
     pub(crate) prescribed: Vec<Box<dyn Prescribed>>,
     /// Forces on known coordinates that move.
-    pub(crate) driven: Vec<Grip>,
+    pub(crate) driven: DrivenForces,
     /// Known nodes that are fixed to a known rigid body.
     pub(crate) driven_nodes: Vec<DrivenNode>,
     /// Bodies of the scene, in its order.
@@ -180,8 +181,10 @@ pub(crate) struct Mass {
     pub entries: Vec<(u32, f64)>,
     /// ... and the end of every row.
     pub ends: Vec<u32>,
-    /// The sum over unknowns in the layout of the tangent.
+    /// The sum over unknowns in the layout of the tangent ...
     pub tangent: Vec<f64>,
+    /// ... and for products.
+    pub product: SparseProduct,
     /// (unknown row, known column, mass): inertia forces on unknown coordinates from accelerations of known ones.
     pub known: Vec<(usize, usize, f64)>,
 }
@@ -192,21 +195,6 @@ impl Mass {
         let start = if i == 0 { 0 } else { self.ends[i - 1] };
         let row = self.entries[start as usize..self.ends[i] as usize].iter();
         row.map(|&(j, m)| (j as usize, m))
-    }
-
-    /// The sum times x, row by row, for as many rows as `out` has.
-    #[inline]
-    pub fn times(&self, x: &[f64], out: &mut [f64]) {
-        let mut start = 0;
-        for (out, &end) in out.iter_mut().zip(&self.ends) {
-            let row = &self.entries[start..end as usize];
-            start = end as usize;
-            let mut sum = 0.0;
-            for &(j, m) in row {
-                sum += m * x[j as usize];
-            }
-            *out = sum;
-        }
     }
 }
 

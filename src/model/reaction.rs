@@ -5,10 +5,12 @@
 
 use super::measure::contact_state;
 use super::{Model, PlacedForce};
+use crate::constraint::{self, ROWS};
 use crate::force::WIDTH;
 use crate::link::ElasticRoute;
 use crate::system::{State, Work};
 use crate::terms::ConstraintTerm;
+use std::collections::HashMap;
 
 /// What a term contributes to consecutive coordinates of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,60 +52,118 @@ pub(crate) struct Grip {
     pub shares: Vec<Share>,
 }
 
+/// Most coordinates of a term that is not a mass.
+const WIDEST: usize = constraint::WIDTH;
+
+/// The forces on known coordinates that move: masses and weights there, and the other terms with their coordinates among these.
+#[derive(Debug, Default)]
+pub(crate) struct DrivenForces {
+    /// Coordinates, with their weight on the left side of the equations of motion \[N\].
+    coordinates: Vec<(usize, f64)>,
+    terms: Vec<(Source, Vec<LocalPlace>)>,
+}
+
+/// A local coordinate of a term and the coordinate that it is.
+#[derive(Debug, Clone, Copy)]
+struct LocalPlace {
+    local: usize,
+    coordinate: usize,
+}
+
+impl DrivenForces {
+    /// Of what acts on some points.
+    pub fn new(grips: &[Grip], weight: &[(usize, f64)]) -> DrivenForces {
+        let coordinates = grips.iter().flat_map(|grip| grip.x..grip.x + grip.width);
+        let weights: HashMap<usize, f64> = weight.iter().copied().collect();
+        let mut terms: Vec<(Source, Vec<LocalPlace>)> = Vec::new();
+        for (grip, share) in grips
+            .iter()
+            .flat_map(|g| g.shares.iter().map(move |s| (g, s)))
+        {
+            if matches!(share.source, Source::Inertia(_)) {
+                continue;
+            }
+            let places = (0..share.count).map(|k| LocalPlace {
+                local: share.local + k,
+                coordinate: grip.x + share.place + k,
+            });
+            match terms.iter_mut().find(|(source, _)| *source == share.source) {
+                Some((_, all)) => all.extend(places),
+                None => terms.push((share.source, places.collect())),
+            }
+        }
+        DrivenForces {
+            coordinates: coordinates
+                .map(|i| (i, weights.get(&i).copied().unwrap_or(0.0)))
+                .collect(),
+            terms,
+        }
+    }
+}
+
 impl Model {
     /// Adds the force of `share`.
     fn add_share(&self, share: Share, at: &State, work: &mut Work, out: &mut [f64; 3]) {
         let out = &mut out[share.place..share.place + share.count];
-        let mut add = |local: &[f64]| {
-            for (o, x) in out.iter_mut().zip(&local[share.local..]) {
-                *o += x;
+        if let Source::Inertia(i) = share.source {
+            let part = &self.mass.parts[i];
+            let n = part.coordinates.len();
+            for (o, row) in out.iter_mut().zip(share.local..) {
+                let values = &part.values[row * n..(row + 1) * n];
+                let columns = part.coordinates.iter().zip(&part.field);
+                *o += values
+                    .iter()
+                    .zip(columns)
+                    .map(|(m, (&j, g))| m * (at.a[j] - at.weight * g))
+                    .sum::<f64>();
             }
-        };
-        match share.source {
-            Source::Inertia(i) => {
-                let part = &self.mass.parts[i];
-                let n = part.coordinates.len();
-                for (o, row) in out.iter_mut().zip(share.local..) {
-                    let values = &part.values[row * n..(row + 1) * n];
-                    let columns = part.coordinates.iter().zip(&part.field);
-                    *o += values
-                        .iter()
-                        .zip(columns)
-                        .map(|(m, (&j, g))| m * (at.a[j] - at.weight * g))
-                        .sum::<f64>();
-                }
-            }
+            return;
+        }
+        let local = self.local_force(share.source, at, work);
+        for (o, f) in out.iter_mut().zip(&local[share.local..]) {
+            *o += f;
+        }
+    }
+
+    /// The local force of a term; zero for a mass, which is not bounded in its number of coordinates.
+    #[inline]
+    fn local_force(&self, source: Source, at: &State, work: &mut Work) -> [f64; WIDEST] {
+        let mut local = [0.0; WIDEST];
+        let narrow = local
+            .first_chunk_mut::<WIDTH>()
+            .expect("forces are narrower");
+        match source {
+            Source::Inertia(_) => {}
             Source::Element(i) => {
                 work.tally[self.elastic_counter] += 1;
                 let element = &self.elements[i];
-                let mut f = [0.0; 8];
                 let q = std::array::from_fn(|j| at.q[element.block.coordinates[j]]);
-                element.kernel.force(&q, &mut f);
-                add(&f);
+                let f = local.first_chunk_mut().expect("elements are narrower");
+                element.kernel.force(&q, f);
             }
             Source::Constraint(i) => {
                 let c = &self.constraints[i];
-                let gradient = c.term.gradient(at);
-                for d in 0..c.rows {
-                    add(&gradient[d].map(|g| g * at.lambda[c.row + d]));
+                let mut gradient = [[0.0; constraint::WIDTH]; ROWS];
+                c.term.value_and_gradient(at, &mut gradient);
+                for (row, lambda) in gradient.iter().zip(&at.lambda[c.row..c.row + c.rows]) {
+                    for (f, g) in local.iter_mut().zip(row) {
+                        *f += g * lambda;
+                    }
                 }
             }
             Source::Force(i) => {
                 let PlacedForce { term, counter, .. } = &self.forces[i];
                 work.tally[*counter] += 1;
-                let mut f = [0.0; WIDTH];
-                term.force(at, &mut f);
-                add(&f);
+                term.force(at, narrow);
             }
             Source::Contact(i) => {
                 let c = &self.contacts[i];
-                let mut f = [0.0; WIDTH];
-                if c.pair.force(contact_state(at, i), &mut f) {
+                if c.pair.force(contact_state(at, i), narrow) {
                     c.count(work);
-                    add(&f);
                 }
             }
         }
+        local
     }
 
     /// The sum of shares \[N\], and \[N m\] in the third place where the coordinates are those of rigid bodies.
@@ -117,12 +177,19 @@ impl Model {
 
     /// Power of the forces on known coordinates \[W\].
     pub(crate) fn drive_power(&self, at: &State, work: &mut Work) -> f64 {
-        let power = |grip: &Grip| {
-            let force = self.sum(&grip.shares, at, work);
-            let rates = force.iter().zip(&at.v[grip.x..grip.x + grip.width]);
-            rates.map(|(f, v)| f * v).sum::<f64>()
-        };
-        self.driven.iter().map(power).sum()
+        let DrivenForces { coordinates, terms } = &self.driven;
+        let mut power = 0.0;
+        for &(i, weight) in coordinates {
+            let inertia: f64 = self.mass.row(i).map(|(j, m)| m * at.a[j]).sum();
+            power += at.v[i] * (inertia + at.weight * weight);
+        }
+        for (source, places) in terms {
+            let local = self.local_force(*source, at, work);
+            for place in places {
+                power += local[place.local] * at.v[place.coordinate];
+            }
+        }
+        power
     }
 
     /// Power of the constraints that depend on time, lambda Phi_t \[W\]: Phi_q v = -Phi_t, and -Phi_q^T lambda acts.

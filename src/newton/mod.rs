@@ -116,6 +116,16 @@ impl Failure {
     }
 }
 
+/// An error where a value is not finite.
+fn not_finite(values: &[f64]) -> Result<(), Failure> {
+    // 0 x is zero for all others; the sum needs no branch for each
+    if values.iter().map(|x| 0.0 * x).sum::<f64>() == 0.0 {
+        return Ok(());
+    }
+    let index = values.iter().position(|x| !x.is_finite()).unwrap_or(0);
+    Err(Failure::NotFinite { index })
+}
+
 /// Solver memory: allocated once, used for every stage.
 #[derive(Debug)]
 pub struct Newton {
@@ -287,17 +297,17 @@ impl Newton {
         self.counters.operations += self.costs.residual + self.costs.level_solve;
         system.free_residual(s, &mut self.r, work);
         system.constraint_acceleration(s, &mut self.phi);
-        for (b, r) in self.b.iter_mut().zip(self.r[..n].iter().chain(&self.phi)) {
-            *b = -r;
-        }
+        let (b, rows) = self.b.split_at_mut(n);
+        b.iter_mut().zip(&self.r).for_each(|(b, r)| *b = -r);
+        rows.iter_mut()
+            .zip(&self.phi)
+            .for_each(|(b, phi)| *b = -phi);
         let matrix = system.acceleration_matrix();
         matrix.solve(&mut self.acceleration, &mut self.b);
-        s.a[..n].copy_from_slice(&self.b[..n]);
-        s.lambda.copy_from_slice(&self.b[n..]);
-        match s.a[..n].iter().position(|a| !a.is_finite()) {
-            Some(index) => Err(Failure::NotFinite { index }),
-            None => Ok(()),
-        }
+        let (a, lambda) = self.b.split_at(n);
+        s.a[..n].copy_from_slice(a);
+        s.lambda.copy_from_slice(lambda);
+        not_finite(a)
     }
 
     /// Projects q on Phi = 0, in the norm of the mass matrix: the projection that ends a step of an explicit scheme on a
@@ -350,10 +360,7 @@ impl Newton {
         let (a, lambda) = truncated.accelerations(&self.r[..n], &self.phi);
         s.a[..n].copy_from_slice(&a);
         s.lambda.copy_from_slice(&lambda);
-        match s.a[..n].iter().position(|a| !a.is_finite()) {
-            Some(index) => Err(Failure::NotFinite { index }),
-            None => Ok(()),
-        }
+        not_finite(&s.a[..n])
     }
 
     /// Ends a stage on the position level: makes v and a consistent if there are constraints, then evaluates the integrands of

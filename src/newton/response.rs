@@ -39,6 +39,8 @@ pub struct Response {
     r: Vec<f64>,
     phi: Vec<f64>,
     b: Vec<f64>,
+    /// M e.
+    momentum: Vec<f64>,
     x: Vec<f64>,
 }
 
@@ -71,6 +73,7 @@ impl Response {
             r: vec![0.0; shape.coordinates],
             phi: vec![0.0; shape.multipliers],
             b: vec![0.0; size],
+            momentum: vec![0.0; shape.unknowns],
             x: vec![0.0; shape.unknowns],
         }
     }
@@ -89,6 +92,7 @@ impl Response {
             r: _,
             phi: _,
             b: _,
+            momentum: _,
             x: _,
         } = self;
         for count in [ready, age, renewed] {
@@ -147,6 +151,7 @@ impl Response {
     pub fn displacement(&mut self, system: &dyn System, h: f64, error: &[f64]) -> &[f64] {
         let n = error.len();
         self.x.fill(0.0);
+        system.momentum(error, &mut self.momentum);
         for level in 0..self.ready {
             let tau = self.time(level);
             if level > 0 && tau < h {
@@ -156,7 +161,7 @@ impl Response {
                 true => self.b[..n].copy_from_slice(error),
                 false => {
                     self.operations += self.costs.solve;
-                    system.momentum(error, &mut self.b);
+                    self.b[..n].copy_from_slice(&self.momentum);
                     self.b[n..].fill(0.0);
                     let factors = &self.matrices[level].factors;
                     factors.solve(system.symbolic(), &mut self.b);

@@ -54,9 +54,13 @@ impl StageEquations<'_> {
     /// What rounding of accelerations, and of positions in stiff springs, may change in velocities \[m/s\].
     fn rounding(&self, s: &State) -> f64 {
         let Weights { q: by_q, v: by_v } = self.w;
-        let unknown = s.q.iter().zip(&s.a).take(self.q_hat.len());
-        let sizes = unknown.map(|(q, a)| (by_v * a).abs().max((by_v / by_q * q).abs()));
-        f64::EPSILON * sizes.fold(0.0, f64::max)
+        let n = self.q_hat.len();
+        let largest = |x: &[f64]| {
+            x.iter()
+                .fold(0.0, |m: f64, x| if x.abs() > m { x.abs() } else { m })
+        };
+        let (of_q, of_a) = (largest(&s.q[..n]), largest(&s.a[..n]));
+        f64::EPSILON * (by_v * of_a).max(by_v / by_q * of_q)
     }
 
     /// Sets positions and velocities from the accelerations.
@@ -185,21 +189,22 @@ impl Newton {
         };
         let is_quadratic = !stage.constrains(system, Level::Acceleration);
         // the next update would only come down to rounding, unless this one shows that rounding is smaller than its estimate
-        let linear_tolerance = |s: &State, update: f64| {
-            let (share, rounding) = (LINEAR_SHARE * tolerance, stage.rounding(s));
+        let linear_tolerance = |rounding: f64, update: f64| {
+            let share = LINEAR_SHARE * tolerance;
             match update > rounding {
                 true => share.max(tolerance.min(ROUNDINGS * rounding)),
                 false => share,
             }
         };
         let (mut renewed, mut ratio, mut error) = (0, None, f64::INFINITY);
+        let mut rounding = 0.0;
         iterate(MAX_ITERATIONS, |iteration| {
             stage.move_to(s);
             self.counters.newton_iterations += 1;
             let is_first = iteration.number == 0;
             let after_three = iteration.last * iteration.rate.powi(3);
             let renew = match is_stale {
-                true => !is_first && after_three > linear_tolerance(s, iteration.last),
+                true => !is_first && after_three > linear_tolerance(rounding, iteration.last),
                 false => is_first || iteration.rate > SLOW,
             };
             if renew && std::mem::replace(&mut is_stale, false) {
@@ -233,11 +238,14 @@ impl Newton {
                 false => rate / (1.0 - rate) * update.size,
             };
             let is_linear = is_stale || !is_quadratic;
+            if is_linear || iteration.number >= renewed + 2 {
+                rounding = stage.rounding(s);
+            }
             // an update that does not decrease any more is rounding of an error that was small enough before
             let is_rounding = is_linear
                 && rate > 0.3
                 && error <= tolerance
-                && update.size <= tolerance.max(ROUNDINGS * stage.rounding(s));
+                && update.size <= tolerance.max(ROUNDINGS * rounding);
             // after one large update the rate says nothing: this is its error for constraints with a curvature of 1/m
             error = linear.max(update.size * update.size * w.q / w.v);
             let is_fresh = !is_linear && renewed == 0;
@@ -251,7 +259,7 @@ impl Newton {
                     .is_some_and(|left| left <= 0.5 * tolerance)
             };
             let allowed = match is_linear {
-                true => linear_tolerance(s, update.size),
+                true => linear_tolerance(rounding, update.size),
                 false => tolerance,
             };
             let is_small = is_rounding
@@ -261,8 +269,8 @@ impl Newton {
                 && iteration.number >= renewed + 2
                 && rate > 0.3
                 && match is_quadratic {
-                    true => update.size < ROUNDING_BAND * tolerance.max(stage.rounding(s)),
-                    false => update.size < LINEAR_ROUNDING_BAND * stage.rounding(s),
+                    true => update.size < ROUNDING_BAND * tolerance.max(rounding),
+                    false => update.size < LINEAR_ROUNDING_BAND * rounding,
                 };
             self.counters.stagnations += u64::from(stagnates && !is_small);
             Ok((update, is_small || stagnates))

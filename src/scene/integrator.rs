@@ -103,15 +103,28 @@ pub(super) fn read(
     let choices = schemes.iter().map(|s| (s.name, Some(*s))).chain(automatic);
     let scheme = named.choice(&choices.collect::<Vec<_>>())?;
     let method = method(&table, scheme.unwrap_or(CANDIDATES[0]), &parameters)?;
-    let (pace, pace_span) = pace(&table, simulation, clearance.is_some())?;
     let is_dynamic = simulation.analysis == Analysis::Dynamic;
+    let (pace, pace_span) = pace(
+        &table,
+        simulation,
+        clearance.is_some(),
+        scheme.is_none() && is_dynamic,
+    )?;
     if scheme.is_none() && is_dynamic && matches!(pace, Pace::Step(_)) {
         let message = format!(
             "`{}` = {AUTO:?} chooses the scheme for an accuracy",
             named.path
         );
         let error = named.fault(message, "needs an `accuracy` instead of a `step`");
-        return Err(error.with_help("write `accuracy = { position = ... }`, or name a scheme"));
+        let help = match clearance.is_some() {
+            true => {
+                "write `accuracy = { position = ..., horizon = ... }` in place of `step`, or name a scheme; on the command line `--accuracy position=1e-8,horizon=0.01`"
+            }
+            false => {
+                "write `accuracy = { position = ... }` in place of `step`, or name a scheme; on the command line `--accuracy position=1e-8`"
+            }
+        };
+        return Err(error.with_help(help));
     }
     Ok(Integrator {
         method,
@@ -170,11 +183,12 @@ fn value(field: &Field, parameter: &Parameter) -> Result<f64, SceneError> {
 }
 
 /// `step` or `accuracy`, and where it stands; where both stand the one that comes from a later source, which is an override.
-/// `loose` where a joint has clearance.
+/// `loose` where a joint has clearance, `automatic` where the scheme is left open.
 fn pace(
     table: &Fields,
     simulation: &SimulationTable,
     loose: bool,
+    automatic: bool,
 ) -> Result<(Pace, Span), SceneError> {
     let source = |name| Some(table.optional(name)?.node.key.source());
     let order = source("step").cmp(&source("accuracy"));
@@ -188,7 +202,17 @@ fn pace(
             Ok((Pace::Accuracy(accuracy), field.span()))
         }
         _ => {
-            let field = table.field("step")?;
+            let (name, what) = match automatic && source("step").is_none() {
+                true => (
+                    "accuracy",
+                    "the allowed error, for which \"auto\" chooses the scheme",
+                ),
+                false => (
+                    "step",
+                    "the time step; `accuracy`, an allowed error, can take its place",
+                ),
+            };
+            let field = table.required(name, what)?;
             Ok((Pace::Step(step(&field, simulation)?), field.span()))
         }
     }

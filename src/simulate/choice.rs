@@ -4,9 +4,10 @@
 //! So pilot runs with every one of [`CANDIDATES`] race through the beginning of the motion: the one with the fewest operations
 //! so far goes on. When one has seen enough, the one that has come furthest wins. Enough are [`FEWEST_STEPS`] steps and [`PART`]
 //! of the run and, in a mechanism with contacts, [`IMPACTS`] of them that have closed and opened again or a whole horizon: the
-//! steps of the free flight before the first impact say nothing of those that impacts take. What counts are operations, not
-//! seconds, so that a scene has the same choice on every machine.
+//! steps of the free flight before the first impact say nothing of those that impacts take. After [`PILOT_STEPS`] it has seen
+//! enough in any case. What counts are operations, not seconds, so that a scene has the same choice on every machine.
 
+use super::foresight::PILOT_STEPS;
 use super::start::pacer;
 use super::{Control, Observer, Progress, RunError, Simulation};
 use crate::scene::Pace;
@@ -98,9 +99,10 @@ impl Racer {
             Pace::Step(_) => 0.0,
         };
         let has_impacts = !state.z.is_empty();
-        counters.steps >= FEWEST_STEPS
-            && state.t >= PART * scene.simulation.duration
-            && (!has_impacts || closures.ended >= IMPACTS || state.t >= horizon)
+        counters.steps >= PILOT_STEPS
+            || counters.steps >= FEWEST_STEPS
+                && state.t >= PART * scene.simulation.duration
+                && (!has_impacts || closures.ended >= IMPACTS || state.t >= horizon)
     }
 
     fn run(self) -> PilotRun {

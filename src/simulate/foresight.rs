@@ -12,7 +12,7 @@ use std::io::Result;
 /// Most steps that a run may be foreseen to take: hours for a mechanism of a few bodies.
 const MOST_STEPS: f64 = 1e8;
 /// Steps after which the pilot ends at the latest: seconds.
-const PILOT_STEPS: u64 = 1 << 17;
+pub(super) const PILOT_STEPS: u64 = 1 << 17;
 
 /// Foresees the number of steps whenever the pilot has taken twice as many as the time before.
 struct Pilot {

@@ -2,7 +2,7 @@
 
 use super::pace::Pacer;
 use super::{AccuracyReport, Chatter, Choice, Impact, Integration, Overrun, Simulation};
-use crate::body::CentredLink;
+use crate::body::{Body, CentredLink, RigidLink};
 use crate::checkpoint::carried;
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, Scene};
@@ -228,7 +228,7 @@ impl Simulation {
                 .collect(),
             assumptions: notes(&self.scene)
                 .into_iter()
-                .chain(self.centred_links())
+                .chain(self.coordinates_of_links())
                 .chain(self.model.redundant().iter().map(|name| {
                     format!("{name} is redundant and left out: the constraint forces in its loop are not unique")
                 }))
@@ -238,15 +238,23 @@ impl Simulation {
         }
     }
 
-    /// Which rigid links have the coordinates of their centres.
-    fn centred_links(&self) -> Option<String> {
-        let bodies = self.model.bodies().iter();
-        let centred = bodies.filter(|body| body.placed.kind.get::<CentredLink>().is_some());
-        let names: Vec<&str> = centred.map(|body| &*body.name).collect();
-        let list = names.join(", ");
-        (!names.is_empty()).then(|| {
-            format!("unknowns are x, y of the centre of mass and theta of the rigid links {list}")
-        })
+    /// Which rigid links have which coordinates, of those that are not driven.
+    fn coordinates_of_links(&self) -> impl Iterator<Item = String> {
+        let unknowns = self.model.shape().unknowns;
+        let names = |has: fn(&dyn Body) -> bool| -> String {
+            let bodies = self.model.bodies().iter();
+            let free = bodies.filter(|body| body.placed.x.iter().any(|x| *x < unknowns));
+            let named = free.filter(|body| has(&*body.placed.kind));
+            named.map(|body| &*body.name).collect::<Vec<_>>().join(", ")
+        };
+        let centred = names(|kind| kind.get::<CentredLink>().is_some());
+        let natural = names(|kind| kind.get::<RigidLink>().is_some());
+        let notes = [
+            ("x, y of their centres of mass and theta", centred),
+            ("natural coordinates, x, y of their ends", natural),
+        ];
+        let notes = notes.into_iter().filter(|(_, names)| !names.is_empty());
+        notes.map(|(what, names)| format!("rigid links with {what}: {names}"))
     }
 
     /// The report at this moment.

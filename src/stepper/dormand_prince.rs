@@ -109,7 +109,7 @@ impl Stepper for DormandPrince {
         for (i, (c, row)) in STAGES.iter().enumerate() {
             let (done, rest) = self.stages.split_at_mut(i);
             let stage = &mut rest[0];
-            stage.copy_from(done.last().unwrap_or(from));
+            stage.copy_memory(from);
             stage.t = if *c == 1.0 { t } else { from.t + c * h };
             system.prescribe(from, stage, work)?;
             let before = || [from].into_iter().chain(&*done);
@@ -126,8 +126,17 @@ impl Stepper for DormandPrince {
             }
         }
         let stages = &self.stages;
+        to.copy_memory(from);
+        to.t = t;
         // the known coordinates of the last stage are those of the end
-        to.copy_from(&stages[4]);
+        let [.., last] = stages;
+        for (to, last) in [
+            (&mut to.q, &last.q),
+            (&mut to.v, &last.v),
+            (&mut to.a, &last.a),
+        ] {
+            to[shape.unknowns..].copy_from_slice(&last[shape.unknowns..]);
+        }
         let all = || [from].into_iter().chain(stages);
         sum(h, WEIGHTS, all(), |s| &s.a, &mut self.increment);
         add(&from.v, &self.increment, &mut to.v);

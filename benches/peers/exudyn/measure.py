@@ -51,7 +51,7 @@ LOOSE_REFERENCE = [
 ]
 
 # Explicit methods of Exudyn do not take ideal joints.
-IDEAL_STEPS = [1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6]
+IDEAL_STEPS = [2.5e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6]
 
 
 def ideal(**options):

@@ -1,8 +1,9 @@
-//! The recorded numbers of instructions of every step, and whether the present program still has them.
+//! The recorded numbers of instructions of every step, and whether the present program still has them. They are those of the
+//! profile of the tests, which have compiled the program already.
 
 use crate::count::{OperationTable, StepCount, per_step};
 use crate::list::StepList;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr, ensure, miette};
 use numbers::percent;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -27,22 +28,21 @@ pub type StepCounts = BTreeMap<String, StepCount>;
 /// Counts all steps and records them.
 ///
 /// # Errors
-/// When Valgrind is missing.
-pub fn record(root: &Path, program: &Path) -> Result<StepCounts> {
+/// When Valgrind or the program is missing.
+pub fn record(root: &Path) -> Result<()> {
     let counts = RecordedCounts {
         compiler: machine().compiler.to_owned(),
-        steps: count(root, program)?,
+        steps: count(root, &program()?)?,
     };
     let text = serde_json::to_string_pretty(&counts).into_diagnostic()?;
-    std::fs::write(path(root), text + "\n").into_diagnostic()?;
-    Ok(counts.steps)
+    std::fs::write(path(root), text + "\n").into_diagnostic()
 }
 
 /// Counts all steps and compares them with those recorded by the same compiler.
 ///
 /// # Errors
-/// When Valgrind is missing, and where a count differs.
-pub fn check(root: &Path, program: &Path) -> Result<()> {
+/// When Valgrind or the program is missing, and where a count differs.
+pub fn check(root: &Path) -> Result<()> {
     let path = path(root);
     let text = std::fs::read_to_string(&path)
         .into_diagnostic()
@@ -54,11 +54,11 @@ pub fn check(root: &Path, program: &Path) -> Result<()> {
         eprintln!("instructions were not compared: recorded with {before}, this is {compiler}");
         return Ok(());
     }
-    let changed = changes(&recorded.steps, &count(root, program)?);
+    let changed = changes(&recorded.steps, &count(root, &program()?)?);
     match changed.is_empty() {
         true => Ok(()),
         false => Err(miette!(
-            help = "`cargo run --release -p benchmarks -- count` records the present counts",
+            help = "`cargo run -p benchmarks -- count` records the present counts",
             "the instructions of a step have changed:\n{}",
             changed.join("\n")
         )),
@@ -69,7 +69,29 @@ fn path(root: &Path) -> PathBuf {
     root.join("pages/benchmarks/counts.json")
 }
 
-fn count(root: &Path, program: &Path) -> Result<StepCounts> {
+/// The program that the tests have compiled.
+fn program() -> Result<PathBuf> {
+    ensure!(
+        cfg!(debug_assertions),
+        help = "without --release",
+        "counts are recorded and compared with the profile of the tests"
+    );
+    let own = std::env::current_exe().into_diagnostic()?;
+    let path = own.with_file_name("looselink").canonicalize();
+    path.map_err(|_| {
+        miette!(
+            help = "`cargo build --workspace` makes it",
+            "there is no program looselink beside {}",
+            own.display()
+        )
+    })
+}
+
+/// Counts all steps of a program.
+///
+/// # Errors
+/// When Valgrind is missing.
+pub fn count(root: &Path, program: &Path) -> Result<StepCounts> {
     let costs = OperationTable::of(program)?;
     let mut steps = BTreeMap::new();
     for row in StepList::read(root)?.steps {

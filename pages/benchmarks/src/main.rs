@@ -85,10 +85,8 @@ fn main() -> Result<()> {
     let root = records::root();
     match arguments.command {
         None => measure(&root, arguments.repeats.into(), arguments.only),
-        Some(Benchmark::Count { check: true }) => gate::check(&root, &program(&root)?),
-        Some(Benchmark::Count { check: false }) => {
-            gate::record(&root, &program(&root)?).map(|_| ())
-        }
+        Some(Benchmark::Count { check: true }) => gate::check(&root),
+        Some(Benchmark::Count { check: false }) => gate::record(&root),
         Some(Benchmark::Chain { links, loose }) => {
             let cost = growth::measure(links, loose)?;
             println!("{}", serde_json::to_string(&cost).into_diagnostic()?);
@@ -115,7 +113,7 @@ fn measure(root: &Path, repeats: usize, only: Option<PagePart>) -> Result<()> {
     let program = program(root)?;
     measured.machine = machine().to_string();
     if wanted(PagePart::Steps) {
-        let counts = gate::record(root, &program)?;
+        let counts = gate::count(root, &program)?;
         measured.baseline = list::StepList::read(root)?.baseline;
         measured.steps = steps::measure(root, &program, &counts, repeats)?;
     }
@@ -157,7 +155,7 @@ fn write(root: &Path, measured: &Measured) -> Result<()> {
     plot::save(&figures::steps(measured), &folder, "steps")?;
     plot::save(&figures::growth(measured), &folder, "growth")?;
     plot::save(&figures::rivals(measured), &folder, "rivals")?;
-    std::fs::write(root.join("BENCHMARKS.md"), page::page(measured))
+    std::fs::write(root.join("BENCHMARKS.md"), page::page(root, measured)?)
         .into_diagnostic()
         .wrap_err("cannot write BENCHMARKS.md")
 }

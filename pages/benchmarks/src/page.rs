@@ -6,11 +6,17 @@ use crate::growth::{self, ChainCost, exponent};
 use crate::meshes::ERRORS;
 use crate::rivals::{Code, STUDIES, best};
 use accuracy::ida;
+use miette::{Result, miette};
 use numbers::{digits, si};
+use std::path::Path;
 use studies::machine::median;
+use studies::precision::Study;
 
 /// What BENCHMARKS.md says.
-pub fn page(measured: &Measured) -> String {
+///
+/// # Errors
+/// When a study cannot be read.
+pub fn page(root: &Path, measured: &Measured) -> Result<String> {
     let mut out = format!(
         "# What the program costs\n\n{}\n\
          How many instructions a step takes, how costs grow with the size of a mechanism, and how long other programs take for \
@@ -24,8 +30,8 @@ pub fn page(measured: &Measured) -> String {
     out += &short(measured);
     out += &steps(measured);
     out += &sizes(measured);
-    out += &rivals(measured);
-    out
+    out += &rivals(root, measured)?;
+    Ok(out)
 }
 
 /// Conclusions.
@@ -48,17 +54,22 @@ fn short(measured: &Measured) -> String {
         format!("{} (ideal) and {} (with play)", each[0], each[1])
     };
     let longest = growth::SIZES[growth::SIZES.len() - 1];
+    let tenth = longest / 10;
     let compile = |loose: bool| {
         let chains = measured.chains.iter();
         let one = chains.filter(|chain| chain.loose == loose && chain.links == longest);
         let seconds: Vec<String> = one.map(|chain| si(chain.compile, "s")).collect();
         seconds.join("")
     };
+    let seconds: Vec<f64> = measured.steps.iter().map(|step| step.seconds).collect();
+    let [least, most] = [f64::min, f64::max].map(|of| seconds.iter().copied().reduce(of));
     format!(
         "## In short\n\n\
-         * A step takes {} of the instructions and {} of the processor time of commit {}.\n\
+         * A step takes {} to {} of processor time. These are {} of the instructions and {} of the time of the baseline, commit {}.\n\
          * A chain of {longest} links is compiled in {} with ideal joints and in {} with play.\n\
-         * Exponents over the largest decade of links: compilation {}, a step {}, memory {}.\n{}\n",
+         * From {tenth} to {longest} links the costs grow with these powers of their number: compilation {}, a step {}, memory {}.\n{}\n",
+        si(least.unwrap_or(0.0), "s"),
+        si(most.unwrap_or(0.0), "s"),
         range(&instructions),
         range(&times),
         measured.baseline,
@@ -101,8 +112,8 @@ fn compared(measured: &Measured) -> String {
         }
         ratios.sort_by(f64::total_cmp);
         out += &format!(
-            "* {} takes {} to {} times as long as the fastest method of Looselink, {} times in the median over {} pairs of a \
-             study and an error.\n",
+            "* {} takes {} to {} times as long as Looselink, {} times in the median over {} pairs of a study and an error, \
+             each with its fastest method.\n",
             code.name(),
             digits(ratios[0]),
             digits(ratios[ratios.len() - 1]),
@@ -114,7 +125,9 @@ fn compared(measured: &Measured) -> String {
         true => "none".to_owned(),
         false => faster.join(", "),
     };
-    out + &format!("* Faster than Looselink: {faster}.\n")
+    out + &format!(
+        "* Where another code is faster, with its time over that of Looselink: {faster}.\n"
+    )
 }
 
 /// The table of steps.
@@ -122,8 +135,8 @@ fn steps(measured: &Measured) -> String {
     let mut out = String::from(
         "## A step\n\n![Instructions of a step](pages/benchmarks/figures/steps.png)\n\n\
          The floating-point operations are additions, subtractions, multiplications, divisions and roots; those of the \
-         mathematical library are not among them. `./test.sh --all` counts the instructions again and fails where a number differs \
-         by more than 2 %.\n\n\
+         mathematical library are not among them. `./test.sh --all` counts the instructions of the program that its tests compile \
+         ([counts.json](pages/benchmarks/counts.json)) and fails where a number has changed by more than 2 %.\n\n\
          | step of 10 µs | instructions | operations | baseline | ratio of instructions | processor time | ratio of times |\n\
          |---|---|---|---|---|---|---|\n",
     );
@@ -151,6 +164,7 @@ fn steps(measured: &Measured) -> String {
 fn sizes(measured: &Measured) -> String {
     let mut out = String::from(
         "## Growth with the size\n\n![Costs over the size](pages/benchmarks/figures/growth.png)\n\n\
+         The table shows the processor time to reach an error; a cell is empty where the steps tried do not reach it.\n\n\
          | case 2, 20 ms: elements a link | ",
     );
     let columns: Vec<(&str, usize)> = curves(measured)
@@ -178,18 +192,27 @@ fn sizes(measured: &Measured) -> String {
 const LEVELS: [f64; 6] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
 
 /// Other codes.
-fn rivals(measured: &Measured) -> String {
+fn rivals(root: &Path, measured: &Measured) -> Result<String> {
+    let studies = STUDIES.iter().map(|name| -> Result<String> {
+        let path = root.join("studies").join(name).with_extension("toml");
+        let study = Study::load(&path).map_err(|e| miette!("{e}"))?;
+        Ok(format!("{name} {}", si(study.duration, "s")))
+    });
+    let durations: Vec<String> = studies.collect::<Result<_>>()?;
     let mut out = format!(
         "\n## Other codes\n\n![Error against processor time, all codes](pages/benchmarks/figures/rivals.png)\n\n\
          Exudyn 1.13.6 has the same mechanisms with the same data ([benches/peers/exudyn](benches/peers/exudyn)), in the fastest \
          formulation that was found for it. IDA is the BDF code of SUNDIALS, here with KLU: once on Looselink's residual and \
-         tangent (index 1), and once in the second implementation, in full coordinates (stabilised index 2). Its tolerances start \
-         at {:e}, so its times for large errors are those of a smaller one. Every code is compared with its own converged \
-         solution. The contact laws are the same, but Exudyn does not clamp forces that pull; its cable element has another \
-         strain. On one core, one after the other in one run.\n\n\
-         The table shows the fastest time, and in brackets how many times as long the other code takes.\n\n\
+         tangent (index 1), and once in the second implementation, in full coordinates (stabilised index 2). Its loosest relative \
+         tolerance is {:e}; where that run is more accurate than the error in the table, its time stands there all the same. The contact \
+         laws are the same, but Exudyn does not clamp forces that pull; its cable element has another strain. On one core, one after \
+         the other in one run.\n\n\
+         The [studies](studies) simulate the first milliseconds of a mechanism: {durations}. The error is the largest difference of \
+         a position from the code's own converged solution. The table shows the fastest time to reach it, and in brackets how many \
+         times as long the other code takes; a dash where it does not reach the error.\n\n\
          | study | error | Looselink | Exudyn | IDA on our equations | IDA, second implementation |\n|---|---|---|---|---|---|\n",
-        ida::RELATIVE[0]
+        ida::RELATIVE[0],
+        durations = durations.join(", "),
     );
     for study in STUDIES {
         for error in LEVELS {
@@ -212,5 +235,5 @@ fn rivals(measured: &Measured) -> String {
             );
         }
     }
-    out
+    Ok(out)
 }
