@@ -41,7 +41,11 @@ pub fn per_step(
     })
 }
 
-/// The command line of a run that records almost nothing.
+/// Longer than any run \[s\].
+const NEVER: &str = "1e6";
+
+/// The command line of a run that records almost nothing. A checkpoint, which a slow run writes, takes a digest of the program: more
+/// instructions than the run.
 pub fn command(program: &Path, root: &Path, row: &StepRow, end: f64, out: &Path) -> Command {
     let mut command = Command::new(program);
     command.current_dir(root).arg("run").arg(&row.scene);
@@ -53,7 +57,7 @@ pub fn command(program: &Path, root: &Path, row: &StepRow, end: f64, out: &Path)
     for change in own.iter().chain(&row.set) {
         command.args(["--set", change]);
     }
-    command.arg("--out").arg(out);
+    command.args(["--checkpoint", NEVER]).arg("--out").arg(out);
     command
 }
 
