@@ -41,6 +41,8 @@ quick() {
 }
 
 everything() {
+    # whatever the surroundings: how the compiler divides the code decides on instructions
+    export CARGO_INCREMENTAL=1
     cargo clippy --workspace --all-targets -- -D warnings
     # the fuzz targets, a workspace of their own
     cargo check --quiet --locked --manifest-path fuzz/Cargo.toml --target-dir target
