@@ -31,7 +31,10 @@ pub fn points(
     tell: &mut dyn FnMut(Notice),
     add: Add,
 ) -> Result<()> {
-    let plan = ComparisonPlan::of_file(&study.scene, &study.set, study.duration, study.interval);
+    // IDA has steps of its own; that of the scene may not divide the interval of the study
+    let step = format!("integrator.step={:e}", study.interval);
+    let set = [&study.set[..], &[step]].concat();
+    let plan = ComparisonPlan::of_file(&study.scene, &set, study.duration, study.interval);
     for &relative in tolerances {
         tell(Notice::Begun(&format!("{NAME}, tolerance {relative:e}")));
         let made = repeated(&plan, relative, repeats);
@@ -47,7 +50,8 @@ pub fn points(
                 };
                 add(pace, Ok(made))
             }
-            Err(error) => add(pace, Err(error.to_string())),
+            // around it are the names of the study and of its files
+            Err(error) => add(pace, Err(error.root_cause().to_string())),
         };
         added.map_err(|e| miette!("{e}"))?;
         if made.is_ok_and(|(run, _)| run.seconds > LAST_RUN) {
