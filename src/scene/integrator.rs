@@ -116,14 +116,13 @@ pub(super) fn read(
             named.path
         );
         let error = named.fault(message, "needs an `accuracy` instead of a `step`");
-        let help = match clearance.is_some() {
-            true => {
-                "write `accuracy = { position = ..., horizon = ... }` in place of `step`, or name a scheme; on the command line `--accuracy position=1e-8,horizon=0.01`"
-            }
-            false => {
-                "write `accuracy = { position = ... }` in place of `step`, or name a scheme; on the command line `--accuracy position=1e-8`"
-            }
+        let [key, value] = match clearance.is_some() {
+            true => [", horizon = ...", ",horizon=0.01"],
+            false => ["", ""],
         };
+        let help = format!(
+            "write `accuracy = {{ position = ...{key} }}` in place of `step`, or name a scheme; on the command line `--accuracy position=1e-8{value}`"
+        );
         return Err(error.with_help(help));
     }
     Ok(Integrator {

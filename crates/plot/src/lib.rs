@@ -43,6 +43,12 @@ pub mod palette {
     pub const WINE: Color = (136, 34, 85);
     /// Eleventh series.
     pub const TEAL: Color = (68, 170, 153);
+    /// For a diagram with more curves than [`SERIES`].
+    pub const LIME: Color = (120, 190, 32);
+    /// The same.
+    pub const ROSE: Color = (238, 80, 130);
+    /// The same.
+    pub const SLATE: Color = (90, 110, 150);
     /// The colours of series in their order; the first six are those of Okabe and Ito.
     pub const SERIES: [Color; 11] = [
         BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, INDIGO, BROWN, OLIVE, WINE, TEAL,

@@ -4,13 +4,12 @@ use crate::Measured;
 use crate::figures::{chain, curves, mesh};
 use crate::growth::{self, ChainCost, exponent};
 use crate::meshes::ERRORS;
-use crate::rivals::{Code, STUDIES, best};
+use crate::rivals::{Code, STUDIES, best, study};
 use accuracy::ida;
-use miette::{Result, miette};
+use miette::Result;
 use numbers::{digits, si};
 use std::path::Path;
 use studies::machine::median;
-use studies::precision::Study;
 
 /// What BENCHMARKS.md says.
 ///
@@ -193,10 +192,9 @@ const LEVELS: [f64; 6] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
 
 /// Other codes.
 fn rivals(root: &Path, measured: &Measured) -> Result<String> {
-    let studies = STUDIES.iter().map(|name| -> Result<String> {
-        let path = root.join("studies").join(name).with_extension("toml");
-        let study = Study::load(&path).map_err(|e| miette!("{e}"))?;
-        Ok(format!("{name} {}", si(study.duration, "s")))
+    let studies = STUDIES.iter().map(|name| {
+        let duration = study(root, name)?.duration;
+        Ok(format!("{name} {}", si(duration, "s")))
     });
     let durations: Vec<String> = studies.collect::<Result<_>>()?;
     let mut out = format!(

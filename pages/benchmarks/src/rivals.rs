@@ -24,6 +24,15 @@ pub const STUDIES: [&str; 5] = [
 const ENVIRONMENT: &str = "target/tools/exudyn";
 const EXUDYN: &str = "exudyn==1.13.6";
 
+/// One of the studies.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn study(root: &Path, name: &str) -> Result<Study> {
+    let path = root.join("studies").join(name).with_extension("toml");
+    Study::load(&path).map_err(|e| miette!("{e}"))
+}
+
 /// Whose curves they are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Code {
@@ -100,8 +109,7 @@ pub fn measure(root: &Path, program: &Path, repeats: usize) -> Result<Vec<RivalC
 
 /// Our curves and those of IDA, against our reference.
 fn own(root: &Path, name: &str, repeats: usize) -> Result<Vec<RivalCurve>> {
-    let path = root.join("studies").join(name).with_extension("toml");
-    let study = Study::load(&path).map_err(|e| miette!("{e}"))?;
+    let study = study(root, name)?;
     let effort = Effort {
         repeats,
         smoke: false,
@@ -157,8 +165,7 @@ impl Observer for CoordinateRows {
 
 /// The curve of IDA on our equations, against our reference.
 fn ida_on_ours(root: &Path, name: &str, repeats: usize) -> Result<RivalCurve> {
-    let path = root.join("studies").join(name).with_extension("toml");
-    let study = Study::load(&path).map_err(|e| miette!("{e}"))?;
+    let study = study(root, name)?;
     let [coarse, fine] = study.reference.paces().map(|pace| -> Result<_> {
         let scene = study.scene(&study.reference.set, study.reference.elements, pace);
         let scene = scene.map_err(|e| miette!("{e}"))?;
