@@ -107,6 +107,14 @@ impl State {
         self.angles.copy_from_slice(&other.angles);
     }
 
+    /// Copies the known coordinates and their rates.
+    pub fn copy_known(&mut self, other: &State) {
+        let known = self.q_low.len()..;
+        self.q[known.clone()].copy_from_slice(&other.q[known.clone()]);
+        self.v[known.clone()].copy_from_slice(&other.v[known.clone()]);
+        self.a[known.clone()].copy_from_slice(&other.a[known]);
+    }
+
     /// Copies everything from `other` without allocating.
     pub fn copy_from(&mut self, other: &State) {
         self.t = other.t;

@@ -45,11 +45,6 @@ impl SparseProduct {
         product
     }
 
-    /// Number of entries of a row or of two.
-    pub fn operations(&self) -> usize {
-        self.entries.len()
-    }
-
     /// The matrix times x, into the first entries of `out`.
     #[inline]
     pub fn times(&self, x: &[f64], out: &mut [f64]) {
@@ -96,7 +91,7 @@ mod tests {
         ];
         let product = SparseProduct::new(&rows);
         assert_eq!((product.singles.len(), product.pairs.len()), (3, 2));
-        assert_eq!(product.operations(), 9);
+        assert_eq!(product.entries.len(), 9);
         let x: Vec<f64> = (0..7).map(|i| 0.3 + f64::from(i * i)).collect();
         let mut out = [f64::NAN; 7];
         product.times(&x, &mut out);

@@ -26,10 +26,16 @@ impl Model {
     fn inertia(&self, at: &State, r: &mut [f64]) {
         let (rows, others) = r.split_at_mut(self.shape.unknowns);
         self.mass.product.times(&at.a, rows);
-        for &(i, j, m) in &self.mass.known {
-            rows[i] += m * at.a[j];
-        }
         others.fill(0.0);
+        self.known_loads(at, r);
+    }
+
+    /// Adds the inertia forces of known accelerations, and the weight.
+    #[inline]
+    fn known_loads(&self, at: &State, r: &mut [f64]) {
+        for &(i, j, m) in &self.mass.known {
+            r[i] += m * at.a[j];
+        }
         for &(i, weight) in &self.weight {
             r[i] += at.weight * weight;
         }
@@ -283,10 +289,7 @@ impl System for Model {
         to: &mut State,
         work: &mut Work,
     ) -> Result<(), PrescribeError> {
-        let n = self.shape.unknowns;
-        to.q[n..].copy_from_slice(&from.q[n..]);
-        to.v[n..].copy_from_slice(&from.v[n..]);
-        to.a[n..].copy_from_slice(&from.a[n..]);
+        to.copy_known(from);
         self.follow_rules(to);
         for motion in &mut work.prescribed {
             work.tally[self.kinematics_counter] += 1;
@@ -339,12 +342,7 @@ impl System for Model {
     fn free_residual(&self, at: &State, r: &mut [f64], work: &mut Work) {
         self.count(work);
         r.fill(0.0);
-        for &(i, j, m) in &self.mass.known {
-            r[i] += m * at.a[j];
-        }
-        for &(i, weight) in &self.weight {
-            r[i] += at.weight * weight;
-        }
+        self.known_loads(at, r);
         self.forces(at, r, work);
     }
 

@@ -129,14 +129,7 @@ impl Stepper for DormandPrince {
         to.copy_memory(from);
         to.t = t;
         // the known coordinates of the last stage are those of the end
-        let [.., last] = stages;
-        for (to, last) in [
-            (&mut to.q, &last.q),
-            (&mut to.v, &last.v),
-            (&mut to.a, &last.a),
-        ] {
-            to[shape.unknowns..].copy_from_slice(&last[shape.unknowns..]);
-        }
+        to.copy_known(&stages[4]);
         let all = || [from].into_iter().chain(stages);
         sum(h, WEIGHTS, all(), |s| &s.a, &mut self.increment);
         add(&from.v, &self.increment, &mut to.v);
