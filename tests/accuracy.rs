@@ -6,6 +6,7 @@ use looselink::newton::Response;
 use looselink::scene::Scene;
 use looselink::simulate::{Control, Observer, Progress, RunError, Simulation};
 use looselink::system::System;
+use std::f64::consts::{PI, TAU};
 
 /// A scene, its duration, the time between rows, the step of the reference, channels of position.
 const SCENES: [(&str, f64, f64, f64, &[&str]); 5] = [
@@ -562,4 +563,56 @@ initial.bodies.bob = {{ x = {A:?}, y = 0.0 }}
     // as drift the errors of velocity would weigh w H = 1000 times as much, and take 30 times the steps
     let ratio = steps / expected;
     assert!((0.3..5.0).contains(&ratio), "{steps} steps, not {expected}");
+}
+
+/// Times at which steps end.
+#[derive(Default)]
+struct StepEnds(Vec<f64>);
+
+impl Observer for StepEnds {
+    fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
+        Ok(())
+    }
+
+    fn step(&mut self, progress: &Progress) -> std::io::Result<Control> {
+        self.0.push(progress.t);
+        Ok(Control::Continue)
+    }
+}
+
+/// A force of constant frequency w and of amplitude A turns about a point mass. A step of the trapezoidal rule has the error
+/// h^3 w^2 A/12 of velocity, so steps of equal errors are proportional to A^(-1/3). With equal errors in equal times they would be
+/// proportional to A^(-1/2). A varies a hundredfold, some times within the horizon.
+#[test]
+fn all_steps_have_the_same_error() {
+    const RATE: f64 = 20.0;
+    let amplitude = format!("10^sin({RATE}*t)");
+    let text = format!(
+        r#"
+format = 1
+title = "a turning force"
+simulation = {{ duration = 1.2 }}
+integrator = {{ method = "trapezoidal", accuracy = {{ position = 1e-7 }}, newton_tolerance = 1e-10 }}
+output = {{ interval = 0.6, channels = ["mass.x"] }}
+bodies.ground = {{ type = "ground" }}
+bodies.mass = {{ type = "point_mass", mass = 1.0 }}
+forces.push = {{ type = "force", point = "mass.center", x = "{amplitude}*cos(500*t)", y = "{amplitude}*sin(500*t)", frame = "ground" }}
+initial.bodies.mass = {{ x = 0, y = 0 }}
+"#
+    );
+    let scene = Scene::parse("turning", &text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let mut times = StepEnds::default();
+    Simulation::new(&scene).unwrap().run(&mut times).unwrap();
+    // within 0.01 s of an extremum of A it differs from its extreme by less than 5 %
+    let steps_at_phase = |phase: f64| {
+        let is_near = |t: &&f64| {
+            let turns = (RATE * **t - phase) / TAU;
+            **t > 0.3 && (turns - turns.round()).abs() < 0.01 * RATE / TAU
+        };
+        times.0.iter().filter(is_near).count() as f64
+    };
+    let (strong, weak) = (steps_at_phase(0.5 * PI), steps_at_phase(-0.5 * PI));
+    let power = (strong / weak).log10() / 2.0;
+    // a third, and half of the way to a half
+    assert!((0.25..0.42).contains(&power), "{strong}, {weak}: {power}");
 }

@@ -696,21 +696,20 @@ fn stages_are_integrated_and_told() {
         .within(&worst, 4e-15, "rounding of an integral that starts at 5");
 }
 
-/// An estimate of order p falls with the power p of the step. Its share of an accuracy grows with the step: with the step itself
-/// where the errors of the steps add up, with its root where they are those of a solution that is not continued.
+/// An estimate of order p falls with the power p of the step. If it is the error of the solution, its share of an accuracy is that of
+/// every step, whatever its length; the number of steps changes with their mean. The estimate of a solution that is not continued has
+/// a share that grows with the root of the length of the step.
 #[test]
-fn the_ratio_of_an_error_to_its_share_loses_an_order_or_half_of_one() {
+fn shares_of_an_accuracy_follow_the_mean_step_or_the_step() {
     let estimate = |order: f64, of: EstimatedSolution| Estimate {
         order,
         of,
         implicit: false,
     };
-    assert_eq!(
-        estimate(3.0, EstimatedSolution::Solution).order_of_ratio(),
-        2.0
-    );
-    assert_eq!(
-        estimate(5.0, EstimatedSolution::Embedded { weight: 1.0 }).order_of_ratio(),
-        4.5
-    );
+    let own = estimate(3.0, EstimatedSolution::Solution);
+    assert_eq!(own.typical_step(1e-6, 1e-4), 1e-4);
+    assert_eq!((own.order_of_ratio(), own.order_of_sum()), (3.0, 2.0));
+    let other = estimate(5.0, EstimatedSolution::Embedded { weight: 1.0 });
+    assert_eq!(other.typical_step(1e-6, 1e-4), 1e-6);
+    assert_eq!((other.order_of_ratio(), other.order_of_sum()), (4.5, 4.5));
 }

@@ -12,9 +12,13 @@
 //! ([`crate::newton::Response`]). The coherence kappa is the fraction of the errors of velocity in the run so far that has
 //! added up rather than cancelled.
 //!
-//! The errors of all steps of a horizon may add up to the accuracy p. If the estimate is the error of the step itself, the H/h
-//! steps of a horizon add up directly: r = E H/(h p). A scheme that continues with a solution of higher order than its
-//! estimate has smaller errors of varying sign. H/h is then replaced by its square root times the weight of
+//! The errors of all steps of a horizon may add up to the accuracy p. If the estimate is the error of the step itself, the N
+//! steps of a horizon add up directly: r = E N/p. N is H over the mean step of about the last horizon, so every step may have
+//! the same error, however short it is ([`Estimate::typical_step`]). Where short steps follow long ones the mean lags behind,
+//! and the sum may exceed p.
+//!
+//! A scheme that continues with a solution of higher order than its estimate has smaller errors of varying sign. N is then H/h
+//! with the length h of the step, and replaced by its square root times the weight of
 //! [`crate::stepper::EstimatedSolution::Embedded`], except for y: errors of a vibration shift its phase and add up. Either way
 //! the error of the run falls in proportion to p (Stetter 1979, Lect. Notes Math. 679:245; Shampine 1985, BIT 25:530).
 //!
@@ -26,8 +30,8 @@
 //! flight.
 //!
 //! The energy balance needs no estimate: its change in a step is the error of that step. If the scene asks for an accuracy e of
-//! the energy, the changes of a horizon may add up to e: r = |change| H/(h e), and the larger r counts. Every step may change
-//! the balance by 1e-5 e, however short it is: below that, rounding of positions in stiff contacts would count as an error.
+//! the energy, the changes of a horizon may add up to e: r = |change| N/e with the mean step, and the larger r counts. Every step
+//! may change the balance by 1e-5 e: below that, rounding of positions in stiff contacts would count as an error.
 //!
 //! With k the order of r in h, the next step is h times 0.9 r^(-0.7/k) r_last^(0.4/k), kept between 0.2 and 5 (PI control:
 //! Gustafsson 1991, ACM Trans. Math. Softw. 17:533; the exponents of Hairer & Wanner, Solving Ordinary Differential
@@ -87,6 +91,8 @@ pub(super) struct Controller {
     last: f64,
     /// Part of the accuracy that earlier steps have not used.
     unused: f64,
+    /// Mean of the accepted steps.
+    mean: MeanStep,
     /// Rejections since the last accepted step; after one the step must not grow.
     rejected: u32,
     /// Length of the first step after the last onset of each contact.
@@ -99,6 +105,30 @@ pub(super) struct Controller {
     taken: [f64; 2],
     /// Errors of velocity so far, by unknown.
     sums: Vec<VelocityErrorSums>,
+}
+
+/// The mean of the steps of about the last horizon: the weight of a step decreases exponentially.
+#[derive(Debug, Clone, Copy, Default)]
+struct MeanStep {
+    time: f64,
+    steps: f64,
+}
+
+carried!(MeanStep { time, steps } but {});
+
+impl MeanStep {
+    /// With one more step.
+    fn with(self, h: f64, horizon: f64) -> MeanStep {
+        let kept = (-h / horizon).exp();
+        MeanStep {
+            time: kept * self.time + h,
+            steps: kept * self.steps + 1.0,
+        }
+    }
+
+    fn length(self) -> f64 {
+        self.time / self.steps
+    }
 }
 
 /// Sums of the errors of a velocity.
@@ -188,6 +218,7 @@ impl Controller {
             next: longest,
             last: 1.0,
             unused: 0.0,
+            mean: MeanStep::default(),
             rejected: 0,
             first_steps: vec![f64::INFINITY; shape.contacts],
             closing: Vec::with_capacity(shape.contacts),
@@ -210,6 +241,7 @@ impl Controller {
             next,
             last,
             unused,
+            mean,
             rejected,
             first_steps,
             closing,
@@ -223,6 +255,7 @@ impl Controller {
         for x in [next, last, unused] {
             x.carry(checkpoint);
         }
+        mean.carry(checkpoint);
         rejected.carry(checkpoint);
         first_steps.carry(checkpoint);
         carry_list(closing, first_steps.len(), checkpoint);
@@ -254,8 +287,15 @@ impl Controller {
         }
     }
 
-    /// r, and the index of the unknown with the largest error, or the number of unknowns for the energy balance.
-    fn ratio(&mut self, model: &Model, work: &mut Work, step: &Candidate) -> (f64, usize) {
+    /// r among steps of this mean length, and the index of the unknown with the largest error, or the number of unknowns for the energy
+    /// balance.
+    fn ratio(
+        &mut self,
+        model: &Model,
+        work: &mut Work,
+        step: &Candidate,
+        mean: f64,
+    ) -> (f64, usize) {
         let Candidate {
             from, to, error, ..
         } = *step;
@@ -263,7 +303,7 @@ impl Controller {
             energy, horizon, ..
         } = self.accuracy;
         let h = to.t - from.t;
-        let steps = horizon / h;
+        let steps = horizon / self.estimate.typical_step(h, mean);
         let sum = self.estimate.sum(steps);
         let displacement = self.response.as_mut().map(|response| {
             response.keep_up(model, from, h, work);
@@ -282,7 +322,7 @@ impl Controller {
         if let Some(energy) = energy {
             let [(before, _), (after, size)] = [from, to].map(|s| model.energies(s).balance(s));
             let change = ((after - before).abs() - BALANCE_ROUNDING * size).max(0.0);
-            let share = ((to.t - from.t) / horizon).max(LEAST_SHARE);
+            let share = (mean / horizon).max(LEAST_SHARE);
             let of_energy = change / (share * energy);
             if of_energy > of_position {
                 return (of_energy, self.lengths.len());
@@ -294,8 +334,10 @@ impl Controller {
     /// Accepts or rejects a step.
     pub fn judge(&mut self, model: &Model, work: &mut Work, step: &Candidate) -> Verdict {
         let h = step.to.t - step.from.t;
-        let (r, worst) = self.ratio(model, work, step);
-        let share = h / self.accuracy.horizon;
+        let horizon = self.accuracy.horizon;
+        let mean = self.mean.with(h, horizon);
+        let (r, worst) = self.ratio(model, work, step, mean.length());
+        let share = self.estimate.typical_step(h, mean.length()) / horizon;
         let largest_draw = if step.passes_singular_pose {
             1.0
         } else {
@@ -338,6 +380,7 @@ impl Controller {
         }
         self.taken = [self.taken[0].min(h), self.taken[1].max(h)];
         self.rejected = 0;
+        self.mean = mean;
         for (sums, error) in self.sums.iter_mut().zip(&step.error.v) {
             sums.add(*error);
         }

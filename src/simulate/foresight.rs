@@ -66,7 +66,7 @@ impl Simulation {
         let Some((steps, name)) = self.too_many_steps(accuracy) else {
             return Ok(());
         };
-        let order = self.stepper.estimate().order_of_ratio();
+        let order = self.stepper.estimate().order_of_sum();
         let factor = (steps / MOST_STEPS).powf(order);
         let affordable = Accuracy {
             position: rounded_up(factor * accuracy.position),

@@ -133,6 +133,21 @@ impl Estimate {
         implicit: true,
     };
 
+    /// The step by which the steps of a horizon are counted, for one of length h among others of this mean length.
+    ///
+    /// A step has the error c h^k, where c varies along the motion. A unit of time has 1/h steps with the errors c h^(k-1). A given
+    /// sum of errors takes the fewest steps if the derivatives of these two by h have the same ratio everywhere, that is, if all steps
+    /// have the same error c h^k. So a step is judged by its error times the number of steps, and not by its error over its length.
+    ///
+    /// The estimate of an embedded solution is counted with its own step: after an onset, where the force grows as t^1.5, steps are
+    /// short, and the solution is hardly more accurate than its estimate.
+    pub fn typical_step(&self, h: f64, mean: f64) -> f64 {
+        match self.of {
+            EstimatedSolution::Solution => mean,
+            EstimatedSolution::Embedded { .. } => h,
+        }
+    }
+
     /// The multiple of its estimate that the error of the solution reaches in so many steps.
     pub fn sum(&self, steps: f64) -> f64 {
         match self.of {
@@ -141,13 +156,20 @@ impl Estimate {
         }
     }
 
-    /// The ratio of the error to its share of an accuracy falls with this power of the step.
+    /// The error of a step over its share of an accuracy falls with this power of the step.
     pub fn order_of_ratio(&self) -> f64 {
-        let of_sum = match self.of {
-            EstimatedSolution::Solution => 1.0,
-            EstimatedSolution::Embedded { .. } => 0.5,
-        };
-        self.order - of_sum
+        match self.of {
+            EstimatedSolution::Solution => self.order,
+            EstimatedSolution::Embedded { .. } => self.order - 0.5,
+        }
+    }
+
+    /// The same if all steps change alike.
+    pub fn order_of_sum(&self) -> f64 {
+        match self.of {
+            EstimatedSolution::Solution => self.order - 1.0,
+            EstimatedSolution::Embedded { .. } => self.order - 0.5,
+        }
     }
 }
 

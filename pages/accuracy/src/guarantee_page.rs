@@ -226,7 +226,7 @@ fn page(entries: &[GuaranteeEntry]) -> Result<String> {
          `--accuracy position=P,horizon=H`, for P from 1 mm to 1 nm as far as {STEPS} steps go. The ratio of a run is the error achieved over P. Written by `cargo run --release -p accuracy -- \
          guarantee`; every number is in [guarantee.jsonl](guarantee.jsonl).\n\n\
          ## The criterion\n\n\
-         With `accuracy` the steps are chosen so that their estimated errors add up to at most P within a horizon. Of the runs \
+         With `accuracy` the steps are chosen so that their estimated errors add up to about P within a horizon. Of the runs \
          below we require that **{} have a ratio of at most 1, and that no ratio is above {LARGEST}**: an estimate that misses a \
          factor of three now and then is still of use to whoever chooses P.\n\n\
          * Motions that amplify errors less than {AMPLIFIES} times: {}.\n\
@@ -533,7 +533,7 @@ fn figure(entries: &[GuaranteeEntry]) -> Figure {
 /// # Errors
 /// A file that cannot be written.
 pub fn write(entries: &[GuaranteeEntry]) -> Result<()> {
-    let folder = records::root().join("accuracy");
+    let folder = records::root().join("pages/accuracy");
     plot::save(&figure(entries), &folder.join("figures"), "guarantee")?;
     let path = folder.join("GUARANTEE.md");
     std::fs::write(&path, page(entries)?)
