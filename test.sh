@@ -148,7 +148,7 @@ python() {
     python3 -c "import ensurepip" 2> /dev/null || install python3-venv
     compile_program
     python3 -m venv target/tools/looselink-python
-    # with the profile of the tests, which have compiled the libraries already
+    # with the profile of the tests: what has the same features in both is not compiled again
     MATURIN_PEP517_ARGS="--profile dev" CARGO_TARGET_DIR="$PWD/target" target/tools/looselink-python/bin/pip install --quiet "./python[test]"
     # away from the sources, so that the package that was installed is tested
     LOOSELINK_PROGRAM="$PWD/target/debug/looselink" target/tools/looselink-python/bin/python -P -m pytest -q python/tests
