@@ -45,12 +45,21 @@ pub(super) fn mass(parts: Vec<Inertia>, numbering: &Numbering, mode: Mode) -> Ma
         let row = row.iter().filter(|(j, _)| **j < n);
         row.map(|(&j, &m)| (j, m)).collect()
     });
+    let mut moves = vec![true; rows.len()];
+    for state in numbering.states.iter().flatten() {
+        moves[*state] = false;
+    }
+    let moving = rows.iter().zip(moves).map(|(row, moves)| {
+        let row = row.iter().filter(|_| moves);
+        row.map(|(&j, &m)| (j, m)).collect()
+    });
     let mut mass = Mass {
         parts,
         entries: Vec::new(),
         ends: Vec::new(),
         tangent: Vec::new(),
         product: SparseProduct::new(&unknown.collect::<Vec<_>>()),
+        kinetic: SparseProduct::new(&moving.collect::<Vec<_>>()),
         known: Vec::new(),
     };
     for (i, row) in rows.iter().enumerate() {

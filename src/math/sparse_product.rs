@@ -48,13 +48,27 @@ impl SparseProduct {
     /// The matrix times x, into the first entries of `out`.
     #[inline]
     pub fn times(&self, x: &[f64], out: &mut [f64]) {
+        self.rows_times(x, |row, sum| out[row] = sum);
+    }
+
+    /// x^T A x.
+    #[inline]
+    pub fn quadratic_form(&self, x: &[f64]) -> f64 {
+        let mut form = 0.0;
+        self.rows_times(x, |row, sum| form += x[row] * sum);
+        form
+    }
+
+    /// Every row with its product.
+    #[inline]
+    fn rows_times(&self, x: &[f64], mut take: impl FnMut(usize, f64)) {
         let mut start = 0;
         for &RowEnd { row, end } in &self.singles {
             let mut sum = 0.0;
             for &(j, value) in &self.entries[start..end as usize] {
                 sum += value * x[j as usize];
             }
-            out[row as usize] = sum;
+            take(row as usize, sum);
             start = end as usize;
         }
         for &RowEnd { row, end } in &self.pairs {
@@ -67,7 +81,10 @@ impl SparseProduct {
                     *sum += value * x;
                 }
             }
-            out[row as usize..row as usize + 2].copy_from_slice(&sums);
+            let row = row as usize;
+            sums.iter()
+                .zip(row..)
+                .for_each(|(sum, row)| take(row, *sum));
             start = end as usize;
         }
     }
@@ -99,5 +116,8 @@ mod tests {
             let sum = row.iter().fold(0.0, |sum, &(j, value)| sum + value * x[j]);
             assert_eq!(out, sum);
         }
+        let form = x.iter().zip(out).map(|(x, out)| x * out).sum::<f64>();
+        // the same products in another order: a rounding for each of the seven sums
+        assert!((product.quadratic_form(&x) - form).abs() <= 7.0 * f64::EPSILON * form);
     }
 }

@@ -76,15 +76,10 @@ impl Model {
 
     /// Stored energies.
     pub fn energies(&self, at: &State) -> Energies {
-        let mut energies = Energies::default();
-        for (i, v) in
-            at.v.iter()
-                .enumerate()
-                .filter(|(i, _)| !self.states.contains(i))
-        {
-            let row = self.mass.row(i);
-            energies.kinetic += 0.5 * v * row.map(|(j, m)| m * at.v[j]).sum::<f64>();
-        }
+        let mut energies = Energies {
+            kinetic: 0.5 * self.mass.kinetic.quadratic_form(&at.v),
+            ..Energies::default()
+        };
         for element in &self.elements {
             let q = std::array::from_fn(|i| at.q[element.block.coordinates[i]]);
             let (axial, bending) = element.kernel.energy(&q);

@@ -185,6 +185,8 @@ pub(crate) struct Mass {
     pub tangent: Vec<f64>,
     /// ... and for products.
     pub product: SparseProduct,
+    /// The sum over all coordinates but internal states, for the kinetic energy.
+    pub kinetic: SparseProduct,
     /// (unknown row, known column, mass): inertia forces on unknown coordinates from accelerations of known ones.
     pub known: Vec<(usize, usize, f64)>,
 }

@@ -303,32 +303,37 @@ impl Controller {
             energy, horizon, ..
         } = self.accuracy;
         let h = to.t - from.t;
-        let steps = horizon / self.estimate.typical_step(h, mean);
-        let sum = self.estimate.sum(steps);
-        let displacement = self.response.as_mut().map(|response| {
-            response.keep_up(model, from, h, work);
-            response.displacement(model, h, &error.v)
-        });
-        let mut largest = (0.0, 0);
-        for (i, length) in self.lengths.iter().enumerate() {
-            let coasting = horizon * self.sums[i].coherence() * error.v[i].abs() * sum;
-            let swinging = displacement.map_or(f64::INFINITY, |y| y[i].abs() * steps);
-            let error = length * (error.q[i].abs() * sum + coasting.min(swinging));
-            if error.is_nan() || error > largest.0 {
-                largest = (error, i);
-            }
-        }
-        let of_position = largest.0 / self.position;
-        if let Some(energy) = energy {
+        let of_energy = energy.map_or(0.0, |energy| {
             let [(before, _), (after, size)] = [from, to].map(|s| model.energies(s).balance(s));
             let change = ((after - before).abs() - BALANCE_ROUNDING * size).max(0.0);
-            let share = (mean / horizon).max(LEAST_SHARE);
-            let of_energy = change / (share * energy);
-            if of_energy > of_position {
-                return (of_energy, self.lengths.len());
+            change / ((mean / horizon).max(LEAST_SHARE) * energy)
+        });
+        let steps = horizon / self.estimate.typical_step(h, mean);
+        let sum = self.estimate.sum(steps);
+        let worst = |displacement: Option<&[f64]>| {
+            let mut worst = (0.0, 0);
+            for (i, length) in self.lengths.iter().enumerate() {
+                let coasting = horizon * self.sums[i].coherence() * error.v[i].abs() * sum;
+                let swinging = displacement.map_or(f64::INFINITY, |y| y[i].abs() * steps);
+                let error = length * (error.q[i].abs() * sum + coasting.min(swinging));
+                if error.is_nan() || error > worst.0 {
+                    worst = (error, i);
+                }
+            }
+            (worst.0 / self.position, worst.1)
+        };
+        let mut of_position = worst(None);
+        if let Some(response) = &mut self.response {
+            response.keep_up(model, from, h, work);
+            // an elastic mechanism moves less than one in free flight: y is needed if its error may be the larger one
+            if of_position.0.is_nan() || of_position.0 > of_energy {
+                of_position = worst(Some(response.displacement(model, h, &error.v)));
             }
         }
-        (of_position, largest.1)
+        match of_energy > of_position.0 {
+            true => (of_energy, self.lengths.len()),
+            false => of_position,
+        }
     }
 
     /// Accepts or rejects a step.
