@@ -15,6 +15,7 @@ mod modes;
 mod observer;
 mod pace;
 mod recording;
+mod replay;
 mod report;
 mod stall;
 mod start;
@@ -46,6 +47,7 @@ use crate::system::{State, System, Work};
 use control::{Candidate, Verdict};
 use pace::Pacer;
 use stall::Stall;
+use std::sync::Arc;
 
 /// A step is halved this many times at most before the run gives up.
 const HALVINGS: i32 = 24;
@@ -82,7 +84,9 @@ carried!(LoopCounters { steps, rejected, location_trials, singular_pose_trials, 
 #[derive(Debug)]
 pub struct Simulation {
     scene: Scene,
-    model: Model,
+    model: Arc<Model>,
+    /// The start before contacts close and accelerations follow, for pilots.
+    start: State,
     stepper: Box<dyn Stepper>,
     pacer: Pacer,
     /// True where there are contacts whose changes are located.
@@ -172,6 +176,9 @@ impl Simulation {
         let (interval, duration) = (self.scene.output.interval, self.scene.simulation.duration);
         // a remainder of the duration below this is the rounding of duration/interval
         let rows = (duration / interval + GRID_ROUNDING).floor() as u64;
+        if self.counters.rows == 0 && self.is_undecided() {
+            self.begin_as_pilot(observer)?;
+        }
         if self.counters.rows == 0 {
             self.tell_onsets(observer)?;
             self.record(observer)?;
@@ -252,15 +259,21 @@ impl Simulation {
                 contacts: Some(contacts),
             };
             let control = observer.step(&progress)?;
-            if control != Control::Continue {
-                observer.checkpoint(self.state.t, &self.checkpoint())?;
-            }
-            if control == Control::Stop {
-                return Err(RunError::Interrupted { t: self.state.t });
-            }
+            self.obey(control, observer)?;
         }
         self.is_between_rows = false;
         Ok(())
+    }
+
+    /// Hands over a checkpoint and stops where the observer asks for it.
+    fn obey(&mut self, control: Control, observer: &mut dyn Observer) -> Result<(), RunError> {
+        if control != Control::Continue {
+            observer.checkpoint(self.state.t, &self.checkpoint())?;
+        }
+        match control {
+            Control::Stop => Err(RunError::Interrupted { t: self.state.t }),
+            _ => Ok(()),
+        }
     }
 
     /// Steps into `trial` towards `target` and halves the step while it fails; returns the clamps and the time reached.
@@ -334,14 +347,14 @@ impl Simulation {
             ..
         } = self;
         if stepper.looks_ahead(state) {
-            look_ahead(model, state, trial, output, newton, work);
+            look_ahead(&**model, state, trial, output, newton, work);
         }
         stepper.local_error(state, trial, output, local_error);
         // equal steps do not depend on the estimate: the two solves would only refine the reported error
         if let Pacer::Controller(_) = pacer {
             let implicit = stepper.estimate().implicit;
             for e in [&mut local_error.q, &mut local_error.v] {
-                newton.filter(model, implicit, &trial.v, e);
+                newton.filter(&**model, implicit, &trial.v, e);
             }
         }
     }
@@ -357,7 +370,7 @@ impl Simulation {
             work,
             ..
         } = self;
-        let clamps = stepper.step(model, state, t, trial, newton, work)?;
+        let clamps = stepper.step(&**model, state, t, trial, newton, work)?;
         check_turns(model, state, trial)?;
         Ok(clamps)
     }
@@ -409,7 +422,7 @@ impl Simulation {
         } = self;
         output.copy_from(state);
         if self.scene.simulation.analysis == Analysis::Dynamic
-            && let Err(failure) = newton.make_consistent(model, output, work)
+            && let Err(failure) = newton.make_consistent(&**model, output, work)
         {
             return Err(self.failed(failure.into(), 0.0));
         }

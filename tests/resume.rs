@@ -15,6 +15,8 @@ struct Parts {
     steps: u64,
     /// The run is stopped after so many steps.
     stop: u64,
+    /// Instead of stopping there, it hands over a checkpoint and goes on.
+    goes_on: bool,
     /// Numbers and contacts that belong to the checkpoint, and the checkpoint.
     kept: (usize, usize, Vec<u8>),
 }
@@ -37,9 +39,10 @@ impl Observer for Parts {
 
     fn step(&mut self, _: &Progress) -> io::Result<Control> {
         self.steps += 1;
-        Ok(match self.steps == self.stop {
-            true => Control::Stop,
-            false => Control::Continue,
+        Ok(match (self.steps == self.stop, self.goes_on) {
+            (true, true) => Control::Checkpoint,
+            (true, false) => Control::Stop,
+            (false, _) => Control::Continue,
         })
     }
 }
@@ -162,18 +165,48 @@ fn every_method_goes_on_from_any_step_with_an_accuracy() {
     check_methods("accuracy={position=1e-6,energy=1e-6,horizon=0.01}");
 }
 
+/// A run that chooses its method.
+fn undecided(name: &str) -> Scene {
+    let overrides = [
+        "integrator={method=\"auto\",newton_tolerance=1e-11,onset_tolerance=1e-13,accuracy={position=1e-6,horizon=0.01}}",
+        "assumptions={}",
+        "simulation.duration=0.004",
+        "output.interval=1e-3",
+    ];
+    load(name, &overrides)
+}
+
 #[test]
 fn a_chosen_method_goes_on_from_any_step() {
     for (seed, name) in ["3rrr/case2.toml", "3rrr/case4.toml"].iter().enumerate() {
-        let overrides = [
-            "integrator={method=\"auto\",newton_tolerance=1e-11,onset_tolerance=1e-13,accuracy={position=1e-6,horizon=0.01}}",
-            "assumptions={}",
-            "simulation.duration=0.004",
-            "output.interval=1e-3",
-        ];
-        let report = check(name, &load(name, &overrides), seed as u64);
+        let report = check(name, &undecided(name), seed as u64);
         assert!(report.choice.is_some(), "{name}");
     }
+}
+
+/// The trial run has come further when its reports reach the observer.
+#[test]
+fn a_checkpoint_of_a_trial_run_is_that_of_the_step_reported() {
+    let scene = undecided("3rrr/case4.toml");
+    let (whole, report) = whole(&scene);
+    let mut parts = Parts {
+        stop: 40,
+        goes_on: true,
+        ..Parts::default()
+    };
+    let mut simulation = Simulation::new(&scene).unwrap();
+    simulation.run(&mut parts).unwrap();
+    let pilots = report.choice.as_ref().unwrap().pilots.iter();
+    assert!(pilots.map(|pilot| pilot.steps).max() > Some(parts.stop));
+    assert!(parts.rows == whole.rows);
+    assert_eq!(simulation.report(), report);
+    let mut resumed = Simulation::new(&scene).unwrap();
+    restore(&mut resumed, &mut parts);
+    assert!(parts.rows.len() < whole.rows.len());
+    resumed.run(&mut parts).unwrap();
+    assert!(parts.rows == whole.rows);
+    assert_eq!(parts.contacts, whole.contacts);
+    assert_eq!(resumed.report(), report);
 }
 
 #[test]

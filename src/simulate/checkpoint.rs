@@ -2,6 +2,7 @@
 
 use super::Simulation;
 use crate::checkpoint::{Carried, Checkpoint, Misfit};
+use crate::model::Model;
 use crate::system::State;
 
 impl Simulation {
@@ -29,6 +30,7 @@ impl Simulation {
         let Simulation {
             scene: _,
             model,
+            start: _,
             stepper,
             pacer,
             locates: _,
@@ -63,6 +65,7 @@ impl Simulation {
             status: _,
             error: _,
         } = self;
+        let model: &Model = model;
         pacer.carry(model, checkpoint);
         newton.carry(model, checkpoint);
         let parts: [&mut dyn Carried; 13] = [

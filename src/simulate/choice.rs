@@ -6,14 +6,18 @@
 //! of the run and, in a mechanism with contacts, [`IMPACTS`] of them that have closed and opened again or a whole horizon: the
 //! steps of the free flight before the first impact say nothing of those that impacts take. After [`PILOT_STEPS`] it has seen
 //! enough in any case. What counts are operations, not seconds, so that a scene has the same choice on every machine.
+//!
+//! A pilot that lags far behind retires. That is one that has taken, since its first contact closed, more than 1 + 1/n times the
+//! operations with which another came as far, where n contacts have closed: in the first contact twice as many, in the second one
+//! and a half times. The run goes on where the pilot of its scheme has come to.
 
-use super::foresight::PILOT_STEPS;
+use super::foresight::{MOST_STEPS, PILOT_STEPS};
+use super::replay::Replay;
 use super::start::pacer;
-use super::{Control, Observer, Progress, RunError, Simulation};
+use super::{Observer, RunError, Simulation};
 use crate::scene::Pace;
 use crate::stepper::{CANDIDATES, Method, Scheme};
 use serde::Serialize;
-use std::io::Result;
 
 /// Accepted steps before the race ends: the first ones find the length that the accuracy allows.
 const FEWEST_STEPS: u64 = 16;
@@ -53,30 +57,26 @@ pub struct PilotRun {
 struct Racer {
     scheme: &'static Scheme,
     simulation: Simulation,
+    /// What it has reported.
+    replay: Replay,
+    /// Time and operations at the ends of its strides, in a mechanism with contacts from the first onset on.
+    course: Vec<(f64, u64)>,
+    retired: bool,
     error: Option<String>,
-}
-
-/// Stops a pilot after some steps.
-struct Stride(u64);
-
-impl Observer for Stride {
-    fn row(&mut self, _: &[f64]) -> Result<()> {
-        Ok(())
-    }
-
-    fn step(&mut self, _: &Progress) -> Result<Control> {
-        self.0 -= 1;
-        Ok(match self.0 {
-            0 => Control::Stop,
-            _ => Control::Continue,
-        })
-    }
 }
 
 impl Racer {
     /// Takes some steps. Returns true when it has seen enough, at the latest at the end of the run.
     fn go_on(&mut self) -> bool {
-        match self.simulation.run_to_end(&mut Stride(STRIDE)) {
+        self.replay.steps_left = STRIDE;
+        let result = self.simulation.run_to_end(&mut self.replay);
+        let Simulation {
+            state, counters, ..
+        } = &self.simulation;
+        if state.z.is_empty() || counters.onsets > 0 {
+            self.course.push((state.t, self.simulation.operations()));
+        }
+        match result {
             Ok(()) => true,
             Err(RunError::Interrupted { .. }) => self.has_seen_enough(),
             Err(error) => {
@@ -105,13 +105,42 @@ impl Racer {
                 && (!has_impacts || closures.ended >= IMPACTS || state.t >= horizon)
     }
 
-    fn run(self) -> PilotRun {
+    /// True where another came as far as this one, from where both are compared, with far fewer operations.
+    fn lags(&self, other: &Racer) -> bool {
+        let Simulation {
+            state, counters, ..
+        } = &self.simulation;
+        let seen = match state.z.is_empty() {
+            true => counters.steps / FEWEST_STEPS,
+            false => counters.onsets,
+        };
+        let Some((from, _)) = self.course.first() else {
+            return false;
+        };
+        let works = [self, other].map(|racer| racer.work_between(*from, state.t));
+        let [Some(own), Some(least)] = works else {
+            return false;
+        };
+        let has_begun = self.course.len() as u64 > FEWEST_STEPS / STRIDE;
+        has_begun && own as f64 > (1.0 + 1.0 / seen as f64) * least as f64
+    }
+
+    /// Operations between two times, if it has passed them.
+    fn work_between(&self, from: f64, to: f64) -> Option<u64> {
+        let at = |t: f64| {
+            let place = self.course.partition_point(|(reached, _)| *reached < t);
+            self.course.get(place).map(|(_, operations)| *operations)
+        };
+        Some(at(to)? - at(from)?)
+    }
+
+    fn run(&self) -> PilotRun {
         PilotRun {
             method: self.scheme.name,
             t: self.simulation.state.t,
             steps: self.simulation.counters.steps,
             operations: self.simulation.operations(),
-            error: self.error,
+            error: self.error.clone(),
         }
     }
 }
@@ -119,10 +148,16 @@ impl Racer {
 /// Lets pilots run until one has seen enough, and puts the one first that has come furthest.
 fn race(racers: &mut [Racer]) {
     loop {
-        let under_way = racers.iter_mut().filter(|racer| racer.error.is_none());
+        let under_way = racers
+            .iter_mut()
+            .filter(|racer| racer.error.is_none() && !racer.retired);
         let next = under_way.min_by_key(|racer| racer.simulation.operations());
         if next.is_none_or(Racer::go_on) {
             break;
+        }
+        for i in 0..racers.len() {
+            let others = || racers.iter().filter(|other| other.error.is_none());
+            racers[i].retired |= others().any(|other| racers[i].lags(other));
         }
     }
     let reached = |racer: &Racer| match racer.error {
@@ -138,22 +173,69 @@ impl Simulation {
         self.newton.counters.operations + self.pacer.operations()
     }
 
-    /// Chooses the scheme, where the scene leaves it open and it has not been chosen yet.
+    /// True where the scene leaves the scheme open and it has not been chosen yet.
+    pub(super) fn is_undecided(&self) -> bool {
+        self.scene.integrator.automatic && self.choice.is_none()
+    }
+
+    /// Chooses the scheme if the scene leaves it open.
     pub(super) fn choose(&mut self) {
-        if !self.scene.integrator.automatic || self.choice.is_some() {
-            return;
+        if self.is_undecided() {
+            self.decide();
         }
+    }
+
+    /// Chooses the scheme and begins the run where its pilot has come to.
+    ///
+    /// # Errors
+    /// Those of the observer, and [`RunError::Interrupted`] where it stops the run.
+    pub(super) fn begin_as_pilot(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
+        let Some(first) = self.decide() else {
+            return Ok(());
+        };
+        let Simulation {
+            state, counters, ..
+        } = &first.simulation;
+        let foreseen = counters.steps as f64 * self.scene.simulation.duration / state.t;
+        if first.error.is_some() || !first.replay.is_complete() || foreseen > MOST_STEPS {
+            return Ok(());
+        }
+        let mut behind = std::mem::replace(self, first.simulation);
+        self.scene = behind.scene.clone();
+        self.choice = behind.choice.clone();
+        self.is_pilot = false;
+        let mut steps_behind = 0;
+        let played = first
+            .replay
+            .play(&self.model, observer, |steps, control, observer| {
+                // a checkpoint is that of the step that the observer has seen last
+                let mut rest = Replay::default();
+                rest.steps_left = steps - std::mem::replace(&mut steps_behind, steps);
+                match behind.run_to_end(&mut rest) {
+                    Ok(()) | Err(RunError::Interrupted { .. }) => behind.obey(control, observer),
+                    Err(error) => Err(error),
+                }
+            });
+        if let Err(RunError::Interrupted { .. }) = played {
+            *self = behind;
+        }
+        played
+    }
+
+    /// Chooses the scheme; returns its pilot.
+    fn decide(&mut self) -> Option<Racer> {
         let mut racers: Vec<Racer> = CANDIDATES.iter().filter_map(|s| self.racer(s)).collect();
         race(&mut racers);
         let scheme = racers.first().map_or(CANDIDATES[0], |racer| racer.scheme);
         self.choice = Some(Choice {
             method: scheme.name,
-            pilots: racers.into_iter().map(Racer::run).collect(),
+            pilots: racers.iter().map(Racer::run).collect(),
         });
         let method = Method::new(scheme);
         self.stepper = method.stepper(self.model.shape);
         self.pacer = pacer(&self.scene, &self.model, self.stepper.estimate());
         self.scene.integrator.method = method;
+        racers.into_iter().next()
     }
 
     /// The same scene with one scheme.
@@ -161,12 +243,12 @@ impl Simulation {
         let mut scene = self.scene.clone();
         scene.integrator.method = Method::new(scheme);
         scene.integrator.automatic = false;
-        // the scene has been compiled once
-        let mut simulation = Simulation::new(&scene).ok()?;
-        simulation.is_pilot = true;
         Some(Racer {
             scheme,
-            simulation,
+            simulation: self.pilot(&scene)?,
+            replay: Replay::default(),
+            course: Vec::new(),
+            retired: false,
             error: None,
         })
     }

@@ -191,7 +191,7 @@ impl Simulation {
         trial.t = t;
         trial.weight = t / scene.simulation.duration;
         model.prescribe(state, trial, work)?;
-        newton.balance(model, trial, work)?;
+        newton.balance(&**model, trial, work)?;
         check_turns(model, state, trial)
     }
 }

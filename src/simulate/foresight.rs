@@ -10,7 +10,7 @@ use crate::scene::{Accuracy, Pace};
 use std::io::Result;
 
 /// Most steps that a run may be foreseen to take: hours for a mechanism of a few bodies.
-const MOST_STEPS: f64 = 1e8;
+pub(super) const MOST_STEPS: f64 = 1e8;
 /// Steps after which the pilot ends at the latest: seconds.
 pub(super) const PILOT_STEPS: u64 = 1 << 17;
 
@@ -88,9 +88,7 @@ impl Simulation {
     fn too_many_steps(&self, accuracy: Accuracy) -> Option<(f64, String)> {
         let mut scene = self.scene.clone();
         scene.integrator.pace = Pace::Accuracy(accuracy);
-        // the scene has been compiled once
-        let mut pilot = Simulation::new(&scene).ok()?;
-        pilot.is_pilot = true;
+        let mut pilot = self.pilot(&scene)?;
         let mut watch = Pilot {
             steps: 0,
             half_way: 0.0,

@@ -55,6 +55,36 @@ impl From<&ContactEvent<'_>> for Impact {
     }
 }
 
+impl From<&Onset<'_>> for Impact {
+    fn from(onset: &Onset) -> Impact {
+        Impact::from(&ContactEvent {
+            onset: *onset,
+            deepest_penetration: onset.delta,
+            largest_force: 0.0,
+            end: None,
+        })
+    }
+}
+
+impl Impact {
+    /// As it was reported.
+    pub(super) fn event(&self) -> ContactEvent<'_> {
+        let end = self.end.zip(self.exit_velocity);
+        ContactEvent {
+            onset: Onset {
+                t: self.t,
+                joint: &self.joint,
+                impact_velocity: self.impact_velocity,
+                delta: self.delta,
+                angle: self.angle,
+            },
+            deepest_penetration: self.deepest_penetration,
+            largest_force: self.largest_force,
+            end: end.map(|(t, exit_velocity)| ContactEnd { t, exit_velocity }),
+        }
+    }
+}
+
 /// Follows every contact.
 #[derive(Debug)]
 pub(super) struct Impacts {

@@ -17,7 +17,7 @@ impl Simulation {
             at.z.fill(0.0);
             // the multipliers without the contacts
             let newton = &mut self.newton;
-            let solved = newton.accelerate_aside(&self.model, &mut at, &mut work);
+            let solved = newton.accelerate_aside(&*self.model, &mut at, &mut work);
             solved.map_err(|failure| {
                 ModesError::SingularPose(self.model.unknown_name(failure.index()))
             })?;

@@ -63,12 +63,7 @@ impl Observer for Recording {
     }
 
     fn onset(&mut self, onset: &Onset) -> Result<()> {
-        self.onsets.push(Impact::from(&ContactEvent {
-            onset: *onset,
-            deepest_penetration: onset.delta,
-            largest_force: 0.0,
-            end: None,
-        }));
+        self.onsets.push(Impact::from(onset));
         Ok(())
     }
 

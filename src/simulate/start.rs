@@ -16,7 +16,8 @@ use crate::newton::Newton;
 use crate::record::{Record, Recorder};
 use crate::scene::{Analysis, Pace, Scene, SceneError};
 use crate::stepper::{Estimate, LocalError};
-use crate::system::{State, System, Work};
+use crate::system::{State, System};
+use std::sync::Arc;
 
 impl Simulation {
     /// Compiles a scene, closes its mechanism and makes its start consistent.
@@ -29,19 +30,22 @@ impl Simulation {
         let mut model = compiled.model;
         keep_independent(scene, &mut model, &state)?;
         refuse_constraints(scene, &model)?;
-        let newton = Newton::new(&model, scene.integrator.newton_tolerance);
-        let work = model.work();
-        Simulation::begin(scene, model, state, newton, work)
+        Simulation::begin(scene, Arc::new(model), state)
     }
 
-    fn begin(
-        scene: &Scene,
-        model: Model,
-        mut state: State,
-        mut newton: Newton,
-        mut work: Work,
-    ) -> Result<Simulation, SceneError> {
+    /// A run aside of the same mechanism, which is not compiled again; the scene may have another scheme or accuracy.
+    pub(super) fn pilot(&self, scene: &Scene) -> Option<Simulation> {
+        let model = Arc::clone(&self.model);
+        let mut pilot = Simulation::begin(scene, model, self.start.clone()).ok()?;
+        pilot.is_pilot = true;
+        Some(pilot)
+    }
+
+    fn begin(scene: &Scene, model: Arc<Model>, start: State) -> Result<Simulation, SceneError> {
         let shape = model.shape();
+        let mut state = start.clone();
+        let mut newton = Newton::new(&*model, scene.integrator.newton_tolerance);
+        let mut work = model.work();
         let mut started = Vec::with_capacity(shape.contacts);
         let mut gaps = vec![[0.0; 2]; shape.contacts];
         model.gaps(&state, &mut gaps);
@@ -54,7 +58,7 @@ impl Simulation {
         equilibrium::prepare(scene, &model, &mut newton, &mut state, &mut work)?;
         if scene.simulation.analysis == Analysis::Dynamic {
             newton
-                .make_consistent(&model, &mut state, &mut work)
+                .make_consistent(&*model, &mut state, &mut work)
                 .map_err(|failure| {
                     let (name, cause) = describe(&model, &failure);
                     scene.error(
@@ -86,6 +90,7 @@ impl Simulation {
             meter: Meter::new(scene, &model, &state),
             is_pilot: false,
             choice: None,
+            start,
             trial: state.clone(),
             output: state.clone(),
             state,

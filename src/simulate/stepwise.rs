@@ -49,7 +49,7 @@ impl Simulation {
         newton.forget_motion();
         model.gaps(state, first_gaps);
         model.commit(state, first_gaps, tolerance, &mut |_, _, _| {});
-        if let Err(failure) = newton.make_consistent(model, state, work) {
+        if let Err(failure) = newton.make_consistent(&**model, state, work) {
             return Err(self.failed(failure.into(), 0.0));
         }
         model.powers(state, work);
