@@ -28,14 +28,19 @@ pub fn lines(report: &Report) -> Vec<String> {
     lines
 }
 
-/// Which scheme was chosen, and what the others did with the same work.
+/// Which scheme was chosen, and how far the trial runs came with how much work.
 fn choice(choice: &Choice) -> String {
     let reached = choice.pilots.iter().map(|pilot| match pilot.error {
-        None => format!("{} {} s", pilot.method, number(pilot.t, 2)),
+        None => format!(
+            "{} {} s in {:.1e} operations",
+            pilot.method,
+            number(pilot.t, 2),
+            pilot.operations as f64
+        ),
         Some(_) => format!("{} failed", pilot.method),
     });
     format!(
-        "method: {}; with equal work at the start of the motion, trial runs reached {}",
+        "method: {}; trial runs at the start of the motion reached: {}",
         choice.method,
         reached.collect::<Vec<_>>().join(", ")
     )
