@@ -172,29 +172,35 @@ impl Separation {
         [(&self.from, -1.0, 0), (&self.to, 1.0, self.from.width())]
     }
 
-    /// e \[m\].
-    pub fn vector(&self, q: &[f64]) -> Vec2 {
-        let point = |m: &Marker| m.position(q, m.arm(q));
-        point(&self.to) - point(&self.from)
+    /// The arms of both ends.
+    #[inline]
+    pub fn arms(&self, q: &[f64]) -> [Vec2; 2] {
+        [self.from.arm(q), self.to.arm(q)]
     }
 
-    /// de/dt \[m/s\].
-    pub fn rate(&self, q: &[f64], v: &[f64]) -> Vec2 {
-        let rate = |m: &Marker| m.velocity(v, m.arm(q));
-        rate(&self.to) - rate(&self.from)
+    /// e \[m\], given the arms.
+    #[inline]
+    pub fn vector(&self, q: &[f64], arms: [Vec2; 2]) -> Vec2 {
+        self.to.position(q, arms[1]) - self.from.position(q, arms[0])
     }
 
-    /// d2e/dt2 \[m/s2\].
-    pub fn acceleration(&self, q: &[f64], v: &[f64], a: &[f64]) -> Vec2 {
-        let second = |m: &Marker| m.acceleration(v, a, m.arm(q));
-        second(&self.to) - second(&self.from)
+    /// de/dt \[m/s\], given the arms.
+    #[inline]
+    pub fn rate(&self, v: &[f64], arms: [Vec2; 2]) -> Vec2 {
+        self.to.velocity(v, arms[1]) - self.from.velocity(v, arms[0])
     }
 
-    /// de/dq.
-    pub fn columns(&self, q: &[f64]) -> Columns<8> {
+    /// d2e/dt2 \[m/s2\], given the arms.
+    #[inline]
+    pub fn acceleration(&self, v: &[f64], a: &[f64], arms: [Vec2; 2]) -> Vec2 {
+        self.to.acceleration(v, a, arms[1]) - self.from.acceleration(v, a, arms[0])
+    }
+
+    /// de/dq, given the arms.
+    pub fn columns(&self, arms: [Vec2; 2]) -> Columns<8> {
         let mut columns = Columns::new(&[]);
-        for (marker, sign, _) in self.ends() {
-            for column in marker.columns(marker.arm(q)).iter() {
+        for ((marker, sign, _), arm) in self.ends().into_iter().zip(arms) {
+            for column in marker.columns(arm).iter() {
                 columns.vectors[columns.count] = sign * column;
                 columns.count += 1;
             }
@@ -202,14 +208,14 @@ impl Separation {
         columns
     }
 
-    /// d2e/dtheta2 of the angles of rigid bodies, each with the local and the global index of theta. All other second
-    /// derivatives are zero.
-    pub fn bends(&self, q: &[f64]) -> impl Iterator<Item = (usize, usize, Vec2)> {
-        let bend = |(marker, sign, first): (&Marker, f64, usize)| match *marker {
-            Marker::OnBody { x, .. } => Some((first + 2, x + 2, -sign * marker.arm(q))),
+    /// d2e/dtheta2 of the angles of rigid bodies, each with the local and the global index of theta, given the arms. All other
+    /// second derivatives are zero.
+    pub fn bends(&self, arms: [Vec2; 2]) -> impl Iterator<Item = (usize, usize, Vec2)> {
+        let ends = self.ends().into_iter().zip(arms);
+        ends.filter_map(|((marker, sign, first), arm)| match *marker {
+            Marker::OnBody { x, .. } => Some((first + 2, x + 2, -sign * arm)),
             Marker::Node { .. } | Marker::OnChord { .. } => None,
-        };
-        self.ends().map(bend).into_iter().flatten()
+        })
     }
 }
 
@@ -262,33 +268,30 @@ impl Spin {
         }
     }
 
-    /// dd/dt.
-    pub fn vector_rate(&self, q: &[f64], v: &[f64]) -> Vec2 {
+    /// dd/dt, given d.
+    pub fn vector_rate(&self, v: &[f64], d: Vec2) -> Vec2 {
         match *self {
             Spin::Fixed => Vec2::zeros(),
-            Spin::Angle { theta } => v[theta] * quarter_turn(self.vector(q)),
+            Spin::Angle { theta } => v[theta] * quarter_turn(d),
             Spin::Chord { .. } | Spin::Slope { .. } => self.vector(v),
         }
     }
 
-    /// d2d/dt2.
-    pub fn vector_acceleration(&self, q: &[f64], v: &[f64], a: &[f64]) -> Vec2 {
+    /// d2d/dt2, given d.
+    pub fn vector_acceleration(&self, v: &[f64], a: &[f64], d: Vec2) -> Vec2 {
         match *self {
             Spin::Fixed => Vec2::zeros(),
-            Spin::Angle { theta } => {
-                let d = self.vector(q);
-                a[theta] * quarter_turn(d) - v[theta] * v[theta] * d
-            }
+            Spin::Angle { theta } => a[theta] * quarter_turn(d) - v[theta] * v[theta] * d,
             Spin::Chord { .. } | Spin::Slope { .. } => self.vector(a),
         }
     }
 
-    /// dd/dq in the order of [`Spin::coordinates`].
-    pub fn columns(&self, q: &[f64]) -> Columns {
+    /// dd/dq in the order of [`Spin::coordinates`], given d.
+    pub fn columns(&self, d: Vec2) -> Columns {
         let [x, y] = UNIT;
         match self {
             Spin::Fixed => Columns::new(&[]),
-            Spin::Angle { .. } => Columns::new(&[quarter_turn(self.vector(q))]),
+            Spin::Angle { .. } => Columns::new(&[quarter_turn(d)]),
             Spin::Chord { .. } => Columns::new(&[Vec2::new(-1.0, 0.0), Vec2::new(0.0, -1.0), x, y]),
             Spin::Slope { .. } => Columns::new(&[x, y]),
         }

@@ -13,7 +13,7 @@ use looselink::interaction::{
     ForceByLaw, Maxwell, PointForce, SpringDamper, Torque, TorsionSpring,
 };
 use looselink::marker::{Marker, Separation, Spin};
-use looselink::math::plane::Vec2;
+use looselink::math::plane::{Rotation, Vec2, unit};
 use looselink::motion::Function;
 use looselink::system::{INTEGRALS, Integral, Shape, State, Weights};
 use nalgebra::Matrix2;
@@ -123,7 +123,7 @@ fn constraints() -> Vec<(&'static str, Box<dyn Constraint>)> {
             Box::new(ClampSlope {
                 first: Spin::Angle { theta: 2 },
                 slope: 8,
-                angle: 0.4,
+                turn: Rotation::new(0.4),
                 scale: 1.0,
                 sign: 1.0,
             }),
@@ -133,7 +133,7 @@ fn constraints() -> Vec<(&'static str, Box<dyn Constraint>)> {
             Box::new(ClampSlope {
                 first: Spin::Chord { from: 14, to: 16 },
                 slope: 12,
-                angle: -0.3,
+                turn: Rotation::new(-0.3),
                 scale: 1.3,
                 sign: 1.0,
             }),
@@ -143,7 +143,7 @@ fn constraints() -> Vec<(&'static str, Box<dyn Constraint>)> {
             Box::new(Slide {
                 ends: between(body(0, [0.1, 0.2]), body(3, [-0.2, 0.3])),
                 spin: Spin::Angle { theta: 2 },
-                angle: 0.7,
+                turn: Rotation::new(0.7),
                 scale: 1.0,
             }),
         ),
@@ -152,7 +152,7 @@ fn constraints() -> Vec<(&'static str, Box<dyn Constraint>)> {
             Box::new(Slide {
                 ends: between(Marker::Node { x: 14 }, Marker::Node { x: 6 }),
                 spin: Spin::Chord { from: 14, to: 16 },
-                angle: 0.0,
+                turn: Rotation::identity(),
                 scale: 1.2,
             }),
         ),
@@ -295,7 +295,7 @@ fn constraints_agree_with_their_differences() {
                 let rate = (c.velocity(&high)[d] - c.velocity(&low)[d]) / (2.0 * h);
                 rates.see(acceleration[d] - rate);
             }
-            // both at once is the same as one after the other, whatever was there before
+            // the columns of a constraint are overwritten, whatever was there before
             let mut again = gradient.map(|row| row.map(|g| g + 7.0));
             assert_eq!(c.value_and_gradient(&s, &mut again), c.value(&s), "{name}");
             for d in 0..rows {
@@ -326,7 +326,7 @@ fn reactions_are_conjugate_to_motions() {
     let slide = |slider| Slide {
         ends: between(body(0, [0.1, 0.2]), slider),
         spin: Spin::Angle { theta: 2 },
-        angle: 0.7,
+        turn: Rotation::new(0.7),
         scale: 1.0,
     };
     // each with the coordinates that move the second side along x and y
@@ -379,7 +379,7 @@ fn reactions_are_conjugate_to_motions() {
             Box::new(ClampSlope {
                 first: Spin::Angle { theta: 2 },
                 slope: 8,
-                angle: 0.4,
+                turn: Rotation::new(0.4),
                 scale: 1.0,
                 sign: 1.0,
             }),
@@ -389,7 +389,7 @@ fn reactions_are_conjugate_to_motions() {
             Box::new(ClampSlope {
                 first: Spin::Chord { from: 14, to: 16 },
                 slope: 12,
-                angle: -0.3,
+                turn: Rotation::new(-0.3),
                 scale: 1.3,
                 sign: 1.0,
             }),
@@ -457,7 +457,7 @@ fn travel_is_measured_along_the_line() {
     let slide = Slide {
         ends: between(body(0, [0.1, 0.2]), Marker::Node { x: 6 }),
         spin: Spin::Angle { theta: 2 },
-        angle: 0.7,
+        turn: Rotation::new(0.7),
         scale: 1.0,
     };
     let h = 1e-5;
@@ -896,9 +896,9 @@ fn forces_tell_what_they_do() {
 /// The ground does not turn, so its directions depend on no coordinate.
 #[test]
 fn a_fixed_direction_has_no_columns() {
-    let turning = Spin::Angle { theta: 0 }.columns(&[0.3]);
+    let turning = Spin::Angle { theta: 0 }.columns(unit(0.3));
     assert_eq!((turning.len(), turning.is_empty()), (1, false));
-    let fixed = Spin::Fixed.columns(&[0.3]);
+    let fixed = Spin::Fixed.columns(unit(0.3));
     assert_eq!((fixed.len(), fixed.is_empty()), (0, true));
 }
 

@@ -1,6 +1,6 @@
 //! Prescribed relative angle of two directions: welds, guides that do not turn, driven joints.
 
-use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use super::{Constraint, Curvature, Gradient, ROWS};
 use crate::effect::Effect;
 use crate::marker::Spin;
 use crate::math::plane::{Rotation, Vec2, quarter_turn};
@@ -26,6 +26,8 @@ pub struct Align {
 
 /// Everything about both directions at one instant.
 struct Directions {
+    /// d_1.
+    first: Vec2,
     /// R.
     turn: Rotation,
     /// R d_1 and d_2.
@@ -35,9 +37,9 @@ struct Directions {
 impl Align {
     fn directions(&self, at: &State) -> Directions {
         let turn = Rotation::new(self.angle.at(at.t)[0]);
-        let first = turn * self.first.vector(&at.q);
-        let d = [first, self.second.vector(&at.q)];
-        Directions { turn, d }
+        let first = self.first.vector(&at.q);
+        let d = [turn * first, self.second.vector(&at.q)];
+        Directions { first, turn, d }
     }
 
     /// cos of the angle error times |d_1| |d_2|.
@@ -64,27 +66,21 @@ impl Constraint for Align {
         [self.first.coordinates(), self.second.coordinates()]
     }
 
-    fn value(&self, at: &State) -> [f64; ROWS] {
-        let Directions { d, .. } = self.directions(at);
-        [self.scale * d[0].perp(&d[1]), 0.0]
-    }
-
-    fn gradient(&self, at: &State) -> Gradient {
-        let Directions { turn, d } = self.directions(at);
-        let (first, second) = (self.first.columns(&at.q), self.second.columns(&at.q));
-        let mut gradient = [[0.0; WIDTH]; ROWS];
+    fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
+        let Directions { first, turn, d } = self.directions(at);
+        let (first, second) = (self.first.columns(first), self.second.columns(d[1]));
         for (g, column) in gradient[0].iter_mut().zip(first.iter()) {
             *g = self.scale * (turn * column).perp(&d[1]);
         }
         for (g, column) in gradient[0][first.len()..].iter_mut().zip(second.iter()) {
             *g = self.scale * d[0].perp(column);
         }
-        gradient
+        [self.scale * d[0].perp(&d[1]), 0.0]
     }
 
     fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {
-        let Directions { turn, d } = self.directions(at);
-        let (first, second) = (self.first.columns(&at.q), self.second.columns(&at.q));
+        let Directions { first, turn, d } = self.directions(at);
+        let (first, second) = (self.first.columns(first), self.second.columns(d[1]));
         let s = lambda[0] * self.scale;
         for (i, a) in first.iter().enumerate() {
             for (j, b) in second.iter().enumerate() {
@@ -104,10 +100,10 @@ impl Constraint for Align {
     }
 
     fn velocity(&self, at: &State) -> [f64; ROWS] {
-        let Directions { turn, d } = self.directions(at);
+        let Directions { first, turn, d } = self.directions(at);
         let turning = self.angle.at(at.t)[1];
-        let first = turn * self.first.vector_rate(&at.q, &at.v) + turning * quarter_turn(d[0]);
-        let second = self.second.vector_rate(&at.q, &at.v);
+        let first = turn * self.first.vector_rate(&at.v, first) + turning * quarter_turn(d[0]);
+        let second = self.second.vector_rate(&at.v, d[1]);
         [self.scale * (first.perp(&d[1]) + d[0].perp(&second)), 0.0]
     }
 
@@ -117,16 +113,16 @@ impl Constraint for Align {
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
-        let Directions { turn, d } = self.directions(at);
+        let Directions { first, turn, d } = self.directions(at);
         let [_, turning, growing] = self.angle.at(at.t);
-        let rate = turn * self.first.vector_rate(&at.q, &at.v);
+        let rate = turn * self.first.vector_rate(&at.v, first);
         let first_dot = rate + turning * quarter_turn(d[0]);
-        let first_ddot = turn * self.first.vector_acceleration(&at.q, &at.v, &at.a)
+        let first_ddot = turn * self.first.vector_acceleration(&at.v, &at.a, first)
             + 2.0 * turning * quarter_turn(rate)
             + growing * quarter_turn(d[0])
             - turning * turning * d[0];
-        let second_dot = self.second.vector_rate(&at.q, &at.v);
-        let second_ddot = self.second.vector_acceleration(&at.q, &at.v, &at.a);
+        let second_dot = self.second.vector_rate(&at.v, d[1]);
+        let second_ddot = self.second.vector_acceleration(&at.v, &at.a, d[1]);
         let sum =
             first_ddot.perp(&d[1]) + 2.0 * first_dot.perp(&second_dot) + d[0].perp(&second_ddot);
         [self.scale * sum, 0.0]

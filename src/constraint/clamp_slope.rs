@@ -1,6 +1,6 @@
 //! A slope vector held in full: the second kind of clamp of a flexible end.
 
-use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use super::{Constraint, Curvature, Gradient, ROWS};
 use crate::effect::Effect;
 use crate::marker::Spin;
 use crate::math::plane::{Rotation, Vec2, pair};
@@ -17,8 +17,8 @@ pub struct ClampSlope {
     pub first: Spin,
     /// Index of the first coordinate of r'.
     pub slope: usize,
-    /// Angle of r' relative to the first direction \[rad\].
-    pub angle: f64,
+    /// R.
+    pub turn: Rotation,
     /// 1/|d_1|.
     pub scale: f64,
     /// -1 where the slope is on the first side of the joint: its couple is that of the first side on the second.
@@ -27,7 +27,7 @@ pub struct ClampSlope {
 
 impl ClampSlope {
     fn turned(&self, x: Vec2) -> Vec2 {
-        self.scale * (Rotation::new(self.angle) * x)
+        self.scale * (self.turn * x)
     }
 
     fn slope(&self, x: &[f64]) -> Vec2 {
@@ -52,21 +52,18 @@ impl Constraint for ClampSlope {
         [self.first.coordinates(), vec![self.slope, self.slope + 1]]
     }
 
-    fn value(&self, at: &State) -> [f64; ROWS] {
-        (self.slope(&at.q) - self.turned(self.first.vector(&at.q))).into()
-    }
-
-    fn gradient(&self, at: &State) -> Gradient {
-        let columns = self.first.columns(&at.q);
-        let mut gradient = [[0.0; WIDTH]; ROWS];
+    fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
+        let d = self.first.vector(&at.q);
+        let columns = self.first.columns(d);
         for (c, column) in columns.iter().enumerate() {
             let turned = self.turned(*column);
             gradient[0][c] = -turned.x;
             gradient[1][c] = -turned.y;
         }
-        gradient[0][columns.len()] = 1.0;
-        gradient[1][columns.len() + 1] = 1.0;
-        gradient
+        let slope = columns.len();
+        gradient[0][slope..slope + 2].copy_from_slice(&[1.0, 0.0]);
+        gradient[1][slope..slope + 2].copy_from_slice(&[0.0, 1.0]);
+        (self.slope(&at.q) - self.turned(d)).into()
     }
 
     fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {
@@ -77,12 +74,13 @@ impl Constraint for ClampSlope {
     }
 
     fn velocity(&self, at: &State) -> [f64; ROWS] {
-        let first = self.first.vector_rate(&at.q, &at.v);
+        let first = self.first.vector_rate(&at.v, self.first.vector(&at.q));
         (self.slope(&at.v) - self.turned(first)).into()
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
-        let first = self.first.vector_acceleration(&at.q, &at.v, &at.a);
+        let d = self.first.vector(&at.q);
+        let first = self.first.vector_acceleration(&at.v, &at.a, d);
         (self.slope(&at.a) - self.turned(first)).into()
     }
 

@@ -1,6 +1,6 @@
 //! Ideal revolute joint between two markers (eq. 16, second and third row).
 
-use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use super::{Constraint, Curvature, Gradient, ROWS};
 use crate::effect::Effect;
 use crate::marker::Marker;
 use crate::math::plane::Vec2;
@@ -26,17 +26,6 @@ impl Constraint for Coincide {
 
     fn sides(&self) -> [Vec<usize>; 2] {
         [self.bearing.coordinates(), self.journal.coordinates()]
-    }
-
-    fn value(&self, at: &State) -> [f64; ROWS] {
-        let point = |m: &Marker| m.position(&at.q, m.arm(&at.q));
-        (point(&self.bearing) - point(&self.journal)).into()
-    }
-
-    fn gradient(&self, at: &State) -> Gradient {
-        let mut gradient = [[0.0; WIDTH]; ROWS];
-        self.value_and_gradient(at, &mut gradient);
-        gradient
     }
 
     #[inline]

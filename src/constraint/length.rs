@@ -1,6 +1,6 @@
 //! Constant distance of two nodes (eq. 2).
 
-use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use super::{Constraint, Curvature, Gradient, ROWS};
 use crate::effect::Effect;
 use crate::math::plane::{Vec2, pair};
 use crate::system::State;
@@ -37,16 +37,6 @@ impl Constraint for Length {
 
     fn sides(&self) -> [Vec<usize>; 2] {
         [self.i, self.j].map(|x| vec![x, x + 1])
-    }
-
-    fn value(&self, at: &State) -> [f64; ROWS] {
-        self.value_and_gradient(at, &mut [[0.0; WIDTH]; ROWS])
-    }
-
-    fn gradient(&self, at: &State) -> Gradient {
-        let mut gradient = [[0.0; WIDTH]; ROWS];
-        self.value_and_gradient(at, &mut gradient);
-        gradient
     }
 
     #[inline]

@@ -68,15 +68,17 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
     fn coordinates(&self) -> Vec<usize> {
         self.sides().concat()
     }
+    /// Phi, and Phi_q into `gradient`, of which the columns that the constraint has are overwritten.
+    fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS];
     /// Phi.
-    fn value(&self, at: &State) -> [f64; ROWS];
+    fn value(&self, at: &State) -> [f64; ROWS] {
+        self.value_and_gradient(at, &mut [[0.0; WIDTH]; ROWS])
+    }
     /// Phi_q.
-    fn gradient(&self, at: &State) -> Gradient;
-    /// Phi, and Phi_q into `gradient`, of which the columns that the constraint has are overwritten: for kinds that are
-    /// evaluated often.
-    fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
-        *gradient = self.gradient(at);
-        self.value(at)
+    fn gradient(&self, at: &State) -> Gradient {
+        let mut gradient = [[0.0; WIDTH]; ROWS];
+        self.value_and_gradient(at, &mut gradient);
+        gradient
     }
     /// d(Phi_q^T lambda)/dq.
     fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature);

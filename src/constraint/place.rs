@@ -1,6 +1,6 @@
 //! A prescribed coordinate of a point.
 
-use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use super::{Constraint, Curvature, Gradient, ROWS};
 use crate::effect::Effect;
 use crate::marker::Marker;
 use crate::math::plane::Vec2;
@@ -32,20 +32,13 @@ impl Constraint for Place {
         [vec![], self.marker.coordinates()]
     }
 
-    fn value(&self, at: &State) -> [f64; ROWS] {
-        let position = self.marker.position(&at.q, self.marker.arm(&at.q));
-        [self.direction.dot(&position) - self.value.at(at.t)[0], 0.0]
-    }
-
-    fn gradient(&self, at: &State) -> Gradient {
-        let mut gradient = [[0.0; WIDTH]; ROWS];
-        for (g, column) in gradient[0]
-            .iter_mut()
-            .zip(self.marker.columns(self.marker.arm(&at.q)).iter())
-        {
+    fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
+        let arm = self.marker.arm(&at.q);
+        for (g, column) in gradient[0].iter_mut().zip(self.marker.columns(arm).iter()) {
             *g = self.direction.dot(column);
         }
-        gradient
+        let along = self.direction.dot(&self.marker.position(&at.q, arm));
+        [along - self.value.at(at.t)[0], 0.0]
     }
 
     fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {

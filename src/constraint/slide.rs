@@ -1,6 +1,6 @@
 //! A point on a line: the guide of a prismatic joint, a pin in a slot.
 
-use super::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use super::{Constraint, Curvature, Gradient, ROWS};
 use crate::effect::Effect;
 use crate::marker::{Separation, Spin};
 use crate::math::plane::{Rotation, Vec2, quarter_turn};
@@ -14,44 +14,46 @@ pub struct Slide {
     pub ends: Separation,
     /// The body that carries the line.
     pub spin: Spin,
-    /// Direction of the line relative to that of the spin \[rad\].
-    pub angle: f64,
+    /// From the direction of the spin to that of the line.
+    pub turn: Rotation,
     /// 1/|d| of the spin's undeformed direction.
     pub scale: f64,
 }
 
-/// u and e, and their rates.
+/// The direction d of the spin, the arms of the ends, u and e.
 struct SlideVectors {
+    d: Vec2,
+    arms: [Vec2; 2],
     u: Vec2,
     e: Vec2,
-    u_dot: Vec2,
-    e_dot: Vec2,
 }
 
 impl Slide {
     fn turned(&self, x: Vec2) -> Vec2 {
-        self.scale * (Rotation::new(self.angle) * x)
-    }
-
-    /// u and e.
-    fn at(&self, at: &State) -> (Vec2, Vec2) {
-        let u = self.turned(self.spin.vector(&at.q));
-        (u, self.ends.vector(&at.q))
+        self.scale * (self.turn * x)
     }
 
     fn vectors(&self, at: &State) -> SlideVectors {
-        let (u, e) = self.at(at);
+        let (d, arms) = (self.spin.vector(&at.q), self.ends.arms(&at.q));
         SlideVectors {
-            u,
-            e,
-            u_dot: self.turned(self.spin.vector_rate(&at.q, &at.v)),
-            e_dot: self.ends.rate(&at.q, &at.v),
+            d,
+            arms,
+            u: self.turned(d),
+            e: self.ends.vector(&at.q, arms),
         }
+    }
+
+    /// The rates of u and e.
+    fn rates(&self, at: &State, vectors: &SlideVectors) -> [Vec2; 2] {
+        let u_dot = self.turned(self.spin.vector_rate(&at.v, vectors.d));
+        [u_dot, self.ends.rate(&at.v, vectors.arms)]
     }
 
     /// Distance along the line from the guide's point to the slider \[m\] and its rate \[m/s\].
     pub fn travel(&self, at: &State) -> [f64; 2] {
-        let SlideVectors { u, e, u_dot, e_dot } = self.vectors(at);
+        let vectors = self.vectors(at);
+        let [u_dot, e_dot] = self.rates(at, &vectors);
+        let SlideVectors { u, e, .. } = vectors;
         // the slope of a flexible guide is longer than 1 where the link is stretched
         let (size, along) = (u.norm(), u.dot(&e));
         let stretching = u.dot(&u_dot) / (size * size);
@@ -77,30 +79,25 @@ impl Constraint for Slide {
         [[self.spin.coordinates(), guide].concat(), slider]
     }
 
-    fn value(&self, at: &State) -> [f64; ROWS] {
-        let (u, e) = self.at(at);
-        [u.perp(&e), 0.0]
-    }
-
-    fn gradient(&self, at: &State) -> Gradient {
-        let (u, e) = self.at(at);
-        let (turning, moving) = (self.spin.columns(&at.q), self.ends.columns(&at.q));
-        let turning = turning.iter().map(|d| self.turned(*d).perp(&e));
+    fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
+        let SlideVectors { d, arms, u, e } = self.vectors(at);
+        let (turning, moving) = (self.spin.columns(d), self.ends.columns(arms));
+        let turning = turning.iter().map(|column| self.turned(*column).perp(&e));
         let moving = moving.iter().map(|column| u.perp(column));
-        let mut gradient = [[0.0; WIDTH]; ROWS];
         for (g, x) in gradient[0].iter_mut().zip(turning.chain(moving)) {
             *g = x;
         }
-        gradient
+        [u.perp(&e), 0.0]
     }
 
     fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {
-        let (u, e) = self.at(at);
+        let SlideVectors { d, arms, u, e } = self.vectors(at);
         let (s, first) = (lambda[0], self.spin.width());
-        for (i, d) in self.spin.columns(&at.q).iter().enumerate() {
-            let d = self.turned(*d);
-            for (j, column) in self.ends.columns(&at.q).iter().enumerate() {
-                let mixed = s * d.perp(column);
+        let moving = self.ends.columns(arms);
+        for (i, turning) in self.spin.columns(d).iter().enumerate() {
+            let turning = self.turned(*turning);
+            for (j, column) in moving.iter().enumerate() {
+                let mixed = s * turning.perp(column);
                 out.add(i, first + j, mixed);
                 out.add(first + j, i, mixed);
             }
@@ -108,26 +105,28 @@ impl Constraint for Slide {
         if let Spin::Angle { .. } = self.spin {
             out.add(0, 0, -s * u.perp(&e));
         }
-        for (theta, _, bend) in self.ends.bends(&at.q) {
+        for (theta, _, bend) in self.ends.bends(arms) {
             out.add(first + theta, first + theta, s * u.perp(&bend));
         }
     }
 
     fn velocity(&self, at: &State) -> [f64; ROWS] {
-        let SlideVectors { u, e, u_dot, e_dot } = self.vectors(at);
-        [u_dot.perp(&e) + u.perp(&e_dot), 0.0]
+        let vectors = self.vectors(at);
+        let [u_dot, e_dot] = self.rates(at, &vectors);
+        [u_dot.perp(&vectors.e) + vectors.u.perp(&e_dot), 0.0]
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
-        let SlideVectors { u, e, u_dot, e_dot } = self.vectors(at);
-        let u_ddot = self.turned(self.spin.vector_acceleration(&at.q, &at.v, &at.a));
-        let e_ddot = self.ends.acceleration(&at.q, &at.v, &at.a);
+        let vectors = self.vectors(at);
+        let [u_dot, e_dot] = self.rates(at, &vectors);
+        let SlideVectors { d, arms, u, e } = vectors;
+        let u_ddot = self.turned(self.spin.vector_acceleration(&at.v, &at.a, d));
+        let e_ddot = self.ends.acceleration(&at.v, &at.a, arms);
         let sum = u_ddot.perp(&e) + 2.0 * u_dot.perp(&e_dot) + u.perp(&e_ddot);
         [sum, 0.0]
     }
 
     fn force(&self, at: &State, lambda: [f64; ROWS]) -> Vec2 {
-        let (u, _) = self.at(at);
-        -lambda[0] * quarter_turn(u)
+        -lambda[0] * quarter_turn(self.vectors(at).u)
     }
 }

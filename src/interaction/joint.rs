@@ -5,6 +5,7 @@ use crate::body::PointRef;
 use crate::constraint::Slide;
 use crate::document::{Fields, Kind, SceneError, Span};
 use crate::marker::{Marker, Separation, Spin};
+use crate::math::plane::Rotation;
 use crate::terms::{JointTerms, Owner, Terms};
 use indexmap::IndexMap;
 use std::any::Any;
@@ -73,7 +74,7 @@ impl JointEnds<'_> {
         Slide {
             ends: Separation { from, to },
             spin: self.spins[0],
-            angle: direction,
+            turn: Rotation::new(direction),
             scale: self.inverse_sizes[0],
         }
     }

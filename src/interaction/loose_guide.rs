@@ -101,7 +101,7 @@ pub struct Walls {
     /// From the guide's point to the pin.
     ends: Separation,
     spin: Spin,
-    direction: f64,
+    turn: Rotation,
     clearance: f64,
     coordinates: Vec<usize>,
     /// Local indices of the coordinates of both ends, and of the spin.
@@ -133,7 +133,7 @@ impl Walls {
         Walls {
             ends,
             spin,
-            direction,
+            turn: Rotation::new(direction),
             clearance,
             coordinates,
             places,
@@ -141,8 +141,9 @@ impl Walls {
     }
 
     fn pin(&self, q: &[f64], v: &[f64]) -> Pin {
-        let (e, e_dot) = (self.ends.vector(q), self.ends.rate(q, v));
-        let along = Rotation::new(self.direction) * self.spin.vector(q);
+        let arms = self.ends.arms(q);
+        let (e, e_dot) = (self.ends.vector(q, arms), self.ends.rate(v, arms));
+        let along = self.turn * self.spin.vector(q);
         let u = 1.0 / along.norm() * along;
         let m = quarter_turn(u);
         let (s, p) = (m.dot(&e), u.dot(&e));
@@ -157,7 +158,7 @@ impl Walls {
             e_q: [Vec2::zeros(); WIDTH],
             b: [0.0; WIDTH],
         };
-        for (&c, column) in self.places[0].iter().zip(self.ends.columns(q).iter()) {
+        for (&c, column) in self.places[0].iter().zip(self.ends.columns(arms).iter()) {
             pin.e_q[c] += column;
         }
         for (&c, b) in self.places[1].iter().zip(self.spin.derivatives(q, v).b) {
@@ -187,7 +188,7 @@ impl Walls {
                 second[1][i][j] += s * bend;
             }
         }
-        for (theta, _, bend) in self.ends.bends(at.q) {
+        for (theta, _, bend) in self.ends.bends(self.ends.arms(at.q)) {
             let theta = self.places[0][theta];
             second[0][theta][theta] += m.dot(&bend);
             second[1][theta][theta] += u.dot(&bend);

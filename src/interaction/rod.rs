@@ -1,7 +1,7 @@
 //! `type = "rod"`: a massless rigid rod holds two points at a distance.
 
 use super::{JointEnds, JointKind, JointModel};
-use crate::constraint::{Constraint, Curvature, Gradient, ROWS, WIDTH};
+use crate::constraint::{Constraint, Curvature, Gradient, ROWS};
 use crate::document::Key;
 use crate::effect::Effect;
 use crate::marker::Separation;
@@ -52,6 +52,14 @@ pub struct Distance {
     pub length: f64,
 }
 
+impl Distance {
+    /// e, and the arms of both ends.
+    fn vector(&self, at: &State) -> (Vec2, [Vec2; 2]) {
+        let arms = self.ends.arms(&at.q);
+        (self.ends.vector(&at.q, arms), arms)
+    }
+}
+
 impl Constraint for Distance {
     fn effect(&self) -> Effect {
         "rod"
@@ -65,46 +73,43 @@ impl Constraint for Distance {
         self.ends.sides()
     }
 
-    fn value(&self, at: &State) -> [f64; ROWS] {
+    fn value_and_gradient(&self, at: &State, gradient: &mut Gradient) -> [f64; ROWS] {
+        let (e, arms) = self.vector(at);
+        let direction = 1.0 / self.length * e;
+        for (g, column) in gradient[0].iter_mut().zip(self.ends.columns(arms).iter()) {
+            *g = direction.dot(column);
+        }
         // (|e| - l)(|e| + l): no digits are lost in a difference of squares
-        let (distance, l) = (self.ends.vector(&at.q).norm(), self.length);
+        let (distance, l) = (e.norm(), self.length);
         [(distance - l) * (distance + l) / (2.0 * l), 0.0]
     }
 
-    fn gradient(&self, at: &State) -> Gradient {
-        let direction = 1.0 / self.length * self.ends.vector(&at.q);
-        let mut gradient = [[0.0; WIDTH]; ROWS];
-        for (g, column) in gradient[0].iter_mut().zip(self.ends.columns(&at.q).iter()) {
-            *g = direction.dot(column);
-        }
-        gradient
-    }
-
     fn curvature(&self, at: &State, lambda: [f64; ROWS], out: &mut Curvature) {
-        let (s, e) = (lambda[0] / self.length, self.ends.vector(&at.q));
-        let columns = self.ends.columns(&at.q);
+        let (e, arms) = self.vector(at);
+        let (s, columns) = (lambda[0] / self.length, self.ends.columns(arms));
         for (i, row) in columns.iter().enumerate() {
             for (j, column) in columns.iter().enumerate() {
                 out.add(i, j, s * row.dot(column));
             }
         }
-        for (theta, _, bend) in self.ends.bends(&at.q) {
+        for (theta, _, bend) in self.ends.bends(arms) {
             out.add(theta, theta, s * e.dot(&bend));
         }
     }
 
     fn velocity(&self, at: &State) -> [f64; ROWS] {
-        let (e, rate) = (self.ends.vector(&at.q), self.ends.rate(&at.q, &at.v));
-        [e.dot(&rate) / self.length, 0.0]
+        let (e, arms) = self.vector(at);
+        [e.dot(&self.ends.rate(&at.v, arms)) / self.length, 0.0]
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {
-        let (e, rate) = (self.ends.vector(&at.q), self.ends.rate(&at.q, &at.v));
-        let second = self.ends.acceleration(&at.q, &at.v, &at.a);
+        let (e, arms) = self.vector(at);
+        let rate = self.ends.rate(&at.v, arms);
+        let second = self.ends.acceleration(&at.v, &at.a, arms);
         [(e.dot(&second) + rate.dot(&rate)) / self.length, 0.0]
     }
 
     fn force(&self, at: &State, lambda: [f64; ROWS]) -> Vec2 {
-        -lambda[0] / self.length * self.ends.vector(&at.q)
+        -lambda[0] / self.length * self.vector(at).0
     }
 }

@@ -115,13 +115,14 @@ impl SpringDamper {
 
     pub(super) fn line(&self, at: &State) -> LineOfAction {
         let ends = self.ends();
-        let (e, e_dot) = (ends.vector(&at.q), ends.rate(&at.q, &at.v));
+        let arms = ends.arms(&at.q);
+        let (e, e_dot) = (ends.vector(&at.q, arms), ends.rate(&at.v, arms));
         let length = e.norm();
         let meeting = length == 0.0 && self.rest_length == 0.0;
         let inverse = if meeting { 0.0 } else { 1.0 / length };
         let n = inverse * e;
         let mut along = [0.0; WIDTH];
-        for (along, column) in along.iter_mut().zip(ends.columns(&at.q).iter()) {
+        for (along, column) in along.iter_mut().zip(ends.columns(arms).iter()) {
             *along = n.dot(column);
         }
         LineOfAction {
@@ -155,13 +156,14 @@ impl SpringDamper {
             pull * line.inverse
         };
         // d(L_dot)/dq: n turns with e, and e_dot with the arms
-        let columns = ends.columns(&at.q);
+        let arms = ends.arms(&at.q);
+        let columns = ends.columns(arms);
         let mut rate_q = [0.0; WIDTH];
         for (c, column) in columns.iter().enumerate() {
             let across = column - line.along[c] * line.n;
             rate_q[c] = line.e_dot.dot(&across) * line.inverse;
         }
-        for (theta, x, bend) in ends.bends(&at.q) {
+        for (theta, x, bend) in ends.bends(arms) {
             rate_q[theta] += at.v[x] * line.n.dot(&bend);
             k[theta][theta] += w.q * pull * line.n.dot(&bend);
         }

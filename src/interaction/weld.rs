@@ -5,6 +5,7 @@ use super::{JointEnds, JointKind, JointModel};
 use crate::constraint::{Align, ClampSlope};
 use crate::document::Key;
 use crate::marker::Spin;
+use crate::math::plane::Rotation;
 use crate::motion::Function;
 use crate::terms::{ConstraintTerm, JointTerms, Owner, Terms};
 use std::sync::Arc;
@@ -79,7 +80,7 @@ impl JointModel for Weld {
                 let clamp = ClampSlope {
                     first: ends.spins[other],
                     slope,
-                    angle,
+                    turn: Rotation::new(angle),
                     scale: ends.inverse_sizes[other],
                     sign: if other == 0 { 1.0 } else { -1.0 },
                 };

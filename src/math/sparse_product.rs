@@ -81,10 +81,8 @@ impl SparseProduct {
                     *sum += value * x;
                 }
             }
-            let row = row as usize;
-            sums.iter()
-                .zip(row..)
-                .for_each(|(sum, row)| take(row, *sum));
+            take(row as usize, sums[0]);
+            take(row as usize + 1, sums[1]);
             start = end as usize;
         }
     }

@@ -322,14 +322,17 @@ impl Controller {
             }
             (worst.0 / self.position, worst.1)
         };
-        let mut of_position = worst(None);
-        if let Some(response) = &mut self.response {
-            response.keep_up(model, from, h, work);
-            // an elastic mechanism moves less than one in free flight: y is needed if its error may be the larger one
-            if of_position.0.is_nan() || of_position.0 > of_energy {
-                of_position = worst(Some(response.displacement(model, h, &error.v)));
+        let of_position = match &mut self.response {
+            None => worst(None),
+            Some(response) => {
+                response.keep_up(model, from, h, work);
+                // an elastic mechanism moves less than one in free flight: the energy may be the worse even without y
+                if of_energy > 0.0 && worst(None).0 < of_energy {
+                    return (of_energy, self.lengths.len());
+                }
+                worst(Some(response.displacement(model, h, &error.v)))
             }
-        }
+        };
         match of_energy > of_position.0 {
             true => (of_energy, self.lengths.len()),
             false => of_position,

@@ -87,7 +87,10 @@ impl SlotWalls {
     /// x . de/dq for every local coordinate.
     fn along(&self, x: Vec2, q: &[f64]) -> [f64; WIDTH] {
         let mut values = [0.0; WIDTH];
-        for (value, column) in values.iter_mut().zip(self.ends.columns(q).iter()) {
+        for (value, column) in values
+            .iter_mut()
+            .zip(self.ends.columns(self.ends.arms(q)).iter())
+        {
             *value = x.dot(column);
         }
         values
@@ -105,10 +108,11 @@ impl Geometry for SlotWalls {
 
     fn gap(&self, q: &[f64], v: &[f64]) -> Gap {
         let m = quarter_turn(self.u);
-        let s = m.dot(&self.ends.vector(q));
+        let arms = self.ends.arms(q);
+        let s = m.dot(&self.ends.vector(q, arms));
         Gap {
             e: s * m,
-            e_dot: m.dot(&self.ends.rate(q, v)) * m,
+            e_dot: m.dot(&self.ends.rate(v, arms)) * m,
             eccentricity: s.abs(),
             delta: s.abs() - self.play,
             ..Gap::default()
@@ -126,12 +130,12 @@ impl Geometry for SlotWalls {
         let mut touch = Touch {
             n,
             t,
-            slip: t.dot(&self.ends.rate(at.q, at.v)),
+            slip: t.dot(&self.ends.rate(at.v, self.ends.arms(at.q))),
             normal: self.along(n, at.q),
             tangent: self.along(t, at.q),
             ..Touch::default()
         };
-        for (local, theta, bend) in self.ends.bends(at.q) {
+        for (local, theta, bend) in self.ends.bends(self.ends.arms(at.q)) {
             touch.rate_q[local] = at.v[theta] * n.dot(&bend);
             touch.slip_q[local] = at.v[theta] * t.dot(&bend);
         }
@@ -147,7 +151,7 @@ impl Geometry for SlotWalls {
         tangential: f64,
         k: &mut LocalMatrix,
     ) {
-        for (local, _, bend) in self.ends.bends(at.q) {
+        for (local, _, bend) in self.ends.bends(self.ends.arms(at.q)) {
             k[local][local] += normal * touch.n.dot(&bend) + tangential * touch.t.dot(&bend);
         }
     }
