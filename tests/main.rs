@@ -13,6 +13,7 @@ mod deformed;
 mod disc;
 mod documents;
 mod drift;
+mod examples;
 mod expressions;
 mod good_input;
 mod hostile_input;

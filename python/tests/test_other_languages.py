@@ -1,4 +1,4 @@
-"""Tables of sweeps in other languages, and the examples in Rust. The scripts for MATLAB and Julia are not run."""
+"""Tables of sweeps in other languages. The scripts for MATLAB and Julia are not run."""
 
 import shutil
 import subprocess
@@ -33,20 +33,3 @@ def test_scripts_are_short_and_say_whether_they_are_tested(script):
     lines = script.read_text("utf-8").splitlines()
     assert len(lines) <= 10
     assert ("not tested" in lines[0]) == ("octave" not in script.name)
-
-
-RUST = sorted(EXAMPLES.glob("*.rs"))
-
-
-@pytest.mark.parametrize("example", RUST, ids=lambda example: example.stem)
-def test_examples_run(example):
-    assert len(RUST) == 4 and len(example.read_text("utf-8").splitlines()) < 60
-    command = ["cargo", "run", "--quiet", "--example", example.stem]
-    done = subprocess.run(command, cwd=TOP, check=True, capture_output=True, text=True)
-    wanted = {
-        "own_contact_law": "restitution 0.900",
-        "own_integrator": "numerical: ",
-        "own_interaction": "work of the water: -",
-        "own_observer": "slider_pin: ",
-    }
-    assert wanted[example.stem] in done.stdout
