@@ -1,5 +1,6 @@
 //! The programs in `examples/` print what they promise. `cargo test` has built them.
 
+use std::env::consts::EXE_SUFFIX;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -24,7 +25,7 @@ fn examples_are_short_and_run() {
     for (name, wanted) in PRINTED {
         let source = fs::read_to_string(top.join(format!("examples/{name}.rs"))).unwrap();
         assert!(source.lines().count() < 60, "{name} is long");
-        let program = built.join(name);
+        let program = built.join(format!("{name}{EXE_SUFFIX}"));
         let output = Command::new(&program).current_dir(top).output();
         let output = output.unwrap_or_else(|error| {
             panic!("{}: {error}; `cargo test` builds it", program.display())

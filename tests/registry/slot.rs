@@ -85,12 +85,9 @@ struct SlotWalls {
 
 impl SlotWalls {
     /// x . de/dq for every local coordinate.
-    fn along(&self, x: Vec2, q: &[f64]) -> [f64; WIDTH] {
+    fn along(&self, x: Vec2, gap: &Gap) -> [f64; WIDTH] {
         let mut values = [0.0; WIDTH];
-        for (value, column) in values
-            .iter_mut()
-            .zip(self.ends.columns(self.ends.arms(q)).iter())
-        {
+        for (value, column) in values.iter_mut().zip(self.ends.columns(gap.arms).iter()) {
             *value = x.dot(column);
         }
         values
@@ -115,12 +112,12 @@ impl Geometry for SlotWalls {
             e_dot: m.dot(&self.ends.rate(v, arms)) * m,
             eccentricity: s.abs(),
             delta: s.abs() - self.play,
-            ..Gap::default()
+            arms,
         }
     }
 
-    fn push(&self, at: At, gap: &Gap, force: f64, f: &mut [f64; WIDTH]) {
-        let along = self.along(self.along_normal(gap, force), at.q);
+    fn push(&self, _: At, gap: &Gap, force: f64, f: &mut [f64; WIDTH]) {
+        let along = self.along(self.along_normal(gap, force), gap);
         f.iter_mut().zip(along).for_each(|(f, push)| *f += push);
     }
 
@@ -130,12 +127,12 @@ impl Geometry for SlotWalls {
         let mut touch = Touch {
             n,
             t,
-            slip: t.dot(&self.ends.rate(at.v, self.ends.arms(at.q))),
-            normal: self.along(n, at.q),
-            tangent: self.along(t, at.q),
+            slip: t.dot(&self.ends.rate(at.v, gap.arms)),
+            normal: self.along(n, gap),
+            tangent: self.along(t, gap),
             ..Touch::default()
         };
-        for (local, theta, bend) in self.ends.bends(self.ends.arms(at.q)) {
+        for (local, theta, bend) in self.ends.bends(gap.arms) {
             touch.rate_q[local] = at.v[theta] * n.dot(&bend);
             touch.slip_q[local] = at.v[theta] * t.dot(&bend);
         }
@@ -144,14 +141,14 @@ impl Geometry for SlotWalls {
 
     fn curve(
         &self,
-        at: At,
-        _: &Gap,
+        _: At,
+        gap: &Gap,
         touch: &Touch,
         normal: f64,
         tangential: f64,
         k: &mut LocalMatrix,
     ) {
-        for (local, _, bend) in self.ends.bends(self.ends.arms(at.q)) {
+        for (local, _, bend) in self.ends.bends(gap.arms) {
             k[local][local] += normal * touch.n.dot(&bend) + tangential * touch.t.dot(&bend);
         }
     }
