@@ -117,6 +117,8 @@ struct Pin {
     /// Rates of s and p.
     rates: [f64; 2],
     omega: f64,
+    /// Of the ends of e.
+    arms: [Vec2; 2],
     /// de/dq.
     e_q: [Vec2; WIDTH],
     /// d(omega)/dv.
@@ -155,6 +157,7 @@ impl Walls {
             p,
             rates: [m.dot(&e_dot) - omega * p, u.dot(&e_dot) + omega * s],
             omega,
+            arms,
             e_q: [Vec2::zeros(); WIDTH],
             b: [0.0; WIDTH],
         };
@@ -188,7 +191,7 @@ impl Walls {
                 second[1][i][j] += s * bend;
             }
         }
-        for (theta, _, bend) in self.ends.bends(self.ends.arms(at.q)) {
+        for (theta, _, bend) in self.ends.bends(pin.arms) {
             let theta = self.places[0][theta];
             second[0][theta][theta] += m.dot(&bend);
             second[1][theta][theta] += u.dot(&bend);

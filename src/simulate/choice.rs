@@ -2,7 +2,8 @@
 //!
 //! Which scheme takes the least work depends on the stiffness of the mechanism, on its mesh, on its impacts and on the accuracy.
 //! So pilot runs with every one of [`CANDIDATES`] race through the beginning of the motion: the one with the fewest operations
-//! so far goes on. When one has seen enough, the one that has come furthest wins. Enough are [`FEWEST_STEPS`] steps and [`PART`]
+//! so far goes on. When one has seen enough, the one wins that needs the fewest operations for the whole run, if the rest of the run
+//! takes as many as the part since the first contact closed. Enough are [`FEWEST_STEPS`] steps and [`PART`]
 //! of the run and, in a mechanism with contacts, [`IMPACTS`] of them that have closed and opened again or a whole horizon: the
 //! steps of the free flight before the first impact say nothing of those that impacts take. After [`PILOT_STEPS`] it has seen
 //! enough in any case. What counts are operations, not seconds, so that a scene has the same choice on every machine.
@@ -33,7 +34,7 @@ const STRIDE: u64 = 4;
 pub struct Choice {
     /// Name of the scheme.
     pub method: &'static str,
-    /// The pilot runs, the one that got furthest first.
+    /// The pilot runs, the one with the fewest operations foreseen first.
     pub pilots: Vec<PilotRun>,
 }
 
@@ -48,6 +49,8 @@ pub struct PilotRun {
     pub steps: u64,
     /// Multiply-adds, by their order of magnitude.
     pub operations: u64,
+    /// The same, foreseen for the whole run.
+    pub foreseen: f64,
     /// Why it could not go on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
@@ -140,12 +143,25 @@ impl Racer {
             t: self.simulation.state.t,
             steps: self.simulation.counters.steps,
             operations: self.simulation.operations(),
+            foreseen: self.foreseen(),
             error: self.error.clone(),
         }
     }
+
+    /// Operations of the whole run, if it goes on as since the first contact closed.
+    fn foreseen(&self) -> f64 {
+        let (t, operations) = (self.simulation.state.t, self.simulation.operations() as f64);
+        if t == 0.0 {
+            return f64::INFINITY;
+        }
+        let first = self.course.first().filter(|(from, _)| *from < t);
+        let (from, before) = first.map_or((0.0, 0.0), |&(from, before)| (from, before as f64));
+        let left = self.simulation.scene.simulation.duration - t;
+        operations + left * (operations - before) / (t - from)
+    }
 }
 
-/// Lets pilots run until one has seen enough, and puts the one first that has come furthest.
+/// Lets pilots run until one has seen enough, and puts the one first that needs the fewest operations for the whole run.
 fn race(racers: &mut [Racer]) {
     loop {
         let under_way = racers
@@ -160,11 +176,11 @@ fn race(racers: &mut [Racer]) {
             racers[i].retired |= others().any(|other| racers[i].lags(other));
         }
     }
-    let reached = |racer: &Racer| match racer.error {
-        Some(_) => f64::NEG_INFINITY,
-        None => racer.simulation.state.t,
+    let needed = |racer: &Racer| match racer.error {
+        Some(_) => f64::INFINITY,
+        None => racer.foreseen(),
     };
-    racers.sort_by(|a, b| reached(b).total_cmp(&reached(a)));
+    racers.sort_by(|a, b| needed(a).total_cmp(&needed(b)));
 }
 
 impl Simulation {

@@ -327,10 +327,9 @@ impl Controller {
             Some(response) => {
                 response.keep_up(model, from, h, work);
                 // an elastic mechanism moves less than one in free flight: the energy may be the worse even without y
-                if of_energy > 0.0 && worst(None).0 < of_energy {
-                    return (of_energy, self.lengths.len());
-                }
-                worst(Some(response.displacement(model, h, &error.v)))
+                let free = (of_energy > 0.0).then(|| worst(None));
+                let free = free.filter(|(of_position, _)| *of_position < of_energy);
+                free.unwrap_or_else(|| worst(Some(response.displacement(model, h, &error.v))))
             }
         };
         match of_energy > of_position.0 {

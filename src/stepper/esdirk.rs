@@ -259,113 +259,32 @@ impl Stepper for Esdirk {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A rooted tree: the trees on its root (Hairer, Nørsett & Wanner 1993, Solving Ordinary Differential Equations I, II.2).
-    #[derive(Debug, Clone, PartialEq)]
-    struct RootedTree(Vec<RootedTree>);
-
-    impl RootedTree {
-        /// All trees of a number of nodes.
-        fn all(nodes: usize) -> Vec<RootedTree> {
-            let mut trees = Vec::new();
-            RootedTree::with(&mut Vec::new(), nodes - 1, nodes - 1, &mut trees);
-            trees
-        }
-
-        /// Adds the trees that have the `chosen` trees on their root and others of `nodes` nodes together, in falling order of
-        /// size and, among those of `largest` nodes, of their place in the list of all.
-        fn with(
-            chosen: &mut Vec<RootedTree>,
-            nodes: usize,
-            largest: usize,
-            trees: &mut Vec<RootedTree>,
-        ) {
-            if nodes == 0 {
-                trees.push(RootedTree(chosen.clone()));
-            }
-            for size in 1..=largest.min(nodes) {
-                let mut others = RootedTree::all(size);
-                if let Some(place) = others.iter().position(|tree| chosen.last() == Some(tree)) {
-                    others.truncate(place + 1);
-                }
-                for tree in others {
-                    chosen.push(tree);
-                    RootedTree::with(chosen, nodes - size, size, trees);
-                    chosen.pop();
-                }
-            }
-        }
-
-        fn size(&self) -> usize {
-            1 + self.0.iter().map(RootedTree::size).sum::<usize>()
-        }
-
-        /// The density: its inverse is the value of the order condition.
-        fn density(&self) -> f64 {
-            self.0.iter().map(RootedTree::density).product::<f64>() * self.size() as f64
-        }
-
-        /// The number of its symmetries.
-        fn symmetry(&self) -> f64 {
-            let own = self.0.iter().enumerate().map(|(i, tree)| {
-                let equal = self.0[..=i].iter().filter(|other| *other == tree);
-                tree.symmetry() * equal.count() as f64
-            });
-            own.product()
-        }
-
-        /// The elementary weights of all stages.
-        fn of_stages(&self, tableau: &Tableau) -> Vec<f64> {
-            let mut weights = vec![1.0; tableau.rows.len() + 1];
-            for tree in &self.0 {
-                let factors = tableau.times(&tree.of_stages(tableau));
-                weights.iter_mut().zip(factors).for_each(|(w, x)| *w *= x);
-            }
-            weights
-        }
-    }
-
-    impl Tableau {
-        /// A x, with the empty row of the first stage.
-        fn times(&self, x: &[f64]) -> Vec<f64> {
-            let implicit = self.rows.iter().enumerate().map(|(i, row)| {
-                let sum: f64 = row.iter().zip(x).map(|(a, x)| a * x).sum();
-                sum + self.gamma * x[i + 1]
-            });
-            [0.0].into_iter().chain(implicit).collect()
-        }
-
-        /// Norm of the error coefficients of some weights for all trees of a number of nodes.
-        fn error(&self, weights: &[f64], nodes: usize) -> f64 {
-            let errors = RootedTree::all(nodes).into_iter().map(|tree| {
-                let stages = tree.of_stages(self);
-                let sum: f64 = weights.iter().zip(stages).map(|(b, x)| b * x).sum();
-                (sum - 1.0 / tree.density()) / tree.symmetry()
-            });
-            errors.map(|e| e * e).sum::<f64>().sqrt()
-        }
-    }
+    use crate::stepper::order_conditions::{DORMAND_PRINCE, RungeKutta};
 
     #[test]
     fn the_coefficients_satisfy_the_order_conditions() {
-        let numbers: Vec<usize> = (1..=6).map(|n| RootedTree::all(n).len()).collect();
-        assert_eq!(numbers, [1, 1, 2, 4, 9, 20]);
         for (tableau, order) in [(&THREE_TWO, 3), (&FIVE_FOUR, 5)] {
+            let implicit = tableau
+                .rows
+                .iter()
+                .map(|row| [row, &[tableau.gamma][..]].concat());
+            let method = RungeKutta([vec![]].into_iter().chain(implicit).collect());
             let weights: Vec<f64> = tableau.weights().collect();
             for (weights, order) in [(&weights[..], order), (tableau.embedded, order - 1)] {
                 for nodes in 1..=order {
                     // rounding of sums of seven terms of the order of one
-                    assert!(tableau.error(weights, nodes) < 1e-14, "order {nodes}");
+                    assert!(method.error(weights, nodes) < 1e-14, "order {nodes}");
                 }
             }
             // every stage is of order 2
-            let c = tableau.times(&vec![1.0; tableau.rows.len() + 1]);
-            for (half, c) in tableau.times(&c).iter().zip(&c).skip(1) {
+            let c = method.times(&vec![1.0; weights.len()]);
+            for (half, c) in method.times(&c).iter().zip(&c).skip(1) {
                 assert!((half - 0.5 * c * c).abs() < 1e-14, "{c}");
             }
-            let of_solution = tableau.error(&weights, order + 1);
-            let weight = of_solution / tableau.error(tableau.embedded, order) / 0.337;
-            // three digits of 0.337
+            let of_solution = method.error(&weights, order + 1);
+            let ratio = of_solution / method.error(tableau.embedded, order);
+            let weight = ratio / DORMAND_PRINCE;
+            // three digits of the ratio of Dormand and Prince's pair
             assert!((weight / tableau.weight - 1.0).abs() < 2e-3, "{weight}");
         }
     }

@@ -6,6 +6,8 @@ pub mod dormand_prince;
 pub mod esdirk;
 pub mod generalized_alpha;
 mod history;
+#[cfg(test)]
+mod order_conditions;
 mod scheme;
 pub mod trapezoidal;
 pub mod velocity_verlet;
@@ -79,7 +81,7 @@ pub trait Stepper: Carried + std::fmt::Debug + Send {
         work: &mut Work,
     ) -> Result<usize, StepError>;
 
-    /// States inside the last step that are as accurate as its end.
+    /// States inside the last step, in the order of time, accurate enough to tell whether a contact changes there.
     fn interior(&self) -> &[State] {
         &[]
     }
@@ -116,11 +118,11 @@ pub struct Estimate {
 pub enum EstimatedSolution {
     /// The one with which the scheme continues.
     Solution,
-    /// An embedded one of a lower order.
+    /// One or two embedded ones of lower orders.
     Embedded {
-        /// The error of the solution for a given estimate, as a multiple of that of [`DormandPrince`]: the ratio of the principal
-        /// error of the solution to that of the embedded one, the norms of their error coefficients of all trees (Prince &
-        /// Dormand 1981, J. Comput. Appl. Math. 7:67), divided by the same ratio of Dormand and Prince's pair, 0.337.
+        /// The error of the solution for a given estimate, as a multiple of that of [`dormand_prince::SCHEME`]: the ratio of the
+        /// principal error of the solution to the estimate, by norms of error coefficients of all trees (Prince & Dormand 1981, J.
+        /// Comput. Appl. Math. 7:67), divided by the same ratio of Dormand and Prince's pair, 0.337.
         weight: f64,
     },
 }
@@ -226,7 +228,7 @@ pub fn look_ahead(
 }
 
 /// All schemes.
-pub static SCHEMES: [&Scheme; 9] = [
+pub static SCHEMES: [&Scheme; 10] = [
     &bathe::SCHEME,
     &trapezoidal::SCHEME,
     &backward_euler::SCHEME,
@@ -236,10 +238,16 @@ pub static SCHEMES: [&Scheme; 9] = [
     &esdirk::ORDER_5,
     &velocity_verlet::SCHEME,
     &dormand_prince::SCHEME,
+    &dormand_prince::ORDER_8,
 ];
 
 /// The schemes from which `method = "auto"` chooses.
-pub static CANDIDATES: [&Scheme; 3] = [&esdirk::ORDER_5, &dormand_prince::SCHEME, &esdirk::ORDER_3];
+pub static CANDIDATES: [&Scheme; 4] = [
+    &esdirk::ORDER_5,
+    &dormand_prince::SCHEME,
+    &dormand_prince::ORDER_8,
+    &esdirk::ORDER_3,
+];
 
 /// The predictor of an implicit stage: q = q_hat + w.q a and v = v_hat + w.v a.
 #[derive(Debug)]
@@ -302,8 +310,8 @@ fn integrate_ends(from: &State, to: &mut State) {
     );
 }
 
-/// The largest number of stages whose slopes are summed.
-const MOST_STAGES: usize = 7;
+/// The largest number of stages whose slopes are summed, without those of weight zero.
+const MOST_STAGES: usize = 9;
 
 /// out = h sum_j w_j x_j, x the velocities or the accelerations of stages 1, 2, ..., without those of weight zero.
 #[inline]
@@ -311,7 +319,7 @@ fn sum<'a>(
     h: f64,
     weights: impl IntoIterator<Item = f64>,
     stages: impl Iterator<Item = &'a State>,
-    level: fn(&State) -> &Vec<f64>,
+    level: impl Fn(&'a State) -> &'a Vec<f64>,
     out: &mut [f64],
 ) {
     let mut slopes: [(f64, &[f64]); MOST_STAGES] = [(0.0, &[]); MOST_STAGES];
@@ -328,6 +336,8 @@ fn sum<'a>(
         4 => combine::<4>(&slopes, out),
         5 => combine::<5>(&slopes, out),
         6 => combine::<6>(&slopes, out),
+        7 => combine::<7>(&slopes, out),
+        8 => combine::<8>(&slopes, out),
         _ => combine::<MOST_STAGES>(&slopes, out),
     }
 }

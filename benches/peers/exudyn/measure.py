@@ -54,11 +54,11 @@ LOOSE_REFERENCE = [
 IDEAL_STEPS = [2.5e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6]
 
 
-def ideal(**options):
+def ideal(steps=IDEAL_STEPS, **options):
     """Return the curves for ideal joints."""
     methods = [(f"generalised-alpha {rho}", {**ALPHA, "spectral_radius": rho}) for rho in [0.9, 0.8, 0.6]]
     methods.append(("trapezoidal, index 2", {"solver": "TrapezoidalIndex2"}))
-    return [(label, {**method, "newton": 1e-2, **options}, IDEAL_STEPS) for label, method in methods]
+    return [(label, {**method, "newton": 1e-2, **options}, steps) for label, method in methods]
 
 
 def ideal_reference(*steps, **options):
@@ -70,6 +70,7 @@ def ideal_reference(*steps, **options):
 MODELS = [
     ("case2", ideal(), ideal_reference(2e-7, 1e-7)),
     ("case2-16elements", ideal(sparse=True), ideal_reference(4e-7, 2e-7, sparse=True)),
+    ("case2-64elements", ideal(IDEAL_STEPS[:6], sparse=True), ideal_reference(2e-6, 1e-6, sparse=True)),
     ("case3", LOOSE, LOOSE_REFERENCE),
     ("case4", LOOSE, LOOSE_REFERENCE),
     ("slider-crank", LOOSE, LOOSE_REFERENCE),

@@ -28,21 +28,21 @@ pub fn lines(report: &Report) -> Vec<String> {
     lines
 }
 
-/// Which scheme was chosen, and how far the trial runs came with how much work.
+/// Which scheme was chosen, how much work the trial runs predict, and how far they came.
 fn choice(choice: &Choice) -> String {
-    let reached = choice.pilots.iter().map(|pilot| match pilot.error {
+    let predicted = choice.pilots.iter().map(|pilot| match pilot.error {
         None => format!(
-            "{} {} s in {:.1e} operations",
+            "{} {:.1e} (trial run to {} s)",
             pilot.method,
-            number(pilot.t, 2),
-            pilot.operations as f64
+            pilot.foreseen,
+            number(pilot.t, 2)
         ),
         Some(_) => format!("{} failed", pilot.method),
     });
     format!(
-        "method: {}; trial runs at the start of the motion reached: {}",
+        "method: {}, chosen by trial runs; operations predicted for the whole run: {}",
         choice.method,
-        reached.collect::<Vec<_>>().join(", ")
+        predicted.collect::<Vec<_>>().join(", ")
     )
 }
 

@@ -49,6 +49,10 @@ pub mod palette {
     pub const ROSE: Color = (238, 80, 130);
     /// The same.
     pub const SLATE: Color = (90, 110, 150);
+    /// The same.
+    pub const GOLD: Color = (201, 168, 0);
+    /// The same.
+    pub const CLARET: Color = (160, 20, 40);
     /// The colours of series in their order; the first six are those of Okabe and Ito.
     pub const SERIES: [Color; 11] = [
         BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, INDIGO, BROWN, OLIVE, WINE, TEAL,

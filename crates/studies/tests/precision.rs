@@ -19,7 +19,7 @@ fn outcome(study: &Study) -> StudyOutcome {
 }
 
 /// Every study of the project, the coarsest point of every curve: none fails, the reference is far finer than what is
-/// compared with it, and what an accuracy asks for is achieved within a factor of ten.
+/// compared with it or right to rounding, 1e-16 m in each of ten thousand steps, and what an accuracy asks for is achieved within a factor of ten.
 #[test]
 fn studies_of_the_project_work() {
     let mut count = 0;
@@ -41,10 +41,8 @@ fn studies_of_the_project_work() {
                 .as_ref()
                 .unwrap_or_else(|e| panic!("{name}: {e}"));
             let errors = measured.errors;
-            assert!(
-                errors.position > 100.0 * outcome.reference.floor.position,
-                "{name}"
-            );
+            let floor = outcome.reference.floor.position;
+            assert!(errors.position > 100.0 * floor || floor < 1e-12, "{name}");
             // every row ends a step
             let rows = (study.duration / study.interval).round() as u64;
             assert!(
@@ -64,7 +62,7 @@ fn studies_of_the_project_work() {
         );
         count += 1;
     }
-    assert_eq!(count, 10);
+    assert_eq!(count, 11);
 }
 
 /// Studies of statistics, a fiftieth of their time: every first point gives finite statistics, near those of the reference.

@@ -18,8 +18,10 @@ use std::sync::{Mutex, OnceLock};
 use std::thread;
 
 /// Methods, the one of the references first, with what they need beside their name.
-pub const METHODS: [(&str, &[&str]); 7] = [
+pub const METHODS: [(&str, &[&str]); 9] = [
     ("dormand_prince", &[]),
+    ("dop853", &[]),
+    ("esdirk5", &[]),
     ("bathe", &[]),
     ("trapezoidal", &[]),
     ("generalized_alpha", &["integrator.spectral_radius=0.8"]),

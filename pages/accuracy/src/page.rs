@@ -157,7 +157,9 @@ fn of_methods(made: &[MadeStudy]) -> impl Iterator<Item = &MadeStudy> {
 const PAPER: &str = "Bathe";
 
 fn is_explicit(curve: &str) -> bool {
-    curve.starts_with("Dormand-Prince") || curve.starts_with("velocity Verlet")
+    ["Dormand-Prince", "DOP853", "velocity Verlet"]
+        .iter()
+        .any(|explicit| curve.starts_with(explicit))
 }
 
 /// What the diagrams say, counted.
@@ -234,9 +236,10 @@ fn conclusions(made: &[MadeStudy], surveyed: &[Surveyed]) -> String {
 }
 
 /// The schemes among which `method = "auto"` chooses, as their curves are called, and its own curve.
-const CANDIDATES: [&str; 3] = [
+const CANDIDATES: [&str; 4] = [
     "ESDIRK of order 5, error controlled",
     "Dormand-Prince, error controlled",
+    "DOP853, error controlled",
     "ESDIRK of order 3, error controlled",
 ];
 const AUTOMATIC: &str = "auto, error controlled";
@@ -268,8 +271,9 @@ fn automatic(made: &[MadeStudy]) -> String {
     let (Some(best), Some(any)) = (of(0), of(1)) else {
         return String::new();
     };
+    let count = CANDIDATES.len();
     format!(
-        "* `method = \"auto\"` takes as long as the fastest of its three candidates {best}; as long as the fastest curve of any kind \
+        "* `method = \"auto\"` takes as long as the fastest of its {count} candidates {best}; as long as the fastest curve of any kind \
          {any}. Its trial runs are part of its time.\n"
     )
 }

@@ -188,7 +188,7 @@ fn sizes(measured: &Measured) -> String {
 }
 
 /// Errors at which codes are compared \[m\].
-const LEVELS: [f64; 6] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
+const LEVELS: [f64; 7] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
 
 /// Other codes.
 fn rivals(root: &Path, measured: &Measured) -> Result<String> {

@@ -13,9 +13,10 @@ use studies::precision::{Effort, Study, StudyOutcome, reached};
 use verify::ida_of_system;
 
 /// Studies that all codes run.
-pub const STUDIES: [&str; 5] = [
+pub const STUDIES: [&str; 6] = [
     "case2",
     "case2-16elements",
+    "case2-64elements",
     "case3",
     "case4",
     "slider-crank",

@@ -6,7 +6,7 @@ use super::{Compared, CurvePoint, Errors, Found, Study, StudyOutcome, StudyPace}
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
 /// Curves that several studies have, each with the same colour in all of them.
-const NAMED: [(&str, Color); 15] = [
+const NAMED: [(&str, Color); 17] = [
     ("Bathe", palette::BLUE),
     ("trapezoidal", palette::GREEN),
     ("generalised-alpha 0.8", palette::PURPLE),
@@ -18,6 +18,8 @@ const NAMED: [(&str, Color); 15] = [
     ("Bathe, error controlled", palette::INDIGO),
     ("trapezoidal, error controlled", palette::TEAL),
     ("Dormand-Prince, error controlled", palette::OLIVE),
+    ("DOP853", palette::GOLD),
+    ("DOP853, error controlled", palette::CLARET),
     ("ESDIRK of order 5", palette::LIME),
     ("ESDIRK of order 5, error controlled", palette::ROSE),
     ("auto, error controlled", palette::SLATE),

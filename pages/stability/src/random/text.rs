@@ -199,6 +199,7 @@ fn pace(tape: &mut Tape, m: &RandomMechanism, features: &mut Vec<&'static str>) 
         "hht",
         "backward_euler",
         "dormand_prince",
+        "dop853",
         "esdirk3",
         "esdirk5",
     ];
@@ -225,6 +226,7 @@ fn pace(tape: &mut Tape, m: &RandomMechanism, features: &mut Vec<&'static str>) 
         "bathe",
         "trapezoidal",
         "dormand_prince",
+        "dop853",
         "esdirk3",
         "esdirk5",
     ];
@@ -249,7 +251,7 @@ fn pace(tape: &mut Tape, m: &RandomMechanism, features: &mut Vec<&'static str>) 
         writeln!(integrator, "step = {step:?}").unwrap();
     }
     let tolerance = m.size / time * tape.decades(-12.0, -8.0);
-    if !matches!(method, "dormand_prince" | "velocity_verlet") {
+    if !matches!(method, "dormand_prince" | "dop853" | "velocity_verlet") {
         writeln!(integrator, "newton_tolerance = {tolerance:?}").unwrap();
     }
     RandomPace {
