@@ -19,7 +19,8 @@ fn outcome(study: &Study) -> StudyOutcome {
 }
 
 /// Every study of the project, the coarsest point of every curve: none fails, the reference is far finer than what is
-/// compared with it or right to rounding, 1e-16 m in each of ten thousand steps, and what an accuracy asks for is achieved within a factor of ten.
+/// compared with it, unless that is right to rounding, 1e-16 m in each of ten thousand steps; what an accuracy asks for is
+/// achieved within a factor of ten.
 #[test]
 fn studies_of_the_project_work() {
     let mut count = 0;
@@ -42,7 +43,8 @@ fn studies_of_the_project_work() {
                 .unwrap_or_else(|e| panic!("{name}: {e}"));
             let errors = measured.errors;
             let floor = outcome.reference.floor.position;
-            assert!(errors.position > 100.0 * floor || floor < 1e-12, "{name}");
+            let is_rounding = errors.position < 1e-12;
+            assert!(errors.position > 100.0 * floor || is_rounding, "{name}");
             // every row ends a step
             let rows = (study.duration / study.interval).round() as u64;
             assert!(
