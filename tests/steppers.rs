@@ -4,7 +4,9 @@ use crate::chain::{Chain, bathe};
 use ladder::{Rung, Worst};
 use looselink::newton::Newton;
 use looselink::stepper::bathe::splitting;
-use looselink::stepper::{Estimate, EstimatedSolution, LocalError, Method, Stepper, look_ahead};
+use looselink::stepper::{
+    Estimate, EstimatedSolution, LocalError, Method, Stepper, Vibration, look_ahead,
+};
 use looselink::stepper::{
     backward_euler, dormand_prince, esdirk, generalized_alpha, trapezoidal, velocity_verlet,
 };
@@ -729,10 +731,20 @@ fn shares_of_an_accuracy_follow_the_mean_step_or_the_step() {
         of,
         implicit: false,
     };
+    let vibration = Vibration {
+        error: 1e-4,
+        ratio: 0.3,
+    };
     let own = estimate(3.0, EstimatedSolution::Solution);
     assert_eq!(own.typical_step(1e-6, 1e-4), 1e-4);
     assert_eq!((own.order_of_ratio(), own.order_of_sum()), (3.0, 2.0));
-    let other = estimate(5.0, EstimatedSolution::Embedded { weight: 1.0 });
+    let other = estimate(
+        5.0,
+        EstimatedSolution::Embedded {
+            weight: 1.0,
+            vibration,
+        },
+    );
     assert_eq!(other.typical_step(1e-6, 1e-4), 1e-6);
     assert_eq!((other.order_of_ratio(), other.order_of_sum()), (4.5, 4.5));
 }

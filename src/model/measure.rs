@@ -1,7 +1,7 @@
 //! Measured quantities of a model: poses, strains, energies, joint forces, drive torques.
 
 use super::{Actuator, Model};
-use crate::body::Pose;
+use crate::body::{Content, Pose};
 use crate::contact;
 use crate::contact::geometry::Gap;
 use crate::force::Force;
@@ -45,6 +45,26 @@ impl Energies {
 }
 
 impl Model {
+    /// l_i: the largest distance \[m\] by which a unit change of each unknown moves a point of its body.
+    pub fn lengths(&self) -> Vec<f64> {
+        let mut lengths = vec![1.0; self.shape().coordinates];
+        for place in self.bodies() {
+            for (slot, x) in place.placed.x.iter().enumerate() {
+                let lever = place.placed.kind.lever(slot);
+                match place.contents[slot] {
+                    Content::Pose => lengths[x + 2] = lever,
+                    Content::Slope => lengths[*x..x + 2].fill(lever),
+                    Content::Position => {}
+                }
+            }
+        }
+        for state in &self.states {
+            lengths[*state] = 0.0;
+        }
+        lengths.truncate(self.shape().unknowns);
+        lengths
+    }
+
     /// Pose of body `index` of the scene; angles of links in (-pi, pi].
     pub fn pose(&self, index: usize, at: &State) -> Pose {
         let placed = &self.bodies[index].placed;

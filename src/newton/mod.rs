@@ -10,7 +10,7 @@ mod statics;
 mod tangent;
 
 pub(crate) use iteration::{Update, iterate};
-pub use response::Response;
+pub use response::{Response, ResponseTerm};
 pub use stage::{Level, StageEquations};
 
 use crate::checkpoint::{Carried, Checkpoint, carried};

@@ -1,26 +1,37 @@
 //! The distance by which an error of velocity moves the mechanism within a horizon.
 //!
-//! In free flight an error e of velocity \[m/s\] grows to a distance H e within the horizon H \[s\]. In a vibration of angular
-//! frequency w \[rad/s\] the distance is at most e/w. With K the elastic stiffness and W^2 = M^-1 K,
+//! In free flight an error e of velocity \[m/s\] grows to a distance H e within the horizon H \[s\]. In a vibration the distance is
+//! bounded. [`crate::stepper::Estimate::response`] says by what: a sum of weighted x, with the elastic stiffness K, W^2 = M^-1 K and
 //!
 //! ```text
-//! y = (W^2 + 1/H^2)^(-1/2) e ~ H x_0 + sum_j 2 tau_j x_j,   (M + tau_j^2 K) x_j + Phi_q^T mu = M e,   Phi_q x_j = 0
+//! x = (1 + tau^2 W^2)^(-p) e:   (M + tau^2 K) x + Phi_q^T mu = M e,   Phi_q x = 0,   solved p times
 //! ```
 //!
-//! with tau_0 = H and each further tau a tenth of the previous one. For a mode slower than the last tau this is between 1.0 and
-//! 1.5 times min(H, 1/w) e. Contacts count as open, because they open again within the horizon.
+//! Contacts count as open, because they open again within the horizon.
 
 use super::factors::Factors;
 use super::{Costs, Counters};
 use crate::checkpoint::{Carried, Checkpoint};
 use crate::system::{State, System, Weights, Work};
 
-/// Ratio of neighbouring times.
-const RATIO: f64 = 0.1;
-/// Largest number of times: from the horizon down to the rounding of the end of the run.
+/// Number of matrices: more than a sum has terms. From the horizon down to the rounding of the end of the run there are twelve
+/// decades.
 const MOST: usize = 12;
-/// Judged steps after which one of the factors is renewed.
-const RENEWAL: usize = 16;
+/// Judged steps after which a matrix is renewed.
+const RENEWAL: u64 = 64;
+/// Times are rounded to so many a decade of the horizon, so that a matrix serves steps of many lengths.
+const A_DECADE: f64 = 3.0;
+
+/// A part of the displacement by an error of velocity e: weight (1 + tau^2 W^2)^(-power) e with W^2 = M^-1 K.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResponseTerm {
+    /// A mode slower than this responds like a free body \[s\].
+    pub tau: f64,
+    /// Displacement of a free body over the error of velocity \[s\].
+    pub weight: f64,
+    /// How steeply the response of faster modes falls.
+    pub power: u32,
+}
 
 /// The matrices of all tau, factorised now and then: for an estimate the matrix of an earlier pose is accurate enough.
 #[derive(Debug)]
@@ -30,26 +41,44 @@ pub struct Response {
     /// Multiply-adds so far, by their order of magnitude.
     operations: u64,
     matrices: Vec<TimeMatrix>,
-    /// How many matrices have been factorised.
-    ready: usize,
-    /// Steps since a factor was renewed, and which one was.
-    age: usize,
-    renewed: usize,
+    /// Steps judged so far.
+    judged: u64,
     at: State,
     r: Vec<f64>,
     phi: Vec<f64>,
     b: Vec<f64>,
     /// M e.
     momentum: Vec<f64>,
+    /// A solution, and their sum.
     x: Vec<f64>,
+    sum: Vec<f64>,
 }
 
 /// The matrix of one time.
 #[derive(Debug)]
 struct TimeMatrix {
+    /// Zero before it is first factorised.
+    tau: f64,
     factors: Factors,
     /// True if it could not be factorised; it then counts as one without stiffness.
     singular: bool,
+    /// Steps judged before it was factorised.
+    made: u64,
+}
+
+impl TimeMatrix {
+    fn carry(&mut self, system: &dyn System, checkpoint: &mut Checkpoint) {
+        let TimeMatrix {
+            tau,
+            factors,
+            singular,
+            made,
+        } = self;
+        tau.carry(checkpoint);
+        factors.carry(system.symbolic(), checkpoint);
+        singular.carry(checkpoint);
+        made.carry(checkpoint);
+    }
 }
 
 impl Response {
@@ -58,23 +87,24 @@ impl Response {
         let shape = system.shape();
         let size = shape.unknowns + shape.multipliers;
         let matrix = || TimeMatrix {
+            tau: 0.0,
             factors: Factors::new(system.symbolic()),
             singular: false,
+            made: 0,
         };
         Response {
             horizon,
             costs: Costs::of(system),
             operations: 0,
             matrices: std::iter::repeat_with(matrix).take(MOST).collect(),
-            ready: 0,
-            age: 0,
-            renewed: 0,
+            judged: 0,
             at: State::zeros(shape),
             r: vec![0.0; shape.coordinates],
             phi: vec![0.0; shape.multipliers],
             b: vec![0.0; size],
             momentum: vec![0.0; shape.unknowns],
             x: vec![0.0; shape.unknowns],
+            sum: vec![0.0; shape.unknowns],
         }
     }
 
@@ -85,23 +115,19 @@ impl Response {
             costs: _,
             operations,
             matrices,
-            ready,
-            age,
-            renewed,
+            judged,
             at: _,
             r: _,
             phi: _,
             b: _,
             momentum: _,
             x: _,
+            sum: _,
         } = self;
-        for count in [ready, age, renewed] {
-            count.carry(checkpoint);
-        }
         operations.carry(checkpoint);
-        for TimeMatrix { factors, singular } in matrices {
-            factors.carry(system.symbolic(), checkpoint);
-            singular.carry(checkpoint);
+        judged.carry(checkpoint);
+        for matrix in matrices {
+            matrix.carry(system, checkpoint);
         }
     }
 
@@ -110,13 +136,15 @@ impl Response {
         self.operations
     }
 
-    fn time(&self, level: usize) -> f64 {
-        self.horizon * RATIO.powi(level as i32)
-    }
-
-    /// Factorises one matrix at a state.
-    fn renew(&mut self, system: &dyn System, state: &State, level: usize, work: &mut Work) {
-        let tau = self.time(level);
+    /// Factorises one matrix for a time at a state.
+    fn renew(
+        &mut self,
+        system: &dyn System,
+        state: &State,
+        index: usize,
+        tau: f64,
+        work: &mut Work,
+    ) {
         let w = Weights {
             q: tau * tau,
             v: 0.0,
@@ -128,50 +156,60 @@ impl Response {
         let mut counters = Counters::default();
         let fill = |k: &mut [f64]| system.linearise(at, w, r, phi, k, work);
         self.operations += self.costs.tangent;
-        let TimeMatrix { factors, singular } = &mut self.matrices[level];
-        let renewed = factors.renew(system.symbolic(), &mut counters, fill);
-        *singular = renewed.is_err();
+        let matrix = &mut self.matrices[index];
+        let renewed = matrix.factors.renew(system.symbolic(), &mut counters, fill);
+        matrix.singular = renewed.is_err();
+        matrix.tau = tau;
+        matrix.made = self.judged;
     }
 
-    /// Provides a matrix for every tau down to the step h, and renews one of them after every few steps.
-    pub fn keep_up(&mut self, system: &dyn System, state: &State, h: f64, work: &mut Work) {
-        while self.ready < MOST && (self.ready == 0 || self.time(self.ready) > h) {
-            self.renew(system, state, self.ready, work);
-            self.ready += 1;
+    /// The index of a matrix of this time. If there is none, the oldest one becomes it; an old one is renewed at the state.
+    fn matrix(&mut self, system: &dyn System, state: &State, tau: f64, work: &mut Work) -> usize {
+        let decades = (A_DECADE * (tau / self.horizon).log10()).round() / A_DECADE;
+        let tau = self.horizon * 10_f64.powf(decades);
+        let found = self.matrices.iter().position(|matrix| matrix.tau == tau);
+        let index = found.unwrap_or_else(|| {
+            let ages = self.matrices.iter().enumerate();
+            let oldest = ages.min_by_key(|(_, m)| (m.tau > 0.0, m.made));
+            oldest.map_or(0, |(index, _)| index)
+        });
+        if found.is_none() || self.judged - self.matrices[index].made >= RENEWAL {
+            self.renew(system, state, index, tau, work);
         }
-        self.age += 1;
-        if self.age >= RENEWAL {
-            self.age = 0;
-            self.renewed = (self.renewed + 1) % self.ready;
-            self.renew(system, state, self.renewed, work);
-        }
+        index
     }
 
-    /// y: the distance by which an error of velocity in a step of length h moves every unknown within the horizon \[m\].
-    pub fn displacement(&mut self, system: &dyn System, h: f64, error: &[f64]) -> &[f64] {
+    /// The distance by which an error of velocity moves every unknown within the horizon \[m\]: a sum of terms, with new matrices
+    /// from the state.
+    pub fn displacement(
+        &mut self,
+        system: &dyn System,
+        state: &State,
+        terms: impl Iterator<Item = ResponseTerm>,
+        error: &[f64],
+        work: &mut Work,
+    ) -> &[f64] {
         let n = error.len();
-        self.x.fill(0.0);
-        system.momentum(error, &mut self.momentum);
-        for level in 0..self.ready {
-            let tau = self.time(level);
-            if level > 0 && tau < h {
-                break;
-            }
-            match self.matrices[level].singular {
-                true => self.b[..n].copy_from_slice(error),
-                false => {
+        self.judged += 1;
+        self.sum.fill(0.0);
+        for term in terms {
+            let index = self.matrix(system, state, term.tau, work);
+            self.x.copy_from_slice(error);
+            if !self.matrices[index].singular {
+                for _ in 0..term.power {
                     self.operations += self.costs.solve;
+                    system.momentum(&self.x, &mut self.momentum);
                     self.b[..n].copy_from_slice(&self.momentum);
                     self.b[n..].fill(0.0);
-                    let factors = &self.matrices[level].factors;
+                    let factors = &self.matrices[index].factors;
                     factors.solve(system.symbolic(), &mut self.b);
+                    self.x.copy_from_slice(&self.b[..n]);
                 }
             }
-            let weight = if level == 0 { tau } else { 2.0 * tau };
-            for (x, b) in self.x.iter_mut().zip(&self.b) {
-                *x += weight * b;
+            for (sum, x) in self.sum.iter_mut().zip(&self.x) {
+                *sum += term.weight * x;
             }
         }
-        &self.x
+        &self.sum
     }
 }

@@ -6,7 +6,8 @@
 //! takes as many as the part since the first contact closed. Enough are [`FEWEST_STEPS`] steps and [`PART`]
 //! of the run and, in a mechanism with contacts, [`IMPACTS`] of them that have closed and opened again or a whole horizon: the
 //! steps of the free flight before the first impact say nothing of those that impacts take. After [`PILOT_STEPS`] it has seen
-//! enough in any case. What counts are operations, not seconds, so that a scene has the same choice on every machine.
+//! enough in any case. Where another pilot foresees nearly as few, the race goes on until it has taken a fifth of them: impacts
+//! differ, and a few of them may favour the wrong one. What counts are operations, not seconds, so that a scene has the same choice on every machine.
 //!
 //! A pilot that lags far behind retires. That is one that has taken, since its first contact closed, more than 1 + 1/n times the
 //! operations with which another came as far, where n contacts have closed: in the first contact twice as many, in the second one
@@ -26,6 +27,10 @@ const FEWEST_STEPS: u64 = 16;
 const PART: f64 = 1.0 / 64.0;
 /// Contacts that have ended: a single one may be of an unusual kind.
 const IMPACTS: u64 = 4;
+/// A pilot that foresees less than this multiple of the fewest operations may still be the better one.
+const CLOSE: f64 = 1.3;
+/// Part of the operations of the run that such a pilot may take to show it.
+const SHARE: f64 = 0.2;
 /// Steps that a pilot takes before the others are looked at again.
 const STRIDE: u64 = 4;
 
@@ -69,7 +74,7 @@ struct Racer {
 }
 
 impl Racer {
-    /// Takes some steps. Returns true when it has seen enough, at the latest at the end of the run.
+    /// Takes some steps. Returns true at the end of the run.
     fn go_on(&mut self) -> bool {
         self.replay.steps_left = STRIDE;
         let result = self.simulation.run_to_end(&mut self.replay);
@@ -81,7 +86,7 @@ impl Racer {
         }
         match result {
             Ok(()) => true,
-            Err(RunError::Interrupted { .. }) => self.has_seen_enough(),
+            Err(RunError::Interrupted { .. }) => false,
             Err(error) => {
                 self.error = Some(error.to_string());
                 false
@@ -161,6 +166,24 @@ impl Racer {
     }
 }
 
+/// True when a pilot has seen enough and none that foresees nearly as few operations as the best could still show that it is the
+/// better one.
+fn is_decided(racers: &[Racer]) -> bool {
+    let sound = || racers.iter().filter(|racer| racer.error.is_none());
+    let best = sound().min_by(|a, b| a.foreseen().total_cmp(&b.foreseen()));
+    let (Some(best), true) = (best, sound().any(Racer::has_seen_enough)) else {
+        return false;
+    };
+    let least = best.foreseen();
+    let may_win = |racer: &Racer| {
+        let Simulation { counters, .. } = &racer.simulation;
+        let has_time =
+            counters.steps < PILOT_STEPS && (racer.simulation.operations() as f64) < SHARE * least;
+        has_time && !racer.retired && racer.foreseen() < CLOSE * least
+    };
+    !sound().any(|racer| racer.scheme.name != best.scheme.name && may_win(racer))
+}
+
 /// Lets pilots run until one has seen enough, and puts the one first that needs the fewest operations for the whole run.
 fn race(racers: &mut [Racer]) {
     loop {
@@ -168,7 +191,7 @@ fn race(racers: &mut [Racer]) {
             .iter_mut()
             .filter(|racer| racer.error.is_none() && !racer.retired);
         let next = under_way.min_by_key(|racer| racer.simulation.operations());
-        if next.is_none_or(Racer::go_on) {
+        if next.is_none_or(Racer::go_on) || is_decided(racers) {
             break;
         }
         for i in 0..racers.len() {
@@ -249,7 +272,8 @@ impl Simulation {
         });
         let method = Method::new(scheme);
         self.stepper = method.stepper(self.model.shape);
-        self.pacer = pacer(&self.scene, &self.model, self.stepper.estimate());
+        let estimate = self.stepper.estimate();
+        self.pacer = pacer(&self.scene, &self.model, &self.state, estimate);
         self.scene.integrator.method = method;
         racers.into_iter().next()
     }

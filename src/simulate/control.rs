@@ -4,23 +4,22 @@
 //! With l_i the distance by which a unit of coordinate i moves a point of its body, and H the horizon,
 //!
 //! ```text
-//! E = max_i l_i (|e_q,i| + min(H kappa_i |e_v,i|, |y_i|)),   kappa_i = max_t |sum e_v,i| / sum |e_v,i|
+//! E = max_i l_i (S |e_q,i| + min(H S kappa_i |e_v,i|, |y_i|)),   kappa_i = max_t |sum e_v,i| / sum |e_v,i|
 //! ```
 //!
-//! is the error of position that this step causes within the horizon if nothing amplifies it. An error of velocity grows to
-//! H e_v in free flight. In a vibration it stays bounded: y is the distance by which it moves the elastic mechanism
-//! ([`crate::newton::Response`]). The coherence kappa is the fraction of the errors of velocity in the run so far that has
-//! added up rather than cancelled.
+//! is the error of position that the N steps of a horizon cause if all are like this one and nothing amplifies it. It may reach the
+//! accuracy p: r = E/p.
 //!
-//! The errors of all steps of a horizon may add up to the accuracy p. If the estimate is the error of the step itself, the N
-//! steps of a horizon add up directly: r = E N/p. N is H over the mean step of about the last horizon, so every step may have
-//! the same error, however short it is ([`Estimate::typical_step`]). Where short steps follow long ones the mean lags behind,
-//! and the sum may exceed p.
+//! S is the number of errors that add up. If the estimate is the error of the step itself, S is N, and N is H over the mean step of
+//! about the last horizon, so every step may have the same error, however short it is ([`Estimate::typical_step`]). Where short
+//! steps follow long ones the mean lags behind, and the sum may exceed p. A scheme that continues with a solution of higher order
+//! than its estimate has smaller errors of varying sign. N is then H/h with the length h of the step, and S its square root times
+//! the weight of [`crate::stepper::EstimatedSolution::Embedded`]. Either way the error of the run falls in proportion to p (Stetter
+//! 1979, Lect. Notes Math. 679:245; Shampine 1985, BIT 25:530).
 //!
-//! A scheme that continues with a solution of higher order than its estimate has smaller errors of varying sign. N is then H/h
-//! with the length h of the step, and replaced by its square root times the weight of
-//! [`crate::stepper::EstimatedSolution::Embedded`], except for y: errors of a vibration shift its phase and add up. Either way
-//! the error of the run falls in proportion to p (Stetter 1979, Lect. Notes Math. 679:245; Shampine 1985, BIT 25:530).
+//! An error of velocity grows to H e_v in free flight. The coherence kappa is the fraction of the errors of velocity in the run so
+//! far that has added up rather than cancelled. In a vibration errors stay bounded: y is the distance by which those of N steps move
+//! the elastic mechanism ([`Estimate::response`]).
 //!
 //! A step with r > 1 is repeated, unless its error is a small part of the allowance that earlier steps have not used. Near a
 //! singular pose rounding is divided by the distance from the pose. It does not fall with the step, so shorter steps would
@@ -37,11 +36,14 @@
 //! Gustafsson 1991, ACM Trans. Math. Softw. 17:533; the exponents of Hairer & Wanner, Solving Ordinary Differential
 //! Equations II, IV.2).
 //!
+//! An implicit method damps vibrations that its steps do not resolve, and its estimate does not count them. The first step h is so
+//! short that such vibrations, of more than 3 rad a step, have an amplitude below p: h = 3 sqrt(p/a) with the largest acceleration a of
+//! the start. From there on steps grow as the estimate allows.
+//!
 //! A closed contact has a time scale far below that of free flight. The first step after an onset therefore has the length
 //! that was accepted after the previous onset of the same contact; the controller increases the step from there.
 
 use super::failure::ENERGY_BALANCE;
-use super::meter::lengths;
 use crate::checkpoint::{Carried, Checkpoint, carried, carry_list};
 use crate::model::Model;
 use crate::newton::Response;
@@ -58,6 +60,8 @@ const SAFETY: f64 = 0.9;
 /// Smallest and largest ratio of a step to the previous one.
 const SMALLEST_CHANGE: f64 = 0.2;
 const GREATEST_CHANGE: f64 = 5.0;
+/// From this angle a step on a vibration is not resolved \[rad\].
+const UNRESOLVED: f64 = 3.0;
 /// Lower bound of r in the formula of the next step: a much smaller r shows that the step may grow, but not by how much.
 const LEAST_RATIO: f64 = 1e-4;
 /// A change of the energy balance below this part of its terms is rounding of a sum of a few dozen terms.
@@ -193,18 +197,29 @@ pub(super) enum Verdict {
 }
 
 impl Controller {
-    /// For a stepper that has an estimate.
-    pub fn new(scene: &Scene, model: &Model, accuracy: Accuracy, estimate: Estimate) -> Controller {
+    /// For a stepper that has an estimate, from a start.
+    pub fn new(
+        scene: &Scene,
+        model: &Model,
+        start: &State,
+        accuracy: Accuracy,
+        estimate: Estimate,
+    ) -> Controller {
         let shape = model.shape();
         let position = accuracy
             .position
             .min(OF_CLEARANCE * scene.smallest_clearance().unwrap_or(f64::INFINITY));
         let longest = scene.output.interval.min(accuracy.horizon);
-        let mut lengths = lengths(model);
+        let mut lengths = model.lengths();
         // an error of an internal state, the velocity of its unknown, counts as one of position
         for state in &model.states {
             lengths[*state] = 1.0 / accuracy.horizon;
         }
+        let accelerations = lengths.iter().zip(&start.a).map(|(l, a)| l * a.abs());
+        let first = match estimate.implicit {
+            true => UNRESOLVED * (position / accelerations.fold(0.0, f64::max)).sqrt(),
+            false => longest,
+        };
         Controller {
             accuracy,
             position,
@@ -215,7 +230,7 @@ impl Controller {
                 .then(|| Response::new(model, accuracy.horizon)),
             longest,
             shortest: LEAST_PART * scene.simulation.duration,
-            next: longest,
+            next: first,
             last: 1.0,
             unused: 0.0,
             mean: MeanStep::default(),
@@ -314,7 +329,7 @@ impl Controller {
             let mut worst = (0.0, 0);
             for (i, length) in self.lengths.iter().enumerate() {
                 let coasting = horizon * self.sums[i].coherence() * error.v[i].abs() * sum;
-                let swinging = displacement.map_or(f64::INFINITY, |y| y[i].abs() * steps);
+                let swinging = displacement.map_or(f64::INFINITY, |y| y[i].abs());
                 let error = length * (error.q[i].abs() * sum + coasting.min(swinging));
                 if error.is_nan() || error > worst.0 {
                     worst = (error, i);
@@ -325,11 +340,14 @@ impl Controller {
         let of_position = match &mut self.response {
             None => worst(None),
             Some(response) => {
-                response.keep_up(model, from, h, work);
                 // an elastic mechanism moves less than one in free flight: the energy may be the worse even without y
                 let free = (of_energy > 0.0).then(|| worst(None));
                 let free = free.filter(|(of_position, _)| *of_position < of_energy);
-                free.unwrap_or_else(|| worst(Some(response.displacement(model, h, &error.v))))
+                free.unwrap_or_else(|| {
+                    let terms = self.estimate.response(horizon, h, steps);
+                    let y = response.displacement(model, from, terms, &error.v, work);
+                    worst(Some(y))
+                })
             }
         };
         match of_energy > of_position.0 {

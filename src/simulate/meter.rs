@@ -20,7 +20,6 @@
 //! is 2 pi/n for a vibration of n steps a period. The largest rho_i is reported, over the coordinates with at least a tenth of
 //! the largest acceleration whose changes move points by more than rounding.
 
-use crate::body::Content;
 use crate::checkpoint::carried;
 use crate::model::{Energies, Model};
 use crate::scene::{Pace, Scene};
@@ -154,32 +153,12 @@ impl Extent {
     }
 }
 
-/// l_i: the largest distance \[m\] by which a unit change of each unknown moves a point of its body.
-pub fn lengths(model: &Model) -> Vec<f64> {
-    let mut lengths = vec![1.0; model.shape().coordinates];
-    for place in model.bodies() {
-        for (slot, x) in place.placed.x.iter().enumerate() {
-            let lever = place.placed.kind.lever(slot);
-            match place.contents[slot] {
-                Content::Pose => lengths[x + 2] = lever,
-                Content::Slope => lengths[*x..x + 2].fill(lever),
-                Content::Position => {}
-            }
-        }
-    }
-    for state in &model.states {
-        lengths[*state] = 0.0;
-    }
-    lengths.truncate(model.shape().unknowns);
-    lengths
-}
-
 /// Kinetic energy \[J\] of all bodies at the speed that crosses the mechanism once in the duration of the run.
 ///
 /// A gain of energy is measured against it at a start from rest, where the energy supplied is zero and the errors of the first
 /// steps are as large as the motion.
 fn plain_motion(scene: &Scene, model: &Model, start: &State) -> f64 {
-    let lengths = lengths(model);
+    let lengths = model.lengths();
     let places = start.q.iter().enumerate();
     let places = places.filter(|(i, _)| lengths.get(*i).is_none_or(|length| *length == 1.0));
     let mut extent = Extent::EMPTY;
@@ -207,7 +186,7 @@ impl Meter {
     pub fn new(scene: &Scene, model: &Model, start: &State) -> Meter {
         let unknowns = model.shape().unknowns;
         Meter {
-            lengths: lengths(model),
+            lengths: model.lengths(),
             sums: vec![IntegrationSums::default(); unknowns],
             extents: vec![Extent::EMPTY; unknowns],
             lost: [0.0; 2],

@@ -1,7 +1,6 @@
 //! Small vibrations about the state that a run has reached.
 
 use super::Simulation;
-use super::meter::lengths;
 use crate::modes::{Modes, ModesError, modes};
 use crate::system::System;
 
@@ -22,7 +21,7 @@ impl Simulation {
                 ModesError::SingularPose(self.model.unknown_name(failure.index()))
             })?;
         }
-        let lengths = lengths(&self.model);
+        let lengths = self.model.lengths();
         modes(&self.model, &at, &lengths, &mut work)
     }
 }

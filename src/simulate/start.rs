@@ -76,7 +76,7 @@ impl Simulation {
         let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
         let extremes = vec![Extreme::default(); recorder.channels().len()];
         let stepper = scene.integrator.method.stepper(model.shape());
-        let pacer = pacer(scene, &model, stepper.estimate());
+        let pacer = pacer(scene, &model, &state, stepper.estimate());
         Ok(Simulation {
             stepper,
             pacer,
@@ -124,12 +124,12 @@ impl Simulation {
     }
 }
 
-/// What chooses the steps.
-pub(super) fn pacer(scene: &Scene, model: &Model, estimate: Estimate) -> Pacer {
+/// What chooses the steps from a start.
+pub(super) fn pacer(scene: &Scene, model: &Model, start: &State, estimate: Estimate) -> Pacer {
     match scene.integrator.pace {
         Pace::Step(step) => Pacer::grid(step),
         Pace::Accuracy(accuracy) => {
-            let controller = Controller::new(scene, model, accuracy, estimate);
+            let controller = Controller::new(scene, model, start, accuracy, estimate);
             Pacer::Controller(Box::new(controller))
         }
     }

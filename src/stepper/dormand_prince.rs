@@ -17,8 +17,8 @@
 //! of order h^8, with norms over all coordinates or all velocities. The step continues with the solution of the highest order.
 
 use super::{
-    Estimate, EstimatedSolution, LocalError, Scheme, StepError, Stepper, accumulate, add,
-    integrate, sum,
+    Estimate, EstimatedSolution, LocalError, Scheme, StepError, Stepper, Vibration, accumulate,
+    add, integrate, sum,
 };
 use crate::checkpoint::carried;
 use crate::newton::Newton;
@@ -43,6 +43,8 @@ struct ExplicitTableau {
     order: f64,
     /// That of [`EstimatedSolution::Embedded`].
     weight: f64,
+    /// Errors in a vibration.
+    vibration: Vibration,
 }
 
 /// The pair of orders 5 and 4.
@@ -92,6 +94,10 @@ static FIVE_FOUR: ExplicitTableau = ExplicitTableau {
     of_order_3: None,
     order: 5.0,
     weight: 1.0,
+    vibration: Vibration {
+        error: 2.778e-4,
+        ratio: 0.3434,
+    },
 };
 
 /// DOP853.
@@ -252,6 +258,10 @@ static EIGHT: ExplicitTableau = ExplicitTableau {
     ]),
     order: 8.0,
     weight: 1.235,
+    vibration: Vibration {
+        error: 6.404e-8,
+        ratio: 0.148,
+    },
 };
 
 /// `method = "dormand_prince"`
@@ -367,6 +377,7 @@ impl Stepper for DormandPrince {
             order: self.tableau.order,
             of: EstimatedSolution::Embedded {
                 weight: self.tableau.weight,
+                vibration: self.tableau.vibration,
             },
             implicit: false,
         }
@@ -461,5 +472,35 @@ mod tests {
         let estimate = 10.0 * of_order_5 * of_order_5 / of_order_3;
         let weight = eight.error(EIGHT.weights, 9) / estimate / DORMAND_PRINCE;
         assert!((weight / EIGHT.weight - 1.0).abs() < 2e-3, "{weight}");
+    }
+
+    /// The error of the solution in a vibration, and its ratio to the estimate, to three digits.
+    #[test]
+    fn errors_in_a_vibration_are_those_of_the_coefficients() {
+        let five = FIVE_FOUR.method();
+        let estimate = five.coefficient(FIVE_FOUR.difference, 5).abs();
+        check_vibration(
+            &FIVE_FOUR,
+            five.error_coefficient(FIVE_FOUR.weights, 6),
+            estimate,
+        );
+        let eight = EIGHT.method();
+        let [of_order_5, of_order_3] = [(EIGHT.difference, 6), (EIGHT.of_order_3.unwrap(), 4)]
+            .map(|(weights, power)| eight.coefficient(weights, power).abs());
+        let estimate = 10.0 * of_order_5 * of_order_5 / of_order_3;
+        check_vibration(&EIGHT, eight.error_coefficient(EIGHT.weights, 9), estimate);
+    }
+
+    fn check_vibration(tableau: &ExplicitTableau, error: f64, estimate: f64) {
+        let Vibration {
+            error: rounded,
+            ratio,
+        } = tableau.vibration;
+        assert!((rounded / error - 1.0).abs() < 2e-3, "{error}");
+        assert!(
+            (ratio * estimate / error - 1.0).abs() < 2e-3,
+            "{}",
+            error / estimate
+        );
     }
 }

@@ -20,8 +20,8 @@
 //! solution of the higher order.
 
 use super::{
-    Estimate, EstimatedSolution, LocalError, Scheme, Stage, StepError, Stepper, accumulate,
-    integrate, sum,
+    Estimate, EstimatedSolution, LocalError, Scheme, Stage, StepError, Stepper, Vibration,
+    accumulate, integrate, sum,
 };
 use crate::checkpoint::carried;
 use crate::newton::{Level, Newton};
@@ -39,6 +39,8 @@ struct Tableau {
     order: f64,
     /// That of [`EstimatedSolution::Embedded`].
     weight: f64,
+    /// Errors in a vibration.
+    vibration: Vibration,
 }
 
 impl Tableau {
@@ -72,6 +74,10 @@ static THREE_TWO: Tableau = Tableau {
     ],
     order: 3.0,
     weight: 12.36,
+    vibration: Vibration {
+        error: 0.0259,
+        ratio: 4.17,
+    },
 };
 
 /// ESDIRK5(4)7L\[2\]SA2 of Kennedy & Carpenter (2019, Appl. Numer. Math. 146:221).
@@ -121,6 +127,10 @@ static FIVE_FOUR: Tableau = Tableau {
     ],
     order: 5.0,
     weight: 1.842,
+    vibration: Vibration {
+        error: 4.6e-5,
+        ratio: 0.325,
+    },
 };
 
 /// `method = "esdirk3"`
@@ -241,6 +251,7 @@ impl Stepper for Esdirk {
             order: self.tableau.order,
             of: EstimatedSolution::Embedded {
                 weight: self.tableau.weight,
+                vibration: self.tableau.vibration,
             },
             implicit: true,
         }
@@ -286,6 +297,16 @@ mod tests {
             let weight = ratio / DORMAND_PRINCE;
             // three digits of the ratio of Dormand and Prince's pair
             assert!((weight / tableau.weight - 1.0).abs() < 2e-3, "{weight}");
+            let [k, next] = [order as u32, order as u32 + 1];
+            let error = method.error_coefficient(&weights, next);
+            let estimate = method.error_coefficient(tableau.embedded, k);
+            let Vibration {
+                error: rounded,
+                ratio,
+            } = tableau.vibration;
+            assert!((rounded / error - 1.0).abs() < 2e-3, "{error}");
+            let exact = error / estimate;
+            assert!((ratio / exact - 1.0).abs() < 2e-3, "{exact}");
         }
     }
 }

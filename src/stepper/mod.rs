@@ -4,6 +4,7 @@ pub mod backward_euler;
 pub mod bathe;
 pub mod dormand_prince;
 pub mod esdirk;
+mod estimate;
 pub mod generalized_alpha;
 mod history;
 #[cfg(test)]
@@ -16,6 +17,7 @@ pub use backward_euler::BackwardEuler;
 pub use bathe::Bathe;
 pub use dormand_prince::DormandPrince;
 pub use esdirk::Esdirk;
+pub use estimate::{Estimate, EstimatedSolution, Vibration};
 pub use generalized_alpha::GeneralizedAlpha;
 pub use scheme::{MOST, Method, Parameter, Scheme};
 pub use trapezoidal::Trapezoidal;
@@ -100,79 +102,6 @@ pub trait Stepper: Carried + std::fmt::Debug + Send {
     /// The estimated error of the last step, from `from` to `to`, before it is accepted: the more accurate solution minus that
     /// of the scheme. `ahead` is an extrapolated state beyond the end, if the scheme looks ahead.
     fn local_error(&self, from: &State, to: &State, ahead: &State, error: &mut LocalError);
-}
-
-/// Properties of an estimate of the local error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
-    /// The power of the step with which the estimate falls.
-    pub order: f64,
-    /// Whose error it is.
-    pub of: EstimatedSolution,
-    /// True for a scheme with implicit stages, which is stable for stiff modes that its steps do not resolve.
-    pub implicit: bool,
-}
-
-/// The solution whose local error is estimated.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum EstimatedSolution {
-    /// The one with which the scheme continues.
-    Solution,
-    /// One or two embedded ones of lower orders.
-    Embedded {
-        /// The error of the solution for a given estimate, as a multiple of that of [`dormand_prince::SCHEME`]: the ratio of the
-        /// principal error of the solution to the estimate, by norms of error coefficients of all trees (Prince & Dormand 1981, J.
-        /// Comput. Appl. Math. 7:67), divided by the same ratio of Dormand and Prince's pair, 0.337.
-        weight: f64,
-    },
-}
-
-impl Estimate {
-    /// The estimate of a scheme of order 2 which continues with the solution that it estimates.
-    const ERROR_OF_ORDER_2: Estimate = Estimate {
-        order: 3.0,
-        of: EstimatedSolution::Solution,
-        implicit: true,
-    };
-
-    /// The step by which the steps of a horizon are counted, for one of length h among others of this mean length.
-    ///
-    /// A step has the error c h^k, where c varies along the motion. A unit of time has 1/h steps with the errors c h^(k-1). A given
-    /// sum of errors takes the fewest steps if the derivatives of these two by h have the same ratio everywhere, that is, if all steps
-    /// have the same error c h^k. So a step is judged by its error times the number of steps, and not by its error over its length.
-    ///
-    /// The estimate of an embedded solution is counted with its own step: after an onset, where the force grows as t^1.5, steps are
-    /// short, and the solution is hardly more accurate than its estimate.
-    pub fn typical_step(&self, h: f64, mean: f64) -> f64 {
-        match self.of {
-            EstimatedSolution::Solution => mean,
-            EstimatedSolution::Embedded { .. } => h,
-        }
-    }
-
-    /// The multiple of its estimate that the error of the solution reaches in so many steps.
-    pub fn sum(&self, steps: f64) -> f64 {
-        match self.of {
-            EstimatedSolution::Solution => steps,
-            EstimatedSolution::Embedded { weight } => weight * steps.sqrt(),
-        }
-    }
-
-    /// The error of a step over its share of an accuracy falls with this power of the step.
-    pub fn order_of_ratio(&self) -> f64 {
-        match self.of {
-            EstimatedSolution::Solution => self.order,
-            EstimatedSolution::Embedded { .. } => self.order - 0.5,
-        }
-    }
-
-    /// The same if all steps change alike.
-    pub fn order_of_sum(&self) -> f64 {
-        match self.of {
-            EstimatedSolution::Solution => self.order - 1.0,
-            EstimatedSolution::Embedded { .. } => self.order - 0.5,
-        }
-    }
 }
 
 /// Local error of the unknown coordinates and of their velocities.

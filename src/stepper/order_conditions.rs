@@ -96,6 +96,19 @@ impl RungeKutta {
         self.norm(weights, nodes, |_| 0.0)
     }
 
+    /// The coefficient of z^power in the sum of the weighted slopes of y' = y, with z = h.
+    pub fn coefficient(&self, weights: &[f64], power: u32) -> f64 {
+        let ones = vec![1.0; self.0.len()];
+        let powers = (1..power).fold(ones, |x, _| self.times(&x));
+        weights.iter().zip(powers).map(|(b, x)| b * x).sum()
+    }
+
+    /// That of the error of the solution with these weights, in which the lower powers have none.
+    pub fn error_coefficient(&self, weights: &[f64], power: u32) -> f64 {
+        let factorial: f64 = (1..=power).map(f64::from).product();
+        (self.coefficient(weights, power) - 1.0 / factorial).abs()
+    }
+
     fn norm(&self, weights: &[f64], nodes: usize, exact: impl Fn(f64) -> f64) -> f64 {
         let errors = RootedTree::all(nodes).pop().into_iter().flatten();
         let errors = errors.map(|tree| {

@@ -10,7 +10,7 @@ use miette::Result;
 /// Steps of Looselink without clearance \[s\], each half of the one before.
 const STEPS: [f64; 2] = [2e-5, 1e-5];
 /// Relative tolerance of IDA for it; positions are held to 1e-3 m of that, velocities to 0.1 m/s.
-const RELATIVE: f64 = 1e-11;
+const RELATIVE: f64 = 1e-10;
 /// Accuracies of Looselink's error control \[m\], and relative tolerances of IDA.
 const ACCURACIES: [f64; 2] = [1e-8, 1e-9];
 const TOLERANCES: [f64; 2] = [1e-9, 1e-10];
