@@ -43,6 +43,7 @@ pub fn points(
             Ok((run, timing)) => {
                 let made = CompletedRun {
                     columns: &|name| run.columns.get(name).map(Vec::as_slice),
+                    motion: None,
                     work: work(run),
                     // IDA reports failures alone
                     warnings: Vec::new(),

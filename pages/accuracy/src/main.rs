@@ -2,6 +2,7 @@
 //! by effect, and writes ACCURACY.md.
 
 mod amplification;
+mod asked;
 mod effects;
 mod guarantee;
 mod guarantee_page;
@@ -9,6 +10,7 @@ mod page;
 mod timings;
 
 use accuracy::ida;
+use asked::AccurateRuns;
 use clap::{Parser, Subcommand};
 use looselink::simulate::Notice;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
@@ -151,6 +153,8 @@ fn studied(repeats: u16) -> Result<()> {
     }
     let ablation = effects::ablation(&root.join("scenes/3rrr/case4.toml"))?;
     plot::save(&figure_of_effects(&ablation), &pictures, "ablation")?;
+    let accurate = AccurateRuns::new(&made);
+    plot::save(&accurate.figure(), &pictures, asked::FIGURE)?;
     timings::write(
         &root.join("pages/accuracy/timings.json"),
         &made,
@@ -160,6 +164,7 @@ fn studied(repeats: u16) -> Result<()> {
     let page = page::page(
         &made,
         &surveyed,
+        &accurate,
         &ablation,
         &machine(),
         started.elapsed().as_secs_f64(),

@@ -1,5 +1,6 @@
 //! The page.
 
+use crate::asked::AccurateRuns;
 use crate::{MadeStudy, Surveyed, effects};
 use std::fmt::Write;
 use studies::ablation::Ablation;
@@ -16,6 +17,7 @@ const LEVELS: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
 pub fn page(
     made: &[MadeStudy],
     surveyed: &[Surveyed],
+    accurate: &AccurateRuns,
     ablation: &Ablation,
     machine: &Machine,
     seconds: f64,
@@ -31,7 +33,7 @@ pub fn page(
         (seconds / 60.0).ceil()
     );
     out += &conclusions(made, surveyed);
-    out += &asked(made);
+    out += &accurate.section();
     out += &fastest(made);
     for one in made {
         out += &format!(
@@ -72,66 +74,6 @@ fn folded(warnings: &[String]) -> String {
     let list: String = warnings.iter().map(|w| format!("* {w}\n")).collect();
     let count = warnings.len();
     format!("<details><summary>Warnings of these runs: {count}</summary>\n\n{list}\n</details>\n\n")
-}
-
-/// Error achieved over error asked for, over all studies.
-fn asked(made: &[MadeStudy]) -> String {
-    let mut rows: Vec<(f64, f64, String)> = Vec::new();
-    for one in made {
-        for run in &one.outcome.runs {
-            if let (StudyPace::Accuracy { position, .. }, Ok(measured)) = (run.pace, &run.result)
-                && measured.errors.position > 2.0 * one.outcome.reference.floor.position
-            {
-                let name = format!("{}, {}", one.name, run.curve);
-                rows.push((position, measured.errors.position / position, name));
-            }
-        }
-    }
-    let within = |bound: f64| rows.iter().filter(|(_, ratio, _)| *ratio <= bound).count();
-    let worst = rows.iter().max_by(|a, b| a.1.total_cmp(&b.1));
-    let ratios: Vec<f64> = rows.iter().map(|(_, ratio, _)| *ratio).collect();
-    let mut out = String::from("## Is the requested accuracy reached?\n\n");
-    if let Some((position, ratio, name)) = worst {
-        line(
-            &mut out,
-            &format!(
-                "The table shows the achieved error over the requested accuracy. Of {} runs with a requested accuracy {} reach \
-                 it, and {} stay within three times of it. The median ratio is {}, the largest is {} ({name}, {}). Runs whose error is below twice the \
-                 uncertainty of the reference are left out. [pages/accuracy/GUARANTEE.md](pages/accuracy/GUARANTEE.md) has the same for \
-                 every dynamic scene.\n",
-                rows.len(),
-                within(1.0),
-                within(3.0),
-                numbers::digits(median(&ratios)),
-                numbers::digits(*ratio),
-                numbers::si(*position, "m")
-            ),
-        );
-    }
-    let mut asked: Vec<f64> = rows.iter().map(|r| r.0).collect();
-    asked.sort_by(|a, b| b.total_cmp(a));
-    asked.dedup();
-    let mut names: Vec<&str> = Vec::new();
-    for (_, _, name) in &rows {
-        if !names.contains(&name.as_str()) {
-            names.push(name);
-        }
-    }
-    let heads: Vec<String> = asked.iter().map(|p| numbers::si(*p, "m")).collect();
-    line(
-        &mut out,
-        &format!("| study, method | {} |", heads.join(" | ")),
-    );
-    line(&mut out, &format!("|---|{}", "---|".repeat(asked.len())));
-    for name in names {
-        let cells = asked.iter().map(|p| {
-            let found = rows.iter().find(|r| r.0 == *p && r.2 == name);
-            found.map_or(String::new(), |r| numbers::digits(r.1))
-        });
-        let cells: Vec<String> = cells.collect();
-        line(&mut out, &format!("| {name} | {} |", cells.join(" | ")));
-    }
-    out + "\n"
 }
 
 /// The curve of a study that comes below an error first, among those whose names are accepted.

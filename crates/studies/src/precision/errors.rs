@@ -18,6 +18,9 @@ pub struct Errors {
     pub impulse: f64,
     /// Largest energy lost or gained by the integrator \[J\]; of the run alone.
     pub energy: f64,
+    /// Largest difference of any coordinate, as the distance by which it moves a point of its body \[m\]: what an accuracy is
+    /// about. None for runs of other programs, and where the reference has another mesh.
+    pub motion: Option<f64>,
 }
 
 /// A norm: name, unit, how to take it.
@@ -55,7 +58,11 @@ impl Compared for MotionReference {
     type Measured = MeasuredRun;
     const FIGURE: &str = "Work and precision";
 
-    fn keep(study: &Study, get: ColumnLookup) -> Result<RecordedSeries, StudyError> {
+    fn keep(
+        study: &Study,
+        get: ColumnLookup,
+        motion: Option<Vec<f64>>,
+    ) -> Result<RecordedSeries, StudyError> {
         let columns = |names: &[String]| {
             let columns = names.iter().map(|name| Ok(column(get, name)?.to_vec()));
             columns.collect::<Result<Vec<_>, StudyError>>()
@@ -66,6 +73,7 @@ impl Compared for MotionReference {
             acceleration: columns(&study.acceleration)?,
             force: columns(&study.force)?,
             energy: column(get, "energy.numerical")?.to_vec(),
+            motion,
         })
     }
 
@@ -98,6 +106,7 @@ pub struct RecordedSeries {
     acceleration: Vec<Vec<f64>>,
     force: Vec<Vec<f64>>,
     energy: Vec<f64>,
+    motion: Option<Vec<f64>>,
 }
 
 impl RecordedSeries {
@@ -107,7 +116,15 @@ impl RecordedSeries {
             acceleration: largest(&self.acceleration, &exact.acceleration),
             impulse: self.largest_impulse(exact),
             energy: self.energy.iter().fold(0.0, |m, e| larger(m, *e)),
+            motion: self.motion_error(exact),
         }
+    }
+
+    fn motion_error(&self, exact: &RecordedSeries) -> Option<f64> {
+        let (own, exact) = (self.motion.as_ref()?, exact.motion.as_ref()?);
+        let pairs = own.iter().zip(exact);
+        let same_mesh = own.len() == exact.len();
+        same_mesh.then(|| pairs.fold(0.0, |m, (a, b)| larger(m, a - b)))
     }
 
     /// By the trapezoidal rule between rows, the same for both.

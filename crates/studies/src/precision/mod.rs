@@ -9,6 +9,7 @@ mod diagram;
 mod elements;
 mod errors;
 mod files;
+mod motion;
 mod statistics;
 mod study;
 mod table;
@@ -23,7 +24,8 @@ use crate::StudyError;
 use crate::machine::count_instructions;
 use cpu_time::ThreadTime;
 use looselink::scene::Scene;
-use looselink::simulate::{Notice, Recording, Report, Simulation};
+use looselink::simulate::{Notice, Report, Simulation};
+use motion::MotionRecording;
 use plot::Figure;
 use serde::Serialize;
 use std::error::Error;
@@ -55,11 +57,15 @@ pub trait Compared: Serialize + Sized {
     /// What the figure shows, in words.
     const FIGURE: &str;
 
-    /// What is kept of a run, from its columns.
+    /// What is kept of a run, from its columns and the motion of its bodies, where that is known.
     ///
     /// # Errors
     /// A channel that it does not have.
-    fn keep(study: &Study, get: ColumnLookup) -> Result<Self::Kept, StudyError>;
+    fn keep(
+        study: &Study,
+        get: ColumnLookup,
+        motion: Option<Vec<f64>>,
+    ) -> Result<Self::Kept, StudyError>;
 
     /// From the coarse and the fine run of the reference.
     fn new(coarse: Self::Kept, fine: Self::Kept) -> Self;
@@ -101,6 +107,8 @@ pub type Survey = Found<StatisticsReference>;
 pub struct CompletedRun<'a> {
     /// What it recorded, by the names of channels.
     pub columns: ColumnLookup<'a>,
+    /// All coordinates as distances \[m\], row after row; none from another program.
+    pub motion: Option<Vec<f64>>,
     /// Work done.
     pub work: WorkCounts,
     /// What it warns of.
@@ -182,9 +190,10 @@ impl<C: Compared> Found<C> {
                 tell(Notice::Begun(&name));
                 let scene = study.scene(&curve.set, curve.elements, pace)?;
                 match record_and_time(&scene, effort.repeats) {
-                    Ok((recording, report, timing)) => {
+                    Ok((recorded, report, timing)) => {
                         let made = CompletedRun {
-                            columns: &|name| recording.get(name),
+                            columns: &|name| recorded.channels.get(name),
+                            motion: Some(recorded.motion),
                             work: WorkCounts::of(&report),
                             warnings: warnings(&report, &name, tell),
                             timing,
@@ -211,7 +220,7 @@ impl<C: Compared> Found<C> {
     ) -> Result<(), StudyError> {
         let (result, warnings, timing) = match made {
             Ok(made) => {
-                let kept = C::keep(study, made.columns)?;
+                let kept = C::keep(study, made.columns, made.motion)?;
                 let measured = self.reference.measure(kept, made.work);
                 (Ok(measured), made.warnings, Some(made.timing))
             }
@@ -306,10 +315,13 @@ fn reference<C: Compared>(
     tell(Notice::Begun(&name));
     let scene = study.scene(&study.reference.set, study.reference.elements, pace)?;
     let mut simulation = Simulation::new(&scene)?;
-    let mut recording = Recording::new(&simulation);
-    let ended = simulation.run(&mut recording);
+    let mut recorded = MotionRecording::new(&simulation);
+    let ended = simulation.run(&mut recorded);
     ended.map_err(|e| StudyError::Plain(format!("the reference with {pace} fails: {e}")))?;
-    let kept = C::keep(study, &|name| recording.get(name))?;
+    let MotionRecording {
+        channels, motion, ..
+    } = recorded;
+    let kept = C::keep(study, &|name| channels.get(name), Some(motion))?;
     Ok((kept, warnings(&simulation.report(), &name, tell)))
 }
 
@@ -326,10 +338,10 @@ fn warnings(report: &Report, run: &str, tell: &mut dyn FnMut(Notice)) -> Vec<Str
 fn record_and_time(
     scene: &Scene,
     repeats: usize,
-) -> Result<(Recording, Report, RunTiming), Box<dyn Error>> {
+) -> Result<(MotionRecording, Report, RunTiming), Box<dyn Error>> {
     let mut simulation = Simulation::new(scene)?;
-    let mut recording = Recording::new(&simulation);
-    simulation.run(&mut recording)?;
+    let mut recorded = MotionRecording::new(&simulation);
+    simulation.run(&mut recorded)?;
     let (mut seconds, mut counts) = (Vec::new(), Vec::new());
     for _ in 0..repeats {
         let mut simulation = Simulation::new(scene)?;
@@ -339,7 +351,7 @@ fn record_and_time(
         counts.push(instructions());
     }
     let timing = RunTiming::of(seconds).with_instructions(&counts);
-    Ok((recording, simulation.report(), timing))
+    Ok((recorded, simulation.report(), timing))
 }
 
 #[cfg(test)]

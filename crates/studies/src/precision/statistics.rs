@@ -39,7 +39,11 @@ impl Compared for StatisticsReference {
     type Measured = (RunStatistics, WorkCounts);
     const FIGURE: &str = "Statistics";
 
-    fn keep(study: &Study, get: ColumnLookup) -> Result<RunStatistics, StudyError> {
+    fn keep(
+        study: &Study,
+        get: ColumnLookup,
+        _: Option<Vec<f64>>,
+    ) -> Result<RunStatistics, StudyError> {
         let sampling = study.statistics.as_ref();
         let sampling = sampling.expect("a study of statistics says which");
         let first = (sampling.from / study.interval).round() as usize;

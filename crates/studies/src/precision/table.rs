@@ -71,7 +71,10 @@ pub(super) fn table(outcome: &StudyOutcome) -> String {
             let [position, acceleration, impulse, energy] = norms(&measured.errors);
             let asked = match pace {
                 StudyPace::Step(_) | StudyPace::Tolerance(_) => String::new(),
-                StudyPace::Accuracy { position, .. } => digits(measured.errors.position / position),
+                StudyPace::Accuracy { position, .. } => {
+                    let motion = measured.errors.motion;
+                    motion.map_or(String::new(), |error| digits(error / position))
+                }
             };
             let work = measured.work;
             let mut cells = vec![
