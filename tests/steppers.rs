@@ -721,6 +721,66 @@ fn stages_are_integrated_and_told() {
         .within(&worst, 4e-15, "rounding of an integral that starts at 5");
 }
 
+/// A vibration of amplitude 1 that turns by theta a step. The displacement that the estimate of one step stands for is compared with
+/// what N steps add up to, N times the error of a step or twice the amplitude.
+#[test]
+fn the_estimate_of_a_vibration_stands_for_what_its_steps_add_up_to() {
+    let chain = Chain::new(vec![1.0], vec![0.5, 0.5]);
+    let (least, most) = (Worst::new(), Worst::new());
+    for scheme in [
+        &dormand_prince::SCHEME,
+        &dormand_prince::ORDER_8,
+        &esdirk::ORDER_3,
+        &esdirk::ORDER_5,
+    ] {
+        for theta in (1..=35).map(|k| 0.1 * f64::from(k)) {
+            let mut newton = Newton::new(&chain, 1e-16);
+            let mut work = chain.work();
+            let mut from = State::zeros(chain.shape());
+            from.q[0] = 1.0;
+            newton
+                .make_consistent(&chain, &mut from, &mut work)
+                .unwrap();
+            let mut to = from.clone();
+            let mut stepper = Method::new(scheme).stepper(chain.shape());
+            stepper
+                .step(&chain, &from, theta, &mut to, &mut newton, &mut work)
+                .unwrap();
+            let mut error = LocalError::new(1);
+            stepper.local_error(&from, &to, &to, &mut error);
+            let estimate = stepper.estimate();
+            for e in [&mut error.q, &mut error.v] {
+                newton.filter(&chain, estimate.implicit, &to.v, e);
+            }
+            let estimated = error.q[0].hypot(error.v[0]);
+            let missed = (to.q[0] - theta.cos()).hypot(to.v[0] + theta.sin());
+            // an error of a step below rounding is not known
+            if to.q[0].hypot(to.v[0]) > 1.0 || missed < 1e-13 {
+                continue;
+            }
+            for steps in [1e3, 1e4, 1e5, 1e6] {
+                let terms = estimate.response(steps * theta, theta, steps);
+                let parts = terms
+                    .map(|term| term.weight / (1.0 + term.tau * term.tau).powi(term.power as i32));
+                let counted = estimated * parts.sum::<f64>();
+                let place = || format!("{}, {theta:.1} rad, {steps:e} steps", scheme.name);
+                least.at(place());
+                least.see((steps * missed).min(2.0) / counted);
+                if steps * missed < 0.1 {
+                    most.at(place());
+                    most.see(counted / (steps * missed));
+                }
+            }
+        }
+    }
+    Rung::Published
+        .asks("Vibration of 0.1 to 3.5 rad a step in 1e3 to 1e6 steps, four embedded methods: error over the one that the control counts")
+        .within(&least, 2.5, "counted is at least 0.4 of the error, see `stepper::Estimate::response`");
+    Rung::Published
+        .asks("The same while its error is below a tenth of the amplitude: error that the control counts over the error")
+        .within(&most, 2.0, "1 to leading order; higher orders and the part of forced errors come on top");
+}
+
 /// An estimate of order p falls with the power p of the step. If it is the error of the solution, its share of an accuracy is that of
 /// every step, whatever its length; the number of steps changes with their mean. The estimate of a solution that is not continued has
 /// a share that grows with the root of the length of the step.

@@ -7,7 +7,8 @@
 //! of the run and, in a mechanism with contacts, [`IMPACTS`] of them that have closed and opened again or a whole horizon: the
 //! steps of the free flight before the first impact say nothing of those that impacts take. After [`PILOT_STEPS`] it has seen
 //! enough in any case. Where another pilot foresees nearly as few, the race goes on until it has taken a fifth of them: impacts
-//! differ, and a few of them may favour the wrong one. What counts are operations, not seconds, so that a scene has the same choice on every machine.
+//! differ, and a few of them may favour the wrong one. What counts are operations, not seconds, so that a scene has the same choice on
+//! every machine.
 //!
 //! A pilot that lags far behind retires. That is one that has taken, since its first contact closed, more than 1 + 1/n times the
 //! operations with which another came as far, where n contacts have closed: in the first contact twice as many, in the second one
@@ -28,7 +29,7 @@ const PART: f64 = 1.0 / 64.0;
 /// Contacts that have ended: a single one may be of an unusual kind.
 const IMPACTS: u64 = 4;
 /// A pilot that foresees less than this multiple of the fewest operations may still be the better one.
-const CLOSE: f64 = 1.3;
+const CLOSE: f64 = 1.05;
 /// Part of the operations of the run that such a pilot may take to show it.
 const SHARE: f64 = 0.2;
 /// Steps that a pilot takes before the others are looked at again.

@@ -47,7 +47,8 @@ pub enum EstimatedSolution {
     },
 }
 
-/// The error of a step in a vibration, to leading order in theta.
+/// The error of a step in a vibration that turns by theta \[rad\] a step, to leading order in theta. The errors of N steps add up,
+/// until they reach twice the amplitude: below theta_1 = (2/(N C))^(1/(k+1)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vibration {
     /// C: the error of a step over theta^(k+1) times the amplitude.
@@ -59,8 +60,8 @@ pub struct Vibration {
 /// Ratio of neighbouring times of the response to errors of a solution.
 const RATIO: f64 = 0.1;
 /// The response to the estimate of an embedded solution begins to fall at this multiple of theta_1. For 1000 steps a horizon and
-/// more it then stays above 0.45 of (e/w) min(N c, 2)/c^ for all theta up to 5, and the error of q that a vibration has, too, is
-/// counted beside it.
+/// more it then stays above 0.4 of (e/w) min(N c, 2)/c^ for all theta up to 3.5 for which the method is stable; the error of q, which
+/// a vibration has as well, is counted beside it.
 const OF_RESOLVED: f64 = 2.0;
 
 impl Estimate {
@@ -106,8 +107,8 @@ impl Estimate {
     ///
     /// For a mode slower than the last tau this is between 1.0 and 1.5 times min(H, 1/w) e.
     ///
-    /// An estimate of an embedded solution stands for the two kinds of errors of a vibration (see [`self`]), the forced ones being
-    /// bounded by those of free flight, F = H times [`Estimate::sum`]:
+    /// An estimate of an embedded solution stands for two kinds of errors of a vibration: forced ones, which are bounded by those of
+    /// free flight, F = H times [`Estimate::sum`], and those that are in phase with it ([`Vibration`]):
     ///
     /// ```text
     /// F (1 + F h W^2)^(-1) e + kappa H (1 + (h/(2 theta_1))^2 W^2)^(-2) e
