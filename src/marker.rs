@@ -1,6 +1,6 @@
 //! A point or a rotation of a body as a function of the coordinates: what joints and forces act on.
 
-use crate::math::plane::{Rotation, Vec2, pair, quarter_turn, unit};
+use crate::math::plane::{Vec2, pair, quarter_turn, rotation, unit};
 
 const UNIT: [Vec2; 2] = [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)];
 
@@ -96,7 +96,7 @@ impl Marker {
     pub fn arm(&self, q: &[f64]) -> Vec2 {
         match *self {
             Marker::Node { .. } | Marker::OnChord { .. } => Vec2::zeros(),
-            Marker::OnBody { x, s } => Rotation::new(q[x + 2]) * s,
+            Marker::OnBody { x, s } => rotation(q[x + 2]) * s,
         }
     }
 

@@ -14,6 +14,7 @@ mod meter;
 mod modes;
 mod observer;
 mod pace;
+mod position_error;
 mod recording;
 mod replay;
 mod report;
@@ -353,9 +354,8 @@ impl Simulation {
         // equal steps do not depend on the estimate: the two solves would only refine the reported error
         if let Pacer::Controller(_) = pacer {
             let implicit = stepper.estimate().implicit;
-            for e in [&mut local_error.q, &mut local_error.v] {
-                newton.filter(&**model, implicit, &trial.v, e);
-            }
+            let LocalError { q, v } = local_error;
+            newton.filter(&**model, implicit, &trial.v, [q, v]);
         }
     }
 

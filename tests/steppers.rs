@@ -749,9 +749,8 @@ fn the_estimate_of_a_vibration_stands_for_what_its_steps_add_up_to() {
             let mut error = LocalError::new(1);
             stepper.local_error(&from, &to, &to, &mut error);
             let estimate = stepper.estimate();
-            for e in [&mut error.q, &mut error.v] {
-                newton.filter(&chain, estimate.implicit, &to.v, e);
-            }
+            let errors = [&mut error.q[..], &mut error.v[..]];
+            newton.filter(&chain, estimate.implicit, &to.v, errors);
             let estimated = error.q[0].hypot(error.v[0]);
             let missed = (to.q[0] - theta.cos()).hypot(to.v[0] + theta.sin());
             // an error of a step below rounding is not known

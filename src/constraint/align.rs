@@ -3,7 +3,7 @@
 use super::{Constraint, Curvature, Gradient, ROWS};
 use crate::effect::Effect;
 use crate::marker::Spin;
-use crate::math::plane::{Rotation, Vec2, quarter_turn};
+use crate::math::plane::{Rotation, Vec2, quarter_turn, rotation};
 use crate::motion::Function;
 use crate::system::State;
 
@@ -36,7 +36,7 @@ struct Directions {
 
 impl Align {
     fn directions(&self, at: &State) -> Directions {
-        let turn = Rotation::new(self.angle.at(at.t)[0]);
+        let turn = rotation(self.angle.at(at.t)[0]);
         let first = self.first.vector(&at.q);
         let d = [turn * first, self.second.vector(&at.q)];
         Directions { first, turn, d }

@@ -59,17 +59,17 @@ const LARGEST_SUPERNODE: usize = 9;
 
 /// Calls the kernel that is compiled for a number of pivots.
 macro_rules! of_size {
-    ($size:expr, $kernel:ident($($argument:expr),*)) => {
+    ($size:expr, $kernel:ident $(<$other:ident>)?($($argument:expr),*)) => {
         match $size {
-            1 => $kernel::<1>($($argument),*),
-            2 => $kernel::<2>($($argument),*),
-            3 => $kernel::<3>($($argument),*),
-            4 => $kernel::<4>($($argument),*),
-            5 => $kernel::<5>($($argument),*),
-            6 => $kernel::<6>($($argument),*),
-            7 => $kernel::<7>($($argument),*),
-            8 => $kernel::<8>($($argument),*),
-            _ => $kernel::<LARGEST_SUPERNODE>($($argument),*),
+            1 => $kernel::<1 $(, $other)?>($($argument),*),
+            2 => $kernel::<2 $(, $other)?>($($argument),*),
+            3 => $kernel::<3 $(, $other)?>($($argument),*),
+            4 => $kernel::<4 $(, $other)?>($($argument),*),
+            5 => $kernel::<5 $(, $other)?>($($argument),*),
+            6 => $kernel::<6 $(, $other)?>($($argument),*),
+            7 => $kernel::<7 $(, $other)?>($($argument),*),
+            8 => $kernel::<8 $(, $other)?>($($argument),*),
+            _ => $kernel::<LARGEST_SUPERNODE $(, $other)?>($($argument),*),
         }
     };
 }
@@ -330,13 +330,19 @@ impl Symbolic {
 
     /// Solves L U x = b with the factors of [`Symbolic::factor`]; `b` in, x out.
     pub fn solve(&self, values: &[f64], b: &mut [f64]) {
+        let (b, _) = b.as_chunks_mut::<1>();
+        self.solve_all(values, b);
+    }
+
+    /// The same for R right sides, of which `b` has one entry each for every unknown.
+    pub fn solve_all<const R: usize>(&self, values: &[f64], b: &mut [[f64; R]]) {
         for node in &self.supernodes {
             let (own, coupled, values) = self.parts(node, values);
-            of_size!(node.size, forward(own, coupled, values, b))
+            of_size!(node.size, forward<R>(own, coupled, values, b))
         }
         for node in self.supernodes.iter().rev() {
             let (own, coupled, values) = self.parts(node, values);
-            of_size!(node.size, backward(own, coupled, values, b))
+            of_size!(node.size, backward<R>(own, coupled, values, b))
         }
     }
 
@@ -493,38 +499,58 @@ fn dot<const S: usize>(x: &[f64; S], y: &[f64; S]) -> f64 {
 
 /// L x = b for the pivots of a supernode; subtracts from b what they contribute to later rows.
 #[inline]
-fn forward<const S: usize>(own: &[usize], coupled: &[usize], values: &[f64], b: &mut [f64]) {
+fn forward<const S: usize, const R: usize>(
+    own: &[usize],
+    coupled: &[usize],
+    values: &[f64],
+    b: &mut [[f64; R]],
+) {
     let SupernodeBlocks { pivots, lower, .. } = blocks::<S>(values);
     let own: &[usize; S] = own.try_into().expect("a supernode has S pivots");
     let mut x = own.map(|i| b[i]);
     for k in 0..S {
         for m in 0..k {
-            x[k] -= pivots[k][m] * x[m];
+            for r in 0..R {
+                x[k][r] -= pivots[k][m] * x[m][r];
+            }
         }
         b[own[k]] = x[k];
     }
     for (&row, l) in coupled.iter().zip(lower) {
-        b[row] -= dot(l, &x);
+        for r in 0..R {
+            b[row][r] -= dot(l, &x.map(|x| x[r]));
+        }
     }
 }
 
 /// U x = b for the pivots of a supernode, with the later unknowns known.
 #[inline]
-fn backward<const S: usize>(own: &[usize], coupled: &[usize], values: &[f64], b: &mut [f64]) {
+fn backward<const S: usize, const R: usize>(
+    own: &[usize],
+    coupled: &[usize],
+    values: &[f64],
+    b: &mut [[f64; R]],
+) {
     let SupernodeBlocks { pivots, upper, .. } = blocks::<S>(values);
     let own: &[usize; S] = own.try_into().expect("a supernode has S pivots");
     let mut x = own.map(|i| b[i]);
     for (&column, u) in coupled.iter().zip(upper) {
         let known = b[column];
         for k in 0..S {
-            x[k] -= u[k] * known;
+            for r in 0..R {
+                x[k][r] -= u[k] * known[r];
+            }
         }
     }
     for k in (0..S).rev() {
         for m in k + 1..S {
-            x[k] -= pivots[k][m] * x[m];
+            for r in 0..R {
+                x[k][r] -= pivots[k][m] * x[m][r];
+            }
         }
-        x[k] *= pivots[k][k];
+        for r in 0..R {
+            x[k][r] *= pivots[k][k];
+        }
         b[own[k]] = x[k];
     }
 }

@@ -7,7 +7,7 @@ use crate::contact;
 use crate::force::WIDTH;
 use crate::link::{AncfCable, ElasticRoute};
 use crate::math::lu::Symbolic;
-use crate::math::plane::{Rotation, quarter_turn};
+use crate::math::plane::{quarter_turn, rotation};
 use crate::math::saddle_point::SaddlePoint;
 use crate::system::{
     Equilibrium, INTEGRALS, Integral, Operations, PrescribeError, Shape, State, System, Weights,
@@ -208,7 +208,7 @@ impl Model {
                     sign,
                 } => {
                     let [phi, rate, growth] = angle.at(to.t).map(|x| sign * x);
-                    let arm = Rotation::new(phi) * s;
+                    let arm = rotation(phi) * s;
                     let turn = quarter_turn(arm);
                     for i in 0..2 {
                         to.q[x + i] = to.q[pivot + i] + arm[i];

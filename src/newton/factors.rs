@@ -65,4 +65,16 @@ impl Factors {
             Some(dense) => dense.solve(b),
         }
     }
+
+    /// Solves for two right sides at once, in place; `column` is memory for one.
+    pub fn solve_pair(&self, symbolic: &Symbolic, b: &mut [[f64; 2]], column: &mut [f64]) {
+        let Some(dense) = &self.dense else {
+            return symbolic.solve_all(&self.values, b);
+        };
+        for side in 0..2 {
+            column.iter_mut().zip(&*b).for_each(|(x, b)| *x = b[side]);
+            dense.solve(column);
+            b.iter_mut().zip(&*column).for_each(|(b, x)| b[side] = *x);
+        }
+    }
 }

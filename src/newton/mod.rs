@@ -134,6 +134,8 @@ pub struct Newton {
     r: Vec<f64>,
     phi: Vec<f64>,
     b: Vec<f64>,
+    /// Two right sides.
+    pair: Vec<[f64; 2]>,
     /// The tangents of stages, the one used last first: a step has stages of one or two weights.
     tangents: [Tangent; 2],
     prediction: Prediction,
@@ -157,6 +159,7 @@ impl Newton {
             r: vec![0.0; shape.coordinates],
             phi: vec![0.0; shape.multipliers],
             b: vec![0.0; size],
+            pair: vec![[0.0; 2]; size],
             tangents: std::array::from_fn(|_| Tangent::new(system.symbolic())),
             prediction: Prediction::new(shape),
             acceleration: system.acceleration_matrix().factors(),
@@ -174,6 +177,7 @@ impl Newton {
             r: _,
             phi: _,
             b: _,
+            pair: _,
             tangents,
             prediction,
             acceleration: _,
@@ -430,7 +434,7 @@ impl Newton {
         self.met_singular_pose = false;
     }
 
-    /// Removes from a local error e of velocities or coordinates the parts that do not stay in the motion: the part normal to
+    /// Removes from local errors e, of velocities and of coordinates, the parts that do not stay in the motion: the part normal to
     /// the constraints, which the projection removes, and, for an `implicit` scheme, the modes faster than the step, which its
     /// stage matrix suppresses,
     ///
@@ -440,33 +444,50 @@ impl Newton {
     ///
     /// (Hosea & Shampine 1996, Appl. Numer. Math. 20:21, for systems without constraints). In a singular pose the constraints do
     /// not determine the free directions; only that of the velocity v is known to be one. There x is the part of e along v.
-    pub fn filter(&mut self, system: &dyn System, implicit: bool, v: &[f64], e: &mut [f64]) {
+    pub fn filter(
+        &mut self,
+        system: &dyn System,
+        implicit: bool,
+        v: &[f64],
+        errors: [&mut [f64]; 2],
+    ) {
         let n = system.shape().unknowns;
         let constrained = system.shape().multipliers > 0;
-        if !implicit && !constrained {
-            return;
-        }
-        system.momentum(e, &mut self.b);
-        if constrained && self.in_singular_pose {
-            let along: f64 = self.b[..n].iter().zip(v).map(|(b, v)| b * v).sum();
-            system.momentum(&v[..n], &mut self.b);
-            let square: f64 = self.b[..n].iter().zip(v).map(|(b, v)| b * v).sum();
-            let part = if square > 0.0 { along / square } else { 0.0 };
-            e.iter_mut().zip(v).for_each(|(e, v)| *e = part * v);
-            return;
-        }
-        self.b[n..].fill(0.0);
-        self.counters.operations += self.costs.solve;
-        match implicit {
-            true => self.tangents[0]
-                .factors
-                .solve(system.symbolic(), &mut self.b),
-            false => {
-                let matrix = system.acceleration_matrix();
-                matrix.solve(&mut self.acceleration, &mut self.b);
+        let is_singular = constrained && self.in_singular_pose;
+        if implicit && !is_singular {
+            self.pair.fill([0.0; 2]);
+            for (side, e) in errors.iter().enumerate() {
+                system.momentum(e, &mut self.b);
+                let momentum = self.pair.iter_mut().zip(&self.b[..n]);
+                momentum.for_each(|(pair, b)| pair[side] = *b);
             }
+            self.counters.operations += 2 * self.costs.solve;
+            let [Tangent { factors, .. }, _] = &self.tangents;
+            factors.solve_pair(system.symbolic(), &mut self.pair, &mut self.b);
+            for (side, e) in errors.into_iter().enumerate() {
+                e.iter_mut().zip(&self.pair).for_each(|(e, x)| *e = x[side]);
+            }
+            return;
         }
-        e.copy_from_slice(&self.b[..n]);
+        if !constrained {
+            return;
+        }
+        for e in errors {
+            system.momentum(e, &mut self.b);
+            if is_singular {
+                let along: f64 = self.b[..n].iter().zip(v).map(|(b, v)| b * v).sum();
+                system.momentum(&v[..n], &mut self.b);
+                let square: f64 = self.b[..n].iter().zip(v).map(|(b, v)| b * v).sum();
+                let part = if square > 0.0 { along / square } else { 0.0 };
+                e.iter_mut().zip(v).for_each(|(e, v)| *e = part * v);
+                continue;
+            }
+            self.b[n..].fill(0.0);
+            self.counters.operations += self.costs.solve;
+            let matrix = system.acceleration_matrix();
+            matrix.solve(&mut self.acceleration, &mut self.b);
+            e.copy_from_slice(&self.b[..n]);
+        }
     }
 
     /// Solves the acceleration level with the right side (0, -phi).

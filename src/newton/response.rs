@@ -14,10 +14,10 @@ use super::{Costs, Counters};
 use crate::checkpoint::{Carried, Checkpoint};
 use crate::system::{State, System, Weights, Work};
 
-/// Number of matrices: more than a sum has terms. From the horizon down to the rounding of the end of the run there are twelve
-/// decades.
+/// Number of matrices, and of the terms of a sum at most: a step is rarely shorter than twelve decades below the horizon, and modes
+/// that are faster than that hardly move.
 const MOST: usize = 12;
-/// Judged steps after which a matrix is renewed.
+/// Steps after which a matrix is renewed.
 const RENEWAL: u64 = 64;
 /// Times are rounded to so many a decade of the horizon, so that a matrix serves steps of many lengths.
 const A_DECADE: f64 = 3.0;
@@ -41,8 +41,8 @@ pub struct Response {
     /// Multiply-adds so far, by their order of magnitude.
     operations: u64,
     matrices: Vec<TimeMatrix>,
-    /// Steps judged so far.
-    judged: u64,
+    /// Steps so far.
+    steps: u64,
     at: State,
     r: Vec<f64>,
     phi: Vec<f64>,
@@ -62,8 +62,9 @@ struct TimeMatrix {
     factors: Factors,
     /// True if it could not be factorised; it then counts as one without stiffness.
     singular: bool,
-    /// Steps judged before it was factorised.
+    /// Steps before it was factorised, and before it was last used.
     made: u64,
+    used: u64,
 }
 
 impl TimeMatrix {
@@ -73,11 +74,13 @@ impl TimeMatrix {
             factors,
             singular,
             made,
+            used,
         } = self;
         tau.carry(checkpoint);
         factors.carry(system.symbolic(), checkpoint);
         singular.carry(checkpoint);
         made.carry(checkpoint);
+        used.carry(checkpoint);
     }
 }
 
@@ -91,13 +94,14 @@ impl Response {
             factors: Factors::new(system.symbolic()),
             singular: false,
             made: 0,
+            used: 0,
         };
         Response {
             horizon,
             costs: Costs::of(system),
             operations: 0,
             matrices: std::iter::repeat_with(matrix).take(MOST).collect(),
-            judged: 0,
+            steps: 0,
             at: State::zeros(shape),
             r: vec![0.0; shape.coordinates],
             phi: vec![0.0; shape.multipliers],
@@ -115,7 +119,7 @@ impl Response {
             costs: _,
             operations,
             matrices,
-            judged,
+            steps,
             at: _,
             r: _,
             phi: _,
@@ -125,7 +129,7 @@ impl Response {
             sum: _,
         } = self;
         operations.carry(checkpoint);
-        judged.carry(checkpoint);
+        steps.carry(checkpoint);
         for matrix in matrices {
             matrix.carry(system, checkpoint);
         }
@@ -160,22 +164,29 @@ impl Response {
         let renewed = matrix.factors.renew(system.symbolic(), &mut counters, fill);
         matrix.singular = renewed.is_err();
         matrix.tau = tau;
-        matrix.made = self.judged;
+        matrix.made = self.steps;
     }
 
-    /// The index of a matrix of this time. If there is none, the oldest one becomes it; an old one is renewed at the state.
+    /// Counts a step: matrices age.
+    pub fn count_step(&mut self) {
+        self.steps += 1;
+    }
+
+    /// The index of a matrix of this time. If there is none, the one that has not been used for longest becomes it; an old one is
+    /// renewed at the state.
     fn matrix(&mut self, system: &dyn System, state: &State, tau: f64, work: &mut Work) -> usize {
         let decades = (A_DECADE * (tau / self.horizon).log10()).round() / A_DECADE;
         let tau = self.horizon * 10_f64.powf(decades);
         let found = self.matrices.iter().position(|matrix| matrix.tau == tau);
         let index = found.unwrap_or_else(|| {
-            let ages = self.matrices.iter().enumerate();
-            let oldest = ages.min_by_key(|(_, m)| (m.tau > 0.0, m.made));
-            oldest.map_or(0, |(index, _)| index)
+            let matrices = self.matrices.iter().enumerate();
+            let idle = matrices.min_by_key(|(_, m)| (m.tau > 0.0, m.used));
+            idle.map_or(0, |(index, _)| index)
         });
-        if found.is_none() || self.judged - self.matrices[index].made >= RENEWAL {
+        if found.is_none() || self.steps - self.matrices[index].made >= RENEWAL {
             self.renew(system, state, index, tau, work);
         }
+        self.matrices[index].used = self.steps;
         index
     }
 
@@ -190,21 +201,23 @@ impl Response {
         work: &mut Work,
     ) -> &[f64] {
         let n = error.len();
-        self.judged += 1;
         self.sum.fill(0.0);
-        for term in terms {
+        system.momentum(error, &mut self.momentum);
+        for term in terms.take(MOST) {
             let index = self.matrix(system, state, term.tau, work);
             self.x.copy_from_slice(error);
-            if !self.matrices[index].singular {
-                for _ in 0..term.power {
-                    self.operations += self.costs.solve;
-                    system.momentum(&self.x, &mut self.momentum);
-                    self.b[..n].copy_from_slice(&self.momentum);
-                    self.b[n..].fill(0.0);
-                    let factors = &self.matrices[index].factors;
-                    factors.solve(system.symbolic(), &mut self.b);
-                    self.x.copy_from_slice(&self.b[..n]);
+            let TimeMatrix {
+                factors, singular, ..
+            } = &self.matrices[index];
+            for solve in 0..if *singular { 0 } else { term.power } {
+                match solve {
+                    0 => self.b[..n].copy_from_slice(&self.momentum),
+                    _ => system.momentum(&self.x, &mut self.b),
                 }
+                self.b[n..].fill(0.0);
+                factors.solve(system.symbolic(), &mut self.b);
+                self.operations += self.costs.solve;
+                self.x.copy_from_slice(&self.b[..n]);
             }
             for (sum, x) in self.sum.iter_mut().zip(&self.x) {
                 *sum += term.weight * x;

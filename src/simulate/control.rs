@@ -1,25 +1,6 @@
 //! Step size control by an estimate of the local error.
 //!
-//! A step of length h has the local errors e_q and e_v (see the stepper's estimate and [`crate::newton::Newton::filter`]).
-//! With l_i the distance by which a unit of coordinate i moves a point of its body, and H the horizon,
-//!
-//! ```text
-//! E = max_i l_i (S |e_q,i| + min(H S kappa_i |e_v,i|, |y_i|)),   kappa_i = max_t |sum e_v,i| / sum |e_v,i|
-//! ```
-//!
-//! is the error of position that the N steps of a horizon cause if all are like this one and nothing amplifies it. It may reach the
-//! accuracy p: r = E/p.
-//!
-//! S is the number of errors that add up. If the estimate is the error of the step itself, S is N, and N is H over the mean step of
-//! about the last horizon, so every step may have the same error, however short it is ([`Estimate::typical_step`]). Where short
-//! steps follow long ones the mean lags behind, and the sum may exceed p. A scheme that continues with a solution of higher order
-//! than its estimate has smaller errors of varying sign. N is then H/h with the length h of the step, and S its square root times
-//! the weight of [`crate::stepper::EstimatedSolution::Embedded`]. Either way the error of the run falls in proportion to p (Stetter
-//! 1979, Lect. Notes Math. 679:245; Shampine 1985, BIT 25:530).
-//!
-//! An error of velocity grows to H e_v in free flight. The coherence kappa is the fraction of the errors of velocity in the run so
-//! far that has added up rather than cancelled. In a vibration errors stay bounded: y is the distance by which those of N steps move
-//! the elastic mechanism ([`Estimate::response`]).
+//! A step has the error of position E ([`PositionError`]), which may reach the accuracy p: r = E/p.
 //!
 //! A step with r > 1 is repeated, unless its error is a small part of the allowance that earlier steps have not used. Near a
 //! singular pose rounding is divided by the distance from the pose. It does not fall with the step, so shorter steps would
@@ -32,21 +13,30 @@
 //! the energy, the changes of a horizon may add up to e: r = |change| N/e with the mean step, and the larger r counts. Every step
 //! may change the balance by 1e-5 e: below that, rounding of positions in stiff contacts would count as an error.
 //!
-//! With k the order of r in h, the next step is h times 0.9 r^(-0.7/k) r_last^(0.4/k), kept between 0.2 and 5 (PI control:
-//! Gustafsson 1991, ACM Trans. Math. Softw. 17:533; the exponents of Hairer & Wanner, Solving Ordinary Differential
-//! Equations II, IV.2).
+//! With k the order of r in h and R = 1/3 the ratio that steps approach in a steady motion, the next step is h times
+//! (r/R)^(-0.7/k) (r_last/R)^(0.4/k), kept between 0.2 and 5 (PI control: Gustafsson 1991, ACM Trans. Math. Softw. 17:533; the
+//! exponents of Hairer & Wanner, Solving Ordinary Differential Equations II, IV.2). With this R, an estimate that misses a factor of
+//! three still keeps the accuracy.
 //!
-//! An implicit method damps vibrations that its steps do not resolve, and its estimate does not count them. The first step h is so
-//! short that such vibrations, of more than 3 rad a step, have an amplitude below p: h = 3 sqrt(p/a) with the largest acceleration a of
-//! the start. From there on steps grow as the estimate allows.
+//! An implicit method damps vibrations that its steps do not resolve, and its estimate does not count them. The first steps are so
+//! short that such vibrations, of more than 3 rad a step, have amplitudes below p. In a vibration of amplitude A and angular frequency
+//! w the velocity v is at most w A, the acceleration a is at most w^2 A and its rate j at most w^3 A. With w h > 3 and the largest of
+//! each in the mechanism, the first two steps of an elastic mechanism are at most
+//!
+//! ```text
+//! h_1 = min(3 p/v, 3 (p/a)^(1/2)),   h_2 = min(3 (p/a)^(1/2), 3 (p/j)^(1/3))
+//! ```
+//!
+//! where j is the change of the acceleration in the first step over its length. It replaces v, which is large where the mechanism
+//! moves as a whole. In a mechanism without elastic parts h_1 = 3 (p/a)^(1/2). From there on steps grow as the estimate allows.
 //!
 //! A closed contact has a time scale far below that of free flight. The first step after an onset therefore has the length
 //! that was accepted after the previous onset of the same contact; the controller increases the step from there.
 
 use super::failure::ENERGY_BALANCE;
+use super::position_error::{ErringStep, PositionError};
 use crate::checkpoint::{Carried, Checkpoint, carried, carry_list};
 use crate::model::Model;
-use crate::newton::Response;
 use crate::scene::{Accuracy, Scene};
 use crate::stepper::{Estimate, LocalError};
 use crate::system::{State, Work};
@@ -56,6 +46,9 @@ use std::collections::BTreeMap;
 /// Largest useful accuracy, over the smallest clearance: steps that follow a looser one do not tell contact from free flight,
 /// and take more of them.
 const OF_CLEARANCE: f64 = 0.5;
+/// r of the steps of a steady motion.
+const STEADY_RATIO: f64 = 1.0 / 3.0;
+/// A step that is repeated has this part of the length with which r would be 1.
 const SAFETY: f64 = 0.9;
 /// Smallest and largest ratio of a step to the previous one.
 const SMALLEST_CHANGE: f64 = 0.2;
@@ -82,11 +75,10 @@ pub(super) struct Controller {
     accuracy: Accuracy,
     /// The accuracy of positions that the steps follow \[m\].
     position: f64,
+    position_error: PositionError,
     estimate: Estimate,
-    /// Metres per unit of each unknown.
-    lengths: Vec<f64>,
-    /// For mechanisms with elastic parts: how far an error of velocity moves them.
-    response: Option<Response>,
+    /// Time and energy balance at the end of the last step that was judged.
+    balance: [f64; 2],
     longest: f64,
     shortest: f64,
     /// The step proposed.
@@ -107,8 +99,6 @@ pub(super) struct Controller {
     rejections: Vec<u64>,
     /// Shortest and longest step.
     taken: [f64; 2],
-    /// Errors of velocity so far, by unknown.
-    sums: Vec<VelocityErrorSums>,
 }
 
 /// The mean of the steps of about the last horizon: the weight of a step decreases exponentially.
@@ -132,33 +122,6 @@ impl MeanStep {
 
     fn length(self) -> f64 {
         self.time / self.steps
-    }
-}
-
-/// Sums of the errors of a velocity.
-#[derive(Debug, Clone, Copy, Default)]
-struct VelocityErrorSums {
-    signed: f64,
-    /// Largest magnitude of the signed sum so far.
-    peak: f64,
-    absolute: f64,
-}
-
-carried!(VelocityErrorSums { signed, peak, absolute } but {});
-
-impl VelocityErrorSums {
-    fn add(&mut self, error: f64) {
-        self.signed += error;
-        self.peak = self.peak.max(self.signed.abs());
-        self.absolute += error.abs();
-    }
-
-    fn coherence(&self) -> f64 {
-        if self.absolute > 0.0 {
-            self.peak / self.absolute
-        } else {
-            1.0
-        }
     }
 }
 
@@ -210,24 +173,21 @@ impl Controller {
             .position
             .min(OF_CLEARANCE * scene.smallest_clearance().unwrap_or(f64::INFINITY));
         let longest = scene.output.interval.min(accuracy.horizon);
-        let mut lengths = model.lengths();
-        // an error of an internal state, the velocity of its unknown, counts as one of position
-        for state in &model.states {
-            lengths[*state] = 1.0 / accuracy.horizon;
+        let position_error = PositionError::new(model, position, accuracy.horizon);
+        let mut first = longest;
+        if estimate.implicit {
+            let [v, a] = [&start.v, &start.a].map(|x| position_error.largest(x.iter().copied()));
+            first = UNRESOLVED * (position / a).sqrt();
+            if position_error.is_elastic() {
+                first = first.min(UNRESOLVED * position / v);
+            }
         }
-        let accelerations = lengths.iter().zip(&start.a).map(|(l, a)| l * a.abs());
-        let first = match estimate.implicit {
-            true => UNRESOLVED * (position / accelerations.fold(0.0, f64::max)).sqrt(),
-            false => longest,
-        };
         Controller {
             accuracy,
             position,
+            position_error,
             estimate,
-            lengths,
-            response: model
-                .is_elastic()
-                .then(|| Response::new(model, accuracy.horizon)),
+            balance: [f64::NAN; 2],
             longest,
             shortest: LEAST_PART * scene.simulation.duration,
             next: first,
@@ -239,7 +199,6 @@ impl Controller {
             closing: Vec::with_capacity(shape.contacts),
             rejections: vec![0; shape.unknowns + 1],
             taken: [f64::INFINITY, 0.0],
-            sums: vec![VelocityErrorSums::default(); shape.unknowns],
         }
     }
 
@@ -248,9 +207,9 @@ impl Controller {
         let Controller {
             accuracy: _,
             position: _,
+            position_error,
             estimate: _,
-            lengths: _,
-            response,
+            balance,
             longest: _,
             shortest: _,
             next,
@@ -262,11 +221,9 @@ impl Controller {
             closing,
             rejections,
             taken,
-            sums,
         } = self;
-        if let Some(response) = response {
-            response.carry(model, checkpoint);
-        }
+        position_error.carry(model, checkpoint);
+        balance.carry(checkpoint);
         for x in [next, last, unused] {
             x.carry(checkpoint);
         }
@@ -276,12 +233,11 @@ impl Controller {
         carry_list(closing, first_steps.len(), checkpoint);
         rejections.carry(checkpoint);
         taken.carry(checkpoint);
-        sums.carry(checkpoint);
     }
 
     /// Multiply-adds that it has taken to judge steps, by their order of magnitude.
     pub fn operations(&self) -> u64 {
-        self.response.as_ref().map_or(0, Response::operations)
+        self.position_error.operations()
     }
 
     /// No step is longer \[s\].
@@ -319,41 +275,40 @@ impl Controller {
         } = self.accuracy;
         let h = to.t - from.t;
         let of_energy = energy.map_or(0.0, |energy| {
-            let [(before, _), (after, size)] = [from, to].map(|s| model.energies(s).balance(s));
+            let before = match self.balance {
+                [t, balance] if t == from.t => balance,
+                _ => model.energies(from).balance(from).0,
+            };
+            let (after, size) = model.energies(to).balance(to);
+            self.balance = [to.t, after];
             let change = ((after - before).abs() - BALANCE_ROUNDING * size).max(0.0);
             change / ((mean / horizon).max(LEAST_SHARE) * energy)
         });
         let steps = horizon / self.estimate.typical_step(h, mean);
-        let sum = self.estimate.sum(steps);
-        let worst = |displacement: Option<&[f64]>| {
-            let mut worst = (0.0, 0);
-            for (i, length) in self.lengths.iter().enumerate() {
-                let coasting = horizon * self.sums[i].coherence() * error.v[i].abs() * sum;
-                let swinging = displacement.map_or(f64::INFINITY, |y| y[i].abs());
-                let error = length * (error.q[i].abs() * sum + coasting.min(swinging));
-                if error.is_nan() || error > worst.0 {
-                    worst = (error, i);
-                }
-            }
-            (worst.0 / self.position, worst.1)
+        let step = ErringStep {
+            from,
+            h,
+            error,
+            steps,
         };
-        let of_position = match &mut self.response {
-            None => worst(None),
-            Some(response) => {
-                // an elastic mechanism moves less than one in free flight: the energy may be the worse even without y
-                let free = (of_energy > 0.0).then(|| worst(None));
-                let free = free.filter(|(of_position, _)| *of_position < of_energy);
-                free.unwrap_or_else(|| {
-                    let terms = self.estimate.response(horizon, h, steps);
-                    let y = response.displacement(model, from, terms, &error.v, work);
-                    worst(Some(y))
-                })
-            }
-        };
+        let of_position = self
+            .position_error
+            .of_step(model, work, &self.estimate, step, of_energy);
         match of_energy > of_position.0 {
-            true => (of_energy, self.lengths.len()),
+            true => (of_energy, self.position_error.unknowns()),
             false => of_position,
         }
+    }
+
+    /// The step after the first one, for an implicit method and an elastic mechanism.
+    fn second_step(&self, first: &Candidate) -> f64 {
+        let Candidate { from, to, .. } = *first;
+        let h = to.t - from.t;
+        let levels = from.a.iter().zip(&to.a);
+        let changes = levels.map(|(before, after)| after - before);
+        let j = self.position_error.largest(changes) / h;
+        let a = self.position_error.largest(to.a.iter().copied());
+        UNRESOLVED * (self.position / a).sqrt().min((self.position / j).cbrt())
     }
 
     /// Accepts or rejects a step.
@@ -383,14 +338,19 @@ impl Controller {
             };
         }
         let r = r.max(LEAST_RATIO);
-        let change = SAFETY * r.powf(-0.7 / order) * self.last.powf(0.4 / order);
+        let [now, last] = [r, self.last].map(|r| r / STEADY_RATIO);
+        let change = now.powf(-0.7 / order) * last.powf(0.4 / order);
         let greatest = if self.rejected > 0 {
             1.0
         } else {
             GREATEST_CHANGE
         };
         let least = if draws { 1.0 } else { SMALLEST_CHANGE };
-        let proposed = h * change.clamp(least, greatest);
+        let is_first = self.mean.steps == 0.0 && self.estimate.implicit;
+        let proposed = match is_first && self.position_error.is_elastic() {
+            true => self.second_step(step),
+            false => h * change.clamp(least, greatest),
+        };
         self.unused = (self.unused + (1.0 - r) * share).clamp(0.0, 1.0);
         for contact in self.closing.drain(..) {
             self.first_steps[contact] = proposed;
@@ -406,9 +366,7 @@ impl Controller {
         self.taken = [self.taken[0].min(h), self.taken[1].max(h)];
         self.rejected = 0;
         self.mean = mean;
-        for (sums, error) in self.sums.iter_mut().zip(&step.error.v) {
-            sums.add(*error);
-        }
+        self.position_error.keep(step.error);
         Verdict::Keep
     }
 
@@ -423,7 +381,7 @@ impl Controller {
 
     /// What has the largest error, by the index in [`Verdict::Stuck`].
     pub fn name(&self, model: &Model, index: usize) -> String {
-        let names = &model.unknown_names()[..self.lengths.len()];
+        let names = &model.unknown_names()[..self.position_error.unknowns()];
         let name = names.get(index).map(String::as_str);
         name.unwrap_or(ENERGY_BALANCE).to_owned()
     }

@@ -16,7 +16,7 @@
 //! ```
 //!
 //! and falls beyond. An error that other motions force on the mode keeps its direction while the mode turns: such errors add up to
-//! e/(w theta) in place of N e/w.
+//! between 0 and 2 e/(w theta), in place of N e/w; the mean, e/(w theta), counts.
 
 use crate::newton::ResponseTerm;
 

@@ -164,13 +164,26 @@ fn ten_windows_converge_to_the_closed_form() {
 /// B0 = (sin phi, cos phi) after every second: phi'' = w^2 sin phi, phi(0) = 0, phi'(0) = 1, by the classical Runge-Kutta
 /// method with 1e5 steps a second, whose error is rounding.
 fn closed_form(n: usize) -> Vec<[f64; 2]> {
+    let angles = angles(n, 1.0).into_iter().step_by(100);
+    angles.map(|phi| [phi.sin(), phi.cos()]).collect()
+}
+
+/// How many times an error of the first velocity grows within the 10 s, over what it would grow in free flight.
+fn amplification(n: usize) -> f64 {
+    let error = 1e-7;
+    let pairs = angles(n, 1.0).into_iter().zip(angles(n, 1.0 + error));
+    pairs.map(|(a, b)| (b - a).abs()).fold(0.0, f64::max) / (10.0 * error)
+}
+
+/// The angle of the cranks every hundredth of a second, started upright with an angular velocity.
+fn angles(n: usize, rate: f64) -> Vec<f64> {
     let n = n as f64;
     let square = 9.81 * (3.0 * n + 1.0) / 2.0 / ((4.0 * n + 1.0) / 3.0);
     let h = 1e-5;
-    let (mut phi, mut rate) = (0.0_f64, 1.0_f64);
-    let mut rows = vec![[0.0, 1.0]];
-    for _ in 0..10 {
-        for _ in 0..100_000 {
+    let (mut phi, mut rate) = (0.0_f64, rate);
+    let mut rows = vec![phi];
+    for _ in 0..1000 {
+        for _ in 0..1000 {
             let f = |phi: f64| square * phi.sin();
             let (k1, l1) = (rate, f(phi));
             let (k2, l2) = (rate + 0.5 * h * l1, f(phi + 0.5 * h * k1));
@@ -179,7 +192,7 @@ fn closed_form(n: usize) -> Vec<[f64; 2]> {
             phi += h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4);
             rate += h / 6.0 * (l1 + 2.0 * (l2 + l3) + l4);
         }
-        rows.push([phi.sin(), phi.cos()]);
+        rows.push(phi);
     }
     rows
 }
@@ -215,9 +228,10 @@ fn an_accuracy_is_reached_through_singular_poses() {
         ];
         let run = run(&windows(n), &settings);
         let channels = ["x", "y"].map(|c| run.get(&format!("points.crank0.end.{c}")));
+        let allowed = accuracy * amplification(n);
         worst.at(format!("{n} windows, {method}, {accuracy:e} m"));
         for (row, [x, y]) in closed_form(n).iter().enumerate() {
-            worst.see((channels[0][row] - x).hypot(channels[1][row] - y) / accuracy);
+            worst.see((channels[0][row] - x).hypot(channels[1][row] - y) / allowed);
         }
     };
     for accuracy in [1e-3, 1e-5, 1e-6, 1e-7, 1e-8] {
@@ -233,10 +247,10 @@ fn an_accuracy_is_reached_through_singular_poses() {
         reach(10, method, 1e-4);
     }
     Rung::HardCases
-        .asks("2, 10 and 40 four-bar windows through singular poses, 1e-3 to 1e-8 m within 10 s: achieved error over requested accuracy")
+        .asks("2, 10 and 40 four-bar windows through singular poses, 1e-3 to 1e-8 m within 10 s: achieved error over the requested accuracy times the amplification of the motion, 1.8")
         .within(
             &worst,
             3.0,
-            "the estimate has the leading order only; at 1e-3 m the steps are a tenth of the time scale of the motion",
+            "an estimate may miss a factor of three: it has the leading order only, and at 1e-3 m the steps are a tenth of the time scale of the motion",
         );
 }

@@ -121,7 +121,7 @@ impl AccurateRuns {
             panel(0, "positions of the study"),
             panel(1, "all coordinates of all bodies"),
         ];
-        let caption = "Error achieved over accuracy asked for, a dot a run of a study with a method that follows an accuracy. \
+        let caption = "Error achieved over accuracy asked for, one dot per run of a study with a method that follows an accuracy. \
                        Impacts amplify earlier errors.";
         Figure::grid(panels, 2, caption.to_owned())
     }
@@ -137,7 +137,8 @@ impl AccurateRuns {
              * All coordinates, motions with impacts, which amplify errors: {}. \
              [pages/accuracy/GUARANTEE.md](pages/accuracy/GUARANTEE.md) measures the amplification of every dynamic scene.\n\n\
              Left out are runs whose error is below twice the uncertainty of the reference, and {} runs that took one step from row to \
-             row: the accuracy did not decide on their steps. The table has the ratios of the positions.\n\n",
+             row: the accuracy did not decide on their steps. This table has the ratios of the positions; the column `achieved / requested` of \
+             the studies has those of all coordinates.\n\n",
             self.summary(0, None),
             self.summary(1, Some(false)),
             self.summary(1, Some(true)),

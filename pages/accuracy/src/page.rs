@@ -124,7 +124,7 @@ fn conclusions(made: &[MadeStudy], surveyed: &[Surveyed]) -> String {
         }
     }
     wins.sort_by_key(|w| std::cmp::Reverse(w.1));
-    let wins: Vec<String> = wins.iter().map(|(c, n)| format!("{c} {n}")).collect();
+    let wins: Vec<String> = wins.iter().map(|(c, n)| format!("{c} ({n})")).collect();
     ratios.sort_by(f64::total_cmp);
     let mut out = String::from("## In short\n\n");
     line(
@@ -202,7 +202,7 @@ fn automatic(made: &[MadeStudy]) -> String {
         let worst = ratios.iter().max_by(|a, b| a.2[k].total_cmp(&b.2[k]))?;
         let (one, error, ratios) = worst;
         Some(format!(
-            "{} times (median), at most {} times ({}, {}), and at most 1.5 times in {within} of {} pairs",
+            "{} in the median, {} at most ({}, {}), at most 1.5 in {within} of {} pairs",
             numbers::digits(median(&values)),
             numbers::digits(ratios[k]),
             one.name,
@@ -215,8 +215,8 @@ fn automatic(made: &[MadeStudy]) -> String {
     };
     let count = CANDIDATES.len();
     format!(
-        "* `method = \"auto\"` takes as long as the fastest of its {count} candidates {best}; as long as the fastest curve of any kind \
-         {any}. Its trial runs are part of its time.\n"
+        "* The time of `method = \"auto\"`, trial runs included, over that of the fastest of its {count} candidates: {best}. Over that of \
+         the fastest curve of any kind: {any}.\n"
     )
 }
 

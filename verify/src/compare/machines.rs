@@ -11,8 +11,8 @@ use miette::Result;
 const STEPS: [f64; 2] = [2e-5, 1e-5];
 /// Relative tolerance of IDA for it; positions are held to 1e-3 m of that, velocities to 0.1 m/s.
 const RELATIVE: f64 = 1e-10;
-/// Accuracies of Looselink's error control \[m\], and relative tolerances of IDA.
-const ACCURACIES: [f64; 2] = [1e-8, 1e-9];
+/// Accuracies of Looselink's error control \[m\], so tight that stability does not bound the steps, and relative tolerances of IDA.
+const ACCURACIES: [f64; 2] = [1e-9, 1e-10];
 const TOLERANCES: [f64; 2] = [1e-9, 1e-10];
 /// How far an order may be from the 2 of Bathe's scheme.
 const ORDER_BAND: f64 = 0.1;
