@@ -209,7 +209,8 @@ impl Response {
             let TimeMatrix {
                 factors, singular, ..
             } = &self.matrices[index];
-            for solve in 0..if *singular { 0 } else { term.power } {
+            let solves = if *singular { 0 } else { term.power };
+            for solve in 0..solves {
                 match solve {
                     0 => self.b[..n].copy_from_slice(&self.momentum),
                     _ => system.momentum(&self.x, &mut self.b),

@@ -32,7 +32,7 @@ use std::ops::RangeInclusive;
 
 /// The response to an error of velocity is found again after so many steps.
 const RESPONSE_EVERY: u64 = 4;
-/// It is that of a step whose length differs by this ratio.
+/// It serves steps with these lengths, relative to its own.
 const LENGTHS: RangeInclusive<f64> = 0.5..=2.0;
 
 /// Finds the errors of position.
@@ -163,8 +163,8 @@ impl PositionError {
         self.lengths.len()
     }
 
-    /// The error of a step over the accuracy, and the unknown that has it. Below `least`, which is known to be exceeded by something
-    /// else, an upper bound is enough.
+    /// The error of a step over the accuracy, and the unknown that has it. `least` is the ratio of the energy balance: where an upper
+    /// bound of the error is below it, that bound is returned, since the larger ratio counts.
     pub fn of_step(
         &mut self,
         model: &Model,
