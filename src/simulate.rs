@@ -252,7 +252,9 @@ impl Simulation {
                 .step(self.state.t, before, after)
                 .map_err(|stalled| self.stalled(stalled))?;
             let onsets = self.started.iter().map(|(contact, ..)| *contact);
-            self.pacer.kept(&self.state, goal, onsets);
+            let mut pairs = before.iter().zip(after);
+            let changed = pairs.any(|(before, after)| (*before > 0.0) != (*after > 0.0));
+            self.pacer.kept(&self.state, goal, onsets, changed);
             let contacts = self.state.z.iter().filter(|z| **z > 0.0).count();
             let progress = Progress {
                 t: self.state.t,

@@ -4,7 +4,7 @@ use crate::support::{TestRecording, load, run, run_scene};
 use ladder::{Rung, Worst};
 use looselink::newton::Response;
 use looselink::scene::Scene;
-use looselink::simulate::{Control, Observer, Progress, RunError, Simulation};
+use looselink::simulate::{Control, Observer, Progress, Recording, RunError, Simulation};
 use looselink::stepper::{Estimate, EstimatedSolution};
 use looselink::system::System;
 use std::f64::consts::{PI, TAU};
@@ -616,6 +616,26 @@ fn the_error_of_a_vibration_is_that_asked_for() {
     Rung::OrderInTime
         .asks("Mass on a spring, 48 periods, four embedded methods, started by a displacement or a velocity: requested accuracy over achieved error")
         .within(&least, 20.0, "steps aim at a third of the accuracy; the errors of q and v both count; within a period they vary");
+}
+
+/// A motion that goes on from another state begins with a step that sees its vibrations, as a run does.
+#[test]
+fn a_vibration_is_seen_where_a_run_goes_on_from_another_state() {
+    const W: f64 = 300.0;
+    const A: f64 = 0.01;
+    const ACCURACY: f64 = 1e-3;
+    let integrator = format!(
+        r#"method = "esdirk5", accuracy = {{ position = {ACCURACY:?}, horizon = 1.0 }}, newton_tolerance = 1e-12"#
+    );
+    let start = |v: f64| Simulation::new(&mass_on_a_spring(W, [0.0, v], &integrator)).unwrap();
+    let mut simulation = start(0.0);
+    simulation.continue_from(start(A * W).state()).unwrap();
+    let mut found = Recording::new(&simulation);
+    simulation.run(&mut found).unwrap();
+    let [times, places] = ["t", "bob.x"].map(|name| found.get(name).unwrap());
+    for (t, x) in times.iter().zip(places) {
+        assert!((x - A * (W * t).sin()).abs() < ACCURACY, "{t} s: {x} m");
+    }
 }
 
 /// Times at which steps end.

@@ -642,6 +642,10 @@ mod tests {
         symbolic.factor(&mut values).unwrap();
         symbolic.solve(&values, &mut x);
         dense.solve(&mut y);
+        let mut pairs = b.map(|b| [b, -2.0 * b]);
+        symbolic.solve_all(&values, &mut pairs);
+        // multiplication by two is exact
+        assert_eq!(pairs, x.map(|x| [x, -2.0 * x]));
         for i in 0..6 {
             // both are backward stable here: a few roundings of numbers near one
             assert!((x[i] - y[i]).abs() < 1e-14, "{x:?} {y:?}");

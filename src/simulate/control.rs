@@ -19,16 +19,19 @@
 //! three still keeps the accuracy.
 //!
 //! An implicit method damps vibrations that its steps do not resolve, and its estimate does not count them. The first steps are so
-//! short that such vibrations, of more than 3 rad a step, have amplitudes below p. In a vibration of amplitude A and angular frequency
-//! w the velocity v is at most w A, the acceleration a is at most w^2 A and its rate j at most w^3 A. With w h > 3 and the largest of
-//! each in the mechanism, the first two steps of an elastic mechanism are at most
+//! short that such vibrations, of more than 3 rad a step, have amplitudes of p at most. At every instant a vibration of amplitude A
+//! and angular frequency w has
 //!
 //! ```text
-//! h_1 = min(3 p/v, 3 (p/a)^(1/2)),   h_2 = min(3 (p/a)^(1/2), 3 (p/j)^(1/3))
+//! A^2 = (v/w)^2 + (a/w^2)^2 = (j/w^3)^2 + (a/w^2)^2
 //! ```
 //!
-//! where j is the change of the acceleration in the first step over its length. It replaces v, which is large where the mechanism
-//! moves as a whole. In a mechanism without elastic parts h_1 = 3 (p/a)^(1/2). From there on steps grow as the estimate allows.
+//! with its parts of the velocity v, the acceleration a and the rate j of the acceleration. With w > 3/h each square is below p^2, and
+//! A below sqrt(2) p, where h is at most 3 p/v and 3 (p/a)^(1/2), or 3 (p/a)^(1/2) and 3 (p/j)^(1/3). In a mechanism with elastic
+//! parts the first pair bounds the first step and the second pair the second one, with the largest v, a and j of all unknowns; j is
+//! the change of a in the first step over its length. A bound by v alone would be far too short, because v is also the velocity of
+//! the motion as a whole. In a mechanism without elastic parts 3 (p/a)^(1/2) bounds the first step. From there on steps grow as the
+//! estimate allows.
 //!
 //! A closed contact has a time scale far below that of free flight. The first step after an onset therefore has the length
 //! that was accepted after the previous onset of the same contact; the controller increases the step from there.
@@ -77,8 +80,10 @@ pub(super) struct Controller {
     position: f64,
     position_error: PositionError,
     estimate: Estimate,
-    /// Time and energy balance at the end of the last step that was judged.
+    /// Time and energy balance at the end of the last step that was judged; not a number where the state has changed since.
     balance: [f64; 2],
+    /// True before the first step of a motion is accepted.
+    starts: bool,
     longest: f64,
     shortest: f64,
     /// The step proposed.
@@ -173,24 +178,16 @@ impl Controller {
             .position
             .min(OF_CLEARANCE * scene.smallest_clearance().unwrap_or(f64::INFINITY));
         let longest = scene.output.interval.min(accuracy.horizon);
-        let position_error = PositionError::new(model, position, accuracy.horizon);
-        let mut first = longest;
-        if estimate.implicit {
-            let [v, a] = [&start.v, &start.a].map(|x| position_error.largest(x.iter().copied()));
-            first = UNRESOLVED * (position / a).sqrt();
-            if position_error.is_elastic() {
-                first = first.min(UNRESOLVED * position / v);
-            }
-        }
-        Controller {
+        let mut controller = Controller {
             accuracy,
             position,
-            position_error,
+            position_error: PositionError::new(model, position, accuracy.horizon),
             estimate,
             balance: [f64::NAN; 2],
+            starts: true,
             longest,
             shortest: LEAST_PART * scene.simulation.duration,
-            next: first,
+            next: longest,
             last: 1.0,
             unused: 0.0,
             mean: MeanStep::default(),
@@ -199,7 +196,29 @@ impl Controller {
             closing: Vec::with_capacity(shape.contacts),
             rejections: vec![0; shape.unknowns + 1],
             taken: [f64::INFINITY, 0.0],
+        };
+        controller.start(start);
+        controller
+    }
+
+    /// A motion begins at a state that no step has led to.
+    pub fn start(&mut self, at: &State) {
+        self.starts = true;
+        self.forget_last_step();
+        if !self.estimate.implicit {
+            return;
         }
+        let [v, a] = [&at.v, &at.a].map(|x| self.position_error.largest(x.iter().copied()));
+        self.next = self.next.min(UNRESOLVED * (self.position / a).sqrt());
+        if self.position_error.is_elastic() {
+            self.next = self.next.min(UNRESOLVED * self.position / v);
+        }
+    }
+
+    /// Forgets what was found of the last step and does not hold for the next one.
+    fn forget_last_step(&mut self) {
+        self.balance = [f64::NAN; 2];
+        self.position_error.forget_response();
     }
 
     /// Carries what later steps depend on.
@@ -210,6 +229,7 @@ impl Controller {
             position_error,
             estimate: _,
             balance,
+            starts,
             longest: _,
             shortest: _,
             next,
@@ -224,6 +244,7 @@ impl Controller {
         } = self;
         position_error.carry(model, checkpoint);
         balance.carry(checkpoint);
+        starts.carry(checkpoint);
         for x in [next, last, unused] {
             x.carry(checkpoint);
         }
@@ -346,10 +367,12 @@ impl Controller {
             GREATEST_CHANGE
         };
         let least = if draws { 1.0 } else { SMALLEST_CHANGE };
-        let is_first = self.mean.steps == 0.0 && self.estimate.implicit;
-        let proposed = match is_first && self.position_error.is_elastic() {
-            true => self.second_step(step),
-            false => h * change.clamp(least, greatest),
+        let starts = std::mem::replace(&mut self.starts, false);
+        let bounds_second = starts && self.estimate.implicit && self.position_error.is_elastic();
+        let proposed = match (bounds_second, self.rejected) {
+            (false, _) => h * change.clamp(least, greatest),
+            (true, 0) => self.second_step(step),
+            (true, _) => self.second_step(step).min(h),
         };
         self.unused = (self.unused + (1.0 - r) * share).clamp(0.0, 1.0);
         for contact in self.closing.drain(..) {
@@ -357,7 +380,7 @@ impl Controller {
         }
         // a step shortened by a recorded row is no basis for the next one
         let shortened = step.to.t == step.goal && h < (1.0 - 1e-9) * self.next;
-        if shortened {
+        if shortened && !starts {
             self.next = self.next.max(proposed);
         } else {
             self.next = proposed;
@@ -370,8 +393,11 @@ impl Controller {
         Verdict::Keep
     }
 
-    /// The step is kept; `onsets` are the contacts that closed at its end.
-    pub fn kept(&mut self, onsets: impl Iterator<Item = usize>) {
+    /// The step is kept; `onsets` are the contacts that closed at its end, `changed` is true if a contact closed or opened there.
+    pub fn kept(&mut self, onsets: impl Iterator<Item = usize>, changed: bool) {
+        if changed {
+            self.forget_last_step();
+        }
         self.closing.clear();
         for contact in onsets {
             self.next = self.next.min(self.first_steps[contact]);

@@ -87,8 +87,22 @@ impl Pacer {
         }
     }
 
-    /// Records an accepted step that was planned to end at `goal`; `onsets` are the contacts that closed at its end.
-    pub fn kept(&mut self, at: &State, goal: f64, onsets: impl Iterator<Item = usize>) {
+    /// The motion goes on from a state that no step has led to.
+    pub fn start(&mut self, at: &State) {
+        if let Pacer::Controller(controller) = self {
+            controller.start(at);
+        }
+    }
+
+    /// Records an accepted step that was planned to end at `goal`; `onsets` are the contacts that closed at its end, `changed` is
+    /// true if a contact closed or opened there.
+    pub fn kept(
+        &mut self,
+        at: &State,
+        goal: f64,
+        onsets: impl Iterator<Item = usize>,
+        changed: bool,
+    ) {
         match self {
             Pacer::Grid(grid) => {
                 if onsets.count() > 0 {
@@ -97,7 +111,7 @@ impl Pacer {
                     (grid.anchor, grid.count) = (at.t, 0.0);
                 }
             }
-            Pacer::Controller(controller) => controller.kept(onsets),
+            Pacer::Controller(controller) => controller.kept(onsets, changed),
         }
     }
 }

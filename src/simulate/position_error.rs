@@ -21,7 +21,7 @@
 //! the elastic mechanism ([`Estimate::response`]).
 //!
 //! To find y takes as long as a step of some methods. The ratio of E to what it would be without y changes little from step to step, so
-//! it is found in every fourth step, and where the step would be rejected.
+//! it is found in every fourth step, after every change of a contact, and where the step would be rejected.
 
 use crate::checkpoint::{Carried, Checkpoint, carried};
 use crate::model::Model;
@@ -32,7 +32,7 @@ use std::ops::RangeInclusive;
 
 /// The response to an error of velocity is found again after so many steps.
 const RESPONSE_EVERY: u64 = 4;
-/// It serves steps with these lengths, relative to its own.
+/// A response serves steps whose lengths are in this range, relative to the step for which it was found.
 const LENGTHS: RangeInclusive<f64> = 0.5..=2.0;
 
 /// Finds the errors of position.
@@ -60,11 +60,9 @@ struct Bound {
     /// Length of the step for which it was found \[s\], and the number of steps before it.
     h: f64,
     step: u64,
-    /// Contacts that were closed in it.
-    closed: usize,
 }
 
-carried!(Bound { part, h, step, closed } but {});
+carried!(Bound { part, h, step } but {});
 
 /// Sums of the errors of a velocity.
 #[derive(Debug, Clone, Copy, Default)]
@@ -199,10 +197,9 @@ impl PositionError {
         if free.0 < least {
             return free;
         }
-        let closed = from.z.iter().filter(|z| **z > 0.0).count();
         let is_alike = |bound: &Bound| {
             let is_recent = self.steps < bound.step + RESPONSE_EVERY;
-            is_recent && bound.closed == closed && LENGTHS.contains(&(h / bound.h))
+            is_recent && LENGTHS.contains(&(h / bound.h))
         };
         let recent = self.bound.filter(is_alike);
         let bounded = recent.map(|bound| bound.part * free.0);
@@ -216,9 +213,13 @@ impl PositionError {
             part: bounded.0 / free.0,
             h,
             step: self.steps,
-            closed,
         });
         bounded
+    }
+
+    /// The response is found again in the next step: a contact has changed, or another motion begins.
+    pub fn forget_response(&mut self) {
+        self.bound = None;
     }
 
     /// A step with this local error is kept.

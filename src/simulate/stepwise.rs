@@ -53,6 +53,11 @@ impl Simulation {
             return Err(self.failed(failure.into(), 0.0));
         }
         model.powers(state, work);
+        self.pacer.start(&self.state);
+        if self.counters.steps == 0 {
+            // trial runs begin there
+            self.start.copy_from(&self.state);
+        }
         Ok(())
     }
 }
