@@ -247,13 +247,11 @@ impl Simulation {
             impacts.step(&self.model, taken, &self.state, &self.gaps, observer)?;
             let (before, after) = (&self.trial.z, &self.state.z);
             std::mem::swap(&mut self.gaps, &mut self.first_gaps);
-            self.closures.step(self.state.t, before, after);
+            let changed = self.closures.step(self.state.t, before, after);
             self.stall
                 .step(self.state.t, before, after)
                 .map_err(|stalled| self.stalled(stalled))?;
             let onsets = self.started.iter().map(|(contact, ..)| *contact);
-            let mut pairs = before.iter().zip(after);
-            let changed = pairs.any(|(before, after)| (*before > 0.0) != (*after > 0.0));
             self.pacer.kept(&self.state, goal, onsets, changed);
             let contacts = self.state.z.iter().filter(|z| **z > 0.0).count();
             let progress = Progress {

@@ -167,6 +167,11 @@ impl Response {
         matrix.made = self.steps;
     }
 
+    /// Steps so far.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
     /// Counts a step: matrices age.
     pub fn count_step(&mut self) {
         self.steps += 1;

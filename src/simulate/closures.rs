@@ -77,14 +77,16 @@ impl Closures {
         }
     }
 
-    /// Records an accepted step to time t, from contact memory `before` to `after`.
-    pub fn step(&mut self, t: f64, before: &[f64], after: &[f64]) {
+    /// Records an accepted step to time t, from contact memory `before` to `after`; true if a contact has closed or opened.
+    pub fn step(&mut self, t: f64, before: &[f64], after: &[f64]) -> bool {
+        let mut changed = false;
         for (c, contact) in self.contacts.iter_mut().enumerate() {
             contact.steps += 1;
             let (was, is) = (before[c] > 0.0, after[c] > 0.0);
             if was == is {
                 continue;
             }
+            changed = true;
             let brief = contact.steps < FEW_STEPS;
             contact.steps = 0;
             if !brief {
@@ -115,6 +117,7 @@ impl Closures {
                 });
             }
         }
+        changed
     }
 
     /// The first periods of chatter.

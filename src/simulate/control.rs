@@ -76,8 +76,6 @@ const LEAST_PART: f64 = 1e4 * f64::EPSILON;
 #[derive(Debug)]
 pub(super) struct Controller {
     accuracy: Accuracy,
-    /// The accuracy of positions that the steps follow \[m\].
-    position: f64,
     position_error: PositionError,
     estimate: Estimate,
     /// Time and energy balance at the end of the last step that was judged; not a number where the state has changed since.
@@ -180,7 +178,6 @@ impl Controller {
         let longest = scene.output.interval.min(accuracy.horizon);
         let mut controller = Controller {
             accuracy,
-            position,
             position_error: PositionError::new(model, position, accuracy.horizon),
             estimate,
             balance: [f64::NAN; 2],
@@ -209,9 +206,11 @@ impl Controller {
             return;
         }
         let [v, a] = [&at.v, &at.a].map(|x| self.position_error.largest(x.iter().copied()));
-        self.next = self.next.min(UNRESOLVED * (self.position / a).sqrt());
+        self.next = self
+            .next
+            .min(UNRESOLVED * (self.position_error.accuracy / a).sqrt());
         if self.position_error.is_elastic() {
-            self.next = self.next.min(UNRESOLVED * self.position / v);
+            self.next = self.next.min(UNRESOLVED * self.position_error.accuracy / v);
         }
     }
 
@@ -225,7 +224,6 @@ impl Controller {
     pub fn carry(&mut self, model: &Model, checkpoint: &mut Checkpoint) {
         let Controller {
             accuracy: _,
-            position: _,
             position_error,
             estimate: _,
             balance,
@@ -329,7 +327,10 @@ impl Controller {
         let changes = levels.map(|(before, after)| after - before);
         let j = self.position_error.largest(changes) / h;
         let a = self.position_error.largest(to.a.iter().copied());
-        UNRESOLVED * (self.position / a).sqrt().min((self.position / j).cbrt())
+        UNRESOLVED
+            * (self.position_error.accuracy / a)
+                .sqrt()
+                .min((self.position_error.accuracy / j).cbrt())
     }
 
     /// Accepts or rejects a step.

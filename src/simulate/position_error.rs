@@ -39,7 +39,7 @@ const LENGTHS: RangeInclusive<f64> = 0.5..=2.0;
 #[derive(Debug)]
 pub(super) struct PositionError {
     /// The accuracy of positions \[m\].
-    accuracy: f64,
+    pub accuracy: f64,
     horizon: f64,
     /// Metres per unit of each unknown.
     lengths: Vec<f64>,
@@ -48,8 +48,6 @@ pub(super) struct PositionError {
     /// For mechanisms with elastic parts: how far an error of velocity moves them.
     response: Option<Response>,
     bound: Option<Bound>,
-    /// Accepted steps.
-    steps: u64,
 }
 
 /// By how much the response lowers the error of a step.
@@ -117,7 +115,6 @@ impl PositionError {
             lengths,
             response: model.is_elastic().then(|| Response::new(model, horizon)),
             bound: None,
-            steps: 0,
         }
     }
 
@@ -130,14 +127,12 @@ impl PositionError {
             sums,
             response,
             bound,
-            steps,
         } = self;
         sums.carry(checkpoint);
         if let Some(response) = response {
             response.carry(model, checkpoint);
         }
         bound.carry(checkpoint);
-        steps.carry(checkpoint);
     }
 
     /// Multiply-adds so far, by their order of magnitude.
@@ -198,7 +193,7 @@ impl PositionError {
             return free;
         }
         let is_alike = |bound: &Bound| {
-            let is_recent = self.steps < bound.step + RESPONSE_EVERY;
+            let is_recent = response.steps() < bound.step + RESPONSE_EVERY;
             is_recent && LENGTHS.contains(&(h / bound.h))
         };
         let recent = self.bound.filter(is_alike);
@@ -212,7 +207,7 @@ impl PositionError {
         self.bound = Some(Bound {
             part: bounded.0 / free.0,
             h,
-            step: self.steps,
+            step: response.steps(),
         });
         bounded
     }
@@ -224,7 +219,6 @@ impl PositionError {
 
     /// A step with this local error is kept.
     pub fn keep(&mut self, error: &LocalError) {
-        self.steps += 1;
         if let Some(response) = &mut self.response {
             response.count_step();
         }
