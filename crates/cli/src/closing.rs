@@ -49,9 +49,15 @@ fn choice(choice: &Choice) -> String {
 /// What the steps were that an accuracy asked for.
 fn accuracy(control: &AccuracyReport) -> String {
     let [shortest, longest] = control.steps;
-    let mut line = format!(
-        "accuracy: {} requested, steps from {} s to {} s",
-        control.asked,
+    let mut line = format!("accuracy: {} requested", control.asked);
+    if control.followed < control.asked.position {
+        line += &format!(
+            ", {} m used because of the clearance",
+            number(control.followed, 2)
+        );
+    }
+    line += &format!(
+        ", steps from {} s to {} s",
         number(shortest, 2),
         number(longest, 2)
     );
