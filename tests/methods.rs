@@ -1,7 +1,7 @@
 //! Every method on mechanisms: its order in positions, accelerations and forces, and the scenes it refuses.
 
 use crate::bad_input::check;
-use crate::support::{NATURAL, TestRecording, load, run};
+use crate::support::{NATURAL, TestRecording, load, run, run_scene};
 use ladder::{Rung, Worst};
 use looselink::scene::Scene;
 use looselink::simulate::Simulation;
@@ -340,4 +340,29 @@ fn faults_of_the_method_are_named() {
     let only = both.replace("step = 1.25e-6", "");
     let again = Scene::parse("scene.toml", &only, &["integrator.step=1e-5".to_owned()]);
     assert_eq!(again.unwrap().integrator.step(), Some(1e-5));
+}
+
+/// Axial forces of short elements are stiff: their rounding moves velocities by 1e-8 m/s, a thousand times the tolerance. Once a
+/// stage has met this rounding, the next ones stop at it, and their tangent may serve more than one of them.
+#[test]
+fn stages_do_not_iterate_on_rounding() {
+    let settings = [
+        "bodies.link1.elements=64",
+        "bodies.link2.elements=64",
+        "bodies.link3.elements=64",
+        "simulation.duration=1e-3",
+        "output.interval=5e-4",
+        "integrator.method=esdirk5",
+        "integrator.accuracy={ position = 1e-11, horizon = 0.02 }",
+    ];
+    let (_, report) = run_scene(&load("3rrr/case2.toml", &settings));
+    let [iterations, factorisations] = [report.newton_iterations, report.factorisations]
+        .map(|count| count as f64 / report.stages as f64);
+    assert!(report.stagnations > 0, "rounding is not met");
+    // an update that reaches the rounding and one that is rounding
+    assert!(iterations < 2.5, "{iterations} iterations a stage");
+    assert!(
+        factorisations < 1.0,
+        "{factorisations} factorisations a stage"
+    );
 }

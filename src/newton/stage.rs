@@ -222,6 +222,7 @@ impl Newton {
             }
             let update = Update::largest(self.b[..n].iter().map(|d| w.v * d));
             let rate = update.size / iteration.last;
+            let is_linear = is_stale || !is_quadratic;
             if is_stale && rate >= 1.0 && update.size > ROUNDING_BAND * tolerance {
                 let Update { index, size } = update;
                 return Err(Failure::NoConvergence {
@@ -229,7 +230,8 @@ impl Newton {
                     update: size,
                 });
             }
-            if iteration.number > renewed && iteration.last > tolerance {
+            let met_rounding = is_linear && tangent.is_rounding(update.size);
+            if iteration.number > renewed && iteration.last > tolerance && !met_rounding {
                 ratio = Some(rate);
             }
             let linear = match is_first {
@@ -237,7 +239,6 @@ impl Newton {
                 false if rate >= 1.0 => update.size,
                 false => rate / (1.0 - rate) * update.size,
             };
-            let is_linear = is_stale || !is_quadratic;
             if is_linear || iteration.number >= renewed + 2 {
                 rounding = stage.rounding(s);
             }
@@ -272,8 +273,12 @@ impl Newton {
                     true => update.size < ROUNDING_BAND * tolerance.max(rounding),
                     false => update.size < LINEAR_ROUNDING_BAND * rounding,
                 };
-            self.counters.stagnations += u64::from(stagnates && !is_small);
-            Ok((update, is_small || stagnates))
+            if stagnates && !is_small {
+                tangent.met_rounding(update.size);
+            }
+            let is_rounded = stagnates || met_rounding;
+            self.counters.stagnations += u64::from(is_rounded && !is_small);
+            Ok((update, is_small || is_rounded))
         })?;
         Ok(ratio)
     }

@@ -5,6 +5,9 @@
 //! update already tells the error that it leaves, as in the simplified Newton method of implicit Runge-Kutta codes (Hairer &
 //! Wanner 1996, Solving Ordinary Differential Equations II, IV.8). A tangent ages: until it is measured again, the ratio is taken to grow in proportion to
 //! the number of stages that the tangent has served.
+//!
+//! In a stiff mesh rounding can keep updates above the tolerance. The size at which they stop to decrease is kept as well: later
+//! stages stop at updates of this size, and do not take their ratio for that of the tangent.
 
 use super::factors::Factors;
 use crate::checkpoint::{Carried, Checkpoint, carried};
@@ -19,6 +22,10 @@ const LEAST_RATIO: f64 = 1e-3;
 const LEAST_CURVATURE: f64 = 10.0;
 /// Growth of what is taken for the curvature from stage to stage, until it is measured again.
 const AGEING: f64 = 1.1;
+/// Updates below this multiple of those that have not decreased any more are rounding, too.
+const ROUNDING_BAND: f64 = 2.0;
+/// From stage to stage the rounding met counts less, until it is met again.
+const FADING: f64 = 0.99;
 /// Largest relative difference of the weight of q from that of the tangent.
 const SAME_WEIGHT: f64 = 0.2;
 
@@ -42,9 +49,11 @@ struct TangentRecord {
     age: f64,
     /// What the first update with a new tangent leaves, over w.q/w.v times its square \[1/m\], where it is known.
     curvature: Option<f64>,
+    /// Size of updates that have not decreased any more, zero if there were none \[m/s\].
+    rounding: f64,
 }
 
-carried!(TangentRecord { weight, ratio, growth, age, curvature } but {});
+carried!(TangentRecord { weight, ratio, growth, age, curvature, rounding } but {});
 
 impl Tangent {
     pub fn new(symbolic: &Symbolic) -> Tangent {
@@ -80,6 +89,7 @@ impl Tangent {
         self.record = TangentRecord {
             weight: w.q,
             curvature: self.record.curvature,
+            rounding: self.record.rounding,
             ..TangentRecord::default()
         };
     }
@@ -101,6 +111,16 @@ impl Tangent {
         self.record.curvature.map(|curvature| curvature * square)
     }
 
+    /// True for an update that is as small as rounding lets it be, after what stages have met lately.
+    pub fn is_rounding(&self, update: f64) -> bool {
+        update <= ROUNDING_BAND * self.record.rounding
+    }
+
+    /// Updates of this size have not decreased with a new tangent: they are rounding.
+    pub fn met_rounding(&mut self, update: f64) {
+        self.record.rounding = update;
+    }
+
     /// The first update with a new tangent was followed by a second one.
     pub fn measure(&mut self, w: Weights, [first, second]: [f64; 2]) {
         let curvature = second / (first * first * w.q / w.v);
@@ -112,6 +132,7 @@ impl Tangent {
         let record = &mut self.record;
         record.age += 1.0;
         record.curvature = record.curvature.map(|curvature| AGEING * curvature);
+        record.rounding *= FADING;
         match ratio {
             Some(ratio) => {
                 let ratio = ratio.max(LEAST_RATIO);
