@@ -24,7 +24,7 @@ mod stepwise;
 mod warnings;
 
 pub use crate::record::Channel;
-pub use choice::{Choice, PilotRun};
+pub use choice::{Choice, TrialRun};
 pub use closures::Chatter;
 use closures::Closures;
 pub use control::AccuracyReport;
@@ -86,7 +86,7 @@ carried!(LoopCounters { steps, rejected, location_trials, singular_pose_trials, 
 pub struct Simulation {
     scene: Scene,
     model: Arc<Model>,
-    /// The start before contacts close and accelerations follow, for pilots.
+    /// The start before contacts close and accelerations follow, for trial runs.
     start: State,
     stepper: Box<dyn Stepper>,
     pacer: Pacer,
@@ -115,8 +115,8 @@ pub struct Simulation {
     impacts: Impacts,
     closures: Closures,
     meter: Meter,
-    /// True of the pilots that foresee how many steps a run takes or compare schemes.
-    is_pilot: bool,
+    /// True of the trial runs that foresee how many steps a run takes or compare schemes.
+    is_trial_run: bool,
     /// The scheme that was chosen, where the scene leaves it open.
     choice: Option<Choice>,
     local_error: LocalError,
@@ -178,7 +178,7 @@ impl Simulation {
         // a remainder of the duration below this is the rounding of duration/interval
         let rows = (duration / interval + GRID_ROUNDING).floor() as u64;
         if self.counters.rows == 0 && self.is_undecided() {
-            self.begin_as_pilot(observer)?;
+            self.begin_as_trial_run(observer)?;
         }
         if self.counters.rows == 0 {
             self.tell_onsets(observer)?;
@@ -405,7 +405,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Records a row at the accepted state, with accelerations and multipliers of the acceleration level.
+    /// Records a row at the accepted state, with accelerations and multipliers of the acceleration level. A step with constraints
+    /// ends with these; that of an implicit scheme without constraints has them only to within the tolerance of its iteration.
     fn record(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
         let Simulation {
             model,
@@ -422,7 +423,8 @@ impl Simulation {
         } = self;
         output.copy_from(state);
         if self.scene.simulation.analysis == Analysis::Dynamic
-            && let Err(failure) = newton.make_consistent(&**model, output, work)
+            && model.shape().multipliers == 0
+            && let Err(failure) = newton.accelerate(&**model, output, work)
         {
             return Err(self.failed(failure.into(), 0.0));
         }

@@ -155,6 +155,24 @@ fn accuracy_is_proportional() {
     }
 }
 
+/// An explicit method does not damp a closed contact: with the accuracy asked for, contacts would open at random, and the
+/// integrator would gain or lose ten times the energy that they dissipate.
+#[test]
+fn an_explicit_method_tells_contact_from_flight() {
+    let pace = "accuracy={ position = 1e-5, horizon = 0.01 }";
+    for method in ["dormand_prince", "dop853"] {
+        let settings = settings(0.1, 5e-4, method, pace);
+        let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+        let report = run("3rrr/case3.toml", &settings).1;
+        // a hundredth of the clearance
+        assert_eq!(report.accuracy.unwrap().followed, 0.01 * 2e-5, "{method}");
+        let ledger = report.ledger.unwrap();
+        let share = ledger.numerical.abs() / ledger.dissipated();
+        // beyond which a run warns
+        assert!((0.0..0.05).contains(&share), "{method}: {share}");
+    }
+}
+
 /// The report counts what the control did; a run repeated does the same.
 #[test]
 fn rejections_are_counted_and_repeatable() {

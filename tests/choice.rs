@@ -59,7 +59,7 @@ fn the_choice_takes_little_more_work_than_the_best() {
             choice.method,
             report.operations
         );
-        let trials: u64 = choice.pilots.iter().map(|pilot| pilot.operations).sum();
+        let trials: u64 = choice.trial_runs.iter().map(|run| run.operations).sum();
         assert!(
             (trials as f64) < least as f64,
             "{case:?}: {trials} of {least}"
@@ -79,8 +79,8 @@ fn the_run_is_that_of_the_scheme_chosen() {
     for case in [VIBRATION, IMPACTS] {
         let (rows, report) = run(&scene(case, "auto"));
         let choice = report.choice.clone().unwrap();
-        assert_eq!(choice.method, choice.pilots[0].method);
-        assert_eq!(choice.pilots.len(), CANDIDATES.len());
+        assert_eq!(choice.method, choice.trial_runs[0].method);
+        assert_eq!(choice.trial_runs.len(), CANDIDATES.len());
         let (named, of_named) = run(&scene(case, choice.method));
         assert!(rows == named, "{case:?}");
         let without = Report {

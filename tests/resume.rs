@@ -196,8 +196,8 @@ fn a_checkpoint_of_a_trial_run_is_that_of_the_step_reported() {
     };
     let mut simulation = Simulation::new(&scene).unwrap();
     simulation.run(&mut parts).unwrap();
-    let pilots = report.choice.as_ref().unwrap().pilots.iter();
-    assert!(pilots.map(|pilot| pilot.steps).max() > Some(parts.stop));
+    let runs = report.choice.as_ref().unwrap().trial_runs.iter();
+    assert!(runs.map(|run| run.steps).max() > Some(parts.stop));
     assert!(parts.rows == whole.rows);
     assert_eq!(simulation.report(), report);
     let mut resumed = Simulation::new(&scene).unwrap();

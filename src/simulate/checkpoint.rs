@@ -24,7 +24,7 @@ impl Simulation {
         let mut has_chosen = self.choice.is_some();
         has_chosen.carry(checkpoint);
         if has_chosen {
-            // the pilots start from the scene again and choose the same
+            // the trial runs start from the scene again and choose the same
             self.choose();
         }
         let Simulation {
@@ -51,7 +51,7 @@ impl Simulation {
             impacts,
             closures,
             meter,
-            is_pilot: _,
+            is_trial_run: _,
             choice: _,
             local_error: _,
             stall,

@@ -1,20 +1,20 @@
 //! The choice of a scheme for an accuracy, `method = "auto"`.
 //!
 //! Which scheme takes the least work depends on the stiffness of the mechanism, on its mesh, on its impacts and on the accuracy.
-//! So pilot runs with every one of [`CANDIDATES`] race through the beginning of the motion: the one with the fewest operations
+//! So trial runs with every one of [`CANDIDATES`] race through the beginning of the motion: the one with the fewest operations
 //! so far goes on. When one has seen enough, the one wins that needs the fewest operations for the whole run, if the rest of the run
 //! takes as many as the part since the first contact closed. Enough are [`FEWEST_STEPS`] steps and [`PART`]
 //! of the run and, in a mechanism with contacts, [`IMPACTS`] of them that have closed and opened again or a whole horizon: the
-//! steps of the free flight before the first impact say nothing of those that impacts take. After [`PILOT_STEPS`] it has seen
-//! enough in any case. Where another pilot foresees nearly as few, the race goes on until it has taken a fifth of them: impacts
+//! steps of the free flight before the first impact say nothing of those that impacts take. After [`TRIAL_RUN_STEPS`] it has seen
+//! enough in any case. Where another trial run predicts nearly as few, the race goes on until it has taken a fifth of them: impacts
 //! differ, and a few of them may favour the wrong one. What counts are operations, not seconds, so that a scene has the same choice on
 //! every machine.
 //!
-//! A pilot that lags far behind retires. That is one that has taken, since its first contact closed, more than 1 + 1/n times the
+//! A trial run that lags far behind retires. That is one that has taken, since its first contact closed, more than 1 + 1/n times the
 //! operations with which another came as far, where n contacts have closed: in the first contact twice as many, in the second one
-//! and a half times. The run goes on where the pilot of its scheme has come to.
+//! and a half times. The run goes on where the trial run of its scheme has come to.
 
-use super::foresight::{MOST_STEPS, PILOT_STEPS};
+use super::foresight::{MOST_STEPS, TRIAL_RUN_STEPS};
 use super::replay::Replay;
 use super::start::pacer;
 use super::{Observer, RunError, Simulation};
@@ -28,11 +28,11 @@ const FEWEST_STEPS: u64 = 16;
 const PART: f64 = 1.0 / 64.0;
 /// Contacts that have ended: a single one may be of an unusual kind.
 const IMPACTS: u64 = 4;
-/// A pilot that foresees less than this multiple of the fewest operations may still be the better one.
+/// A trial run that predicts less than this multiple of the fewest operations may still be the better one.
 const CLOSE: f64 = 1.05;
-/// Part of the operations of the run that such a pilot may take to show it.
+/// Part of the operations of the run that such a trial run may take to show it.
 const SHARE: f64 = 0.2;
-/// Steps that a pilot takes before the others are looked at again.
+/// Steps that a trial run takes before the others are looked at again.
 const STRIDE: u64 = 4;
 
 /// The scheme chosen and what its choice rests on.
@@ -40,13 +40,13 @@ const STRIDE: u64 = 4;
 pub struct Choice {
     /// Name of the scheme.
     pub method: &'static str,
-    /// The pilot runs, the one with the fewest operations foreseen first.
-    pub pilots: Vec<PilotRun>,
+    /// The trial runs, the one with the fewest operations predicted first.
+    pub trial_runs: Vec<TrialRun>,
 }
 
 /// The beginning of a run with one scheme.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PilotRun {
+pub struct TrialRun {
     /// Name of the scheme.
     pub method: &'static str,
     /// Time reached \[s\].
@@ -55,14 +55,14 @@ pub struct PilotRun {
     pub steps: u64,
     /// Multiply-adds, by their order of magnitude.
     pub operations: u64,
-    /// The same, foreseen for the whole run.
-    pub foreseen: f64,
+    /// The same, predicted for the whole run.
+    pub predicted_operations: f64,
     /// Why it could not go on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
 }
 
-/// A pilot under way.
+/// A trial run under way.
 struct Racer {
     scheme: &'static Scheme,
     simulation: Simulation,
@@ -108,7 +108,7 @@ impl Racer {
             Pace::Step(_) => 0.0,
         };
         let has_impacts = !state.z.is_empty();
-        counters.steps >= PILOT_STEPS
+        counters.steps >= TRIAL_RUN_STEPS
             || counters.steps >= FEWEST_STEPS
                 && state.t >= PART * scene.simulation.duration
                 && (!has_impacts || closures.ended >= IMPACTS || state.t >= horizon)
@@ -143,19 +143,19 @@ impl Racer {
         Some(at(to)? - at(from)?)
     }
 
-    fn run(&self) -> PilotRun {
-        PilotRun {
+    fn run(&self) -> TrialRun {
+        TrialRun {
             method: self.scheme.name,
             t: self.simulation.state.t,
             steps: self.simulation.counters.steps,
             operations: self.simulation.operations(),
-            foreseen: self.foreseen(),
+            predicted_operations: self.predicted_operations(),
             error: self.error.clone(),
         }
     }
 
     /// Operations of the whole run, if it goes on as since the first contact closed.
-    fn foreseen(&self) -> f64 {
+    fn predicted_operations(&self) -> f64 {
         let (t, operations) = (self.simulation.state.t, self.simulation.operations() as f64);
         if t == 0.0 {
             return f64::INFINITY;
@@ -167,25 +167,28 @@ impl Racer {
     }
 }
 
-/// True when a pilot has seen enough and none that foresees nearly as few operations as the best could still show that it is the
+/// True when a trial run has seen enough and none that predicts nearly as few operations as the best could still show that it is the
 /// better one.
 fn is_decided(racers: &[Racer]) -> bool {
     let sound = || racers.iter().filter(|racer| racer.error.is_none());
-    let best = sound().min_by(|a, b| a.foreseen().total_cmp(&b.foreseen()));
+    let best = sound().min_by(|a, b| {
+        a.predicted_operations()
+            .total_cmp(&b.predicted_operations())
+    });
     let (Some(best), true) = (best, sound().any(Racer::has_seen_enough)) else {
         return false;
     };
-    let least = best.foreseen();
+    let least = best.predicted_operations();
     let may_win = |racer: &Racer| {
         let Simulation { counters, .. } = &racer.simulation;
-        let has_time =
-            counters.steps < PILOT_STEPS && (racer.simulation.operations() as f64) < SHARE * least;
-        has_time && !racer.retired && racer.foreseen() < CLOSE * least
+        let has_time = counters.steps < TRIAL_RUN_STEPS
+            && (racer.simulation.operations() as f64) < SHARE * least;
+        has_time && !racer.retired && racer.predicted_operations() < CLOSE * least
     };
     !sound().any(|racer| racer.scheme.name != best.scheme.name && may_win(racer))
 }
 
-/// Lets pilots run until one has seen enough, and puts the one first that needs the fewest operations for the whole run.
+/// Lets trial runs run until one has seen enough, and puts the one first that needs the fewest operations for the whole run.
 fn race(racers: &mut [Racer]) {
     loop {
         let under_way = racers
@@ -202,7 +205,7 @@ fn race(racers: &mut [Racer]) {
     }
     let needed = |racer: &Racer| match racer.error {
         Some(_) => f64::INFINITY,
-        None => racer.foreseen(),
+        None => racer.predicted_operations(),
     };
     racers.sort_by(|a, b| needed(a).total_cmp(&needed(b)));
 }
@@ -225,11 +228,14 @@ impl Simulation {
         }
     }
 
-    /// Chooses the scheme and begins the run where its pilot has come to.
+    /// Chooses the scheme and begins the run where its trial run has come to.
     ///
     /// # Errors
     /// Those of the observer, and [`RunError::Interrupted`] where it stops the run.
-    pub(super) fn begin_as_pilot(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
+    pub(super) fn begin_as_trial_run(
+        &mut self,
+        observer: &mut dyn Observer,
+    ) -> Result<(), RunError> {
         let Some(first) = self.decide() else {
             return Ok(());
         };
@@ -243,7 +249,7 @@ impl Simulation {
         let mut behind = std::mem::replace(self, first.simulation);
         self.scene = behind.scene.clone();
         self.choice = behind.choice.clone();
-        self.is_pilot = false;
+        self.is_trial_run = false;
         let mut steps_behind = 0;
         let played = first
             .replay
@@ -262,14 +268,14 @@ impl Simulation {
         played
     }
 
-    /// Chooses the scheme; returns its pilot.
+    /// Chooses the scheme; returns its trial run.
     fn decide(&mut self) -> Option<Racer> {
         let mut racers: Vec<Racer> = CANDIDATES.iter().filter_map(|s| self.racer(s)).collect();
         race(&mut racers);
         let scheme = racers.first().map_or(CANDIDATES[0], |racer| racer.scheme);
         self.choice = Some(Choice {
             method: scheme.name,
-            pilots: racers.iter().map(Racer::run).collect(),
+            trial_runs: racers.iter().map(Racer::run).collect(),
         });
         let method = Method::new(scheme);
         self.stepper = method.stepper(self.model.shape);
@@ -286,7 +292,7 @@ impl Simulation {
         scene.integrator.automatic = false;
         Some(Racer {
             scheme,
-            simulation: self.pilot(&scene)?,
+            simulation: self.trial_run(&scene)?,
             replay: Replay::default(),
             course: Vec::new(),
             retired: false,

@@ -1,7 +1,7 @@
 //! How many steps an accuracy takes, found out before the run begins.
 //!
-//! Where the first step is that short, a pilot run takes more of them. With a mean step h over the second half of them, a run of duration T is foreseen to take
-//! T/h steps: the first half may lie in a transient of the start. The pilot ends as soon as it foresees no more than a run
+//! Where the first step is that short, a trial run takes more of them. With a mean step h over the second half of them, a run of duration T is foreseen to take
+//! T/h steps: the first half may lie in a transient of the start. The trial run ends as soon as it foresees no more than a run
 //! may take; where it still foresees more after its last step, the run is refused. The accuracy that can be afforded follows
 //! from the order k of the estimate, since the number of steps grows as the accuracy to the power -1/k.
 
@@ -11,18 +11,18 @@ use std::io::Result;
 
 /// Most steps that a run may be foreseen to take: hours for a mechanism of a few bodies.
 pub(super) const MOST_STEPS: f64 = 1e8;
-/// Steps after which the pilot ends at the latest: seconds.
-pub(super) const PILOT_STEPS: u64 = 1 << 17;
+/// Steps after which the trial run ends at the latest: seconds.
+pub(super) const TRIAL_RUN_STEPS: u64 = 1 << 17;
 
-/// Foresees the number of steps whenever the pilot has taken twice as many as the time before.
-struct Pilot {
+/// Foresees the number of steps whenever the trial run has taken twice as many as the time before.
+struct TrialWatch {
     steps: u64,
-    /// When the pilot had taken half its steps \[s\].
+    /// When the trial run had taken half its steps \[s\].
     half_way: f64,
     foreseen: f64,
 }
 
-impl Observer for Pilot {
+impl Observer for TrialWatch {
     fn row(&mut self, _: &[f64]) -> Result<()> {
         Ok(())
     }
@@ -36,7 +36,7 @@ impl Observer for Pilot {
         self.foreseen = half * progress.duration / (progress.t - self.half_way);
         self.half_way = progress.t;
         Ok(
-            match self.foreseen > MOST_STEPS && self.steps < PILOT_STEPS {
+            match self.foreseen > MOST_STEPS && self.steps < TRIAL_RUN_STEPS {
                 true => Control::Continue,
                 false => Control::Stop,
             },
@@ -60,7 +60,7 @@ impl Simulation {
             return Ok(());
         };
         let first = self.trial.t - self.state.t;
-        if self.is_pilot || self.scene.simulation.duration <= MOST_STEPS * first {
+        if self.is_trial_run || self.scene.simulation.duration <= MOST_STEPS * first {
             return Ok(());
         }
         let Some((steps, name)) = self.too_many_steps(accuracy) else {
@@ -83,22 +83,22 @@ impl Simulation {
         })
     }
 
-    /// How many steps a pilot with this accuracy foresees, if a run may not take them, and the coordinate with the largest
+    /// How many steps a trial run with this accuracy foresees, if a run may not take them, and the coordinate with the largest
     /// error.
     fn too_many_steps(&self, accuracy: Accuracy) -> Option<(f64, String)> {
         let mut scene = self.scene.clone();
         scene.integrator.pace = Pace::Accuracy(accuracy);
-        let mut pilot = self.pilot(&scene)?;
-        let mut watch = Pilot {
+        let mut run = self.trial_run(&scene)?;
+        let mut watch = TrialWatch {
             steps: 0,
             half_way: 0.0,
             foreseen: 0.0,
         };
         // an error on the way is that of the run, which meets it again
-        let _ = pilot.advance(scene.simulation.duration, &mut watch);
-        let too_many = watch.steps >= PILOT_STEPS && watch.foreseen > MOST_STEPS;
+        let _ = run.advance(scene.simulation.duration, &mut watch);
+        let too_many = watch.steps >= TRIAL_RUN_STEPS && watch.foreseen > MOST_STEPS;
         too_many.then(|| {
-            let name = pilot.meter.worst(&pilot.model, &pilot.local_error);
+            let name = run.meter.worst(&run.model, &run.local_error);
             (watch.foreseen, name.to_owned())
         })
     }

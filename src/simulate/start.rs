@@ -34,11 +34,11 @@ impl Simulation {
     }
 
     /// A run aside of the same mechanism, which is not compiled again; the scene may have another scheme or accuracy.
-    pub(super) fn pilot(&self, scene: &Scene) -> Option<Simulation> {
+    pub(super) fn trial_run(&self, scene: &Scene) -> Option<Simulation> {
         let model = Arc::clone(&self.model);
-        let mut pilot = Simulation::begin(scene, model, self.start.clone()).ok()?;
-        pilot.is_pilot = true;
-        Some(pilot)
+        let mut run = Simulation::begin(scene, model, self.start.clone()).ok()?;
+        run.is_trial_run = true;
+        Some(run)
     }
 
     fn begin(scene: &Scene, model: Arc<Model>, start: State) -> Result<Simulation, SceneError> {
@@ -88,7 +88,7 @@ impl Simulation {
             passes_singular_pose: false,
             work,
             meter: Meter::new(scene, &model, &state),
-            is_pilot: false,
+            is_trial_run: false,
             choice: None,
             start,
             trial: state.clone(),

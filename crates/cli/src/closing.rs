@@ -7,12 +7,19 @@ use numbers::{number, share};
 /// Impacts that are shown; summary.json lists more.
 const SHOWN: usize = 3;
 
+/// Of a run with an accuracy and impacts.
+const AMPLIFIED: &str = "impacts amplify errors, so the error of this run may exceed the accuracy; its difference from a run with \
+     a tenth of the accuracy shows it";
+
 /// Lines about a finished run, most of them absent when there is nothing to say; warnings are not among them.
 pub fn lines(report: &Report) -> Vec<String> {
     let mut lines = Vec::new();
     lines.extend(report.ledger.iter().map(energy));
     lines.extend(report.choice.iter().map(choice));
     lines.extend(report.accuracy.iter().map(accuracy));
+    if report.accuracy.is_some() && report.onsets > 0 {
+        lines.push(AMPLIFIED.to_owned());
+    }
     let first = report.impacts.iter().take(SHOWN).enumerate();
     lines.extend(first.map(|(k, impact)| {
         format!(
@@ -30,14 +37,14 @@ pub fn lines(report: &Report) -> Vec<String> {
 
 /// Which scheme was chosen, how much work the trial runs predict, and how far they came.
 fn choice(choice: &Choice) -> String {
-    let predicted = choice.pilots.iter().map(|pilot| match pilot.error {
+    let predicted = choice.trial_runs.iter().map(|run| match run.error {
         None => format!(
             "{} {:.1e} (trial run to {} s)",
-            pilot.method,
-            pilot.foreseen,
-            number(pilot.t, 2)
+            run.method,
+            run.predicted_operations,
+            number(run.t, 2)
         ),
-        Some(_) => format!("{} failed", pilot.method),
+        Some(_) => format!("{} failed", run.method),
     });
     format!(
         "method: {}, chosen by trial runs; operations predicted for the whole run: {}",

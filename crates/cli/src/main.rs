@@ -108,16 +108,17 @@ struct SceneArguments {
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
     /// Choose the steps by their estimated error: the allowed error of positions (m) and of the energy balance (J), and the
-    /// time (s) over which errors may accumulate, for example `position=1e-9,horizon=0.01`; a number alone is the position.
+    /// time (s) over which errors may accumulate, for example `position=1e-9,horizon=0.01`; a number without a key is the position.
     #[arg(long, value_name = "position=M[,energy=J][,horizon=S]", value_parser = accuracy)]
     accuracy: Option<String>,
 }
 
-/// Checks the keys and numbers of an accuracy. A number alone is the position.
+/// Checks the keys and numbers of an accuracy. A number without a key, at the beginning, is the position.
 fn accuracy(text: &str) -> Result<String, String> {
     const EXAMPLE: &str = "for example `position=1e-9,horizon=0.01`";
     const KEYS: [&str; 3] = ["position", "energy", "horizon"];
-    let text = match text.parse::<f64>() {
+    let first = text.split(',').next().unwrap_or_default();
+    let text = match first.trim().parse::<f64>() {
         Ok(_) => format!("position={text}"),
         Err(_) => text.to_owned(),
     };
