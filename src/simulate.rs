@@ -104,7 +104,7 @@ pub struct Simulation {
     work: Work,
     state: State,
     trial: State,
-    /// The accepted state made consistent, for output.
+    /// The accepted state with consistent accelerations, for output.
     output: State,
     recorder: Recorder,
     /// What was measured of it.
@@ -178,7 +178,7 @@ impl Simulation {
         // a remainder of the duration below this is the rounding of duration/interval
         let rows = (duration / interval + GRID_ROUNDING).floor() as u64;
         if self.counters.rows == 0 && self.is_undecided() {
-            self.begin_as_trial_run(observer)?;
+            self.continue_trial_run(observer)?;
         }
         if self.counters.rows == 0 {
             self.tell_onsets(observer)?;
@@ -406,7 +406,7 @@ impl Simulation {
     }
 
     /// Records a row at the accepted state, with accelerations and multipliers of the acceleration level. A step with constraints
-    /// ends with these; that of an implicit scheme without constraints has them only to within the tolerance of its iteration.
+    /// ends with these ([`crate::stepper::Scheme::keeps_constraints`]), but they change where a contact changes at its end.
     fn record(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
         let Simulation {
             model,
@@ -422,9 +422,11 @@ impl Simulation {
             ..
         } = self;
         output.copy_from(state);
+        let shape = model.shape();
+        let is_consistent = shape.multipliers > 0 && shape.contacts == 0;
         if self.scene.simulation.analysis == Analysis::Dynamic
-            && model.shape().multipliers == 0
-            && let Err(failure) = newton.accelerate(&**model, output, work)
+            && !is_consistent
+            && let Err(failure) = newton.make_consistent(&**model, output, work)
         {
             return Err(self.failed(failure.into(), 0.0));
         }

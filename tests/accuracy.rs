@@ -389,18 +389,22 @@ fn an_accuracy_that_takes_too_many_steps_is_refused() {
 /// than a tight accuracy does.
 #[test]
 fn an_accuracy_looser_than_the_clearance_takes_no_more_steps() {
-    let steps = |position: f64| {
+    let steps = |method: &str, position: f64| {
         let pace = format!("accuracy={{ position = {position:e}, horizon = 0.01 }}");
-        let settings = settings(0.01, 5e-4, "dormand_prince", &pace);
+        let settings = settings(0.01, 5e-4, method, &pace);
         let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
         let mut simulation =
             Simulation::new(&load("3rrr/case4-4elements.toml", &settings)).unwrap();
         simulation.run(&mut ()).unwrap();
         simulation.report().steps
     };
-    let half_the_clearance = steps(1e-5);
-    assert_eq!(steps(1e-3), half_the_clearance);
-    assert_ne!(steps(1e-6), half_the_clearance);
+    let clearance = 2e-5;
+    for (method, part) in [("trapezoidal", 0.5), ("dormand_prince", 0.01)] {
+        let largest = part * clearance;
+        let fewest = steps(method, largest);
+        assert_eq!(steps(method, 1e-3), fewest, "{method}");
+        assert_ne!(steps(method, 0.1 * largest), fewest, "{method}");
+    }
 }
 
 /// Near a singular pose rounding may exceed an accuracy in steps of any length. A run that no step takes further ends.

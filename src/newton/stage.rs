@@ -1,7 +1,7 @@
 //! A stage of a step: its equations, and Newton's method for them.
 
 use super::iteration::{Update, iterate};
-use super::tangent::Tangent;
+use super::tangent::{Tangent, is_fast};
 use super::{Costs, Failure, MAX_ITERATIONS, Newton};
 use crate::system::{State, System, Weights, Work};
 
@@ -230,8 +230,10 @@ impl Newton {
                     update: size,
                 });
             }
-            let met_rounding = is_linear && tangent.is_rounding(update.size);
-            if iteration.number > renewed && iteration.last > tolerance && !met_rounding {
+            let is_known_rounding = is_linear && tangent.is_known_rounding(update.size);
+            // a ratio to rounding is an upper bound
+            let tells_ratio = !is_known_rounding || is_fast(rate);
+            if iteration.number > renewed && iteration.last > tolerance && tells_ratio {
                 ratio = Some(rate);
             }
             let linear = match is_first {
@@ -273,12 +275,12 @@ impl Newton {
                     true => update.size < ROUNDING_BAND * tolerance.max(rounding),
                     false => update.size < LINEAR_ROUNDING_BAND * rounding,
                 };
-            if stagnates && !is_small {
-                tangent.met_rounding(update.size);
+            if stagnates && !is_small && update.size < LINEAR_ROUNDING_BAND * rounding {
+                tangent.remember_rounding(update.size);
             }
-            let is_rounded = stagnates || met_rounding;
-            self.counters.stagnations += u64::from(is_rounded && !is_small);
-            Ok((update, is_small || is_rounded))
+            let ends_at_rounding = stagnates || is_known_rounding && error > tolerance;
+            self.counters.stagnations += u64::from(ends_at_rounding && !is_small);
+            Ok((update, is_small || stagnates || is_known_rounding))
         })?;
         Ok(ratio)
     }

@@ -6,8 +6,8 @@
 //! Wanner 1996, Solving Ordinary Differential Equations II, IV.8). A tangent ages: until it is measured again, the ratio is taken to grow in proportion to
 //! the number of stages that the tangent has served.
 //!
-//! In a stiff mesh rounding can keep updates above the tolerance. The size at which they stop to decrease is kept as well: later
-//! stages stop at updates of this size, and do not take their ratio for that of the tangent.
+//! In a stiff mesh rounding can keep updates above the tolerance. The size at which they stop decreasing is kept as well: later
+//! stages stop at updates of this size.
 
 use super::factors::Factors;
 use crate::checkpoint::{Carried, Checkpoint, carried};
@@ -22,9 +22,9 @@ const LEAST_RATIO: f64 = 1e-3;
 const LEAST_CURVATURE: f64 = 10.0;
 /// Growth of what is taken for the curvature from stage to stage, until it is measured again.
 const AGEING: f64 = 1.1;
-/// Updates below this multiple of those that have not decreased any more are rounding, too.
+/// Updates below this multiple of the remembered rounding count as rounding, too.
 const ROUNDING_BAND: f64 = 2.0;
-/// From stage to stage the rounding met counts less, until it is met again.
+/// The remembered rounding shrinks by this factor with every stage that the tangent serves, until it is met again.
 const FADING: f64 = 0.99;
 /// Largest relative difference of the weight of q from that of the tangent.
 const SAME_WEIGHT: f64 = 0.2;
@@ -49,11 +49,16 @@ struct TangentRecord {
     age: f64,
     /// What the first update with a new tangent leaves, over w.q/w.v times its square \[1/m\], where it is known.
     curvature: Option<f64>,
-    /// Size of updates that have not decreased any more, zero if there were none \[m/s\].
+    /// Size of updates that no longer decreased; zero if there were none \[m/s\].
     rounding: f64,
 }
 
 carried!(TangentRecord { weight, ratio, growth, age, curvature, rounding } but {});
+
+/// True for a ratio of updates with which a tangent may go on serving.
+pub(super) fn is_fast(ratio: f64) -> bool {
+    ratio <= LARGEST_RATIO
+}
 
 impl Tangent {
     pub fn new(symbolic: &Symbolic) -> Tangent {
@@ -80,16 +85,21 @@ impl Tangent {
 
     /// True where it may serve a stage.
     pub fn serves(&self, w: Weights) -> bool {
-        let is_fast = self.record.ratio.is_none_or(|ratio| ratio <= LARGEST_RATIO);
-        self.fits(w) && is_fast
+        self.fits(w) && self.record.ratio.is_none_or(is_fast)
     }
 
     /// It has been factorised for a stage.
     pub fn renewed(&mut self, w: Weights) {
+        // rounding depends on the weights
+        let rounding = if self.fits(w) {
+            self.record.rounding
+        } else {
+            0.0
+        };
         self.record = TangentRecord {
             weight: w.q,
             curvature: self.record.curvature,
-            rounding: self.record.rounding,
+            rounding,
             ..TangentRecord::default()
         };
     }
@@ -111,13 +121,13 @@ impl Tangent {
         self.record.curvature.map(|curvature| curvature * square)
     }
 
-    /// True for an update that is as small as rounding lets it be, after what stages have met lately.
-    pub fn is_rounding(&self, update: f64) -> bool {
-        update <= ROUNDING_BAND * self.record.rounding
+    /// True for an update of the size at which updates of earlier stages stopped decreasing.
+    pub fn is_known_rounding(&self, update: f64) -> bool {
+        update < ROUNDING_BAND * self.record.rounding
     }
 
-    /// Updates of this size have not decreased with a new tangent: they are rounding.
-    pub fn met_rounding(&mut self, update: f64) {
+    /// Updates of this size no longer decrease, although the tangent is new: they are rounding.
+    pub fn remember_rounding(&mut self, update: f64) {
         self.record.rounding = update;
     }
 

@@ -12,7 +12,7 @@
 //!
 //! A trial run that lags far behind retires. That is one that has taken, since its first contact closed, more than 1 + 1/n times the
 //! operations with which another came as far, where n contacts have closed: in the first contact twice as many, in the second one
-//! and a half times. The run goes on where the trial run of its scheme has come to.
+//! and a half times. The run continues the trial run of the scheme chosen.
 
 use super::foresight::{MOST_STEPS, TRIAL_RUN_STEPS};
 use super::replay::Replay;
@@ -188,7 +188,7 @@ fn is_decided(racers: &[Racer]) -> bool {
     !sound().any(|racer| racer.scheme.name != best.scheme.name && may_win(racer))
 }
 
-/// Lets trial runs run until one has seen enough, and puts the one first that needs the fewest operations for the whole run.
+/// Advances the trial runs until one has seen enough, and puts the one first that needs the fewest operations for the whole run.
 fn race(racers: &mut [Racer]) {
     loop {
         let under_way = racers
@@ -228,11 +228,11 @@ impl Simulation {
         }
     }
 
-    /// Chooses the scheme and begins the run where its trial run has come to.
+    /// Chooses the scheme and continues its trial run.
     ///
     /// # Errors
     /// Those of the observer, and [`RunError::Interrupted`] where it stops the run.
-    pub(super) fn begin_as_trial_run(
+    pub(super) fn continue_trial_run(
         &mut self,
         observer: &mut dyn Observer,
     ) -> Result<(), RunError> {

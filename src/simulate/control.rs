@@ -6,10 +6,9 @@
 //! singular pose rounding is divided by the distance from the pose. It does not fall with the step, so shorter steps would
 //! only accumulate more of it. The step that passes the pose may use all of that allowance.
 //!
-//! In a mechanism with clearance p is at most half the smallest clearance: a looser position would not tell contact from free
-//! flight. With an explicit method it is at most a hundredth. Such a method is accurate but hardly stable in a closed contact, so the
-//! journal vibrates with an amplitude of about p. Where that is more than the penetration under load, contacts open at random and
-//! gain or lose most of their energy.
+//! In a mechanism with clearance p is at most half the smallest clearance with an implicit method, and at most a hundredth of it with
+//! an explicit one: a looser position would not tell contact from free flight. With an explicit method a closed contact vibrates with
+//! an amplitude of about p. Where that is more than the penetration under load, contacts open at random and gain or lose energy.
 //!
 //! The energy balance needs no estimate: its change in a step is the error of that step. If the scene asks for an accuracy e of
 //! the energy, the changes of a horizon may add up to e: r = |change| N/e with the mean step, and the larger r counts. Every step

@@ -25,7 +25,8 @@ pub struct Scheme {
     pub name: &'static str,
     /// True for a scheme without equations to solve in a stage, which needs no tolerance of Newton's method.
     pub is_explicit: bool,
-    /// True for a scheme that keeps constraints.
+    /// True for a scheme that keeps constraints. Its steps end with velocities, accelerations and multipliers that satisfy them on
+    /// the levels of velocity and acceleration ([`crate::newton::Newton::make_consistent`]).
     pub keeps_constraints: bool,
     /// Its parameters, [`MOST`] at most.
     pub parameters: &'static [Parameter],

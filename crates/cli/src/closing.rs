@@ -7,9 +7,9 @@ use numbers::{number, share};
 /// Impacts that are shown; summary.json lists more.
 const SHOWN: usize = 3;
 
-/// Of a run with an accuracy and impacts.
-const AMPLIFIED: &str = "impacts amplify errors, so the error of this run may exceed the accuracy; its difference from a run with \
-     a tenth of the accuracy shows it";
+/// Said of a run with an accuracy and impacts.
+const AMPLIFIED: &str =
+    "impacts amplify errors, which may exceed the accuracy: compare with a run at a tenth of it";
 
 /// Lines about a finished run, most of them absent when there is nothing to say; warnings are not among them.
 pub fn lines(report: &Report) -> Vec<String> {
@@ -17,7 +17,7 @@ pub fn lines(report: &Report) -> Vec<String> {
     lines.extend(report.ledger.iter().map(energy));
     lines.extend(report.choice.iter().map(choice));
     lines.extend(report.accuracy.iter().map(accuracy));
-    if report.accuracy.is_some() && report.onsets > 0 {
+    if report.accuracy.is_some() && report.ended_contacts > 0 {
         lines.push(AMPLIFIED.to_owned());
     }
     let first = report.impacts.iter().take(SHOWN).enumerate();

@@ -219,7 +219,7 @@ fn a_repeated_run_differs_in_its_timing_only() {
     }
 }
 
-/// An accuracy on the command line replaces the step of the scene; a number alone is the position.
+/// An accuracy on the command line replaces the step of the scene; a number without a key is the position.
 #[test]
 fn an_accuracy_replaces_the_step() {
     let folder = tempfile::tempdir().unwrap();
@@ -239,6 +239,11 @@ fn an_accuracy_replaces_the_step() {
     expect(&output, 0, "");
     assert!(
         String::from_utf8_lossy(&output.stdout).contains("with an accuracy of 1e-9 m over 10 s")
+    );
+    let output = inspect(&[SCENE, "--accuracy", "1e-9,horizon=0.02"]);
+    expect(&output, 0, "");
+    assert!(
+        String::from_utf8_lossy(&output.stdout).contains("with an accuracy of 1e-9 m over 0.02 s")
     );
     let output = inspect(&[SCENE, "--accuracy", "1e-9"]);
     expect(&output, 2, "missing key `horizon` in integrator.accuracy");
