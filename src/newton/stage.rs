@@ -230,7 +230,10 @@ impl Newton {
                     update: size,
                 });
             }
-            let is_known_rounding = is_linear && tangent.is_known_rounding(update.size);
+            if is_linear || iteration.number >= renewed + 2 {
+                rounding = stage.rounding(s);
+            }
+            let is_known_rounding = is_linear && tangent.is_known_rounding(update.size, rounding);
             // a ratio to rounding is an upper bound
             let tells_ratio = !is_known_rounding || is_fast(rate);
             if iteration.number > renewed && iteration.last > tolerance && tells_ratio {
@@ -241,9 +244,6 @@ impl Newton {
                 false if rate >= 1.0 => update.size,
                 false => rate / (1.0 - rate) * update.size,
             };
-            if is_linear || iteration.number >= renewed + 2 {
-                rounding = stage.rounding(s);
-            }
             // an update that does not decrease any more is rounding of an error that was small enough before
             let is_rounding = is_linear
                 && rate > 0.3
@@ -276,7 +276,7 @@ impl Newton {
                     false => update.size < LINEAR_ROUNDING_BAND * rounding,
                 };
             if stagnates && !is_small && update.size < LINEAR_ROUNDING_BAND * rounding {
-                tangent.remember_rounding(update.size);
+                tangent.remember_rounding(update.size, rounding);
             }
             let ends_at_rounding = stagnates || is_known_rounding && error > tolerance;
             self.counters.stagnations += u64::from(ends_at_rounding && !is_small);

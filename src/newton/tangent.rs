@@ -6,8 +6,8 @@
 //! Wanner 1996, Solving Ordinary Differential Equations II, IV.8). A tangent ages: until it is measured again, the ratio is taken to grow in proportion to
 //! the number of stages that the tangent has served.
 //!
-//! In a stiff mesh rounding can keep updates above the tolerance. The size at which they stop decreasing is kept as well: later
-//! stages stop at updates of this size.
+//! In a stiff mesh rounding can keep updates above the tolerance. The size at which they stop decreasing, relative to a simple estimate
+//! of rounding, is kept as well: later stages stop at updates of this size.
 
 use super::factors::Factors;
 use crate::checkpoint::{Carried, Checkpoint, carried};
@@ -49,7 +49,7 @@ struct TangentRecord {
     age: f64,
     /// What the first update with a new tangent leaves, over w.q/w.v times its square \[1/m\], where it is known.
     curvature: Option<f64>,
-    /// Size of updates that no longer decreased; zero if there were none \[m/s\].
+    /// Size of updates that no longer decreased, over the estimate of rounding; zero if there were none.
     rounding: f64,
 }
 
@@ -90,16 +90,10 @@ impl Tangent {
 
     /// It has been factorised for a stage.
     pub fn renewed(&mut self, w: Weights) {
-        // rounding depends on the weights
-        let rounding = if self.fits(w) {
-            self.record.rounding
-        } else {
-            0.0
-        };
         self.record = TangentRecord {
             weight: w.q,
             curvature: self.record.curvature,
-            rounding,
+            rounding: self.record.rounding,
             ..TangentRecord::default()
         };
     }
@@ -121,14 +115,14 @@ impl Tangent {
         self.record.curvature.map(|curvature| curvature * square)
     }
 
-    /// True for an update of the size at which updates of earlier stages stopped decreasing.
-    pub fn is_known_rounding(&self, update: f64) -> bool {
-        update < ROUNDING_BAND * self.record.rounding
+    /// True for an update of the size at which updates of earlier stages stopped decreasing, given the estimate of rounding.
+    pub fn is_known_rounding(&self, update: f64, rounding: f64) -> bool {
+        update < ROUNDING_BAND * self.record.rounding * rounding
     }
 
     /// Updates of this size no longer decrease, although the tangent is new: they are rounding.
-    pub fn remember_rounding(&mut self, update: f64) {
-        self.record.rounding = update;
+    pub fn remember_rounding(&mut self, update: f64, rounding: f64) {
+        self.record.rounding = update / rounding;
     }
 
     /// The first update with a new tangent was followed by a second one.

@@ -150,6 +150,7 @@ fn conclusions(made: &[MadeStudy], surveyed: &[Surveyed]) -> String {
         );
     }
     out += &automatic(made);
+    out += &choices(made);
     let level = 1e-9;
     let explicit: Vec<String> = of_methods(made)
         .filter_map(|one| {
@@ -217,6 +218,45 @@ fn automatic(made: &[MadeStudy]) -> String {
     format!(
         "* The time of `method = \"auto\"`, trial runs included, over that of the fastest of its {count} candidates: {best}. Over that of \
          the fastest curve of any kind: {any}.\n"
+    )
+}
+
+/// How good the choice of `method = "auto"` is, and what it costs: its runs beside those of the candidates with the same accuracy.
+/// A run is that of its candidate from the first step on, so it has the same errors.
+fn choices(made: &[MadeStudy]) -> String {
+    let (mut of_best, mut of_own) = (Vec::new(), Vec::new());
+    for one in of_methods(made) {
+        let timed = one.outcome.runs.iter().zip(&one.outcome.timings);
+        let timed = timed.filter_map(|(run, timing)| {
+            let errors = &run.result.as_ref().ok()?.errors;
+            Some((&*run.curve, run.pace, errors, timing.as_ref()?.median))
+        });
+        let timed: Vec<_> = timed.collect();
+        for (_, pace, errors, time) in timed.iter().filter(|run| run.0 == AUTOMATIC) {
+            let candidates = || {
+                let all = timed.iter().filter(|run| CANDIDATES.contains(&run.0));
+                all.filter(|run| run.1 == *pace)
+            };
+            let best = candidates().map(|run| run.3).reduce(f64::min);
+            let own = candidates().find(|run| run.2 == *errors);
+            if let (Some(best), Some((.., own))) = (best, own) {
+                of_best.push(own / best);
+                of_own.push(time / own);
+            }
+        }
+    }
+    if of_best.is_empty() {
+        return String::new();
+    }
+    let (within, count) = (of_best.iter().filter(|ratio| **ratio <= 1.5), of_best.len());
+    format!(
+        "* The scheme that `method = \"auto\"` chooses takes at most 1.5 times as long as the fastest candidate with the same accuracy \
+         in {} of {count} runs, {} times at most. The trial runs of the other candidates are part of the time of the run, which is \
+         {} times that of the scheme alone in the median, and {} times at most: these runs are short.\n",
+        within.count(),
+        numbers::digits(of_best.iter().copied().fold(0.0, f64::max)),
+        numbers::digits(median(&of_own)),
+        numbers::digits(of_own.iter().copied().fold(0.0, f64::max))
     )
 }
 

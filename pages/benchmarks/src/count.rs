@@ -70,29 +70,55 @@ fn of_run(
     costs: &OperationTable,
 ) -> Result<StepCount> {
     let folder = tempfile::tempdir().into_diagnostic()?;
-    let profile = folder.path().join("callgrind.out");
     let run = command(program, root, row, end, &folder.path().join("out"));
-    let output = Command::new("valgrind")
-        .args(["--tool=callgrind", "--dump-instr=yes"])
-        .args(["--compress-pos=no", "--compress-strings=no"])
+    let options = [
+        "--dump-instr=yes",
+        "--compress-pos=no",
+        "--compress-strings=no",
+    ];
+    let text = profile(&options, &run, &row.name)?;
+    let program = program.display().to_string();
+    let count = read(&text, &program, costs);
+    count.ok_or_else(|| miette!("{}: Valgrind gave no count", row.name))
+}
+
+/// Instructions of a command while it is inside a function, whose name may have `*` for anything.
+///
+/// # Errors
+/// When Valgrind is missing or the command fails.
+pub fn instructions_inside(function: &str, run: &Command) -> Result<u64> {
+    let options = [
+        "--collect-atstart=no".to_owned(),
+        format!("--toggle-collect={function}"),
+    ];
+    let text = profile(&options.each_ref().map(String::as_str), run, function)?;
+    let count = text.lines().find_map(|line| line.strip_prefix("totals: "));
+    let count = count.and_then(|count| count.trim().parse().ok());
+    count.ok_or_else(|| miette!("{function}: Valgrind gave no count"))
+}
+
+/// What callgrind writes of a command.
+fn profile(options: &[&str], run: &Command, what: &str) -> Result<String> {
+    let folder = tempfile::tempdir().into_diagnostic()?;
+    let profile = folder.path().join("callgrind.out");
+    let mut valgrind = Command::new("valgrind");
+    if let Some(folder) = run.get_current_dir() {
+        valgrind.current_dir(folder);
+    }
+    let output = valgrind
+        .arg("--tool=callgrind")
+        .args(options)
         .arg(format!("--callgrind-out-file={}", profile.display()))
-        .arg(program)
+        .arg(run.get_program())
         .args(run.get_args())
-        .current_dir(root)
         .output()
         .into_diagnostic()
         .wrap_err("cannot start valgrind, which counts instructions")?;
     if !output.status.success() {
         let said = String::from_utf8_lossy(&output.stderr);
-        return Err(miette!(
-            "{}: the run under Valgrind failed:\n{said}",
-            row.name
-        ));
+        return Err(miette!("{what}: the run under Valgrind failed:\n{said}"));
     }
-    let text = std::fs::read_to_string(&profile).into_diagnostic()?;
-    let program = program.display().to_string();
-    let count = read(&text, &program, costs);
-    count.ok_or_else(|| miette!("{}: Valgrind gave no count", row.name))
+    std::fs::read_to_string(&profile).into_diagnostic()
 }
 
 /// The numbers of floating-point operations of the instructions of a program, by their addresses.

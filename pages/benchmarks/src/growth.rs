@@ -1,5 +1,6 @@
 //! How compilation, a step and memory grow with the number of links of a hanging chain.
 
+use crate::count;
 use cpu_time::ThreadTime;
 use looselink::scene::Scene;
 use looselink::simulate::Simulation;
@@ -11,9 +12,15 @@ use studies::machine::median;
 
 /// Numbers of links.
 pub const SIZES: [usize; 6] = [20, 200, 2_000, 5_000, 10_000, 20_000];
+/// Numbers of links for which instructions are counted: the ends of the largest decade.
+const COUNTED: [usize; 2] = [2_000, 20_000];
 /// Step \[s\], and how many are timed.
 pub const STEP: f64 = 1e-5;
 pub const STEPS: usize = 20;
+/// Runs of a chain whose times have the median that counts.
+const REPEATS: u16 = 3;
+/// The function that a run is inside of from its first row to its last.
+const RUN: &str = "*Simulation*run_to_end*";
 
 /// A chain and what it costs.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -26,6 +33,8 @@ pub struct ChainCost {
     pub compile: f64,
     /// Processor time of a step \[s\].
     pub step: f64,
+    /// Instructions of a step, where they are counted.
+    pub instructions: Option<u64>,
     /// Largest memory of the process \[bytes\]; absent where the system does not tell.
     pub memory: Option<u64>,
 }
@@ -47,7 +56,12 @@ pub fn all() -> Result<Vec<ChainCost>> {
     for loose in [false, true] {
         for links in SIZES {
             eprintln!("chain of {links} links, {}", name(loose));
-            chains.push(apart(links, loose)?);
+            let mut cost = apart(links, loose)?;
+            if COUNTED.contains(&links) {
+                let inside = count::instructions_inside(RUN, &command(links, loose, 1)?)?;
+                cost.instructions = Some(inside / STEPS as u64);
+            }
+            chains.push(cost);
         }
     }
     Ok(chains)
@@ -58,13 +72,7 @@ pub fn all() -> Result<Vec<ChainCost>> {
 /// # Errors
 /// When the process fails.
 pub fn apart(links: usize, loose: bool) -> Result<ChainCost> {
-    let program = std::env::current_exe().into_diagnostic()?;
-    let mut command = Command::new(program);
-    command.args(["chain", &links.to_string()]);
-    if loose {
-        command.arg("--loose");
-    }
-    let output = command.output().into_diagnostic()?;
+    let output = command(links, loose, REPEATS)?.output().into_diagnostic()?;
     if !output.status.success() {
         let said = String::from_utf8_lossy(&output.stderr);
         return Err(miette!("the chain of {links} links failed:\n{said}"));
@@ -74,14 +82,25 @@ pub fn apart(links: usize, loose: bool) -> Result<ChainCost> {
         .wrap_err("the cost of a chain cannot be read")
 }
 
-/// Measures a chain in this process.
+/// This program, measuring one chain.
+fn command(links: usize, loose: bool, repeats: u16) -> Result<Command> {
+    let mut command = Command::new(std::env::current_exe().into_diagnostic()?);
+    command.args(["chain", &links.to_string()]);
+    command.args(["--repeats", &repeats.to_string()]);
+    if loose {
+        command.arg("--loose");
+    }
+    Ok(command)
+}
+
+/// Measures a chain in this process: medians of some runs.
 ///
 /// # Errors
 /// When its run fails.
-pub fn measure(links: usize, loose: bool) -> Result<ChainCost> {
+pub fn measure(links: usize, loose: bool, repeats: u16) -> Result<ChainCost> {
     let text = scene(links, loose);
     let (mut compile, mut step) = (Vec::new(), Vec::new());
-    for _ in 0..3 {
+    for _ in 0..repeats {
         let clock = ThreadTime::now();
         let scene = Scene::parse("chain.toml", &text, &[]).map_err(|e| miette!("{e}"))?;
         let mut simulation = Simulation::new(&scene).map_err(|e| miette!("{e}"))?;
@@ -95,6 +114,7 @@ pub fn measure(links: usize, loose: bool) -> Result<ChainCost> {
         loose,
         compile: median(&compile),
         step: median(&step),
+        instructions: None,
         memory: largest_memory(),
     })
 }
@@ -174,7 +194,7 @@ mod tests {
     #[test]
     fn chains_run() {
         for loose in [false, true] {
-            let cost = measure(3, loose).expect("a chain runs");
+            let cost = measure(3, loose, 1).expect("a chain runs");
             assert!(cost.compile > 0.0 && cost.step > 0.0);
         }
     }

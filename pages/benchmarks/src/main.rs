@@ -58,6 +58,9 @@ enum Benchmark {
         /// With play in every joint.
         #[arg(long)]
         loose: bool,
+        /// Timed runs.
+        #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
+        repeats: u16,
     },
     /// Writes the page from what is recorded.
     Page,
@@ -87,8 +90,12 @@ fn main() -> Result<()> {
         None => measure(&root, arguments.repeats.into(), arguments.only),
         Some(Benchmark::Count { check: true }) => gate::check(&root),
         Some(Benchmark::Count { check: false }) => gate::record(&root),
-        Some(Benchmark::Chain { links, loose }) => {
-            let cost = growth::measure(links, loose)?;
+        Some(Benchmark::Chain {
+            links,
+            loose,
+            repeats,
+        }) => {
+            let cost = growth::measure(links, loose, repeats)?;
             println!("{}", serde_json::to_string(&cost).into_diagnostic()?);
             Ok(())
         }

@@ -66,7 +66,7 @@ fn short(measured: &Measured) -> String {
         "## In short\n\n\
          * A step takes {} to {} of processor time. These are {} of the instructions and {} of the time of the baseline, commit {}.\n\
          * A chain of {longest} links is compiled in {} with ideal joints and in {} with play.\n\
-         * From {tenth} to {longest} links the costs grow with these powers of their number: compilation {}, a step {}, memory {}.\n{}\n",
+         * From {tenth} to {longest} links the costs grow with these powers of their number: compilation {}, a step {} in time and {} in instructions, memory {}.\n{}\n",
         si(least.unwrap_or(0.0), "s"),
         si(most.unwrap_or(0.0), "s"),
         range(&instructions),
@@ -76,6 +76,7 @@ fn short(measured: &Measured) -> String {
         compile(true),
         exponents(&|chain| Some(chain.compile)),
         exponents(&|chain| Some(chain.step)),
+        exponents(&|chain| Some(chain.instructions? as f64)),
         exponents(&|chain| Some(chain.memory? as f64)),
         compared(measured),
     )
@@ -161,10 +162,13 @@ fn steps(measured: &Measured) -> String {
 
 /// Growth.
 fn sizes(measured: &Measured) -> String {
-    let mut out = String::from(
+    let mut out = format!(
         "## Growth with the size\n\n![Costs over the size](pages/benchmarks/figures/growth.png)\n\n\
+         The instructions of a step are those of a run over its {} steps, two rows included. The time of a step grows faster than they do, because the \
+         data of a long chain do not fit into the caches of the processor.\n\n\
          The table shows the processor time to reach an error; a cell is empty where the steps tried do not reach it.\n\n\
          | case 2, 20 ms: elements a link | ",
+        growth::STEPS
     );
     let columns: Vec<(&str, usize)> = curves(measured)
         .into_iter()
