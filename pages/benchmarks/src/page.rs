@@ -164,8 +164,8 @@ fn steps(measured: &Measured) -> String {
 fn sizes(measured: &Measured) -> String {
     let mut out = format!(
         "## Growth with the size\n\n![Costs over the size](pages/benchmarks/figures/growth.png)\n\n\
-         The instructions of a step are those of a run over its {} steps, two rows included. The time of a step grows faster than they do, because the \
-         data of a long chain do not fit into the caches of the processor.\n\n\
+         The instructions of a step are those of a run over its {} steps, two rows included. Its time also depends on \
+         the caches of the processor, into which the data of a long chain do not fit.\n\n\
          The table shows the processor time to reach an error; a cell is empty where the steps tried do not reach it.\n\n\
          | case 2, 20 ms: elements a link | ",
         growth::STEPS
