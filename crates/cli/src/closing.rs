@@ -7,19 +7,14 @@ use numbers::{number, share};
 /// Impacts that are shown; summary.json lists more.
 const SHOWN: usize = 3;
 
-/// Said of a run with an accuracy and impacts.
-const AMPLIFIED: &str =
-    "impacts amplify errors, which may exceed the accuracy: compare with a run at a tenth of it";
-
 /// Lines about a finished run, most of them absent when there is nothing to say; warnings are not among them.
 pub fn lines(report: &Report) -> Vec<String> {
     let mut lines = Vec::new();
     lines.extend(report.ledger.iter().map(energy));
     lines.extend(report.choice.iter().map(choice));
     lines.extend(report.accuracy.iter().map(accuracy));
-    if report.accuracy.is_some() && report.ended_contacts > 0 {
-        lines.push(AMPLIFIED.to_owned());
-    }
+    let impacts = report.ended_contacts > 0;
+    lines.extend(report.accuracy.iter().filter(|_| impacts).map(amplified));
     let first = report.impacts.iter().take(SHOWN).enumerate();
     lines.extend(first.map(|(k, impact)| {
         format!(
@@ -59,7 +54,7 @@ fn accuracy(control: &AccuracyReport) -> String {
     let mut line = format!("accuracy: {} requested", control.asked);
     if control.followed < control.asked.position {
         line += &format!(
-            ", {} m used because of the clearance",
+            ", {} m used (limited by the clearance)",
             number(control.followed, 2)
         );
     }
@@ -76,6 +71,15 @@ fn accuracy(control: &AccuracyReport) -> String {
         );
     }
     line
+}
+
+/// What a run with an accuracy and impacts leaves to its user: a tenth of the accuracy asked for might be above the limit that
+/// the clearance sets, and give the same run.
+fn amplified(control: &AccuracyReport) -> String {
+    format!(
+        "impacts amplify errors, which may exceed the accuracy: compare with a run at position={}",
+        number(0.1 * control.followed, 2)
+    )
 }
 
 /// What the integrator did to the energy.

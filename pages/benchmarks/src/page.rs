@@ -66,7 +66,7 @@ fn short(measured: &Measured) -> String {
         "## In short\n\n\
          * A step takes {} to {} of processor time. These are {} of the instructions and {} of the time of the baseline, commit {}.\n\
          * A chain of {longest} links is compiled in {} with ideal joints and in {} with play.\n\
-         * From {tenth} to {longest} links the costs grow with these powers of their number: compilation {}, a step {} in time and {} in instructions, memory {}.\n{}\n",
+         * From {tenth} to {longest} links the costs grow with these powers of their number (1: in proportion to it): compilation {}, a step {} in time and {} in instructions, memory {}.\n{}\n",
         si(least.unwrap_or(0.0), "s"),
         si(most.unwrap_or(0.0), "s"),
         range(&instructions),
@@ -121,13 +121,13 @@ fn compared(measured: &Measured) -> String {
             ratios.len()
         );
     }
-    let faster = match faster.is_empty() {
-        true => "none".to_owned(),
-        false => faster.join(", "),
-    };
-    out + &format!(
-        "* Where another code is faster, with its time over that of Looselink: {faster}.\n"
-    )
+    out + &match faster.is_empty() {
+        true => "* No other code is faster in any of these pairs.\n".to_owned(),
+        false => format!(
+            "* Another code is faster here (its time over that of Looselink): {}.\n",
+            faster.join(", ")
+        ),
+    }
 }
 
 /// The table of steps.
