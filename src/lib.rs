@@ -59,6 +59,7 @@ pub mod compile;
 pub mod constraint;
 pub mod contact;
 pub mod document;
+mod eccentric_mass;
 pub mod effect;
 pub mod force;
 pub mod initial;

@@ -45,11 +45,11 @@ pub enum Marker {
         /// Index of its first coordinate.
         x: usize,
     },
-    /// A point of a rigid body with coordinates (x, y, theta) from index x: r = (x, y) + A(theta) s.
+    /// A point of a rigid body with coordinates (x, y, theta): r = (x, y) + A(theta) s.
     OnBody {
-        /// Index of the first coordinate of the body.
-        x: usize,
-        /// The point in the frame of the body \[m\].
+        /// Indices of x, y of the reference point of the body and of theta.
+        pose: [usize; 3],
+        /// The point relative to the reference point at theta = 0 \[m\].
         s: Vec2,
     },
     /// A point between two nodes, r = (1 - share) r_from + share r_to: an inner point of a link that is taken as rigid.
@@ -64,14 +64,6 @@ pub enum Marker {
 }
 
 impl Marker {
-    /// Index of its first coordinate.
-    pub fn x(&self) -> usize {
-        match *self {
-            Marker::Node { x } | Marker::OnBody { x, .. } => x,
-            Marker::OnChord { from, .. } => from,
-        }
-    }
-
     /// Number of coordinates it depends on.
     #[inline]
     pub fn width(&self) -> usize {
@@ -86,7 +78,7 @@ impl Marker {
     pub fn coordinates(&self) -> Vec<usize> {
         match *self {
             Marker::Node { x } => vec![x, x + 1],
-            Marker::OnBody { x, .. } => vec![x, x + 1, x + 2],
+            Marker::OnBody { pose, .. } => pose.to_vec(),
             Marker::OnChord { from, to, .. } => vec![from, from + 1, to, to + 1],
         }
     }
@@ -96,7 +88,7 @@ impl Marker {
     pub fn arm(&self, q: &[f64]) -> Vec2 {
         match *self {
             Marker::Node { .. } | Marker::OnChord { .. } => Vec2::zeros(),
-            Marker::OnBody { x, s } => rotation(q[x + 2]) * s,
+            Marker::OnBody { pose, s } => rotation(q[pose[2]]) * s,
         }
     }
 
@@ -104,7 +96,8 @@ impl Marker {
     #[inline(always)]
     pub fn position(&self, q: &[f64], arm: Vec2) -> Vec2 {
         match *self {
-            Marker::Node { x } | Marker::OnBody { x, .. } => pair(q, x) + arm,
+            Marker::Node { x } => pair(q, x),
+            Marker::OnBody { pose, .. } => place(q, pose) + arm,
             Marker::OnChord { from, to, share } => between(q, from, to, share),
         }
     }
@@ -128,7 +121,7 @@ impl Marker {
     pub fn velocity(&self, v: &[f64], arm: Vec2) -> Vec2 {
         match *self {
             Marker::Node { x } => pair(v, x),
-            Marker::OnBody { x, .. } => pair(v, x) + v[x + 2] * quarter_turn(arm),
+            Marker::OnBody { pose, .. } => place(v, pose) + v[pose[2]] * quarter_turn(arm),
             Marker::OnChord { from, to, share } => between(v, from, to, share),
         }
     }
@@ -138,9 +131,10 @@ impl Marker {
     pub fn acceleration(&self, v: &[f64], a: &[f64], arm: Vec2) -> Vec2 {
         match *self {
             Marker::Node { x } => pair(a, x),
-            Marker::OnBody { x, .. } => {
-                let turning = a[x + 2] * quarter_turn(arm) - v[x + 2] * v[x + 2] * arm;
-                pair(a, x) + turning
+            Marker::OnBody { pose, .. } => {
+                let [.., theta] = pose;
+                let turning = a[theta] * quarter_turn(arm) - v[theta] * v[theta] * arm;
+                place(a, pose) + turning
             }
             Marker::OnChord { from, to, share } => between(a, from, to, share),
         }
@@ -213,10 +207,16 @@ impl Separation {
     pub fn bends(&self, arms: [Vec2; 2]) -> impl Iterator<Item = (usize, usize, Vec2)> {
         let ends = self.ends().into_iter().zip(arms);
         ends.filter_map(|((marker, sign, first), arm)| match *marker {
-            Marker::OnBody { x, .. } => Some((first + 2, x + 2, -sign * arm)),
+            Marker::OnBody { pose, .. } => Some((first + 2, pose[2], -sign * arm)),
             Marker::Node { .. } | Marker::OnChord { .. } => None,
         })
     }
+}
+
+/// The entries of x and y of a reference point.
+#[inline(always)]
+fn place(x: &[f64], pose: [usize; 3]) -> Vec2 {
+    Vec2::new(x[pose[0]], x[pose[1]])
 }
 
 /// (1 - share) of one pair of entries, and `share` of another.

@@ -3,6 +3,7 @@
 use crate::constraint::{Coincide, Constraint, Curvature, Gradient, Length, ROWS, Slide};
 use crate::contact::ContactPair;
 use crate::document::Span;
+use crate::eccentric_mass::EccentricMass;
 use crate::effect::Effect;
 use crate::force::Force;
 use crate::link::AncfCable;
@@ -16,6 +17,8 @@ pub struct Terms {
     pub gravity: [f64; 2],
     /// Masses.
     pub inertia: Vec<Inertia>,
+    /// What masses beside the reference points of their bodies add.
+    pub eccentric: Vec<EccentricMass>,
     /// Elements and their coordinates.
     pub elements: Vec<(AncfCable, Vec<usize>)>,
     /// Constraints.
@@ -134,10 +137,10 @@ pub struct Inertia {
 }
 
 impl Inertia {
-    /// Mass and moment of inertia on x, y, theta from index x.
-    pub fn of_pose(x: usize, m: f64, i: f64, g: [f64; 2]) -> Inertia {
+    /// Mass and moment of inertia on x, y, theta.
+    pub fn of_pose(pose: [usize; 3], m: f64, i: f64, g: [f64; 2]) -> Inertia {
         Inertia {
-            coordinates: vec![x, x + 1, x + 2],
+            coordinates: pose.to_vec(),
             values: vec![m, 0.0, 0.0, 0.0, m, 0.0, 0.0, 0.0, i],
             field: vec![g[0], g[1], 0.0],
         }
@@ -173,8 +176,8 @@ impl Inertia {
 pub struct JointTerms {
     /// What carries its force.
     pub force: ForceTerm,
-    /// Constraint of directions.
-    pub couple: Option<usize>,
+    /// What holds an angle.
+    pub couple: Option<CoupleTerm>,
     /// Directions whose angle a motion prescribes.
     pub turned: Option<[Spin; 2]>,
     /// The line on which its second point stays or nearly stays.
@@ -191,6 +194,15 @@ impl JointTerms {
             slide: None,
         }
     }
+}
+
+/// The term that carries the couple of a joint.
+#[derive(Debug, Clone, Copy)]
+pub enum CoupleTerm {
+    /// A constraint of directions.
+    Constraint(usize),
+    /// None: the angle is known.
+    Eliminated,
 }
 
 /// The term that carries the force of a joint.

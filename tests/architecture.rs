@@ -10,7 +10,7 @@ use syn::visit::Visit;
 use syn::{Item, ItemUse, UseTree};
 
 /// Folders and files at the top of `src`, the lowest first: each uses those before it only.
-const LAYERS: [&str; 26] = [
+const LAYERS: [&str; 27] = [
     "checkpoint",
     "math",
     "table",
@@ -23,6 +23,7 @@ const LAYERS: [&str; 26] = [
     "constraint",
     "force",
     "contact",
+    "eccentric_mass",
     "terms",
     "body",
     "interaction",

@@ -8,7 +8,7 @@ use looselink::simulate::Simulation;
 #[test]
 fn sizes_of_the_compiled_models() {
     for (case, sizes) in [
-        (1, [9, 9, 0]),
+        (1, [6, 6, 0]),
         (2, [21, 6, 0]),
         (3, [12, 0, 6]),
         (4, [27, 0, 6]),

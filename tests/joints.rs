@@ -26,11 +26,11 @@ fn coordinates() -> (Vec<f64>, Vec<f64>) {
 
 const NODE: Marker = Marker::Node { x: 0 };
 const BODY: Marker = Marker::OnBody {
-    x: 4,
+    pose: [4, 5, 6],
     s: Vec2::new(0.02, 0.05),
 };
 const OTHER: Marker = Marker::OnBody {
-    x: 7,
+    pose: [7, 8, 9],
     s: Vec2::new(-0.03, 0.01),
 };
 

@@ -129,7 +129,7 @@ fn changed(from: &str, to: &str) -> String {
 fn the_four_bar_itself_is_fine() {
     let scene = Scene::parse("four-bar.toml", FOUR_BAR, &[]).unwrap();
     let simulation = Simulation::new(&scene).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(simulation.inspect().unknowns, 5);
+    assert_eq!(simulation.inspect().unknowns, 2);
 }
 
 #[test]

@@ -257,7 +257,8 @@ fn evaluations_of_effects_are_counted() {
     let counted: Vec<_> = counted.filter(|(_, count)| **count > 0).collect();
     // three links of one element; the journals start at the centres of their bearings
     assert_eq!(counted, [(&"ancf_elastic_force", &6)]);
-    let scene = load("3rrr/case1.toml", &["simulation.gravity=[0.0, -9.81]"]);
+    let settings = [&["simulation.gravity=[0.0, -9.81]"][..], &NATURAL].concat();
+    let scene = load("3rrr/case1.toml", &settings);
     let simulation = Simulation::new(&scene).unwrap();
     let model = simulation.model();
     let mut work = model.work();

@@ -23,7 +23,10 @@ use std::sync::Arc;
 const COUNT: usize = 18;
 
 fn body(x: usize, s: [f64; 2]) -> Marker {
-    Marker::OnBody { x, s: s.into() }
+    Marker::OnBody {
+        pose: [x, x + 1, x + 2],
+        s: s.into(),
+    }
 }
 
 fn between(from: Marker, to: Marker) -> Separation {

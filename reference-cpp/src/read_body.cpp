@@ -50,6 +50,11 @@ Plate read_plate(const Value &value, const Library &library) {
     return {mass, mass * gyration};
 }
 
+// A choice of unknowns, which changes no result; here every body but a link has x, y of its centre of mass and its angle.
+void read_coordinates(Fields &f) {
+    if (f.has("coordinates")) f.choice<bool>("coordinates", {{"center", true}});
+}
+
 void read_rigid_body(Fields &f, const Library &library, BodyDescription &body) {
     if (const Value *value = f.find("plate")) {
         const Plate plate = read_plate(*value, library);
@@ -60,6 +65,7 @@ void read_rigid_body(Fields &f, const Library &library, BodyDescription &body) {
         body.mass = f.positive("mass");
         body.inertia = f.positive("inertia");
     }
+    read_coordinates(f);
     const Vec<double> center = f.has("center_of_mass") ? f.pair("center_of_mass") : Vec<double>{0.0, 0.0};
     read_points(f, body);
     for (NamedPoint &point : body.points) point.at = point.at - center;
@@ -76,6 +82,7 @@ void read_disc(Fields &f, const Library &library, BodyDescription &body) {
         require(!f.has("thickness"), f.source("thickness"), "only a disc with a material has a thickness");
     }
     body.inertia = 0.5 * body.mass * radius * radius;
+    read_coordinates(f);
     const double rim = f.number("rim", 0.0);
     body.points = {{"center", {0.0, 0.0}}, {"rim", {radius * std::cos(rim), radius * std::sin(rim)}}};
     each_entry(f.find("points"), [&](const std::string &name, const Value &value) {

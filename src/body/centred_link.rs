@@ -2,7 +2,7 @@
 //! natural coordinates, and the link needs no constraint.
 
 use super::rigid_link::frame;
-use super::{Body, Frame, Levels, Link, Point, Pose, carried};
+use super::{Body, Frame, Levels, Link, Point, Pose, carried, pose};
 use crate::marker::Marker;
 use crate::math::plane::Vec2;
 use crate::terms::{Inertia, Owner, Terms};
@@ -35,7 +35,7 @@ impl Body for CentredLink {
     fn marker(&self, point: usize, x: &[usize]) -> Marker {
         let along = self.link.shares[point] - 0.5;
         let s = Vec2::new(along * self.link.length, 0.0);
-        Marker::OnBody { x: x[0], s }
+        Marker::OnBody { pose: pose(x), s }
     }
 
     fn lever(&self, _: usize) -> f64 {
@@ -45,12 +45,12 @@ impl Body for CentredLink {
     fn terms(&self, x: &[usize], _: Owner, terms: &mut Terms) {
         let mass = self.link.mass();
         let inertia = mass * self.link.length.powi(2) / 12.0;
-        let inertia = Inertia::of_pose(x[0], mass, inertia, terms.gravity);
+        let inertia = Inertia::of_pose(pose(x), mass, inertia, terms.gravity);
         terms.inertia.push(inertia);
     }
 
     fn pose(&self, x: &[usize], levels: Levels) -> Pose {
-        let mut pose = Pose::of(x[0], levels);
+        let mut pose = Pose::of(pose(x), levels);
         let theta = &mut pose.position[2];
         *theta -= TAU * (*theta / TAU).round();
         pose

@@ -1,6 +1,6 @@
 //! `type = "disc"`: a rigid disc about its centre of mass, with a point on its rim.
 
-use super::rigid_body::{MATERIAL, THICKNESS, disc, plate_mass};
+use super::rigid_body::{COORDINATES, MATERIAL, OF_JOINT, THICKNESS, disc, in_joint, plate_mass};
 use super::{BodyKind, Materials, Point, RigidBody, points};
 use crate::document::{Fields, Key, SceneError, Takes, derived};
 use crate::math::plane::{Vec2, unit};
@@ -20,6 +20,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             "the direction from `center` to `rim`, from the x axis of the disc",
         )
         .or("0"),
+        COORDINATES.or(OF_JOINT),
         Key::new(
             "points",
             Takes::Table,
@@ -55,6 +56,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             inertia,
             points: all,
             radius: Some(radius),
+            in_joint: in_joint(table)?,
         }))
     },
 };

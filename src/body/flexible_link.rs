@@ -141,8 +141,8 @@ impl Body for FlexibleLink {
         }
     }
 
-    fn slot_of(&self, point: usize) -> usize {
-        2 * self.nodes[point]
+    fn carrier(&self, point: usize) -> usize {
+        point
     }
 
     fn lever(&self, slot: usize) -> f64 {

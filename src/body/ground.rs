@@ -38,7 +38,7 @@ impl Body for Ground {
         Some(Known::Fixed)
     }
 
-    fn slot_of(&self, point: usize) -> usize {
+    fn carrier(&self, point: usize) -> usize {
         point
     }
 

@@ -24,9 +24,9 @@ pub(super) static KIND: BodyKind = BodyKind {
         Key::word(
             "coordinates",
             &["natural", "center"],
-            "the unknowns of a rigid link: the positions of its two ends at a constant distance, or x, y of its centre of mass and theta; flexible and driven links ignore it",
+            "the unknowns of a rigid link, see [Coordinates of rigid bodies](#coordinates-of-rigid-bodies); flexible and driven links ignore it",
         )
-        .or("natural if an ideal joint holds one of its ends, else center"),
+        .or("see there"),
         Key::new(
             "points",
             Takes::Table,

@@ -4,6 +4,7 @@ mod centred_link;
 mod disc;
 mod flexible_link;
 mod ground;
+mod held_body;
 mod link;
 mod materials;
 mod moving;
@@ -15,6 +16,7 @@ mod rigid_link;
 pub use centred_link::CentredLink;
 pub use flexible_link::{Damping, FlexibleLink};
 pub use ground::Ground;
+pub use held_body::{HeldBody, Hold, HoldingLine, Ties};
 pub use link::{Link, RAYLEIGH};
 pub use materials::{MATERIAL, Material, Materials, SECTION, Section};
 pub use moving::Moving;
@@ -73,6 +75,8 @@ pub struct Slot {
     pub content: Content,
     /// The point whose position it is, if joints can share it.
     pub point: Option<usize>,
+    /// The value of a coordinate that never changes.
+    pub fixed: Option<f64>,
 }
 
 /// What a slot holds.
@@ -84,6 +88,12 @@ pub enum Content {
     Slope,
     /// x, y, theta.
     Pose,
+    /// x of a point alone.
+    X,
+    /// y of a point alone.
+    Y,
+    /// theta alone.
+    Angle,
 }
 
 impl Content {
@@ -92,6 +102,18 @@ impl Content {
         match self {
             Content::Position | Content::Slope => &["x", "y"],
             Content::Pose => &["x", "y", "theta"],
+            Content::X => &["x"],
+            Content::Y => &["y"],
+            Content::Angle => &["theta"],
+        }
+    }
+
+    /// Which of the coordinates is the angle of a rigid body, if one is.
+    pub fn angle(self) -> Option<usize> {
+        match self {
+            Content::Pose => Some(2),
+            Content::Angle => Some(0),
+            Content::Position | Content::Slope | Content::X | Content::Y => None,
         }
     }
 }
@@ -103,6 +125,7 @@ impl Slot {
             label: format!(".{name}"),
             content: Content::Position,
             point: Some(point),
+            fixed: None,
         }
     }
 
@@ -112,6 +135,7 @@ impl Slot {
             label,
             content,
             point: None,
+            fixed: None,
         }
     }
 }
@@ -152,9 +176,9 @@ impl Deformation {
 }
 
 impl Pose {
-    /// The pose of x, y, theta from index `x`.
-    pub fn of(x: usize, levels: Levels) -> Pose {
-        let [position, velocity, acceleration] = levels.map(|l| [l[x], l[x + 1], l[x + 2]]);
+    /// The pose with x, y and theta at these indices.
+    pub fn of(pose: [usize; 3], levels: Levels) -> Pose {
+        let [position, velocity, acceleration] = levels.map(|l| pose.map(|i| l[i]));
         Pose {
             position,
             velocity,
@@ -203,7 +227,7 @@ pub trait Body: Any + Debug + Send + Sync {
     /// A point as a function of the coordinates.
     fn marker(&self, point: usize, x: &[usize]) -> Marker {
         let s = self.points()[point].at;
-        Marker::OnBody { x: x[0], s }
+        Marker::OnBody { pose: pose(x), s }
     }
     /// The direction of the material at a point.
     fn spin(&self, _point: usize, x: &[usize]) -> Spin {
@@ -213,8 +237,9 @@ pub trait Body: Any + Debug + Send + Sync {
     fn direction_size(&self) -> f64 {
         1.0
     }
-    /// The slot on which forces at a point act.
-    fn slot_of(&self, _point: usize) -> usize {
+    /// The point that takes the forces at a point: itself, where joints can share its node, or one that stands for the whole rigid
+    /// body.
+    fn carrier(&self, _point: usize) -> usize {
         0
     }
     /// Distance by which a unit change of the last coordinate of a slot, an angle or slope, moves a point of the body at most \[m\].
@@ -225,7 +250,7 @@ pub trait Body: Any + Debug + Send + Sync {
     fn terms(&self, x: &[usize], owner: Owner, terms: &mut Terms);
     /// Pose of its centre of mass; angles of links in (-pi, pi].
     fn pose(&self, x: &[usize], levels: Levels) -> Pose {
-        Pose::of(x[0], levels)
+        Pose::of(pose(x), levels)
     }
     /// The frame of its points, undeformed, where its centre of mass has this position and velocity.
     fn frame(&self, position: [f64; 3], velocity: [f64; 3]) -> Frame {
@@ -254,9 +279,9 @@ pub trait Body: Any + Debug + Send + Sync {
     fn rigid(&self) -> Option<Arc<dyn Body>> {
         None
     }
-    /// The body in the mechanism of the scene, where it has other coordinates than in the ideal one; `joined` tells whether a
-    /// joint makes a node of it one with another, or known. None for a body that is the same in both.
-    fn real(&self, _joined: bool) -> Option<Arc<dyn Body>> {
+    /// The body in the mechanism of the scene, where it has other coordinates than in the ideal one. None for a body that is the same
+    /// in both.
+    fn real(&self, _ties: &Ties) -> Option<Arc<dyn Body>> {
         None
     }
     /// The axial strain of largest magnitude of a body that deforms, sampled at eleven points of every element.
@@ -279,6 +304,11 @@ impl dyn Body {
     pub fn length(&self) -> Option<f64> {
         self.link().map(|link| link.length)
     }
+}
+
+/// The coordinates of a body whose first slot holds x, y, theta.
+fn pose(x: &[usize]) -> [usize; 3] {
+    [x[0], x[0] + 1, x[0] + 2]
 }
 
 /// Position and velocity of the point at this distance along the x axis of a frame.

@@ -1,6 +1,6 @@
 //! `type = "rigid_body"`: x, y of the centre of mass, theta.
 
-use super::{Body, BodyKind, Material, Materials, Point, points};
+use super::{Body, BodyKind, HeldBody, Material, Materials, Point, Ties, points, pose};
 use crate::document::{Fields, Key, Kind, SceneError, Takes, derived};
 use crate::math::plane::Vec2;
 use crate::terms::{Inertia, Owner, Terms};
@@ -35,6 +35,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             "the centre of mass in the frame in which `points` are written",
         )
         .or("[0, 0]"),
+        COORDINATES.or(OF_JOINT),
         Key::new("points", Takes::Table, "named points at theta = 0 [m]").or("none"),
     ],
     read: |table, known| {
@@ -50,6 +51,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             inertia,
             points,
             radius: None,
+            in_joint: in_joint(table)?,
         }))
     },
 };
@@ -65,6 +67,22 @@ pub struct RigidBody {
     pub points: Vec<Point>,
     /// Radius of a disc about the centre of mass \[m\].
     pub radius: Option<f64>,
+    /// Whether it may have the coordinate that a joint leaves it.
+    pub in_joint: bool,
+}
+
+/// The unknowns of a rigid body.
+pub(super) const COORDINATES: Key = Key::word(
+    "coordinates",
+    &["center"],
+    "the unknowns, see [Coordinates of rigid bodies](#coordinates-of-rigid-bodies)",
+);
+/// What they are without the key.
+pub(super) const OF_JOINT: &str = "see there";
+
+/// Whether a body may have the coordinate that a joint leaves it.
+pub(super) fn in_joint(table: &Fields) -> Result<bool, SceneError> {
+    Ok(table.optional_word("coordinates")?.is_none())
 }
 
 impl Body for RigidBody {
@@ -90,8 +108,19 @@ impl Body for RigidBody {
     }
 
     fn terms(&self, x: &[usize], _: Owner, terms: &mut Terms) {
-        let inertia = Inertia::of_pose(x[0], self.mass, self.inertia, terms.gravity);
+        let inertia = Inertia::of_pose(pose(x), self.mass, self.inertia, terms.gravity);
         terms.inertia.push(inertia);
+    }
+
+    fn real(&self, ties: &Ties) -> Option<Arc<dyn Body>> {
+        let [hold] = ties.holds[..] else {
+            return None;
+        };
+        self.in_joint.then(|| -> Arc<dyn Body> {
+            let body = Arc::new(self.clone());
+            let (mass, inertia) = (self.mass, self.inertia);
+            Arc::new(HeldBody::new(body, mass, inertia, Vec2::zeros(), hold))
+        })
     }
 }
 

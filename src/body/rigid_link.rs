@@ -1,6 +1,6 @@
 //! A rigid link in natural coordinates (eqs. 1-5): the positions of its two ends, at a constant distance.
 
-use super::{Body, CentredLink, Frame, Levels, Link, Point, Pose, Slot, carried};
+use super::{Body, CentredLink, Frame, HeldBody, Levels, Link, Point, Pose, Slot, Ties, carried};
 use crate::constraint::Length;
 use crate::link::natural_rigid;
 use crate::marker::{Marker, Spin};
@@ -69,7 +69,7 @@ impl Body for RigidLink {
         self.link.length
     }
 
-    fn slot_of(&self, point: usize) -> usize {
+    fn carrier(&self, point: usize) -> usize {
         point
     }
 
@@ -114,13 +114,20 @@ impl Body for RigidLink {
         vec![carried(frame, 0.0), carried(frame, self.link.length)]
     }
 
-    fn real(&self, joined: bool) -> Option<Arc<dyn Body>> {
-        let centred = match self.coordinates {
-            Some(coordinates) => coordinates == LinkCoordinates::Centre,
-            None => !joined,
-        };
-        let link = || self.link.clone();
-        centred.then(|| Arc::new(CentredLink { link: link() }) as Arc<dyn Body>)
+    fn real(&self, ties: &Ties) -> Option<Arc<dyn Body>> {
+        let link = self.link.clone();
+        match (self.coordinates, &ties.holds[..]) {
+            (None, [hold]) if !ties.shares => {
+                let (mass, length) = (link.mass(), link.length);
+                let inertia = mass * length * length / 12.0;
+                let center = Vec2::new(0.5 * length, 0.0);
+                let body = Arc::new(self.clone());
+                Some(Arc::new(HeldBody::new(body, mass, inertia, center, *hold)))
+            }
+            (None, _) if ties.shares || ties.anchored => None,
+            (Some(LinkCoordinates::Natural), _) => None,
+            _ => Some(Arc::new(CentredLink { link })),
+        }
     }
 
     fn velocity(&self, component: usize, x: &[usize], q: &[f64]) -> Option<Vec<(usize, f64)>> {

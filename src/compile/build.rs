@@ -5,17 +5,19 @@ use super::motions::motion_terms;
 use super::numbering::{Numbering, shifted};
 use super::rules::rules;
 use super::{Compiler, Mode, Role, reactions};
-use crate::body::{Content, Point};
+use crate::body::Point;
 use crate::contact::ContactPair;
+use crate::eccentric_mass::EccentricMass;
 use crate::force::Force;
 use crate::interaction::{Ends, JointEnds, Placed};
 use crate::kinematics::Kinematics;
 use crate::link::AncfCable;
+use crate::marker::Marker;
 use crate::math::lu::Symbolic;
 use crate::math::saddle_point::SaddlePoint;
 use crate::model::{
-    Block, Border, DrivenForces, Model, PlacedBody, PlacedConstraint, PlacedContact, PlacedElement,
-    PlacedForce, PlacedPoint,
+    Block, Border, DrivenForces, Model, PlacedBody, PlacedConstraint, PlacedContact,
+    PlacedEccentric, PlacedElement, PlacedForce, PlacedPoint,
 };
 use crate::scene::{Analysis, SceneError};
 use crate::system::Shape;
@@ -89,6 +91,7 @@ pub(super) fn build(
     } else {
         Vec::new()
     };
+    let eccentric = std::mem::take(&mut terms.eccentric);
     let mut mass = mass(std::mem::take(&mut terms.inertia), &numbering, c.mode);
     let entries = mass.entries(n, c.mode);
     mass.tangent = symbolic.filled(entries.iter().copied());
@@ -114,6 +117,7 @@ pub(super) fn build(
         elastic_counter: 0,
         effects: Vec::new(),
         mass,
+        eccentric: places.eccentric(eccentric),
         elements: places.elements(terms.elements),
         constraints: places.constraints(terms.constraints),
         forces: places.forces(terms.forces, terms.damping),
@@ -137,7 +141,7 @@ pub(super) fn build(
     model.bodies = bodies.collect();
     if c.mode == Mode::Real {
         let grips = reactions::driven(c, &model, kinematics.map(|k| &**k), &own);
-        model.driven = DrivenForces::new(&grips, &model.weight);
+        model.driven = DrivenForces::new(&grips, n, &model.weight);
         let joints = 0..own.len();
         let joints = joints.map(|j| reactions::joint(c, &model, &own, j));
         model.joints = joints.collect::<Result<_, _>>()?;
@@ -160,6 +164,7 @@ fn placed_body(
         prescribed: kinematics.and_then(|k| prescribed(c, k, b)),
         moves: c.roles[b] != Role::Ground,
         inertia: parts.inertia,
+        eccentric: parts.eccentric,
         elements: parts.elements,
         placed,
     }
@@ -175,6 +180,20 @@ struct Places<'a> {
 impl Places<'_> {
     fn block(&self, coordinates: Vec<usize>) -> Block {
         Block::new(coordinates, self.tangent, self.unknowns)
+    }
+
+    fn eccentric(&self, masses: Vec<EccentricMass>) -> Vec<PlacedEccentric> {
+        let masses = masses.into_iter().map(|mass| {
+            let [x, y, theta] = mass.pose;
+            let known = [x.min(y), theta].map(|i| i >= self.unknowns);
+            debug_assert!(known.contains(&true), "a mass matrix that depends on theta");
+            let slot = match known[1] {
+                true => self.tangent.discarded_slot(),
+                false => self.tangent.slot(theta, theta),
+            };
+            PlacedEccentric { mass, slot }
+        });
+        masses.collect()
     }
 
     fn elements(&self, elements: Vec<(AncfCable, Vec<usize>)>) -> Vec<PlacedElement> {
@@ -263,8 +282,7 @@ fn owners(coordinates: &[Vec<usize>; 2], bodies: [usize; 2]) -> Vec<usize> {
 fn angles(c: &Compiler, numbering: &Numbering) -> Vec<usize> {
     let bodies = c.slots.iter().zip(&numbering.bodies);
     let slots = bodies.flat_map(|(slots, placed)| slots.iter().zip(&placed.x));
-    let poses = slots.filter(|(slot, _)| slot.content == Content::Pose);
-    let angles = poses.map(|(_, x)| x + 2);
+    let angles = slots.filter_map(|(slot, x)| Some(x + slot.content.angle()?));
     angles.filter(|angle| *angle < numbering.unknowns).collect()
 }
 
@@ -292,6 +310,7 @@ fn prescribed(c: &Compiler, kinematics: &Kinematics, b: usize) -> Option<usize> 
 /// The terms of a body, by their indices.
 struct BodyParts {
     inertia: Range<usize>,
+    eccentric: Range<usize>,
     elements: Range<usize>,
 }
 
@@ -302,7 +321,11 @@ fn body_terms(
     terms: &mut Terms,
 ) -> Result<BodyParts, SceneError> {
     let body = &c.scene.bodies[b];
-    let first = (terms.inertia.len(), terms.elements.len());
+    let first = [
+        terms.inertia.len(),
+        terms.eccentric.len(),
+        terms.elements.len(),
+    ];
     let before = terms.constraints.len();
     let owner = Owner {
         name: &body.name,
@@ -324,8 +347,9 @@ fn body_terms(
         }
     }
     Ok(BodyParts {
-        inertia: first.0..terms.inertia.len(),
-        elements: first.1..terms.elements.len(),
+        inertia: first[0]..terms.inertia.len(),
+        eccentric: first[1]..terms.eccentric.len(),
+        elements: first[2]..terms.elements.len(),
     })
 }
 
@@ -339,7 +363,8 @@ fn joint_terms(
     let points = joint.points();
     let markers = points.map(|p| numbering.bodies[p.body].marker(p.point));
     let loose = c.joints[j].contact().is_some();
-    if loose && markers.iter().all(|m| m.x() >= numbering.unknowns) {
+    let mut coordinates = markers.iter().flat_map(Marker::coordinates);
+    if loose && coordinates.all(|x| x >= numbering.unknowns) {
         let message = format!(
             "joint {} has clearance, but both of its points are fixed or prescribed",
             joint.name

@@ -9,14 +9,16 @@ mod numbering;
 mod reactions;
 mod rules;
 mod sketch;
+mod ties;
 
-use crate::body::{Body, Known, PointRef, Slot};
+use crate::body::{Body, HeldBody, Known, PointRef, Slot};
 use crate::interaction::JointModel;
 use crate::kinematics::Kinematics;
 use crate::math::plane::Vec2;
 use crate::model::Model;
 use crate::scene::{MotionKind, NamedBody, Scene, SceneError, SketchPoint, Sketched};
 use std::sync::Arc;
+use ties::BodyTies;
 
 /// What determines the motion of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,6 +53,8 @@ pub(crate) struct Compiler<'a> {
     /// Coordinates of every body.
     pub slots: Vec<Vec<Slot>>,
     pub joints: Vec<Arc<dyn JointModel>>,
+    /// The joints whose line is an axis of a coordinate of the body they guide.
+    pub guides: Vec<usize>,
 }
 
 impl<'a> Compiler<'a> {
@@ -72,6 +76,7 @@ impl<'a> Compiler<'a> {
             roles,
             slots: bodies.iter().map(|b| b.slots()).collect(),
             bodies,
+            guides: Vec::new(),
             joints: joints
                 .map(|j| joint(j).unwrap_or_else(|| j.clone()))
                 .collect(),
@@ -80,11 +85,15 @@ impl<'a> Compiler<'a> {
 }
 
 impl Compiler<'_> {
-    /// Gives free bodies the coordinates that they have in the mechanism of the scene; `joined` are those that share a node.
-    fn choose_coordinates(&mut self, joined: &[bool]) {
+    /// Gives free bodies the coordinates that they have in the mechanism of the scene.
+    fn choose_coordinates(&mut self, ties: &[BodyTies]) {
         for (b, body) in self.bodies.iter_mut().enumerate() {
-            let real = body.real(joined[b]).filter(|_| self.roles[b] == Role::Free);
+            let BodyTies { ties, joints } = &ties[b];
+            let real = body.real(ties).filter(|_| self.roles[b] == Role::Free);
             if let Some(real) = real {
+                let held = real.get::<HeldBody>().map(|held| held.hold);
+                let guided = held.filter(|hold| hold.line.is_some());
+                self.guides.extend(guided.and(joints.first()));
                 self.slots[b] = real.slots();
                 *body = real;
             }
@@ -234,8 +243,8 @@ pub fn compile(scene: &Scene) -> Result<Compiled, SceneError> {
         }
     };
     let mut compiler = Compiler::new(scene, Mode::Real, roles);
-    let joined = numbering::joined(&compiler)?;
-    compiler.choose_coordinates(&joined);
+    let ties = ties::of_bodies(&compiler)?;
+    compiler.choose_coordinates(&ties);
     let numbering = numbering::number(&compiler, kinematics.as_ref().map(|k| &*k.mechanism))?;
     let kinematics = kinematics.map(|kinematics| {
         Arc::new(Kinematics {

@@ -5,7 +5,7 @@ use super::{Compiler, Role};
 use crate::constraint::{Align, Place};
 use crate::math::plane::Vec2;
 use crate::scene::MotionKind;
-use crate::terms::{ConstraintTerm, JointTerms, Owner, Terms};
+use crate::terms::{ConstraintTerm, CoupleTerm, JointTerms, Owner, Terms};
 
 /// Prescribed motions that are constraints, not rules of known coordinates.
 pub(super) fn motion_terms(
@@ -33,7 +33,7 @@ pub(super) fn motion_terms(
                 };
                 let term = ConstraintTerm::Other(Box::new(align));
                 let row = terms.constrain(term, Owner { name, sides, span }, &["angle"]);
-                own[*joint].couple = Some(row);
+                own[*joint].couple = Some(CoupleTerm::Constraint(row));
                 own[*joint].turned = Some([first, second]);
             }
             MotionKind::Point { point, coordinates } => {

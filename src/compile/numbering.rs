@@ -72,21 +72,17 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<bool>), SceneError> {
     Ok((nodes, eliminated))
 }
 
-/// Of every body, whether a joint makes a node of it one with that of another body, or with a known point.
-pub(crate) fn joined(c: &Compiler) -> Result<Vec<bool>, SceneError> {
-    let (_, eliminated) = connect(c)?;
-    let mut joined = vec![false; c.bodies.len()];
-    for (joint, eliminated) in c.scene.joints.iter().zip(eliminated) {
-        for point in joint.points() {
-            joined[point.body] |= eliminated && c.node(point).is_some();
-        }
-    }
-    Ok(joined)
+/// Of every joint, whether it makes two points one node or one of them known.
+pub(super) fn shared_nodes(c: &Compiler) -> Result<Vec<bool>, SceneError> {
+    connect(c).map(|(_, eliminated)| eliminated)
 }
 
 /// Makes the points of joint `j` one node or one of them known, where that is possible; true if it is.
 fn connect_joint(c: &Compiler, nodes: &mut Nodes, j: usize) -> Result<bool, SceneError> {
     let joint = &c.scene.joints[j];
+    if c.guides.contains(&j) {
+        return Ok(true);
+    }
     if c.joints[j].contact().is_some() || !c.joints[j].coincides() {
         return Ok(false);
     }
@@ -185,6 +181,8 @@ fn number_unknowns(c: &Compiler, nodes: &mut Nodes, eliminated: Vec<bool>) -> Nu
             let labels = labels.map(|name| format!("{}{}.{name}", body.name, slot.label));
             let labels: Vec<String> = labels.collect();
             bodies[b].x[s] = match slot.point {
+                // numbered with what is known
+                None if slot.fixed.is_some() => usize::MAX,
                 None => take(&labels),
                 Some(_) => {
                     let class = nodes.class(b, s);
@@ -234,7 +232,7 @@ pub(crate) fn shifted(x: &[usize], offset: usize) -> Vec<usize> {
 }
 
 impl Numbering {
-    /// Coordinates of a body whose motion is known.
+    /// The coordinates of a body that are known.
     fn know(&mut self, c: &Compiler, b: usize) {
         let poses = c.slots[b].iter().all(|slot| slot.content == Content::Pose);
         match (c.bodies[b].known(), c.roles[b]) {
@@ -247,6 +245,15 @@ impl Numbering {
             }
             (_, Role::Path) => self.bodies[b].x = vec![self.known(3)],
             (_, Role::Turned(_)) if poses => self.bodies[b].x = vec![self.known(3)],
+            (_, Role::Free) => {
+                for (s, slot) in c.slots[b].iter().enumerate() {
+                    if let Some(value) = slot.fixed {
+                        let x = self.known(1);
+                        self.fixed.push((x, value));
+                        self.bodies[b].x[s] = x;
+                    }
+                }
+            }
             _ => {}
         }
     }

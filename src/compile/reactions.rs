@@ -1,59 +1,56 @@
 //! The terms whose sum is the force of an eliminated joint or the torque of an actuated one.
 
 use super::{Compiler, Role};
-use crate::body::{Content, PointRef};
+use crate::body::{HeldBody, PointRef};
 use crate::kinematics::Kinematics;
 use crate::model::{Actuator, Grip, Model, PlacedJoint, Reaction, Share, Source};
 use crate::scene::{MotionKind, SceneError};
 use crate::terms::{ForceTerm, JointTerms};
 
-/// First coordinate of the slot that carries a point, and the number of coordinates there.
-fn place(model: &Model, point: PointRef) -> Option<(usize, usize)> {
+/// The coordinates of a point that takes forces: x, y of a node, or x, y, theta of a rigid body.
+fn place(model: &Model, point: PointRef) -> Option<Vec<usize>> {
     let body = &model.bodies()[point.body];
-    let slot = body.placed.kind.slot_of(point.point);
-    let width = || body.contents[slot].names().len();
-    body.moves.then(|| (body.placed.x[slot], width()))
+    // nothing holds or drives a body without points
+    let has_points = !body.points.is_empty();
+    (body.moves && has_points).then(|| body.placed.marker(point.point).coordinates())
 }
 
-/// Attachment points of a body: those whose nodes joints can share, or one point that represents all points of a rigid body.
+/// The points of a body that take forces: those whose nodes joints can share, or one that stands for a rigid body.
 fn attachments(c: &Compiler, model: &Model, body: usize) -> Vec<PointRef> {
     if !model.bodies()[body].moves {
         return Vec::new();
     }
-    let slots = c.slots[body].iter();
-    let points = slots.filter_map(|slot| match slot.content {
-        Content::Pose => Some(0),
-        _ => slot.point,
-    });
-    points.map(|point| PointRef { body, point }).collect()
+    let mut points: Vec<PointRef> = Vec::new();
+    for slot in &c.slots[body] {
+        let stands = slot.content.angle().map(|_| c.bodies[body].carrier(0));
+        let point = stands.or(slot.point);
+        let point = point.map(|point| PointRef { body, point });
+        points.extend(point.filter(|point| !points.contains(point)));
+    }
+    points
 }
 
-/// The attachment point that represents a point.
+/// The point that takes the forces at a point.
 fn attachment(model: &Model, point: PointRef) -> PointRef {
     let PointRef { body, point } = point;
-    let placed = &model.bodies()[body];
-    let point = match placed.contents.get(placed.placed.kind.slot_of(point)) {
-        Some(Content::Pose) => 0,
-        _ => point,
-    };
+    let point = model.bodies()[body].placed.kind.carrier(point);
     PointRef { body, point }
 }
 
-/// The shares of a term in the coordinates x .. x + width, one for each group of consecutive coordinates. A body may occur
+/// The shares of a term with these coordinates in those of a point, one for each group of consecutive coordinates. A body may occur
 /// twice in a term, with a point and with its direction; the direction of a rigid body is theta alone.
 fn runs(
     source: Source,
     coordinates: &[usize],
-    x: usize,
-    width: usize,
+    point: &[Option<usize>],
     counts: impl Fn(usize) -> bool,
 ) -> Vec<Share> {
     let mut shares: Vec<Share> = Vec::new();
     for (local, &i) in coordinates.iter().enumerate() {
-        if !(x..x + width).contains(&i) || !counts(local) {
+        let place = point.iter().position(|x| *x == Some(i));
+        let Some(place) = place.filter(|_| counts(local)) else {
             continue;
-        }
-        let place = i - x;
+        };
         match shares.last_mut() {
             Some(run) if run.local + run.count == local && run.place + run.count == place => {
                 run.count += 1;
@@ -71,15 +68,26 @@ fn runs(
 
 /// The force of all terms that belong to `point`: its body's own, and those of joints attached there.
 fn grip(c: &Compiler, model: &Model, own: &[JointTerms], point: PointRef) -> Option<Grip> {
-    let (x, width) = place(model, point)?;
+    let coordinates = place(model, point)?;
+    // the joint of a held body exerts nothing on its unknown coordinate
+    let is_held = model.bodies()[point.body].placed.kind.get::<HeldBody>();
+    let taken = coordinates.iter().map(|&x| match is_held {
+        Some(_) if x < model.shape.unknowns => None,
+        _ => Some(x),
+    });
+    let taken: Vec<Option<usize>> = taken.collect();
     let mut shares = Vec::new();
     let mut add = |source: Source, coordinates: &[usize], owners: Option<&[usize]>| {
         let counts = |local: usize| owners.is_none_or(|owners| owners[local] == point.body);
-        shares.extend(runs(source, coordinates, x, width, counts));
+        shares.extend(runs(source, coordinates, &taken, counts));
     };
     let body = &model.bodies()[point.body];
     for i in body.inertia.clone() {
         add(Source::Inertia(i), &model.mass.parts[i].coordinates, None);
+    }
+    for i in body.eccentric.clone() {
+        let coordinates = &model.eccentric[i].mass.pose;
+        add(Source::Eccentric(i), coordinates, None);
     }
     for i in body.elements.clone() {
         let coordinates = &model.elements[i].block.coordinates;
@@ -100,7 +108,10 @@ fn grip(c: &Compiler, model: &Model, own: &[JointTerms], point: PointRef) -> Opt
             add(Source::Contact(i), coordinates, None);
         }
     }
-    Some(Grip { x, width, shares })
+    Some(Grip {
+        coordinates,
+        shares,
+    })
 }
 
 /// The points connected to `from` without joint `cut`, through eliminated joints and driven bodies. `None` if the ground is
@@ -214,13 +225,16 @@ pub(super) fn driven(
     let bodies = 0..c.scene.bodies.len();
     for point in bodies.flat_map(|b| attachments(c, model, b)) {
         let known = |x: usize| x >= model.shape.unknowns && !resting.contains(&x);
-        if !place(model, point).is_some_and(|(x, _)| known(x)) {
+        if !place(model, point).is_some_and(|x| known(x[0])) {
             continue;
         }
         let Some(grip) = grip(c, model, own, point) else {
             continue;
         };
-        match grips.iter_mut().find(|other| other.x == grip.x) {
+        match grips
+            .iter_mut()
+            .find(|other| other.position() == grip.position())
+        {
             Some(other) => other.shares.extend(grip.shares),
             None => grips.push(grip),
         }

@@ -2,13 +2,14 @@
 
 pub(crate) mod redundancy;
 
-use crate::body::{Deformation, Frame};
+use crate::body::{Content, Deformation, Frame, HeldBody, PointRef};
 use crate::compile::Compiled;
 use crate::compile::assembly::{CENTRE, assemble, name, opening, whole_name};
 use crate::math::plane::Vec2;
 use crate::model::{Model, PlacedBody, PlacedConstraint};
 use crate::scene::{Analysis, BodyState, NamedBody, Scene, SceneError};
 use crate::system::State;
+use crate::terms::ForceTerm;
 
 /// Largest violation of a constraint \[m\] or of its rate \[m/s\] at the start: the digits of a typed position.
 const START_TOLERANCE: f64 = 1e-9;
@@ -40,14 +41,20 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         let deformation = given.map_or(Deformation::default(), |given| given.deformation);
         let placed = &model.bodies()[b];
         let values = placed.placed.kind.place_deformed(start, &deformation);
-        if !place(placed, values, &mut state, &mut written) {
-            let span = given.map_or(body.span, |g| g.span);
-            let message = format!(
-                "the pose of {} does not fit the points that its ends are joined to",
-                body.name
-            );
-            let error = scene.error(span, message, "does not fit its joints");
-            return Err(error.with_help(CENTRE));
+        let misfit = place(placed, values, &mut state, &mut written);
+        if let Some(misfit) = misfit.filter(|misfit| misfit.counts(scene)) {
+            return Err(match placed.placed.kind.get::<HeldBody>() {
+                Some(held) => misfit.at_joint(scene, model, b, held.hold.point),
+                None => {
+                    let message = format!(
+                        "the pose of {} does not fit the points that its ends are joined to",
+                        body.name
+                    );
+                    let span = given.map_or(body.span, |g| g.span);
+                    let error = scene.error(span, message, "does not fit its joints");
+                    error.with_help(CENTRE)
+                }
+            });
         }
     }
     for (j, joint) in scene.joints.iter().enumerate() {
@@ -109,15 +116,17 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
     let Some((off, placed)) = worst(|p, at| Vec2::from(p.term.velocity(at)).norm()) else {
         return Ok(());
     };
-    let message = format!(
-        "the velocities of the start violate {}, by {}",
-        name(placed),
-        opening(&placed.term, off, "/s")
-    );
+    let by = opening(&placed.term, off, "/s");
+    Err(wrong_rates(scene, model, &name(placed), &by))
+}
+
+/// The error of a start whose velocities violate a joint or a constraint.
+fn wrong_rates(scene: &Scene, model: &Model, what: &str, by: &str) -> SceneError {
+    let message = format!("the velocities of the start violate {what}, by {by}");
     let silent = scene.initial.bodies.values().filter(|s| !s.velocity_given);
     let silent: Vec<&BodyState> = silent.collect();
     let Some(first) = silent.first() else {
-        return Err(scene.error(scene.initial.span, message, "this start"));
+        return scene.error(scene.initial.span, message, "this start");
     };
     let names = silent.iter().map(|s| scene.bodies[s.body].name.as_str());
     let message = format!(
@@ -125,12 +134,12 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
         names.collect::<Vec<_>>().join(", ")
     );
     let error = scene.error(first.span, message, "no velocity here");
-    Err(error.with_help(if !model.prescribed.is_empty() {
+    error.with_help(if !model.prescribed.is_empty() {
         "give `vx`, `vy` and `omega` beside the pose"
     } else {
         "add a joint to `[initial.sketch]` or a velocity to `[initial.velocities]`, and the others are computed; or give `vx`, \
          `vy` and `omega` of every body"
-    }))
+    })
 }
 
 /// The start of every body that moves freely.
@@ -195,28 +204,71 @@ fn ideal_start(mechanism: &Model, b: usize, state: &State, offset: usize) -> Opt
     placed.kind.frame_at(&placed.x, q, v)
 }
 
-/// Writes the coordinates of a body, and remembers which were written; false if one of them is known or written
-/// already and differs: bodies that share a node must agree on it.
+/// By how much a coordinate of a body differs from what is known of it.
+#[derive(Debug, Clone, Copy)]
+struct PlaceError {
+    by: f64,
+    unit: &'static str,
+    /// Whether it is a velocity.
+    is_rate: bool,
+}
+
+impl PlaceError {
+    /// Nothing moves in a static analysis, whatever its drives prescribe.
+    fn counts(&self, scene: &Scene) -> bool {
+        !self.is_rate || scene.simulation.analysis == Analysis::Dynamic
+    }
+
+    /// The error for a body that a joint holds at a point.
+    fn at_joint(&self, scene: &Scene, model: &Model, body: usize, point: usize) -> SceneError {
+        let held = PointRef { body, point };
+        let joints = scene.joints.iter().zip(model.joints());
+        let mut holding = joints.filter(|(joint, placed)| {
+            joint.points().contains(&held) && matches!(placed.terms.force, ForceTerm::Eliminated)
+        });
+        let name = holding.next().map_or("", |(joint, _)| &joint.name);
+        let (what, by) = (format!("joint {name}"), numbers::si(self.by, self.unit));
+        match self.is_rate {
+            true => wrong_rates(scene, model, &what, &format!("{by}/s")),
+            false => {
+                let name = &scene.bodies[body].name;
+                let message = format!("the pose of {name} does not fit {what}: it is open by {by}");
+                let given = scene.initial.state_of(body);
+                let span = given.map_or(scene.initial.span, |given| given.span);
+                scene.error(span, message, "this pose").with_help(CENTRE)
+            }
+        }
+    }
+}
+
+/// Writes the coordinates of a body, and remembers which were written. Returns the first that is known or written already and
+/// differs: bodies that share a node must agree on it.
 fn place(
     body: &PlacedBody,
     values: Vec<[[f64; 3]; 2]>,
     state: &mut State,
     written: &mut [bool],
-) -> bool {
-    let mut fits = true;
+) -> Option<PlaceError> {
+    let mut misfit = None;
     for ((&x, values), content) in body.placed.x.iter().zip(values).zip(&body.contents) {
         let here = x..x + content.names().len();
         let levels = [&mut state.q[here.clone()], &mut state.v[here]];
-        for (level, values) in levels.into_iter().zip(values) {
+        for ((level, values), is_rate) in levels.into_iter().zip(values).zip([false, true]) {
             if written[x] {
                 let differences = level.iter().zip(values).map(|(a, b)| a - b);
-                let distance = differences.map(|d| d * d).sum::<f64>().sqrt();
-                fits &= distance <= START_TOLERANCE;
+                let by = differences.map(|d| d * d).sum::<f64>().sqrt();
+                let unit = match content {
+                    Content::Angle => "rad",
+                    _ => "m",
+                };
+                let fits = by <= START_TOLERANCE;
+                let differs = (!fits).then_some(PlaceError { by, unit, is_rate });
+                misfit = misfit.or(differs);
             } else {
                 level.copy_from_slice(&values[..level.len()]);
             }
         }
         written[x] = true;
     }
-    fits
+    misfit
 }

@@ -125,8 +125,8 @@ impl Force for ForceByLaw {
         for (change, column) in changes.iter_mut().zip(columns.iter()) {
             *change = by_column * column;
         }
-        if let Marker::OnBody { x, .. } = self.marker {
-            changes[2] -= w.q * at.v[x + 2] * (by_velocity * arm);
+        if let Marker::OnBody { pose, .. } = self.marker {
+            changes[2] -= w.q * at.v[pose[2]] * (by_velocity * arm);
             k[2][2] += w.q * force.dot(&arm);
         }
         for (r, row) in columns.iter().enumerate() {

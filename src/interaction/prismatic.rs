@@ -3,7 +3,7 @@
 use super::weld::alignment;
 use super::{JointEnds, JointKind, JointModel};
 use crate::document::{Fields, Key, SceneError};
-use crate::terms::{ConstraintTerm, ForceTerm, JointTerms, Terms};
+use crate::terms::{ConstraintTerm, CoupleTerm, ForceTerm, JointTerms, Terms};
 use std::sync::Arc;
 
 pub(super) static KIND: JointKind = JointKind {
@@ -81,10 +81,19 @@ impl JointModel for Prismatic {
 
     fn terms(&self, ends: &JointEnds, terms: &mut Terms) -> JointTerms {
         let slide = ends.slide(self.direction);
+        if ends.eliminated {
+            return JointTerms {
+                couple: self.locked.map(|_| CoupleTerm::Eliminated),
+                slide: Some(slide),
+                ..JointTerms::of(ForceTerm::Eliminated)
+            };
+        }
         let term = ConstraintTerm::Other(Box::new(slide));
         let row = terms.constrain(term, ends.owner, &["line"]);
         JointTerms {
-            couple: self.locked.map(|angle| alignment(angle, ends, terms)),
+            couple: self
+                .locked
+                .map(|angle| CoupleTerm::Constraint(alignment(angle, ends, terms))),
             slide: Some(slide),
             ..JointTerms::of(ForceTerm::Constraint(row))
         }

@@ -7,7 +7,7 @@ use crate::document::Key;
 use crate::marker::Spin;
 use crate::math::plane::Rotation;
 use crate::motion::Function;
-use crate::terms::{ConstraintTerm, JointTerms, Owner, Terms};
+use crate::terms::{ConstraintTerm, CoupleTerm, JointTerms, Owner, Terms};
 use std::sync::Arc;
 
 pub(super) static KIND: JointKind = JointKind {
@@ -94,7 +94,7 @@ impl JointModel for Weld {
             }
         };
         JointTerms {
-            couple: Some(couple),
+            couple: Some(CoupleTerm::Constraint(couple)),
             ..JointTerms::of(force)
         }
     }

@@ -1,7 +1,7 @@
 //! The equations of a model: residual, tangent, rates, contact memory, powers.
 
 use super::measure::contact_state;
-use super::{Model, PlacedContact, Rule};
+use super::{Model, PlacedContact, PlacedEccentric, Rule};
 use crate::constraint::{self, Curvature, ROWS};
 use crate::contact;
 use crate::force::WIDTH;
@@ -30,9 +30,14 @@ impl Model {
         self.known_loads(at, r);
     }
 
-    /// Adds the inertia forces of known accelerations, and the weight.
+    /// Adds the inertia forces of known accelerations, those of eccentric masses, and the weight.
     #[inline]
     fn known_loads(&self, at: &State, r: &mut [f64]) {
+        for PlacedEccentric { mass, .. } in &self.eccentric {
+            for (i, f) in mass.pose.into_iter().zip(mass.force(at)) {
+                r[i] += f;
+            }
+        }
         for &(i, j, m) in &self.mass.known {
             r[i] += m * at.a[j];
         }
@@ -322,6 +327,9 @@ impl System for Model {
         self.count(work);
         k.copy_from_slice(&self.mass.tangent);
         self.inertia(at, r);
+        for PlacedEccentric { mass, slot } in &self.eccentric {
+            k[*slot as usize] += w.q * mass.stiffness(at);
+        }
         self.linearised_constraints(at, w, r, phi, k);
         self.linearised_forces(at, w, r, k, work);
     }

@@ -1,6 +1,6 @@
 //! Measured quantities of a model: poses, strains, energies, joint forces, drive torques.
 
-use super::{Actuator, Model};
+use super::{Actuator, Model, PlacedEccentric, PlacedJoint, Reaction};
 use crate::body::{Content, Pose};
 use crate::contact;
 use crate::contact::geometry::Gap;
@@ -8,7 +8,7 @@ use crate::force::Force;
 use crate::marker::Marker;
 use crate::math::plane::{Vec2, pair};
 use crate::system::{Integral, State, Work};
-use crate::terms::ForceTerm;
+use crate::terms::{CoupleTerm, ForceTerm};
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -52,9 +52,12 @@ impl Model {
             for (slot, x) in place.placed.x.iter().enumerate() {
                 let lever = place.placed.kind.lever(slot);
                 match place.contents[slot] {
-                    Content::Pose => lengths[x + 2] = lever,
                     Content::Slope => lengths[*x..x + 2].fill(lever),
-                    Content::Position => {}
+                    content => {
+                        if let Some(angle) = content.angle() {
+                            lengths[x + angle] = lever;
+                        }
+                    }
                 }
             }
         }
@@ -85,7 +88,7 @@ impl Model {
     /// Pose that the drive prescribes for body `index`, if it does.
     pub fn prescribed(&self, index: usize, at: &State) -> Option<Pose> {
         let x = self.bodies[index].prescribed?;
-        Some(Pose::of(x, [&at.q, &at.v, &at.a]))
+        Some(Pose::of([x, x + 1, x + 2], [&at.q, &at.v, &at.a]))
     }
 
     /// The axial strain of largest magnitude along a flexible link, sampled at eleven points of every element.
@@ -100,6 +103,11 @@ impl Model {
             kinetic: 0.5 * self.mass.kinetic.quadratic_form(&at.v),
             ..Energies::default()
         };
+        for PlacedEccentric { mass, .. } in &self.eccentric {
+            let [kinetic, gravity] = mass.energies(at);
+            energies.kinetic += kinetic;
+            energies.gravity += gravity;
+        }
         for element in &self.elements {
             let q = std::array::from_fn(|i| at.q[element.block.coordinates[i]]);
             let (axial, bending) = element.kernel.energy(&q);
@@ -127,10 +135,18 @@ impl Model {
                 c.term.force(at, c.multipliers(at))
             }
             ForceTerm::Contact(i) => self.contact_force(i, at),
-            ForceTerm::Eliminated => joint.reaction.as_ref().map_or(Vec2::zeros(), |reaction| {
-                reaction.sign * pair(&self.sum(&reaction.shares, at, work), 0)
-            }),
+            ForceTerm::Eliminated => pair(&self.reaction(joint, at, work), 0),
         }
+    }
+
+    /// What the bearing side of a joint without multipliers exerts on the journal side: a force \[N\], and a couple \[N m\] where
+    /// the joint holds an angle.
+    fn reaction(&self, joint: &PlacedJoint, at: &State, work: &mut Work) -> [f64; 3] {
+        let of = |reaction: &Reaction| {
+            let sum = self.sum(&reaction.shares, at, work);
+            sum.map(|x| reaction.sign * x)
+        };
+        joint.reaction.as_ref().map_or([0.0; 3], of)
     }
 
     /// Force of the bearing side on the journal side of contact `index` \[N\].
@@ -139,11 +155,16 @@ impl Model {
     }
 
     /// Couple of the first side on the second of a joint that holds an angle \[N m\].
-    pub fn joint_couple(&self, index: usize, at: &State) -> f64 {
-        self.joints[index].terms.couple.map_or(0.0, |i| {
-            let c = &self.constraints[i];
-            c.term.couple(at, c.multipliers(at))
-        })
+    pub fn joint_couple(&self, index: usize, at: &State, work: &mut Work) -> f64 {
+        let joint = &self.joints[index];
+        match joint.terms.couple {
+            None => 0.0,
+            Some(CoupleTerm::Constraint(i)) => {
+                let c = &self.constraints[i];
+                c.term.couple(at, c.multipliers(at))
+            }
+            Some(CoupleTerm::Eliminated) => self.reaction(joint, at, work)[2],
+        }
     }
 
     /// Angle (up to full turns), speed and acceleration of the second side of a joint relative to the first, if a motion
@@ -192,9 +213,10 @@ impl Model {
         let centre = actuator.centre.position(&at.q, actuator.centre.arm(&at.q));
         let mut torque = 0.0;
         for grip in &actuator.outboard {
-            let [x, y, couple] = self.sum(&grip.shares, at, work);
-            let arm = pair(&at.q, grip.x) - centre;
-            torque += arm.perp(&Vec2::new(x, y)) + couple;
+            let [fx, fy, couple] = self.sum(&grip.shares, at, work);
+            let [x, y] = grip.position();
+            let arm = Vec2::new(at.q[x], at.q[y]) - centre;
+            torque += arm.perp(&Vec2::new(fx, fy)) + couple;
         }
         torque *= actuator.sign;
         [

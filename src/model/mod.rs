@@ -14,6 +14,7 @@ pub use reaction::{Reaction, Share};
 use crate::body::Content;
 use crate::constraint::ROWS;
 use crate::contact::ContactPair;
+use crate::eccentric_mass::EccentricMass;
 use crate::effect::{self, Effect};
 use crate::force::Force;
 use crate::interaction::Placed;
@@ -47,6 +48,7 @@ pub struct Model {
     /// Effects present, in the order of their counters.
     pub(crate) effects: Vec<Effect>,
     pub(crate) mass: Mass,
+    pub(crate) eccentric: Vec<PlacedEccentric>,
     pub(crate) elements: Vec<PlacedElement>,
     pub(crate) constraints: Vec<PlacedConstraint>,
     pub(crate) forces: Vec<PlacedForce>,
@@ -173,6 +175,13 @@ pub(crate) struct PlacedElement {
     pub block: Block,
 }
 
+/// An eccentric mass and the slot of its tangent.
+#[derive(Debug)]
+pub(crate) struct PlacedEccentric {
+    pub mass: EccentricMass,
+    pub slot: u32,
+}
+
 /// Masses: the parts as they belong to bodies, and their constant sum.
 #[derive(Debug, Default)]
 pub(crate) struct Mass {
@@ -215,8 +224,9 @@ pub struct PlacedBody {
     pub prescribed: Option<usize>,
     /// Its named points, if it moves.
     pub points: Vec<PlacedPoint>,
-    /// Indices of its masses and elements in the model.
+    /// Indices of its masses, eccentric masses and elements in the model.
     pub(crate) inertia: Range<usize>,
+    pub(crate) eccentric: Range<usize>,
     pub(crate) elements: Range<usize>,
 }
 

@@ -28,6 +28,7 @@ pub struct Share {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Source {
     Inertia(usize),
+    Eccentric(usize),
     Element(usize),
     Constraint(usize),
     Force(usize),
@@ -44,12 +45,17 @@ pub struct Reaction {
 /// What acts on the coordinates of a point: x, y of a node, or x, y, theta of a rigid body.
 #[derive(Debug, Clone)]
 pub(crate) struct Grip {
-    /// The first coordinate.
-    pub x: usize,
-    /// Number of coordinates.
-    pub width: usize,
-    /// What the terms contribute to the force on them.
+    /// The coordinates.
+    pub coordinates: Vec<usize>,
+    /// What the terms contribute to the force on them; on the unknown coordinate of a held body nothing acts.
     pub shares: Vec<Share>,
+}
+
+impl Grip {
+    /// The coordinates that are the position of the point.
+    pub fn position(&self) -> [usize; 2] {
+        [self.coordinates[0], self.coordinates[1]]
+    }
 }
 
 /// Most coordinates of a term that is not a mass.
@@ -72,8 +78,9 @@ struct LocalPlace {
 
 impl DrivenForces {
     /// Of what acts on some points.
-    pub fn new(grips: &[Grip], weight: &[(usize, f64)]) -> DrivenForces {
-        let coordinates = grips.iter().flat_map(|grip| grip.x..grip.x + grip.width);
+    pub fn new(grips: &[Grip], unknowns: usize, weight: &[(usize, f64)]) -> DrivenForces {
+        let coordinates = grips.iter().flat_map(|grip| &grip.coordinates).copied();
+        let coordinates = coordinates.filter(|i| *i >= unknowns);
         let weights: HashMap<usize, f64> = weight.iter().copied().collect();
         let mut terms: Vec<(Source, Vec<LocalPlace>)> = Vec::new();
         for (grip, share) in grips
@@ -85,7 +92,7 @@ impl DrivenForces {
             }
             let places = (0..share.count).map(|k| LocalPlace {
                 local: share.local + k,
-                coordinate: grip.x + share.place + k,
+                coordinate: grip.coordinates[share.place + k],
             });
             match terms.iter_mut().find(|(source, _)| *source == share.source) {
                 Some((_, all)) => all.extend(places),
@@ -134,6 +141,9 @@ impl Model {
             .expect("forces are narrower");
         match source {
             Source::Inertia(_) => {}
+            Source::Eccentric(i) => {
+                local[..3].copy_from_slice(&self.eccentric[i].mass.force(at));
+            }
             Source::Element(i) => {
                 work.tally[self.elastic_counter] += 1;
                 let element = &self.elements[i];

@@ -87,9 +87,9 @@ impl Newton {
     ///
     /// The iteration has converged when the estimated error of every velocity is below the tolerance, which on the position level
     /// is at least 16 eps |q| w.v/w.q, the rounding of Phi as an error of velocity. Where updates decrease linearly, their error
-    /// must be a hundred times smaller, unless rounding does not allow it. In a smooth system the first update may be the only one, if the square of such updates has
-    /// been measured to leave less than the tolerance. A stage that fails with an extrapolated guess or an earlier tangent is
-    /// solved again without them. A caller that then gives up the step must call
+    /// must be a hundred times smaller, unless rounding does not allow it. In a smooth system the first update may be the only one, if
+    /// the square of such updates has been measured to leave less than the tolerance. A stage that fails with an extrapolated guess
+    /// or an earlier tangent is solved again without them. A caller that then gives up the step must call
     /// [`Newton::forget_step`]; one that tries the stage another way need not.
     ///
     /// # Errors

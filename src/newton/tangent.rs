@@ -3,8 +3,8 @@
 //! From stage to stage the tangent changes little: bodies turn, contacts stiffen. With an earlier tangent Newton's method
 //! converges linearly; the ratio of successive updates is measured and kept with the tangent. Where it is known, the first
 //! update already tells the error that it leaves, as in the simplified Newton method of implicit Runge-Kutta codes (Hairer &
-//! Wanner 1996, Solving Ordinary Differential Equations II, IV.8). A tangent ages: until it is measured again, the ratio is taken to grow in proportion to
-//! the number of stages that the tangent has served.
+//! Wanner 1996, Solving Ordinary Differential Equations II, IV.8). A tangent ages: until it is measured again, the ratio is taken to
+//! grow in proportion to the number of stages that the tangent has served.
 //!
 //! In a stiff mesh rounding can keep updates above the tolerance. The size at which they stop decreasing, relative to a simple estimate
 //! of rounding, is kept as well: later stages stop at updates of this size.

@@ -232,7 +232,7 @@ impl Part {
                 values.extend([rate, touches]);
             }
             Part::Turned(j) => values.extend(model.turned(j, at)),
-            Part::Couple(j) => values.push(model.joint_couple(j, at)),
+            Part::Couple(j) => values.push(model.joint_couple(j, at, work)),
             Part::Travel(j) => {
                 let slide = joint(j).terms.slide.iter();
                 values.extend(slide.flat_map(|slide| slide.travel(at)));

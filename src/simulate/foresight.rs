@@ -2,8 +2,8 @@
 //!
 //! Where steps like the first one would be too many, a trial run takes more of them. With a mean step h over the second half of
 //! them, a run of duration T is foreseen to take T/h steps: the first half may lie in a transient of the start. The trial run ends
-//! as soon as it foresees no more than a run may take; where it still foresees more after its last step, the run is refused. The accuracy that can be afforded follows
-//! from the order k of the estimate, since the number of steps grows as the accuracy to the power -1/k.
+//! as soon as it foresees no more than a run may take; where it still foresees more after its last step, the run is refused. The accuracy
+//! that can be afforded follows from the order k of the estimate, since the number of steps grows as the accuracy to the power -1/k.
 
 use super::{Control, Observer, Progress, RunError, Simulation};
 use crate::scene::{Accuracy, Pace};

@@ -2,7 +2,7 @@
 
 use super::pace::Pacer;
 use super::{AccuracyReport, Chatter, Choice, Impact, Integration, Overrun, Simulation};
-use crate::body::{Body, CentredLink, RigidLink};
+use crate::body::{Body, CentredLink, HeldBody, RigidLink};
 use crate::checkpoint::carried;
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, Scene};
@@ -228,7 +228,7 @@ impl Simulation {
                 .collect(),
             assumptions: notes(&self.scene)
                 .into_iter()
-                .chain(self.coordinates_of_links())
+                .chain(self.coordinates_of_bodies())
                 .chain(self.model.redundant().iter().map(|name| {
                     format!("{name} is redundant and left out: the constraint forces in its loop are not unique")
                 }))
@@ -238,8 +238,8 @@ impl Simulation {
         }
     }
 
-    /// Which rigid links have which coordinates, of those that are not driven.
-    fn coordinates_of_links(&self) -> impl Iterator<Item = String> {
+    /// Which rigid bodies have which coordinates, of those that are not driven.
+    fn coordinates_of_bodies(&self) -> impl Iterator<Item = String> {
         let unknowns = self.model.shape().unknowns;
         let names = |has: fn(&dyn Body) -> bool| -> String {
             let bodies = self.model.bodies().iter();
@@ -249,12 +249,23 @@ impl Simulation {
         };
         let centred = names(|kind| kind.get::<CentredLink>().is_some());
         let natural = names(|kind| kind.get::<RigidLink>().is_some());
+        let held = names(|kind| kind.get::<HeldBody>().is_some());
         let notes = [
-            ("x, y of their centres of mass and theta", centred),
-            ("natural coordinates, x, y of their ends", natural),
+            (
+                "rigid bodies with the one coordinate that their joint leaves",
+                held,
+            ),
+            (
+                "rigid links with x, y of their centres of mass and theta",
+                centred,
+            ),
+            (
+                "rigid links with natural coordinates, x, y of their ends",
+                natural,
+            ),
         ];
         let notes = notes.into_iter().filter(|(_, names)| !names.is_empty());
-        notes.map(|(what, names)| format!("rigid links with {what}: {names}"))
+        notes.map(|(what, names)| format!("{what}: {names}"))
     }
 
     /// The report at this moment.

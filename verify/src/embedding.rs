@@ -4,7 +4,7 @@
 //! forces are B^T f_full: what the reference computes body by body is summed where Looselink shares a node.
 
 use crate::reference::ReferenceScene;
-use looselink::body::CentredLink;
+use looselink::body::{CentredLink, HeldBody};
 use looselink::model::Model;
 use looselink::system::State;
 
@@ -44,21 +44,30 @@ fn coordinate(model: &Model, name: &str) -> Option<usize> {
 }
 
 /// Position and velocity of the full coordinates of the reference in a state of Looselink, where a link may have the coordinates
-/// of its centre.
+/// of its centre, and a body that of its joint.
 pub fn full(reference: &ReferenceScene, model: &Model, at: &State) -> [Vec<f64>; 2] {
-    let end = |name: &str| {
+    let other = |name: &str| {
         let mut parts = name.split('.');
-        let (body, point, axis) = (parts.next()?, parts.next()?, parts.next()?);
+        let (body, part) = (parts.next()?, parts.next()?);
         let body = model.bodies().iter().position(|b| b.name == body)?;
-        model.bodies()[body].placed.kind.get::<CentredLink>()?;
-        let point = ["start", "end"].iter().position(|p| *p == point)?;
+        let kind = &model.bodies()[body].placed.kind;
+        let is_held = kind.get::<HeldBody>().is_some();
+        if !is_held && kind.get::<CentredLink>().is_none() {
+            return None;
+        }
+        let Some(axis) = parts.next() else {
+            let place = ["x", "y", "theta"].iter().position(|x| *x == part)?;
+            let pose = model.pose(body, at);
+            return Some((pose.position[place], pose.velocity[place]));
+        };
+        let point = ["start", "end"].iter().position(|p| *p == part)?;
         let axis = ["x", "y"].iter().position(|a| *a == axis)?;
         let [position, velocity, _] = model.point(body, point, at);
         Some((position[axis], velocity[axis]))
     };
     let both = reference.coordinates.iter().map(|name| {
         let copy = || coordinate(model, name).map(|i| (at.q[i], at.v[i]));
-        let found = end(name).or_else(copy);
+        let found = other(name).or_else(copy);
         found.unwrap_or_else(|| panic!("Looselink has no coordinate {name}"))
     });
     let (q, v) = both.unzip();

@@ -142,7 +142,7 @@ fn failures_are_part_of_the_outcome() {
         r#"
 [[curves]]
 name = "Verlet"
-set = ["integrator.method=velocity_verlet"]
+set = ["integrator.method=velocity_verlet", "bodies.rod.coordinates='center'"]
 steps = [1e-3]
 [[curves]]
 name = "too much"

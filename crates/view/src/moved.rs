@@ -1,7 +1,7 @@
 //! Shapes of bodies, and where they are at every row.
 
 use super::stored::StoredRun;
-use looselink::body::{Content, FlexibleLink, Known};
+use looselink::body::{FlexibleLink, Known};
 use looselink::interaction::Placed;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -153,7 +153,7 @@ impl Moved {
             shape,
             pose: Default::default(),
             deviations: vec![Vec::new(); tracks],
-            counts_turns: slots.iter().any(|slot| slot.content == Content::Pose),
+            counts_turns: slots.iter().any(|slot| slot.content.angle().is_some()),
         }
     }
 

@@ -248,13 +248,12 @@ fn choices(made: &[MadeStudy]) -> String {
     if of_best.is_empty() {
         return String::new();
     }
-    let (within, count) = (of_best.iter().filter(|ratio| **ratio <= 1.5), of_best.len());
     format!(
-        "* The scheme that `method = \"auto\"` chooses takes at most 1.5 times as long as the fastest candidate with the same accuracy \
-         in {} of {count} runs, {} times at most. The trial runs of the other candidates are part of the time of the run, which is \
-         {} times that of the scheme alone in the median, and {} times at most: these runs are short.\n",
-        within.count(),
+        "* The scheme that `method = \"auto\"` chooses takes at most {} times as long as the fastest candidate for the same requested \
+         accuracy, in {} runs. The trial runs of the other candidates are part of the time of the run, which is {} times that of the \
+         scheme alone in the median, and {} times at most: these runs are short.\n",
         numbers::digits(of_best.iter().copied().fold(0.0, f64::max)),
+        of_best.len(),
         numbers::digits(median(&of_own)),
         numbers::digits(of_own.iter().copied().fold(0.0, f64::max))
     )

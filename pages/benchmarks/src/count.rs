@@ -92,9 +92,14 @@ pub fn instructions_inside(function: &str, run: &Command) -> Result<u64> {
         format!("--toggle-collect={function}"),
     ];
     let text = profile(&options.each_ref().map(String::as_str), run, function)?;
-    let count = text.lines().find_map(|line| line.strip_prefix("totals: "));
-    let count = count.and_then(|count| count.trim().parse().ok());
-    count.ok_or_else(|| miette!("{function}: Valgrind gave no count"))
+    total(&text).ok_or_else(|| miette!("{function}: Valgrind gave no count"))
+}
+
+/// All instructions of a profile.
+fn total(profile: &str) -> Option<u64> {
+    let mut lines = profile.lines();
+    let total = lines.find_map(|line| line.strip_prefix("totals: "));
+    total?.trim().parse().ok()
 }
 
 /// What callgrind writes of a command.
@@ -172,13 +177,11 @@ fn operations(line: &str) -> Option<(u64, u64)> {
 
 /// Counts in a profile whose lines of cost are `0xaddress line count`. The line after `calls=` repeats costs of the function called.
 fn read(profile: &str, program: &str, costs: &OperationTable) -> Option<StepCount> {
-    let (mut instructions, mut operations) = (None, 0);
+    let mut operations = 0;
     let (mut own, mut skip) = (false, false);
     for line in profile.lines() {
         if let Some(object) = line.strip_prefix("ob=") {
             own = object == program;
-        } else if let Some(total) = line.strip_prefix("summary: ") {
-            instructions = total.trim().parse().ok();
         } else if line.starts_with("calls=") {
             skip = true;
         } else if let Some(cost) = line.strip_prefix("0x") {
@@ -192,7 +195,7 @@ fn read(profile: &str, program: &str, costs: &OperationTable) -> Option<StepCoun
         }
     }
     Some(StepCount {
-        instructions: instructions?,
+        instructions: total(profile)?,
         operations,
     })
 }
@@ -215,8 +218,8 @@ mod tests {
     #[test]
     fn a_profile_counts_the_program_and_not_what_it_calls() {
         let costs = OperationTable([(0x10, 1), (0x14, 2)].into());
-        let profile = "summary: 1000\n\nob=/bin/p\nfl=???\nfn=f\n0x10 0 5\n0x14 3 7\ncalls=1 0x99 0\n0x14 0 400\n0x18 0 9\n\
-                       ob=/lib/m\nfn=g\n0x10 0 50\n";
+        let profile = "ob=/bin/p\nfl=???\nfn=f\n0x10 0 5\n0x14 3 7\ncalls=1 0x99 0\n0x14 0 400\n0x18 0 9\n\
+                       ob=/lib/m\nfn=g\n0x10 0 50\n\ntotals: 1000\n";
         let expected = StepCount {
             instructions: 1000,
             operations: 5 + 2 * 7,

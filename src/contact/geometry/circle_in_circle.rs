@@ -92,15 +92,15 @@ impl Geometry for CircleInCircle {
                 touch.normal[column + i] = sign * n[i];
                 touch.tangent[column + i] = sign * t[i];
             }
-            if let Marker::OnBody { x, .. } = *marker {
+            if let Marker::OnBody { pose, .. } = *marker {
                 let arm = gap.arms[side];
                 let turn = sign * quarter_turn(arm);
                 touch.normal[column + 2] = n.dot(&turn);
                 touch.tangent[column + 2] = t.dot(&turn);
                 // e_dot depends on theta through the direction of the arm
                 let bend = -sign * arm;
-                touch.rate_q[column + 2] = at.v[x + 2] * n.dot(&bend);
-                touch.slip_q[column + 2] = at.v[x + 2] * t.dot(&bend);
+                touch.rate_q[column + 2] = at.v[pose[2]] * n.dot(&bend);
+                touch.slip_q[column + 2] = at.v[pose[2]] * t.dot(&bend);
                 touch.bends[side] = Some((column + 2, bend));
             }
             column += marker.width();

@@ -5,7 +5,7 @@ use crate::check::{Agreement, LargestDifference, largest};
 use crate::embedding::Embedding;
 use crate::reference::{ReferenceScene, ReferenceState};
 use crate::trajectory::ComparisonPlan;
-use looselink::body::RigidLink;
+use looselink::body::{RigidBody, RigidLink};
 use looselink::interaction::{SlopeClamp, Weld};
 use looselink::model::Model;
 use looselink::scene::{Analysis, PointRef, Scene};
@@ -358,16 +358,20 @@ impl ScenePair {
     }
 }
 
-/// The plan with natural coordinates for all rigid links: the full coordinates of the reference are copies of them.
+/// The plan with natural coordinates for all rigid links, and those of their centres for other rigid bodies: the full coordinates of
+/// the reference are copies of them.
 fn natural(plan: &ComparisonPlan) -> Result<ComparisonPlan> {
     let scene = plan.scene(None)?;
-    let links = scene
-        .bodies
-        .iter()
-        .filter(|body| body.kind.get::<RigidLink>().is_some());
     let mut natural = plan.clone();
-    let overrides = links.map(|link| format!("bodies.{}.coordinates=\"natural\"", link.name));
-    natural.overrides.extend(overrides);
+    for body in &scene.bodies {
+        let coordinates = match &body.kind {
+            kind if kind.get::<RigidLink>().is_some() => "natural",
+            kind if kind.get::<RigidBody>().is_some() => "center",
+            _ => continue,
+        };
+        let set = format!("bodies.{}.coordinates={coordinates:?}", body.name);
+        natural.overrides.push(set);
+    }
     Ok(natural)
 }
 
