@@ -17,7 +17,7 @@
 //! (Shabana 2019, Vibration of Discrete and Continuous Systems, chapter 3). The damping ratio is y . Z^T C Z y/(2 w): that of
 //! the mode where C does not couple modes, and to first order in C elsewhere. Velocities do not enter: the frequencies are those
 //! of vibrations that are fast compared with the motion through the pose. Where the pose is not an equilibrium, lambda holds the
-//! forces of inertia that act in it.
+//! forces of inertia that act in it, and a body that a joint holds at a moving point has those of its acceleration.
 
 use crate::model::Model;
 use crate::system::{State, System, Weights, Work};
@@ -90,8 +90,8 @@ impl Linearised {
     fn new(model: &Model, at: &State, work: &mut Work) -> Linearised {
         let shape = model.shape();
         let n = shape.unknowns;
+        // accelerations do not change the stiffness, but for those of the known points at which bodies are held
         let mut rest = at.clone();
-        rest.a.fill(0.0);
         // the velocity of an internal state is its value
         let is_state = |i: &usize| model.states.contains(i);
         let moving = (0..shape.coordinates).filter(|i| !is_state(i));

@@ -278,7 +278,7 @@ fn starts_that_do_not_fit_the_joint_that_holds_a_body() {
                    assumed";
     check(
         &error,
-        &still,
+        still,
         message,
         "{ x = 0.11, y = 0.0, theta = 0.0 }",
     );

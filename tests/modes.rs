@@ -54,6 +54,37 @@ fn nearest(modes: &Modes, expected: f64) -> f64 {
         .unwrap()
 }
 
+/// A rod on a pin at the distance R from the axis of a crank that turns at Omega: the acceleration of the pin acts as a weight,
+/// w^2 = m s R Omega^2/(I + m s^2) with its centre of mass at the distance s.
+#[test]
+fn a_rod_on_a_turning_crank_swings_about_the_radius() {
+    let (mass, inertia, s, r, speed) = (0.4_f64, 3e-3, 0.12, 0.3, 20.0);
+    let text = format!(
+        r#"{HEAD}
+bodies.ground = {{ type = "ground", points.O = [0, 0] }}
+bodies.crank = {{ type = "link", model = "rigid", length = {r:?}, section = "bar", material = "steel" }}
+bodies.rod = {{ type = "rigid_body", mass = {mass:?}, inertia = {inertia:?}, points.pin = [{:?}, 0] }}
+joints.O = {{ type = "revolute", model = "ideal", bearing = "ground.O", journal = "crank.start" }}
+joints.pin = {{ type = "revolute", model = "ideal", bearing = "crank.end", journal = "rod.pin" }}
+drives.motor = {{ type = "angle", joint = "O", angle = {{ type = "polynomial", coefficients = [0.0, {speed:?}] }} }}
+initial.bodies.rod = {{ x = {:?}, y = 0.0, theta = 0.0, vx = 0.0, vy = {:?}, omega = 0.0 }}
+"#,
+        -s,
+        r + s,
+        speed * r
+    );
+    let scene = Scene::parse("crank.toml", &text, &[]).unwrap();
+    let expected = (mass * s * r * speed * speed / (inertia + mass * s * s)).sqrt() / TAU;
+    let [mode] = &modes_of(&scene).modes[..] else {
+        panic!("the rod alone can move");
+    };
+    let error = Worst::new();
+    error.see(mode.frequency / expected - 1.0);
+    Rung::Identities
+        .asks("A rod on the end of a crank that turns: relative error of the frequency at which it swings about the radius")
+        .within(&error, 1e-14, "rounding");
+}
+
 /// f = (k pi)^2/(2 pi l^2) sqrt(EI/(rho A)). With cubics on elements of length h the relative error is (k pi h/l)^4/1440 to
 /// leading order (Strang & Fix 1973, An Analysis of the Finite Element Method, chapter 6).
 #[test]

@@ -1,6 +1,8 @@
 //! `type = "disc"`: a rigid disc about its centre of mass, with a point on its rim.
 
-use super::rigid_body::{COORDINATES, MATERIAL, OF_JOINT, THICKNESS, disc, in_joint, plate_mass};
+use super::rigid_body::{
+    AS_IT_IS_HELD, COORDINATES, MATERIAL, THICKNESS, disc, may_be_held, plate_mass,
+};
 use super::{BodyKind, Materials, Point, RigidBody, points};
 use crate::document::{Fields, Key, SceneError, Takes, derived};
 use crate::math::plane::{Vec2, unit};
@@ -20,7 +22,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             "the direction from `center` to `rim`, from the x axis of the disc",
         )
         .or("0"),
-        COORDINATES.or(OF_JOINT),
+        COORDINATES.or(AS_IT_IS_HELD),
         Key::new(
             "points",
             Takes::Table,
@@ -56,7 +58,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             inertia,
             points: all,
             radius: Some(radius),
-            in_joint: in_joint(table)?,
+            may_be_held: may_be_held(table)?,
         }))
     },
 };

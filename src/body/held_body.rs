@@ -4,7 +4,7 @@
 //! Its pose is that of the point P at which it is held: x, y of P and theta, of which one is unknown. The force of the joint is the
 //! sum of what acts on the other two.
 
-use super::{Body, Content, Frame, Levels, Link, Point, Pose, Slot};
+use super::{Body, Content, Frame, HeldSlot, Levels, Link, Point, Pose, Slot};
 use crate::eccentric_mass::EccentricMass;
 use crate::marker::{Marker, Spin};
 use crate::math::plane::{Vec2, pair, quarter_turn, rotation};
@@ -15,9 +15,11 @@ use std::sync::Arc;
 /// How an ideal joint holds a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hold {
+    /// Index of the joint.
+    pub joint: usize,
     /// The point at which it is held.
     pub point: usize,
-    /// The line on which this point moves, or none if a known point carries it.
+    /// The line on which this point moves; none if it stays on the point of the other body.
     pub line: Option<HoldingLine>,
 }
 
@@ -37,7 +39,7 @@ pub struct HoldingLine {
 pub struct Ties {
     /// The ideal joints that hold it on what is known.
     pub holds: Vec<Hold>,
-    /// Whether a joint makes a node of it one with that of another body.
+    /// Whether a joint makes a node of it one with that of another free body.
     pub shares: bool,
     /// Whether a joint makes a node of it known.
     pub anchored: bool,
@@ -54,8 +56,7 @@ pub struct HeldBody {
     inertia: f64,
     /// The centre of mass relative to P at theta = 0 \[m\].
     center: Vec2,
-    /// How it is held.
-    pub hold: Hold,
+    hold: Hold,
 }
 
 impl HeldBody {
@@ -73,7 +74,7 @@ impl HeldBody {
     }
 
     /// A point relative to P at theta = 0 \[m\].
-    fn from_held(&self, at: Vec2) -> Vec2 {
+    fn about_held(&self, at: Vec2) -> Vec2 {
         at - self.points()[self.hold.point].at
     }
 
@@ -94,13 +95,14 @@ impl Body for HeldBody {
     fn slots(&self) -> Vec<Slot> {
         let own = |content| Slot::own(String::new(), content);
         let Some(line) = self.hold.line else {
-            let point = self.hold.point;
-            let held = Slot::node(&self.points()[point].name, point);
-            return vec![held, own(Content::Angle)];
+            let name = &self.points()[self.hold.point].name;
+            let mut pin = Slot::own(format!(".{name}"), Content::Position);
+            pin.held = Some(HeldSlot::Partner);
+            return vec![pin, own(Content::Angle)];
         };
         let mut slots = [Content::X, Content::Y, Content::Angle].map(own);
-        slots[1 - line.along].fixed = Some(line.across);
-        slots[2].fixed = Some(line.angle);
+        slots[1 - line.along].held = Some(HeldSlot::At(line.across));
+        slots[2].held = Some(HeldSlot::At(line.angle));
         slots.into()
     }
 
@@ -121,7 +123,7 @@ impl Body for HeldBody {
     }
 
     fn marker(&self, point: usize, x: &[usize]) -> Marker {
-        let s = self.from_held(self.points()[point].at);
+        let s = self.about_held(self.points()[point].at);
         let pose = self.held_pose(x);
         Marker::OnBody { pose, s }
     }
@@ -131,13 +133,17 @@ impl Body for HeldBody {
         Spin::Angle { theta }
     }
 
+    fn hold(&self) -> Option<Hold> {
+        Some(self.hold)
+    }
+
     fn carrier(&self, _: usize) -> usize {
         self.hold.point
     }
 
     fn lever(&self, _: usize) -> f64 {
         let points = self.points().iter();
-        let arms = points.map(|p| self.from_held(p.at).norm());
+        let arms = points.map(|p| self.about_held(p.at).norm());
         arms.fold((self.inertia / self.mass).sqrt(), f64::max)
     }
 
@@ -209,13 +215,8 @@ impl Body for HeldBody {
         }
     }
 
-    fn velocity(&self, component: usize, x: &[usize], q: &[f64]) -> Option<Vec<(usize, f64)>> {
-        let pose = self.held_pose(x);
-        let own = (pose[component], 1.0);
-        let turned = quarter_turn(rotation(q[pose[2]]) * self.center);
-        Some(match component {
-            2 => vec![own],
-            axis => vec![own, (pose[2], turned[axis])],
-        })
+    /// Velocities are assembled in the ideal mechanism, where no body has these coordinates.
+    fn velocity(&self, _: usize, _: &[usize], _: &[f64]) -> Option<Vec<(usize, f64)>> {
+        None
     }
 }

@@ -1,5 +1,6 @@
 //! `type = "link"`: a slender uniform link that is straight when undeformed.
 
+use super::rigid_body::AS_IT_IS_HELD;
 use super::{BodyKind, Damping, FlexibleLink, LinkCoordinates, Point, RigidLink};
 use crate::document::{Fields, Key, SceneError, Takes, named};
 use crate::math::plane::Vec2;
@@ -26,7 +27,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             &["natural", "center"],
             "the unknowns of a rigid link, see [Coordinates of rigid bodies](#coordinates-of-rigid-bodies); flexible and driven links ignore it",
         )
-        .or("see there"),
+        .or(AS_IT_IS_HELD),
         Key::new(
             "points",
             Takes::Table,

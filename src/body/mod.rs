@@ -75,8 +75,17 @@ pub struct Slot {
     pub content: Content,
     /// The point whose position it is, if joints can share it.
     pub point: Option<usize>,
-    /// The value of a coordinate that never changes.
-    pub fixed: Option<f64>,
+    /// What is known of it in a body that moves freely.
+    pub held: Option<HeldSlot>,
+}
+
+/// A slot of a free body that is known, because a joint holds the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HeldSlot {
+    /// A coordinate that never changes.
+    At(f64),
+    /// The position of the point on the other side of the joint.
+    Partner,
 }
 
 /// What a slot holds.
@@ -125,7 +134,7 @@ impl Slot {
             label: format!(".{name}"),
             content: Content::Position,
             point: Some(point),
-            fixed: None,
+            held: None,
         }
     }
 
@@ -135,7 +144,7 @@ impl Slot {
             label,
             content,
             point: None,
-            fixed: None,
+            held: None,
         }
     }
 }
@@ -282,6 +291,10 @@ pub trait Body: Any + Debug + Send + Sync {
     /// The body in the mechanism of the scene, where it has other coordinates than in the ideal one. None for a body that is the same
     /// in both.
     fn real(&self, _ties: &Ties) -> Option<Arc<dyn Body>> {
+        None
+    }
+    /// How a joint holds it, of a body that has the coordinate which this joint leaves.
+    fn hold(&self) -> Option<Hold> {
         None
     }
     /// The axial strain of largest magnitude of a body that deforms, sampled at eleven points of every element.

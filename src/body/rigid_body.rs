@@ -35,7 +35,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             "the centre of mass in the frame in which `points` are written",
         )
         .or("[0, 0]"),
-        COORDINATES.or(OF_JOINT),
+        COORDINATES.or(AS_IT_IS_HELD),
         Key::new("points", Takes::Table, "named points at theta = 0 [m]").or("none"),
     ],
     read: |table, known| {
@@ -51,7 +51,7 @@ pub(super) static KIND: BodyKind = BodyKind {
             inertia,
             points,
             radius: None,
-            in_joint: in_joint(table)?,
+            may_be_held: may_be_held(table)?,
         }))
     },
 };
@@ -67,8 +67,8 @@ pub struct RigidBody {
     pub points: Vec<Point>,
     /// Radius of a disc about the centre of mass \[m\].
     pub radius: Option<f64>,
-    /// Whether it may have the coordinate that a joint leaves it.
-    pub in_joint: bool,
+    /// Whether it may have the one coordinate that a joint leaves it.
+    pub may_be_held: bool,
 }
 
 /// The unknowns of a rigid body.
@@ -77,11 +77,11 @@ pub(super) const COORDINATES: Key = Key::word(
     &["center"],
     "the unknowns, see [Coordinates of rigid bodies](#coordinates-of-rigid-bodies)",
 );
-/// What they are without the key.
-pub(super) const OF_JOINT: &str = "see there";
+/// The coordinates without the key.
+pub(super) const AS_IT_IS_HELD: &str = "what fits its joints";
 
 /// Whether a body may have the coordinate that a joint leaves it.
-pub(super) fn in_joint(table: &Fields) -> Result<bool, SceneError> {
+pub(super) fn may_be_held(table: &Fields) -> Result<bool, SceneError> {
     Ok(table.optional_word("coordinates")?.is_none())
 }
 
@@ -116,7 +116,7 @@ impl Body for RigidBody {
         let [hold] = ties.holds[..] else {
             return None;
         };
-        self.in_joint.then(|| -> Arc<dyn Body> {
+        self.may_be_held.then(|| -> Arc<dyn Body> {
             let body = Arc::new(self.clone());
             let (mass, inertia) = (self.mass, self.inertia);
             Arc::new(HeldBody::new(body, mass, inertia, Vec2::zeros(), hold))

@@ -186,7 +186,10 @@ impl Places<'_> {
         let masses = masses.into_iter().map(|mass| {
             let [x, y, theta] = mass.pose;
             let known = [x.min(y), theta].map(|i| i >= self.unknowns);
-            debug_assert!(known.contains(&true), "a mass matrix that depends on theta");
+            assert!(
+                known.contains(&true),
+                "the mass matrix would depend on theta"
+            );
             let slot = match known[1] {
                 true => self.tangent.discarded_slot(),
                 false => self.tangent.slot(theta, theta),

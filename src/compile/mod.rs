@@ -11,14 +11,13 @@ mod rules;
 mod sketch;
 mod ties;
 
-use crate::body::{Body, HeldBody, Known, PointRef, Slot};
+use crate::body::{Body, Known, PointRef, Slot, Ties};
 use crate::interaction::JointModel;
 use crate::kinematics::Kinematics;
 use crate::math::plane::Vec2;
 use crate::model::Model;
 use crate::scene::{MotionKind, NamedBody, Scene, SceneError, SketchPoint, Sketched};
 use std::sync::Arc;
-use ties::BodyTies;
 
 /// What determines the motion of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,8 +52,8 @@ pub(crate) struct Compiler<'a> {
     /// Coordinates of every body.
     pub slots: Vec<Vec<Slot>>,
     pub joints: Vec<Arc<dyn JointModel>>,
-    /// The joints whose line is an axis of a coordinate of the body they guide.
-    pub guides: Vec<usize>,
+    /// Of every joint, whether a body has the coordinate that it leaves.
+    pub holds: Vec<bool>,
 }
 
 impl<'a> Compiler<'a> {
@@ -76,7 +75,7 @@ impl<'a> Compiler<'a> {
             roles,
             slots: bodies.iter().map(|b| b.slots()).collect(),
             bodies,
-            guides: Vec::new(),
+            holds: vec![false; scene.joints.len()],
             joints: joints
                 .map(|j| joint(j).unwrap_or_else(|| j.clone()))
                 .collect(),
@@ -86,14 +85,13 @@ impl<'a> Compiler<'a> {
 
 impl Compiler<'_> {
     /// Gives free bodies the coordinates that they have in the mechanism of the scene.
-    fn choose_coordinates(&mut self, ties: &[BodyTies]) {
+    fn choose_coordinates(&mut self, ties: &[Ties]) {
         for (b, body) in self.bodies.iter_mut().enumerate() {
-            let BodyTies { ties, joints } = &ties[b];
-            let real = body.real(ties).filter(|_| self.roles[b] == Role::Free);
-            if let Some(real) = real {
-                let held = real.get::<HeldBody>().map(|held| held.hold);
-                let guided = held.filter(|hold| hold.line.is_some());
-                self.guides.extend(guided.and(joints.first()));
+            let real = body.real(&ties[b]);
+            if let Some(real) = real.filter(|_| self.roles[b] == Role::Free) {
+                if let Some(hold) = real.hold() {
+                    self.holds[hold.joint] = true;
+                }
                 self.slots[b] = real.slots();
                 *body = real;
             }

@@ -1,7 +1,7 @@
 //! Numbers the coordinates: which link ends share a node, which are known, and the indices of every body.
 
 use super::{Compiler, Mode, Role};
-use crate::body::{Body, Content, Known, PointRef, Slot};
+use crate::body::{Body, Content, HeldSlot, Known, PointRef, Slot};
 use crate::interaction::Placed;
 use crate::marker::Marker;
 use crate::model::{DrivenNode, Model};
@@ -80,7 +80,7 @@ pub(super) fn shared_nodes(c: &Compiler) -> Result<Vec<bool>, SceneError> {
 /// Makes the points of joint `j` one node or one of them known, where that is possible; true if it is.
 fn connect_joint(c: &Compiler, nodes: &mut Nodes, j: usize) -> Result<bool, SceneError> {
     let joint = &c.scene.joints[j];
-    if c.guides.contains(&j) {
+    if c.holds[j] {
         return Ok(true);
     }
     if c.joints[j].contact().is_some() || !c.joints[j].coincides() {
@@ -144,6 +144,9 @@ pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, S
         }
     }
     numbering.anchor(&mut nodes, &anchored);
+    for b in 0..c.bodies.len() {
+        numbering.carry(c, b);
+    }
     numbering.coordinates = numbering.offset + inner.map_or(0, |m| m.shape().coordinates);
 
     // ends tied to known points got their coordinates only now
@@ -182,7 +185,7 @@ fn number_unknowns(c: &Compiler, nodes: &mut Nodes, eliminated: Vec<bool>) -> Nu
             let labels: Vec<String> = labels.collect();
             bodies[b].x[s] = match slot.point {
                 // numbered with what is known
-                None if slot.fixed.is_some() => usize::MAX,
+                None if slot.held.is_some() => usize::MAX,
                 None => take(&labels),
                 Some(_) => {
                     let class = nodes.class(b, s);
@@ -247,14 +250,41 @@ impl Numbering {
             (_, Role::Turned(_)) if poses => self.bodies[b].x = vec![self.known(3)],
             (_, Role::Free) => {
                 for (s, slot) in c.slots[b].iter().enumerate() {
-                    if let Some(value) = slot.fixed {
-                        let x = self.known(1);
-                        self.fixed.push((x, value));
+                    if let Some(held) = slot.held {
+                        let x = self.known(slot.content.names().len());
                         self.bodies[b].x[s] = x;
+                        if let HeldSlot::At(value) = held {
+                            self.fixed.push((x, value));
+                        }
                     }
                 }
             }
             _ => {}
+        }
+    }
+
+    /// Lets the point at which a joint holds a body follow its partner. It has coordinates of its own, although they are those of the
+    /// partner, so that what acts on it is not mistaken for what acts there.
+    fn carry(&mut self, c: &Compiler, b: usize) {
+        let Some(hold) = c.bodies[b].hold().filter(|hold| hold.line.is_none()) else {
+            return;
+        };
+        let held = PointRef {
+            body: b,
+            point: hold.point,
+        };
+        let partner = c.scene.joints[hold.joint].partner(held);
+        let partner = partner.expect("a joint holds a body at one of its points");
+        let x = self.bodies[b].x[0];
+        match c.roles[partner.body] {
+            Role::Ground => {
+                let at = c.bodies[partner.body].points()[partner.point].at;
+                self.fixed.extend([(x, at.x), (x + 1, at.y)]);
+            }
+            _ => {
+                let marker = self.bodies[partner.body].marker(partner.point);
+                self.driven_nodes.push(DrivenNode { x, marker });
+            }
         }
     }
 

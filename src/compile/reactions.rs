@@ -1,7 +1,7 @@
 //! The terms whose sum is the force of an eliminated joint or the torque of an actuated one.
 
 use super::{Compiler, Role};
-use crate::body::{HeldBody, PointRef};
+use crate::body::PointRef;
 use crate::kinematics::Kinematics;
 use crate::model::{Actuator, Grip, Model, PlacedJoint, Reaction, Share, Source};
 use crate::scene::{MotionKind, SceneError};
@@ -10,7 +10,7 @@ use crate::terms::{ForceTerm, JointTerms};
 /// The coordinates of a point that takes forces: x, y of a node, or x, y, theta of a rigid body.
 fn place(model: &Model, point: PointRef) -> Option<Vec<usize>> {
     let body = &model.bodies()[point.body];
-    // nothing holds or drives a body without points
+    // joints and forces name points
     let has_points = !body.points.is_empty();
     (body.moves && has_points).then(|| body.placed.marker(point.point).coordinates())
 }
@@ -69,11 +69,11 @@ fn runs(
 /// The force of all terms that belong to `point`: its body's own, and those of joints attached there.
 fn grip(c: &Compiler, model: &Model, own: &[JointTerms], point: PointRef) -> Option<Grip> {
     let coordinates = place(model, point)?;
-    // the joint of a held body exerts nothing on its unknown coordinate
-    let is_held = model.bodies()[point.body].placed.kind.get::<HeldBody>();
-    let taken = coordinates.iter().map(|&x| match is_held {
-        Some(_) if x < model.shape.unknowns => None,
-        _ => Some(x),
+    // a joint exerts nothing on the coordinate that it leaves to the body that it holds
+    let is_held = model.bodies()[point.body].placed.kind.hold().is_some();
+    let taken = coordinates.iter().map(|&x| {
+        let is_left = is_held && x < model.shape.unknowns;
+        (!is_left).then_some(x)
     });
     let taken: Vec<Option<usize>> = taken.collect();
     let mut shares = Vec::new();
@@ -114,8 +114,8 @@ fn grip(c: &Compiler, model: &Model, own: &[JointTerms], point: PointRef) -> Opt
     })
 }
 
-/// The points connected to `from` without joint `cut`, through eliminated joints and driven bodies. `None` if the ground is
-/// connected to it.
+/// The points connected to `from` without joint `cut`, through eliminated joints and driven bodies. `None` if the ground or a
+/// body on a path is connected to it.
 fn hanging(
     c: &Compiler,
     model: &Model,
@@ -128,7 +128,7 @@ fn hanging(
     while next < found.len() {
         let point = found[next];
         next += 1;
-        if c.roles[point.body] == Role::Ground {
+        if matches!(c.roles[point.body], Role::Ground | Role::Path) {
             return None;
         }
         let mut reached = Vec::new();

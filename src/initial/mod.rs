@@ -2,14 +2,13 @@
 
 pub(crate) mod redundancy;
 
-use crate::body::{Content, Deformation, Frame, HeldBody, PointRef};
+use crate::body::{Content, Deformation, Frame};
 use crate::compile::Compiled;
 use crate::compile::assembly::{CENTRE, assemble, name, opening, whole_name};
 use crate::math::plane::Vec2;
 use crate::model::{Model, PlacedBody, PlacedConstraint};
 use crate::scene::{Analysis, BodyState, NamedBody, Scene, SceneError};
 use crate::system::State;
-use crate::terms::ForceTerm;
 
 /// Largest violation of a constraint \[m\] or of its rate \[m/s\] at the start: the digits of a typed position.
 const START_TOLERANCE: f64 = 1e-9;
@@ -41,10 +40,13 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         let deformation = given.map_or(Deformation::default(), |given| given.deformation);
         let placed = &model.bodies()[b];
         let values = placed.placed.kind.place_deformed(start, &deformation);
-        let misfit = place(placed, values, &mut state, &mut written);
-        if let Some(misfit) = misfit.filter(|misfit| misfit.counts(scene)) {
-            return Err(match placed.placed.kind.get::<HeldBody>() {
-                Some(held) => misfit.at_joint(scene, model, b, held.hold.point),
+        let misfits = place(placed, values, &mut state, &mut written);
+        // nothing moves in a static analysis, whatever its drives prescribe
+        let moves = scene.simulation.analysis == Analysis::Dynamic;
+        let [position, rate] = misfits;
+        if let Some(misfit) = position.or(rate.filter(|_| moves)) {
+            return Err(match placed.placed.kind.hold() {
+                Some(hold) => misfit.at_joint(scene, model, b, hold.joint),
                 None => {
                     let message = format!(
                         "the pose of {} does not fit the points that its ends are joined to",
@@ -117,7 +119,7 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
         return Ok(());
     };
     let by = opening(&placed.term, off, "/s");
-    Err(wrong_rates(scene, model, &name(placed), &by))
+    Err(wrong_rates(scene, model, name(placed), &by))
 }
 
 /// The error of a start whose velocities violate a joint or a constraint.
@@ -169,11 +171,10 @@ fn starts(
         return Err(scene.error(given.span, message, "remove this"));
     }
     let exact = |b: usize| given(b).map(|g| scene.bodies[b].kind.frame(g.position, g.velocity));
-    let incomplete = (0..scene.bodies.len()).any(|b| free[b] && given(b).is_none());
-    let asked = !scene.initial.sketch.is_empty() || !scene.initial.velocities.is_empty();
+    let assembles = is_assembled(scene, model);
     let deformed = scene.initial.bodies.values();
     let mut deformed = deformed.filter(|given| given.deformation != Deformation::default());
-    if let (None, true, Some(given)) = (kinematics, incomplete || asked, deformed.next()) {
+    if let (true, Some(given)) = (assembles, deformed.next()) {
         let name = &scene.bodies[given.body].name;
         let message = format!("{name} cannot be assembled: it starts stretched or bending");
         let error = scene.error(given.span, message, "deformed");
@@ -181,10 +182,7 @@ fn starts(
             "give every body a state, and leave out `initial.sketch` and `initial.velocities`",
         ));
     }
-    let assembly = match kinematics {
-        None if incomplete || asked => Some(assemble(scene)?),
-        _ => None,
-    };
+    let assembly = assembles.then(|| assemble(scene)).transpose()?;
     let start = |b: usize| match (&assembly, kinematics) {
         _ if !free[b] => None,
         (Some((mechanism, state)), _) => ideal_start(mechanism, b, state, 0),
@@ -195,6 +193,19 @@ fn starts(
         (None, None) => exact(b),
     };
     Ok((0..free.len()).map(start).collect())
+}
+
+/// True of a scene that gives a sketch or single velocities, or not the state of every body that moves freely; the ideal mechanism of a
+/// drive is closed another way.
+pub(crate) fn is_assembled(scene: &Scene, model: &Model) -> bool {
+    let initial = &scene.initial;
+    let asked = !initial.sketch.is_empty() || !initial.velocities.is_empty();
+    let unknown = |x: &usize| *x < model.shape().unknowns;
+    let mut bodies = model.bodies().iter().enumerate();
+    let silent = |(b, body): (usize, &PlacedBody)| {
+        body.placed.x.iter().any(unknown) && initial.state_of(b).is_none()
+    };
+    scene.drives.is_empty() && (asked || bodies.any(silent))
 }
 
 /// Frame of a body in the ideal mechanism, whose coordinates begin at `offset` in `state`.
@@ -214,46 +225,35 @@ struct PlaceError {
 }
 
 impl PlaceError {
-    /// Nothing moves in a static analysis, whatever its drives prescribe.
-    fn counts(&self, scene: &Scene) -> bool {
-        !self.is_rate || scene.simulation.analysis == Analysis::Dynamic
-    }
-
-    /// The error for a body that a joint holds at a point.
-    fn at_joint(&self, scene: &Scene, model: &Model, body: usize, point: usize) -> SceneError {
-        let held = PointRef { body, point };
-        let joints = scene.joints.iter().zip(model.joints());
-        let mut holding = joints.filter(|(joint, placed)| {
-            joint.points().contains(&held) && matches!(placed.terms.force, ForceTerm::Eliminated)
-        });
-        let name = holding.next().map_or("", |(joint, _)| &joint.name);
-        let (what, by) = (format!("joint {name}"), numbers::si(self.by, self.unit));
-        match self.is_rate {
-            true => wrong_rates(scene, model, &what, &format!("{by}/s")),
-            false => {
-                let name = &scene.bodies[body].name;
-                let message = format!("the pose of {name} does not fit {what}: it is open by {by}");
-                let given = scene.initial.state_of(body);
-                let span = given.map_or(scene.initial.span, |given| given.span);
-                scene.error(span, message, "this pose").with_help(CENTRE)
-            }
+    /// The error for a body that a joint holds.
+    fn at_joint(&self, scene: &Scene, model: &Model, body: usize, joint: usize) -> SceneError {
+        let what = format!("joint {}", scene.joints[joint].name);
+        let by = numbers::si(self.by, self.unit);
+        if self.is_rate {
+            return wrong_rates(scene, model, &what, &format!("{by}/s"));
         }
+        let name = &scene.bodies[body].name;
+        let message = format!("the pose of {name} does not fit {what}: it is open by {by}");
+        let given = scene.initial.state_of(body);
+        let span = given.map_or(scene.initial.span, |given| given.span);
+        scene.error(span, message, "this pose").with_help(CENTRE)
     }
 }
 
-/// Writes the coordinates of a body, and remembers which were written. Returns the first that is known or written already and
-/// differs: bodies that share a node must agree on it.
+/// Writes the coordinates of a body, and remembers which were written. Returns the first position and the first velocity that is
+/// known or written already and differs: bodies that share a node must agree on it.
 fn place(
     body: &PlacedBody,
     values: Vec<[[f64; 3]; 2]>,
     state: &mut State,
     written: &mut [bool],
-) -> Option<PlaceError> {
-    let mut misfit = None;
+) -> [Option<PlaceError>; 2] {
+    let mut misfits = [None; 2];
     for ((&x, values), content) in body.placed.x.iter().zip(values).zip(&body.contents) {
         let here = x..x + content.names().len();
         let levels = [&mut state.q[here.clone()], &mut state.v[here]];
-        for ((level, values), is_rate) in levels.into_iter().zip(values).zip([false, true]) {
+        let places = levels.into_iter().zip(values).zip(&mut misfits);
+        for (((level, values), misfit), is_rate) in places.zip([false, true]) {
             if written[x] {
                 let differences = level.iter().zip(values).map(|(a, b)| a - b);
                 let by = differences.map(|d| d * d).sum::<f64>().sqrt();
@@ -262,13 +262,12 @@ fn place(
                     _ => "m",
                 };
                 let fits = by <= START_TOLERANCE;
-                let differs = (!fits).then_some(PlaceError { by, unit, is_rate });
-                misfit = misfit.or(differs);
+                *misfit = misfit.or((!fits).then_some(PlaceError { by, unit, is_rate }));
             } else {
                 level.copy_from_slice(&values[..level.len()]);
             }
         }
         written[x] = true;
     }
-    misfit
+    misfits
 }

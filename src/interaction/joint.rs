@@ -80,6 +80,20 @@ impl JointEnds<'_> {
     }
 }
 
+/// The coordinate that a joint leaves a body relative to another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Freedom {
+    /// The angle about the point that both bodies share.
+    Turn,
+    /// The distance of the second point along a line of the first body, without a rotation.
+    Slide {
+        /// The direction of the line in the frame of the first body \[rad\].
+        direction: f64,
+        /// The angle of the second body relative to the first \[rad\].
+        angle: f64,
+    },
+}
+
 /// What a joint allows.
 pub trait JointModel: Any + Debug + Send + Sync {
     /// True where its two points coincide, so that the nodes of two bodies can be one.
@@ -96,6 +110,11 @@ pub trait JointModel: Any + Debug + Send + Sync {
     }
     /// Direction in the frame of the first body of a line on which the second point stays \[rad\].
     fn line(&self) -> Option<f64> {
+        None
+    }
+    /// The one coordinate that it leaves a rigid body on a side of known motion, if it leaves one. Where it holds a body so,
+    /// [`JointEnds::eliminated`] is true, and it adds no constraint.
+    fn leaves(&self) -> Option<Freedom> {
         None
     }
     /// Which of its sides need a body with a direction.

@@ -16,7 +16,7 @@ pub mod torsion_spring;
 pub mod weld;
 
 pub use contact::{Contact, Friction};
-pub use joint::{Joint, JointEnds, JointKind, JointModel};
+pub use joint::{Freedom, Joint, JointEnds, JointKind, JointModel};
 pub use maxwell::{Maxwell, MaxwellModel};
 pub(crate) use names::NO_DIRECTION;
 pub use names::Names;

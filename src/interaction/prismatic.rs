@@ -1,7 +1,7 @@
 //! `type = "prismatic"`: a point of one body stays on a line of another.
 
 use super::weld::alignment;
-use super::{JointEnds, JointKind, JointModel};
+use super::{Freedom, JointEnds, JointKind, JointModel};
 use crate::document::{Fields, Key, SceneError};
 use crate::terms::{ConstraintTerm, CoupleTerm, ForceTerm, JointTerms, Terms};
 use std::sync::Arc;
@@ -77,6 +77,11 @@ impl JointModel for Prismatic {
 
     fn line(&self) -> Option<f64> {
         Some(self.direction)
+    }
+
+    fn leaves(&self) -> Option<Freedom> {
+        let direction = self.direction;
+        self.locked.map(|angle| Freedom::Slide { direction, angle })
     }
 
     fn terms(&self, ends: &JointEnds, terms: &mut Terms) -> JointTerms {

@@ -1,6 +1,6 @@
 //! `type = "revolute"`: two points coincide, or a journal moves inside a bearing and touches it.
 
-use super::{Contact, JointEnds, JointKind, JointModel};
+use super::{Contact, Freedom, JointEnds, JointKind, JointModel};
 use crate::constraint::Coincide;
 use crate::contact::geometry::CircleInCircle;
 use crate::document::Key;
@@ -60,6 +60,10 @@ impl JointModel for Revolute {
 
     fn is_revolute(&self) -> bool {
         true
+    }
+
+    fn leaves(&self) -> Option<Freedom> {
+        self.contact.is_none().then_some(Freedom::Turn)
     }
 
     fn contact(&self) -> Option<&Contact> {

@@ -163,7 +163,9 @@ fn plain_motion(scene: &Scene, model: &Model, start: &State) -> f64 {
     let places = places.filter(|(i, _)| lengths.get(*i).is_none_or(|length| *length == 1.0));
     let mut extent = Extent::EMPTY;
     places.for_each(|(_, q)| extent.see(*q, 0.0));
-    let (mut mass, mut size) = (0.0, extent.width());
+    // a body that swings about a point
+    let levers = model.angles.iter().map(|angle| lengths[*angle]);
+    let (mut mass, mut size) = (0.0, levers.fold(extent.width(), f64::max));
     for body in &scene.bodies {
         mass += body.kind.mass().unwrap_or(0.0);
         size = size.max(body.kind.size());

@@ -2,8 +2,10 @@
 
 use super::pace::Pacer;
 use super::{AccuracyReport, Chatter, Choice, Impact, Integration, Overrun, Simulation};
-use crate::body::{Body, CentredLink, HeldBody, RigidLink};
+use crate::body::{Body, CentredLink, RigidLink};
 use crate::checkpoint::carried;
+use crate::initial::is_assembled;
+use crate::model::{Model, PlacedBody};
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, Scene};
 use crate::system::System;
@@ -175,7 +177,7 @@ pub struct Inspection {
 }
 
 /// Notes on values that the program derives from a scene.
-fn notes(scene: &Scene) -> Vec<String> {
+fn notes(scene: &Scene, model: &Model) -> Vec<String> {
     let mut notes: Vec<String> = scene
         .assumptions
         .iter()
@@ -193,9 +195,7 @@ fn notes(scene: &Scene) -> Vec<String> {
             ));
         }
     }
-    let initial = &scene.initial;
-    let drawn = !initial.sketch.is_empty() || !initial.velocities.is_empty();
-    let assembled = scene.drives.is_empty() && drawn;
+    let assembled = is_assembled(scene, model);
     if assembled && scene.simulation.analysis == Analysis::Dynamic {
         notes.push("velocities missing in the scene are those of least kinetic energy".to_owned());
     }
@@ -226,7 +226,7 @@ impl Simulation {
                 .iter()
                 .map(|name| (*name).to_owned())
                 .collect(),
-            assumptions: notes(&self.scene)
+            assumptions: notes(&self.scene, &self.model)
                 .into_iter()
                 .chain(self.coordinates_of_bodies())
                 .chain(self.model.redundant().iter().map(|name| {
@@ -241,19 +241,28 @@ impl Simulation {
     /// Which rigid bodies have which coordinates, of those that are not driven.
     fn coordinates_of_bodies(&self) -> impl Iterator<Item = String> {
         let unknowns = self.model.shape().unknowns;
+        let bodies = self.model.bodies().iter();
+        let free = bodies.filter(|body| body.placed.x.iter().any(|x| *x < unknowns));
+        let free: Vec<&PlacedBody> = free.collect();
         let names = |has: fn(&dyn Body) -> bool| -> String {
-            let bodies = self.model.bodies().iter();
-            let free = bodies.filter(|body| body.placed.x.iter().any(|x| *x < unknowns));
-            let named = free.filter(|body| has(&*body.placed.kind));
+            let named = free.iter().filter(|body| has(&*body.placed.kind));
             named.map(|body| &*body.name).collect::<Vec<_>>().join(", ")
         };
         let centred = names(|kind| kind.get::<CentredLink>().is_some());
         let natural = names(|kind| kind.get::<RigidLink>().is_some());
-        let held = names(|kind| kind.get::<HeldBody>().is_some());
+        let held = free.iter().filter_map(|body| {
+            let hold = body.placed.kind.hold()?;
+            let left = match hold.line {
+                None => "theta",
+                Some(line) => ["x", "y"][line.along],
+            };
+            let joint = &self.scene.joints[hold.joint].name;
+            Some(format!("{} ({left}, joint {joint})", body.name))
+        });
         let notes = [
             (
-                "rigid bodies with the one coordinate that their joint leaves",
-                held,
+                "rigid bodies with the one coordinate that an ideal joint leaves",
+                held.collect::<Vec<_>>().join(", "),
             ),
             (
                 "rigid links with x, y of their centres of mass and theta",

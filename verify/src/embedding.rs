@@ -4,7 +4,7 @@
 //! forces are B^T f_full: what the reference computes body by body is summed where Looselink shares a node.
 
 use crate::reference::ReferenceScene;
-use looselink::body::{CentredLink, HeldBody};
+use looselink::body::CentredLink;
 use looselink::model::Model;
 use looselink::system::State;
 
@@ -51,7 +51,7 @@ pub fn full(reference: &ReferenceScene, model: &Model, at: &State) -> [Vec<f64>;
         let (body, part) = (parts.next()?, parts.next()?);
         let body = model.bodies().iter().position(|b| b.name == body)?;
         let kind = &model.bodies()[body].placed.kind;
-        let is_held = kind.get::<HeldBody>().is_some();
+        let is_held = kind.hold().is_some();
         if !is_held && kind.get::<CentredLink>().is_none() {
             return None;
         }

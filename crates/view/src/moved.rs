@@ -153,7 +153,8 @@ impl Moved {
             shape,
             pose: Default::default(),
             deviations: vec![Vec::new(); tracks],
-            counts_turns: slots.iter().any(|slot| slot.content.angle().is_some()),
+            counts_turns: placed.kind.link().is_none()
+                && slots.iter().any(|slot| slot.content.angle().is_some()),
         }
     }
 
