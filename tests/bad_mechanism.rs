@@ -276,12 +276,7 @@ fn starts_that_do_not_fit_the_joint_that_holds_a_body() {
     let error = fault(&start(still), &[]);
     let message = "the velocities of the start violate joint crank_pin, by 26.2\u{a0}m/s: the scene gives no velocity for rod, so zero was \
                    assumed";
-    check(
-        &error,
-        still,
-        message,
-        "{ x = 0.11, y = 0.0, theta = 0.0 }",
-    );
+    check(&error, still, message, "{ x = 0.11, y = 0.0, theta = 0.0 }");
     let turned = "initial.bodies.slider.theta=6.283185307179586".to_owned();
     let scene = Scene::parse("turned", text, &[turned]).unwrap();
     assert!(Simulation::new(&scene).is_ok());
