@@ -37,19 +37,22 @@ impl EccentricMass {
         self.mass * (Vec2::new(at.a[x], at.a[y]) - at.weight * Vec2::from(self.gravity))
     }
 
-    /// Forces on the left side of the equations of motion: m (alpha J s - omega^2 s) on x, y \[N\] and m J s . (a - w g) on theta
-    /// \[N m\].
-    #[inline]
+    /// Forces on the left side of the equations of motion: m (alpha J s - omega^2 s) on x, y \[N\] and the couple on theta \[N m\].
     pub fn force(&self, at: &State) -> [f64; 3] {
         let [.., theta] = self.pose;
         let arm = self.arm(at);
-        let turned = quarter_turn(arm);
-        let turning = at.a[theta] * turned - at.v[theta] * at.v[theta] * arm;
+        let turning = at.a[theta] * quarter_turn(arm) - at.v[theta] * at.v[theta] * arm;
         let [fx, fy] = (self.mass * turning).into();
-        [fx, fy, turned.dot(&self.load(at))]
+        [fx, fy, self.couple(at)]
     }
 
-    /// The derivative of the force on theta by theta, -m s . (a - w g) \[N m\].
+    /// The force on theta, m J s . (a - w g) \[N m\].
+    #[inline]
+    pub fn couple(&self, at: &State) -> f64 {
+        quarter_turn(self.arm(at)).dot(&self.load(at))
+    }
+
+    /// Its derivative by theta, -m s . (a - w g) \[N m\].
     #[inline]
     pub fn stiffness(&self, at: &State) -> f64 {
         -self.arm(at).dot(&self.load(at))

@@ -43,8 +43,8 @@ const LAYERS: [&str; 27] = [
 /// What writes the results of a simulation.
 const ABOVE: &str = "output";
 
-/// Crates that the solver is made of. winnow is compiled for toml in any case.
-const CRATES: [&str; 15] = [
+/// Crates that the solver is made of. toml_parser and winnow are compiled for toml in any case.
+const CRATES: [&str; 16] = [
     "cpu-time",
     "faer",
     "indexmap",
@@ -58,6 +58,7 @@ const CRATES: [&str; 15] = [
     "strsim",
     "thiserror",
     "toml",
+    "toml_parser",
     "wildmatch",
     "winnow",
 ];

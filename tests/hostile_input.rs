@@ -94,6 +94,7 @@ fn deep_nesting_is_refused_not_followed() {
         format!("a = {}", "[".repeat(deep)),
         format!("a = {}1{}", "[".repeat(70), "]".repeat(70)),
         format!("a = {}", "{ a = ".repeat(deep)),
+        format!("a = {}", "{ a.a = ".repeat(70)),
         format!("a{} = 1", ".a".repeat(deep)),
         format!("[a{}]", ".a".repeat(deep)),
         format!(

@@ -4,9 +4,8 @@
 use super::rigid_link::frame;
 use super::{Body, Frame, Levels, Link, Point, Pose, carried, pose};
 use crate::marker::Marker;
-use crate::math::plane::Vec2;
+use crate::math::plane::{Vec2, full_turns};
 use crate::terms::{Inertia, Owner, Terms};
-use std::f64::consts::TAU;
 
 /// A link that does not deform, in coordinates that no other body shares.
 #[derive(Debug, Clone)]
@@ -52,7 +51,7 @@ impl Body for CentredLink {
     fn pose(&self, x: &[usize], levels: Levels) -> Pose {
         let mut pose = Pose::of(pose(x), levels);
         let theta = &mut pose.position[2];
-        *theta -= TAU * (*theta / TAU).round();
+        *theta -= full_turns(*theta);
         pose
     }
 

@@ -7,9 +7,8 @@
 use super::{Body, Content, Frame, HeldSlot, Levels, Link, Point, Pose, Slot};
 use crate::eccentric_mass::EccentricMass;
 use crate::marker::{Marker, Spin};
-use crate::math::plane::{Vec2, pair, quarter_turn, rotation};
+use crate::math::plane::{Vec2, full_turns};
 use crate::terms::{Inertia, Owner, Terms};
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// How an ideal joint holds a body.
@@ -163,27 +162,20 @@ impl Body for HeldBody {
     }
 
     fn pose(&self, x: &[usize], levels: Levels) -> Pose {
-        let mut pose = Pose::of(self.held_pose(x), levels);
-        let [.., omega] = pose.velocity;
-        let s = rotation(pose.position[2]) * self.center;
-        let turned = quarter_turn(s);
-        let shifts = [
-            s,
-            omega * turned,
-            pose.acceleration[2] * turned - omega * omega * s,
-        ];
-        let levels = [
-            &mut pose.position,
-            &mut pose.velocity,
-            &mut pose.acceleration,
-        ];
-        for (level, shift) in levels.into_iter().zip(shifts) {
-            level[0] += shift.x;
-            level[1] += shift.y;
-        }
+        let pose = self.held_pose(x);
+        let center = Marker::OnBody {
+            pose,
+            s: self.center,
+        };
+        let [q, v, a] = levels;
+        let arm = center.arm(q);
+        let mut pose = Pose::of(pose, levels);
+        pose.position[..2].copy_from_slice(center.position(q, arm).as_slice());
+        pose.velocity[..2].copy_from_slice(center.velocity(v, arm).as_slice());
+        pose.acceleration[..2].copy_from_slice(center.acceleration(v, a, arm).as_slice());
         if self.link().is_some() {
             let theta = &mut pose.position[2];
-            *theta -= TAU * (*theta / TAU).round();
+            *theta -= full_turns(*theta);
         }
         pose
     }
@@ -194,9 +186,13 @@ impl Body for HeldBody {
 
     fn place(&self, frame: &Frame) -> Vec<[[f64; 3]; 2]> {
         let ([.., theta], [.., omega]) = (frame.position, frame.velocity);
-        let s = rotation(theta) * self.points()[self.hold.point].at;
-        let position = pair(&frame.position, 0) + s;
-        let velocity = pair(&frame.velocity, 0) + omega * quarter_turn(s);
+        let held = Marker::OnBody {
+            pose: [0, 1, 2],
+            s: self.points()[self.hold.point].at,
+        };
+        let arm = held.arm(&frame.position);
+        let position = held.position(&frame.position, arm);
+        let velocity = held.velocity(&frame.velocity, arm);
         match self.hold.line {
             None => vec![
                 [position, velocity].map(|x| x.push(0.0).into()),
@@ -204,7 +200,7 @@ impl Body for HeldBody {
             ],
             Some(line) => {
                 // joints determine angles up to full turns
-                let turns = TAU * ((theta - line.angle) / TAU).round();
+                let turns = full_turns(theta - line.angle);
                 let levels = [
                     [position.x, velocity.x],
                     [position.y, velocity.y],

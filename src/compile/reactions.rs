@@ -6,6 +6,7 @@ use crate::kinematics::Kinematics;
 use crate::model::{Actuator, Grip, Model, PlacedJoint, Reaction, Share, Source};
 use crate::scene::{MotionKind, SceneError};
 use crate::terms::{ForceTerm, JointTerms};
+use std::collections::HashSet;
 
 /// The coordinates of a point that takes forces: x, y of a node, or x, y, theta of a rigid body.
 fn place(model: &Model, point: PointRef) -> Option<Vec<usize>> {
@@ -216,7 +217,7 @@ pub(super) fn driven(
     kinematics: Option<&Kinematics>,
     own: &[JointTerms],
 ) -> Vec<Grip> {
-    let mut resting: Vec<usize> = model.fixed.iter().map(|&(x, _)| x).collect();
+    let mut resting: HashSet<usize> = model.fixed.iter().map(|&(x, _)| x).collect();
     if let Some(kinematics) = kinematics {
         let inner = kinematics.mechanism.fixed.iter();
         resting.extend(inner.map(|&(x, _)| x + kinematics.offset));

@@ -6,6 +6,8 @@ use std::borrow::Cow;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
+use toml_parser::Source;
+use toml_parser::lexer::TokenKind;
 
 /// A value and its place; a table that has a header stands at the header.
 #[derive(Debug)]
@@ -31,7 +33,8 @@ pub(crate) enum Value {
 /// Keys in the order of the text.
 pub(crate) type Table = IndexMap<String, Node>;
 
-/// A scene needs five levels (`contacts.pin.friction.law`); the bound keeps every recursion shallow.
+/// A scene needs five levels (`contacts.pin.friction.law`); the bound, which holds in a header and once more below it, keeps every
+/// recursion shallow.
 const DEPTH: usize = 32;
 
 impl Value {
@@ -93,8 +96,9 @@ pub(crate) fn document(sources: &Sources) -> Result<Node, SceneError> {
         source: 0,
         offset: 0,
     };
+    place.check_depth(sources.text(0))?;
     let root = DeTable::parse(sources.text(0)).map_err(|e| place.syntax(&e))?;
-    let table = place.table(root.into_inner(), 0)?;
+    let table = place.table(root.into_inner())?;
     let span = place.span(0..0);
     if table.is_empty() {
         let error = SceneError::new(sources, span, "the scene is empty", "nothing here");
@@ -119,7 +123,8 @@ pub(super) fn value(
         source,
         offset,
     };
-    place.value(DeValue::parse(text).map_err(|e| place.syntax(&e))?, 0)
+    place.check_depth(text)?;
+    place.value(DeValue::parse(text).map_err(|e| place.syntax(&e))?)
 }
 
 struct TextPlace<'a> {
@@ -153,6 +158,35 @@ impl TextPlace<'_> {
         self.error(range, &message, label)
     }
 
+    /// An error where brackets and dotted keys nest too deeply. They are counted before the text is parsed, because even dropping what
+    /// a parser has made of them can overflow the stack.
+    fn check_depth(&self, text: &str) -> Result<(), SceneError> {
+        // levels of the open brackets, each with those of the key before it
+        let mut open = Vec::new();
+        let (mut depth, mut dots) = (0, 0);
+        for token in Source::new(text).lex() {
+            match token.kind() {
+                TokenKind::LeftSquareBracket | TokenKind::LeftCurlyBracket => {
+                    open.push(dots + 1);
+                    depth += dots + 1;
+                    dots = 0;
+                }
+                TokenKind::RightSquareBracket | TokenKind::RightCurlyBracket => {
+                    depth -= open.pop().unwrap_or(0);
+                    dots = 0;
+                }
+                TokenKind::Comma | TokenKind::Newline => dots = 0,
+                TokenKind::Dot => dots += 1,
+                _ => {}
+            }
+            if depth + dots > DEPTH {
+                let range = token.span().start()..token.span().end();
+                return Err(self.error(range, "this is nested too deeply for a scene", "here"));
+            }
+        }
+        Ok(())
+    }
+
     /// A fault between two characters is shown by the line it stands in or, at the end, follows.
     fn visible(&self, range: Range<usize>) -> Range<usize> {
         let text = &self.sources.text(self.source)[self.offset..];
@@ -168,12 +202,9 @@ impl TextPlace<'_> {
         start + indent..start + line.trim_end().len().max(indent)
     }
 
-    fn value(&self, spanned: Spanned<DeValue<'_>>, depth: usize) -> Result<Node, SceneError> {
+    fn value(&self, spanned: Spanned<DeValue<'_>>) -> Result<Node, SceneError> {
         let range = spanned.span();
         let fault = |message, label| Err(self.error(range.clone(), message, label));
-        if depth > DEPTH {
-            return fault("this is nested too deeply for a scene", "here");
-        }
         let value = match spanned.into_inner() {
             DeValue::String(text) => Value::Text(text.into_owned()),
             DeValue::Integer(number) => {
@@ -189,10 +220,10 @@ impl TextPlace<'_> {
             DeValue::Boolean(x) => Value::Boolean(x),
             DeValue::Datetime(_) => Value::Date,
             DeValue::Array(items) => {
-                let items = items.into_iter().map(|item| self.value(item, depth + 1));
+                let items = items.into_iter().map(|item| self.value(item));
                 Value::Array(items.collect::<Result<_, _>>()?)
             }
-            DeValue::Table(table) => Value::Table(self.table(table, depth)?),
+            DeValue::Table(table) => Value::Table(self.table(table)?),
         };
         let span = self.span(range);
         Ok(Node {
@@ -202,13 +233,13 @@ impl TextPlace<'_> {
         })
     }
 
-    fn table(&self, table: DeTable<'_>, depth: usize) -> Result<Table, SceneError> {
+    fn table(&self, table: DeTable<'_>) -> Result<Table, SceneError> {
         let mut entries: Vec<_> = table.into_iter().collect();
         entries.sort_by_key(|(key, _)| key.span().start);
         let read = |(key, item): (Spanned<Cow<str>>, _)| {
             let node = Node {
                 key: self.span(key.span()),
-                ..self.value(item, depth + 1)?
+                ..self.value(item)?
             };
             Ok((key.into_inner().into_owned(), node))
         };

@@ -151,9 +151,8 @@ fn starts(
     state: &State,
 ) -> Result<Vec<Option<Frame>>, SceneError> {
     let Compiled { model, kinematics } = compiled;
-    let unknown = |x: &usize| *x < model.shape().unknowns;
-    let is_free = |body: &PlacedBody| body.placed.x.iter().any(unknown);
-    let free: Vec<bool> = model.bodies().iter().map(is_free).collect();
+    let bodies = model.bodies().iter();
+    let free: Vec<bool> = bodies.map(|body| model.is_free(body)).collect();
     let given = |b: usize| scene.initial.state_of(b);
     for (b, NamedBody { name, .. }) in scene.bodies.iter().enumerate() {
         if let Some(given) = given(b).filter(|_| !free[b]) {
@@ -200,11 +199,8 @@ fn starts(
 pub(crate) fn is_assembled(scene: &Scene, model: &Model) -> bool {
     let initial = &scene.initial;
     let asked = !initial.sketch.is_empty() || !initial.velocities.is_empty();
-    let unknown = |x: &usize| *x < model.shape().unknowns;
     let mut bodies = model.bodies().iter().enumerate();
-    let silent = |(b, body): (usize, &PlacedBody)| {
-        body.placed.x.iter().any(unknown) && initial.state_of(b).is_none()
-    };
+    let silent = |(b, body)| model.is_free(body) && initial.state_of(b).is_none();
     scene.drives.is_empty() && (asked || bodies.any(silent))
 }
 

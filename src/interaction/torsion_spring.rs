@@ -7,8 +7,8 @@ use crate::document::Key;
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
 use crate::marker::{Spin, SpinDerivatives};
+use crate::math::plane::full_turns;
 use crate::system::{INTEGRALS, Integral, State, Weights};
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 pub(super) static KIND: ForceKind = ForceKind {
@@ -100,7 +100,7 @@ impl TorsionSpring {
         let (a, b) = (self.first.vector(&at.q), self.second.vector(&at.q));
         let last = at.angles[self.memory];
         let change = a.perp(&b).atan2(a.dot(&b)) - last;
-        last + change - TAU * (change / TAU).round()
+        last + change - full_turns(change)
     }
 
     fn rate(&self, at: &State) -> f64 {

@@ -2,6 +2,7 @@
 
 use nalgebra::{Complex, UnitComplex, Vector2};
 use std::cell::Cell;
+use std::f64::consts::TAU;
 
 /// A vector of the plane.
 pub type Vec2 = Vector2<f64>;
@@ -13,6 +14,12 @@ pub type Rotation = UnitComplex<f64>;
 #[inline]
 pub fn quarter_turn(a: Vec2) -> Vec2 {
     Vec2::new(-a.y, a.x)
+}
+
+/// The full turns nearest to an angle \[rad\].
+#[inline]
+pub fn full_turns(angle: f64) -> f64 {
+    TAU * (angle / TAU).round()
 }
 
 /// Angles whose cosine and sine are kept.

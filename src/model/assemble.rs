@@ -30,13 +30,12 @@ impl Model {
         self.known_loads(at, r);
     }
 
-    /// Adds the inertia forces of known accelerations, those of eccentric masses, and the weight.
+    /// Adds the inertia forces of known accelerations, the couples of eccentric masses, and the weight. Forces of eccentric masses
+    /// act on known coordinates.
     #[inline]
     fn known_loads(&self, at: &State, r: &mut [f64]) {
         for PlacedEccentric { mass, .. } in &self.eccentric {
-            for (i, f) in mass.pose.into_iter().zip(mass.force(at)) {
-                r[i] += f;
-            }
+            r[mass.pose[2]] += mass.couple(at);
         }
         for &(i, j, m) in &self.mass.known {
             r[i] += m * at.a[j];

@@ -278,6 +278,12 @@ impl Model {
         &self.effects
     }
 
+    /// True of a body with an unknown coordinate.
+    pub fn is_free(&self, body: &PlacedBody) -> bool {
+        let mut coordinates = body.placed.x.iter();
+        coordinates.any(|x| *x < self.shape.unknowns)
+    }
+
     /// Names of the unknown coordinates, then of the multipliers.
     pub fn unknown_names(&self) -> &[String] {
         &self.names

@@ -4,11 +4,11 @@ mod channels;
 mod motion;
 
 use crate::checkpoint::carried;
+use crate::math::plane::full_turns;
 use crate::model::{Energies, Model};
 use crate::scene::{Scene, SceneError};
 use crate::system::{State, Work};
 use channels::{Part, parts};
-use std::f64::consts::TAU;
 use wildmatch::WildMatchPattern;
 
 pub use channels::Channel;
@@ -49,7 +49,7 @@ impl Turning {
             None => angle,
             Some([before, rate, then]) => {
                 let expected = before + 0.5 * (rate + speed) * (t - then);
-                angle + TAU * ((expected - angle) / TAU).round()
+                angle + full_turns(expected - angle)
             }
         };
         self.last = Some([angle, speed, t]);

@@ -240,9 +240,8 @@ impl Simulation {
 
     /// Which rigid bodies have which coordinates, of those that are not driven.
     fn coordinates_of_bodies(&self) -> impl Iterator<Item = String> {
-        let unknowns = self.model.shape().unknowns;
         let bodies = self.model.bodies().iter();
-        let free = bodies.filter(|body| body.placed.x.iter().any(|x| *x < unknowns));
+        let free = bodies.filter(|body| self.model.is_free(body));
         let free: Vec<&PlacedBody> = free.collect();
         let names = |has: fn(&dyn Body) -> bool| -> String {
             let named = free.iter().filter(|body| has(&*body.placed.kind));
