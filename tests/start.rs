@@ -246,6 +246,8 @@ fn velocities_taken_as_zero_are_told() {
          zero was assumed"
     );
     assert!(shown.contains("[initial.sketch]"), "{shown}");
+    // a velocity would repeat that of the drive
+    assert!(!shown.contains("[initial.velocities]"), "{shown}");
     assert_eq!(error.underlined(), "{ x = 0.2, y = 0.0, theta = 0.0 }");
     // as the advice says
     let sketched = run(&(text.to_owned() + "initial.sketch.slot = [0.3, 0.0]\n"));

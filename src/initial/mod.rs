@@ -138,6 +138,9 @@ fn wrong_rates(scene: &Scene, model: &Model, what: &str, by: &str) -> SceneError
     let error = scene.error(first.span, message, "no velocity here");
     error.with_help(if !model.prescribed.is_empty() {
         "give `vx`, `vy` and `omega` beside the pose"
+    } else if !scene.motions.is_empty() {
+        "add a joint to `[initial.sketch]`, and what the drives determine is computed; or give `vx`, `vy` and `omega` of every \
+         body"
     } else {
         "add a joint to `[initial.sketch]` or a velocity to `[initial.velocities]`, and the others are computed; or give `vx`, \
          `vy` and `omega` of every body"

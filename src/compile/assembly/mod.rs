@@ -25,7 +25,8 @@ use numbers::number;
 use velocities::velocities;
 
 /// Help for a pose that does not fit: its meaning.
-pub(crate) const CENTRE: &str = "`x` and `y` locate the centre of mass, the midpoint of a straight link; `theta` is the direction from `start` to `end`";
+pub(crate) const CENTRE: &str = "`x` and `y` locate the point that `point` names, or the centre of mass; `theta` is the angle of the \
+     body, of a link the direction from `start` to `end`";
 
 /// Largest violation of an assembled constraint \[m\]: far above rounding, far below anything measurable.
 const CLOSED: f64 = 1e-12;
