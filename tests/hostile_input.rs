@@ -114,4 +114,12 @@ fn deep_nesting_is_refused_not_followed() {
     let nested = format!("a = {}1{}", "[".repeat(40), "]".repeat(40));
     let message = fault(&nested, &[]).to_string();
     assert_eq!(message, "this is nested too deeply for a scene");
+    // dots and brackets of strings and comments, and those of one line after the other, do not nest
+    let flat = format!(
+        "title = \"{0}\" # {0}\n{1}",
+        ".[".repeat(50),
+        "a.a = [1.0]\n".repeat(50)
+    );
+    let message = fault(&flat, &[]).to_string();
+    assert_eq!(message, "the key `a` is given twice");
 }
