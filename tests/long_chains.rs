@@ -75,16 +75,78 @@ fn a_long_chain_is_assembled_and_moves() {
     assert!((report.t - 1e-4).abs() < 1e-18);
 }
 
-/// A second pin between the same points: dense algebra takes over and names its rows.
+/// A drive turns the first link, whose coordinates are then known.
 #[test]
-fn a_redundant_joint_of_a_long_chain_is_named() {
-    let twin = "joints.twin = { type = \"revolute\", bearing = \"link70.b\", journal = \"link71.a\", model = \"ideal\" }\n";
-    let scene = Scene::parse("chain", &chain(twin), &[]).unwrap();
+fn a_long_chain_follows_a_drive() {
+    let drive = "drives.motor = { type = \"angle\", joint = \"j0\", angle = { type = \"polynomial\", coefficients = [0.1, 3.0] } }\n";
+    let scene = Scene::parse("chain", &chain(drive), &[]).unwrap();
+    let (recording, report) = run_scene(&scene);
+    assert!(report.redundant.is_empty(), "{:?}", report.redundant);
+    for (name, value) in [
+        ("link0.omega", 3.0),
+        ("link0.theta", 0.1),
+        ("link149.omega", 2.0),
+    ] {
+        let first = recording.get(name)[0];
+        assert!((first - value).abs() < 1e-12, "{name}: {first}");
+    }
+}
+
+/// Second pins between the same points repeat the rows of the first ones, which come before them in the scene.
+#[test]
+fn redundant_joints_of_a_long_chain_are_named() {
+    let places = [20, 21, 70, 140];
+    let twin = |k: usize| {
+        format!(
+            "joints.twin{k} = {{ type = \"revolute\", bearing = \"link{}.b\", journal = \"link{k}.a\", model = \"ideal\" }}\n",
+            k - 1
+        )
+    };
+    let twins: String = places.map(twin).concat();
+    let scene = Scene::parse("chain", &chain(&twins), &[]).unwrap();
+    let redundant = Simulation::new(&scene).unwrap().report().redundant;
+    let expected = places
+        .iter()
+        .flat_map(|k| ["x", "y"].map(|axis| format!("joint twin{k} ({axis})")));
+    assert_eq!(redundant, expected.collect::<Vec<_>>());
+    // what is redundant changes nothing
+    let plain = Scene::parse("chain", &chain(""), &[]).unwrap();
+    let [(with, _), (without, _)] = [&scene, &plain].map(run_scene);
+    for k in 0..LINKS {
+        for axis in ["x", "y", "theta"] {
+            let name = format!("link{k}.{axis}");
+            let (with, without) = (with.get(&name), without.get(&name));
+            let pairs = with.iter().zip(&without);
+            let off = pairs.fold(0.0_f64, |m, (x, y)| m.max((x - y).abs()));
+            // the poses of both are closed to 1e-12 m in every joint
+            assert!(off < 1e-9, "{name}: {off}");
+        }
+    }
+}
+
+/// A robot arm whose drives leave no freedom: the square of its velocity equations' condition number is beyond ten digits.
+#[test]
+fn a_long_arm_with_a_drive_in_every_joint_starts_as_it_is_driven() {
+    let drive = |k: usize| {
+        format!(
+            "drives.d{k} = {{ type = \"angle\", joint = \"j{k}\", angle = {{ type = \"polynomial\", coefficients = [0.01, 0.1] }} }}\n"
+        )
+    };
+    let text = chain(&(0..LINKS).map(drive).collect::<String>());
+    let given = text.lines().filter(|line| !line.starts_with("initial."));
+    let scene = Scene::parse("arm", &given.collect::<Vec<_>>().join("\n"), &[]).unwrap();
     let simulation = Simulation::new(&scene).unwrap();
-    let redundant = simulation.report().redundant;
-    assert_eq!(redundant.len(), 2, "{redundant:?}");
-    assert!(
-        redundant.iter().all(|name| name.starts_with("joint twin")),
-        "{redundant:?}"
-    );
+    let state = simulation.state();
+    let model = simulation.model();
+    for (name, v) in model.unknown_names().iter().zip(&state.v) {
+        let Some(k) = name
+            .strip_suffix(".theta")
+            .and_then(|name| name.strip_prefix("link"))
+        else {
+            continue;
+        };
+        let rate = 0.1 * (k.parse::<f64>().unwrap() + 1.0);
+        // as far as the velocities of a start may be from the constraints
+        assert!((v - rate).abs() < 1e-9 * LINKS as f64, "{name}: {v}");
+    }
 }

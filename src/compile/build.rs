@@ -3,8 +3,9 @@
 use super::mass::{mass, weight};
 use super::motions::motion_terms;
 use super::numbering::{Numbering, shifted};
+use super::reactions::Reactions;
 use super::rules::rules;
-use super::{Compiler, Mode, Role, reactions};
+use super::{Compiler, Mode, Role};
 use crate::body::Point;
 use crate::contact::ContactPair;
 use crate::eccentric_mass::EccentricMass;
@@ -140,11 +141,11 @@ pub(super) fn build(
     let bodies = bodies.map(|(b, (placed, parts))| placed_body(c, b, placed, parts, kinematics));
     model.bodies = bodies.collect();
     if c.mode == Mode::Real {
-        let grips = reactions::driven(c, &model, kinematics.map(|k| &**k), &own);
-        model.driven = DrivenForces::new(&grips, n, &model.weight);
-        let joints = 0..own.len();
-        let joints = joints.map(|j| reactions::joint(c, &model, &own, j));
+        let reactions = Reactions::new(c, &model, &own);
+        let grips = reactions.driven(kinematics.map(|k| &**k));
+        let joints = (0..own.len()).map(|j| reactions.joint(j));
         model.joints = joints.collect::<Result<_, _>>()?;
+        model.driven = DrivenForces::new(&grips, n, &model.weight);
     }
     Ok(model)
 }

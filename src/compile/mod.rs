@@ -17,6 +17,7 @@ use crate::kinematics::Kinematics;
 use crate::math::plane::Vec2;
 use crate::model::Model;
 use crate::scene::{MotionKind, NamedBody, Scene, SceneError, SketchPoint, Sketched};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// What determines the motion of a body.
@@ -32,6 +33,16 @@ pub(crate) enum Role {
     Turned(usize),
     /// The ideal mechanism (in the real mechanism).
     Driven,
+}
+
+impl Role {
+    /// The prescribed motion that turns the body.
+    pub fn turned(&self) -> Option<usize> {
+        match self {
+            Role::Turned(motion) => Some(*motion),
+            _ => None,
+        }
+    }
 }
 
 /// Which of the two mechanisms of a scene is compiled.
@@ -52,6 +63,10 @@ pub(crate) struct Compiler<'a> {
     /// Coordinates of every body.
     pub slots: Vec<Vec<Slot>>,
     pub joints: Vec<Arc<dyn JointModel>>,
+    /// The joints at every point, each with its other point.
+    joints_at: HashMap<PointRef, Vec<(usize, PointRef)>>,
+    /// The sketch.
+    drawn: HashMap<Sketched, Vec2>,
     /// Of every joint, whether a body has the coordinate that it leaves.
     pub holds: Vec<bool>,
 }
@@ -68,6 +83,13 @@ impl<'a> Compiler<'a> {
             _ => None,
         };
         let bodies: Vec<_> = scene.bodies.iter().map(body).collect();
+        let mut joints_at: HashMap<PointRef, Vec<(usize, PointRef)>> = HashMap::new();
+        for (j, joint) in scene.joints.iter().enumerate() {
+            let [bearing, journal] = joint.points();
+            joints_at.entry(bearing).or_default().push((j, journal));
+            joints_at.entry(journal).or_default().push((j, bearing));
+        }
+        let sketch = scene.initial.sketch.iter();
         let joints = scene.joints.iter().map(|j| &j.model);
         Compiler {
             scene,
@@ -75,6 +97,8 @@ impl<'a> Compiler<'a> {
             roles,
             slots: bodies.iter().map(|b| b.slots()).collect(),
             bodies,
+            joints_at,
+            drawn: sketch.map(|s| (s.what, s.at)).collect(),
             holds: vec![false; scene.joints.len()],
             joints: joints
                 .map(|j| joint(j).unwrap_or_else(|| j.clone()))
@@ -142,10 +166,14 @@ impl Compiler<'_> {
         }
     }
 
+    /// The joints at a point, each with its other point.
+    pub fn joints_at(&self, point: PointRef) -> &[(usize, PointRef)] {
+        self.joints_at.get(&point).map_or(&[], Vec::as_slice)
+    }
+
     /// Position of a joint or a point in the sketch.
     pub fn drawn(&self, what: Sketched) -> Option<Vec2> {
-        let mut sketch = self.scene.initial.sketch.iter();
-        sketch.find(|s| s.what == what).map(|s| s.at)
+        self.drawn.get(&what).copied()
     }
 
     /// The error for a sketch that is too far from the closed mechanism.

@@ -6,6 +6,7 @@ use crate::constraint::{Align, Place};
 use crate::math::plane::Vec2;
 use crate::scene::MotionKind;
 use crate::terms::{ConstraintTerm, CoupleTerm, JointTerms, Owner, Terms};
+use std::collections::HashSet;
 
 /// Prescribed motions that are constraints, not rules of known coordinates.
 pub(super) fn motion_terms(
@@ -14,12 +15,13 @@ pub(super) fn motion_terms(
     own: &mut [JointTerms],
     terms: &mut Terms,
 ) {
+    let turning: HashSet<usize> = c.roles.iter().filter_map(Role::turned).collect();
     for (m, motion) in c.scene.motions.iter().enumerate() {
         let name = &format!("drive {}", motion.name);
         let span = motion.span;
         match &motion.kind {
             MotionKind::Angle { joint, angle } => {
-                if c.roles.contains(&Role::Turned(m)) {
+                if turning.contains(&m) {
                     continue;
                 }
                 let points = c.scene.joints[*joint].points();

@@ -104,8 +104,7 @@ fn guess(
 /// (point in the body, approximate position) of a point of a rigid body, from a sketch or from a known partner.
 fn sketch_of(c: &Compiler, mechanism: &Model, state: &State, point: PointRef) -> Option<PointPair> {
     let local = c.bodies[point.body].points()[point.point].at;
-    let of_joint = c.scene.joints.iter().enumerate().find_map(|(j, joint)| {
-        let partner = joint.partner(point)?;
+    let of_joint = c.joints_at(point).iter().find_map(|&(j, partner)| {
         let known = || {
             c.is_known(partner)
                 .then(|| mechanism.position(&marker(mechanism, partner), state))

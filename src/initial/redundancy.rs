@@ -2,28 +2,48 @@
 
 use crate::compile::assembly::{closing_step, row, sparse_rows};
 use crate::math::dense::{Added, Equations};
-use crate::math::sparse_rows::SparseRows;
+use crate::math::independent_rows::IndependentRows;
 use crate::model::Model;
+use crate::newton::Update;
 use crate::system::State;
 
 /// Distance to the second pose that distinguishes a singular start from a redundant constraint, in units of the coordinates.
 const EXCURSION: f64 = 1e-2;
-/// Steps of Newton's method that close it again.
+/// Most steps of Newton's method that close it again, and the one after which it is closed, in units of the coordinates.
 const CLOSING: usize = 12;
+const CLOSED: f64 = 1e-12;
 
-/// The rows that depend on those before them, as (constraint, row of it), and the equations of the others.
-fn dependent(model: &Model, state: &State) -> (Vec<(usize, usize)>, Equations) {
-    let mut equations = Equations::default();
-    let mut found = Vec::new();
-    for (i, placed) in model.constraints.iter().enumerate() {
-        for d in 0..placed.rows {
-            let added = equations.add(&row(model, state, i, d), 0.0);
-            if let Added::Dependent(_) = added {
-                found.push((i, d));
-            }
+/// The independent rows of a pose.
+enum Independent {
+    Sparse(Box<IndependentRows>),
+    Dense(Equations),
+}
+
+impl Independent {
+    /// The part of x that no row sees.
+    fn free_part(&self, x: &[f64]) -> Vec<f64> {
+        match self {
+            Independent::Sparse(rows) => rows.free_part(x),
+            Independent::Dense(equations) => equations.free_part(x),
         }
     }
-    (found, equations)
+}
+
+/// The rows that depend on those before them, as (constraint, row of it), and the others.
+fn dependent(model: &Model, state: &State) -> (Vec<(usize, usize)>, Independent) {
+    let constraints = model.constraints.iter().enumerate();
+    let all = constraints.flat_map(|(i, placed)| (0..placed.rows).map(move |d| (i, d)));
+    let rows = sparse_rows(model, state);
+    let rows = rows.and_then(|rows| IndependentRows::new(model.shape().unknowns, &rows));
+    if let Some(rows) = rows {
+        let all: Vec<_> = all.collect();
+        let found = rows.dependent.iter().map(|&k| all[k]);
+        return (found.collect(), Independent::Sparse(Box::new(rows)));
+    }
+    let mut equations = Equations::default();
+    let depends = |&(i, d): &_| equations.add(&row(model, state, i, d), 0.0) != Added::Independent;
+    let found = all.filter(depends).collect();
+    (found, Independent::Dense(equations))
 }
 
 /// Dependent constraints of a start.
@@ -41,17 +61,13 @@ pub(crate) enum Redundancy {
 /// does so in that pose only.
 pub(crate) fn find(model: &Model, start: &State) -> Redundancy {
     let n = model.shape().unknowns;
-    let rows = sparse_rows(model, start);
-    if rows.is_some_and(|rows| SparseRows::independent(n, &rows).is_some()) {
-        return Redundancy::Rows(Vec::new());
-    }
-    let (here, equations) = dependent(model, start);
+    let (here, independent) = dependent(model, start);
     if here.is_empty() {
         return Redundancy::Rows(here);
     }
     // any direction that the constraints permit and that shares no symmetry with a mechanism
     let direction: Vec<f64> = (0..n).map(|i| (1.0 + 2.4 * i as f64).sin()).collect();
-    let free = equations.free_part(&direction);
+    let free = independent.free_part(&direction);
     let size = free.iter().map(|x| x * x).sum::<f64>().sqrt();
     if size <= 1e-9 * (n as f64).sqrt() {
         // no motion is possible: rows that depend on others here always do
@@ -63,7 +79,10 @@ pub(crate) fn find(model: &Model, start: &State) -> Redundancy {
     }
     let held = vec![false; n];
     for _ in 0..CLOSING {
-        closing_step(model, &mut moved, &held);
+        let Update { size, .. } = closing_step(model, &mut moved, &held);
+        if size <= CLOSED {
+            break;
+        }
     }
     let (there, _) = dependent(model, &moved);
     match here.iter().find(|row| !there.contains(row)) {

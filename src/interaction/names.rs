@@ -5,6 +5,7 @@ use crate::body::{Body, PointRef};
 use crate::document::{Field, Fields, SceneError};
 use crate::motion::FunctionReader;
 use indexmap::IndexMap;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The label of a point without direction.
@@ -19,9 +20,29 @@ pub struct Names<'a> {
     pub joints: &'a IndexMap<String, Joint>,
     /// What reads functions of time.
     pub functions: &'a FunctionReader,
+    /// Indices of the points of all bodies.
+    points: HashMap<(usize, &'a str), usize>,
 }
 
-impl Names<'_> {
+impl<'a> Names<'a> {
+    /// The names of bodies and joints.
+    pub fn new(
+        bodies: &'a IndexMap<String, Arc<dyn Body>>,
+        joints: &'a IndexMap<String, Joint>,
+        functions: &'a FunctionReader,
+    ) -> Names<'a> {
+        let points = bodies.values().enumerate().flat_map(|(b, body)| {
+            let points = body.points().iter().enumerate();
+            points.map(move |(index, point)| ((b, point.name.as_str()), index))
+        });
+        Names {
+            bodies,
+            joints,
+            functions,
+            points: points.collect(),
+        }
+    }
+
     /// The point that a field names as `"body.point"`.
     ///
     /// # Errors
@@ -35,12 +56,11 @@ impl Names<'_> {
         let Some((index, _, found)) = self.bodies.get_full(body) else {
             return Err(field.dangling("body", body, self.bodies.keys().map(String::as_str)));
         };
-        let points = found.points();
-        match points.iter().position(|p| p.name == point) {
-            Some(point) => Ok(PointRef { body: index, point }),
+        match self.points.get(&(index, point)) {
+            Some(&point) => Ok(PointRef { body: index, point }),
             None => {
                 let kind = format!("point of `{body}` called");
-                let names = points.iter().map(|p| p.name.as_str());
+                let names = found.points().iter().map(|p| p.name.as_str());
                 Err(field.dangling(&kind, point, names))
             }
         }

@@ -10,6 +10,7 @@ use crate::force::WIDTH;
 use crate::link::ElasticRoute;
 use crate::system::{State, Work};
 use crate::terms::ConstraintTerm;
+use indexmap::IndexMap;
 use std::collections::HashMap;
 
 /// What a term contributes to consecutive coordinates of a point.
@@ -25,7 +26,7 @@ pub struct Share {
 }
 
 /// A term of the model, by its index in the list of its kind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Source {
     Inertia(usize),
     Eccentric(usize),
@@ -82,7 +83,7 @@ impl DrivenForces {
         let coordinates = grips.iter().flat_map(|grip| &grip.coordinates).copied();
         let coordinates = coordinates.filter(|i| *i >= unknowns);
         let weights: HashMap<usize, f64> = weight.iter().copied().collect();
-        let mut terms: Vec<(Source, Vec<LocalPlace>)> = Vec::new();
+        let mut terms: IndexMap<Source, Vec<LocalPlace>> = IndexMap::new();
         for (grip, share) in grips
             .iter()
             .flat_map(|g| g.shares.iter().map(move |s| (g, s)))
@@ -94,16 +95,13 @@ impl DrivenForces {
                 local: share.local + k,
                 coordinate: grip.coordinates[share.place + k],
             });
-            match terms.iter_mut().find(|(source, _)| *source == share.source) {
-                Some((_, all)) => all.extend(places),
-                None => terms.push((share.source, places.collect())),
-            }
+            terms.entry(share.source).or_default().extend(places);
         }
         DrivenForces {
             coordinates: coordinates
                 .map(|i| (i, weights.get(&i).copied().unwrap_or(0.0)))
                 .collect(),
-            terms,
+            terms: terms.into_iter().collect(),
         }
     }
 }

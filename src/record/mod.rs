@@ -6,9 +6,11 @@ mod motion;
 use crate::checkpoint::carried;
 use crate::math::plane::full_turns;
 use crate::model::{Energies, Model};
+use crate::motion::Function;
 use crate::scene::{Scene, SceneError};
 use crate::system::{State, Work};
 use channels::{Part, parts};
+use std::collections::HashMap;
 use wildmatch::WildMatchPattern;
 
 pub use channels::Channel;
@@ -127,12 +129,13 @@ impl Recorder {
                 parts.push(all[entry.part]);
             }
         }
+        let angles = scene.prescribed_angles();
         let first = |entry: &Available| firsts[entry.part].unwrap_or_default();
         let turning = |entry: &&Available| {
             let [angle, speed] = all[entry.part].turning()?;
             (entry.place == angle).then(|| Turning {
                 speed: first(entry) + speed,
-                last: given_angle(scene, all[entry.part]),
+                last: given_angle(scene, &angles, all[entry.part]),
             })
         };
         Ok(Recorder {
@@ -236,15 +239,15 @@ fn choose<'a>(scene: &Scene, available: &'a [Available]) -> Result<Vec<&'a Avail
 
 /// What an angle is nearest to at t = 0, with its rate and that time: the angle that a state of the body or the drive of the
 /// joint gives, and zero of a joint that follows inverse kinematics.
-fn given_angle(scene: &Scene, part: Part) -> Option<[f64; 3]> {
+fn given_angle(scene: &Scene, driven: &HashMap<usize, &Function>, part: Part) -> Option<[f64; 3]> {
     match part {
         Part::Pose(b) => {
             let given = scene.initial.state_of(b)?;
             Some([given.position[2], given.velocity[2], 0.0])
         }
         Part::Turned(j) | Part::Actuator(j) => {
-            let driven = scene.prescribed_angle(j).map(|angle| angle.at(0.0));
-            let [angle, rate, _] = driven.unwrap_or_default();
+            let angle = driven.get(&j).map(|angle| angle.at(0.0));
+            let [angle, rate, _] = angle.unwrap_or_default();
             Some([angle, rate, 0.0])
         }
         _ => None,

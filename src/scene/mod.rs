@@ -23,6 +23,7 @@ use crate::body::{Body, Deformation};
 use crate::document::Sources;
 use crate::table::Format;
 use serde::Serialize;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A complete description of one simulation.
@@ -269,7 +270,7 @@ pub struct SketchPoint {
 }
 
 /// What an entry of the sketch places.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Sketched {
     /// A joint, by its index in [`Scene::joints`].
     Joint(usize),
@@ -363,12 +364,13 @@ impl Scene {
         smallest_clearance(self.joints.iter())
     }
 
-    /// The angle that a drive prescribes in a joint.
-    pub(crate) fn prescribed_angle(&self, joint: usize) -> Option<&Function> {
-        self.motions.iter().find_map(|motion| match &motion.kind {
-            MotionKind::Angle { joint: j, angle } if *j == joint => Some(angle),
-            _ => None,
-        })
+    /// The angles that drives prescribe in joints.
+    pub(crate) fn prescribed_angles(&self) -> HashMap<usize, &Function> {
+        let angles = self.motions.iter().filter_map(|motion| match &motion.kind {
+            MotionKind::Angle { joint, angle } => Some((*joint, angle)),
+            MotionKind::Point { .. } => None,
+        });
+        angles.collect()
     }
 
     /// Index of the body with this name.

@@ -9,6 +9,7 @@ use crate::interaction::Names;
 use crate::math::plane::{Vec2, pair, quarter_turn, unit};
 use crate::motion::{Use, read_path};
 use indexmap::IndexMap;
+use std::collections::HashSet;
 
 /// What drives prescribe.
 #[derive(Default)]
@@ -18,7 +19,7 @@ pub(super) struct Drives {
     /// Directly.
     pub motions: Vec<PrescribedMotion>,
     /// The joints that are driven already.
-    joints: Vec<usize>,
+    joints: HashSet<usize>,
 }
 
 /// A kind of drive. `read` adds the drive to those read before.
@@ -121,13 +122,16 @@ impl Drives {
 }
 
 /// The revolute joint that a field names, driven for the first time.
-fn actuated(field: &Field, names: &Names, driven: &mut Vec<usize>) -> Result<usize, SceneError> {
+fn actuated(
+    field: &Field,
+    names: &Names,
+    driven: &mut HashSet<usize>,
+) -> Result<usize, SceneError> {
     let index = names.revolute(field, ", so a drive cannot turn it")?;
-    if driven.contains(&index) {
+    if !driven.insert(index) {
         let message = format!("the joint `{}` is driven twice", names.joints[index].name);
         return Err(field.fault(message, "a second time"));
     }
-    driven.push(index);
     Ok(index)
 }
 

@@ -163,11 +163,8 @@ impl Scene {
         let bodies = kinds::bodies(&root, &materials, registry)?;
         let by_name = bodies.iter().map(|b| (b.name.clone(), b.kind.clone()));
         let by_name = by_name.collect();
-        let mut names = Names {
-            bodies: &by_name,
-            joints: &IndexMap::new(),
-            functions: &materials.functions,
-        };
+        let none = IndexMap::new();
+        let mut names = Names::new(&by_name, &none, &materials.functions);
         let joints = kinds::joints(&root, &names, &materials, registry)?;
         names.joints = &joints;
         let forces = kinds::forces(&root, &names, registry)?;

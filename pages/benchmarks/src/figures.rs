@@ -1,7 +1,8 @@
 //! The figures of the page.
 
 use crate::Measured;
-use crate::growth::{self, ChainCost, exponent};
+use crate::family::Family;
+use crate::growth::{self, SizeCost, exponent};
 use crate::meshes::ERRORS;
 use crate::rivals::{Code, STUDIES, best, levels};
 use crate::steps::StepCost;
@@ -10,6 +11,14 @@ use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
 /// Radius of dots.
 const DOT: u32 = 6;
+
+/// Colors of the kinds of mechanism.
+const COLORS: [Color; Family::ALL.len()] = [
+    palette::BLUE,
+    palette::VERMILION,
+    palette::GREEN,
+    palette::PURPLE,
+];
 
 /// Instructions and floating-point operations of every step.
 pub fn steps(measured: &Measured) -> Figure {
@@ -48,25 +57,25 @@ pub fn steps(measured: &Measured) -> Figure {
 /// Costs over the size.
 pub fn growth(measured: &Measured) -> Figure {
     let panels = vec![
-        over_links(
+        over_bodies(
             measured,
             "a) Compilation",
             ("processor time", "s"),
-            &|chain| Some(chain.compile),
+            &|cost| Some(cost.compile),
         ),
-        over_links(measured, "b) A step", ("processor time", "s"), &|chain| {
-            Some(chain.step)
+        over_bodies(measured, "b) A step", ("processor time", "s"), &|cost| {
+            Some(cost.step)
         }),
-        over_links(
+        over_bodies(
             measured,
             "c) Memory",
             ("largest memory of the process", "MB"),
-            &|chain| Some(chain.memory? as f64),
+            &|cost| Some(cost.memory? as f64),
         ),
         over_elements(measured),
     ];
     let caption = format!(
-        "a) to c): a chain of rigid links with ideal joints or with play, Bathe's method with a step of {}, {} steps from rest. \
+        "a) to c): rigid bodies, Bathe's method with a step of {}, the first {} steps. \
          The exponents are those of the largest decade. d): case 2, 20 ms, time to reach an error of position on the same mesh, \
          on the line between neighbouring steps.",
         si(growth::STEP, "s"),
@@ -75,45 +84,42 @@ pub fn growth(measured: &Measured) -> Figure {
     Figure::grid(panels, 2, caption)
 }
 
-fn over_links(
+fn over_bodies(
     measured: &Measured,
     title: &str,
     (label, unit): (&str, &str),
-    cost: &dyn Fn(&ChainCost) -> Option<f64>,
+    cost: &dyn Fn(&SizeCost) -> Option<f64>,
 ) -> Panel {
     let mut marks = Vec::new();
-    for (loose, color) in [(false, palette::BLUE), (true, palette::VERMILION)] {
-        let (links, costs) = chain(measured, loose, cost);
-        if links.is_empty() {
+    for (family, color) in Family::ALL.into_iter().zip(COLORS) {
+        let (bodies, costs) = sizes(measured, family, cost);
+        if bodies.is_empty() {
             continue;
         }
-        let label = format!(
-            "{}, exponent {}",
-            growth::name(loose),
-            digits(exponent(&links, &costs))
-        );
-        marks.push(Mark::series(&label, color, &links, &costs));
-        marks.push(Mark::points("", color, &links, &costs, DOT));
+        let exponent = digits(exponent(&bodies, &costs));
+        let label = format!("{}, exponent {exponent}", family.name());
+        marks.push(Mark::series(&label, color, &bodies, &costs));
+        marks.push(Mark::points("", color, &bodies, &costs, DOT));
     }
     let factor = if unit == "MB" { 1e-6 } else { 1.0 };
     Panel {
         title: title.to_owned(),
         note: String::new(),
-        x: Axis::new("links", "", 1.0).log(),
+        x: Axis::new("bodies", "", 1.0).log(),
         y: Axis::new(label, unit, factor).log(),
         marks,
     }
 }
 
-/// Sizes and costs of the chains of one kind.
-pub fn chain(
+/// Sizes and costs of the mechanisms of one kind.
+pub fn sizes(
     measured: &Measured,
-    loose: bool,
-    cost: &dyn Fn(&ChainCost) -> Option<f64>,
+    family: Family,
+    cost: &dyn Fn(&SizeCost) -> Option<f64>,
 ) -> (Vec<f64>, Vec<f64>) {
-    let chains = measured.chains.iter().filter(|chain| chain.loose == loose);
-    chains
-        .filter_map(|chain| Some((chain.links as f64, cost(chain)?)))
+    let sizes = measured.sizes.iter().filter(|size| size.family == family);
+    sizes
+        .filter_map(|size| Some((size.bodies as f64, cost(size)?)))
         .unzip()
 }
 

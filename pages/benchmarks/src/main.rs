@@ -2,6 +2,7 @@
 
 mod baseline;
 mod count;
+mod family;
 mod figures;
 mod gate;
 mod growth;
@@ -12,7 +13,8 @@ mod rivals;
 mod steps;
 
 use clap::{Parser, Subcommand, ValueEnum};
-use growth::ChainCost;
+use family::Family;
+use growth::SizeCost;
 use meshes::MeshCost;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use records::RunningCampaign;
@@ -51,13 +53,12 @@ enum Benchmark {
         #[arg(long)]
         check: bool,
     },
-    /// Measures one chain in this process and prints its costs.
-    Chain {
-        /// Number of links.
-        links: usize,
-        /// With play in every joint.
-        #[arg(long)]
-        loose: bool,
+    /// Measures one mechanism in this process and prints its costs.
+    Size {
+        /// Its kind.
+        family: Family,
+        /// Number of bodies.
+        bodies: usize,
         /// Timed runs.
         #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
         repeats: u16,
@@ -75,8 +76,8 @@ pub struct Measured {
     pub baseline: String,
     /// Counts and times of steps.
     pub steps: Vec<StepCost>,
-    /// Costs of chains.
-    pub chains: Vec<ChainCost>,
+    /// Costs of mechanisms of many sizes.
+    pub sizes: Vec<SizeCost>,
     /// Times at one error, by number of elements.
     pub meshes: Vec<MeshCost>,
     /// Curves of ours and of other codes.
@@ -90,12 +91,12 @@ fn main() -> Result<()> {
         None => measure(&root, arguments.repeats.into(), arguments.only),
         Some(Benchmark::Count { check: true }) => gate::check(&root),
         Some(Benchmark::Count { check: false }) => gate::record(&root),
-        Some(Benchmark::Chain {
-            links,
-            loose,
+        Some(Benchmark::Size {
+            family,
+            bodies,
             repeats,
         }) => {
-            let cost = growth::measure(links, loose, repeats)?;
+            let cost = growth::measure(family, bodies, repeats)?;
             println!("{}", serde_json::to_string(&cost).into_diagnostic()?);
             Ok(())
         }
@@ -125,7 +126,7 @@ fn measure(root: &Path, repeats: usize, only: Option<PagePart>) -> Result<()> {
         measured.steps = steps::measure(root, &program, &counts, repeats)?;
     }
     if wanted(PagePart::Growth) {
-        measured.chains = growth::all()?;
+        measured.sizes = growth::all()?;
         measured.meshes = meshes::measure(root, repeats)?;
     }
     if wanted(PagePart::Rivals) {

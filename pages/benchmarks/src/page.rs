@@ -1,8 +1,9 @@
 //! The page.
 
 use crate::Measured;
-use crate::figures::{chain, curves, mesh};
-use crate::growth::{self, ChainCost, exponent};
+use crate::family::Family;
+use crate::figures::{self, curves, mesh};
+use crate::growth::{self, SizeCost, exponent};
 use crate::meshes::ERRORS;
 use crate::rivals::{Code, STUDIES, best, study};
 use accuracy::ida;
@@ -45,41 +46,52 @@ fn short(measured: &Measured) -> String {
         let most = values.iter().copied().fold(0.0, f64::max);
         format!("{} to {}", digits(least), digits(most))
     };
-    let exponents = |cost: &dyn Fn(&ChainCost) -> Option<f64>| {
-        let each = [false, true].map(|loose| {
-            let (links, costs) = chain(measured, loose, cost);
-            digits(exponent(&links, &costs))
-        });
-        format!("{} (ideal) and {} (with play)", each[0], each[1])
+    let compile = |family: Family| match largest(measured, family) {
+        Some(cost) => si(cost.compile, "s"),
+        None => String::new(),
     };
-    let longest = growth::SIZES[growth::SIZES.len() - 1];
-    let tenth = longest / 10;
-    let compile = |loose: bool| {
-        let chains = measured.chains.iter();
-        let one = chains.filter(|chain| chain.loose == loose && chain.links == longest);
-        let seconds: Vec<String> = one.map(|chain| si(chain.compile, "s")).collect();
-        seconds.join("")
+    let exponents = |cost: &SizeOf| {
+        let all = Family::ALL.map(|family| growth_of(measured, family, cost));
+        range(&all.into_iter().flatten().collect::<Vec<f64>>())
     };
+    let most_bodies = growth::SIZES[growth::SIZES.len() - 1];
     let seconds: Vec<f64> = measured.steps.iter().map(|step| step.seconds).collect();
     let [least, most] = [f64::min, f64::max].map(|of| seconds.iter().copied().reduce(of));
     format!(
         "## In short\n\n\
          * A step takes {} to {} of processor time. These are {} of the instructions and {} of the time of the baseline, commit {}.\n\
-         * A chain of {longest} links is compiled in {} with ideal joints and in {} with play.\n\
-         * From {tenth} to {longest} links the costs grow with these powers of their number (1: in proportion to it): compilation {}, a step {} in time and {} in instructions, memory {}.\n{}\n",
+         * A chain of {most_bodies} bodies is compiled in {} with ideal joints and in {} with play.\n\
+         * From {} to {most_bodies} bodies the costs of {} kinds of mechanism grow with these powers of their number (1: in proportion to it): compilation {}, a step {} in time and {} in instructions, memory {}.\n{}\n",
         si(least.unwrap_or(0.0), "s"),
         si(most.unwrap_or(0.0), "s"),
         range(&instructions),
         range(&times),
         measured.baseline,
-        compile(false),
-        compile(true),
-        exponents(&|chain| Some(chain.compile)),
-        exponents(&|chain| Some(chain.step)),
-        exponents(&|chain| Some(chain.instructions? as f64)),
-        exponents(&|chain| Some(chain.memory? as f64)),
+        compile(Family::Chain),
+        compile(Family::LooseChain),
+        most_bodies / 10,
+        Family::ALL.len(),
+        exponents(&|cost| Some(cost.compile)),
+        exponents(&|cost| Some(cost.step)),
+        exponents(&|cost| Some(cost.instructions? as f64)),
+        exponents(&|cost| Some(cost.memory? as f64)),
         compared(measured),
     )
+}
+
+/// A cost of a mechanism.
+type SizeOf = dyn Fn(&SizeCost) -> Option<f64>;
+
+/// The largest mechanism of a kind.
+fn largest(measured: &Measured, family: Family) -> Option<&SizeCost> {
+    let sizes = measured.sizes.iter().filter(|cost| cost.family == family);
+    sizes.max_by_key(|cost| cost.bodies)
+}
+
+/// The exponent of a cost of a kind, where it has been measured.
+fn growth_of(measured: &Measured, family: Family, cost: &SizeOf) -> Option<f64> {
+    let (bodies, costs) = figures::sizes(measured, family, cost);
+    (bodies.len() > 1).then(|| exponent(&bodies, &costs))
 }
 
 /// How long the other codes take, and where they are faster.
@@ -160,15 +172,50 @@ fn steps(measured: &Measured) -> String {
     out + "\n"
 }
 
+/// Costs of the largest mechanism of each kind.
+fn largest_mechanisms(measured: &Measured) -> String {
+    let mut out = "| mechanism | bodies | compilation | a step | instructions of a step | memory |\n|---|---|---|---|---|---|\n".to_owned();
+    for family in Family::ALL {
+        let Some(cost) = largest(measured, family) else {
+            continue;
+        };
+        let cell = |cost: Option<String>, of: &SizeOf| match (cost, growth_of(measured, family, of))
+        {
+            (Some(cost), Some(exponent)) => format!("{cost} ({})", digits(exponent)),
+            (cost, _) => cost.unwrap_or_default(),
+        };
+        let cells = [
+            cell(Some(si(cost.compile, "s")), &|cost| Some(cost.compile)),
+            cell(Some(si(cost.step, "s")), &|cost| Some(cost.step)),
+            cell(cost.instructions.map(|n| n.to_string()), &|cost| {
+                Some(cost.instructions? as f64)
+            }),
+            cell(cost.memory.map(|bytes| si(bytes as f64, "B")), &|cost| {
+                Some(cost.memory? as f64)
+            }),
+        ];
+        out += &format!(
+            "| {} | {} | {} |\n",
+            family.name(),
+            cost.bodies,
+            cells.join(" | ")
+        );
+    }
+    out + "\n"
+}
+
 /// Growth.
 fn sizes(measured: &Measured) -> String {
     let mut out = format!(
         "## Growth with the size\n\n![Costs over the size](pages/benchmarks/figures/growth.png)\n\n\
+         The table has the costs of the largest mechanisms, and in brackets the exponent of their growth over the largest decade. \
          The instructions of a step are those of a run over its {} steps, two rows included. Its time also depends on \
-         the caches of the processor, into which the data of a long chain do not fit.\n\n\
-         The table shows the processor time to reach an error; a cell is empty where the steps tried do not reach it.\n\n\
+         the caches of the processor, into which the data of a large mechanism do not fit.\n\n\
+         {}\
+         The next table shows the processor time to reach an error; a cell is empty where the steps tried do not reach it.\n\n\
          | case 2, 20 ms: elements a link | ",
-        growth::STEPS
+        growth::STEPS,
+        largest_mechanisms(measured)
     );
     let columns: Vec<(&str, usize)> = curves(measured)
         .into_iter()

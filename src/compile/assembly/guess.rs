@@ -6,8 +6,10 @@ use super::position;
 use crate::body::{Frame, PointRef};
 use crate::math::plane::{Rotation, Vec2};
 use crate::model::Model;
+use crate::motion::Function;
 use crate::scene::{MotionKind, SceneError, Sketched};
 use crate::system::State;
+use std::collections::{BTreeSet, HashMap};
 
 /// The bodies that have been placed, and their coordinates.
 struct PartialAssembly<'a> {
@@ -16,6 +18,10 @@ struct PartialAssembly<'a> {
     done: Vec<bool>,
     /// Coordinates of given poses.
     held: Vec<bool>,
+    /// The angles that drives prescribe in joints.
+    angles: HashMap<usize, &'a Function>,
+    /// The coordinates of points that drives prescribe at t = 0.
+    driven: HashMap<PointRef, [Option<f64>; 2]>,
 }
 
 impl PartialAssembly<'_> {
@@ -39,7 +45,7 @@ impl PartialAssembly<'_> {
         }
         let met = self.met(point, state);
         let drawn = met.or_else(|| self.c.drawn(Sketched::Point(point)));
-        let [x, y] = self.driven(point);
+        let [x, y] = self.driven.get(&point).copied().unwrap_or_default();
         match (drawn, x, y) {
             (_, Some(x), Some(y)) => Some(Vec2::new(x, y)),
             (Some(at), ..) => Some(Vec2::new(x.unwrap_or(at.x), y.unwrap_or(at.y))),
@@ -47,29 +53,9 @@ impl PartialAssembly<'_> {
         }
     }
 
-    /// Coordinates of a point that drives prescribe at t = 0.
-    fn driven(&self, point: PointRef) -> [Option<f64>; 2] {
-        let mut driven = [None; 2];
-        for motion in &self.c.scene.motions {
-            if let MotionKind::Point {
-                point: moved,
-                coordinates,
-            } = &motion.kind
-                && *moved == point
-            {
-                for (known, f) in driven.iter_mut().zip(coordinates) {
-                    *known = f.as_ref().map(|f| f.at(0.0)[0]).or(*known);
-                }
-            }
-        }
-        driven
-    }
-
     /// Position of a point that a joint connects to a placed body, or whose joint is sketched.
     fn met(&self, point: PointRef, state: &State) -> Option<Vec2> {
-        let mut joints = self.c.scene.joints.iter().enumerate();
-        joints.find_map(|(j, joint)| {
-            let partner = joint.partner(point)?;
+        self.c.joints_at(point).iter().find_map(|&(j, partner)| {
             let partner = (self.done[partner.body] && self.c.joints[j].coincides())
                 .then(|| self.position(partner, state));
             partner.or_else(|| self.c.drawn(Sketched::Joint(j)))
@@ -114,11 +100,15 @@ impl PartialAssembly<'_> {
             let frame = placed.kind.frame_at(&placed.x, &state.q, &state.v);
             frame.map_or(0.0, |frame| frame.position[2])
         };
-        let scene = self.c.scene;
-        scene.joints.iter().enumerate().find_map(|(j, joint)| {
+        let points = 0..self.c.bodies[b].points().len();
+        let points = points.map(|point| PointRef { body: b, point });
+        let joints = points.flat_map(|point| self.c.joints_at(point));
+        let joints: BTreeSet<usize> = joints.map(|&(j, _)| j).collect();
+        joints.into_iter().find_map(|j| {
+            let joint = &self.c.scene.joints[j];
             let (first, second) = (joint.bearing.body, joint.journal.body);
             let model = &self.c.joints[j];
-            let driven = || scene.prescribed_angle(j).filter(|_| model.is_revolute());
+            let driven = || self.angles.get(&j).filter(|_| model.is_revolute());
             let angle = model.angle().or_else(|| Some(driven()?.at(0.0)[0]));
             match (angle, model.line()) {
                 (Some(angle), _) if second == b && self.done[first] => {
@@ -171,9 +161,20 @@ pub(super) fn guess(
     state: &mut State,
 ) -> Result<Vec<bool>, SceneError> {
     let n = mechanism.shape().unknowns;
+    let mut driven: HashMap<PointRef, [Option<f64>; 2]> = HashMap::new();
+    for motion in &c.scene.motions {
+        if let MotionKind::Point { point, coordinates } = &motion.kind {
+            let known = driven.entry(*point).or_default();
+            for (known, f) in known.iter_mut().zip(coordinates) {
+                *known = f.as_ref().map(|f| f.at(0.0)[0]).or(*known);
+            }
+        }
+    }
     let mut assembly = PartialAssembly {
         c,
         mechanism,
+        angles: c.scene.prescribed_angles(),
+        driven,
         done: c.roles.iter().map(|r| *r != Role::Free).collect(),
         held: vec![false; n],
     };

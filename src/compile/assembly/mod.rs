@@ -12,8 +12,9 @@ use super::sketch::marker;
 use super::{Compiler, Mode, build, known_roles, numbering};
 use crate::body::PointRef;
 use crate::math::dense::Equations;
+use crate::math::independent_rows::IndependentRows;
 use crate::math::plane::Vec2;
-use crate::math::sparse_rows::{SparseRow, SparseRows, full_row};
+use crate::math::sparse_rows::{SparseRow, full_row};
 use crate::model::{Model, PlacedConstraint};
 use crate::newton::{Update, iterate};
 use crate::scene::{Scene, SceneError, SketchPoint, Sketched};
@@ -113,7 +114,7 @@ pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> U
     Update::largest(step.iter().copied())
 }
 
-/// The step of a large mechanism whose rows are certainly independent.
+/// The step of a large mechanism, where it is certain which rows are independent.
 fn sparse_step(model: &Model, state: &State, held: &[bool]) -> Option<Vec<f64>> {
     let mut rows = sparse_rows(model, state)?;
     for row in &mut rows {
@@ -125,7 +126,7 @@ fn sparse_step(model: &Model, state: &State, held: &[bool]) -> Option<Vec<f64>> 
         (0..placed.rows).map(move |d| -value[d])
     });
     let values: Vec<f64> = values.collect();
-    Some(SparseRows::independent(n, &rows)?.solve(&vec![0.0; n], &values))
+    Some(IndependentRows::new(n, &rows)?.least_norm(&values))
 }
 
 /// The largest violation of a constraint, and the constraint.

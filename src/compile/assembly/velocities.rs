@@ -3,7 +3,8 @@
 use super::super::{Compiler, Role};
 use super::{AGREEING, opening, row, sparse_rows};
 use crate::math::dense::{Added, Equations};
-use crate::math::sparse_rows::{SparseRow, SparseRows, SymmetricBlock, full_row};
+use crate::math::independent_rows::IndependentRows;
+use crate::math::sparse_rows::{SparseRow, SparseRows, SymmetricBlock, full_row, times};
 use crate::model::Model;
 use crate::scene::SceneError;
 use crate::system::{State, System};
@@ -90,7 +91,7 @@ pub(super) fn velocities(
     Ok(())
 }
 
-/// The same of a large mechanism whose constraints and given velocities are certainly independent.
+/// The same of a large mechanism where it is certain which equations are independent, and the others agree with them.
 fn sparse_velocities(
     c: &Compiler,
     mechanism: &Model,
@@ -110,6 +111,7 @@ fn sparse_velocities(
     if !single.clone().all(|g| free(g.body)) {
         return None;
     }
+    let singles = single.len();
     let single = single.map(|g| (g.body, g.component, g.value));
     for (body, component, value) in whole.chain(single) {
         if let Some((row, known)) = velocity_row(mechanism, state, body, component) {
@@ -117,7 +119,12 @@ fn sparse_velocities(
             wanted.push(value - known);
         }
     }
-    SparseRows::independent(n, &rows)?;
+    let independent = IndependentRows::new(n, &rows)?;
+    // a single velocity that follows from the others is refused below
+    let last = independent.dependent.last();
+    if last.is_some_and(|&k| k + singles >= rows.len()) {
+        return None;
+    }
     let (blocks, momentum) = mass_blocks(mechanism, state);
     // not -p, which would turn a zero into a negative one
     let against: Vec<f64> = momentum.iter().map(|p| 0.0 - p).collect();
@@ -125,7 +132,11 @@ fn sparse_velocities(
         .iter()
         .map(|(own, block)| (&own[..], &block[..]))
         .collect();
-    Some(SparseRows::factor(n, &rows, &blocks)?.solve(&against, &wanted))
+    let (chosen, right) = (independent.chosen(&rows), independent.chosen(&wanted));
+    let v = SparseRows::factor(n, &chosen, &blocks)?.solve(&against, &right);
+    let off = |k: usize| (times(&rows[k], &v) - wanted[k]).abs();
+    let agree = independent.dependent.iter().all(|&k| off(k) <= AGREEING);
+    agree.then_some(v)
 }
 
 /// A velocity of a body as a linear function of the unknown velocities, and the contribution of known ones. `None` for the
@@ -150,7 +161,7 @@ fn mass(mechanism: &Model, state: &State) -> (Mat<f64>, Vec<f64>) {
     let (blocks, momentum) = mass_blocks(mechanism, state);
     let mut m = Mat::zeros(n, n);
     for (own, block) in &blocks {
-        for (&i, row) in own.iter().zip(block.chunks_exact(own.len().max(1))) {
+        for (&i, row) in own.iter().zip(block.chunks_exact(own.len())) {
             own.iter()
                 .zip(row)
                 .for_each(|(&j, value)| m[(i, j)] += value);
@@ -162,11 +173,11 @@ fn mass(mechanism: &Model, state: &State) -> (Mat<f64>, Vec<f64>) {
 /// Some unknown coordinates, and their mass matrix row by row.
 type MassBlock = (Vec<usize>, Vec<f64>);
 
-/// The masses of the unknown coordinates part by part, and the momentum that known velocities add to them.
+/// The masses of the unknown coordinates, part by part where there are any, and the momentum that known velocities add to them.
 fn mass_blocks(mechanism: &Model, state: &State) -> (Vec<MassBlock>, Vec<f64>) {
     let n = mechanism.shape().unknowns;
     let mut momentum = vec![0.0; n];
-    let blocks = mechanism.mass.parts.iter().map(|part| {
+    let blocks = mechanism.mass.parts.iter().filter_map(|part| {
         let (mut own, mut block) = (Vec::new(), Vec::new());
         let rows = part.values.chunks_exact(part.coordinates.len());
         for (&i, row) in part.coordinates.iter().zip(rows).filter(|(i, _)| **i < n) {
@@ -178,7 +189,7 @@ fn mass_blocks(mechanism: &Model, state: &State) -> (Vec<MassBlock>, Vec<f64>) {
                 }
             }
         }
-        (own, block)
+        (!own.is_empty()).then_some((own, block))
     });
     (blocks.collect(), momentum)
 }
