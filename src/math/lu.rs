@@ -8,8 +8,8 @@
 //! ([`DenseLu`]) and counts it.
 
 use super::larger;
+use super::minimum_degree::minimum_degree;
 use faer::linalg::solvers::{PartialPivLu, Solve};
-use std::collections::BTreeSet;
 
 /// A multiplier that exceeds this loses so many digits that the factorisation is not used.
 const LARGEST_MULTIPLIER: f64 = 1e9;
@@ -96,46 +96,8 @@ impl Symbolic {
     /// # Panics
     /// If an index is not below n, or the orders asked for contradict each other.
     pub fn analyse(n: usize, cliques: &[Vec<usize>], after: &[Vec<usize>]) -> Symbolic {
-        assert_eq!(after.len(), n);
-        let mut neighbours = vec![BTreeSet::new(); n];
-        for clique in cliques {
-            for &i in clique {
-                neighbours[i].extend(clique.iter().copied().filter(|&j| j != i));
-            }
-        }
-        // how many unknowns must still go before each one, and those that wait for each one
-        let mut awaited: Vec<usize> = after.iter().map(Vec::len).collect();
-        let mut waiting = vec![Vec::new(); n];
-        for (i, before) in after.iter().enumerate() {
-            before.iter().for_each(|&j| waiting[j].push(i));
-        }
-        // the unknowns that can go, by their number of neighbours
-        let free = (0..n).filter(|&i| awaited[i] == 0);
-        let mut ready: BTreeSet<(usize, usize)> = free.map(|i| (neighbours[i].len(), i)).collect();
-        let mut order = Vec::with_capacity(n);
-        let mut eliminated_with = Vec::with_capacity(n);
-        for _ in 0..n {
-            let next = ready.pop_first();
-            let (_, pivot) = next.expect("the orders asked for do not contradict each other");
-            let front: Vec<usize> = std::mem::take(&mut neighbours[pivot]).into_iter().collect();
-            for &i in &front {
-                let before = neighbours[i].len();
-                neighbours[i].remove(&pivot);
-                neighbours[i].extend(front.iter().copied().filter(|&j| j != i));
-                if ready.remove(&(before, i)) {
-                    ready.insert((neighbours[i].len(), i));
-                }
-            }
-            for &i in &waiting[pivot] {
-                awaited[i] -= 1;
-                if awaited[i] == 0 {
-                    ready.insert((neighbours[i].len(), i));
-                }
-            }
-            order.push(pivot);
-            eliminated_with.push(front);
-        }
-        Self::layout(order, &eliminated_with)
+        let (order, coupled) = minimum_degree(n, cliques, after);
+        Self::layout(order, &coupled)
     }
 
     /// Collects the pivots in supernodes and gives every entry its place; `coupled` are the unknowns coupled to each pivot.

@@ -4,6 +4,7 @@ pub mod dense;
 pub mod independent_rows;
 pub mod lu;
 mod mass_inverse;
+mod minimum_degree;
 pub mod plane;
 pub mod quadrature;
 pub mod saddle_point;
