@@ -124,7 +124,7 @@ fn redundant_joints_of_a_long_chain_are_named() {
     }
 }
 
-/// A robot arm whose drives leave no freedom: the square of its velocity equations' condition number is beyond ten digits.
+/// A robot arm whose drives leave no freedom: the square of the condition number of its velocity equations is beyond ten digits.
 #[test]
 fn a_long_arm_with_a_drive_in_every_joint_starts_as_it_is_driven() {
     let drive = |k: usize| {

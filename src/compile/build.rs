@@ -22,7 +22,7 @@ use crate::model::{
 };
 use crate::scene::{Analysis, SceneError};
 use crate::system::Shape;
-use crate::terms::{ConstraintRows, Inertia, JointTerms, Owner, Terms};
+use crate::terms::{ConstraintRows, ForceTerm, Inertia, JointTerms, Owner, Terms};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -133,6 +133,7 @@ pub(super) fn build(
         driven_nodes: numbering.driven_nodes,
         bodies: Vec::new(),
         joints: Vec::new(),
+        contact_joints: contact_joints(&own, shape.contacts),
         symbolic,
         acceleration_matrix,
     };
@@ -280,6 +281,17 @@ fn owners(coordinates: &[Vec<usize>; 2], bodies: [usize; 2]) -> Vec<usize> {
     let sides = coordinates.iter().zip(bodies);
     let owners = sides.flat_map(|(side, body)| vec![body; side.len()]);
     owners.collect()
+}
+
+/// The joint of every contact.
+fn contact_joints(own: &[JointTerms], contacts: usize) -> Vec<Option<usize>> {
+    let mut joints = vec![None; contacts];
+    for (j, terms) in own.iter().enumerate() {
+        if let ForceTerm::Contact(contact) = terms.force {
+            joints[contact] = Some(j);
+        }
+    }
+    joints
 }
 
 /// The unknown angles of rigid bodies.

@@ -96,7 +96,10 @@ fn connect_joint(c: &Compiler, nodes: &mut Nodes, j: usize) -> Result<bool, Scen
         return redundant("the motion of both of its bodies is prescribed");
     }
     // the class of the node of a free end
-    let class = |p: PointRef| Some(nodes.class(p.body, c.node(p).filter(|_| !c.is_known(p))?));
+    let class = |p: PointRef| match c.is_known(p) {
+        true => None,
+        false => Some(nodes.class(p.body, c.node(p)?)),
+    };
     match points.map(class) {
         _ if known == [true; 2] => {}
         [Some(a), Some(b)] if a == b => {
@@ -221,7 +224,9 @@ fn number_unknowns(c: &Compiler, nodes: &mut Nodes, eliminated: Vec<bool>) -> Nu
 impl Compiler<'_> {
     /// True for a class fixed to a known point of a rigid body, whose node must be computed.
     fn needs_rider(&self, nodes: &Nodes, class: usize) -> bool {
-        nodes.anchor[class].is_some_and(|point| {
+        // all points of the ground are nodes
+        let moving = nodes.anchor[class].filter(|point| self.roles[point.body] != Role::Ground);
+        moving.is_some_and(|point| {
             let x = vec![0; self.slots[point.body].len()];
             let marker = self.bodies[point.body].marker(point.point, &x);
             !matches!(marker, Marker::Node { .. })

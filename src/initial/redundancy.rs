@@ -9,8 +9,9 @@ use crate::system::State;
 
 /// Distance to the second pose that distinguishes a singular start from a redundant constraint, in units of the coordinates.
 const EXCURSION: f64 = 1e-2;
-/// Most steps of Newton's method that close it again, and the one after which it is closed, in units of the coordinates.
+/// Most steps of Newton's method that close it again.
 const CLOSING: usize = 12;
+/// A step no larger than this is the last one, in units of the coordinates.
 const CLOSED: f64 = 1e-12;
 
 /// The independent rows of a pose.
@@ -85,7 +86,7 @@ pub(crate) fn find(model: &Model, start: &State) -> Redundancy {
         }
     }
     let (there, _) = dependent(model, &moved);
-    match here.iter().find(|row| !there.contains(row)) {
+    match here.iter().find(|row| there.binary_search(row).is_err()) {
         Some(&(i, d)) if there.len() < here.len() => {
             Redundancy::SingularStart(model.names[n + model.constraints[i].row + d].clone())
         }

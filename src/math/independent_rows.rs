@@ -1,4 +1,4 @@
-//! The rows of many linear equations that do not depend on those before them, in a time that grows little more than their number where
+//! The rows of many linear equations that do not depend on those before them, in a time that grows little faster than their number where
 //! few of them depend on others. [`super::dense`] decides what is not certain here.
 
 use super::dense::{Added, Equations};
@@ -6,14 +6,14 @@ use super::sparse_rows::{SparseRow, SparseRows, SymmetricBlock, full_row, square
 use indexmap::{IndexMap, IndexSet};
 use std::collections::{BTreeMap, HashMap};
 
-/// Rows are certainly independent if the square of the sine of each to the span of those before it is larger than this: far above
-/// the rounding of a square, and above every row that [`super::dense`] takes for dependent.
+/// Rows are certainly independent if the square of the sine of each to the span of those eliminated before it is larger than this: far
+/// above the rounding of a square, and above every row that [`super::dense`] takes for dependent.
 const INDEPENDENT: f64 = 1e-10;
 /// What is added to these squares where they may be zero: above their rounding, far below [`INDEPENDENT`].
 const SHIFT: f64 = 1e-13;
-/// A row contributes to another one if its part is larger than this part of the latter: above rounding, far below what
-/// [`super::dense`] takes for dependent.
-const CONTRIBUTES: f64 = 1e-12;
+/// A row takes part in a sum of rows if its term is larger than this fraction of the sum: above the rounding of the terms, far
+/// below what [`super::dense`] takes for dependent.
+const TAKES_PART: f64 = 1e-11;
 
 /// Rows, of which some may depend on those before them.
 #[derive(Debug)]
@@ -72,7 +72,7 @@ fn identity(indices: &[usize]) -> Vec<SymmetricBlock<'_>> {
 /// The factors of rows for n unknowns, with M = I. None unless all are certainly independent.
 fn certainly_independent(n: usize, rows: &[SparseRow]) -> Option<SparseRows> {
     let factors = SparseRows::factor(n, rows, &identity(&indices(n)))?;
-    let is_far = |(k, row)| factors.distance(k) > INDEPENDENT * square(row);
+    let is_far = |(k, row)| factors.squared_distance(k) > INDEPENDENT * square(row);
     rows.iter().enumerate().all(is_far).then_some(factors)
 }
 
@@ -87,7 +87,7 @@ fn dependent(rows: &[SparseRow]) -> Option<Vec<usize>> {
     let rows: Vec<SparseRow> = rows.iter().map(merged).collect();
     let is_zero = |k: &usize| rows[*k].is_empty();
     let mut found: Vec<usize> = (0..rows.len()).filter(is_zero).collect();
-    // rows that share no unknown with each other, nor with rows between them
+    // rows that are connected through unknowns which they share
     let mut parts = Groups::new(rows.len());
     let mut first_with: HashMap<usize, usize> = HashMap::new();
     for (k, row) in rows.iter().enumerate() {
@@ -119,7 +119,8 @@ fn local(rows: &[SparseRow], part: &[usize]) -> (Vec<SparseRow>, usize) {
 fn dependent_of(all: &[SparseRow], part: &[usize]) -> Option<Vec<usize>> {
     let (rows, n) = local(all, part);
     let shifted = SparseRows::factor_shifted(n, &rows, &identity(&indices(n)), SHIFT)?;
-    let doubtful = |k: &usize| shifted.distance(*k) <= (INDEPENDENT + SHIFT) * square(&rows[*k]);
+    let doubtful =
+        |k: &usize| shifted.squared_distance(*k) <= (INDEPENDENT + SHIFT) * square(&rows[*k]);
     let doubtful: Vec<usize> = (0..rows.len()).filter(doubtful).collect();
     let certain = without(&doubtful, &indices(rows.len()));
     let factors = certainly_independent(n, &without(&doubtful, &rows))?;
@@ -138,7 +139,7 @@ fn dependent_of(all: &[SparseRow], part: &[usize]) -> Option<Vec<usize>> {
             }
         }
         for (&other, part) in certain.iter().zip(&parts) {
-            if part.abs() * square(&rows[other]).sqrt() > CONTRIBUTES * size {
+            if part.abs() * square(&rows[other]).sqrt() > TAKES_PART * size {
                 sums.unite(k, other);
             }
         }

@@ -1,22 +1,17 @@
 //! The order of elimination by minimum degree: next is always the unknown with the fewest neighbours.
 //!
 //! Eliminating an unknown makes its neighbours a clique. The graph is kept as its cliques, at first those of the matrix (the
-//! quotient graph of George & Liu 1989, SIAM Review 31:1): a clique that is part of a later one is dropped, so that the lists
-//! never grow, and a degree is the size of a union of cliques.
+//! quotient graph of George & Liu 1989, SIAM Review 31:1), and a degree is the size of a union of cliques. It decreases by one at most
+//! when a neighbour is eliminated, so that it is counted again only where this bound makes an unknown the next one.
 
 use std::collections::BTreeSet;
 
 /// A symmetric pattern as a union of cliques, of which some unknowns have been eliminated.
 struct QuotientGraph {
-    /// The unknowns of every clique; none once it is part of another one.
+    /// The unknowns of every clique; none once one of them has been eliminated.
     members: Vec<Vec<usize>>,
     /// The cliques of every unknown.
     cliques: Vec<Vec<usize>>,
-    /// For every clique near the last pivot, how many of its unknowns are not coupled to this pivot.
-    outside: Vec<usize>,
-    /// The last pivot that a clique was near to.
-    visited: Vec<usize>,
-    front: Marks,
     seen: Marks,
 }
 
@@ -38,10 +33,6 @@ impl Marks {
         self.current += 1;
     }
 
-    fn contains(&self, i: usize) -> bool {
-        self.of[i] == self.current
-    }
-
     /// True if it was not in the set.
     fn insert(&mut self, i: usize) -> bool {
         std::mem::replace(&mut self.of[i], self.current) != self.current
@@ -53,9 +44,6 @@ impl QuotientGraph {
         let mut graph = QuotientGraph {
             members: Vec::new(),
             cliques: vec![Vec::new(); n],
-            outside: Vec::new(),
-            visited: Vec::new(),
-            front: Marks::new(n),
             seen: Marks::new(n),
         };
         for clique in cliques {
@@ -64,7 +52,6 @@ impl QuotientGraph {
             let once = once.collect();
             graph.add(once);
         }
-        graph.front.clear();
         graph
     }
 
@@ -73,53 +60,27 @@ impl QuotientGraph {
             self.cliques[i].push(self.members.len());
         }
         self.members.push(clique);
-        self.outside.push(0);
-        self.visited.push(usize::MAX);
     }
 
-    /// Number of neighbours of an unknown that are not coupled to the last pivot.
-    fn degree_outside(&mut self, i: usize) -> usize {
-        match self.cliques[i].as_slice() {
-            [] => 0,
-            [only] if self.front.contains(i) => self.outside[*only],
-            several => {
-                self.seen.clear();
-                self.seen.insert(i);
-                let members = several.iter().flat_map(|&c| &self.members[c]);
-                let outside = members.filter(|&&j| !self.front.contains(j) && self.seen.insert(j));
-                outside.count()
-            }
-        }
+    /// Number of neighbours of an unknown.
+    fn degree(&mut self, i: usize) -> usize {
+        self.cliques[i].retain(|&c| !self.members[c].is_empty());
+        self.seen.clear();
+        self.seen.insert(i);
+        let neighbours = self.cliques[i].iter().flat_map(|&c| &self.members[c]);
+        neighbours.filter(|&&j| self.seen.insert(j)).count()
     }
 
-    /// Eliminates a pivot. Returns the unknowns coupled to it, ascending, and sets their new degrees.
-    fn eliminate(&mut self, pivot: usize, degrees: &mut Vec<usize>) -> Vec<usize> {
-        self.front.clear();
+    /// Eliminates a pivot. Returns the unknowns coupled to it, ascending.
+    fn eliminate(&mut self, pivot: usize) -> Vec<usize> {
+        self.seen.clear();
+        self.seen.insert(pivot);
         let mut front = Vec::new();
         for c in std::mem::take(&mut self.cliques[pivot]) {
-            for i in std::mem::take(&mut self.members[c]) {
-                if i != pivot && self.front.insert(i) {
-                    front.push(i);
-                }
-            }
+            let members = std::mem::take(&mut self.members[c]).into_iter();
+            front.extend(members.filter(|&i| self.seen.insert(i)));
         }
         front.sort_unstable();
-        for &i in &front {
-            for &c in &self.cliques[i] {
-                if std::mem::replace(&mut self.visited[c], pivot) != pivot {
-                    let members = self.members[c].iter();
-                    self.outside[c] = members.filter(|&&j| !self.front.contains(j)).count();
-                    if self.outside[c] == 0 {
-                        self.members[c] = Vec::new();
-                    }
-                }
-            }
-        }
-        degrees.clear();
-        for &i in &front {
-            self.cliques[i].retain(|&c| !self.members[c].is_empty());
-            degrees.push(front.len() - 1 + self.degree_outside(i));
-        }
         self.add(front.clone());
         front
     }
@@ -138,7 +99,9 @@ pub fn minimum_degree(
 ) -> (Vec<usize>, Vec<Vec<usize>>) {
     assert_eq!(after.len(), n);
     let mut graph = QuotientGraph::new(n, cliques);
-    let mut degrees: Vec<usize> = (0..n).map(|i| graph.degree_outside(i)).collect();
+    let mut degrees: Vec<usize> = (0..n).map(|i| graph.degree(i)).collect();
+    // a neighbour has been eliminated since the degree was counted: it is a lower bound
+    let mut is_bound = vec![false; n];
     // how many unknowns must still go before each one, and those that wait for each one
     let mut awaited: Vec<usize> = after.iter().map(Vec::len).collect();
     let mut waiting = vec![Vec::new(); n];
@@ -150,15 +113,23 @@ pub fn minimum_degree(
     let mut ready: BTreeSet<(usize, usize)> = free.map(|i| (degrees[i], i)).collect();
     let mut order = Vec::with_capacity(n);
     let mut coupled = Vec::with_capacity(n);
-    let mut new = Vec::new();
-    for _ in 0..n {
+    while order.len() < n {
         let next = ready.pop_first();
-        let (_, pivot) = next.expect("the orders asked for do not contradict each other");
-        let front = graph.eliminate(pivot, &mut new);
-        for (&i, &degree) in front.iter().zip(&new) {
-            let before = std::mem::replace(&mut degrees[i], degree);
-            if before != degree && ready.remove(&(before, i)) {
-                ready.insert((degree, i));
+        let (bound, pivot) = next.expect("the orders asked for do not contradict each other");
+        if std::mem::take(&mut is_bound[pivot]) {
+            degrees[pivot] = graph.degree(pivot);
+            if degrees[pivot] > bound {
+                ready.insert((degrees[pivot], pivot));
+                continue;
+            }
+        }
+        let front = graph.eliminate(pivot);
+        for &i in &front {
+            let before = (degrees[i], i);
+            degrees[i] = degrees[i].saturating_sub(1);
+            is_bound[i] = true;
+            if ready.remove(&before) {
+                ready.insert((degrees[i], i));
             }
         }
         for &i in &waiting[pivot] {

@@ -72,8 +72,9 @@ impl SparseRows {
         })
     }
 
-    /// With M = I, the square of the distance of row k from the span of the rows that were eliminated before it.
-    pub fn distance(&self, k: usize) -> f64 {
+    /// With M = I, the square of the distance of row k from the span of the rows that were eliminated before it, and the shift of
+    /// this row.
+    pub fn squared_distance(&self, k: usize) -> f64 {
         -self.symbolic.pivot(&self.values, self.n + k)
     }
 
@@ -109,7 +110,7 @@ pub fn times(row: &SparseRow, x: &[f64]) -> f64 {
     row.iter().map(|(i, g)| g * x[*i]).sum()
 }
 
-/// The square of the length of a row.
+/// The sum of the squares of the entries of a row: the square of its length, where every index stands once.
 pub fn square(row: &SparseRow) -> f64 {
     row.iter().map(|(_, g)| g * g).sum()
 }

@@ -229,8 +229,7 @@ impl Model {
 
     /// Index of the joint that owns contact memory `contact`.
     pub fn contact_joint(&self, contact: usize) -> Option<usize> {
-        let mut joints = self.joints.iter().map(|joint| joint.terms.force);
-        joints.position(|force| matches!(force, ForceTerm::Contact(i) if i == contact))
+        self.contact_joints[contact]
     }
 
     /// Largest |Phi| \[m\], the joint or link it belongs to, and the largest |Phi_q v|.

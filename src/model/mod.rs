@@ -74,6 +74,8 @@ pub struct Model {
     pub(crate) bodies: Vec<PlacedBody>,
     /// Joints of the scene, in its order.
     pub(crate) joints: Vec<PlacedJoint>,
+    /// The joint of every contact.
+    pub(crate) contact_joints: Vec<Option<usize>>,
 }
 
 /// Known coordinates as a function of time.

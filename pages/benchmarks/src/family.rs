@@ -13,7 +13,7 @@ pub enum Family {
     Chain,
     /// The same with play in every joint.
     LooseChain,
-    /// Slider-cranks beside each other, each with a drive.
+    /// Cranks beside each other, each with a drive, two rods and two sliders.
     SliderCranks,
     /// Parallelograms beside each other, each with a redundant bar.
     Parallelograms,
@@ -38,7 +38,7 @@ impl Family {
         }
     }
 
-    /// A scene with this number of bodies, or with the largest number below it that whole mechanisms have.
+    /// A scene with this number of bodies, a multiple of 20.
     pub fn scene(self, bodies: usize) -> String {
         let duration = STEP * STEPS as f64;
         let mut text = format!(
@@ -60,7 +60,7 @@ bodies.ground.type = "ground"
             Family::LooseChain => {
                 chain(&mut text, bodies, r#"model = "clearance", contact = "pin""#)
             }
-            Family::SliderCranks => (0..bodies / 3).for_each(|k| slider_crank(&mut text, k)),
+            Family::SliderCranks => (0..bodies / 5).for_each(|k| slider_crank(&mut text, k)),
             Family::Parallelograms => (0..bodies / 4).for_each(|k| parallelogram(&mut text, k)),
         }
         text
@@ -92,24 +92,29 @@ initial.bodies.link{k} = {{ x = {}, y = 0.0, theta = 0.0 }}"#,
     }
 }
 
-/// A crank of 0.05 m, a rod of 0.12 m and a slider, in one line at the start.
+/// A crank of 0.05 m with two rods of 0.12 m to sliders on opposite sides, all in one line at the start.
 fn slider_crank(text: &mut String, k: usize) {
     let y = k as f64;
     add!(
         text,
         r#"bodies.ground.points.O{k} = [0.0, {y}]
 bodies.crank{k} = {{ type = "link", model = "rigid", length = 0.05, section = "bar", material = "steel" }}
-bodies.rod{k} = {{ type = "rigid_body", mass = 0.21, inertia = 2.5e-4, points.a = [-0.06, 0.0], points.b = [0.06, 0.0] }}
-bodies.slider{k} = {{ type = "rigid_body", mass = 0.14, inertia = 1e-5, points.pin = [0.0, 0.0] }}
 joints.main{k} = {{ type = "revolute", bearing = "ground.O{k}", journal = "crank{k}.start", model = "ideal" }}
-joints.crank_pin{k} = {{ type = "revolute", bearing = "crank{k}.end", journal = "rod{k}.a", model = "ideal" }}
-joints.slider_pin{k} = {{ type = "revolute", bearing = "slider{k}.pin", journal = "rod{k}.b", model = "ideal" }}
-joints.guide{k} = {{ type = "prismatic", guide = "ground.O{k}", direction = [1.0, 0.0], slider = "slider{k}.pin", rotation = "locked" }}
-drives.motor{k} = {{ type = "angle", joint = "main{k}", angle = {{ type = "polynomial", coefficients = [0.0, 500.0] }} }}
-initial.sketch.crank_pin{k} = [0.05, {y}]
-initial.sketch.slider_pin{k} = [0.17, {y}]
-initial.bodies.slider{k} = {{ x = 0.17, y = {y}, theta = 0.0 }}"#
+drives.motor{k} = {{ type = "angle", joint = "main{k}", angle = {{ type = "polynomial", coefficients = [0.0, 500.0] }} }}"#
     );
+    for (side, slider) in [("_left", -0.07), ("_right", 0.17)] {
+        add!(
+            text,
+            r#"bodies.rod{k}{side} = {{ type = "rigid_body", mass = 0.21, inertia = 2.5e-4, points.a = [-0.06, 0.0], points.b = [0.06, 0.0] }}
+bodies.slider{k}{side} = {{ type = "rigid_body", mass = 0.14, inertia = 1e-5, points.pin = [0.0, 0.0] }}
+joints.crank_pin{k}{side} = {{ type = "revolute", bearing = "crank{k}.end", journal = "rod{k}{side}.a", model = "ideal" }}
+joints.slider_pin{k}{side} = {{ type = "revolute", bearing = "slider{k}{side}.pin", journal = "rod{k}{side}.b", model = "ideal" }}
+joints.guide{k}{side} = {{ type = "prismatic", guide = "ground.O{k}", direction = [1.0, 0.0], slider = "slider{k}{side}.pin", rotation = "locked" }}
+initial.sketch.crank_pin{k}{side} = [0.05, {y}]
+initial.sketch.slider_pin{k}{side} = [{slider}, {y}]
+initial.bodies.slider{k}{side} = {{ x = {slider}, y = {y}, theta = 0.0 }}"#
+        );
+    }
 }
 
 /// A coupler on three parallel cranks of 0.1 m, at rest.

@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn mechanisms_of_all_kinds_run() {
         for family in Family::ALL {
-            let cost = measure(family, 8, 1).expect("a small mechanism runs");
+            let cost = measure(family, 20, 1).expect("a small mechanism runs");
             assert!(cost.compile > 0.0 && cost.step > 0.0);
         }
     }

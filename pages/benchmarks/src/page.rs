@@ -54,7 +54,8 @@ fn short(measured: &Measured) -> String {
         let all = Family::ALL.map(|family| growth_of(measured, family, cost));
         range(&all.into_iter().flatten().collect::<Vec<f64>>())
     };
-    let most_bodies = growth::SIZES[growth::SIZES.len() - 1];
+    let bodies = measured.sizes.iter().map(|cost| cost.bodies);
+    let most_bodies = bodies.max().unwrap_or(0);
     let seconds: Vec<f64> = measured.steps.iter().map(|step| step.seconds).collect();
     let [least, most] = [f64::min, f64::max].map(|of| seconds.iter().copied().reduce(of));
     format!(

@@ -91,7 +91,7 @@ pub(super) fn velocities(
     Ok(())
 }
 
-/// The same of a large mechanism where it is certain which equations are independent, and the others agree with them.
+/// The same of a large mechanism where it is certain which equations are independent, and the solution satisfies all of them.
 fn sparse_velocities(
     c: &Compiler,
     mechanism: &Model,
@@ -135,8 +135,7 @@ fn sparse_velocities(
     let (chosen, right) = (independent.chosen(&rows), independent.chosen(&wanted));
     let v = SparseRows::factor(n, &chosen, &blocks)?.solve(&against, &right);
     let off = |k: usize| (times(&rows[k], &v) - wanted[k]).abs();
-    let agree = independent.dependent.iter().all(|&k| off(k) <= AGREEING);
-    agree.then_some(v)
+    (0..rows.len()).all(|k| off(k) <= AGREEING).then_some(v)
 }
 
 /// A velocity of a body as a linear function of the unknown velocities, and the contribution of known ones. `None` for the
