@@ -144,8 +144,11 @@ impl Compiler<'_> {
             })
     }
 
-    /// The slot of a point whose node joints can share: of an end of a link, of a point mass.
+    /// The slot of a point whose unknown node joints can share: of an end of a link, of a point mass.
     pub fn node(&self, point: PointRef) -> Option<usize> {
+        if self.is_known(point) {
+            return None;
+        }
         let mut slots = self.slots[point.body].iter();
         slots.position(|slot| slot.point == Some(point.point))
     }

@@ -4,6 +4,7 @@ use super::{Compiler, Mode, Role};
 use crate::body::{Body, Content, HeldSlot, Known, PointRef, Slot};
 use crate::interaction::Placed;
 use crate::marker::Marker;
+use crate::math::groups::Groups;
 use crate::model::{DrivenNode, Model};
 use crate::scene::{MotionKind, SceneError};
 use std::sync::Arc;
@@ -27,11 +28,11 @@ pub(crate) struct Numbering {
     pub eliminated: Vec<bool>,
 }
 
-/// Classes of slots that share a node (union-find); the slots of all bodies are counted one after the other.
+/// Classes of slots that share a node; the slots of all bodies are counted one after the other.
 struct Nodes {
     /// Index of the first slot of every body.
     first: Vec<usize>,
-    parent: Vec<usize>,
+    classes: Groups,
     /// The known point that a class is fixed to.
     anchor: Vec<Option<PointRef>>,
     /// First coordinate, once numbered.
@@ -39,16 +40,9 @@ struct Nodes {
 }
 
 impl Nodes {
-    fn find(&self, mut slot: usize) -> usize {
-        while self.parent[slot] != slot {
-            slot = self.parent[slot];
-        }
-        slot
-    }
-
     /// The class of a slot of a body.
-    fn class(&self, body: usize, slot: usize) -> usize {
-        self.find(self.first[body] + slot)
+    fn class(&mut self, body: usize, slot: usize) -> usize {
+        self.classes.find(self.first[body] + slot)
     }
 }
 
@@ -62,7 +56,7 @@ fn connect(c: &Compiler) -> Result<(Nodes, Vec<bool>), SceneError> {
     }
     let mut nodes = Nodes {
         first,
-        parent: (0..count).collect(),
+        classes: Groups::new(count),
         anchor: vec![None; count],
         x: vec![None; count],
     };
@@ -96,10 +90,7 @@ fn connect_joint(c: &Compiler, nodes: &mut Nodes, j: usize) -> Result<bool, Scen
         return redundant("the motion of both of its bodies is prescribed");
     }
     // the class of the node of a free end
-    let class = |p: PointRef| match c.is_known(p) {
-        true => None,
-        false => Some(nodes.class(p.body, c.node(p)?)),
-    };
+    let class = |p: PointRef| Some(nodes.class(p.body, c.node(p)?));
     match points.map(class) {
         _ if known == [true; 2] => {}
         [Some(a), Some(b)] if a == b => {
@@ -109,8 +100,8 @@ fn connect_joint(c: &Compiler, nodes: &mut Nodes, j: usize) -> Result<bool, Scen
             return redundant("both of its points are already fixed");
         }
         [Some(a), Some(b)] => {
-            nodes.parent[b] = a;
-            // only the root of a class is fixed
+            nodes.classes.unite(b, a);
+            // only what stands for a class is fixed
             nodes.anchor[a] = nodes.anchor[a].or(nodes.anchor[b].take());
         }
         [Some(class), None] | [None, Some(class)] if known.contains(&true) => {
@@ -137,7 +128,7 @@ pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, S
             numbering.turn_link(c, b, m);
         }
     }
-    let classes = 0..nodes.parent.len();
+    let classes = 0..nodes.anchor.len();
     let anchored: Vec<usize> = classes.filter(|&e| nodes.anchor[e].is_some()).collect();
     let riders = anchored.iter().filter(|&&e| c.needs_rider(&nodes, e));
     numbering.offset = numbering.coordinates + 2 * riders.count();
@@ -160,7 +151,8 @@ pub(crate) fn number(c: &Compiler, inner: Option<&Model>) -> Result<Numbering, S
             .filter(|(_, slot)| slot.point.is_some())
         {
             let x = &mut numbering.bodies[b].x[s];
-            *x = nodes.x[nodes.class(b, s)].unwrap_or(*x);
+            let class = nodes.class(b, s);
+            *x = nodes.x[class].unwrap_or(*x);
         }
     }
     Ok(numbering)

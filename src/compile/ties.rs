@@ -13,10 +13,6 @@ pub(super) fn of_bodies(c: &Compiler) -> Result<Vec<Ties>, SceneError> {
     for (joint, shared) in shared.into_iter().enumerate() {
         let [bearing, journal] = c.scene.joints[joint].points();
         for (own, other) in [(bearing, journal), (journal, bearing)] {
-            // nothing ties a body whose motion is known
-            if c.is_known(own) {
-                continue;
-            }
             let ties = &mut all[own.body];
             if shared && c.node(own).is_some() {
                 match c.is_known(other) {
@@ -24,7 +20,7 @@ pub(super) fn of_bodies(c: &Compiler) -> Result<Vec<Ties>, SceneError> {
                     false => ties.shares = true,
                 }
             }
-            if c.is_known(other) {
+            if c.is_known(other) && !c.is_known(own) {
                 ties.holds.extend(hold(c, joint, own, other));
             }
         }

@@ -2,9 +2,10 @@
 //! few of them depend on others. [`super::dense`] decides what is not certain here.
 
 use super::dense::{Added, Equations};
+use super::groups::Groups;
 use super::sparse_rows::{SparseRow, SparseRows, SymmetricBlock, full_row, square};
 use indexmap::{IndexMap, IndexSet};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
 /// Rows are certainly independent if the square of the sine of each to the span of those eliminated before it is larger than this: far
 /// above the rounding of a square, and above every row that [`super::dense`] takes for dependent.
@@ -95,11 +96,16 @@ fn dependent(rows: &[SparseRow]) -> Option<Vec<usize>> {
             parts.unite(k, *first_with.entry(*i).or_insert(k));
         }
     }
-    for part in parts.all() {
+    for part in several(parts) {
         found.extend(dependent_of(&rows, &part)?);
     }
     found.sort_unstable();
     Some(found)
+}
+
+/// The groups of two and more.
+fn several(groups: Groups) -> impl Iterator<Item = Vec<usize>> {
+    groups.all().into_iter().filter(|group| group.len() > 1)
 }
 
 /// Some rows with unknowns counted among themselves, and the number of these.
@@ -145,7 +151,7 @@ fn dependent_of(all: &[SparseRow], part: &[usize]) -> Option<Vec<usize>> {
         }
     }
     let mut found = Vec::new();
-    for sum in sums.all() {
+    for sum in several(sums) {
         let (rows, n) = local(&rows, &sum);
         let mut equations = Equations::default();
         let rows = sum.iter().zip(&rows);
@@ -156,39 +162,6 @@ fn dependent_of(all: &[SparseRow], part: &[usize]) -> Option<Vec<usize>> {
         found.extend(depends.map(|(&k, _)| part[k]));
     }
     Some(found)
-}
-
-/// Disjoint groups of indices.
-struct Groups {
-    parent: Vec<usize>,
-}
-
-impl Groups {
-    fn new(n: usize) -> Groups {
-        Groups { parent: indices(n) }
-    }
-
-    fn find(&mut self, mut i: usize) -> usize {
-        while self.parent[i] != i {
-            self.parent[i] = self.parent[self.parent[i]];
-            i = self.parent[i];
-        }
-        i
-    }
-
-    fn unite(&mut self, i: usize, j: usize) {
-        let (i, j) = (self.find(i), self.find(j));
-        self.parent[i] = j;
-    }
-
-    /// The groups of two and more, each ascending.
-    fn all(mut self) -> Vec<Vec<usize>> {
-        let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for i in 0..self.parent.len() {
-            groups.entry(self.find(i)).or_default().push(i);
-        }
-        groups.into_values().filter(|g| g.len() > 1).collect()
-    }
 }
 
 /// A row in which every index stands once, with a value that is not zero.

@@ -11,6 +11,7 @@
 //! Where masses couple the coordinates of many constraints, as in a chain whose rigid links share their nodes, S is full. The
 //! matrix is then factorised as a whole, in an order that keeps it sparse. The numbers of operations decide.
 
+use super::groups::Groups;
 use super::lu::{DenseLu, Symbolic, WeakPivot};
 use super::mass_inverse::{MassFactors, MassInverse};
 use faer::Mat;
@@ -163,34 +164,18 @@ impl SaddleEntries {
 
     /// The groups of unknowns.
     fn groups(&self) -> Vec<MassGroup> {
-        let mut neighbours = vec![Vec::new(); self.unknowns];
+        let mut coupled = Groups::new(self.unknowns);
         for &(i, j, _) in &self.mass {
-            neighbours[i].push(j);
-            neighbours[j].push(i);
+            coupled.unite(i, j);
         }
-        let mut of = vec![usize::MAX; self.unknowns];
-        let mut groups = Vec::new();
-        for first in 0..self.unknowns {
-            if of[first] != usize::MAX {
-                continue;
-            }
-            let mut unknowns = vec![first];
-            of[first] = groups.len();
-            let mut next = 0;
-            while next < unknowns.len() {
-                for &j in &neighbours[unknowns[next]] {
-                    if of[j] == usize::MAX {
-                        of[j] = groups.len();
-                        unknowns.push(j);
-                    }
-                }
-                next += 1;
-            }
-            unknowns.sort_unstable();
-            groups.push(MassGroup {
-                unknowns,
-                entries: Vec::new(),
-            });
+        let group = |unknowns| MassGroup {
+            unknowns,
+            entries: Vec::new(),
+        };
+        let mut groups: Vec<MassGroup> = coupled.all().into_iter().map(group).collect();
+        let mut of = vec![0; self.unknowns];
+        for (k, group) in groups.iter().enumerate() {
+            group.unknowns.iter().for_each(|&i| of[i] = k);
         }
         for (row, entries) in self.rows() {
             for entry in entries {

@@ -2,7 +2,7 @@
 
 use crate::Measured;
 use crate::family::Family;
-use crate::growth::{self, SizeCost, exponent};
+use crate::growth::{self, SizeOf, exponent};
 use crate::meshes::ERRORS;
 use crate::rivals::{Code, STUDIES, best, levels};
 use crate::steps::StepCost;
@@ -88,7 +88,7 @@ fn over_bodies(
     measured: &Measured,
     title: &str,
     (label, unit): (&str, &str),
-    cost: &dyn Fn(&SizeCost) -> Option<f64>,
+    cost: &SizeOf,
 ) -> Panel {
     let mut marks = Vec::new();
     for (family, color) in Family::ALL.into_iter().zip(COLORS) {
@@ -112,11 +112,7 @@ fn over_bodies(
 }
 
 /// Sizes and costs of the mechanisms of one kind.
-pub fn sizes(
-    measured: &Measured,
-    family: Family,
-    cost: &dyn Fn(&SizeCost) -> Option<f64>,
-) -> (Vec<f64>, Vec<f64>) {
+pub fn sizes(measured: &Measured, family: Family, cost: &SizeOf) -> (Vec<f64>, Vec<f64>) {
     let sizes = measured.sizes.iter().filter(|size| size.family == family);
     sizes
         .filter_map(|size| Some((size.bodies as f64, cost(size)?)))

@@ -40,6 +40,9 @@ pub struct SizeCost {
     pub memory: Option<u64>,
 }
 
+/// A cost of a mechanism, where it is known.
+pub type SizeOf = dyn Fn(&SizeCost) -> Option<f64>;
+
 /// Measures mechanisms of all kinds and sizes.
 ///
 /// # Errors

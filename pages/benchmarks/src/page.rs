@@ -3,7 +3,7 @@
 use crate::Measured;
 use crate::family::Family;
 use crate::figures::{self, curves, mesh};
-use crate::growth::{self, SizeCost, exponent};
+use crate::growth::{self, SizeCost, SizeOf, exponent};
 use crate::meshes::ERRORS;
 use crate::rivals::{Code, STUDIES, best, study};
 use accuracy::ida;
@@ -79,9 +79,6 @@ fn short(measured: &Measured) -> String {
         compared(measured),
     )
 }
-
-/// A cost of a mechanism.
-type SizeOf = dyn Fn(&SizeCost) -> Option<f64>;
 
 /// The largest mechanism of a kind.
 fn largest(measured: &Measured, family: Family) -> Option<&SizeCost> {
@@ -180,20 +177,19 @@ fn largest_mechanisms(measured: &Measured) -> String {
         let Some(cost) = largest(measured, family) else {
             continue;
         };
-        let cell = |cost: Option<String>, of: &SizeOf| match (cost, growth_of(measured, family, of))
-        {
-            (Some(cost), Some(exponent)) => format!("{cost} ({})", digits(exponent)),
-            (cost, _) => cost.unwrap_or_default(),
+        let cell = |of: &SizeOf, text: &dyn Fn(f64) -> String| {
+            let exponent = growth_of(measured, family, of).map(digits);
+            match (of(cost).map(text), exponent) {
+                (Some(cost), Some(exponent)) => format!("{cost} ({exponent})"),
+                (cost, _) => cost.unwrap_or_default(),
+            }
         };
+        let seconds = |x| si(x, "s");
         let cells = [
-            cell(Some(si(cost.compile, "s")), &|cost| Some(cost.compile)),
-            cell(Some(si(cost.step, "s")), &|cost| Some(cost.step)),
-            cell(cost.instructions.map(|n| n.to_string()), &|cost| {
-                Some(cost.instructions? as f64)
-            }),
-            cell(cost.memory.map(|bytes| si(bytes as f64, "B")), &|cost| {
-                Some(cost.memory? as f64)
-            }),
+            cell(&|cost| Some(cost.compile), &seconds),
+            cell(&|cost| Some(cost.step), &seconds),
+            cell(&|cost| Some(cost.instructions? as f64), &|n| n.to_string()),
+            cell(&|cost| Some(cost.memory? as f64), &|bytes| si(bytes, "B")),
         ];
         out += &format!(
             "| {} | {} | {} |\n",
