@@ -92,6 +92,34 @@ fn a_long_chain_follows_a_drive() {
     }
 }
 
+/// The first link turns about its pin, so one component of its velocity gives the others; the joints determine the last one.
+#[test]
+fn velocities_of_a_long_chain_that_follow_from_others_are_refused_by_name() {
+    let last = LINKS - 1;
+    for (given, message) in [
+        (
+            "velocities.link0 = { omega = 1.0, vx = 5.0 }",
+            "omega of link0 contradicts the joints",
+        ),
+        (
+            "velocities.link0 = { vx = 0.0, vy = 0.0 }",
+            "vy of link0 repeats the joints",
+        ),
+        (
+            "bodies.link0 = { x = 0.047766824456280305, y = 0.014776010333066978, theta = 0.3, vx = -0.029552020666133955, vy = 0.09553364891256061, omega = 3.0 }",
+            "the given velocity of link0 contradicts the joints and drives: omega is off by 1\u{a0}rad/s",
+        ),
+    ] {
+        let text = chain("").replace(
+            &format!("initial.velocities.link{last}.omega = 2.0"),
+            &format!("initial.{given}"),
+        );
+        let scene = Scene::parse("chain", &text, &[]).unwrap();
+        let error = Simulation::new(&scene).unwrap_err().to_string();
+        assert!(error.contains(message), "{error}");
+    }
+}
+
 /// Second pins between the same points repeat the rows of the first ones, which come before them in the scene.
 #[test]
 fn redundant_joints_of_a_long_chain_are_named() {

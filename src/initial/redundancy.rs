@@ -1,7 +1,6 @@
 //! Redundant constraints: found at the start, left out of the equations, reported by name.
 
-use crate::compile::assembly::{closing_step, row, sparse_rows};
-use crate::math::dense::{Added, Equations};
+use crate::compile::assembly::{closing_step, rows};
 use crate::math::independent_rows::IndependentRows;
 use crate::model::Model;
 use crate::newton::Update;
@@ -14,37 +13,14 @@ const CLOSING: usize = 12;
 /// A step no larger than this is the last one, in units of the coordinates.
 const CLOSED: f64 = 1e-12;
 
-/// The independent rows of a pose.
-enum Independent {
-    Sparse(Box<IndependentRows>),
-    Dense(Equations),
-}
-
-impl Independent {
-    /// The part of x that no row sees.
-    fn free_part(&self, x: &[f64]) -> Vec<f64> {
-        match self {
-            Independent::Sparse(rows) => rows.free_part(x),
-            Independent::Dense(equations) => equations.free_part(x),
-        }
-    }
-}
-
-/// The rows that depend on those before them, as (constraint, row of it), and the others.
-fn dependent(model: &Model, state: &State) -> (Vec<(usize, usize)>, Independent) {
+/// The rows that depend on those before them, as (constraint, row of it), and all rows.
+fn dependent(model: &Model, state: &State) -> (Vec<(usize, usize)>, IndependentRows) {
     let constraints = model.constraints.iter().enumerate();
     let all = constraints.flat_map(|(i, placed)| (0..placed.rows).map(move |d| (i, d)));
-    let rows = sparse_rows(model, state);
-    let rows = rows.and_then(|rows| IndependentRows::new(model.shape().unknowns, &rows));
-    if let Some(rows) = rows {
-        let all: Vec<_> = all.collect();
-        let found = rows.dependent.iter().map(|&k| all[k]);
-        return (found.collect(), Independent::Sparse(Box::new(rows)));
-    }
-    let mut equations = Equations::default();
-    let depends = |&(i, d): &_| equations.add(&row(model, state, i, d), 0.0) != Added::Independent;
-    let found = all.filter(depends).collect();
-    (found, Independent::Dense(equations))
+    let all: Vec<_> = all.collect();
+    let zero = vec![0.0; all.len()];
+    let rows = IndependentRows::new(model.shape().unknowns, &rows(model, state), &zero);
+    (rows.dependent.iter().map(|&k| all[k]).collect(), rows)
 }
 
 /// Dependent constraints of a start.

@@ -1,64 +1,133 @@
-//! The rows of many linear equations that do not depend on those before them, in a time that grows little faster than their number where
-//! few of them depend on others. [`super::dense`] decides what is not certain here.
+//! The rows of linear equations that do not depend on those before them, and solutions of their equations: by [`super::dense`] where
+//! they are few; otherwise in a time that grows little faster than their number, where few of them depend on others.
 
-use super::dense::{Added, Equations};
+use super::dense::{DEPENDENT, Equations, norm};
 use super::groups::Groups;
-use super::sparse_rows::{SparseRow, SparseRows, SymmetricBlock, full_row, square};
+use super::sparse_rows::{SparseRow, SparseRows, SymmetricBlock, full_row, square, times};
+use faer::Mat;
 use indexmap::{IndexMap, IndexSet};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
+/// Unknowns and rows from which on sparse algebra is used: both take some milliseconds there.
+const LARGE: usize = 300;
 /// Rows are certainly independent if the square of the sine of each to the span of those eliminated before it is larger than this: far
 /// above the rounding of a square, and above every row that [`super::dense`] takes for dependent.
 const INDEPENDENT: f64 = 1e-10;
 /// What is added to these squares where they may be zero: above their rounding, far below [`INDEPENDENT`].
 const SHIFT: f64 = 1e-13;
+/// Rows whose square with this shift is no larger may depend on others. A row that is the sum of others times factors has the sum of
+/// the squares of these factors times the shift: this is a hundred thousand of them.
+const DOUBTFUL: f64 = 1e-8;
 /// A row takes part in a sum of rows if its term is larger than this fraction of the sum: above the rounding of the terms, far
 /// below what [`super::dense`] takes for dependent.
 const TAKES_PART: f64 = 1e-11;
 
-/// Rows, of which some may depend on those before them.
+/// Linear equations G x = b, of which some may depend on those before them.
 #[derive(Debug)]
 pub struct IndependentRows {
     n: usize,
     /// The rows that depend on those before them, ascending.
     pub dependent: Vec<usize>,
-    /// The factors of the others, with M = I.
-    factors: SparseRows,
+    others: Others,
+}
+
+/// The equations that do not.
+#[derive(Debug)]
+enum Others {
+    /// Their factors with M = I, and their right sides.
+    Sparse(Box<SparseRows>, Vec<f64>),
+    Dense(Equations),
 }
 
 impl IndependentRows {
+    /// Of n unknowns.
+    pub fn new(n: usize, rows: &[SparseRow], b: &[f64]) -> IndependentRows {
+        let is_large = n + rows.len() >= LARGE;
+        let sparse = is_large.then(|| IndependentRows::sparse(n, rows, b));
+        sparse
+            .flatten()
+            .unwrap_or_else(|| IndependentRows::dense(n, rows, b))
+    }
+
     /// None where it is not certain which rows are independent.
-    pub fn new(n: usize, rows: &[SparseRow]) -> Option<IndependentRows> {
-        if let Some(factors) = certainly_independent(n, rows) {
-            return Some(IndependentRows {
-                n,
-                dependent: Vec::new(),
-                factors,
-            });
-        }
-        let dependent = dependent(rows)?;
-        let factors = certainly_independent(n, &without(&dependent, rows))?;
+    fn sparse(n: usize, rows: &[SparseRow], b: &[f64]) -> Option<IndependentRows> {
+        let (dependent, factors) = match certainly_independent(n, rows) {
+            Some(factors) => (Vec::new(), factors),
+            None => {
+                let dependent = dependent(rows)?;
+                let factors = certainly_independent(n, &without(&dependent, rows))?;
+                (dependent, factors)
+            }
+        };
+        let b = without(&dependent, b);
         Some(IndependentRows {
             n,
             dependent,
-            factors,
+            others: Others::Sparse(Box::new(factors), b),
         })
     }
 
-    /// What belongs to the independent rows, of `all` rows.
-    pub fn chosen<T: Clone>(&self, all: &[T]) -> Vec<T> {
-        without(&self.dependent, all)
+    fn dense(n: usize, rows: &[SparseRow], b: &[f64]) -> IndependentRows {
+        let mut equations = Equations::default();
+        let mut depends = |k: &usize| !equations.add(&full_row(n, &rows[*k]), b[*k]);
+        let dependent = (0..rows.len()).filter(&mut depends).collect();
+        IndependentRows {
+            n,
+            dependent,
+            others: Others::Dense(equations),
+        }
     }
 
-    /// The x of least norm that satisfies the independent equations of G x = b.
-    pub fn least_norm(&self, b: &[f64]) -> Vec<f64> {
-        self.factors.solve(&vec![0.0; self.n], &self.chosen(b))
+    /// The x of least norm that satisfies the independent equations.
+    pub fn least_norm(&self) -> Vec<f64> {
+        match &self.others {
+            Others::Sparse(factors, b) => factors.solve(&vec![0.0; self.n], b),
+            Others::Dense(equations) => equations.least_norm(self.n),
+        }
     }
 
     /// The part of x that no equation sees.
     pub fn free_part(&self, x: &[f64]) -> Vec<f64> {
-        self.factors.solve(x, &vec![0.0; self.factors.count()])
+        match &self.others {
+            Others::Sparse(factors, b) => factors.solve(x, &vec![0.0; b.len()]),
+            Others::Dense(equations) => equations.free_part(x),
+        }
     }
+
+    /// The x that satisfies the independent equations, with an error of at most `tolerance` in each, and minimises
+    /// 1/2 x . M x + c . x for a positive definite M, which is the sum of some blocks.
+    pub fn least_energy(&self, blocks: &[SymmetricBlock], c: &[f64], tolerance: f64) -> Vec<f64> {
+        match &self.others {
+            Others::Sparse(factors, b) => {
+                let rows = factors.rows();
+                // not -c, which would turn a zero into a negative one
+                let against: Vec<f64> = c.iter().map(|c| 0.0 - c).collect();
+                let x = SparseRows::factor(self.n, rows, blocks);
+                let x = x.map(|factors| factors.solve(&against, b)).filter(|x| {
+                    let mut pairs = rows.iter().zip(b);
+                    pairs.all(|(row, b)| (times(row, x) - b).abs() <= tolerance)
+                });
+                x.unwrap_or_else(|| {
+                    let all = IndependentRows::dense(self.n, rows, b);
+                    all.least_energy(blocks, c, tolerance)
+                })
+            }
+            Others::Dense(equations) => equations.least_energy(&full(self.n, blocks), c),
+        }
+    }
+}
+
+/// A matrix of n rows as the sum of blocks.
+fn full(n: usize, blocks: &[SymmetricBlock]) -> Mat<f64> {
+    let mut m = Mat::zeros(n, n);
+    for (own, block) in blocks {
+        for (&i, row) in own.iter().zip(block.chunks_exact(own.len())) {
+            own.iter()
+                .zip(row)
+                .for_each(|(&j, value)| m[(i, j)] += value);
+        }
+    }
+    m
 }
 
 fn indices(n: usize) -> Vec<usize> {
@@ -120,18 +189,17 @@ fn local(rows: &[SparseRow], part: &[usize]) -> (Vec<SparseRow>, usize) {
     (rows, unknowns.len())
 }
 
-/// The same of a part of the rows. Every row that may depend on others is a sum of rows that are certainly independent; the rows of
-/// such sums are compared with each other by [`super::dense`].
+/// The same of a part of the rows. Every row that may depend on others is a sum of rows that are certainly independent, which is a
+/// relation between rows.
 fn dependent_of(all: &[SparseRow], part: &[usize]) -> Option<Vec<usize>> {
     let (rows, n) = local(all, part);
     let shifted = SparseRows::factor_shifted(n, &rows, &identity(&indices(n)), SHIFT)?;
-    let doubtful =
-        |k: &usize| shifted.squared_distance(*k) <= (INDEPENDENT + SHIFT) * square(&rows[*k]);
+    let doubtful = |k: &usize| shifted.squared_distance(*k) <= DOUBTFUL * square(&rows[*k]);
     let doubtful: Vec<usize> = (0..rows.len()).filter(doubtful).collect();
     let certain = without(&doubtful, &indices(rows.len()));
     let factors = certainly_independent(n, &without(&doubtful, &rows))?;
     let zero = vec![0.0; certain.len()];
-    let mut sums = Groups::new(rows.len());
+    let mut relations = Vec::new();
     for &k in &doubtful {
         let size = square(&rows[k]).sqrt();
         let mut rest = full_row(n, &rows[k]);
@@ -144,24 +212,41 @@ fn dependent_of(all: &[SparseRow], part: &[usize]) -> Option<Vec<usize>> {
                 rows[other].iter().for_each(|(i, g)| rest[*i] -= more * g);
             }
         }
-        for (&other, part) in certain.iter().zip(&parts) {
-            if part.abs() * square(&rows[other]).sqrt() > TAKES_PART * size {
-                sums.unite(k, other);
+        if norm(&rest) > DEPENDENT * size {
+            continue;
+        }
+        let others = certain.iter().zip(&parts);
+        let others = others.map(|(&j, part)| (j, -part * square(&rows[j]).sqrt() / size));
+        let mut relation: Relation = others.filter(|(_, x)| x.abs() > TAKES_PART).collect();
+        relation.insert(k, 1.0);
+        relations.push(relation);
+    }
+    Some(last_rows(relations).into_iter().map(|k| part[k]).collect())
+}
+
+/// Rows of length 1 and their factors in a sum that is zero.
+type Relation = BTreeMap<usize, f64>;
+
+/// The rows that follow from those before them by some relations: the last row of each, after the last rows of the others have been
+/// eliminated from it.
+fn last_rows(relations: Vec<Relation>) -> Vec<usize> {
+    let mut found: BTreeMap<usize, Relation> = BTreeMap::new();
+    for mut relation in relations {
+        while let Some((last, factor)) = relation.pop_last() {
+            let Some(other) = found.get(&last) else {
+                relation.insert(last, factor);
+                found.insert(last, relation);
+                break;
+            };
+            let ratio = factor / other[&last];
+            let size = relation.values().fold(factor.abs(), |m, x| m.max(x.abs()));
+            for (row, x) in other.range(..last) {
+                *relation.entry(*row).or_default() -= ratio * x;
             }
+            relation.retain(|_, x| x.abs() > TAKES_PART * size);
         }
     }
-    let mut found = Vec::new();
-    for sum in several(sums) {
-        let (rows, n) = local(&rows, &sum);
-        let mut equations = Equations::default();
-        let rows = sum.iter().zip(&rows);
-        let depends = rows.filter(|(_, row)| {
-            let added = equations.add(&full_row(n, row), 0.0);
-            added != Added::Independent
-        });
-        found.extend(depends.map(|(&k, _)| part[k]));
-    }
-    Some(found)
+    found.into_keys().collect()
 }
 
 /// A row in which every index stands once, with a value that is not zero.
@@ -174,21 +259,28 @@ fn merged(row: &SparseRow) -> SparseRow {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sparse_rows::tests::{assert_close, chain, dense};
+    use super::super::sparse_rows::tests::{assert_close, chain};
     use super::*;
     use proptest::prelude::*;
 
     fn assert_equal(n: usize, rows: &[SparseRow]) -> IndependentRows {
         let b: Vec<f64> = (0..rows.len()).map(|k| (k as f64).sin()).collect();
-        let (equations, dependent) = dense(n, rows, &b);
-        let sparse = IndependentRows::new(n, rows).unwrap();
-        assert_eq!(sparse.dependent, dependent);
+        let dense = IndependentRows::dense(n, rows, &b);
+        let sparse = IndependentRows::sparse(n, rows, &b).unwrap();
+        assert_eq!(sparse.dependent, dense.dependent);
+        assert_close(&sparse.least_norm(), &dense.least_norm());
         let direction: Vec<f64> = (0..n).map(|i| (0.7 * i as f64).cos()).collect();
-        assert_close(&sparse.least_norm(&b), &equations.least_norm(n));
-        assert_close(
-            &sparse.free_part(&direction),
-            &equations.free_part(&direction),
-        );
+        assert_close(&sparse.free_part(&direction), &dense.free_part(&direction));
+        // masses of pairs, coupled
+        let indices = indices(n);
+        let pairs = indices.chunks(2);
+        let block = |own: &[usize]| match own.len() {
+            2 => &[2.0, 0.5, 0.5, 1.0][..],
+            _ => &[3.0][..],
+        };
+        let blocks: Vec<SymmetricBlock> = pairs.map(|own| (own, block(own))).collect();
+        let [x, y] = [&sparse, &dense].map(|rows| rows.least_energy(&blocks, &direction, 1e-9));
+        assert_close(&x, &y);
         sparse
     }
 
@@ -207,6 +299,21 @@ mod tests {
         assert_eq!(assert_equal(n, &rows).dependent.len(), 5);
     }
 
+    /// Differences of neighbours in a ring add up to zero: the last of them follows from the others, wherever the ring begins.
+    #[test]
+    fn the_last_row_of_a_large_ring_depends_on_the_others() {
+        let n = 4000;
+        let mut rows: Vec<SparseRow> = (0..n)
+            .map(|k| vec![(k, -1.0), ((k + 1) % n, 1.0)])
+            .collect();
+        for turn in [0, 1, n / 2] {
+            rows.rotate_left(turn);
+            let b = vec![0.0; n];
+            let ring = IndependentRows::sparse(n, &rows, &b).unwrap();
+            assert_eq!(ring.dependent, [n - 1]);
+        }
+    }
+
     /// A row at a sine of 1e-7 to the others is independent, but not by these means.
     #[test]
     fn nearly_dependent_rows_are_not_certain() {
@@ -215,7 +322,8 @@ mod tests {
         let mut near = [rows[3].clone(), rows[8].clone()].concat();
         near.push((5, 1e-7));
         rows.push(near);
-        assert!(IndependentRows::new(n, &rows).is_none());
+        let b = vec![0.0; rows.len()];
+        assert!(IndependentRows::sparse(n, &rows, &b).is_none());
     }
 
     proptest! {

@@ -78,9 +78,9 @@ impl SparseRows {
         -self.symbolic.pivot(&self.values, self.n + k)
     }
 
-    /// Number of rows.
-    pub fn count(&self) -> usize {
-        self.rows.len()
+    /// The rows G.
+    pub fn rows(&self) -> &[SparseRow] {
+        &self.rows
     }
 
     /// The x with G x = b that minimises 1/2 x . M x - c . x.
@@ -124,9 +124,7 @@ pub fn full_row(n: usize, row: &SparseRow) -> Vec<f64> {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::super::dense::{Added, Equations};
     use super::*;
-    use faer::Mat;
 
     /// Differences of neighbours in a chain of n unknowns, each with a third unknown.
     pub fn chain(n: usize) -> Vec<SparseRow> {
@@ -140,48 +138,12 @@ pub(super) mod tests {
         (0..n - 1).map(row).collect()
     }
 
-    /// The dense equations of some rows, and those of them that depend on the rows before them.
-    pub fn dense(n: usize, rows: &[SparseRow], b: &[f64]) -> (Equations, Vec<usize>) {
-        let mut equations = Equations::default();
-        let mut depends = |k: &usize| {
-            let added = equations.add(&full_row(n, &rows[*k]), b[*k]);
-            added != Added::Independent
-        };
-        let dependent = (0..rows.len()).filter(&mut depends).collect();
-        (equations, dependent)
-    }
-
     pub fn assert_close(x: &[f64], y: &[f64]) {
         let size = y.iter().fold(1.0_f64, |m, y| m.max(y.abs()));
         let pairs = x.iter().zip(y);
         let off = pairs.fold(0.0_f64, |m, (x, y)| m.max((x - y).abs()));
         // rounding times a condition number of some thousand
         assert!(off < 1e-11 * size, "{off} {size}");
-    }
-
-    #[test]
-    fn solutions_of_least_energy_are_those_of_the_dense_equations() {
-        let n = 30;
-        let rows = chain(n);
-        let b: Vec<f64> = (0..n - 1).map(|k| (k as f64).sin()).collect();
-        let (equations, dependent) = dense(n, &rows, &b);
-        assert!(dependent.is_empty());
-        // masses of pairs, coupled
-        let pairs: Vec<usize> = (0..n).collect();
-        let block = [2.0, 0.5, 0.5, 1.0];
-        let blocks: Vec<SymmetricBlock> = pairs.chunks(2).map(|own| (own, &block[..])).collect();
-        let energy = Mat::from_fn(n, n, |i, j| match (i / 2 == j / 2, i == j) {
-            (true, true) => [2.0, 1.0][i % 2],
-            (true, false) => 0.5,
-            _ => 0.0,
-        });
-        let c: Vec<f64> = (0..n).map(|i| (0.7 * i as f64).cos()).collect();
-        let minus: Vec<f64> = c.iter().map(|c| -c).collect();
-        let sparse = SparseRows::factor(n, &rows, &blocks).unwrap();
-        assert_close(
-            &sparse.solve(&minus, &b),
-            &equations.least_energy(&energy, &c),
-        );
     }
 
     /// A pendulum of pendulums whose every angle is given: the condition number of G G^T is beyond ten digits.

@@ -211,18 +211,21 @@ fn choose<'a>(scene: &Scene, available: &'a [Available]) -> Result<Vec<&'a Avail
     let mut is_chosen = vec![false; available.len()];
     is_chosen[0] = true;
     let mut chosen = vec![&available[0]];
+    let named = available.iter().enumerate();
+    let named: HashMap<&str, usize> = named.map(|(k, entry)| (&*entry.channel.name, k)).collect();
     for wanted in &scene.output.channels {
         let pattern = WildMatchPattern::<'*', '\0'>::new(&wanted.pattern);
-        let mut is_known = false;
-        for (entry, is_chosen) in available.iter().zip(&mut is_chosen) {
-            if pattern.matches(&entry.channel.name) {
-                is_known = true;
-                if !std::mem::replace(is_chosen, true) {
-                    chosen.push(entry);
-                }
+        let fits = |k: &usize| pattern.matches(&available[*k].channel.name);
+        let fitting: Vec<usize> = match wanted.pattern.contains('*') {
+            true => (0..available.len()).filter(fits).collect(),
+            false => named.get(&*wanted.pattern).copied().into_iter().collect(),
+        };
+        for &k in &fitting {
+            if !std::mem::replace(&mut is_chosen[k], true) {
+                chosen.push(&available[k]);
             }
         }
-        if !is_known {
+        if fitting.is_empty() {
             let likeness = |name: &str| strsim::jaro_winkler(name, &wanted.pattern);
             let names = available.iter().map(|entry| entry.channel.name.as_str());
             let nearest = names.max_by(|a, b| likeness(a).total_cmp(&likeness(b)));

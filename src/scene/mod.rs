@@ -296,7 +296,7 @@ pub struct BodyState {
 }
 
 /// One velocity at t = 0.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct GivenVelocity {
     /// Index into [`Scene::bodies`].
     pub body: usize,

@@ -3,11 +3,13 @@
 use super::super::{Compiler, Role};
 use super::guess::coordinates;
 use super::{CENTRE, CLOSED, check_sketch, close, name, opening, strays, whole_name};
+use crate::math::groups::Groups;
 use crate::math::plane::Vec2;
 use crate::model::{Model, PlacedConstraint};
 use crate::scene::{SceneError, SketchPoint};
 use crate::system::State;
 use crate::terms::ConstraintTerm;
+use std::collections::{HashMap, HashSet};
 
 /// Checks that neither the sketch nor a joint contradicts a given pose or a prescribed motion.
 pub(super) fn check_given(
@@ -112,6 +114,24 @@ fn misfit(c: &Compiler, placed: &PlacedConstraint, whole: &str, open: f64) -> Op
     )
 }
 
+/// The coordinates of all constraints that free coordinates connect with one constraint: no others decide whether it closes.
+fn reached(model: &Model, held: &[bool], placed: &PlacedConstraint) -> HashSet<usize> {
+    let n = held.len();
+    let own = |constraint: usize| model.constraints[constraint].block.coordinates.iter();
+    let free = |i: &&usize| **i < n && !held[**i];
+    let mut parts = Groups::new(model.constraints.len());
+    let mut first_with = HashMap::new();
+    for constraint in 0..model.constraints.len() {
+        for i in own(constraint).filter(free) {
+            parts.unite(constraint, *first_with.entry(*i).or_insert(constraint));
+        }
+    }
+    let is_placed = |k: &usize| model.constraints[*k].row == placed.row;
+    let mut parts = parts.all().into_iter();
+    let part = parts.find(|part| part.iter().any(is_placed));
+    part.into_iter().flatten().flat_map(own).copied().collect()
+}
+
 /// An error that names a given pose and the sketch, if the mechanism closes as sketched without this pose.
 pub(super) fn blame(
     c: &Compiler,
@@ -120,9 +140,15 @@ pub(super) fn blame(
     held: &[bool],
     (open, placed): (f64, &PlacedConstraint),
 ) -> Option<SceneError> {
-    let pose = c.scene.initial.bodies.values().find(|pose| {
+    let near = reached(model, held, placed);
+    let mut poses = c.scene.initial.bodies.values();
+    let pose = poses.find(|pose| {
+        let own = coordinates(model, pose.body);
+        if !own.iter().any(|i| near.contains(i)) {
+            return false;
+        }
         let (mut free, mut state) = (held.to_vec(), guessed.clone());
-        for i in coordinates(model, pose.body) {
+        for i in own {
             free[i] = false;
         }
         close(model, &mut state, &free).is_none() && check_sketch(c, model, &state).is_ok()

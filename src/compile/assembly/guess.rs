@@ -62,8 +62,42 @@ impl PartialAssembly<'_> {
         })
     }
 
-    /// Places body `b` if two of its points are known, or its only one.
-    fn place(&mut self, b: usize, state: &mut State) {
+    /// Places all bodies that can be placed. A body is tried again when one that is joined to it has been placed.
+    fn place_all(&mut self, state: &mut State) {
+        let open = (0..self.done.len()).filter(|b| !self.done[*b]);
+        let mut by_point: BTreeSet<usize> = open.collect();
+        // in sweeps over the bodies, as (sweep, body)
+        let mut queue: BTreeSet<(usize, usize)> = by_point.iter().map(|b| (0, *b)).collect();
+        let mut sweep = 0;
+        loop {
+            // only one body at a time is placed by a single point, so that its neighbours can be placed exactly
+            let (b, placed, same_sweep_from) = if let Some((now, b)) = queue.pop_first() {
+                sweep = now;
+                (b, self.place(b, state), b)
+            } else if let Some(b) = by_point.pop_first() {
+                (b, self.place_at_point(b, state), usize::MAX)
+            } else {
+                return;
+            };
+            for other in self.partners(b).filter(|_| placed) {
+                by_point.insert(other);
+                queue.insert((sweep + usize::from(other < same_sweep_from), other));
+            }
+        }
+    }
+
+    /// The bodies that joints connect to a body.
+    fn partners(&self, body: usize) -> impl Iterator<Item = usize> {
+        let points = 0..self.c.bodies[body].points().len();
+        let joints = points.flat_map(move |point| self.c.joints_at(PointRef { body, point }));
+        joints.map(|(_, partner)| partner.body)
+    }
+
+    /// Places body `b` if two of its points are known, or its only one. False if it is placed already or cannot be.
+    fn place(&mut self, b: usize, state: &mut State) -> bool {
+        if self.done[b] {
+            return false;
+        }
         let pairs: Vec<_> = self.known_points(b, state).collect();
         let pose = match self.c.bodies[b].turns() {
             true => {
@@ -75,6 +109,7 @@ impl PartialAssembly<'_> {
         if let Some(pose) = pose {
             self.write(b, pose, state);
         }
+        pose.is_some()
     }
 
     /// Places a body with one known point at the angle that follows from its joints with placed bodies: from a weld, a locked
@@ -185,19 +220,7 @@ pub(super) fn guess(
             assembly.held[i] = true;
         }
     }
-    loop {
-        let before = assembly.done.iter().filter(|d| **d).count();
-        for b in 0..c.scene.bodies.len() {
-            if !assembly.done[b] {
-                assembly.place(b, state);
-            }
-        }
-        let stuck = assembly.done.iter().filter(|d| **d).count() == before;
-        // only one body at a time is placed by a single point, so that its neighbours can be placed exactly
-        if stuck && !(0..c.scene.bodies.len()).any(|b| assembly.place_at_point(b, state)) {
-            break;
-        }
-    }
+    assembly.place_all(state);
     match assembly.done.iter().position(|d| !d) {
         None => Ok(assembly.held),
         Some(b) => {

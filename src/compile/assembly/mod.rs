@@ -11,10 +11,9 @@ mod velocities;
 use super::sketch::marker;
 use super::{Compiler, Mode, build, known_roles, numbering};
 use crate::body::PointRef;
-use crate::math::dense::Equations;
 use crate::math::independent_rows::IndependentRows;
 use crate::math::plane::Vec2;
-use crate::math::sparse_rows::{SparseRow, full_row};
+use crate::math::sparse_rows::SparseRow;
 use crate::model::{Model, PlacedConstraint};
 use crate::newton::{Update, iterate};
 use crate::scene::{Scene, SceneError, SketchPoint, Sketched};
@@ -31,8 +30,6 @@ pub(crate) const CENTRE: &str = "`x` and `y` locate the point that `point` names
 
 /// Largest violation of an assembled constraint \[m\]: far above rounding, far below anything measurable.
 const CLOSED: f64 = 1e-12;
-/// Unknowns and constraint rows from which on sparse algebra is used: both take some milliseconds there.
-const LARGE: usize = 300;
 /// Steps of Newton's method.
 const ITERATIONS: usize = 80;
 /// Largest distance between a joint and its sketch, relative to the smaller body.
@@ -65,68 +62,36 @@ pub(crate) fn assemble(scene: &Scene) -> Result<(Model, State), SceneError> {
     Ok((mechanism, state))
 }
 
-/// The gradient of one constraint row with respect to the unknown coordinates.
-pub(crate) fn row(model: &Model, state: &State, constraint: usize, d: usize) -> Vec<f64> {
-    let row = sparse_row(model, state, constraint, d);
-    full_row(model.shape().unknowns, &row)
-}
-
-/// The same as its entries.
-fn sparse_row(model: &Model, state: &State, constraint: usize, d: usize) -> SparseRow {
-    let placed = &model.constraints[constraint];
-    let gradient = placed.term.gradient(state);
-    let entries = placed.block.coordinates.iter().zip(gradient[d]);
-    let entries = entries.filter(|(i, _)| **i < model.shape().unknowns);
-    entries.map(|(i, g)| (*i, g)).collect()
-}
-
-/// All rows of the constraints of a large mechanism; none of a small one, for which dense algebra is as fast.
-pub(crate) fn sparse_rows(model: &Model, state: &State) -> Option<Vec<SparseRow>> {
-    let shape = model.shape();
-    if shape.unknowns + shape.multipliers < LARGE {
-        return None;
-    }
-    let constraints = model.constraints.iter().enumerate();
-    let rows = constraints.flat_map(|(i, placed)| (0..placed.rows).map(move |d| (i, d)));
-    Some(rows.map(|(i, d)| sparse_row(model, state, i, d)).collect())
+/// The gradients of all constraint rows with respect to the unknown coordinates.
+pub(crate) fn rows(model: &Model, state: &State) -> Vec<SparseRow> {
+    let n = model.shape().unknowns;
+    let constraints = model.constraints.iter();
+    let rows = constraints.flat_map(|placed| {
+        let gradient = placed.term.gradient(state);
+        gradient.into_iter().take(placed.rows).map(|gradient| {
+            let entries = placed.block.coordinates.iter().copied().zip(gradient);
+            entries.filter(|(i, _)| *i < n).collect()
+        })
+    });
+    rows.collect()
 }
 
 /// One step of Newton's method of least norm on Phi = 0 over the coordinates that are not held; returns the largest move.
 pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> Update {
-    let n = model.shape().unknowns;
-    let step = sparse_step(model, state, held).unwrap_or_else(|| {
-        let mut equations = Equations::default();
-        for (i, placed) in model.constraints.iter().enumerate() {
-            let value = placed.term.value(state);
-            for d in 0..placed.rows {
-                let mut gradient = row(model, state, i, d);
-                for (g, held) in gradient.iter_mut().zip(held) {
-                    *g = if *held { 0.0 } else { *g };
-                }
-                equations.add(&gradient, -value[d]);
-            }
-        }
-        equations.least_norm(n)
-    });
-    for (q, dq) in state.q.iter_mut().zip(&step) {
-        *q += dq;
-    }
-    Update::largest(step.iter().copied())
-}
-
-/// The step of a large mechanism, where it is certain which rows are independent.
-fn sparse_step(model: &Model, state: &State, held: &[bool]) -> Option<Vec<f64>> {
-    let mut rows = sparse_rows(model, state)?;
+    let mut rows = rows(model, state);
     for row in &mut rows {
         row.retain(|(i, _)| !held[*i]);
     }
-    let n = model.shape().unknowns;
     let values = model.constraints.iter().flat_map(|placed| {
         let value = placed.term.value(state);
         (0..placed.rows).map(move |d| -value[d])
     });
     let values: Vec<f64> = values.collect();
-    Some(IndependentRows::new(n, &rows)?.least_norm(&values))
+    let step = IndependentRows::new(held.len(), &rows, &values).least_norm();
+    for (q, dq) in state.q.iter_mut().zip(&step) {
+        *q += dq;
+    }
+    Update::largest(step.iter().copied())
 }
 
 /// The largest violation of a constraint, and the constraint.
@@ -213,11 +178,7 @@ fn size(c: &Compiler, b: usize) -> f64 {
         return length;
     }
     let points = c.bodies[b].points().iter().enumerate();
-    let used = |point: usize| {
-        let point = PointRef { body: b, point };
-        let mut joints = c.scene.joints.iter();
-        joints.any(|joint| joint.points().contains(&point))
-    };
+    let used = |point: usize| !c.joints_at(PointRef { body: b, point }).is_empty();
     let used: Vec<_> = points
         .filter_map(|(i, point)| used(i).then_some(point.at))
         .collect();

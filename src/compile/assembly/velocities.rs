@@ -1,17 +1,66 @@
 //! Velocities at the start, from a few given ones.
 
 use super::super::{Compiler, Role};
-use super::{AGREEING, opening, row, sparse_rows};
-use crate::math::dense::{Added, Equations};
+use super::{AGREEING, opening, rows};
 use crate::math::independent_rows::IndependentRows;
-use crate::math::sparse_rows::{SparseRow, SparseRows, SymmetricBlock, full_row, times};
-use crate::model::Model;
-use crate::scene::SceneError;
+use crate::math::sparse_rows::{SparseRow, SymmetricBlock, times};
+use crate::model::{Model, PlacedConstraint};
+use crate::scene::{GivenVelocity, SceneError};
 use crate::system::{State, System};
-use faer::Mat;
 
 /// The velocities that a scene can give, with their units.
 const RATES: [(&str, &str); 3] = [("vx", "m/s"), ("vy", "m/s"), ("omega", "rad/s")];
+
+/// What demands a linear equation of the velocities.
+#[derive(Debug, Clone, Copy)]
+enum Demand<'a> {
+    /// A row of a constraint.
+    Constraint(&'a PlacedConstraint, usize),
+    /// A component of the velocity of a given state, which may repeat others.
+    OfState(GivenVelocity),
+    /// A velocity that is given by itself.
+    Single(GivenVelocity),
+}
+
+impl Demand<'_> {
+    /// The error for an equation that follows from those before it, which give the right side up to `off`; none where it may repeat
+    /// them and does.
+    fn refuse(self, c: &Compiler, mechanism: &Model, off: f64) -> Option<SceneError> {
+        let contradicts = off.abs() > AGREEING;
+        match self {
+            Demand::Constraint(placed, d) => contradicts.then(|| {
+                let name = &mechanism.names[mechanism.shape().unknowns + placed.row + d];
+                let message = format!(
+                    "the prescribed motions contradict each other at t = 0: the rate of {name} is off by {}",
+                    opening(&placed.term, off.abs(), "/s")
+                );
+                c.scene.error(c.scene.initial.span, message, "this start")
+            }),
+            Demand::OfState(given) => contradicts.then(|| {
+                let (key, unit) = RATES[given.component];
+                let message = format!(
+                    "the given velocity of {} contradicts the joints and drives: {key} is off by {}",
+                    c.scene.bodies[given.body].name,
+                    numbers::si(off.abs(), unit)
+                );
+                c.scene.error(given.span, message, "this velocity")
+            }),
+            Demand::Single(given) => {
+                let (key, _) = RATES[given.component];
+                let body = &c.scene.bodies[given.body].name;
+                let verb = match contradicts {
+                    true => "contradicts",
+                    false => "repeats",
+                };
+                let implied = given.value - off;
+                let message = format!(
+                    "{key} of {body} {verb} the joints, drives and velocities given before, which make it {implied:.6}"
+                );
+                Some(c.scene.error(given.span, message, "leave this out"))
+            }
+        }
+    }
+}
 
 /// Velocities of least kinetic energy under the constraints and the given ones.
 pub(super) fn velocities(
@@ -23,119 +72,60 @@ pub(super) fn velocities(
     state.v[..n].fill(0.0);
     let mut rates = vec![0.0; mechanism.shape().multipliers];
     mechanism.constraint_velocity(state, &mut rates);
-    if let Some(v) = sparse_velocities(c, mechanism, state, &rates) {
-        state.v[..n].copy_from_slice(&v);
-        mechanism.move_driven_nodes(state);
-        return Ok(());
-    }
-    let mut equations = Equations::default();
-    for (i, placed) in mechanism.constraints.iter().enumerate() {
-        for d in 0..placed.rows {
-            let added = equations.add(&row(mechanism, state, i, d), -rates[placed.row + d]);
-            if let Added::Dependent(off) = added
-                && off.abs() > AGREEING
-            {
-                let name = &mechanism.names[n + placed.row + d];
-                let message = format!(
-                    "the prescribed motions contradict each other at t = 0: the rate of {name} is off by {}",
-                    opening(&placed.term, off.abs(), "/s")
-                );
-                return Err(c.scene.error(c.scene.initial.span, message, "this start"));
-            }
+    let constraints = mechanism.constraints.iter();
+    let of_constraints = constraints.flat_map(|p| (0..p.rows).map(move |d| (p, d)));
+    let mut rows = rows(mechanism, state);
+    let (mut values, mut demands): (Vec<f64>, Vec<Demand>) = of_constraints
+        .map(|(p, d)| (-rates[p.row + d], Demand::Constraint(p, d)))
+        .unzip();
+    for (given, demand) in given_velocities(c)? {
+        if let Some((row, known)) = velocity_row(mechanism, state, given) {
+            rows.push(row);
+            values.push(given.value - known);
+            demands.push(demand);
         }
     }
-    for given in c.scene.initial.bodies.values().filter(|g| g.velocity_given) {
-        for (component, (key, unit)) in RATES.into_iter().enumerate() {
-            let Some((a, known)) = velocity_row(mechanism, state, given.body, component) else {
-                continue;
-            };
-            let added = equations.add(&full_row(n, &a), given.velocity[component] - known);
-            if let Added::Dependent(off) = added
-                && off.abs() > AGREEING
-            {
-                let message = format!(
-                    "the given velocity of {} contradicts the joints and drives: {key} is off by {}",
-                    c.scene.bodies[given.body].name,
-                    numbers::si(off.abs(), unit)
-                );
-                return Err(c.scene.error(given.span, message, "this velocity"));
-            }
+    let independent = IndependentRows::new(n, &rows, &values);
+    let least = independent.least_norm();
+    for &k in &independent.dependent {
+        let off = values[k] - times(&rows[k], &least);
+        if let Some(error) = demands[k].refuse(c, mechanism, off) {
+            return Err(error);
         }
     }
-    for given in &c.scene.initial.velocities {
-        let body = &c.scene.bodies[given.body].name;
-        let (key, _) = RATES[given.component];
-        if c.roles[given.body] != Role::Free {
-            let message = format!("the motion of {body} is prescribed, so `{key}` cannot be given");
-            return Err(c.scene.error(given.span, message, "remove this"));
-        }
-        let Some((a, known)) = velocity_row(mechanism, state, given.body, given.component) else {
-            continue;
-        };
-        if let Added::Dependent(off) = equations.add(&full_row(n, &a), given.value - known) {
-            let verb = match off.abs() > AGREEING {
-                true => "contradicts",
-                false => "repeats",
-            };
-            let implied = given.value - off;
-            let message = format!(
-                "{key} of {body} {verb} the joints, drives and velocities given before, which make it {implied:.6}"
-            );
-            return Err(c.scene.error(given.span, message, "leave this out"));
-        }
-    }
-    let (mass, momentum) = mass(mechanism, state);
-    let v = equations.least_energy(&mass, &momentum);
+    let (blocks, momentum) = mass_blocks(mechanism, state);
+    let blocks: Vec<SymmetricBlock> = blocks
+        .iter()
+        .map(|(own, block)| (&own[..], &block[..]))
+        .collect();
+    let v = independent.least_energy(&blocks, &momentum, AGREEING);
     state.v[..n].copy_from_slice(&v);
     mechanism.move_driven_nodes(state);
     Ok(())
 }
 
-/// The same of a large mechanism where it is certain which equations are independent, and the solution satisfies all of them.
-fn sparse_velocities(
-    c: &Compiler,
-    mechanism: &Model,
-    state: &State,
-    rates: &[f64],
-) -> Option<Vec<f64>> {
-    let n = mechanism.shape().unknowns;
-    let mut rows = sparse_rows(mechanism, state)?;
-    let constraints = mechanism.constraints.iter();
-    let wanted = constraints.flat_map(|p| (p.row..p.row + p.rows).map(|row| -rates[row]));
-    let mut wanted: Vec<f64> = wanted.collect();
-    let whole = c.scene.initial.bodies.values().filter(|g| g.velocity_given);
-    let whole = whole.flat_map(|g| (0..RATES.len()).map(|k| (g.body, k, g.velocity[k])));
-    let single = c.scene.initial.velocities.iter();
-    // the velocity of a body whose motion is prescribed is refused below
-    let free = |body: usize| c.roles[body] == Role::Free;
-    if !single.clone().all(|g| free(g.body)) {
-        return None;
+/// The velocities that the scene gives: first those of given states, then single ones.
+fn given_velocities<'d>(c: &Compiler) -> Result<Vec<(GivenVelocity, Demand<'d>)>, SceneError> {
+    let states = c.scene.initial.bodies.values().filter(|g| g.velocity_given);
+    let of_states = states.flat_map(|state| {
+        let velocity = |component: usize| GivenVelocity {
+            body: state.body,
+            component,
+            value: state.velocity[component],
+            span: state.span,
+        };
+        (0..RATES.len()).map(velocity)
+    });
+    let singles = &c.scene.initial.velocities;
+    if let Some(given) = singles.iter().find(|g| c.roles[g.body] != Role::Free) {
+        let (key, _) = RATES[given.component];
+        let body = &c.scene.bodies[given.body].name;
+        let message = format!("the motion of {body} is prescribed, so `{key}` cannot be given");
+        return Err(c.scene.error(given.span, message, "remove this"));
     }
-    let singles = single.len();
-    let single = single.map(|g| (g.body, g.component, g.value));
-    for (body, component, value) in whole.chain(single) {
-        if let Some((row, known)) = velocity_row(mechanism, state, body, component) {
-            rows.push(row);
-            wanted.push(value - known);
-        }
-    }
-    let independent = IndependentRows::new(n, &rows)?;
-    // a single velocity that follows from the others is refused below
-    let last = independent.dependent.last();
-    if last.is_some_and(|&k| k + singles >= rows.len()) {
-        return None;
-    }
-    let (blocks, momentum) = mass_blocks(mechanism, state);
-    // not -p, which would turn a zero into a negative one
-    let against: Vec<f64> = momentum.iter().map(|p| 0.0 - p).collect();
-    let blocks: Vec<SymmetricBlock> = blocks
-        .iter()
-        .map(|(own, block)| (&own[..], &block[..]))
-        .collect();
-    let (chosen, right) = (independent.chosen(&rows), independent.chosen(&wanted));
-    let v = SparseRows::factor(n, &chosen, &blocks)?.solve(&against, &right);
-    let off = |k: usize| (times(&rows[k], &v) - wanted[k]).abs();
-    (0..rows.len()).all(|k| off(k) <= AGREEING).then_some(v)
+    let of_states = of_states.map(|given| (given, Demand::OfState(given)));
+    let singles = singles.iter().map(|given| (*given, Demand::Single(*given)));
+    Ok(of_states.chain(singles).collect())
 }
 
 /// A velocity of a body as a linear function of the unknown velocities, and the contribution of known ones. `None` for the
@@ -143,30 +133,14 @@ fn sparse_velocities(
 fn velocity_row(
     mechanism: &Model,
     state: &State,
-    body: usize,
-    component: usize,
+    given: GivenVelocity,
 ) -> Option<(SparseRow, f64)> {
     let n = mechanism.shape().unknowns;
-    let placed = &mechanism.bodies()[body].placed;
-    let entries = placed.kind.velocity(component, &placed.x, &state.q)?;
+    let placed = &mechanism.bodies()[given.body].placed;
+    let entries = placed.kind.velocity(given.component, &placed.x, &state.q)?;
     let (row, known): (Vec<_>, Vec<_>) = entries.into_iter().partition(|(i, _)| *i < n);
     let known = known.iter().map(|(i, value)| value * state.v[*i]).sum();
     Some((row, known))
-}
-
-/// Mass matrix of the unknowns, and the momentum from known velocities.
-fn mass(mechanism: &Model, state: &State) -> (Mat<f64>, Vec<f64>) {
-    let n = mechanism.shape().unknowns;
-    let (blocks, momentum) = mass_blocks(mechanism, state);
-    let mut m = Mat::zeros(n, n);
-    for (own, block) in &blocks {
-        for (&i, row) in own.iter().zip(block.chunks_exact(own.len())) {
-            own.iter()
-                .zip(row)
-                .for_each(|(&j, value)| m[(i, j)] += value);
-        }
-    }
-    (m, momentum)
 }
 
 /// Some unknown coordinates, and their mass matrix row by row.
