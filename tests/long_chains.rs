@@ -120,6 +120,33 @@ fn velocities_of_a_long_chain_that_follow_from_others_are_refused_by_name() {
     }
 }
 
+/// Poses hold every second body; only one of them is wrong.
+#[test]
+fn a_wrong_pose_in_a_long_chain_is_named() {
+    let text = chain("");
+    let kept = text.lines().filter(|line| !line.starts_with("initial."));
+    let mut text: String = kept.map(|line| format!("{line}\n")).collect();
+    for k in 0..LINKS {
+        let x = 0.1 * k as f64;
+        text += &format!("initial.sketch.j{k} = [{x}, 0.0]\n");
+        if k % 2 == 0 {
+            let x = x + if k == 74 { 0.07 } else { 0.05 };
+            text += &format!("initial.bodies.link{k} = {{ x = {x}, y = 0.0, theta = 0.0 }}\n");
+        }
+    }
+    text += &format!(
+        "initial.sketch.link{}.b = [{}, 0.0]\n",
+        LINKS - 1,
+        0.1 * LINKS as f64
+    );
+    let scene = Scene::parse("chain", &text, &[]).unwrap();
+    let error = Simulation::new(&scene).unwrap_err().to_string();
+    assert!(
+        error.contains("the given pose of link74 contradicts the sketch"),
+        "{error}"
+    );
+}
+
 /// Second pins between the same points repeat the rows of the first ones, which come before them in the scene.
 #[test]
 fn redundant_joints_of_a_long_chain_are_named() {
@@ -162,7 +189,12 @@ fn a_long_arm_with_a_drive_in_every_joint_starts_as_it_is_driven() {
     };
     let text = chain(&(0..LINKS).map(drive).collect::<String>());
     let given = text.lines().filter(|line| !line.starts_with("initial."));
-    let scene = Scene::parse("arm", &given.collect::<Vec<_>>().join("\n"), &[]).unwrap();
+    // every body is placed by the one before it, which the scene names after it
+    let (bodies, others): (Vec<&str>, Vec<&str>) =
+        given.partition(|line| line.starts_with("bodies.link"));
+    let bodies = bodies.into_iter().rev().collect();
+    let text = [others, bodies].concat().join("\n");
+    let scene = Scene::parse("arm", &text, &[]).unwrap();
     let simulation = Simulation::new(&scene).unwrap();
     let state = simulation.state();
     let model = simulation.model();

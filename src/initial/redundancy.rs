@@ -1,6 +1,6 @@
 //! Redundant constraints: found at the start, left out of the equations, reported by name.
 
-use crate::compile::assembly::{closing_step, rows};
+use crate::compile::assembly::{closing_step, constraint_rows};
 use crate::math::independent_rows::IndependentRows;
 use crate::model::Model;
 use crate::newton::Update;
@@ -13,14 +13,16 @@ const CLOSING: usize = 12;
 /// A step no larger than this is the last one, in units of the coordinates.
 const CLOSED: f64 = 1e-12;
 
-/// The rows that depend on those before them, as (constraint, row of it), and all rows.
+/// The rows that depend on those before them, as (constraint, row of it), and the equations of all rows.
 fn dependent(model: &Model, state: &State) -> (Vec<(usize, usize)>, IndependentRows) {
     let constraints = model.constraints.iter().enumerate();
     let all = constraints.flat_map(|(i, placed)| (0..placed.rows).map(move |d| (i, d)));
     let all: Vec<_> = all.collect();
     let zero = vec![0.0; all.len()];
-    let rows = IndependentRows::new(model.shape().unknowns, &rows(model, state), &zero);
-    (rows.dependent.iter().map(|&k| all[k]).collect(), rows)
+    let rows = constraint_rows(model, state);
+    let equations = IndependentRows::new(model.shape().unknowns, &rows, &zero);
+    let dependent = equations.dependent.iter().map(|&k| all[k]);
+    (dependent.collect(), equations)
 }
 
 /// Dependent constraints of a start.

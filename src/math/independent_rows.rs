@@ -8,15 +8,17 @@ use faer::Mat;
 use indexmap::{IndexMap, IndexSet};
 use std::collections::{BTreeMap, HashMap};
 
-/// Unknowns and rows from which on sparse algebra is used: both take some milliseconds there.
+/// From this number of unknowns and rows on, sparse algebra is used. Dense algebra takes some milliseconds there.
 const LARGE: usize = 300;
-/// Rows are certainly independent if the square of the sine of each to the span of those eliminated before it is larger than this: far
-/// above the rounding of a square, and above every row that [`super::dense`] takes for dependent.
+/// Rows are certainly independent if the squared sine of each to the span of those eliminated before it is larger than this, and if
+/// their equations can be solved: the squared sine of a sum of rows times large factors may be above it by rounding.
 const INDEPENDENT: f64 = 1e-10;
-/// What is added to these squares where they may be zero: above their rounding, far below [`INDEPENDENT`].
+/// Error of the solution of such equations, as a part of the length of a row: far above what corrections leave, far below the error
+/// where one of some million rows depends on the others.
+const SOLVED: f64 = 1e-6;
+/// What is added to the squared sines where they may be zero: above their rounding.
 const SHIFT: f64 = 1e-13;
-/// Rows whose square with this shift is no larger may depend on others. A row that is the sum of others times factors has the sum of
-/// the squares of these factors times the shift: this is a hundred thousand of them.
+/// Rows may depend on others up to this squared sine. That of a sum of rows times factors is the shift times the squares of the factors.
 const DOUBTFUL: f64 = 1e-8;
 /// A row takes part in a sum of rows if its term is larger than this fraction of the sum: above the rounding of the terms, far
 /// below what [`super::dense`] takes for dependent.
@@ -28,13 +30,13 @@ pub struct IndependentRows {
     n: usize,
     /// The rows that depend on those before them, ascending.
     pub dependent: Vec<usize>,
-    others: Others,
+    solver: RowSolver,
 }
 
-/// The equations that do not.
+/// Solves the independent equations.
 #[derive(Debug)]
-enum Others {
-    /// Their factors with M = I, and their right sides.
+enum RowSolver {
+    /// By the factors of the rows with M = I, from the right sides.
     Sparse(Box<SparseRows>, Vec<f64>),
     Dense(Equations),
 }
@@ -63,7 +65,7 @@ impl IndependentRows {
         Some(IndependentRows {
             n,
             dependent,
-            others: Others::Sparse(Box::new(factors), b),
+            solver: RowSolver::Sparse(Box::new(factors), b),
         })
     }
 
@@ -74,31 +76,31 @@ impl IndependentRows {
         IndependentRows {
             n,
             dependent,
-            others: Others::Dense(equations),
+            solver: RowSolver::Dense(equations),
         }
     }
 
     /// The x of least norm that satisfies the independent equations.
     pub fn least_norm(&self) -> Vec<f64> {
-        match &self.others {
-            Others::Sparse(factors, b) => factors.solve(&vec![0.0; self.n], b),
-            Others::Dense(equations) => equations.least_norm(self.n),
+        match &self.solver {
+            RowSolver::Sparse(factors, b) => factors.solve(&vec![0.0; self.n], b),
+            RowSolver::Dense(equations) => equations.least_norm(self.n),
         }
     }
 
     /// The part of x that no equation sees.
     pub fn free_part(&self, x: &[f64]) -> Vec<f64> {
-        match &self.others {
-            Others::Sparse(factors, b) => factors.solve(x, &vec![0.0; b.len()]),
-            Others::Dense(equations) => equations.free_part(x),
+        match &self.solver {
+            RowSolver::Sparse(factors, b) => factors.solve(x, &vec![0.0; b.len()]),
+            RowSolver::Dense(equations) => equations.free_part(x),
         }
     }
 
-    /// The x that satisfies the independent equations, with an error of at most `tolerance` in each, and minimises
-    /// 1/2 x . M x + c . x for a positive definite M, which is the sum of some blocks.
+    /// The x that satisfies the independent equations and minimises 1/2 x . M x + c . x for a positive definite M, which is the sum of
+    /// some blocks. Where sparse algebra leaves an error above `tolerance` in an equation, dense algebra solves all.
     pub fn least_energy(&self, blocks: &[SymmetricBlock], c: &[f64], tolerance: f64) -> Vec<f64> {
-        match &self.others {
-            Others::Sparse(factors, b) => {
+        match &self.solver {
+            RowSolver::Sparse(factors, b) => {
                 let rows = factors.rows();
                 // not -c, which would turn a zero into a negative one
                 let against: Vec<f64> = c.iter().map(|c| 0.0 - c).collect();
@@ -112,7 +114,7 @@ impl IndependentRows {
                     all.least_energy(blocks, c, tolerance)
                 })
             }
-            Others::Dense(equations) => equations.least_energy(&full(self.n, blocks), c),
+            RowSolver::Dense(equations) => equations.least_energy(&full(self.n, blocks), c),
         }
     }
 }
@@ -143,7 +145,18 @@ fn identity(indices: &[usize]) -> Vec<SymmetricBlock<'_>> {
 fn certainly_independent(n: usize, rows: &[SparseRow]) -> Option<SparseRows> {
     let factors = SparseRows::factor(n, rows, &identity(&indices(n)))?;
     let is_far = |(k, row)| factors.squared_distance(k) > INDEPENDENT * square(row);
-    rows.iter().enumerate().all(is_far).then_some(factors)
+    if !rows.iter().enumerate().all(is_far) {
+        return None;
+    }
+    // right sides that no sum of rows gives
+    let sizes = rows.iter().map(|row| square(row).sqrt()).enumerate();
+    let b: Vec<f64> = sizes
+        .map(|(k, size)| size * (1.0 + 2.4 * k as f64).sin())
+        .collect();
+    let x = factors.solve(&vec![0.0; n], &b);
+    let is_solved =
+        |(row, b): (&SparseRow, &f64)| (times(row, &x) - b).abs() <= SOLVED * square(row).sqrt();
+    rows.iter().zip(&b).all(is_solved).then_some(factors)
 }
 
 /// All but the elements with some indices, which ascend.
@@ -189,8 +202,9 @@ fn local(rows: &[SparseRow], part: &[usize]) -> (Vec<SparseRow>, usize) {
     (rows, unknowns.len())
 }
 
-/// The same of a part of the rows. Every row that may depend on others is a sum of rows that are certainly independent, which is a
-/// relation between rows.
+/// The rows of a part that depend on those before them. None where it is not certain which rows are independent.
+///
+/// Every row that may depend on others is a sum of rows that certainly do not: a relation between rows.
 fn dependent_of(all: &[SparseRow], part: &[usize]) -> Option<Vec<usize>> {
     let (rows, n) = local(all, part);
     let shifted = SparseRows::factor_shifted(n, &rows, &identity(&indices(n)), SHIFT)?;
@@ -212,41 +226,55 @@ fn dependent_of(all: &[SparseRow], part: &[usize]) -> Option<Vec<usize>> {
                 rows[other].iter().for_each(|(i, g)| rest[*i] -= more * g);
             }
         }
-        if norm(&rest) > DEPENDENT * size {
-            continue;
+        let rest = norm(&rest) / size;
+        if rest <= DEPENDENT {
+            let others = certain.iter().zip(&parts);
+            let others = others.map(|(&j, part)| (j, -part * square(&rows[j]).sqrt() / size));
+            let mut row_factors: BTreeMap<usize, f64> =
+                others.filter(|(_, x)| x.abs() > TAKES_PART).collect();
+            row_factors.insert(k, 1.0);
+            relations.push(Relation { row_factors, rest });
         }
-        let others = certain.iter().zip(&parts);
-        let others = others.map(|(&j, part)| (j, -part * square(&rows[j]).sqrt() / size));
-        let mut relation: Relation = others.filter(|(_, x)| x.abs() > TAKES_PART).collect();
-        relation.insert(k, 1.0);
-        relations.push(relation);
     }
-    Some(last_rows(relations).into_iter().map(|k| part[k]).collect())
+    let found = last_rows(relations)?.into_iter().map(|k| part[k]);
+    Some(found.collect())
 }
 
-/// Rows of length 1 and their factors in a sum that is zero.
-type Relation = BTreeMap<usize, f64>;
+/// A sum of rows of length 1 times factors that is zero.
+#[derive(Debug)]
+struct Relation {
+    row_factors: BTreeMap<usize, f64>,
+    /// The length of the sum.
+    rest: f64,
+}
 
 /// The rows that follow from those before them by some relations: the last row of each, after the last rows of the others have been
-/// eliminated from it.
-fn last_rows(relations: Vec<Relation>) -> Vec<usize> {
+/// eliminated from it. None where the sum is not zero compared with the factor of this row.
+fn last_rows(relations: Vec<Relation>) -> Option<Vec<usize>> {
     let mut found: BTreeMap<usize, Relation> = BTreeMap::new();
     for mut relation in relations {
-        while let Some((last, factor)) = relation.pop_last() {
+        while let Some((last, factor)) = relation.row_factors.pop_last() {
             let Some(other) = found.get(&last) else {
-                relation.insert(last, factor);
+                if relation.rest > DEPENDENT * factor.abs() {
+                    return None;
+                }
+                relation.row_factors.insert(last, factor);
                 found.insert(last, relation);
                 break;
             };
-            let ratio = factor / other[&last];
-            let size = relation.values().fold(factor.abs(), |m, x| m.max(x.abs()));
-            for (row, x) in other.range(..last) {
-                *relation.entry(*row).or_default() -= ratio * x;
+            let ratio = factor / other.row_factors[&last];
+            let sizes = relation.row_factors.values().map(|x| x.abs());
+            let size = sizes.fold(factor.abs(), f64::max);
+            for (row, x) in other.row_factors.range(..last) {
+                *relation.row_factors.entry(*row).or_default() -= ratio * x;
             }
-            relation.retain(|_, x| x.abs() > TAKES_PART * size);
+            relation.rest += ratio.abs() * other.rest;
+            relation
+                .row_factors
+                .retain(|_, x| x.abs() > TAKES_PART * size);
         }
     }
-    found.into_keys().collect()
+    Some(found.into_keys().collect())
 }
 
 /// A row in which every index stands once, with a value that is not zero.
@@ -299,6 +327,60 @@ mod tests {
         assert_eq!(assert_equal(n, &rows).dependent.len(), 5);
     }
 
+    /// The last rows of relations that share rows, with factors of any size.
+    #[test]
+    fn the_last_rows_of_relations_follow_from_those_before_them() {
+        let relation = |row_factors: &[(usize, f64)], rest: f64| Relation {
+            row_factors: row_factors.iter().copied().collect(),
+            rest,
+        };
+        let relations = || {
+            vec![
+                relation(&[(0, 3.0), (2, -1.0), (7, 1.0)], 0.0),
+                // less three times the first one: rows 0, 2 and 5
+                relation(&[(2, 1.0), (5, 0.25), (7, 3.0)], 0.0),
+                // less ten times what is left of the second one: rows 0 and 2
+                relation(&[(0, -1.0), (5, 2.5), (2, 0.5)], 0.0),
+            ]
+        };
+        assert_eq!(last_rows(relations()), Some(vec![2, 5, 7]));
+        // a length far below the factors, but not below that of the last row
+        let small = |rest: f64| last_rows(vec![relation(&[(0, 1.0), (4, 1e-4)], rest)]);
+        assert_eq!(small(1e-14), Some(vec![4]));
+        assert_eq!(small(1e-12), None);
+        let mut inherited = relations();
+        inherited[0].rest = 1e-9;
+        assert_eq!(last_rows(inherited), None);
+    }
+
+    /// Rows at small angles, and sums with large factors.
+    #[test]
+    fn small_angles_are_not_taken_for_dependence_nor_large_factors_for_independence() {
+        for (rows, dependent) in [
+            // two rows at an angle of 1e-3, and a row that is a sum of them with factors of a thousand
+            (
+                vec![vec![(0, 0.51)], vec![(0, 0.72), (1, 1e-3)], vec![(1, 1.0)]],
+                vec![2],
+            ),
+            // three independent rows: the last is 3e-7 outside the span of the others
+            (
+                vec![
+                    vec![(0, 1.0)],
+                    vec![(0, 1.0), (1, 0.9e-4)],
+                    vec![(1, 1.0), (2, 3e-7)],
+                ],
+                vec![],
+            ),
+        ] {
+            let b = vec![1.0; rows.len()];
+            assert_eq!(IndependentRows::dense(3, &rows, &b).dependent, dependent);
+            // what is not certain is left to dense algebra
+            if let Some(sparse) = IndependentRows::sparse(3, &rows, &b) {
+                assert_eq!(sparse.dependent, dependent);
+            }
+        }
+    }
+
     /// Differences of neighbours in a ring add up to zero: the last of them follows from the others, wherever the ring begins.
     #[test]
     fn the_last_row_of_a_large_ring_depends_on_the_others() {
@@ -336,6 +418,30 @@ mod tests {
             let row = |row: Vec<(usize, i32)>| row.into_iter().map(entry).collect();
             let rows: Vec<SparseRow> = rows.into_iter().map(row).collect();
             assert_equal(9, &rows);
+        }
+
+        /// Rows of numbers of many sizes: what sparse algebra takes for independent can be solved, and gives all other rows.
+        #[test]
+        fn independent_rows_of_numbers_of_many_sizes_give_the_dependent_ones(
+            rows in prop::collection::vec(prop::collection::vec((0..6_usize, 0..8_usize), 0..4), 1..10)
+        ) {
+            let sizes = [1.0, -1.0, 0.3, -7.0, 0.01, -150.0, 0.002, 0.5];
+            let entry = |(i, k): (usize, usize)| (i, sizes[k]);
+            let row = |row: Vec<(usize, usize)>| row.into_iter().map(entry).collect();
+            let rows: Vec<SparseRow> = rows.into_iter().map(row).collect();
+            let is_solved = |rows: &[SparseRow], b: &[f64], x: &[f64]| {
+                let off = |(row, b): (&SparseRow, &f64)| (times(row, x) - b).abs() <= 1e-5 * square(row).sqrt();
+                rows.iter().zip(b).all(off)
+            };
+            let x = [0.4, -1.0, 0.7, 0.2, -0.6, 0.9];
+            let b: Vec<f64> = rows.iter().map(|row| times(row, &x)).collect();
+            if let Some(sparse) = IndependentRows::sparse(6, &rows, &b) {
+                prop_assert!(is_solved(&rows, &b, &sparse.least_norm()));
+                let rows = without(&sparse.dependent, &rows);
+                let b: Vec<f64> = (0..rows.len()).map(|k| (k as f64).cos() * square(&rows[k]).sqrt()).collect();
+                let sparse = IndependentRows::sparse(6, &rows, &b);
+                prop_assert!(sparse.is_some_and(|sparse| is_solved(&rows, &b, &sparse.least_norm())));
+            }
         }
     }
 }

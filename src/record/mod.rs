@@ -214,10 +214,12 @@ fn choose<'a>(scene: &Scene, available: &'a [Available]) -> Result<Vec<&'a Avail
     let named = available.iter().enumerate();
     let named: HashMap<&str, usize> = named.map(|(k, entry)| (&*entry.channel.name, k)).collect();
     for wanted in &scene.output.channels {
-        let pattern = WildMatchPattern::<'*', '\0'>::new(&wanted.pattern);
-        let fits = |k: &usize| pattern.matches(&available[*k].channel.name);
         let fitting: Vec<usize> = match wanted.pattern.contains('*') {
-            true => (0..available.len()).filter(fits).collect(),
+            true => {
+                let pattern = WildMatchPattern::<'*', '\0'>::new(&wanted.pattern);
+                let fits = |k: &usize| pattern.matches(&available[*k].channel.name);
+                (0..available.len()).filter(fits).collect()
+            }
             false => named.get(&*wanted.pattern).copied().into_iter().collect(),
         };
         for &k in &fitting {

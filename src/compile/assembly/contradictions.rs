@@ -140,11 +140,11 @@ pub(super) fn blame(
     held: &[bool],
     (open, placed): (f64, &PlacedConstraint),
 ) -> Option<SceneError> {
-    let near = reached(model, held, placed);
+    let reached = reached(model, held, placed);
     let mut poses = c.scene.initial.bodies.values();
     let pose = poses.find(|pose| {
         let own = coordinates(model, pose.body);
-        if !own.iter().any(|i| near.contains(i)) {
+        if !own.iter().any(|i| reached.contains(i)) {
             return false;
         }
         let (mut free, mut state) = (held.to_vec(), guessed.clone());

@@ -79,9 +79,11 @@ impl PartialAssembly<'_> {
             } else {
                 return;
             };
-            for other in self.partners(b).filter(|_| placed) {
-                by_point.insert(other);
-                queue.insert((sweep + usize::from(other < same_sweep_from), other));
+            if placed {
+                for other in self.partners(b) {
+                    by_point.insert(other);
+                    queue.insert((sweep + usize::from(other < same_sweep_from), other));
+                }
             }
         }
     }

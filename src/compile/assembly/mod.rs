@@ -34,7 +34,8 @@ const CLOSED: f64 = 1e-12;
 const ITERATIONS: usize = 80;
 /// Largest distance between a joint and its sketch, relative to the smaller body.
 const SKETCH: f64 = 0.25;
-/// Largest difference between velocities that count as equal \[m/s, rad/s\]: the digits of typed numbers.
+/// Largest difference between velocities that count as equal \[m/s, rad/s\], also as a part of the largest velocity: the digits of typed
+/// numbers.
 const AGREEING: f64 = 1e-9;
 
 /// Assembles the ideal mechanism of a scene: the mechanism and its state at t = 0.
@@ -63,7 +64,7 @@ pub(crate) fn assemble(scene: &Scene) -> Result<(Model, State), SceneError> {
 }
 
 /// The gradients of all constraint rows with respect to the unknown coordinates.
-pub(crate) fn rows(model: &Model, state: &State) -> Vec<SparseRow> {
+pub(crate) fn constraint_rows(model: &Model, state: &State) -> Vec<SparseRow> {
     let n = model.shape().unknowns;
     let constraints = model.constraints.iter();
     let rows = constraints.flat_map(|placed| {
@@ -78,7 +79,7 @@ pub(crate) fn rows(model: &Model, state: &State) -> Vec<SparseRow> {
 
 /// One step of Newton's method of least norm on Phi = 0 over the coordinates that are not held; returns the largest move.
 pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> Update {
-    let mut rows = rows(model, state);
+    let mut rows = constraint_rows(model, state);
     for row in &mut rows {
         row.retain(|(i, _)| !held[*i]);
     }

@@ -1,7 +1,7 @@
 //! Velocities at the start, from a few given ones.
 
 use super::super::{Compiler, Role};
-use super::{AGREEING, opening, rows};
+use super::{AGREEING, constraint_rows, opening};
 use crate::math::independent_rows::IndependentRows;
 use crate::math::sparse_rows::{SparseRow, SymmetricBlock, times};
 use crate::model::{Model, PlacedConstraint};
@@ -23,10 +23,16 @@ enum Demand<'a> {
 }
 
 impl Demand<'_> {
-    /// The error for an equation that follows from those before it, which give the right side up to `off`; none where it may repeat
-    /// them and does.
-    fn refuse(self, c: &Compiler, mechanism: &Model, off: f64) -> Option<SceneError> {
-        let contradicts = off.abs() > AGREEING;
+    /// The error for an equation that depends on those before it, which give the right side up to `off`. None where the equation may
+    /// repeat them, and does so within the tolerance.
+    fn refuse(
+        self,
+        c: &Compiler,
+        mechanism: &Model,
+        off: f64,
+        tolerance: f64,
+    ) -> Option<SceneError> {
+        let contradicts = off.abs() > tolerance;
         match self {
             Demand::Constraint(placed, d) => contradicts.then(|| {
                 let name = &mechanism.names[mechanism.shape().unknowns + placed.row + d];
@@ -74,7 +80,7 @@ pub(super) fn velocities(
     mechanism.constraint_velocity(state, &mut rates);
     let constraints = mechanism.constraints.iter();
     let of_constraints = constraints.flat_map(|p| (0..p.rows).map(move |d| (p, d)));
-    let mut rows = rows(mechanism, state);
+    let mut rows = constraint_rows(mechanism, state);
     let (mut values, mut demands): (Vec<f64>, Vec<Demand>) = of_constraints
         .map(|(p, d)| (-rates[p.row + d], Demand::Constraint(p, d)))
         .unzip();
@@ -87,9 +93,10 @@ pub(super) fn velocities(
     }
     let independent = IndependentRows::new(n, &rows, &values);
     let least = independent.least_norm();
+    let tolerance = AGREEING * least.iter().fold(1.0_f64, |m, v| m.max(v.abs()));
     for &k in &independent.dependent {
         let off = values[k] - times(&rows[k], &least);
-        if let Some(error) = demands[k].refuse(c, mechanism, off) {
+        if let Some(error) = demands[k].refuse(c, mechanism, off, tolerance) {
             return Err(error);
         }
     }
@@ -98,7 +105,7 @@ pub(super) fn velocities(
         .iter()
         .map(|(own, block)| (&own[..], &block[..]))
         .collect();
-    let v = independent.least_energy(&blocks, &momentum, AGREEING);
+    let v = independent.least_energy(&blocks, &momentum, tolerance);
     state.v[..n].copy_from_slice(&v);
     mechanism.move_driven_nodes(state);
     Ok(())
