@@ -43,7 +43,7 @@ use crate::model::Model;
 use crate::newton::Newton;
 use crate::record::{Record, Recorder};
 use crate::scene::{Analysis, Scene};
-use crate::stepper::{LocalError, StepError, Stepper, look_ahead};
+use crate::stepper::{LocalError, StepError, Stepper, midpoint};
 use crate::system::{State, System, Work};
 use control::{Candidate, Verdict};
 use pace::Pacer;
@@ -347,8 +347,8 @@ impl Simulation {
             local_error,
             ..
         } = self;
-        if stepper.looks_ahead(state) {
-            look_ahead(&**model, state, trial, output, newton, work);
+        if stepper.needs_midpoint(state) {
+            midpoint(&**model, state, trial, output, newton, work);
         }
         stepper.local_error(state, trial, output, local_error);
         // equal steps do not depend on the estimate: the two solves would only refine the reported error

@@ -6,7 +6,7 @@ mod contact;
 mod differencing;
 mod joints;
 mod link;
-mod look_ahead;
+mod midpoint;
 mod rounding;
 #[path = "published/spectra.rs"]
 mod spectra;

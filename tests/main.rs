@@ -20,6 +20,7 @@ mod hostile_input;
 mod ideal;
 mod language;
 mod library;
+mod local_errors;
 mod long_chains;
 mod loose;
 mod loose_guide;

@@ -5,7 +5,7 @@ use ladder::{Rung, Worst};
 use looselink::newton::Newton;
 use looselink::stepper::bathe::splitting;
 use looselink::stepper::{
-    Estimate, EstimatedSolution, LocalError, Method, Stepper, Vibration, look_ahead,
+    Estimate, EstimatedSolution, LocalError, Method, Stepper, Vibration, midpoint,
 };
 use looselink::stepper::{
     backward_euler, dormand_prince, esdirk, generalized_alpha, trapezoidal, velocity_verlet,
@@ -278,7 +278,7 @@ fn local_errors_are_estimated() {
             .step(&chain, &from, h, &mut to, &mut newton, &mut chain.work())
             .unwrap();
         let mut error = LocalError::new(2);
-        // neither of the schemes looks ahead
+        // none of the schemes needs a midpoint
         scheme.local_error(&from, &to, &to, &mut error);
         (to, error, scheme.estimate())
     };
@@ -363,24 +363,24 @@ fn local_errors_are_estimated() {
                 reason,
             );
     }
-    // the first of two steps, which looks ahead, and the second, which looks back
+    // the first of two steps, with its midpoint, and the second, with the first
     let missed = |method: Method, h: f64, share: f64| {
         let mut newton = Newton::new(&chain, 1e-16);
         let mut work = chain.work();
         let mut scheme = method.stepper(chain.shape());
         let mut error = LocalError::new(2);
         let mut to = start(&mut newton);
-        let mut ahead = to.clone();
+        let mut middle = to.clone();
         let ends = [h * share, h * (1.0 + share)];
         let starts = [to.clone(), exact(ends[0])];
         let mut looks = starts.iter().zip(ends).map(|(from, t)| {
             scheme
                 .step(&chain, from, t, &mut to, &mut newton, &mut work)
                 .unwrap();
-            if scheme.looks_ahead(from) {
-                look_ahead(&chain, from, &to, &mut ahead, &mut newton, &mut work);
+            if scheme.needs_midpoint(from) {
+                midpoint(&chain, from, &to, &mut middle, &mut newton, &mut work);
             }
-            scheme.local_error(from, &to, &ahead, &mut error);
+            scheme.local_error(from, &to, &middle, &mut error);
             scheme.accept();
             let truth = exact(t);
             let missed = (0..2).flat_map(|i| {
@@ -426,7 +426,7 @@ fn local_errors_are_estimated() {
                 "Step h [s]",
                 &first,
                 at_start - 0.3..at_start + 0.3,
-                "its estimate, by a look ahead, is right to the leading order of the error",
+                "its estimate, by its midpoint, is right to the leading order of the error",
             );
         for share in [1.0, 0.3] {
             let missed = |h| missed(method, h, share)[1];
@@ -593,10 +593,10 @@ fn bathe_loses_energy_of_linear_systems_from_the_first_step_as_the_spectral_form
         .within(&mistaken, 1e-3, "an error a thousand times the bound on rounding is not rounding");
 }
 
-/// Schemes that estimate their error from the step before look ahead where there is none: at the start, and after a change
+/// Schemes that estimate their error from the step before need a midpoint where there is none: at the start, and after a change
 /// of a contact.
 #[test]
-fn schemes_look_ahead_where_no_smooth_step_leads() {
+fn schemes_need_a_midpoint_where_no_smooth_step_leads() {
     let mut chain = Chain::new(vec![1.0], vec![2.0, 3.0]);
     chain.contacts = 1;
     let spectral_radius = 0.8;
@@ -619,13 +619,16 @@ fn schemes_look_ahead_where_no_smooth_step_leads() {
             to.clone()
         };
         let to = step(&mut scheme, &from, 0.1);
-        assert!(scheme.looks_ahead(&from), "{method:?}, at the start");
+        assert!(scheme.needs_midpoint(&from), "{method:?}, at the start");
         scheme.accept();
         step(&mut scheme, &to, 0.2);
-        assert!(!scheme.looks_ahead(&to), "{method:?}, after a step");
+        assert!(!scheme.needs_midpoint(&to), "{method:?}, after a step");
         let mut touched = to.clone();
         touched.z[0] = 0.3;
-        assert!(scheme.looks_ahead(&touched), "{method:?}, after an onset");
+        assert!(
+            scheme.needs_midpoint(&touched),
+            "{method:?}, after an onset"
+        );
     }
 }
 

@@ -77,13 +77,13 @@ impl Stepper for BackwardEuler {
         }
     }
 
-    fn looks_ahead(&self, from: &State) -> bool {
+    fn needs_midpoint(&self, from: &State) -> bool {
         !self.history.leads_to(from)
     }
 
-    fn local_error(&self, from: &State, to: &State, ahead: &State, error: &mut LocalError) {
+    fn local_error(&self, from: &State, to: &State, middle: &State, error: &mut LocalError) {
         let h = to.t - from.t;
-        let differences = self.history.differences(from, to, ahead);
+        let differences = self.history.differences(from, to, middle);
         let velocities = from.v.iter().zip(&to.v);
         for (((q, v), (change, second)), (v_0, v_1)) in
             error.iter_mut().zip(differences).zip(velocities)

@@ -94,14 +94,14 @@ pub trait Stepper: Carried + std::fmt::Debug + Send {
     /// How the scheme estimates its error.
     fn estimate(&self) -> Estimate;
 
-    /// True where the estimate of a step from this state needs an acceleration beyond its end.
-    fn looks_ahead(&self, _from: &State) -> bool {
+    /// True where the estimate of a step from this state needs the acceleration in its middle.
+    fn needs_midpoint(&self, _from: &State) -> bool {
         false
     }
 
     /// The estimated error of the last step, from `from` to `to`, before it is accepted: the more accurate solution minus that
-    /// of the scheme. `ahead` is an extrapolated state beyond the end, if the scheme looks ahead.
-    fn local_error(&self, from: &State, to: &State, ahead: &State, error: &mut LocalError);
+    /// of the scheme. `middle` is the state of [`midpoint`], if the scheme needs it.
+    fn local_error(&self, from: &State, to: &State, middle: &State, error: &mut LocalError);
 }
 
 /// Local error of the unknown coordinates and of their velocities.
@@ -128,30 +128,33 @@ impl LocalError {
     }
 }
 
-/// Extrapolates from the end of a step by its own length with its last acceleration, into `ahead`.
+/// The state in the middle of a step, into `middle`: q and v are those of the cubics through values and rates at both ends, with
+/// an error of h^4, and a is the acceleration there. For its forces, which depend on v as well, a is right to the same order.
 ///
 /// If the prescribed motion or the acceleration does not exist there, a'' is estimated from the change of the acceleration
 /// over the step, which overestimates the error of a smooth motion.
-pub fn look_ahead(
+pub fn midpoint(
     system: &dyn System,
     from: &State,
     to: &State,
-    ahead: &mut State,
+    middle: &mut State,
     newton: &mut Newton,
     work: &mut Work,
 ) {
     let h = to.t - from.t;
-    ahead.copy_from(to);
-    ahead.t = to.t + h;
+    middle.copy_from(to);
+    middle.t = from.t + 0.5 * h;
     let unknowns = system.shape().unknowns;
-    let prescribed = system.prescribe(to, ahead, work);
+    let prescribed = system.prescribe(from, middle, work);
     for i in 0..unknowns {
-        ahead.q[i] = to.q[i] + h * (to.v[i] + 0.5 * h * to.a[i]);
-        ahead.v[i] = to.v[i] + h * to.a[i];
+        let bend = |rate: f64, rate_1: f64| 0.125 * h * (rate - rate_1);
+        middle.q[i] = 0.5 * (from.q[i] + to.q[i]) + bend(from.v[i], to.v[i]);
+        middle.v[i] = 0.5 * (from.v[i] + to.v[i]) + bend(from.a[i], to.a[i]);
     }
-    if prescribed.is_err() || newton.accelerate_aside(system, ahead, work).is_err() {
+    if prescribed.is_err() || newton.accelerate_aside(system, middle, work).is_err() {
         for i in 0..unknowns {
-            ahead.a[i] = 3.0 * to.a[i] - 2.0 * from.a[i];
+            // h^2 a'' = 4 (a_1 - 2 a_m + a) is the change of a
+            middle.a[i] = 0.625 * from.a[i] + 0.375 * to.a[i];
         }
     }
 }

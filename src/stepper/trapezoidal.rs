@@ -78,13 +78,13 @@ impl Stepper for Trapezoidal {
         Estimate::ERROR_OF_ORDER_2
     }
 
-    fn looks_ahead(&self, from: &State) -> bool {
+    fn needs_midpoint(&self, from: &State) -> bool {
         !self.history.leads_to(from)
     }
 
-    fn local_error(&self, from: &State, to: &State, ahead: &State, error: &mut LocalError) {
+    fn local_error(&self, from: &State, to: &State, middle: &State, error: &mut LocalError) {
         let h = to.t - from.t;
-        let differences = self.history.differences(from, to, ahead);
+        let differences = self.history.differences(from, to, middle);
         for ((q, v), (change, second)) in error.iter_mut().zip(differences) {
             *q = -h * h / 12.0 * change;
             *v = -h / 12.0 * second;

@@ -2,11 +2,25 @@
 //! mechanisms without constraint rows.
 //!
 //! ```text
-//! q_1 = q + h v + h^2/2 a                a_1 = a(q_1, v + h a)                v_1 = v + h/2 (a + a_1)
+//! q_1 = q + h v + h^2/2 a                a_1 = a(q_1, w_1)                v_1 = v + h/2 (a + a_1)
 //! ```
 //!
-//! Forces that depend on velocities are evaluated with the predicted velocity; its error of h^2 keeps order two. Without such
-//! forces the scheme is symplectic. It is stable while h omega < 2 in every mode.
+//! Forces that depend on velocities are evaluated with the predicted velocity
+//!
+//! ```text
+//! w_1 = v + h a + h^2/2 a'               a' = (a - a_-2)/(t - t_-2)
+//! ```
+//!
+//! with the acceleration two steps back. Its error of h^3 changes v_1 by h^4 only. Without a', a_1 would miss h^2/2 (da/dv) a', and
+//! so would the a of the next step: together h^3/2 (da/dv) a' in v, more than the rest of the local error, h^3/12 a''. The
+//! difference over two steps, unlike one over the last step, is zero for an acceleration that alternates from step to step, so that
+//! it leaves the largest stable step as it is without a'. Where no smooth step leads to a state there is no a'. There w_1 is v + h a
+//! at first and v_1 in a second evaluation.
+//!
+//! Without forces that depend on velocities the scheme is symplectic. It is stable while h omega < 2 ((1 + 4 zeta^2)^(1/2) - 2 zeta)
+//! in every mode, of damping ratio zeta.
+//!
+//! Its local error is h^3/6 q''' of the position and -h^3/12 v''' of the velocity.
 
 use super::history::History;
 use super::{Estimate, LocalError, Scheme, StepError, Stepper, accumulate, integrate_ends};
@@ -59,14 +73,20 @@ impl Stepper for VelocityVerlet {
         to.copy_from(from);
         to.t = t;
         system.prescribe(from, to, work)?;
+        let (earliest, t_earliest) = self.history.earliest(from);
+        let reach = 0.5 * h * h / (from.t - t_earliest);
         for i in 0..n {
-            self.increment[i] = h * (from.v[i] + 0.5 * h * from.a[i]);
-            to.v[i] = from.v[i] + h * from.a[i];
+            let (v, a) = (from.v[i], from.a[i]);
+            self.increment[i] = h * (v + 0.5 * h * a);
+            to.v[i] = v + h * a + reach * (a - earliest[i]);
         }
         accumulate(from, &self.increment, 0.0, to);
-        newton.accelerate(system, to, work)?;
-        for i in 0..n {
-            to.v[i] = from.v[i] + 0.5 * h * (from.a[i] + to.a[i]);
+        let evaluations = if self.history.leads_to(from) { 1 } else { 2 };
+        for _ in 0..evaluations {
+            newton.accelerate(system, to, work)?;
+            for i in 0..n {
+                to.v[i] = from.v[i] + 0.5 * h * (from.a[i] + to.a[i]);
+            }
         }
         let clamps = system.powers(to, work);
         integrate_ends(from, to);
@@ -84,15 +104,16 @@ impl Stepper for VelocityVerlet {
         }
     }
 
-    fn looks_ahead(&self, from: &State) -> bool {
+    fn needs_midpoint(&self, from: &State) -> bool {
         !self.history.leads_to(from)
     }
 
-    fn local_error(&self, from: &State, to: &State, ahead: &State, error: &mut LocalError) {
+    fn local_error(&self, from: &State, to: &State, middle: &State, error: &mut LocalError) {
         let h = to.t - from.t;
-        let differences = self.history.differences(from, to, ahead);
+        let differences = self.history.differences(from, to, middle);
         for ((q, v), (change, second)) in error.iter_mut().zip(differences) {
-            *q = h * h / 6.0 * change;
+            // the integral of (t_1 - t) (a(t) - a) over the parabola through the three accelerations
+            *q = h * h * (change / 6.0 - second / 24.0);
             *v = -h / 12.0 * second;
         }
     }
