@@ -139,6 +139,9 @@ pub struct AccuracyReport {
     pub asked: Accuracy,
     /// The accuracy of positions that the steps follow: the one asked for, or a smaller one in a mechanism with clearance \[m\].
     pub followed: f64,
+    /// The motions of which the accuracy holds. A run sums the errors of its steps; it does not measure how much its motion
+    /// amplifies them.
+    pub holds_for: &'static str,
     /// The shortest and the longest step taken \[s\], before it was cut where a contact changed; 0 before the first step.
     pub steps: [f64; 2],
     /// Steps repeated because their estimated error was too large.
@@ -428,6 +431,7 @@ impl Controller {
         AccuracyReport {
             asked: self.accuracy,
             followed: self.position_error.accuracy,
+            holds_for: "motions that do not amplify errors",
             steps: self.taken.map(|h| if h.is_finite() { h } else { 0.0 }),
             rejected_steps: self.rejections.iter().sum(),
             rejected_by: named

@@ -14,7 +14,12 @@ pub fn lines(report: &Report) -> Vec<String> {
     lines.extend(report.choice.iter().map(choice));
     lines.extend(report.accuracy.iter().map(accuracy));
     let impacts = report.ended_contacts > 0;
-    lines.extend(report.accuracy.iter().filter(|_| impacts).map(amplified));
+    lines.extend(
+        report
+            .accuracy
+            .iter()
+            .map(|control| holds(control, impacts)),
+    );
     let first = report.impacts.iter().take(SHOWN).enumerate();
     lines.extend(first.map(|(k, impact)| {
         format!(
@@ -73,13 +78,15 @@ fn accuracy(control: &AccuracyReport) -> String {
     line
 }
 
-/// What a run with an accuracy and impacts leaves to its user: a tenth of the accuracy asked for might be above the limit that
-/// the clearance sets, and give the same run.
-fn amplified(control: &AccuracyReport) -> String {
-    format!(
-        "impacts amplify errors, which may exceed the accuracy: compare with a run at position={}",
-        number(0.1 * control.followed, 2)
-    )
+/// For which motions the accuracy holds, and what tells whether the motion of the run is one of them. A tenth of the accuracy asked
+/// for might be above the limit that the clearance sets, and give the same run.
+fn holds(control: &AccuracyReport, impacts: bool) -> String {
+    let finer = number(0.1 * control.followed, 2);
+    let how = match impacts {
+        true => format!("; impacts do: compare with a run at position={finer}"),
+        false => format!("; a run at position={finer} shows whether this one does"),
+    };
+    format!("the accuracy holds for {}{how}", control.holds_for)
 }
 
 /// What the integrator did to the energy.

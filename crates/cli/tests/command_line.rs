@@ -234,6 +234,25 @@ fn an_accuracy_replaces_the_step() {
     let control = &summary(&out)["accuracy"];
     assert_eq!(control["position"], 1e-8);
     assert!(control["rejected_steps"].as_u64() > Some(0));
+    // the summary says for which motions, with impacts and without
+    let holds = "the accuracy holds for motions that do not amplify errors; ";
+    expect(
+        &output,
+        0,
+        &format!("{holds}impacts do: compare with a run at position=1e-9\n"),
+    );
+    let pendulum = folder.path().join("pendulum");
+    let arguments = ["run", "scenes/pendulum.toml", "--accuracy", "1e-6", "--out"];
+    let output = looselink(&[&arguments[..], &[pendulum.to_str().unwrap()]].concat());
+    let shows = format!("{holds}a run at position=1e-7 shows whether this one does\n");
+    expect(&output, 0, &shows);
+    for folder in [&out, &pendulum] {
+        let holds_for = &summary(folder)["accuracy"]["holds_for"];
+        assert_eq!(holds_for, "motions that do not amplify errors");
+    }
+    let stepped = folder.path().join("stepped");
+    let output = run(&stepped, &["--set", "simulation.duration=2e-3"]);
+    assert!(!String::from_utf8_lossy(&output.stderr).contains("the accuracy holds"));
     let inspect = |arguments: &[&str]| looselink(&[&["inspect"], arguments].concat());
     let output = inspect(&["scenes/pendulum.toml", "--accuracy", "1e-9"]);
     expect(&output, 0, "");
