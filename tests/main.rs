@@ -39,3 +39,4 @@ mod stability;
 mod start;
 mod support;
 mod system;
+mod thresholds;

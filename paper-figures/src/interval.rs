@@ -143,11 +143,23 @@ mod tests {
         // variance of 0..15: n (n + 1) / 12 = 22.667
         let half = 2.131_449_546 * (272.0 / 12.0 / 16.0_f64).sqrt();
         assert!((interval.mean - 7.5).abs() < 1e-12 && (interval.half - half).abs() < 1e-12);
-        assert_eq!(interval.above(8.0), CriterionVerdict::Undecided);
-        assert_eq!(interval.above(1.0), CriterionVerdict::Holds);
-        assert_eq!(interval.below(1.0), CriterionVerdict::Fails);
-        assert_eq!(interval.within(9.0, 20.0), CriterionVerdict::Undecided);
-        assert_eq!(interval.within(0.0, 20.0), CriterionVerdict::Holds);
+        // limits on both sides of both ends
+        let (low, high) = (7.5 - half, 7.5 + half);
+        let (undecided, far) = (CriterionVerdict::Undecided, 1e3);
+        for (part, holds, fails) in [
+            (-0.01, CriterionVerdict::Holds, undecided),
+            (0.01, undecided, CriterionVerdict::Fails),
+        ] {
+            let inward = part * half;
+            assert_eq!(interval.within(low + inward, far), holds);
+            assert_eq!(interval.above(low + inward), holds);
+            assert_eq!(interval.within(-far, high - inward), holds);
+            assert_eq!(interval.below(high - inward), holds);
+            assert_eq!(interval.within(high + inward, far), fails);
+            assert_eq!(interval.above(high + inward), fails);
+            assert_eq!(interval.within(-far, low - inward), fails);
+            assert_eq!(interval.below(low - inward), fails);
+        }
     }
 
     #[test]

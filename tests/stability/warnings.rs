@@ -319,7 +319,8 @@ fn errors_are_estimated() {
         .within(&worst, 5.0, "the estimate is a sum of local errors, which the motion may amplify or reduce");
 }
 
-/// docs/scene.md gives the thresholds: a run just below them has no warning, one just above them has one.
+/// docs/scene.md gives the thresholds: a run just below them has no warning, one just above them has one. What is counted is told
+/// from one on.
 #[test]
 fn warnings_begin_at_their_thresholds() {
     let (_, sound) = run(
@@ -335,7 +336,7 @@ fn warnings_begin_at_their_thresholds() {
     fn of(report: &mut Report) -> &mut Integration {
         report.integration.as_mut().unwrap()
     }
-    let cases: [(&str, &Change); 6] = [
+    let cases: [(&str, &Change); 14] = [
         ("the energy of the motion", &|r, part| {
             of(r).lost[1] = part * 0.01 * of(r).turnover;
         }),
@@ -355,6 +356,30 @@ fn warnings_begin_at_their_thresholds() {
         }),
         ("compressed to a Green strain", &|r, part| {
             r.strain.insert("link".to_owned(), -0.4 * part);
+        }),
+        ("fewer than four steps", &|r, part| {
+            r.brief_contacts = part as u64;
+        }),
+        ("steps that failed and were halved", &|r, part| {
+            r.rejected_steps = part as u64;
+        }),
+        ("a contact force clamped at zero", &|r, part| {
+            r.clamps = part as u64;
+        }),
+        ("rounding kept Newton's method", &|r, part| {
+            r.stagnations = part as u64;
+        }),
+        ("solved on the position level", &|r, part| {
+            r.position_level_stages = part as u64;
+        }),
+        ("nearly singular pose", &|r, part| {
+            r.singular_poses = part as u64;
+        }),
+        ("needed row exchanges", &|r, part| {
+            r.fallbacks = part as u64;
+        }),
+        ("not located to within onset_tolerance", &|r, part| {
+            r.unlocated_changes = part as u64;
         }),
     ];
     for (words, change) in cases {

@@ -143,6 +143,31 @@ mod tests {
             .within(&worst, 1.0, "the interval is that of random samples; those of a Sobol sequence lie closer");
     }
 
+    /// Samples with f_A = 1, f_B = -1 and f_AB of 1 or -1 have the mean 0 and the variance 1. Those with f_AB = -1, a part p of them,
+    /// have a T of 2 p and an S of 2 p. In a drawn sample this part is binomial, with the standard deviation sqrt(p (1 - p)/n).
+    #[test]
+    fn both_ends_of_an_interval_are_quantiles_of_the_draws() {
+        const SAMPLES: usize = 1600;
+        let wide = 1.959_964; // 97.5 % quantile of the normal distribution
+        for one_in in [4, 2] {
+            let values: Vec<Option<f64>> = (0..SAMPLES)
+                .flat_map(|k| [1.0, -1.0, if k % one_in == 0 { -1.0 } else { 1.0 }])
+                .map(Some)
+                .collect();
+            let (found, _) = sobol_indices(&values, 1, 1).unwrap();
+            let p = 1.0 / one_in as f64;
+            let deviation = 2.0 * (p * (1.0 - p) / SAMPLES as f64).sqrt();
+            for estimated in [found[0].first_order, found[0].total] {
+                assert!((estimated.value - 2.0 * p).abs() < 1e-12, "{estimated:?}");
+                for (end, side) in [(estimated.low, -1.0), (estimated.high, 1.0)] {
+                    let distance = side * (end - 2.0 * p) / deviation;
+                    // three standard errors of a quantile of a thousand draws, 0.085 deviations each; that of 5 % is 0.32 away
+                    assert!((distance - wide).abs() < 0.26, "{end}: {distance}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn samples_with_a_gap_are_left_out() {
         let design = SensitivityDesign::new(2, 64, 1).unwrap();
