@@ -13,7 +13,7 @@ fn steps(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("bathe_step");
     for case in 1..=4 {
         let path =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/3rrr/case{case}.toml"));
+            Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/3rrr/case{case}.toml"));
         let simulation = |duration: &str| {
             let overrides = [duration, "integrator.step=1e-5", "output.interval=1e-2"];
             let scene = Scene::load(&path, &overrides.map(str::to_owned))

@@ -91,7 +91,7 @@ impl Folder {
         Ok(fs::remove_file(&probe).map_err(naming(&probe))?)
     }
 
-    /// Writes a result that is made in one piece: the texts of its files, in their order.
+    /// Writes a result that is made in one piece: the texts of its files, in their order. The last files may be missing from it.
     ///
     /// # Errors
     /// When a file cannot be written, or a result has come in the meantime.

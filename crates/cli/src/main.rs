@@ -58,7 +58,7 @@ enum Command {
     /// Draw channels of a result: over time, over each other, their spectrum, a Poincare section.
     #[command(
         after_help = "Example:\n  looselink plot out/case4 --channels 'error.*' -o error.svg\n  \
-        looselink plot out/case4 --phase B1.ex B1.ey -o orbit.png"
+        looselink plot out/case4 --phase B1.ex B1.ey -o orbit.svg"
     )]
     Plot(plot::Arguments),
     /// Find natural frequencies and mode shapes about a pose.

@@ -15,6 +15,9 @@ use std::path::PathBuf;
 use view::{StoredChannel, StoredResult};
 use wildmatch::WildMatch;
 
+const NO_PNG: &str = "this program was compiled without PNG; a name that ends in .svg makes an SVG picture, and \
+    `cargo install --locked --path crates/cli --features png` makes a program that has PNG";
+
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("what").required(true)))]
 pub struct Arguments {
@@ -38,7 +41,7 @@ pub struct Arguments {
     /// Leave out what comes after this time (s).
     #[arg(long, value_name = "T")]
     to: Option<f64>,
-    /// The figure, an SVG or PNG file.
+    /// The figure, an SVG file or, with the feature `png`, a PNG file.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 }
@@ -64,7 +67,9 @@ pub fn plot(arguments: &Arguments) -> Result<(), CommandFailure> {
     };
     let text = svg(&Figure::grid(panels, 1, caption(&result)));
     let bytes = match extension.to_str() {
-        Some("png") => png(&text).map_err(CommandFailure::system)?,
+        Some("png") => png(&text)
+            .map_err(CommandFailure::system)?
+            .ok_or_else(|| CommandFailure::bad_input(NO_PNG))?,
         _ => text.into_bytes(),
     };
     replace(&arguments.output, &bytes)?;

@@ -13,6 +13,8 @@ use looselink::scene::Scene;
 use looselink::simulate::{ContactEvent, Control, Observer, Progress, RunError, Simulation};
 use looselink::system::State;
 use messages::Ticker;
+use signal_hook::consts::SIGINT;
+use signal_hook::flag;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -231,12 +233,9 @@ fn earlier(out: &Path, replaces: bool) -> String {
 /// The flag is raised by the first Ctrl-C; the second ends the program at once.
 pub fn stop_on_interrupt() -> Result<Arc<AtomicBool>, CommandFailure> {
     let stop = Arc::new(AtomicBool::new(false));
-    let raised = stop.clone();
-    ctrlc::set_handler(move || {
-        if raised.swap(true, Ordering::Relaxed) {
-            std::process::exit(INTERRUPTED.into());
-        }
-    })
-    .map_err(|e| CommandFailure::system(format!("cannot watch for Ctrl-C: {e}")))?;
+    // in the order in which they are called
+    flag::register_conditional_shutdown(SIGINT, INTERRUPTED.into(), stop.clone())
+        .and_then(|_| flag::register(SIGINT, stop.clone()))
+        .map_err(|e| CommandFailure::system(format!("cannot watch for Ctrl-C: {e}")))?;
     Ok(stop)
 }

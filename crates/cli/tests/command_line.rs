@@ -534,9 +534,10 @@ fn check_and_inspect() {
     );
 }
 
-const ABLATION: [&str; 5] = [
+const ABLATION: &[&str] = &[
     "ablation.json",
     "ablation.md",
+    #[cfg(feature = "png")]
     "ablation.png",
     "ablation.svg",
     "timing.json",

@@ -34,17 +34,6 @@ fn figures_say_what_they_show() {
     ] {
         assert!(figure.contains(text), "{text} is not in the figure");
     }
-    expect(
-        &plot(
-            out,
-            "orbit.png",
-            &["--phase", "pin.ex", "pin.ey", "--to", "0.01"],
-        ),
-        0,
-        "",
-    );
-    let image = std::fs::read(out.join("orbit.png")).unwrap();
-    assert!(image.starts_with(b"\x89PNG") && image.len() > 5000);
     let section = ["--phase", "pin.ex", "pin.ey", "--poincare", "0.005"];
     expect(&plot(out, "section.svg", &section), 0, "");
     assert!(read(out, "section.svg").contains("5 points"));
@@ -54,6 +43,25 @@ fn figures_say_what_they_show() {
         "",
     );
     assert!(read(out, "spectrum.svg").contains("Amplitude of journal.vx"));
+}
+
+#[test]
+fn a_name_in_png_makes_a_png_or_says_how_to_get_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    expect(&run(out, &[]), 0, "");
+    let output = plot(out, "orbit.png", &["--phase", "pin.ex", "pin.ey"]);
+    let image = std::fs::read(out.join("orbit.png"));
+    if cfg!(feature = "png") {
+        expect(&output, 0, "");
+        let image = image.unwrap();
+        assert!(image.starts_with(b"\x89PNG") && image.len() > 5000);
+    } else {
+        let how = "`cargo install --locked --path crates/cli --features png`";
+        expect(&output, 2, how);
+        expect(&output, 2, ".svg");
+        assert!(image.is_err());
+    }
 }
 
 #[test]

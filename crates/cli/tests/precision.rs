@@ -34,7 +34,14 @@ fn the_command_writes_a_study() {
     let width = |row: &str| row.matches('|').count();
     assert!(rows.iter().all(|row| width(row) == width(rows[0])));
     assert!(rows[0].contains("| processor time | least | runs |"));
-    assert!(std::fs::metadata(out.join("precision.png")).unwrap().len() > 10_000);
+    assert!(
+        read("precision.svg").len() > 10_000 && read("precision.md").contains("(precision.svg)")
+    );
+    let png = std::fs::metadata(out.join("precision.png"));
+    assert_eq!(
+        png.is_ok_and(|file| file.len() > 10_000),
+        cfg!(feature = "png")
+    );
     command(study, &[]).code(2);
     command(study, &["--force"]).success();
     assert_eq!(read("precision.json"), found);

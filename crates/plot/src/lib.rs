@@ -1,7 +1,8 @@
-//! Line figures and dot charts for print: a grid of panels with a caption, as SVG and as the PNG rasterised from the same SVG.
+//! Line figures and dot charts for print: a grid of panels with a caption, as SVG and, with the feature `png`, as the PNG
+//! rasterised from the same SVG.
 //!
-//! The caller describes a [`Figure`] in data units; [`save`] lays it out, thins long series to what a pixel can
-//! show and writes both files. One drawing unit is one pixel of the PNG at 300 dpi.
+//! The caller describes a [`Figure`] in data units; [`svg`] lays it out and thins long series to what a pixel can show. One
+//! drawing unit is one pixel of the PNG at 300 dpi.
 
 mod canvas;
 mod clip;
@@ -9,10 +10,16 @@ mod decimate;
 mod layout;
 mod output;
 mod panel;
+#[cfg(feature = "png")]
+mod png;
 mod text;
 mod ticks;
 
-pub use output::{png, render, save, svg};
+#[cfg(not(feature = "png"))]
+pub use output::png;
+pub use output::{save, svg};
+#[cfg(feature = "png")]
+pub use png::png;
 
 /// An RGB colour.
 pub type Color = (u8, u8, u8);

@@ -14,9 +14,11 @@ use looselink::output::OutputError;
 use plot::Figure;
 use std::io;
 
-/// A figure as the bytes of an SVG and a PNG file.
-pub(crate) fn pictures(figure: &Figure) -> Result<[Vec<u8>; 2], OutputError> {
-    plot::render(figure).map_err(|e| io::Error::other(e.to_string()).into())
+/// A figure as the bytes of an SVG file and, with the feature `png`, of a PNG file.
+pub(crate) fn pictures(figure: &Figure) -> Result<(Vec<u8>, Option<Vec<u8>>), OutputError> {
+    let svg = plot::svg(figure);
+    let png = plot::png(&svg).map_err(|e| io::Error::other(e.to_string()))?;
+    Ok((svg.into_bytes(), png))
 }
 
 /// Warnings of several runs as a part of a page in Markdown; empty where no run warns.

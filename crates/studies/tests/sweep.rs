@@ -1,6 +1,5 @@
 //! Sweeps: points, measures, rows, tables.
 
-use parquet::file::reader::{FileReader, SerializedFileReader};
 use std::collections::BTreeMap;
 use std::fs;
 use std::num::NonZeroUsize;
@@ -497,8 +496,10 @@ fn starts_that_have_not_parted_are_named() {
     }
 }
 
+#[cfg(feature = "parquet")]
 #[test]
 fn parquet_and_csv_hold_the_same_table() {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
     let study = format!(
         "{HEAD}{MASS}values = [1.0, 2.0]\nunit = \"kg\"\n[parameters.method]\nfields = [\"integrator.method\"]\nvalues = [\"bathe\"]\n{LAST}"
     );

@@ -110,6 +110,8 @@ fn results_in_one_piece_are_replaced_whole() {
     for (name, command) in commands {
         let names = ["json", "md", "png", "svg"].map(|kind| format!("{name}.{kind}"));
         let names = [&names[..], &["timing.json".to_owned()]].concat();
+        let mut written = names.clone();
+        written.retain(|file| cfg!(feature = "png") || !file.ends_with(".png"));
         let is_earlier = |folder: &Path| {
             let marked = |file: &String| fs::read(folder.join(file)).is_ok_and(|b| b == b"earlier");
             names.iter().all(marked)
@@ -155,9 +157,10 @@ fn results_in_one_piece_are_replaced_whole() {
             stages[stage] += 1;
             if stage == 2 || n % 8 == 0 {
                 expect(&looselink(&forced), 0, "");
-                assert_eq!(files(&out), names);
+                // a picture that is not written does not remain of the earlier result either
+                assert_eq!(files(&out), written);
                 assert!(
-                    names
+                    written
                         .iter()
                         .all(|f| fs::read(out.join(f)).unwrap() != b"earlier")
                 );

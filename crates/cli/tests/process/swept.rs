@@ -84,7 +84,9 @@ fn a_sweep_has_the_same_bytes_however_it_is_made() {
             "sweep.csv",
             "sweep.json",
             "sweep.md",
+            #[cfg(feature = "parquet")]
             "sweep.parquet",
+            #[cfg(feature = "png")]
             "sweep.png",
             "sweep.svg"
         ]

@@ -5,7 +5,7 @@
 //! | `ablation.json` | every variant: its effects, what it does, the differences, sizes and work |
 //! | `ablation.md` | the same as a page |
 //! | `timing.json` | processor time of every variant, and the machine |
-//! | `ablation.svg`, `ablation.png` | the picture, with processor time |
+//! | `ablation.svg` and, with the feature `png`, `ablation.png` | the picture, with processor time |
 //!
 //! The first two are the same bytes when the command is repeated. `ablation.json` comes last: without it there is no result.
 //! A result that is replaced stands in `previous-result` inside the folder until then.
@@ -30,13 +30,14 @@ impl Ablation {
     /// # Errors
     /// When a file cannot be written.
     pub fn write(&self, folder: &Folder) -> Result<(), OutputError> {
-        let [svg, png] = pictures(&figure(self))?;
-        folder.write(&[
+        let (svg, png) = pictures(&figure(self))?;
+        let mut texts = vec![
             json(&self.repeatable())?,
             self.markdown().into_bytes(),
             json(&self.timing())?,
             svg,
-            png,
-        ])
+        ];
+        texts.extend(png);
+        folder.write(&texts)
     }
 }

@@ -129,7 +129,7 @@ impl Ablation {
         let title = &self.header.title;
         let about = self.about().join(" ");
         let mut page =
-            format!("# {title}, effect by effect\n\n{about}\n\n![{title}](ablation.png)\n\n");
+            format!("# {title}, effect by effect\n\n{about}\n\n![{title}](ablation.svg)\n\n");
         for (title, table) in self.tables() {
             page += &format!("## {title}\n\n{}\n", table.markdown());
         }

@@ -5,7 +5,7 @@
 //! | `precision.json` | errors, work and warnings of all points |
 //! | `timing.json` | the processor time of every timed run, and the machine |
 //! | `precision.md` | both as a table, and the warnings |
-//! | `precision.svg`, `precision.png` | the diagrams |
+//! | `precision.svg` and, with the feature `png`, `precision.png` | the diagrams |
 //!
 //! The first is the same bytes when the study is repeated. It comes last: without it there is no result. A result that is
 //! replaced stands in `previous-result` inside the folder until then.
@@ -59,7 +59,7 @@ impl<C: Compared> Found<C> {
     /// A page with the diagrams and the table, and where it was measured.
     pub fn page(&self, study: &Study, machine: &Machine) -> String {
         format!(
-            "# {}\n\n![{}](precision.png)\n\n{}\n{TIMES} {machine}.\n{}",
+            "# {}\n\n![{}](precision.svg)\n\n{}\n{TIMES} {machine}.\n{}",
             self.title,
             C::FIGURE,
             C::table(self, study),
@@ -77,10 +77,12 @@ impl<C: Compared> Found<C> {
         machine: &Machine,
         folder: &Folder,
     ) -> Result<(), OutputError> {
-        let [svg, png] = pictures(&C::figure(self, study))?;
+        let (svg, png) = pictures(&C::figure(self, study))?;
         let page = self.page(study, machine).into_bytes();
         let runs = self.times();
         let times = json(&Times { machine, runs })?;
-        folder.write(&[json(self)?, page, times, svg, png])
+        let mut texts = vec![json(self)?, page, times, svg];
+        texts.extend(png);
+        folder.write(&texts)
     }
 }

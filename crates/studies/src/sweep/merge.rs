@@ -2,10 +2,10 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `sweep.csv`, `sweep.parquet` | one row a run, in the order of their numbers |
+//! | `sweep.csv` and, with the feature `parquet`, `sweep.parquet` | one row a run, in the order of their numbers |
 //! | `points.csv` | with several starts: mean, deviation and interval of every measure at every point |
 //! | `envelopes.csv` | the least, mean and largest course of all runs |
-//! | `sweep.svg`, `sweep.png` | the pictures |
+//! | `sweep.svg` and, with the feature `png`, `sweep.png` | the pictures |
 //! | `sweep.md` | pictures, extremes, faults and warnings as a page |
 //! | `times.csv` | processor time and time on the clock of every run |
 //! | `sweep.json` | the study in numbers: runs by status, units, indices, the crossing of a bisection |
@@ -16,6 +16,7 @@
 use super::columns::{Column, ColumnType, SweepCell};
 use super::csv_table::CsvTable;
 use super::page::page;
+#[cfg(feature = "parquet")]
 use super::parquet_table::ParquetTable;
 use super::pictures::figure;
 use super::store::{remove, timings};
@@ -163,16 +164,20 @@ pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, Swee
     let columns = sweep.columns();
     let failed = |e: &dyn std::fmt::Display| io::Error::other(e.to_string());
     let mut csv = CsvTable::new(&columns).map_err(|e| failed(&e))?;
-    let notes = [
-        ("title", sweep.study.title.as_str()),
-        ("sweep", sweep.digest()),
-    ];
-    let mut parquet = ParquetTable::new(&columns, &notes).map_err(|e| failed(&e))?;
+    #[cfg(feature = "parquet")]
+    let mut parquet = {
+        let notes = [
+            ("title", sweep.study.title.as_str()),
+            ("sweep", sweep.digest()),
+        ];
+        ParquetTable::new(&columns, &notes).map_err(|e| failed(&e))?
+    };
     let mut gathered = Gathered::new(sweep);
     for run in 0..runs {
         let row = store.row(run)?;
         let cells = sweep.cells(&columns, &row);
         csv.row(&cells).map_err(|e| failed(&e))?;
+        #[cfg(feature = "parquet")]
         parquet.row(cells).map_err(|e| failed(&e))?;
         gathered.add(row);
     }
@@ -183,6 +188,7 @@ pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, Swee
         .try_for_each(|name| remove(&folder.join(name)))?;
     let write = |name: &str, bytes: &[u8]| replace(&folder.join(name), bytes);
     write("sweep.csv", &csv.finish()?)?;
+    #[cfg(feature = "parquet")]
     write("sweep.parquet", &parquet.finish().map_err(|e| failed(&e))?)?;
     if sweep.study.starts_of_a_point() > 1 {
         write(
@@ -196,9 +202,11 @@ pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, Swee
             &envelope_table(sweep, &points).map_err(|e| failed(&e))?,
         )?;
     }
-    let [svg, png] = pictures(&figure(sweep, &merged, &points))?;
+    let (svg, png) = pictures(&figure(sweep, &merged, &points))?;
     write("sweep.svg", &svg)?;
-    write("sweep.png", &png)?;
+    if let Some(png) = png {
+        write("sweep.png", &png)?;
+    }
     merged.page = page(sweep, &merged, &points);
     write("sweep.md", merged.page.as_bytes())?;
     write("times.csv", &time_table(folder)?)?;

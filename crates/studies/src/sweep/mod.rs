@@ -14,6 +14,7 @@ mod measure;
 mod merge;
 mod page;
 mod parameter;
+#[cfg(feature = "parquet")]
 mod parquet_table;
 mod pictures;
 mod recorded;

@@ -12,7 +12,7 @@ const LISTED: usize = 20;
 
 /// Pictures, extremes, indices, faults and warnings in Markdown.
 pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
-    let mut page = format!("# {}\n\n![{}](sweep.png)\n\n", merged.title, merged.title);
+    let mut page = format!("# {}\n\n![{}](sweep.svg)\n\n", merged.title, merged.title);
     page += &format!("{} runs of `{}`", merged.runs, merged.scene);
     let others = ["failed", "refused"].map(|name| (name, merged.status[name]));
     for (name, count) in others.iter().filter(|(_, count)| *count > 0) {
