@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Format, lints, the tests of the solver and quick comparisons with the second implementation; with --all everything that must
-# hold: all tests, documentation, and pages that agree with the tests and the sources. Needs Rust; on Debian and Ubuntu it
-# installs the C++ libraries that the comparison is linked with.
+# Format, the tests of the solver and quick comparisons with the second implementation; with --all everything that must hold:
+# lints, all tests, documentation, and pages that agree with the tests and the sources. Names at its end what it skipped. Needs
+# Rust; on Debian and Ubuntu it installs the C++ libraries that the comparison is linked with.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -13,6 +13,18 @@ fewest_tests=601
 
 # Comparisons that take a minute or more.
 slow=(flexible_links impacts_of statistics_of first_rows_without_clearance)
+
+# What is skipped, one line each, by this script and by tests; the gate has begun a list of its own.
+if [ -z "${LOOSELINK_SKIPPED:-}" ]; then
+    export LOOSELINK_SKIPPED="$PWD/target/skipped"
+    mkdir -p target
+    : > "$LOOSELINK_SKIPPED"
+    trap "'$PWD/.ci/skipped'" EXIT
+fi
+
+skip() {
+    echo "$*" >> "$LOOSELINK_SKIPPED"
+}
 
 # Packages of Debian and Ubuntu; elsewhere what needs them says what is missing.
 install() {
@@ -37,20 +49,19 @@ install_libraries() {
     install g++ libeigen3-dev libsundials-dev libsuitesparse-dev libtomlplusplus-dev
 }
 
-# Programs, tests and examples of all packages. A package compiled alone gets fewer features of the libraries, and with them a
-# solver of its own.
+# Programs, tests and examples of all packages, with PNG and Parquet. A package compiled alone gets fewer features of the
+# libraries, and with them a solver of its own.
 compile() {
-    cargo build --workspace --bins --tests --examples
+    cargo build --workspace --all-features --bins --tests --examples
 }
 
 # The program `looselink`. In the gate, which has called `compile`, there is nothing left to do.
 compile_program() {
-    if [ -n "${LOOSELINK_GATE:-}" ]; then compile; else cargo build -p looselink-cli; fi
+    if [ -n "${LOOSELINK_GATE:-}" ]; then compile; else cargo build -p looselink-cli --all-features; fi
 }
 
 quick() {
     local packages=(-p looselink -p looselink-cli -p looselink-studies -p looselink-numbers -p looselink-plot -p verify)
-    cargo clippy "${packages[@]}" --all-targets -- -D warnings
     cargo test "${packages[@]}" -- "${slow[@]/#/--skip=}"
 }
 
@@ -59,12 +70,13 @@ everything() {
     # the fuzz targets, a workspace of their own
     cargo check --quiet --locked --manifest-path fuzz/Cargo.toml --target-dir target
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
+    same_features
     oldest_rust
     packages
 
     compile
     local count
-    count=$(cargo test --workspace --quiet -- --list | grep -c ': test$')
+    count=$(cargo test --workspace --all-features --quiet -- --list | grep -c ': test$')
     echo "$count tests"
     if [ "$count" -lt "$fewest_tests" ]; then
         echo "fewer tests than the $fewest_tests there have been" >&2
@@ -83,10 +95,22 @@ everything() {
     export LOOSELINK_LADDER="$PWD/target/ladder"
     rm -rf "$LOOSELINK_LADDER"
     local failed=0
-    cargo test --workspace && target/debug/ladder --from "$LOOSELINK_LADDER" --check || failed=1
+    cargo test --workspace --all-features && target/debug/ladder --from "$LOOSELINK_LADDER" --check || failed=1
     wait "$counting" || failed=1
     cat target/count.log
     return "$failed"
+}
+
+# The libraries under the solver have the same features in the command line and in the figures of the paper; with others, the
+# second command of the README would compile them and the solver again.
+same_features() {
+    local solver
+    solver=$(cargo tree --locked -p looselink -e normal,no-proc-macro --prefix none --format '{p}' | sed 's/ (\*)$//')
+    features() {
+        cargo tree --locked -e normal,no-proc-macro --prefix none --format '{p} {f}' "$@" |
+            sed 's/ (\*)$//' | grep -F -f <(echo "$solver") | sort -u
+    }
+    diff <(features) <(features -p paper-figures)
 }
 
 # The sources for crates.io: the solver, the command line, and what they are made of.
@@ -114,7 +138,7 @@ sys.exit("\n".join("{name} {version} needs Rust {rust_version}".format(**p) for 
     if RUSTUP_AUTO_INSTALL=0 cargo "+$oldest" --version > /dev/null 2>&1; then
         cargo "+$oldest" check --locked --workspace --target-dir "target/rust-$oldest"
     else
-        echo "Rust $oldest is not installed: nothing was compiled with it"
+        skip "compilation with Rust $oldest (not installed)"
     fi
 }
 
@@ -153,7 +177,7 @@ python() {
     # with the profile of the tests: what has the same features in both is not compiled again
     MATURIN_PEP517_ARGS="--profile dev" CARGO_TARGET_DIR="$PWD/target" target/tools/looselink-python/bin/pip install --quiet "./python[test]"
     # away from the sources, so that the package that was installed is tested
-    LOOSELINK_PROGRAM="$PWD/target/debug/looselink" target/tools/looselink-python/bin/python -P -m pytest -q -n auto python/tests
+    LOOSELINK_PROGRAM="$PWD/target/debug/looselink" target/tools/looselink-python/bin/python -P -m pytest -q -rs -n auto python/tests
 }
 
 case "${1:-}" in

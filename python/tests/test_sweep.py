@@ -125,9 +125,10 @@ def test_an_interrupted_sweep_goes_on(study, expected, tmp_path):
 
 
 def test_workers_that_die_make_the_same_table(study, expected, tmp_path):
-    distributed = pytest.importorskip("distributed")
-    # a worker may be lost several times before its task is given up
     import dask
+    import distributed
+
+    # a worker may be lost several times before its task is given up
 
     with dask.config.set({"distributed.scheduler.allowed-failures": 20}):
         with distributed.LocalCluster(
