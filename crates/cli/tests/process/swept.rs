@@ -121,7 +121,7 @@ fn a_sweep_has_the_same_bytes_however_it_is_made() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        std::thread::sleep(took.mul_f64(0.15 * random.uniform()));
+        std::thread::sleep(took.mul_f64(0.1 * random.uniform()));
         child.kill().unwrap();
         kills += usize::from(child.wait().unwrap().signal().is_some());
         let rows = fs::read_to_string(killed.join("runs.jsonl")).unwrap_or_default();
