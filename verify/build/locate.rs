@@ -56,7 +56,9 @@ impl Libraries {
             &[
                 "sundials_ida",
                 "sundials_sunlinsolklu",
+                "sundials_sunlinsoldense",
                 "sundials_sunmatrixsparse",
+                "sundials_sunmatrixdense",
                 "sundials_nvecserial",
                 "sundials_core",
                 "klu",
@@ -65,7 +67,9 @@ impl Libraries {
             &[
                 "sundials_ida",
                 "sundials_sunlinsolklu",
+                "sundials_sunlinsoldense",
                 "sundials_sunmatrixsparse",
+                "sundials_sunmatrixdense",
                 "sundials_nvecserial",
                 "sundials_generic",
                 "klu",

@@ -1,33 +1,84 @@
 #include "integrate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <vector>
+
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
 
 #include "../../reference-cpp/src/sundials.hpp"
 
 namespace {
 
-const li_equations &equations(void *data) { return *static_cast<const li_equations *>(data); }
+// The equations, the tolerances of a run, and what solves for the condensed unknowns.
+struct Problem {
+    const li_equations &equations;
+    const li_run &run;
+    SUNLinearSolver condensed_solver = nullptr;
+    N_Vector b = nullptr, x = nullptr;
+};
+
+Problem &problem(void *data) { return *static_cast<Problem *>(data); }
 
 int residual(double t, N_Vector y, N_Vector yp, N_Vector r, void *data) {
-    const li_equations &e = equations(data);
+    const li_equations &e = problem(data).equations;
     return e.residual(e.data, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp), N_VGetArrayPointer(r));
 }
 
 int jacobian(double t, double c, N_Vector y, N_Vector yp, N_Vector, SUNMatrix matrix, void *data, N_Vector, N_Vector,
              N_Vector) {
-    const li_equations &e = equations(data);
-    const int64_t size = SM_COLUMNS_S(matrix);
-    std::copy(e.columns, e.columns + size + 1, SM_INDEXPTRS_S(matrix));
-    std::copy(e.rows, e.rows + e.columns[size], SM_INDEXVALS_S(matrix));
-    return e.jacobian(e.data, t, c, N_VGetArrayPointer(y), N_VGetArrayPointer(yp), SM_DATA_S(matrix));
+    const li_equations &e = problem(data).equations;
+    const double *at = N_VGetArrayPointer(y), *rate = N_VGetArrayPointer(yp);
+    const int64_t size = e.unknowns + e.multipliers;
+    if (SUNMatGetID(matrix) == SUNMATRIX_SPARSE) {
+        std::copy(e.columns, e.columns + size + 1, SM_INDEXPTRS_S(matrix));
+        std::copy(e.rows, e.rows + e.columns[size], SM_INDEXVALS_S(matrix));
+        return e.jacobian(e.data, t, c, at, rate, SM_DATA_S(matrix));
+    }
+    std::vector<double> entries(e.columns[size]);
+    const int flag = e.jacobian(e.data, t, c, at, rate, entries.data());
+    for (int64_t column = 0; column < size; ++column)
+        for (int64_t k = e.columns[column]; k < e.columns[column + 1]; ++k)
+            SM_ELEMENT_D(matrix, e.rows[k], column) = entries[k];
+    return flag;
 }
 
 int gaps(double t, N_Vector y, N_Vector, double *values, void *data) {
-    const li_equations &e = equations(data);
+    const li_equations &e = problem(data).equations;
     return e.gaps(e.data, t, N_VGetArrayPointer(y), values);
+}
+
+// Multipliers have no weight: neither the error test nor Newton's convergence test looks at them.
+int weights(N_Vector y, N_Vector w, void *data) {
+    const li_run &run = problem(data).run;
+    const int n = problem(data).equations.unknowns, m = problem(data).equations.multipliers;
+    const double *at = N_VGetArrayPointer(y);
+    double *weight = N_VGetArrayPointer(w);
+    for (int i = 0; i < 2 * n; ++i)
+        weight[i] = 1.0 / (run.relative * std::abs(at[i]) + (i < n ? run.position : run.velocity));
+    std::fill(weight + 2 * n, weight + 2 * n + m, 0.0);
+    return 0;
+}
+
+SUNLinearSolver_Type solver_type(SUNLinearSolver) { return SUNLINEARSOLVER_DIRECT; }
+
+int initialize(SUNLinearSolver solver) { return SUNLinSolInitialize(problem(solver->content).condensed_solver); }
+
+int factorise(SUNLinearSolver solver, SUNMatrix matrix) {
+    return SUNLinSolSetup(problem(solver->content).condensed_solver, matrix);
+}
+
+int solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, double tolerance) {
+    const Problem &p = problem(solver->content);
+    const li_equations &e = p.equations;
+    e.condense(e.data, N_VGetArrayPointer(b), N_VGetArrayPointer(p.b));
+    const int flag = SUNLinSolSolve(p.condensed_solver, matrix, p.x, p.b, tolerance);
+    e.expand(e.data, N_VGetArrayPointer(b), N_VGetArrayPointer(p.x), N_VGetArrayPointer(x));
+    return flag;
 }
 
 void check(int flag, const char *call) {
@@ -35,25 +86,30 @@ void check(int flag, const char *call) {
 }
 
 void integrate(const li_equations &e, const li_run &run, double *start, double *slope, li_counts &counts) {
-    const int n = e.unknowns, size = 2 * n + e.multipliers;
+    const int condensed = e.unknowns + e.multipliers, size = e.unknowns + condensed;
     ida::ErrorText errors;
     ida::Context context(&errors);
     const ida::Vector y(N_VMake_Serial(size, start, context)), yp(N_VMake_Serial(size, slope, context));
-    const ida::Vector tolerances(N_VNew_Serial(size, context)), kinds(N_VNew_Serial(size, context));
-    for (int i = 0; i < size; ++i) {
-        N_VGetArrayPointer(tolerances.get())[i] = i < n ? run.position : run.velocity;
-        N_VGetArrayPointer(kinds.get())[i] = i < 2 * n ? 1.0 : 0.0;
-    }
     const ida::Integrator integrator(context);
     check(ida::route_errors(integrator, &errors), "IDASetErrHandlerFn");
     check(IDAInit(integrator, residual, 0.0, y.get(), yp.get()), "IDAInit");
-    check(IDASetUserData(integrator, const_cast<li_equations *>(&e)), "IDASetUserData");
-    check(IDASVtolerances(integrator, 0.0, tolerances.get()), "IDASVtolerances");
-    check(IDASetId(integrator, kinds.get()), "IDASetId");
-    check(IDASetSuppressAlg(integrator, SUNTRUE), "IDASetSuppressAlg");
+    Problem problem{e, run};
+    check(IDASetUserData(integrator, &problem), "IDASetUserData");
+    check(IDAWFtolerances(integrator, weights), "IDAWFtolerances");
+    check(IDASetMaxOrd(integrator, run.max_order), "IDASetMaxOrd");
     check(IDASetMaxNumSteps(integrator, 10000000), "IDASetMaxNumSteps");
-    const ida::Matrix matrix(SUNSparseMatrix(size, size, e.columns[size], CSC_MAT, context));
-    const ida::LinearSolver solver(SUNLinSol_KLU(y.get(), matrix.get(), context));
+    const ida::Vector b(N_VNew_Serial(condensed, context)), x(N_VNew_Serial(condensed, context));
+    const ida::Matrix matrix(run.dense ? SUNDenseMatrix(condensed, condensed, context)
+                                       : SUNSparseMatrix(condensed, condensed, e.columns[condensed], CSC_MAT, context));
+    const ida::LinearSolver inner(run.dense ? SUNLinSol_Dense(x.get(), matrix.get(), context)
+                                            : SUNLinSol_KLU(x.get(), matrix.get(), context));
+    problem.condensed_solver = inner.get(), problem.b = b.get(), problem.x = x.get();
+    const ida::LinearSolver solver(SUNLinSolNewEmpty(context));
+    solver->ops->gettype = solver_type;
+    solver->ops->initialize = initialize;
+    solver->ops->setup = factorise;
+    solver->ops->solve = solve;
+    solver->content = &problem;
     check(IDASetLinearSolver(integrator, solver.get(), matrix.get()), "IDASetLinearSolver");
     check(IDASetJacFn(integrator, jacobian), "IDASetJacFn");
     if (e.contacts > 0) {

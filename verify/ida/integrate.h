@@ -1,4 +1,5 @@
-/* IDA on equations that the caller evaluates: y = (q, v, lambda), with the constraints on the acceleration level. */
+/* IDA on equations that the caller evaluates: y = (q, v, lambda), with the constraints on the acceleration level. The matrix is
+   that of (q, lambda), from which the caller has eliminated v. */
 #ifndef LOOSELINK_INTEGRATE_H
 #define LOOSELINK_INTEGRATE_H
 
@@ -12,12 +13,15 @@ extern "C" {
 typedef struct {
     void *data;
     int32_t unknowns, multipliers, contacts;
-    /* the pattern of dF/dy + c dF/dy', column by column */
+    /* the pattern of the condensed matrix, column by column */
     const int64_t *columns, *rows;
     /* F(t, y, y') */
     int32_t (*residual)(void *data, double t, const double *y, const double *yp, double *r);
-    /* the entries of dF/dy + c dF/dy' */
+    /* the entries of dF/dy + c dF/dy', condensed */
     int32_t (*jacobian)(void *data, double t, double c, const double *y, const double *yp, double *entries);
+    /* with the last matrix: the right-hand side b condensed, and x of all unknowns from the condensed one */
+    void (*condense)(void *data, const double *b, double *condensed);
+    void (*expand)(void *data, const double *b, const double *condensed, double *x);
     /* the penetration of every contact */
     int32_t (*gaps)(void *data, double t, const double *y, double *gaps);
     /* a contact has changed: closes or opens it, and makes y and y' consistent */
@@ -27,9 +31,13 @@ typedef struct {
 } li_equations;
 
 typedef struct {
-    /* largest local error of a position [m] and of a velocity [m/s] */
-    double position, velocity;
+    /* largest local error: relative, and added to that of a position [m] and of a velocity [m/s] */
+    double relative, position, velocity;
     double duration, interval;
+    /* of BDF, 1 to 5 */
+    int32_t max_order;
+    /* 0: KLU, 1: a dense matrix */
+    int32_t dense;
 } li_run;
 
 typedef struct {

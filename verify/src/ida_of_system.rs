@@ -6,14 +6,23 @@
 //! F = (q' - v,  M v' + f + Phi_q^T lambda,  d2(Phi)/dt2)
 //! ```
 //!
-//! whose drift off the constraints is of the order of the tolerance within a few periods. Of dF/dy + c dF/dy' the derivatives of
-//! d2(Phi)/dt2 by q and v are left out: they are smaller than c Phi_q by the angle through which bodies turn in a step.
+//! whose drift off the constraints is of the order of the tolerance within a few periods. Of J = dF/dy + c dF/dy' the derivatives
+//! of d2(Phi)/dt2 by q and v are left out: they are smaller than c Phi_q by the angle through which bodies turn in a step. With
+//! dv = c dq - b1 from the first row, J (dq, dv, dlambda) = (b1, b2, b3) becomes
+//!
+//! ```text
+//! [ M + C / c + K / c2   Phi_q^T ] [ dq           ]   [ (b2 + c (M + C / c) b1) / c2 ]
+//! [ Phi_q                0       ] [ dlambda / c2 ] = [ (b3 + c Phi_q b1) / c2       ]
+//! ```
+//!
+//! with the tangent of Looselink for the weights 1 / c2 and 1 / c on the left: half as many unknowns.
 
 use cpu_time::ThreadTime;
 use looselink::newton::Newton;
 use looselink::scene::Scene;
 use looselink::simulate::Simulation;
 use looselink::system::{State, System, Weights, Work};
+use serde::{Deserialize, Serialize};
 use std::ffi::{CStr, c_char, c_void};
 
 /// `li_equations`
@@ -27,6 +36,8 @@ struct LiEquations {
     rows: *const i64,
     residual: extern "C" fn(*mut c_void, f64, *const f64, *const f64, *mut f64) -> i32,
     jacobian: extern "C" fn(*mut c_void, f64, f64, *const f64, *const f64, *mut f64) -> i32,
+    condense: extern "C" fn(*mut c_void, *const f64, *mut f64),
+    expand: extern "C" fn(*mut c_void, *const f64, *const f64, *mut f64),
     gaps: extern "C" fn(*mut c_void, f64, *const f64, *mut f64) -> i32,
     change: extern "C" fn(*mut c_void, f64, *mut f64, *mut f64) -> i32,
     row: extern "C" fn(*mut c_void, f64, *const f64),
@@ -35,10 +46,13 @@ struct LiEquations {
 /// `li_run`
 #[repr(C)]
 struct LiRun {
+    relative: f64,
     position: f64,
     velocity: f64,
     duration: f64,
     interval: f64,
+    max_order: i32,
+    dense: i32,
 }
 
 /// `li_counts`
@@ -73,11 +87,41 @@ pub struct IdaRun {
     pub counts: LiCounts,
 }
 
-/// Integrates a scene; `relative` is the tolerance of positions over a millimetre and of velocities over 0.1 m/s.
+/// What factorises Newton's matrix.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LinearSolver {
+    /// A sparse direct solver.
+    Klu,
+    /// Gaussian elimination of a dense matrix.
+    Dense,
+}
+
+/// How IDA integrates.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct IdaSettings {
+    /// Largest order of BDF, 1 to 5; those above 2 are unstable on a part of the imaginary axis.
+    pub max_order: i32,
+    /// Relative tolerance of every unknown over the tolerance of the run.
+    pub ratio: f64,
+    /// Of Newton's matrix.
+    pub linear_solver: LinearSolver,
+}
+
+/// Unknowns and multipliers: the size of Newton's matrix.
+///
+/// # Errors
+/// What the scene says.
+pub fn matrix_size(scene: &Scene) -> Result<usize, String> {
+    let simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
+    let shape = simulation.model().shape();
+    Ok(shape.unknowns + shape.multipliers)
+}
+
+/// Integrates a scene; `tolerance` is that of positions over a millimetre and of velocities over 0.1 m/s.
 ///
 /// # Errors
 /// What the scene or IDA says.
-pub fn integrate(scene: &Scene, relative: f64) -> Result<IdaRun, String> {
+pub fn integrate(scene: &Scene, settings: IdaSettings, tolerance: f64) -> Result<IdaRun, String> {
     let simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
     let mut equations = MechanismEquations::new(&simulation, scene.integrator.onset_tolerance);
     let at = simulation.state();
@@ -96,15 +140,20 @@ pub fn integrate(scene: &Scene, relative: f64) -> Result<IdaRun, String> {
         rows: rows.as_ptr(),
         residual,
         jacobian,
+        condense,
+        expand,
         gaps,
         change,
         row,
     };
     let run = LiRun {
-        position: 1e-3 * relative,
-        velocity: 0.1 * relative,
+        relative: settings.ratio * tolerance,
+        position: 1e-3 * tolerance,
+        velocity: 0.1 * tolerance,
         duration: scene.simulation.duration,
         interval: scene.output.interval,
+        max_order: settings.max_order,
+        dense: i32::from(settings.linear_solver == LinearSolver::Dense),
     };
     let mut counts = LiCounts::default();
     let mut message = [0; 512];
@@ -147,35 +196,21 @@ struct MechanismEquations<'a> {
     onset_tolerance: f64,
     phi: Vec<f64>,
     r: Vec<f64>,
-    /// Pattern of the matrix, column by column, and what each entry is.
+    /// Pattern of the matrix, column by column, and the slots of its entries in the tangent.
     columns: Vec<i64>,
     rows: Vec<i64>,
-    entries: Vec<Entry>,
-    /// M, M + K and M + C in the layout of the tangent.
-    mass: Vec<f64>,
-    with_stiffness: Vec<f64>,
+    slots: Vec<usize>,
+    /// Row, column and slot of the entries of M + C / c, and of Phi_q.
+    inertia: Vec<[usize; 3]>,
+    gradient: Vec<[usize; 3]>,
+    /// M + C / c + K / c2 and M + C / c in the layout of the tangent.
+    tangent: Vec<f64>,
     with_damping: Vec<f64>,
+    c: f64,
     /// True where forces depend on velocities.
     is_damped: bool,
     gaps: Vec<[f64; 2]>,
     found: Vec<Vec<f64>>,
-}
-
-/// An entry of dF/dy + c dF/dy'; numbers are slots of the tangent.
-#[derive(Clone, Copy)]
-enum Entry {
-    /// c
-    Rate,
-    /// -1
-    Velocity,
-    /// K
-    Stiffness(usize),
-    /// c M + C
-    Inertia(usize),
-    /// Phi_q^T
-    Force(usize),
-    /// c Phi_q
-    Constraint(usize),
 }
 
 impl<'a> MechanismEquations<'a> {
@@ -195,73 +230,59 @@ impl<'a> MechanismEquations<'a> {
             r: vec![0.0; shape.coordinates],
             columns: vec![0],
             rows: Vec::new(),
-            entries: Vec::new(),
-            mass: vec![0.0; length],
-            with_stiffness: vec![0.0; length],
+            slots: Vec::new(),
+            inertia: Vec::new(),
+            gradient: Vec::new(),
+            tangent: vec![0.0; length],
             with_damping: vec![0.0; length],
+            c: 1.0,
             is_damped: true,
             gaps: vec![[0.0; 2]; shape.contacts],
             found: Vec::new(),
         };
-        equations.linearise();
-        equations.is_damped = shape.contacts > 0 || equations.mass != equations.with_damping;
         equations.find_pattern();
         equations
     }
 
-    /// M, M + K and M + C at the state.
-    fn linearise(&mut self) {
-        let weights = |q, v| Weights { q, v };
+    /// The tangent with these weights.
+    fn linearise(&mut self, q: f64, v: f64, k: &mut [f64]) {
         let (at, r, phi, work) = (&self.at, &mut self.r, &mut self.phi, &mut self.work);
-        let mut fill = |w, k: &mut [f64]| self.system.linearise(at, w, r, phi, k, work);
-        fill(weights(1.0, 0.0), &mut self.with_stiffness);
-        if self.is_damped {
-            fill(weights(0.0, 0.0), &mut self.mass);
-            fill(weights(0.0, 1.0), &mut self.with_damping);
-        }
+        self.system.linearise(at, Weights { q, v }, r, phi, k, work);
     }
 
     /// The entries of the tangent that are not zero at the start or, where contacts may close, all of its pattern.
     fn find_pattern(&mut self) {
         let (n, symbolic) = (self.n, self.system.symbolic());
-        let m = self.phi.len();
+        let length = symbolic.len();
+        let [mut mass, mut with_damping, mut tangent] = [(); 3].map(|()| vec![0.0; length]);
+        self.linearise(0.0, 0.0, &mut mass);
+        self.linearise(0.0, 1.0, &mut with_damping);
+        self.linearise(1.0, 0.0, &mut tangent);
+        let has_contacts = !self.gaps.is_empty();
+        self.is_damped = has_contacts || mass != with_damping;
         // the entries of the pattern, each with its slot and one more
-        let numbers: Vec<f64> = (1..=symbolic.len()).map(|number| number as f64).collect();
+        let numbers: Vec<f64> = (1..=length).map(|number| number as f64).collect();
         let numbers = symbolic.to_dense(&numbers);
-        let slot = |i: usize, j: usize| numbers[(i, j)] as usize - 1;
-        let is_there = |i: usize, j: usize, values: &[f64]| {
-            numbers[(i, j)] > 0.0 && (!self.gaps.is_empty() || values[slot(i, j)] != 0.0 || i == j)
-        };
-        let size = 2 * n + m;
-        for column in 0..size {
-            let mut add = |row: usize, entry: Entry| {
-                self.rows.push(row as i64);
-                self.entries.push(entry);
-            };
-            if column < n {
-                add(column, Entry::Rate);
-                for i in (0..n).filter(|&i| is_there(i, column, &self.with_stiffness)) {
-                    add(n + i, Entry::Stiffness(slot(i, column)));
+        let size = n + self.phi.len();
+        for j in 0..size {
+            for i in (0..size).filter(|&i| numbers[(i, j)] > 0.0) {
+                let slot = numbers[(i, j)] as usize - 1;
+                let has = |values: &[f64]| has_contacts || values[slot] != 0.0;
+                let has_inertia = has(&mass) || has(&with_damping);
+                if !(has_inertia || has(&tangent)) {
+                    continue;
                 }
-            } else if column < 2 * n {
-                let j = column - n;
-                add(j, Entry::Velocity);
-                let inertia =
-                    |i: usize| is_there(i, j, &self.mass) || is_there(i, j, &self.with_damping);
-                for i in (0..n).filter(|&i| inertia(i)) {
-                    add(n + i, Entry::Inertia(slot(i, j)));
-                }
-                for k in (0..m).filter(|&k| is_there(n + k, j, &self.with_stiffness)) {
-                    add(2 * n + k, Entry::Constraint(slot(n + k, j)));
-                }
-            } else {
-                let k = column - n;
-                for i in (0..n).filter(|&i| is_there(i, k, &self.with_stiffness)) {
-                    add(n + i, Entry::Force(slot(i, k)));
+                self.rows.push(i as i64);
+                self.slots.push(slot);
+                if j < n && i >= n {
+                    self.gradient.push([i, j, slot]);
+                } else if j < n && has_inertia {
+                    self.inertia.push([i, j, slot]);
                 }
             }
             self.columns.push(self.rows.len() as i64);
         }
+        self.with_damping = mass;
     }
 
     /// Takes over y and y' at a time; false where the prescribed motion has no solution.
@@ -353,27 +374,66 @@ extern "C" fn jacobian(
     if !equations.move_to(t, y, Some(yp)) {
         return 1;
     }
-    equations.linearise();
-    let MechanismEquations {
-        entries: kinds,
-        mass,
-        with_stiffness,
-        with_damping,
-        ..
-    } = equations;
+    equations.c = c;
+    let mut tangent = std::mem::take(&mut equations.tangent);
+    equations.linearise(c.powi(-2), c.recip(), &mut tangent);
+    equations.tangent = tangent;
+    if equations.is_damped {
+        let mut with_damping = std::mem::take(&mut equations.with_damping);
+        equations.linearise(0.0, c.recip(), &mut with_damping);
+        equations.with_damping = with_damping;
+    }
     // SAFETY: as many as the pattern has
-    let entries = unsafe { std::slice::from_raw_parts_mut(entries, kinds.len()) };
-    for (entry, kind) in entries.iter_mut().zip(kinds) {
-        *entry = match *kind {
-            Entry::Rate => c,
-            Entry::Velocity => -1.0,
-            Entry::Stiffness(s) => with_stiffness[s] - mass[s],
-            Entry::Inertia(s) => c * mass[s] + (with_damping[s] - mass[s]),
-            Entry::Force(s) => with_stiffness[s],
-            Entry::Constraint(s) => c * with_stiffness[s],
-        };
+    let entries = unsafe { std::slice::from_raw_parts_mut(entries, equations.slots.len()) };
+    for (entry, slot) in entries.iter_mut().zip(&equations.slots) {
+        *entry = equations.tangent[*slot];
     }
     0
+}
+
+extern "C" fn condense(data: *mut c_void, b: *const f64, condensed: *mut f64) {
+    // SAFETY: b has the size of y; the other has that of the matrix
+    let (equations, b, condensed) = unsafe {
+        let (equations, b) = behind(data, b);
+        let size = b.len() - equations.n;
+        (
+            equations,
+            b,
+            std::slice::from_raw_parts_mut(condensed, size),
+        )
+    };
+    let (first, others) = b.split_at(equations.n);
+    let c = equations.c;
+    condensed.copy_from_slice(others);
+    for &[i, j, slot] in &equations.inertia {
+        condensed[i] += c * equations.with_damping[slot] * first[j];
+    }
+    for &[i, j, slot] in &equations.gradient {
+        condensed[i] += c * equations.tangent[slot] * first[j];
+    }
+    condensed.iter_mut().for_each(|x| *x /= c * c);
+}
+
+extern "C" fn expand(data: *mut c_void, b: *const f64, condensed: *const f64, x: *mut f64) {
+    // SAFETY: b and x have the size of y; the other has that of the matrix
+    let (equations, b, condensed, x) = unsafe {
+        let (equations, b) = behind(data, b);
+        let (n, size) = (equations.n, b.len());
+        (
+            equations,
+            b,
+            std::slice::from_raw_parts(condensed, size - n),
+            std::slice::from_raw_parts_mut(x, size),
+        )
+    };
+    let (n, c) = (equations.n, equations.c);
+    for i in 0..n {
+        x[i] = condensed[i];
+        x[n + i] = c * condensed[i] - b[i];
+    }
+    for (x, multiplier) in x[2 * n..].iter_mut().zip(&condensed[n..]) {
+        *x = c * c * multiplier;
+    }
 }
 
 extern "C" fn gaps(data: *mut c_void, t: f64, y: *const f64, gaps: *mut f64) -> i32 {

@@ -1,5 +1,6 @@
 //! The same scene on both sides, as columns with the same names.
 
+use crate::ida_of_system::LinearSolver;
 use crate::reference::{LsStatistics, LsTolerances, ReferenceScene};
 use cpu_time::ThreadTime;
 use looselink::scene::Scene;
@@ -175,9 +176,8 @@ impl ComparisonPlan {
     /// The reference's trajectory, ended at the first row after `impacts` contacts have closed.
     pub fn cpp_until(&self, tolerances: &LsTolerances, impacts: usize) -> Result<Trajectory> {
         let scene = self.reference()?;
-        let linear_solver = i32::from(scene.coordinates.len() > DENSE);
         let tolerances = LsTolerances {
-            linear_solver,
+            linear_solver: i32::from(linear_solver(&scene) == LinearSolver::Klu),
             ..*tolerances
         };
         let mut columns = vec![Vec::new(); scene.channels.len()];
@@ -225,6 +225,14 @@ impl ComparisonPlan {
             seconds,
             counts: run.statistics(),
         })
+    }
+}
+
+/// What factorises IDA's Newton matrix.
+pub fn linear_solver(scene: &ReferenceScene) -> LinearSolver {
+    match scene.coordinates.len() > DENSE {
+        true => LinearSolver::Klu,
+        false => LinearSolver::Dense,
     }
 }
 

@@ -1,3 +1,4 @@
-//! The second implementation as a rival in studies.
+//! IDA as a rival in studies.
 
 pub mod ida;
+pub mod settings;

@@ -10,6 +10,7 @@ mod page;
 mod timings;
 
 use accuracy::ida;
+use accuracy::settings::{ORDERS, SettingsSweep};
 use asked::AccurateRuns;
 use clap::{Parser, Subcommand};
 use looselink::simulate::Notice;
@@ -58,6 +59,8 @@ pub struct MadeStudy {
     pub study: Study,
     /// What was found.
     pub outcome: StudyOutcome,
+    /// How the settings of IDA were found.
+    pub ida: Vec<SettingsSweep>,
 }
 
 /// A study of statistics and what came of it.
@@ -70,7 +73,7 @@ pub struct Surveyed {
     pub survey: Survey,
 }
 
-/// IDA takes minutes for the seconds of a study of statistics: one tolerance, timed once.
+/// IDA takes minutes for the seconds of a study of statistics: one tolerance and ratio, timed once.
 const LONG: (&[f64], usize) = (&[1e-6], 1);
 
 fn main() -> Result<()> {
@@ -117,9 +120,18 @@ fn studied(repeats: u16) -> Result<()> {
             let survey = Survey::run(&study, effort, &mut tell);
             let mut survey = survey.map_err(|e| miette!("{e}"))?;
             let (tolerances, repeats) = LONG;
-            ida::points(&study, tolerances, repeats, &mut tell, &mut |pace, made| {
-                survey.add(&study, ida::NAME, pace, made)
-            })?;
+            for max_order in ORDERS {
+                let settings = ida::usual_settings(&study, max_order)?;
+                let curve = ida::name(max_order);
+                ida::points(
+                    &study,
+                    settings,
+                    tolerances,
+                    repeats,
+                    &mut tell,
+                    &mut |pace, made| survey.add(&study, &curve, pace, made),
+                )?;
+            }
             plot::save(
                 &StatisticsReference::figure(&survey, &study),
                 &pictures,
@@ -135,20 +147,16 @@ fn studied(repeats: u16) -> Result<()> {
         let outcome = StudyOutcome::run(&study, effort, &mut tell);
         let mut outcome = outcome.map_err(|e| miette!("{e}"))?;
         // IDA is a rival to methods; a mesh has none
-        if !study.compares_elements() {
-            ida::points(
-                &study,
-                &ida::RELATIVE,
-                repeats,
-                &mut tell,
-                &mut |pace, made| outcome.add(&study, ida::NAME, pace, made),
-            )?;
-        }
+        let ida = match study.compares_elements() {
+            true => Vec::new(),
+            false => ida::add_curves(&study, &name, &mut outcome, repeats, &mut tell)?,
+        };
         plot::save(&MotionReference::figure(&outcome, &study), &pictures, &name)?;
         made.push(MadeStudy {
             name,
             study,
             outcome,
+            ida,
         });
     }
     let ablation = effects::ablation(&root.join("scenes/3rrr/case4.toml"))?;

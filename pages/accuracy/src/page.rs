@@ -6,8 +6,8 @@ use std::fmt::Write;
 use studies::ablation::Ablation;
 use studies::machine::{Machine, median};
 use studies::precision::{
-    Compared, CurvePoint, MotionReference, RunStatistics, StatisticsReference, StudyPace,
-    WorkCounts,
+    Compared, CurvePoint, CurveTime, MotionReference, RunStatistics, StatisticsReference,
+    StudyPace, Times, WorkCounts,
 };
 
 /// Errors of position at which curves are compared \[m\].
@@ -80,14 +80,23 @@ fn folded(warnings: &[String]) -> String {
 fn winner(
     one: &MadeStudy,
     error: f64,
+    times: Times,
     accept: impl Fn(&str) -> bool,
-) -> Option<(&str, f64, StudyPace)> {
+) -> Option<(&str, CurveTime)> {
     let curves = one.outcome.curves().into_iter().filter(|c| accept(c));
-    let times = curves.filter_map(|c| {
-        let (time, pace) = one.outcome.time_at(c, error)?;
-        Some((c, time, pace))
-    });
-    times.min_by(|a, b| a.1.total_cmp(&b.1))
+    let times = curves.filter_map(|c| Some((c, one.outcome.time_at(c, error, times)?)));
+    times.min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds))
+}
+
+/// As [`winner`], from runs that were made alone.
+fn fastest_run(one: &MadeStudy, error: f64, accept: impl Fn(&str) -> bool) -> Option<(&str, f64)> {
+    let (curve, time) = winner(one, error, Times::Measured, accept)?;
+    Some((curve, time.seconds))
+}
+
+/// Time of the fastest run of a curve below an error \[s\].
+fn run_of(one: &MadeStudy, curve: &str, error: f64) -> Option<f64> {
+    Some(fastest_run(one, error, |name| name == curve)?.1)
 }
 
 /// Studies that compare methods.
@@ -110,7 +119,7 @@ fn conclusions(made: &[MadeStudy], surveyed: &[Surveyed]) -> String {
     let (mut cells, mut ratios) = (0, Vec::new());
     for one in of_methods(made) {
         for error in LEVELS {
-            let Some((curve, time, _)) = winner(one, error, |_| true) else {
+            let Some((curve, time)) = fastest_run(one, error, |_| true) else {
                 continue;
             };
             cells += 1;
@@ -118,7 +127,7 @@ fn conclusions(made: &[MadeStudy], surveyed: &[Surveyed]) -> String {
                 Some(win) => win.1 += 1,
                 None => wins.push((curve, 1)),
             }
-            if let Some((paper, _)) = one.outcome.time_at(PAPER, error) {
+            if let Some(paper) = run_of(one, PAPER, error) {
                 ratios.push(paper / time);
             }
         }
@@ -130,7 +139,8 @@ fn conclusions(made: &[MadeStudy], surveyed: &[Surveyed]) -> String {
     line(
         &mut out,
         &format!(
-            "* Fastest method, counted over {cells} pairs of a study and an error between {} and {}: {}.",
+            "* Times count of runs that were made, the fastest whose error is not above the one asked for and stays there with finer \
+             steps. Fastest method, counted over {cells} pairs of a study and an error between {} and {}: {}.",
             numbers::si(LEVELS[0], "m"),
             numbers::si(LEVELS[LEVELS.len() - 1], "m"),
             wins.join(", ")
@@ -154,8 +164,8 @@ fn conclusions(made: &[MadeStudy], surveyed: &[Surveyed]) -> String {
     let level = 1e-9;
     let explicit: Vec<String> = of_methods(made)
         .filter_map(|one| {
-            let (_, explicit, _) = winner(one, level, is_explicit)?;
-            let (_, implicit, _) = winner(one, level, |c| !is_explicit(c))?;
+            let (_, explicit) = fastest_run(one, level, is_explicit)?;
+            let (_, implicit) = fastest_run(one, level, |c| !is_explicit(c))?;
             let ratio = numbers::digits(explicit / implicit);
             Some(format!("{ratio} ({})", one.name))
         })
@@ -191,9 +201,9 @@ const AUTOMATIC: &str = "auto, error controlled";
 fn automatic(made: &[MadeStudy]) -> String {
     let cells = of_methods(made).flat_map(|one| LEVELS.map(|error| (one, error)));
     let ratios = cells.filter_map(|(one, error)| {
-        let (time, _) = one.outcome.time_at(AUTOMATIC, error)?;
-        let (_, best, _) = winner(one, error, |curve| CANDIDATES.contains(&curve))?;
-        let (_, any, _) = winner(one, error, |_| true)?;
+        let time = run_of(one, AUTOMATIC, error)?;
+        let (_, best) = fastest_run(one, error, |curve| CANDIDATES.contains(&curve))?;
+        let (_, any) = fastest_run(one, error, |_| true)?;
         Some((one, error, [time / best, time / any]))
     });
     let ratios: Vec<_> = ratios.collect();
@@ -316,22 +326,25 @@ fn fastest(made: &[MadeStudy]) -> String {
         "## Which method for which error?\n\n\
          The fastest method for an error of position, with its step or accuracy and its processor time. In brackets: how many \
          times as long the scheme of the paper takes, Bathe's with a fixed step; no brackets where it did not reach the error. \
-         Values are interpolated between the runs of a curve and never extrapolated: where the coarsest run is already below the \
-         error, its time counts. A dash: no method reached the error.\n\n",
+         Times with ~ are interpolated between two runs of a curve, and so are their steps and accuracies; nothing is extrapolated: \
+         where the coarsest run is already below the error, its time counts. A dash: no method reached the error.\n\n",
     );
     let heads: Vec<String> = LEVELS.iter().map(|e| numbers::si(*e, "m")).collect();
     line(&mut out, &format!("| study | {} |", heads.join(" | ")));
     line(&mut out, &format!("|---|{}", "---|".repeat(LEVELS.len())));
     for one in of_methods(made) {
         let cells = LEVELS.iter().map(|error| {
-            let Some((curve, time, pace)) = winner(one, *error, |_| true) else {
+            let Some((curve, time)) = winner(one, *error, Times::Interpolated, |_| true) else {
                 return "–".to_owned();
             };
-            let paper = one.outcome.time_at(PAPER, *error);
-            let paper = paper.map_or(String::new(), |(t, pace)| {
-                format!(" (Bathe, {pace}: {} times)", numbers::digits(t / time))
+            let mark = |time: CurveTime| if time.is_interpolated { "~" } else { "" };
+            let paper = one.outcome.time_at(PAPER, *error, Times::Interpolated);
+            let paper = paper.map_or(String::new(), |paper| {
+                let ratio = numbers::digits(paper.seconds / time.seconds);
+                format!(" (Bathe, {}: {}{ratio} times)", paper.pace, mark(paper))
             });
-            format!("{curve}, {pace}: {}{paper}", numbers::si(time, "s"))
+            let (own, seconds) = (mark(time), numbers::si(time.seconds, "s"));
+            format!("{curve}, {}: {own}{seconds}{paper}", time.pace)
         });
         let cells: Vec<String> = cells.collect();
         line(

@@ -1,6 +1,7 @@
 //! The raw times behind the page.
 
 use crate::{MadeStudy, Surveyed};
+use accuracy::settings::SettingsSweep;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 use std::path::Path;
@@ -19,6 +20,9 @@ struct StudyTimings<'a> {
 struct StudyTimes<'a> {
     study: &'a str,
     runs: Vec<Time<'a>>,
+    /// How the settings of IDA were found.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    ida: &'a [SettingsSweep],
 }
 
 /// Writes the processor time of every timed run.
@@ -31,14 +35,19 @@ pub fn write(
     surveyed: &[Surveyed],
     ablation: &Ablation,
 ) -> Result<()> {
-    let made = made.iter().map(|one| (&*one.name, one.outcome.times()));
-    let surveyed = surveyed.iter().map(|one| (&*one.name, one.survey.times()));
-    let studies = made.chain(surveyed);
+    let made = made.iter().map(|one| StudyTimes {
+        study: &one.name,
+        runs: one.outcome.times(),
+        ida: &one.ida,
+    });
+    let surveyed = surveyed.iter().map(|one| StudyTimes {
+        study: &one.name,
+        runs: one.survey.times(),
+        ida: &[],
+    });
     let timings = StudyTimings {
         machine: machine(),
-        studies: studies
-            .map(|(study, runs)| StudyTimes { study, runs })
-            .collect(),
+        studies: made.chain(surveyed).collect(),
         ablation: ablation.timing(),
     };
     let text = serde_json::to_string_pretty(&timings).into_diagnostic()?;

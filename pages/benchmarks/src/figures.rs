@@ -4,10 +4,12 @@ use crate::Measured;
 use crate::family::Family;
 use crate::growth::{self, SizeOf, exponent};
 use crate::meshes::ERRORS;
-use crate::rivals::{Code, STUDIES, best, levels};
+use crate::rivals::{Code, STUDIES, best};
 use crate::steps::StepCost;
+use accuracy::settings::levels;
 use numbers::{digits, si};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
+use studies::precision::Times;
 
 /// Radius of dots.
 const DOT: u32 = 6;
@@ -120,10 +122,10 @@ pub fn sizes(measured: &Measured, family: Family, cost: &SizeOf) -> (Vec<f64>, V
 }
 
 /// Elements and times of a curve at an error.
-pub fn mesh(measured: &Measured, curve: &str, error: usize) -> (Vec<f64>, Vec<f64>) {
+fn mesh(measured: &Measured, curve: &str, error: usize) -> (Vec<f64>, Vec<f64>) {
     let meshes = measured.meshes.iter().filter(|mesh| mesh.curve == curve);
     meshes
-        .filter_map(|mesh| Some((mesh.elements as f64, mesh.seconds[error]?)))
+        .filter_map(|mesh| Some((mesh.elements as f64, mesh.times[error]?.seconds)))
         .unzip()
 }
 
@@ -183,15 +185,17 @@ pub fn rivals(measured: &Measured) -> Figure {
             palette::GREEN,
             palette::BLACK,
         ]) {
-            let own = measured
-                .rivals
+            let curves = &measured.rivals.curves;
+            let own = curves
                 .iter()
                 .filter(|c| c.study == *study && c.code == code);
             let points = own.flat_map(|curve| curve.points.iter().filter(|p| p[0] > curve.floor));
             let (errors, times): (Vec<f64>, Vec<f64>) = points.map(|[e, t]| (*e, *t)).unzip();
             marks.push(Mark::points("", color, &times, &errors, 3));
-            let line = levels()
-                .filter_map(|error| Some((best(&measured.rivals, study, code, error)?.1, error)));
+            let line = levels().filter_map(|error| {
+                let found = best(curves, study, code, error, Times::Interpolated)?;
+                Some((found.seconds, error))
+            });
             let (times, errors): (Vec<f64>, Vec<f64>) = line.unzip();
             marks.push(Mark::curve(code.name(), color, &times, &errors).width(4));
         }
@@ -206,9 +210,10 @@ pub fn rivals(measured: &Measured) -> Figure {
         }
     });
     let caption = "Studies of the folder studies, of 3 to 20 ms of motion. Dots: runs of all methods. Lines: the fastest method that \
-                   comes below an error and stays there with finer steps; they are vertical where its coarsest run is already \
-                   below the error. The error is the largest difference of position from the converged solution of the same code; \
-                   errors below the difference of two such solutions are left out."
+                   comes below an error and stays there with finer steps, interpolated between runs; they are vertical where its \
+                   coarsest run is already below the error. The error is the largest difference of position from a converged \
+                   solution: Exudyn's own for Exudyn, Looselink's for all others; errors below the difference of two such solutions \
+                   are left out."
         .to_owned();
     Figure::grid(panels.collect(), 2, caption)
 }

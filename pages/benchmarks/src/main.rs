@@ -10,6 +10,7 @@ mod list;
 mod meshes;
 mod page;
 mod rivals;
+mod standings;
 mod steps;
 
 use clap::{Parser, Subcommand, ValueEnum};
@@ -18,7 +19,7 @@ use growth::SizeCost;
 use meshes::MeshCost;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use records::RunningCampaign;
-use rivals::RivalCurve;
+use rivals::Rivals;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use steps::StepCost;
@@ -80,8 +81,9 @@ pub struct Measured {
     pub sizes: Vec<SizeCost>,
     /// Times at one error, by number of elements.
     pub meshes: Vec<MeshCost>,
-    /// Curves of ours and of other codes.
-    pub rivals: Vec<RivalCurve>,
+    /// Ours and other codes.
+    #[serde(flatten)]
+    pub rivals: Rivals,
 }
 
 fn main() -> Result<()> {

@@ -3,22 +3,31 @@
 use miette::{Result, miette};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use studies::precision::{Effort, Study, StudyOutcome};
+use studies::precision::{Effort, Study, StudyOutcome, Times};
 
 /// Elements of every link.
 pub const ELEMENTS: [usize; 4] = [1, 4, 16, 64];
 /// Errors of position \[m\].
 pub const ERRORS: [f64; 2] = [1e-9, 1e-11];
 
-/// The time of an error.
+/// The times of a curve with a number of elements.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct MeshCost {
     /// Elements of every link.
     pub elements: usize,
     /// Curve of the study.
     pub curve: String,
-    /// Processor time at each of [`ERRORS`] \[s\]; absent where no step reaches it.
-    pub seconds: [Option<f64>; 2],
+    /// Time of each of [`ERRORS`]; absent where no step reaches it.
+    pub times: [Option<MeshTime>; 2],
+}
+
+/// The time of an error.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct MeshTime {
+    /// Processor time \[s\].
+    pub seconds: f64,
+    /// True where it is on the line between two runs.
+    pub is_interpolated: bool,
 }
 
 /// Runs the study of the mesh for every number of elements; its reference has the same mesh.
@@ -44,7 +53,13 @@ pub fn measure(root: &Path, repeats: usize) -> Result<Vec<MeshCost>> {
             costs.push(MeshCost {
                 elements,
                 curve: curve.to_owned(),
-                seconds: ERRORS.map(|error| Some(outcome.time_at(curve, error)?.0)),
+                times: ERRORS.map(|error| {
+                    let found = outcome.time_at(curve, error, Times::Interpolated)?;
+                    Some(MeshTime {
+                        seconds: found.seconds,
+                        is_interpolated: found.is_interpolated,
+                    })
+                }),
             });
         }
     }

@@ -2,15 +2,17 @@
 
 use crate::Measured;
 use crate::family::Family;
-use crate::figures::{self, curves, mesh};
+use crate::figures::{self, curves};
 use crate::growth::{self, SizeCost, SizeOf, exponent};
 use crate::meshes::ERRORS;
-use crate::rivals::{Code, STUDIES, best, study};
-use accuracy::ida;
+use crate::rivals::{Code, ConvergedSolution, RivalCurve, STUDIES, best, study};
+use crate::standings::{self, LEVELS, Standing};
+use accuracy::settings::{RATIOS, TOLERANCES};
 use miette::Result;
 use numbers::{digits, si};
 use std::path::Path;
-use studies::machine::median;
+use studies::precision::Times;
+use verify::ida_of_system::LinearSolver;
 
 /// What BENCHMARKS.md says.
 ///
@@ -95,41 +97,25 @@ fn growth_of(measured: &Measured, family: Family, cost: &SizeOf) -> Option<f64> 
 /// How long the other codes take, and where they are faster.
 fn compared(measured: &Measured) -> String {
     let (mut out, mut faster) = (String::new(), Vec::new());
-    for code in [Code::Exudyn, Code::IdaOnOurs, Code::Ida] {
-        let mut ratios = Vec::new();
-        for (study, error) in STUDIES
-            .iter()
-            .flat_map(|study| LEVELS.map(|error| (study, error)))
-        {
-            let [own, other] =
-                [Code::Looselink, code].map(|c| best(&measured.rivals, study, c, error));
-            let (Some((_, own)), Some((_, other))) = (own, other) else {
-                continue;
-            };
-            let ratio = other / own;
-            if ratio < 1.0 {
-                let ratio = digits(ratio);
-                faster.push(format!(
-                    "{} in {study} at {} ({ratio} times)",
-                    code.name(),
-                    si(error, "m")
-                ));
-            }
-            ratios.push(ratio);
-        }
-        if ratios.is_empty() {
+    let all = Standing::all(&measured.rivals.curves);
+    for standing in all.iter().filter(|s| s.method.is_none()) {
+        let (Some([median, least]), name) = (standing.summary(), standing.rival.name()) else {
             continue;
-        }
-        ratios.sort_by(f64::total_cmp);
+        };
+        let ratios = standing.ratios.iter();
+        let most = ratios.clone().map(|r| r.ratio).fold(0.0, f64::max);
         out += &format!(
-            "* {} takes {} to {} times as long as Looselink, {} times in the median over {} pairs of a study and an error, \
+            "* {name} takes {} to {} times as long as Looselink, {} times in the median over {} pairs of a study and an error, \
              each with its fastest method.\n",
-            code.name(),
-            digits(ratios[0]),
-            digits(ratios[ratios.len() - 1]),
-            digits(median(&ratios)),
-            ratios.len()
+            digits(least),
+            digits(most),
+            digits(median),
+            standing.ratios.len()
         );
+        faster.extend(ratios.filter(|r| r.ratio < 1.0).map(|r| {
+            let (error, ratio) = (si(r.error, "m"), digits(r.ratio));
+            format!("{name} in {} at {error} ({ratio} times)", r.study)
+        }));
     }
     out + &match faster.is_empty() {
         true => "* No other code is faster in any of these pairs.\n".to_owned(),
@@ -209,7 +195,8 @@ fn sizes(measured: &Measured) -> String {
          The instructions of a step are those of a run over its {} steps, two rows included. Its time also depends on \
          the caches of the processor, into which the data of a large mechanism do not fit.\n\n\
          {}\
-         The next table shows the processor time to reach an error; a cell is empty where the steps tried do not reach it.\n\n\
+         The next table shows the processor time to reach an error, with ~ where it is interpolated between two runs; a cell is \
+         empty where the steps tried do not reach it.\n\n\
          | case 2, 20 ms: elements a link | ",
         growth::STEPS,
         largest_mechanisms(measured)
@@ -225,9 +212,10 @@ fn sizes(measured: &Measured) -> String {
     out += &format!(" |\n|---|{}\n", "---|".repeat(columns.len()));
     for elements in crate::meshes::ELEMENTS {
         let cells = columns.iter().map(|(curve, k)| {
-            let (sizes, times) = mesh(measured, curve, *k);
-            let found = sizes.iter().position(|n| *n == elements as f64);
-            found.map_or(String::new(), |i| si(times[i], "s"))
+            let all = measured.meshes.iter();
+            let mut own = all.filter(|m| m.elements == elements && m.curve == *curve);
+            let time = own.find_map(|mesh| mesh.times[*k]);
+            time.map_or(String::new(), |t| marked(t.seconds, t.is_interpolated))
         });
         let cells: Vec<String> = cells.collect();
         out += &format!("| {elements} | {} |\n", cells.join(" | "));
@@ -235,8 +223,11 @@ fn sizes(measured: &Measured) -> String {
     out
 }
 
-/// Errors at which codes are compared \[m\].
-const LEVELS: [f64; 7] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
+/// A time, with a mark where no run was made.
+fn marked(seconds: f64, is_interpolated: bool) -> String {
+    let mark = if is_interpolated { "~" } else { "" };
+    format!("{mark}{}", si(seconds, "s"))
+}
 
 /// Other codes.
 fn rivals(root: &Path, measured: &Measured) -> Result<String> {
@@ -245,41 +236,98 @@ fn rivals(root: &Path, measured: &Measured) -> Result<String> {
         Ok(format!("{name} {}", si(duration, "s")))
     });
     let durations: Vec<String> = studies.collect::<Result<_>>()?;
+    let curves = &measured.rivals.curves;
+    let ratios = RATIOS.map(digits).join(", ");
     let mut out = format!(
         "\n## Other codes\n\n![Error against processor time, all codes](pages/benchmarks/figures/rivals.png)\n\n\
          Exudyn 1.13.6 has the same mechanisms with the same data ([benches/peers/exudyn](benches/peers/exudyn)), in the fastest \
-         formulation that was found for it. IDA is the BDF code of SUNDIALS, here with KLU: once on Looselink's residual and \
-         tangent (index 1), and once in the second implementation, in full coordinates (stabilised index 2). Its loosest relative \
-         tolerance is {:e}; where that run is more accurate than the error in the table, its time stands there all the same. The contact \
-         laws are the same, but Exudyn does not clamp forces that pull; its cable element has another strain. On one core, one after \
-         the other in one run.\n\n\
+         formulation that was found for it. IDA is the BDF code of SUNDIALS: once on Looselink's residual and tangent (index 1), \
+         whose velocities are eliminated from Newton's matrix, and once in the second implementation, in full coordinates \
+         (stabilised index 2). BDF of orders above 2 is unstable on a part of the imaginary axis, so IDA has a curve for each of the \
+         largest orders 2, 3 and 5. Each has the settings with which it is fastest in the study, tried on all tolerances: the \
+         relative tolerance is {ratios} times that of the run, and on our equations the matrix is sparse (KLU) or dense. Its \
+         loosest tolerance is {:e}; where that run is more accurate than the error in the table, its time stands there all the \
+         same. The contact laws are the same, but Exudyn does not clamp forces that pull; its cable element has another strain. On \
+         one core, one after the other in one run.\n\n\
          The [studies](studies) simulate the first milliseconds of a mechanism: {durations}. The error is the largest difference of \
-         a position from the code's own converged solution. The table shows the fastest time to reach it, and in brackets how many \
-         times as long the other code takes; a dash where it does not reach the error.\n\n\
+         a position from a converged solution: {solutions}. The table shows the fastest time to reach it, and in brackets how many \
+         times as long the other code takes; a dash where it does not reach the error. Times with ~ are interpolated between two \
+         runs; the ratios in the section above and in the next table are of runs that were made.\n\n\
          | study | error | Looselink | Exudyn | IDA on our equations | IDA, second implementation |\n|---|---|---|---|---|---|\n",
-        ida::RELATIVE[0],
+        TOLERANCES[0],
         durations = durations.join(", "),
+        solutions = solutions(&measured.rivals.solutions),
     );
     for study in STUDIES {
         for error in LEVELS {
-            let of = |code| best(&measured.rivals, study, code, error);
-            let Some((method, own)) = of(Code::Looselink) else {
+            let of = |code| best(curves, study, code, error, Times::Interpolated);
+            let Some(own) = of(Code::Looselink) else {
                 continue;
             };
             let cell = |code| {
-                of(code).map_or("-".to_owned(), |(method, time)| {
-                    format!("{} ({}): {method}", si(time, "s"), digits(time / own))
+                of(code).map_or("-".to_owned(), |t| {
+                    let ratio = digits(t.seconds / own.seconds);
+                    let time = marked(t.seconds, t.is_interpolated);
+                    format!("{time} ({ratio}): {}", t.method)
                 })
             };
             out += &format!(
-                "| {study} | {} | {}: {method} | {} | {} | {} |\n",
+                "| {study} | {} | {}: {} | {} | {} | {} |\n",
                 si(error, "m"),
-                si(own, "s"),
+                marked(own.seconds, own.is_interpolated),
+                own.method,
                 cell(Code::Exudyn),
                 cell(Code::IdaOnOurs),
                 cell(Code::Ida)
             );
         }
     }
+    out += &format!(
+        "\nOne method alone against the fastest method of another code: the median of the ratios of their times, the least one, and \
+         the number of pairs of a study and an error; then how many errors only our method reaches, and only the other code.\n\n{}",
+        standings::table(&Standing::all(curves))
+    );
+    out += &settings(curves);
     Ok(out)
+}
+
+/// From which solutions errors are measured, and how far these are apart.
+fn solutions(all: &[ConvergedSolution]) -> String {
+    let own = |s: &&ConvergedSolution| s.of == s.code && s.of != Code::Looselink;
+    let codes: Vec<&str> = all.iter().filter(own).map(|s| s.code.name()).collect();
+    let Some(code) = codes.first() else {
+        return "Looselink's".to_owned();
+    };
+    let distances = all.iter().filter(own).filter_map(|s| {
+        let distance = s.difference_from_looselink?;
+        Some(format!("{} {}", s.study, si(distance, "m")))
+    });
+    let distances: Vec<String> = distances.collect();
+    let distances = match distances.is_empty() {
+        true => "how far they are apart was not measured".to_owned(),
+        false => format!("they differ by: {}", distances.join(", ")),
+    };
+    format!("its own for {code}, Looselink's for all others ({distances})")
+}
+
+/// The settings of IDA in every study.
+fn settings(curves: &[RivalCurve]) -> String {
+    let mut out = "\n| study | code | method | relative tolerance over that of the run | matrix |\n|---|---|---|---|---|\n".to_owned();
+    for curve in curves {
+        let Some(settings) = curve.settings else {
+            continue;
+        };
+        let matrix = match settings.linear_solver {
+            LinearSolver::Klu => "sparse, KLU",
+            LinearSolver::Dense => "dense",
+        };
+        out += &format!(
+            "| {} | {} | {} | {} | {matrix} |\n",
+            curve.study,
+            curve.code.name(),
+            curve.method,
+            digits(settings.ratio)
+        );
+    }
+    out
 }

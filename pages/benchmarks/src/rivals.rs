@@ -1,7 +1,9 @@
 //! Errors and processor times of other codes beside ours, in the studies of the project.
 
 use accuracy::ida;
+use accuracy::settings::{ORDERS, RATIOS, SettingsSweep, TOLERANCES, Trial};
 use looselink::model::Model;
+use looselink::scene::Scene;
 use looselink::simulate::{Control, Observer, Progress, Simulation};
 use looselink::system::State;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
@@ -9,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::process::Command;
 use studies::machine::median;
-use studies::precision::{Effort, Study, StudyOutcome, reached};
-use verify::ida_of_system;
+use studies::precision::{Effort, Study, StudyOutcome, StudyPace, Times, reached};
+use verify::ida_of_system::{self, IdaSettings, LinearSolver};
 
 /// Studies that all codes run.
 pub const STUDIES: [&str; 6] = [
@@ -34,14 +36,18 @@ pub fn study(root: &Path, name: &str) -> Result<Study> {
     Study::load(&path).map_err(|e| miette!("{e}"))
 }
 
+/// Unknowns and multipliers up to which IDA is also tried with a dense matrix: the time of its factorisation grows with the third
+/// power of their number, that of KLU about in proportion.
+const DENSE: usize = 200;
+
 /// Whose curves they are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Code {
     /// This program.
     Looselink,
-    /// The second implementation: IDA with KLU.
+    /// The second implementation: IDA on full coordinates.
     Ida,
-    /// IDA with KLU on our residual and tangent.
+    /// IDA on our residual and tangent.
     IdaOnOurs,
     /// Exudyn.
     Exudyn,
@@ -71,78 +77,92 @@ pub struct RivalCurve {
     pub code: Code,
     /// Method.
     pub method: String,
+    /// Settings of IDA.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settings: Option<IdaSettings>,
     /// Error of position \[m\] and median processor time \[s\], coarse steps first.
     pub points: Vec<[f64; 2]>,
-    /// Difference of two fine runs of the code, below which its errors have no meaning \[m\].
+    /// Difference of the two runs of the reference, below which errors have no meaning \[m\].
     pub floor: f64,
 }
 
-/// Levels of errors \[m\], four a decade.
-pub fn levels() -> impl Iterator<Item = f64> {
-    (0..=28).map(|k| 1e-5 * 10_f64.powf(-0.25 * f64::from(k)))
+/// The converged solution from which the errors of a code are measured in a study.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct ConvergedSolution {
+    /// Study.
+    pub study: String,
+    /// Whose errors.
+    pub code: Code,
+    /// Whose solution.
+    pub of: Code,
+    /// Its method and step or tolerance.
+    pub method: String,
+    /// Largest difference of a position from Looselink's converged solution \[m\], where it is another one.
+    pub difference_from_looselink: Option<f64>,
 }
 
-/// The method of a code that comes below an error first, to stay there, and its time \[s\]; none where the error is below the floor.
-pub fn best(curves: &[RivalCurve], study: &str, code: Code, error: f64) -> Option<(String, f64)> {
+/// What is measured.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub struct Rivals {
+    /// Curves of ours and of other codes.
+    #[serde(rename = "rivals")]
+    pub curves: Vec<RivalCurve>,
+    /// What their errors are measured from.
+    pub solutions: Vec<ConvergedSolution>,
+    /// How the settings of IDA were found.
+    pub sweeps: Vec<SettingsSweep>,
+}
+
+/// The time that an error takes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorTime {
+    /// Method.
+    pub method: String,
+    /// Processor time \[s\].
+    pub seconds: f64,
+    /// True where it is on the line between two runs.
+    pub is_interpolated: bool,
+}
+
+impl RivalCurve {
+    /// When it comes below an error to stay there; never where the error is below the floor.
+    pub fn time_at(&self, error: f64, times: Times) -> Option<ErrorTime> {
+        let found = reached(&self.points, error, times).filter(|_| self.floor <= error)?;
+        Some(ErrorTime {
+            method: self.method.clone(),
+            seconds: found.seconds,
+            is_interpolated: found.is_interpolated(),
+        })
+    }
+}
+
+/// The method of a code that comes below an error first.
+pub fn best(
+    curves: &[RivalCurve],
+    study: &str,
+    code: Code,
+    error: f64,
+    times: Times,
+) -> Option<ErrorTime> {
     let own = curves.iter().filter(|c| c.study == study && c.code == code);
-    let times = own.filter(|c| c.floor <= error).filter_map(|curve| {
-        let (time, ..) = reached(&curve.points, error)?;
-        Some((curve.method.clone(), time))
-    });
-    times.min_by(|a, b| a.1.total_cmp(&b.1))
+    own.filter_map(|curve| curve.time_at(error, times))
+        .min_by(|a, b| a.seconds.total_cmp(&b.seconds))
 }
 
 /// Runs all codes in all studies.
 ///
 /// # Errors
 /// When one of them cannot run.
-pub fn measure(root: &Path, program: &Path, repeats: usize) -> Result<Vec<RivalCurve>> {
+pub fn measure(root: &Path, program: &Path, repeats: usize) -> Result<Rivals> {
     let python = environment(root)?;
-    let mut curves = Vec::new();
+    let mut rivals = Rivals::default();
     for name in STUDIES {
         eprintln!("rivals: {name}");
-        curves.extend(own(root, name, repeats)?);
-        curves.push(ida_on_ours(root, name, repeats)?);
-        curves.extend(exudyn(root, &python, program, name, repeats)?);
+        rivals.own(root, name, repeats)?;
+        rivals.ida_on_ours(root, name, repeats)?;
+        rivals.exudyn(root, &python, program, name, repeats)?;
     }
-    Ok(curves)
-}
-
-/// Our curves and those of IDA, against our reference.
-fn own(root: &Path, name: &str, repeats: usize) -> Result<Vec<RivalCurve>> {
-    let study = study(root, name)?;
-    let effort = Effort {
-        repeats,
-        smoke: false,
-    };
-    let outcome = StudyOutcome::run(&study, effort, &mut |_| ());
-    let mut outcome = outcome.map_err(|e| miette!("{e}"))?;
-    ida::points(
-        &study,
-        &ida::RELATIVE,
-        repeats,
-        &mut |_| (),
-        &mut |pace, made| outcome.add(&study, ida::NAME, pace, made),
-    )?;
-    let curves = outcome.curves().into_iter().map(|curve| {
-        let runs = outcome.runs.iter().zip(&outcome.timings);
-        let own = runs.filter(|(run, _)| run.curve == curve);
-        let points = own.filter_map(|(run, timing)| {
-            let error = run.result.as_ref().ok()?.errors.position;
-            Some([error, timing.as_ref()?.median])
-        });
-        RivalCurve {
-            study: name.to_owned(),
-            code: match curve == ida::NAME {
-                true => Code::Ida,
-                false => Code::Looselink,
-            },
-            method: curve.to_owned(),
-            points: points.collect(),
-            floor: outcome.reference.floor.position,
-        }
-    });
-    Ok(curves.collect())
+    Ok(rivals)
 }
 
 /// The unknown coordinates at every row.
@@ -164,54 +184,209 @@ impl Observer for CoordinateRows {
     }
 }
 
-/// The curve of IDA on our equations, against our reference.
-fn ida_on_ours(root: &Path, name: &str, repeats: usize) -> Result<RivalCurve> {
-    let study = study(root, name)?;
-    let [coarse, fine] = study.reference.paces().map(|pace| -> Result<_> {
-        let scene = study.scene(&study.reference.set, study.reference.elements, pace);
-        let scene = scene.map_err(|e| miette!("{e}"))?;
-        let mut simulation = Simulation::new(&scene).map_err(|e| miette!("{e}"))?;
-        let mut rows = CoordinateRows::default();
-        simulation.run(&mut rows).map_err(|e| miette!("{e}"))?;
-        Ok((rows.0, scene, simulation.model().unknown_names().to_vec()))
-    });
-    let ((coarse, ..), (fine, scene, names)) = (coarse?, fine?);
-    let studied = study.position.iter().map(|channel| {
-        // the path of the platform is known: its error is that of its position
-        let coordinate = channel.replace("error.", "platform.");
-        let place = names.iter().position(|name| *name == coordinate);
-        place.ok_or_else(|| miette!("{name}: {channel} is no unknown coordinate"))
-    });
-    let studied: Vec<usize> = studied.collect::<Result<_>>()?;
-    let distance = |rows: &[Vec<f64>]| {
-        let pairs = rows.iter().zip(&fine);
-        let errors = pairs.flat_map(|(a, b)| studied.iter().map(|&i| (a[i] - b[i]).abs()));
+/// Our two reference runs of a study, to compare other solutions of our equations with them.
+struct OurReference {
+    scene: Scene,
+    /// Indices of the studied positions among the unknowns.
+    studied: Vec<usize>,
+    coarse: Vec<Vec<f64>>,
+    fine: Vec<Vec<f64>>,
+}
+
+impl OurReference {
+    fn new(study: &Study) -> Result<OurReference> {
+        let [coarse, fine] = study.reference.paces().map(|pace| -> Result<_> {
+            let scene = study.scene(&study.reference.set, study.reference.elements, pace);
+            let scene = scene.map_err(|e| miette!("{e}"))?;
+            let mut simulation = Simulation::new(&scene).map_err(|e| miette!("{e}"))?;
+            let mut rows = CoordinateRows::default();
+            simulation.run(&mut rows).map_err(|e| miette!("{e}"))?;
+            Ok((rows.0, scene, simulation.model().unknown_names().to_vec()))
+        });
+        let ((coarse, ..), (fine, scene, names)) = (coarse?, fine?);
+        let studied = study.position.iter().map(|channel| {
+            // the path of the platform is known: its error is that of its position
+            let coordinate = channel.replace("error.", "platform.");
+            let place = names.iter().position(|name| *name == coordinate);
+            place.ok_or_else(|| miette!("{}: {channel} is no unknown coordinate", study.title))
+        });
+        Ok(OurReference {
+            studied: studied.collect::<Result<_>>()?,
+            scene,
+            coarse,
+            fine,
+        })
+    }
+
+    /// Largest difference of a studied position from the fine run \[m\].
+    fn distance(&self, rows: &[Vec<f64>]) -> f64 {
+        let pairs = rows.iter().zip(&self.fine);
+        let errors = pairs.flat_map(|(a, b)| self.studied.iter().map(|&i| (a[i] - b[i]).abs()));
         errors.fold(0.0, f64::max)
-    };
-    let mut points = Vec::new();
-    for relative in ida::RELATIVE {
-        let run = || ida_of_system::integrate(&scene, relative).map_err(|e| miette!("{name}: {e}"));
-        let first = match run() {
-            Ok(first) => first,
-            // a loose tolerance may lead where no step converges
-            Err(error) => {
-                eprintln!("IDA on our equations, tolerance {relative:e}: {error}");
-                continue;
-            }
+    }
+
+    /// A run of IDA.
+    fn trial(&self, settings: IdaSettings, tolerance: f64) -> Result<Trial, String> {
+        let run = ida_of_system::integrate(&self.scene, settings, tolerance)?;
+        let count = |n: i64| u64::try_from(n).unwrap_or(0);
+        Ok(Trial {
+            tolerance,
+            error: self.distance(&run.rows),
+            seconds: run.seconds,
+            residuals: count(run.counts.residuals),
+            jacobians: count(run.counts.jacobians),
+        })
+    }
+}
+
+impl Rivals {
+    /// Our curves and those of the second implementation, against our reference.
+    fn own(&mut self, root: &Path, name: &str, repeats: usize) -> Result<()> {
+        let study = study(root, name)?;
+        let effort = Effort {
+            repeats,
+            smoke: false,
         };
-        let seconds = ida::times(first.seconds, repeats, || Ok(run()?.seconds))?;
-        points.push([distance(&first.rows), median(&seconds)]);
+        let outcome = StudyOutcome::run(&study, effort, &mut |_| ());
+        let mut outcome = outcome.map_err(|e| miette!("{e}"))?;
+        let sweeps = ida::add_curves(&study, name, &mut outcome, repeats, &mut |_| ())?;
+        for curve in outcome.curves() {
+            let runs = outcome.runs.iter().zip(&outcome.timings);
+            let own = runs.filter(|(run, _)| run.curve == curve);
+            let points = own.filter_map(|(run, timing)| {
+                let error = run.result.as_ref().ok()?.errors.position;
+                Some([error, timing.as_ref()?.median])
+            });
+            let sweep = sweeps.iter().find(|sweep| sweep.curve == curve);
+            self.curves.push(RivalCurve {
+                study: name.to_owned(),
+                code: sweep.map_or(Code::Looselink, |_| Code::Ida),
+                method: curve.to_owned(),
+                settings: sweep.map(SettingsSweep::settings),
+                points: points.collect(),
+                floor: outcome.reference.floor.position,
+            });
+        }
+        self.sweeps.extend(sweeps);
+        let [_, finest] = study.reference.paces();
+        for code in [Code::Looselink, Code::Ida, Code::IdaOnOurs] {
+            self.solutions.push(ConvergedSolution {
+                study: name.to_owned(),
+                code,
+                of: Code::Looselink,
+                method: format!("{}, {finest}", study.reference.set.join(", ")),
+                difference_from_looselink: None,
+            });
+        }
+        Ok(())
+    }
+
+    /// The curves of IDA on our equations, one for each largest order, against our reference.
+    fn ida_on_ours(&mut self, root: &Path, name: &str, repeats: usize) -> Result<()> {
+        let reference = OurReference::new(&study(root, name)?)?;
+        let size = ida_of_system::matrix_size(&reference.scene);
+        let size = size.map_err(|e| miette!("{name}: {e}"))?;
+        let mut solvers = vec![LinearSolver::Klu];
+        if size <= DENSE {
+            solvers.push(LinearSolver::Dense);
+        }
+        for max_order in ORDERS {
+            let candidates = solvers.iter().flat_map(|&linear_solver| {
+                RATIOS.map(|ratio| IdaSettings {
+                    max_order,
+                    ratio,
+                    linear_solver,
+                })
+            });
+            let candidates: Vec<IdaSettings> = candidates.collect();
+            let method = format!("BDF, order up to {max_order}");
+            let trial = |settings, tolerance| reference.trial(settings, tolerance);
+            let sweep = SettingsSweep::new(name, &method, &candidates, trial);
+            let settings = sweep.settings();
+            self.curves.push(RivalCurve {
+                study: name.to_owned(),
+                code: Code::IdaOnOurs,
+                method,
+                settings: Some(settings),
+                points: ida_points(name, &reference, settings, repeats)?,
+                floor: reference.distance(&reference.coarse),
+            });
+            self.sweeps.push(sweep);
+        }
+        Ok(())
+    }
+
+    /// The curves of Exudyn, against its own reference.
+    fn exudyn(
+        &mut self,
+        root: &Path,
+        python: &Path,
+        program: &Path,
+        name: &str,
+        repeats: usize,
+    ) -> Result<()> {
+        let folder = tempfile::tempdir().into_diagnostic()?;
+        let out = folder.path().join("exudyn.json");
+        let output = Command::new(python)
+            .arg(root.join("benches/peers/exudyn/measure.py"))
+            .args(["--only", name, "--repeats", &repeats.to_string(), "--out"])
+            .arg(&out)
+            .arg("--looselink")
+            .arg(program)
+            .output()
+            .into_diagnostic()?;
+        if !output.status.success() {
+            let said = String::from_utf8_lossy(&output.stderr);
+            return Err(miette!("Exudyn failed in {name}:\n{said}"));
+        }
+        let text = std::fs::read_to_string(&out).into_diagnostic()?;
+        let result: PeerResult = serde_json::from_str(&text).into_diagnostic()?;
+        for model in result.models {
+            self.solutions.push(ConvergedSolution {
+                study: name.to_owned(),
+                code: Code::Exudyn,
+                of: Code::Exudyn,
+                method: model.reference.name(),
+                difference_from_looselink: model.difference_from_looselink,
+            });
+            for PeerCurve { solver, points } in model.curves {
+                let timed = points.iter().filter(|point| !point.seconds.is_empty());
+                let points = timed.filter_map(|p| Some([p.error?, median(&p.seconds)]));
+                self.curves.push(RivalCurve {
+                    study: name.to_owned(),
+                    code: Code::Exudyn,
+                    method: solver,
+                    settings: None,
+                    points: points.collect(),
+                    floor: model.reference.floor,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The points of IDA on our equations with its best settings.
+fn ida_points(
+    name: &str,
+    reference: &OurReference,
+    settings: IdaSettings,
+    repeats: usize,
+) -> Result<Vec<[f64; 2]>> {
+    let mut points = Vec::new();
+    for tolerance in TOLERANCES {
+        let run = || reference.trial(settings, tolerance);
+        // a loose tolerance may lead where no step converges: the sweep has what it says
+        let Ok(first) = run() else { continue };
+        let seconds = ida::times(first.seconds, repeats, || {
+            Ok(run().map_err(|e| miette!("{name}: {e}"))?.seconds)
+        })?;
+        points.push([first.error, median(&seconds)]);
         if first.seconds > ida::LAST_RUN {
             break;
         }
     }
-    Ok(RivalCurve {
-        study: name.to_owned(),
-        code: Code::IdaOnOurs,
-        method: "BDF".to_owned(),
-        points,
-        floor: distance(&coarse),
-    })
+    Ok(points)
 }
 
 /// What `measure.py` writes.
@@ -223,12 +398,26 @@ struct PeerResult {
 #[derive(Deserialize)]
 struct PeerModel {
     reference: PeerReference,
+    difference_from_looselink: Option<f64>,
     curves: Vec<PeerCurve>,
 }
 
 #[derive(Deserialize)]
 struct PeerReference {
+    method: String,
+    step: Option<f64>,
+    tolerance: Option<f64>,
     floor: f64,
+}
+
+impl PeerReference {
+    /// Method and step or tolerance.
+    fn name(&self) -> String {
+        let step = self.step.map(StudyPace::Step);
+        let pace = step.or(self.tolerance.map(StudyPace::Tolerance));
+        let pace = pace.map_or(String::new(), |pace| format!(", {pace}"));
+        format!("{}{pace}", self.method)
+    }
 }
 
 #[derive(Deserialize)]
@@ -241,50 +430,6 @@ struct PeerCurve {
 struct PeerPoint {
     error: Option<f64>,
     seconds: Vec<f64>,
-}
-
-/// The curves of Exudyn, against its own reference.
-fn exudyn(
-    root: &Path,
-    python: &Path,
-    program: &Path,
-    name: &str,
-    repeats: usize,
-) -> Result<Vec<RivalCurve>> {
-    let folder = tempfile::tempdir().into_diagnostic()?;
-    let out = folder.path().join("exudyn.json");
-    let output = Command::new(python)
-        .arg(root.join("benches/peers/exudyn/measure.py"))
-        .args(["--only", name, "--repeats", &repeats.to_string(), "--out"])
-        .arg(&out)
-        .arg("--looselink")
-        .arg(program)
-        .output()
-        .into_diagnostic()?;
-    if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr);
-        return Err(miette!("Exudyn failed in {name}:\n{said}"));
-    }
-    let text = std::fs::read_to_string(&out).into_diagnostic()?;
-    let result: PeerResult = serde_json::from_str(&text).into_diagnostic()?;
-    let models = result.models.into_iter();
-    let curves = models.flat_map(|PeerModel { reference, curves }| {
-        curves
-            .into_iter()
-            .map(move |curve| (reference.floor, curve))
-    });
-    let curves = curves.map(|(floor, PeerCurve { solver, points })| RivalCurve {
-        study: name.to_owned(),
-        code: Code::Exudyn,
-        method: solver,
-        points: points
-            .iter()
-            .filter(|point| !point.seconds.is_empty())
-            .filter_map(|point| Some([point.error?, median(&point.seconds)]))
-            .collect(),
-        floor,
-    });
-    Ok(curves.collect())
 }
 
 /// The Python that has Exudyn, installed where it is not there yet.

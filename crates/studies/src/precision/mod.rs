@@ -220,8 +220,7 @@ impl<C: Compared> Found<C> {
     ) -> Result<(), StudyError> {
         let (result, warnings, timing) = match made {
             Ok(made) => {
-                let kept = C::keep(study, made.columns, made.motion)?;
-                let measured = self.reference.measure(kept, made.work);
+                let measured = self.measure(study, made.columns, made.motion, made.work)?;
                 (Ok(measured), made.warnings, Some(made.timing))
             }
             Err(error) => (Err(error), Vec::new(), None),
@@ -234,6 +233,21 @@ impl<C: Compared> Found<C> {
         });
         self.timings.push(timing);
         Ok(())
+    }
+
+    /// A run, recorded at the instants of the study, against the reference.
+    ///
+    /// # Errors
+    /// A channel that it did not record.
+    pub fn measure(
+        &self,
+        study: &Study,
+        columns: ColumnLookup,
+        motion: Option<Vec<f64>>,
+        work: WorkCounts,
+    ) -> Result<C::Measured, StudyError> {
+        let kept = C::keep(study, columns, motion)?;
+        Ok(self.reference.measure(kept, work))
     }
 
     /// Names of the curves in the order of their first points.
@@ -260,9 +274,8 @@ impl<C: Compared> Found<C> {
 }
 
 impl Found<MotionReference> {
-    /// Least processor time at which a curve comes below an error of position to stay there, and the step or accuracy; see
-    /// [`reached`].
-    pub fn time_at(&self, curve: &str, error: f64) -> Option<(f64, StudyPace)> {
+    /// Least processor time at which a curve comes below an error of position to stay there; see [`reached`].
+    pub fn time_at(&self, curve: &str, error: f64, times: Times) -> Option<CurveTime> {
         let runs = self.runs.iter().zip(&self.timings);
         let own = runs.filter(|(run, _)| run.curve == curve);
         let points = own.filter_map(|(run, timing)| {
@@ -270,36 +283,81 @@ impl Found<MotionReference> {
             Some(([error, timing.as_ref()?.median], run.pace))
         });
         let (points, paces): (Vec<[f64; 2]>, Vec<StudyPace>) = points.unzip();
-        let (time, point, share) = reached(&points, error)?;
-        let pace = match point {
+        let found = reached(&points, error, times)?;
+        let pace = match found.point {
             0 => paces[0],
-            _ => paces[point - 1].towards(paces[point], |a, b| a * (b / a).powf(share)),
+            k => paces[k - 1].towards(paces[k], |a, b| a * (b / a).powf(found.share)),
         };
-        Some((time, pace))
+        Some(CurveTime {
+            seconds: found.seconds,
+            pace,
+            is_interpolated: found.is_interpolated(),
+        })
+    }
+}
+
+/// The time that an error takes with a curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurveTime {
+    /// Processor time \[s\].
+    pub seconds: f64,
+    /// Step or accuracy.
+    pub pace: StudyPace,
+    /// True where no run was made with this step or accuracy.
+    pub is_interpolated: bool,
+}
+
+/// Which times count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Times {
+    /// Those of runs that were made.
+    Measured,
+    /// Also those on the straight line between two runs in the log-log plane.
+    Interpolated,
+}
+
+/// Where a curve comes below an error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reached {
+    /// Its time.
+    pub seconds: f64,
+    /// Index of the run that is below the error.
+    pub point: usize,
+    /// Share of the line from the run before to this one; 1 is the run itself.
+    pub share: f64,
+}
+
+impl Reached {
+    /// True between two runs.
+    pub fn is_interpolated(&self) -> bool {
+        self.share < 1.0
     }
 }
 
 /// Least time at which a curve comes below an error to stay there, from its points \[error, time\], coarse ones first. A coarse
-/// point may have a small error by chance, so the error of a point is the largest of its own and those of finer points. Between
-/// points it is on the straight line in the log-log plane. Returns the time, the index of the point that is below the error,
-/// and its share of the line from the point before.
-pub fn reached(points: &[[f64; 2]], error: f64) -> Option<(f64, usize, f64)> {
-    let mut best: Option<(f64, usize, f64)> = None;
+/// point may have a small error by chance, so the error of a point is the largest of its own and those of finer points.
+pub fn reached(points: &[[f64; 2]], error: f64, times: Times) -> Option<Reached> {
+    let mut best: Option<Reached> = None;
     let (mut largest, mut finer): (f64, Option<[f64; 2]>) = (0.0, None);
     for (k, &[own, time]) in points.iter().enumerate().rev() {
         largest = errors::larger(largest, own);
         let candidate = match finer {
             _ if largest <= error => Some((time, k, 1.0)),
-            Some([below, later]) if below <= error => {
+            Some([below, later]) if below <= error && times == Times::Interpolated => {
                 let share = (largest / error).ln() / (largest / below).ln();
                 Some((time * (later / time).powf(share), k + 1, share))
             }
             _ => None,
         };
+        let candidate = candidate.map(|(seconds, point, share)| Reached {
+            seconds,
+            point,
+            share,
+        });
         best = [best, candidate]
             .into_iter()
             .flatten()
-            .min_by(|a, b| a.0.total_cmp(&b.0));
+            .min_by(|a, b| a.seconds.total_cmp(&b.seconds));
         finer = Some([largest, time]);
     }
     best
@@ -356,24 +414,56 @@ fn record_and_time(
 
 #[cfg(test)]
 mod tests {
-    use super::reached;
+    use super::{Reached, Times, reached};
+
+    fn interpolated(points: &[[f64; 2]], error: f64) -> Option<Reached> {
+        reached(points, error, Times::Interpolated)
+    }
 
     #[test]
     fn the_time_of_an_error_is_between_points() {
         let points = [[1e-4, 1.0], [1e-6, 10.0], [1e-8, 100.0]];
-        let (time, point, share) = reached(&points, 1e-7).unwrap();
-        assert!((time - 10.0 * 10_f64.sqrt()).abs() < 1e-12, "{time}");
-        assert_eq!((point, share), (2, 0.5));
-        assert_eq!(reached(&points, 1e-3), Some((1.0, 0, 1.0)));
-        assert_eq!(reached(&points, 1e-6).map(|r| r.0), Some(10.0));
-        assert_eq!(reached(&points, 1e-9), None);
-        assert_eq!(reached(&[], 1.0), None);
+        let found = interpolated(&points, 1e-7).unwrap();
+        assert!((found.seconds - 10.0 * 10_f64.sqrt()).abs() < 1e-12);
+        assert_eq!((found.point, found.share), (2, 0.5));
+        let first = Reached {
+            seconds: 1.0,
+            point: 0,
+            share: 1.0,
+        };
+        assert_eq!(interpolated(&points, 1e-3), Some(first));
+        assert_eq!(interpolated(&points, 1e-9), None);
+        assert_eq!(interpolated(&[], 1.0), None);
+    }
+
+    #[test]
+    fn only_a_time_between_two_runs_is_interpolated() {
+        let points = [[1e-4, 1.0], [1e-6, 10.0], [1e-8, 100.0]];
+        for (error, is_interpolated, measured) in [
+            (1e-3, false, Some(1.0)),
+            (1e-4, false, Some(1.0)),
+            (0.99e-4, true, Some(10.0)),
+            (1.01e-6, true, Some(10.0)),
+            (1e-6, false, Some(10.0)),
+            (1e-7, true, Some(100.0)),
+            (1e-8, false, Some(100.0)),
+        ] {
+            let found = interpolated(&points, error).unwrap();
+            assert_eq!(found.is_interpolated(), is_interpolated, "{error:e}");
+            let run = reached(&points, error, Times::Measured).unwrap();
+            assert!(!run.is_interpolated(), "{error:e}");
+            assert_eq!(Some(run.seconds), measured, "{error:e}");
+            assert!(found.seconds <= run.seconds, "{error:e}");
+        }
+        assert_eq!(reached(&points, 0.99e-8, Times::Measured), None);
     }
 
     #[test]
     fn a_coarse_point_that_is_lucky_does_not_count() {
         let points = [[1e-4, 1.0], [1e-9, 2.0], [1e-6, 10.0], [1e-8, 100.0]];
-        assert!(reached(&points, 1e-8).unwrap().0 == 100.0);
-        assert!(reached(&points, 1e-5).unwrap().0 < 2.0);
+        assert!(interpolated(&points, 1e-8).unwrap().seconds == 100.0);
+        assert!(interpolated(&points, 1e-5).unwrap().seconds < 2.0);
+        let run = |error| reached(&points, error, Times::Measured).unwrap().seconds;
+        assert_eq!((run(1e-8), run(1e-5)), (100.0, 2.0));
     }
 }
