@@ -110,6 +110,9 @@ int32_t ls_scene_start(const ls_scene *scene, double *q, double *v, ls_error *er
  * from now on. Before the first call they are those of the scene at t = 0. ls_run_new always starts from those of the scene. */
 int32_t ls_scene_set_elongations(ls_scene *scene, const double *elongations, ls_error *error);
 
+/* d(elongation)/dt (one number an element) and its derivatives by q (elements x n). */
+int32_t ls_scene_elongation_rates(const ls_scene *scene, const double *q, double *rates, double *by_q, ls_error *error);
+
 /* M (n x n). */
 int32_t ls_scene_mass(const ls_scene *scene, double *mass, ls_error *error);
 

@@ -208,6 +208,25 @@ std::int32_t ls_scene_set_elongations(ls_scene *scene, const double *elongations
     });
 }
 
+std::int32_t ls_scene_elongation_rates(const ls_scene *scene, const double *qs, double *rates, double *by_q,
+                                       ls_error *error) {
+    return guarded(error, [&] {
+        const System &system = need(scene, "scene").model.system;
+        const VectorXd q = input(qs, system.coordinates(), "q");
+        VectorXd values;
+        system.elongation_rates(q, scene->memory, values);
+        output(values, rates, "rates");
+        Entries lengths;
+        system.length_derivatives(q, lengths);
+        MatrixXd derivatives = MatrixXd::Zero(system.elongations(), system.coordinates());
+        for (const auto &entry : lengths) {
+            const Maxwell &m = system.maxwells()[entry.row()];
+            derivatives(entry.row(), entry.col()) += m.stiffness / m.damping * entry.value();
+        }
+        output(derivatives, by_q, "by_q");
+    });
+}
+
 std::int32_t ls_scene_mass(const ls_scene *scene, double *mass, ls_error *error) {
     return guarded(error, [&] { output(MatrixXd(need(scene, "scene").model.system.mass()), mass, "mass"); });
 }
