@@ -1,9 +1,21 @@
 //! One agreement: two numbers, their difference, what is allowed and why.
 
 use ladder::Rung;
+use serde::{Deserialize, Serialize};
+
+/// What a row is worth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Standing {
+    /// It counts.
+    Counted,
+    /// The runs are not accurate enough to say anything sharp: it is compared, and does not count.
+    Apart,
+    /// Both sides have nothing but zeros.
+    Zero,
+}
 
 /// A row of the table.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Agreement {
     /// What is compared.
     pub quantity: String,
@@ -19,6 +31,8 @@ pub struct Agreement {
     pub tolerance: f64,
     /// The measure of the difference and the reason of the tolerance.
     pub reason: String,
+    /// Whether it counts.
+    pub standing: Standing,
 }
 
 impl Agreement {
@@ -26,9 +40,14 @@ impl Agreement {
     pub fn holds(&self) -> bool {
         self.difference <= self.tolerance
     }
+
+    /// True of a row that counts.
+    pub fn counts(&self) -> bool {
+        self.standing == Standing::Counted
+    }
 }
 
-/// Asserts every row and names those that fail; on the ladder the one that comes nearest to its tolerance stands for all.
+/// Asserts every row and names those that fail; on the ladder the one that comes nearest to its tolerance stands for those that count.
 #[track_caller]
 pub fn assert_all(what: &str, rows: &[Agreement]) {
     let failed = rows.iter().filter(|row| !row.holds()).map(|r| {
@@ -37,24 +56,24 @@ pub fn assert_all(what: &str, rows: &[Agreement]) {
             r.quantity, r.scene, r.rust, r.cpp, r.difference, r.tolerance, r.reason
         )
     });
+    let failed: String = failed.collect();
     // a difference of exactly nothing uses nothing of a tolerance of nothing
     let used = |row: &Agreement| match row.difference {
         0.0 => 0.0,
         difference => difference / row.tolerance,
     };
-    let nearest = rows.iter().max_by(|a, b| used(a).total_cmp(&used(b)));
+    let counted = || rows.iter().filter(|row| row.counts());
+    let nearest = counted().max_by(|a, b| used(a).total_cmp(&used(b)));
     let nearest = nearest.expect("something was compared");
-    eprint!("{}", failed.collect::<String>());
+    let (quantity, scene) = (&nearest.quantity, &nearest.scene);
     Rung::Codes
-        .asks(format!("{what}: {} agreements", rows.len()))
+        .asks(format!("{what}: {} agreements", counted().count()))
         .within(
             nearest.difference,
             nearest.tolerance,
-            &format!(
-                "{} of {}; {}",
-                nearest.quantity, nearest.scene, nearest.reason
-            ),
+            &format!("{quantity} of {scene}; {}", nearest.reason),
         );
+    assert!(failed.is_empty(), "{failed}");
 }
 
 /// The largest of many differences, with the two numbers at its place.
@@ -64,6 +83,8 @@ pub struct LargestDifference {
     pub cpp: f64,
     /// -1 before anything is compared.
     pub difference: f64,
+    /// The largest magnitude of all numbers.
+    pub size: f64,
 }
 
 impl Default for LargestDifference {
@@ -72,29 +93,34 @@ impl Default for LargestDifference {
             rust: 0.0,
             cpp: 0.0,
             difference: -1.0,
+            size: 0.0,
         }
     }
 }
 
 impl LargestDifference {
+    /// Of two numbers alone, measured in units of `scale`.
+    pub fn of(rust: f64, cpp: f64, scale: f64) -> LargestDifference {
+        let mut one = LargestDifference::default();
+        one.see(rust, cpp, scale);
+        one
+    }
+
     /// Looks at two numbers whose difference is measured in units of `scale`. A difference that is not a number stays;
     /// among equal ones the larger numbers are kept.
     pub fn see(&mut self, rust: f64, cpp: f64, scale: f64) {
         let difference = (rust - cpp).abs() / scale;
         let larger = difference == self.difference && cpp.abs() > self.cpp.abs();
+        let size = self.size.max(rust.abs()).max(cpp.abs());
         if difference.is_nan() || difference > self.difference || larger {
             *self = LargestDifference {
                 rust,
                 cpp,
                 difference,
+                size,
             };
         }
-    }
-
-    /// Looks at two vectors, measured in units of the largest entry of the second; two zero vectors agree.
-    pub fn see_all(&mut self, rust: &[f64], cpp: &[f64]) {
-        let size = largest(cpp);
-        self.see_scaled(rust, cpp, if size > 0.0 { size } else { 1.0 });
+        self.size = size;
     }
 
     /// Looks at two vectors, measured in units of `scale`.
@@ -110,7 +136,7 @@ impl LargestDifference {
         self.difference != -1.0
     }
 
-    /// The row.
+    /// The row. It does not count if all numbers are zero.
     pub fn row(self, quantity: &str, scene: &str, tolerance: f64, reason: &str) -> Agreement {
         assert!(
             self.is_seen(),
@@ -124,6 +150,11 @@ impl LargestDifference {
             difference: self.difference,
             tolerance,
             reason: reason.into(),
+            standing: if self.size == 0.0 {
+                Standing::Zero
+            } else {
+                Standing::Counted
+            },
         }
     }
 }

@@ -1,77 +1,196 @@
-//! How Looselink's shared coordinates appear among the full ones of the reference.
+//! How the full coordinates of the reference follow from Looselink's.
 //!
-//! Every full coordinate is a copy of one of Looselink's, q_full = B q with one 1 a row of B. Then M = B^T M_full B, and
-//! forces are B^T f_full: what the reference computes body by body is summed where Looselink shares a node.
+//! In Looselink bodies share nodes, and rigid bodies may have the coordinates of their centre or of the joint that holds them
+//! (docs/scene.md, "Coordinates of rigid bodies"). Every full coordinate is a copy of one of Looselink's, plus a component of an arm
+//! that turns with its body:
+//!
+//! ```text
+//! Q = q_i + c cos q_k + s sin q_k        V = J v        A = J a + J' v        J = dQ/dq
+//! ```
+//!
+//! With W = M A + f of the full coordinates, the equations in q are r = J^T W, and dr/dq contains W dJ/dq.
 
 use crate::reference::ReferenceScene;
 use looselink::body::CentredLink;
-use looselink::model::Model;
+use looselink::interaction::{SlopeClamp, Weld};
+use looselink::model::{Model, PlacedBody};
+use looselink::scene::Scene;
 use looselink::system::State;
+use nalgebra::{DMatrix, DVector};
 
-/// Both sides' numbering of one scene, matched through names.
+/// A full coordinate.
 #[derive(Debug)]
-pub struct Embedding {
-    /// The matrix B as a list: the coordinate of Looselink that each full coordinate copies.
-    source: Vec<usize>,
-    /// Coordinates of Looselink.
-    count: usize,
-    /// For each multiplier of Looselink the row of the reference, unless it is redundant.
-    pub rows: Vec<Option<usize>>,
-    /// For each contact of Looselink the joint of the reference.
-    contacts: Vec<usize>,
-    joints: usize,
+struct Placement {
+    /// i.
+    copy: usize,
+    /// k, c and s.
+    arm: Option<(usize, [f64; 2])>,
 }
 
-/// Looselink's index of the coordinate that the reference calls `name`.
-fn coordinate(model: &Model, name: &str) -> Option<usize> {
+/// The full coordinates of a scene in the order of the reference, matched through names.
+#[derive(Debug)]
+pub struct Embedding {
+    placements: Vec<Placement>,
+    unknowns: usize,
+}
+
+/// A state of Looselink in full coordinates; derivatives are those by its unknowns.
+#[derive(Debug)]
+pub struct FullState {
+    pub q: DVector<f64>,
+    pub v: DVector<f64>,
+    pub a: DVector<f64>,
+    /// J: dQ/dq, dV/dv and dA/da.
+    pub jacobian: DMatrix<f64>,
+    v_by_q: DMatrix<f64>,
+    a_by_q: DMatrix<f64>,
+    a_by_v: DMatrix<f64>,
+    /// d2Q/dq_k2: the full coordinate, k, the value.
+    curvature: Vec<(usize, usize, f64)>,
+}
+
+/// True of a body whose points follow from a place and an angle, where the reference may have coordinates of these points.
+pub fn is_rooted(body: &PlacedBody) -> bool {
+    let kind = &body.placed.kind;
+    kind.hold().is_some() || kind.get::<CentredLink>().is_some()
+}
+
+/// The coordinate that the reference calls `name`.
+fn placement(model: &Model, name: &str) -> Option<Placement> {
     let mut parts = name.split('.');
-    let (body, part, last) = (parts.next()?, parts.next()?, parts.next());
-    let body = model.bodies().iter().find(|b| b.name == body)?;
-    let place = |quantity: &str| ["x", "y", "theta"].iter().position(|q| *q == quantity);
-    let x = &body.placed.x;
-    match (part, last) {
-        (quantity, None) => Some(x[0] + place(quantity)?),
-        ("start", Some(quantity)) => Some(x[0] + place(quantity)?),
-        ("end", Some(quantity)) => Some(x[1] + place(quantity)?),
-        (node, Some(last)) => {
+    let (owner, part, last) = (parts.next()?, parts.next()?, parts.next());
+    let copied = |copy| Some(Placement { copy, arm: None });
+    let Some(body) = model.bodies().iter().find(|body| body.name == owner) else {
+        // an internal state of a force
+        return copied(model.unknown_names().iter().position(|n| n == name)?);
+    };
+    let slots = || body.placed.x.iter().zip(&body.contents);
+    let coordinate = |quantity: &str, from: usize| {
+        let of = |(x, content): (&usize, &looselink::body::Content)| {
+            Some(x + content.names().iter().position(|n| *n == quantity)?)
+        };
+        slots().skip(from).find_map(of)
+    };
+    let axis = last.unwrap_or(part);
+    if is_rooted(body) && axis != "theta" {
+        let kind = &body.placed.kind;
+        let length = kind.length();
+        // in the frame of the points of the body: a link starts at the origin, other bodies have their centre of mass there
+        let [at, root] = [
+            match part {
+                "end" => length?,
+                _ => 0.0,
+            },
+            length.map_or(0.0, |length| 0.5 * length),
+        ];
+        let held = kind.hold().map(|hold| kind.points()[hold.point].at);
+        let root = held.map_or([root, 0.0], Into::into);
+        let [x, y] = [at - root[0], -root[1]];
+        let arm = match axis {
+            "x" => [x, -y],
+            _ => [y, x],
+        };
+        let arm = Some((coordinate("theta", 0)?, arm));
+        let copy = coordinate(axis, 0)?;
+        return Some(Placement { copy, arm });
+    }
+    copied(match (part, axis.strip_prefix("slope_")) {
+        ("start", _) => coordinate(axis, 0)?,
+        ("end", _) => coordinate(axis, 1)?,
+        (_, _) if last.is_none() => coordinate(axis, 0)?,
+        (node, slope) => {
             let node: usize = node.strip_prefix("node")?.parse().ok()?;
-            match last.strip_prefix("slope_") {
-                Some(quantity) => Some(x.get(2 * node + 1)? + place(quantity)?),
-                None => Some(x.get(2 * node)? + place(last)?),
+            let slot = 2 * node + usize::from(slope.is_some());
+            coordinate(slope.unwrap_or(axis), slot)?
+        }
+    })
+}
+
+impl Embedding {
+    /// The coordinates of a scene.
+    pub fn new(reference: &ReferenceScene, model: &Model) -> Embedding {
+        let placements = reference.coordinates.iter().map(|name| {
+            let found = placement(model, name);
+            found.unwrap_or_else(|| panic!("Looselink has no coordinate {name}"))
+        });
+        Embedding {
+            placements: placements.collect(),
+            unknowns: model.shape().unknowns,
+        }
+    }
+
+    /// A state in full coordinates.
+    pub fn at(&self, at: &State) -> FullState {
+        let (full, n) = (self.placements.len(), self.unknowns);
+        let copy =
+            |x: &[f64]| DVector::from_iterator(full, self.placements.iter().map(|p| x[p.copy]));
+        let zeros = || DMatrix::zeros(full, n);
+        let mut state = FullState {
+            q: copy(&at.q),
+            v: copy(&at.v),
+            a: copy(&at.a),
+            jacobian: zeros(),
+            v_by_q: zeros(),
+            a_by_q: zeros(),
+            a_by_v: zeros(),
+            curvature: Vec::new(),
+        };
+        for (i, Placement { copy, arm }) in self.placements.iter().enumerate() {
+            if *copy < n {
+                state.jacobian[(i, *copy)] = 1.0;
+            }
+            let Some((k, [c, s])) = *arm else { continue };
+            let ((sin, cos), omega, alpha) = (at.q[k].sin_cos(), at.v[k], at.a[k]);
+            // and its derivatives by the angle; the third is the negative of the first
+            let (turned, first) = (c * cos + s * sin, s * cos - c * sin);
+            let second = -turned;
+            state.q[i] += turned;
+            state.v[i] += first * omega;
+            state.a[i] += first * alpha + second * omega * omega;
+            if k < n {
+                state.jacobian[(i, k)] += first;
+                state.v_by_q[(i, k)] = second * omega;
+                state.a_by_q[(i, k)] = second * alpha - first * omega * omega;
+                state.a_by_v[(i, k)] = 2.0 * second * omega;
+                state.curvature.push((i, k, second));
             }
         }
+        state
     }
 }
 
-/// Position and velocity of the full coordinates of the reference in a state of Looselink, where a link may have the coordinates
-/// of its centre, and a body that of its joint.
-pub fn full(reference: &ReferenceScene, model: &Model, at: &State) -> [Vec<f64>; 2] {
-    let other = |name: &str| {
-        let mut parts = name.split('.');
-        let (body, part) = (parts.next()?, parts.next()?);
-        let body = model.bodies().iter().position(|b| b.name == body)?;
-        let kind = &model.bodies()[body].placed.kind;
-        let is_held = kind.hold().is_some();
-        if !is_held && kind.get::<CentredLink>().is_none() {
-            return None;
+impl FullState {
+    /// J^T W.
+    pub fn gather(&self, w: &DVector<f64>) -> DVector<f64> {
+        self.jacobian.tr_mul(w)
+    }
+
+    /// J^T M J.
+    pub fn mass(&self, m: &DMatrix<f64>) -> DMatrix<f64> {
+        self.jacobian.tr_mul(&(m * &self.jacobian))
+    }
+
+    /// dr/dq and dr/dv.
+    pub fn tangents(
+        &self,
+        mass: &DMatrix<f64>,
+        (f, by_q, by_v): &(DVector<f64>, DMatrix<f64>, DMatrix<f64>),
+    ) -> [DMatrix<f64>; 2] {
+        let j = &self.jacobian;
+        let mut stiffness = j.tr_mul(&(mass * &self.a_by_q + by_q * j + by_v * &self.v_by_q));
+        let w = mass * &self.a + f;
+        for &(i, k, second) in &self.curvature {
+            stiffness[(k, k)] += second * w[i];
         }
-        let Some(axis) = parts.next() else {
-            let place = ["x", "y", "theta"].iter().position(|x| *x == part)?;
-            let pose = model.pose(body, at);
-            return Some((pose.position[place], pose.velocity[place]));
-        };
-        let point = ["start", "end"].iter().position(|p| *p == part)?;
-        let axis = ["x", "y"].iter().position(|a| *a == axis)?;
-        let [position, velocity, _] = model.point(body, point, at);
-        Some((position[axis], velocity[axis]))
-    };
-    let both = reference.coordinates.iter().map(|name| {
-        let copy = || coordinate(model, name).map(|i| (at.q[i], at.v[i]));
-        let found = other(name).or_else(copy);
-        found.unwrap_or_else(|| panic!("Looselink has no coordinate {name}"))
-    });
-    let (q, v) = both.unzip();
-    [q, v]
+        [stiffness, j.tr_mul(&(mass * &self.a_by_v + by_v * j))]
+    }
+
+    /// The accelerations of the unknowns that add what is missing to these full accelerations.
+    pub fn missing(&self, a: &DVector<f64>) -> DVector<f64> {
+        let normal = self.jacobian.tr_mul(&self.jacobian).cholesky();
+        let normal = normal.expect("every unknown moves a body");
+        normal.solve(&self.gather(&(a - &self.a)))
+    }
 }
 
 /// What the reference calls the row that Looselink calls `name`.
@@ -84,84 +203,52 @@ fn row_name(name: &str) -> String {
     format!("{owner}.{}", part.trim_end_matches(')').replace(' ', "_"))
 }
 
-impl Embedding {
-    /// The way between the coordinates, rows and contacts of a scene.
-    pub fn new(reference: &ReferenceScene, model: &Model) -> Embedding {
-        let source = reference.coordinates.iter().map(|name| {
-            coordinate(model, name).unwrap_or_else(|| panic!("Looselink has no coordinate {name}"))
-        });
-        let place = |name: &str| {
-            let of = |kind: &str| {
-                let name = row_name(name).replace(".angle", kind);
-                reference.rows.iter().position(|row| *row == name)
-            };
-            // a held angle is called the rotation of its joint, the angle of its drive
-            of(".angle").or_else(|| of(".rotation"))
-        };
-        let redundant = model.redundant();
-        let row = |name: &String| {
-            let place = place(name);
-            let known = place.is_some() != redundant.contains(name);
-            assert!(known, "one side leaves {name} out");
-            place
-        };
-        let contact = |c| {
-            let name = &model.joints()[model.contact_joint(c)?].name;
-            reference.joints.iter().position(|joint| joint == name)
-        };
-        let contacts = (0..model.shape().contacts).map(contact);
-        Embedding {
-            source: source.collect(),
-            count: model.shape().coordinates,
-            rows: model.unknown_names()[model.shape().unknowns..]
-                .iter()
-                .map(row)
-                .collect(),
-            contacts: contacts
-                .collect::<Option<_>>()
-                .expect("joints of both sides"),
-            joints: reference.joints.len(),
-        }
-    }
-
-    /// B x.
-    pub fn spread(&self, x: &[f64]) -> Vec<f64> {
-        self.source.iter().map(|&i| x[i]).collect()
-    }
-
-    /// The contact memory of the reference.
-    pub fn memory(&self, z: &[f64]) -> Vec<f64> {
-        let mut memory = vec![0.0; self.joints];
-        for (&joint, z) in self.contacts.iter().zip(z) {
-            memory[joint] = *z;
-        }
-        memory
-    }
-
-    /// B^T f.
-    pub fn gather(&self, f: &[f64]) -> Vec<f64> {
-        let mut sum = vec![0.0; self.count];
-        for (&i, f) in self.source.iter().zip(f) {
-            sum[i] += f;
-        }
-        sum
-    }
-
-    /// B^T K B, row by row.
-    pub fn congruence(&self, k: &[f64]) -> Vec<f64> {
-        let mut sum = vec![0.0; self.count * self.count];
-        for (row, &i) in k.chunks_exact(self.source.len()).zip(&self.source) {
-            for (value, &j) in row.iter().zip(&self.source) {
-                sum[i * self.count + j] += value;
+/// The matrix that makes Looselink's constraint rows of those of the reference: mostly the row of the same name. It is orthogonal, so
+/// it does the same with multipliers. Rows that Looselink leaves out as redundant are zero.
+pub fn rows(reference: &ReferenceScene, model: &Model, scene: &Scene) -> DMatrix<f64> {
+    let place = |name: &str| reference.rows.iter().position(|row| row == name);
+    let redundant = model.redundant();
+    let names = &model.unknown_names()[model.shape().unknowns..];
+    let mut rows = DMatrix::zeros(names.len(), reference.rows.len());
+    for (row, looselink) in names.iter().enumerate() {
+        let name = row_name(looselink);
+        // a held angle is called the rotation of its joint, the angle of its drive
+        let found = place(&name).or_else(|| place(&name.replace(".angle", ".rotation")));
+        let known = found.is_some() != redundant.contains(looselink);
+        assert!(known, "one side leaves {looselink} out");
+        let Some(found) = found else { continue };
+        let (owner, part) = name.split_once('.').expect("made above");
+        match (part, slope_of_first_side(scene, owner)) {
+            // -R(-angle) of d_2 - R(angle) r'
+            ("slope_x", Some((sin, cos))) => {
+                (rows[(row, found)], rows[(row, found + 1)]) = (-cos, -sin);
             }
+            ("slope_y", Some((sin, cos))) => {
+                (rows[(row, found - 1)], rows[(row, found)]) = (sin, -cos);
+            }
+            _ => rows[(row, found)] = 1.0,
         }
-        sum
     }
+    rows
+}
 
-    /// Sets the coordinates that have a copy; copies of one coordinate agree on the manifold.
-    pub fn take(&self, full: &[f64], x: &mut [f64]) {
-        for (&i, value) in self.source.iter().zip(full) {
-            x[i] = *value;
-        }
-    }
+/// Sine and cosine of the angle of a weld that holds the slope vector of its first side alone: Looselink turns the direction of the
+/// second side to compare it with the slope, the reference turns the slope.
+fn slope_of_first_side(scene: &Scene, joint: &str) -> Option<(f64, f64)> {
+    let joint = scene.joints.iter().find(|j| j.name == joint)?;
+    let weld = joint.model.get::<Weld>()?;
+    let is_flexible = |side: looselink::scene::PointRef| !scene.bodies[side.body].kind.is_rigid();
+    let first = is_flexible(joint.bearing) && !is_flexible(joint.journal);
+    (weld.slope == SlopeClamp::Vector && first).then(|| weld.angle.sin_cos())
+}
+
+/// The joint of the reference that has the memory of each contact.
+pub fn contacts(reference: &ReferenceScene, model: &Model) -> Vec<usize> {
+    let joint = |contact| {
+        let name = &model.joints()[model.contact_joint(contact)?].name;
+        reference.joints.iter().position(|joint| joint == name)
+    };
+    let joints = (0..model.shape().contacts).map(joint);
+    let joints: Option<_> = joints.collect();
+    joints.expect("joints of both sides")
 }

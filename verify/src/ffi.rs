@@ -83,6 +83,9 @@ unsafe extern "C" {
     pub fn ls_scene_describe(scene: *const LsScene, description: *mut LsDescription);
     pub fn ls_scene_name(scene: *const LsScene, list: i32, index: usize) -> *const c_char;
     pub fn ls_scene_start(scene: *const LsScene, q: *mut f64, v: *mut f64, error: *mut LsError) -> c_int;
+    pub fn ls_scene_set_elongations(scene: *mut LsScene, elongations: *const f64, error: *mut LsError) -> c_int;
+    pub fn ls_scene_elongation_rates(scene: *const LsScene, q: *const f64, rates: *mut f64, by_q: *mut f64,
+        error: *mut LsError) -> c_int;
     pub fn ls_scene_mass(scene: *const LsScene, mass: *mut f64, error: *mut LsError) -> c_int;
     pub fn ls_scene_force(scene: *const LsScene, t: f64, q: *const f64, v: *const f64, z: *const f64,
         force: *mut f64, by_q: *mut f64, by_v: *mut f64, error: *mut LsError) -> c_int;

@@ -2,6 +2,7 @@
 
 use crate::ffi::*;
 pub use crate::ffi::{LsEvent, LsStatistics, LsTolerances};
+use nalgebra::{DMatrix, DVector};
 use std::ffi::{CStr, CString, c_char, c_int};
 use std::ptr::{NonNull, null_mut};
 
@@ -105,12 +106,17 @@ pub fn versions() -> String {
     format!("Eigen {}, SUNDIALS {sundials}", env!("EIGEN_VERSION"))
 }
 
-/// A scene as the reference reads and assembles it; matrices are row by row.
+/// A scene as the reference reads and assembles it.
+///
+/// The elongation z of a Maxwell element counts as the velocity of a coordinate of unit mass, as in EQUATIONS.md: f has the entry
+/// -dz/dt there.
 #[derive(Debug)]
 pub struct ReferenceScene {
     handle: NonNull<LsScene>,
-    /// Names of the coordinates.
+    /// Names of the coordinates, those of elongations last.
     pub coordinates: Vec<String>,
+    /// The elongations at t = 0.
+    elongations: Vec<f64>,
     /// Names of the constraint rows.
     pub rows: Vec<String>,
     /// Names of the joints.
@@ -121,7 +127,7 @@ pub struct ReferenceScene {
     pub is_static: bool,
 }
 
-// SAFETY: the library has no globals, and no function changes a scene
+// SAFETY: the library has no globals, and what changes a scene borrows it alone
 unsafe impl Send for ReferenceScene {}
 // SAFETY: likewise
 unsafe impl Sync for ReferenceScene {}
@@ -132,6 +138,11 @@ impl Drop for ReferenceScene {
         unsafe { ls_scene_free(self.handle.as_ptr()) }
     }
 }
+
+/// f, df/dq and df/dv.
+pub type ForceAndTangents = (DVector<f64>, DMatrix<f64>, DMatrix<f64>);
+/// Phi, Phi_q and Phi_t.
+pub type ConstraintRows = (DVector<f64>, DMatrix<f64>, DVector<f64>);
 
 /// A state at which equations are compared; z is the impact velocity of every joint, 0 where open or ideal.
 #[derive(Debug, Clone, Copy)]
@@ -169,79 +180,164 @@ impl ReferenceScene {
             let name = |i| unsafe { owned(ls_scene_name(handle, list, i)) };
             (0..).map_while(name).collect()
         };
-        Ok(ReferenceScene {
+        let mut scene = ReferenceScene {
             coordinates: names(0),
+            elongations: Vec::new(),
             rows: names(1),
             joints: names(2),
             channels: names(3),
             is_static: description.is_static != 0,
             handle: NonNull::new(handle).expect("checked above"),
-        })
+        };
+        let names = names(6).into_iter().map(|force| force + ".elongation");
+        let names: Vec<String> = names.collect();
+        if !names.is_empty() {
+            // before they are set, they are those of the start
+            let [q, v] = scene.start()?;
+            let z = vec![0.0; scene.joints.len()];
+            let [values] = scene.channels_at(0.0, &q, &v, &z)?;
+            let channels = scene.channels.iter().zip(values);
+            let found = channels.filter(|(name, _)| names.contains(name));
+            scene.elongations = found.map(|(_, value)| value).collect();
+            scene.coordinates.extend(names);
+        }
+        Ok(scene)
     }
 
-    /// Number of coordinates, after a check that a state has as many.
-    fn size(&self, at: ReferenceState) -> usize {
+    /// Number of the coordinates of bodies.
+    fn of_bodies(&self) -> usize {
+        self.coordinates.len() - self.elongations.len()
+    }
+
+    /// Sets the elongations, after a check that a state has the right lengths. Returns the number of the coordinates of bodies.
+    fn go_to(&mut self, at: ReferenceState) -> Result<usize, ReferenceError> {
         let (n, lengths) = (self.coordinates.len(), [at.q.len(), at.v.len(), at.z.len()]);
         assert_eq!(lengths, [n, n, self.joints.len()], "a state of this scene");
-        n
+        let n = self.of_bodies();
+        let (scene, elongations) = (self.handle.as_ptr(), at.v[n..].as_ptr());
+        call(
+            // SAFETY: a number for every elongation
+            |e| unsafe { ls_scene_set_elongations(scene, elongations, e) },
+            |code| *code == 0,
+        )?;
+        Ok(n)
     }
 
     /// q and v at t = 0.
     pub fn start(&self) -> Result<[Vec<f64>; 2], ReferenceError> {
         // SAFETY: a number for every coordinate
-        filled([self.coordinates.len(); 2], |[q, v], e| unsafe {
+        let [mut q, mut v] = filled([self.of_bodies(); 2], |[q, v], e| unsafe {
             ls_scene_start(self.handle.as_ptr(), q, v, e)
-        })
+        })?;
+        v.extend(&self.elongations);
+        q.resize(v.len(), 0.0);
+        Ok([q, v])
     }
 
     /// M.
-    pub fn mass(&self) -> Result<Vec<f64>, ReferenceError> {
+    pub fn mass(&self) -> Result<DMatrix<f64>, ReferenceError> {
+        let (n, all) = (self.of_bodies(), self.coordinates.len());
         // SAFETY: the matrix is n x n
-        let [mass] = filled([self.coordinates.len().pow(2)], |[mass], e| unsafe {
+        let [mass] = filled([n * n], |[mass], e| unsafe {
             ls_scene_mass(self.handle.as_ptr(), mass, e)
         })?;
+        let mut mass = DMatrix::from_row_slice(n, n, &mass).resize(all, all, 0.0);
+        (n..all).for_each(|i| mass[(i, i)] = 1.0);
         Ok(mass)
     }
 
     /// f, df/dq and df/dv.
-    pub fn force(&self, at: ReferenceState) -> Result<[Vec<f64>; 3], ReferenceError> {
-        let (n, scene) = (self.size(at), self.handle.as_ptr());
+    pub fn force(&mut self, at: ReferenceState) -> Result<ForceAndTangents, ReferenceError> {
+        let (f, by_q, mut by_v) = self.force_at(at)?;
+        // f is a linear function of the elongations
+        for i in self.of_bodies()..self.coordinates.len() {
+            let mut drawn = at.v.to_vec();
+            drawn[i] += 1.0;
+            let (moved, ..) = self.force_at(ReferenceState { v: &drawn, ..at })?;
+            by_v.set_column(i, &(moved - &f));
+        }
+        Ok((f, by_q, by_v))
+    }
+
+    /// The same without the derivatives by elongations.
+    fn force_at(&mut self, at: ReferenceState) -> Result<ForceAndTangents, ReferenceError> {
+        let (n, scene, all) = (
+            self.go_to(at)?,
+            self.handle.as_ptr(),
+            self.coordinates.len(),
+        );
         let (q, v, z) = (at.q.as_ptr(), at.v.as_ptr(), at.z.as_ptr());
         // SAFETY: the state fits the scene; a vector and two matrices of n
-        filled([n, n * n, n * n], |[f, by_q, by_v], e| unsafe {
+        let [mut f, mut by_q, by_v] = filled([n, n * n, n * n], |[f, by_q, by_v], e| unsafe {
             ls_scene_force(scene, at.t, q, v, z, f, by_q, by_v, e)
-        })
+        })?;
+        let [rates, rates_by_q] = self.elongation_rates(at.q)?;
+        f.extend(rates.iter().map(|rate| -rate));
+        by_q.extend(rates_by_q.iter().map(|rate| -rate));
+        let by_q = DMatrix::from_row_slice(all, n, &by_q).resize_horizontally(all, 0.0);
+        let by_v = DMatrix::from_row_slice(n, n, &by_v).resize(all, all, 0.0);
+        Ok((f.into(), by_q, by_v))
+    }
+
+    /// dz/dt of all elongations, and its derivatives by the coordinates of bodies, row by row.
+    fn elongation_rates(&self, q: &[f64]) -> Result<[Vec<f64>; 2], ReferenceError> {
+        let (states, scene) = (self.elongations.len(), self.handle.as_ptr());
+        // SAFETY: q fits the scene; a vector and a matrix with a row for every elongation
+        filled(
+            [states, states * self.of_bodies()],
+            |[rates, by_q], e| unsafe {
+                ls_scene_elongation_rates(scene, q.as_ptr(), rates, by_q, e)
+            },
+        )
     }
 
     /// Phi, Phi_q and Phi_t.
-    pub fn constraint_rows(&self, t: f64, q: &[f64]) -> Result<[Vec<f64>; 3], ReferenceError> {
-        let (n, m) = (self.coordinates.len(), self.rows.len());
-        assert_eq!(q.len(), n, "a state of this scene");
+    pub fn constraint_rows(&self, t: f64, q: &[f64]) -> Result<ConstraintRows, ReferenceError> {
+        let (n, m, all) = (self.of_bodies(), self.rows.len(), self.coordinates.len());
+        assert_eq!(q.len(), all, "a state of this scene");
         // SAFETY: q fits the scene; vectors of m, a matrix of m x n
-        filled([m, m * n, m], |[phi, phi_q, phi_t], e| unsafe {
+        let [phi, phi_q, phi_t] = filled([m, m * n, m], |[phi, phi_q, phi_t], e| unsafe {
             ls_scene_constraint_rows(self.handle.as_ptr(), t, q.as_ptr(), phi, phi_q, phi_t, e)
-        })
+        })?;
+        let phi_q = DMatrix::from_row_slice(m, n, &phi_q).resize_horizontally(all, 0.0);
+        Ok((phi.into(), phi_q, phi_t.into()))
     }
 
     /// a and lambda of the equations of motion.
-    pub fn acceleration(&self, at: ReferenceState) -> Result<[Vec<f64>; 2], ReferenceError> {
-        let (n, scene) = (self.size(at), self.handle.as_ptr());
+    pub fn acceleration(
+        &mut self,
+        at: ReferenceState,
+    ) -> Result<[DVector<f64>; 2], ReferenceError> {
+        let (n, scene) = (self.go_to(at)?, self.handle.as_ptr());
         let (q, v, z) = (at.q.as_ptr(), at.v.as_ptr(), at.z.as_ptr());
         // SAFETY: the state fits the scene; n and m numbers
-        filled([n, self.rows.len()], |[a, lambda], e| unsafe {
+        let [mut a, lambda] = filled([n, self.rows.len()], |[a, lambda], e| unsafe {
             ls_scene_acceleration(scene, at.t, q, v, z, a, lambda, e)
-        })
+        })?;
+        let [rates, _] = self.elongation_rates(at.q)?;
+        a.extend(rates);
+        Ok([a.into(), lambda.into()])
     }
 
     /// All channels, in the order of their names.
-    pub fn values(&self, at: ReferenceState) -> Result<Vec<f64>, ReferenceError> {
-        let (_, scene) = (self.size(at), self.handle.as_ptr());
-        let (q, v, z) = (at.q.as_ptr(), at.v.as_ptr(), at.z.as_ptr());
-        // SAFETY: the state fits the scene; a number for every channel
-        let [values] = filled([self.channels.len()], |[values], e| unsafe {
-            ls_scene_channels(scene, at.t, q, v, z, values, e)
-        })?;
+    pub fn values(&mut self, at: ReferenceState) -> Result<Vec<f64>, ReferenceError> {
+        self.go_to(at)?;
+        let [values] = self.channels_at(at.t, at.q, at.v, at.z)?;
         Ok(values)
+    }
+
+    fn channels_at(
+        &self,
+        t: f64,
+        q: &[f64],
+        v: &[f64],
+        z: &[f64],
+    ) -> Result<[Vec<f64>; 1], ReferenceError> {
+        let scene = self.handle.as_ptr();
+        // SAFETY: the state fits the scene; a number for every channel
+        filled([self.channels.len()], |[values], e| unsafe {
+            ls_scene_channels(scene, t, q.as_ptr(), v.as_ptr(), z.as_ptr(), values, e)
+        })
     }
 
     /// Begins a run at the start of the scene.

@@ -2,16 +2,16 @@
 
 use super::scenes;
 use crate::check::{Agreement, LargestDifference, largest};
-use crate::embedding::Embedding;
-use crate::reference::{ReferenceScene, ReferenceState};
+use crate::embedding::{self, Embedding};
+use crate::reference::{ConstraintRows, ReferenceScene, ReferenceState};
 use crate::trajectory::ComparisonPlan;
 use looselink::body::{RigidBody, RigidLink};
-use looselink::interaction::{SlopeClamp, Weld};
 use looselink::model::Model;
-use looselink::scene::{Analysis, PointRef, Scene};
+use looselink::scene::{Analysis, Scene};
 use looselink::simulate::{Control, Observer, Progress, RunError, Simulation};
 use looselink::system::{State, System, Weights};
 use miette::{IntoDiagnostic, Result};
+use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -21,9 +21,8 @@ pub const STATES: usize = 50;
 const TOLERANCE: f64 = 1e-11;
 /// The same where the reference's rows are differenced over [`SPAN`]: 1e-10 of truncation and rounding, and a reserve.
 const DIFFERENCING: f64 = 1e-8;
-/// 2e-15, the rounding of the eight coordinates of an element, over that: forces of small strains are differences of
-/// coordinates.
-const COORDINATES: f64 = 2e-4;
+/// Rounding of the eight coordinates of an element, or of as many terms, over their size.
+const ROUNDING: f64 = 2e-15;
 /// Span of central differences of the rows: coordinates in m, angles in rad.
 const SPAN: f64 = 1e-5;
 
@@ -61,27 +60,8 @@ pub fn plans() -> Result<Vec<ComparisonPlan>> {
         journal.clone().with_friction(),
         journal,
     ];
-    for plan in scenes::of(Analysis::Dynamic)? {
-        if are_comparable(&plan.scene(None)?) {
-            plans.push(plan);
-        }
-    }
+    plans.extend(scenes::of(Analysis::Dynamic)?);
     Ok(plans)
-}
-
-/// False if a weld holds the slope vector of its first side: the two programs write its rows in different frames. False also with
-/// internal states of forces, for which the reference has no rows in its equations of motion; their motion is compared.
-pub fn are_comparable(scene: &Scene) -> bool {
-    let mut forces = scene.forces.iter();
-    if forces.any(|force| !force.kind.states().is_empty()) {
-        return false;
-    }
-    let is_link = |p: PointRef| scene.bodies[p.body].kind.link().is_some();
-    !scene.joints.iter().any(|joint| {
-        let weld = joint.model.get::<Weld>();
-        let holds_vector = weld.is_some_and(|weld| weld.slope == SlopeClamp::Vector);
-        holds_vector && is_link(joint.bearing) && !is_link(joint.journal)
-    })
 }
 
 /// Both sides of a scene and the way between their coordinates.
@@ -89,6 +69,12 @@ struct ScenePair {
     simulation: Simulation,
     reference: ReferenceScene,
     embedding: Embedding,
+    /// Looselink's constraint rows as combinations of those of the reference.
+    rows: DMatrix<f64>,
+    /// The joint of each contact.
+    contacts: Vec<usize>,
+    /// M of the full coordinates.
+    mass: DMatrix<f64>,
     /// How far coordinates are moved \[m, rad\].
     spread: f64,
 }
@@ -109,21 +95,21 @@ enum EquationPart {
     Curvature,
 }
 
-const ROUNDING: &str = "relative to the largest entry; rounding";
+const RELATIVE: &str = "relative to the largest entry; rounding";
 const STRAINS: &str =
     "relative to the largest entry, or to what rounding of the coordinates does to it; rounding";
 /// For each part its name, the measure of the difference with the reason of what is allowed, and that.
 #[rustfmt::skip]
 const PARTS: [(&str, &str, f64); 11] = [
-    ("assembled mass matrix", ROUNDING, TOLERANCE),
+    ("assembled mass matrix", RELATIVE, TOLERANCE),
     ("assembled force, contacts open", STRAINS, TOLERANCE),
     ("assembled force, contacts closed", STRAINS, TOLERANCE),
-    ("assembled df/dv", ROUNDING, TOLERANCE),
-    ("assembled df/dq", ROUNDING, TOLERANCE),
+    ("assembled df/dv", RELATIVE, TOLERANCE),
+    ("assembled df/dq", RELATIVE, TOLERANCE),
     ("residual of Looselink's equations of motion with the accelerations and multipliers of the reference",
      "relative to the inertia force, or to what rounding of the coordinates does to forces; rounding", TOLERANCE),
     ("constraint values", "m; rounding of coordinates", TOLERANCE),
-    ("constraint gradients", ROUNDING, TOLERANCE),
+    ("constraint gradients", RELATIVE, TOLERANCE),
     ("constraint velocities, Φ_q v + Φ_t", "m/s; rounding", TOLERANCE),
     ("constraint accelerations with the accelerations of the reference",
      "relative to the largest acceleration, at least 1 m/s²; rounding", TOLERANCE),
@@ -138,6 +124,16 @@ struct EquationDifferences([LargestDifference; PARTS.len()]);
 impl EquationDifferences {
     fn of(&mut self, part: EquationPart) -> &mut LargestDifference {
         &mut self.0[part as usize]
+    }
+
+    /// Looks at two vectors or matrices, measured in units of the largest entry of the second. Below `rounding` both are zero.
+    fn see(&mut self, part: EquationPart, rust: &[f64], cpp: &[f64], rounding: f64) {
+        let worst = self.of(part);
+        if largest(rust).max(largest(cpp)) <= rounding {
+            worst.see(0.0, 0.0, 1.0);
+        } else {
+            worst.see_scaled(rust, cpp, largest(cpp).max(rounding / TOLERANCE));
+        }
     }
 }
 
@@ -159,44 +155,57 @@ impl Observer for Until {
     }
 }
 
-/// The rows of a scene.
+/// The rows of a scene in the coordinates that it has, and in those of links and centres if these are others.
 pub fn agreements(plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
-    let mut pair = ScenePair::new(plan)?;
-    let mut random = ChaCha8Rng::seed_from_u64(4);
-    let mut differences = EquationDifferences::default();
-    for k in 0..STATES {
-        let t = plan.duration * k as f64 / STATES as f64;
-        match pair.simulation.run(&mut Until(t)) {
-            Ok(()) | Err(RunError::Interrupted { .. }) => {}
-            Err(error) => return Err(error).into_diagnostic(),
-        }
-        let at = pair.state(&mut random);
-        pair.compare_forces(&at, &mut differences)?;
-        pair.compare_constraints(&at, &mut differences)?;
+    let mut pair = ScenePair::new(plan, plan)?;
+    let bodies = pair.simulation.model().bodies();
+    let others = bodies.iter().any(embedding::is_rooted);
+    let mut rows = pair.agreements(plan, plan.name())?;
+    if others {
+        let name = plan.name() + ", natural coordinates";
+        rows.extend(ScenePair::new(plan, &natural(plan)?)?.agreements(plan, name)?);
     }
-    // without constraints and contacts some parts do not exist
-    let parts = PARTS
-        .iter()
-        .zip(differences.0)
-        .filter(|(_, worst)| worst.is_seen());
-    let row = |((quantity, reason, tolerance), worst): (&(&str, &str, f64), LargestDifference)| {
-        worst.row(quantity, &plan.name(), *tolerance, reason)
-    };
-    Ok(parts.map(row).collect())
+    Ok(rows)
 }
 
 impl ScenePair {
-    fn new(plan: &ComparisonPlan) -> Result<ScenePair> {
+    /// The scene in the coordinates of a variant.
+    fn new(plan: &ComparisonPlan, variant: &ComparisonPlan) -> Result<ScenePair> {
         let reference = plan.reference()?;
-        let scene = natural(plan)?.scene(None)?;
+        let scene = variant.scene(None)?;
         let simulation = Simulation::new(&scene)?;
-        let embedding = Embedding::new(&reference, simulation.model());
+        let model = simulation.model();
         Ok(ScenePair {
             spread: spread(&scene),
+            embedding: Embedding::new(&reference, model),
+            rows: embedding::rows(&reference, model, &scene),
+            contacts: embedding::contacts(&reference, model),
+            mass: reference.mass().into_diagnostic()?,
             reference,
-            embedding,
             simulation,
         })
+    }
+
+    fn agreements(&mut self, plan: &ComparisonPlan, name: String) -> Result<Vec<Agreement>> {
+        let mut random = ChaCha8Rng::seed_from_u64(4);
+        let mut differences = EquationDifferences::default();
+        for k in 0..STATES {
+            let t = plan.duration * k as f64 / STATES as f64;
+            match self.simulation.run(&mut Until(t)) {
+                Ok(()) | Err(RunError::Interrupted { .. }) => {}
+                Err(error) => return Err(error).into_diagnostic(),
+            }
+            let at = self.state(&mut random);
+            self.compare_forces(&at, &mut random, &mut differences)?;
+            self.compare_constraints(&at, &mut differences)?;
+        }
+        // without constraints and contacts some parts do not exist
+        let parts = PARTS.iter().zip(differences.0);
+        let seen = parts.filter(|(_, worst)| worst.is_seen());
+        let rows = seen.map(|((quantity, reason, tolerance), worst)| {
+            worst.row(quantity, &name, *tolerance, reason)
+        });
+        Ok(rows.collect())
     }
 
     /// The state that the run has reached, moved at random, with random rates and contacts.
@@ -216,19 +225,28 @@ impl ScenePair {
             *z = random.random_range(0.01..0.1);
         }
         known.lambda.fill(0.0);
-        known.a.fill(0.0);
+        known.a[..model.shape().unknowns].fill(0.0);
         known
     }
 
     /// M, f and its tangents, and the accelerations that the reference finds.
-    fn compare_forces(&self, at: &State, parts: &mut EquationDifferences) -> Result<()> {
-        let (model, embedding, t) = (self.simulation.model(), &self.embedding, at.t);
-        let (width, n) = (at.q.len(), model.shape().unknowns);
-        let (q, v) = (&embedding.spread(&at.q), &embedding.spread(&at.v));
-        let corner = |k: &[f64]| block(&embedding.congruence(k), width, n);
-        let mass = corner(&self.reference.mass().into_diagnostic()?);
+    fn compare_forces(
+        &mut self,
+        at: &State,
+        random: &mut ChaCha8Rng,
+        parts: &mut EquationDifferences,
+    ) -> Result<()> {
+        let (model, t) = (self.simulation.model(), at.t);
+        let shape = model.shape();
+        let n = shape.unknowns;
+        let mass = self.embedding.at(at).mass(&self.mass);
         let [_, _, rust_mass] = rust_matrices(model, at);
-        parts.of(EquationPart::Mass).see_all(&rust_mass, &mass);
+        parts.see(
+            EquationPart::Mass,
+            rust_mass.as_slice(),
+            mass.as_slice(),
+            0.0,
+        );
 
         let open = State {
             z: vec![0.0; at.z.len()],
@@ -236,51 +254,73 @@ impl ScenePair {
         };
         let closed = (EquationPart::Closed, at.clone());
         let closed = Some(closed).filter(|_| !at.z.is_empty());
-        let mut rounding = 0.0;
-        for (part, mine) in closed
+        let states = closed
             .into_iter()
-            .chain([(EquationPart::Open, open.clone())])
-        {
-            let z = &embedding.memory(&mine.z);
-            let [f, by_q, by_v] = self
+            .chain([(EquationPart::Open, open.clone())]);
+        let mut rounding = 0.0;
+        for (part, mut mine) in states {
+            let mut z = vec![0.0; self.reference.joints.len()];
+            for (&joint, memory) in self.contacts.iter().zip(&mine.z) {
+                z[joint] = *memory;
+            }
+            // tangents depend on the accelerations of known coordinates
+            for a in &mut mine.a[n..] {
+                *a = random.random_range(-10.0..10.0);
+            }
+            let full = self.embedding.at(&mine);
+            let (q, v, z) = (full.q.as_slice(), full.v.as_slice(), &z[..]);
+            let cpp = self
                 .reference
                 .force(ReferenceState { t, q, v, z })
                 .into_diagnostic()?;
-            let (force, stiffness) = (&embedding.gather(&f)[..n], corner(&by_q));
-            rounding = COORDINATES * largest(&stiffness) * largest(q);
-            let scale = largest(force).max(rounding).max(f64::MIN_POSITIVE);
-            parts
-                .of(part)
-                .see_scaled(&residual(model, &mine)[..n], force, scale);
-            let [rust_stiffness, damping, _] = rust_matrices(model, &mine);
-            parts
-                .of(EquationPart::Stiffness)
-                .see_all(&rust_stiffness, &stiffness);
-            parts
-                .of(EquationPart::Damping)
-                .see_all(&damping, &corner(&by_v));
+            let [stiffness, damping] = full.tangents(&self.mass, &cpp);
+            let [rust_stiffness, rust_damping, _] = rust_matrices(model, &mine);
+            // terms of the reference that cancel each other are rounded
+            let momentum = ROUNDING * self.mass.amax() * full.v.amax();
+            let inertia = ROUNDING * (self.mass.amax() * full.a.amax() + cpp.0.amax());
+            let (rust, cpp_k) = (rust_stiffness.as_slice(), stiffness.as_slice());
+            parts.see(EquationPart::Stiffness, rust, cpp_k, inertia);
+            let (rust, cpp_c) = (rust_damping.as_slice(), damping.as_slice());
+            parts.see(EquationPart::Damping, rust, cpp_c, momentum);
+
+            mine.a.fill(0.0);
+            let full = self.embedding.at(&mine);
+            let force = full.gather(&(&self.mass * &full.a + cpp.0));
+            // forces of small strains are differences of coordinates
+            rounding = inertia + ROUNDING * stiffness.amax() * full.q.amax();
+            let rust = residual(model, &mine);
+            parts.see(part, &rust[..n], force.as_slice(), rounding);
         }
 
-        let z = &embedding.memory(&open.z);
-        let [a, lambda] = self
-            .reference
-            .acceleration(ReferenceState { t, q, v, z })
-            .into_diagnostic()?;
         let mut solved = open;
-        let mut rates = vec![0.0; model.shape().multipliers];
-        model.constraint_acceleration(&solved, &mut rates);
-        let scale = largest(&rates).max(largest(&a)).max(1.0);
-        embedding.take(&a, &mut solved.a);
+        let full = self.embedding.at(&solved);
+        let (q, v) = (full.q.as_slice(), full.v.as_slice());
+        let z = &vec![0.0; self.reference.joints.len()];
+        let state = ReferenceState { t, q, v, z };
+        let [a, lambda] = self.reference.acceleration(state).into_diagnostic()?;
+        let mut rates = vec![0.0; shape.multipliers];
+        let still = State {
+            a: vec![0.0; at.a.len()],
+            ..solved.clone()
+        };
+        model.constraint_acceleration(&still, &mut rates);
+        let scale = largest(&rates).max(a.amax()).max(1.0);
+        solved.a[..n].copy_from_slice(full.missing(&a).as_slice());
         model.constraint_acceleration(&solved, &mut rates);
         let zeros = vec![0.0; n.max(rates.len())];
         parts
             .of(EquationPart::Acceleration)
             .see_scaled(&rates, &zeros[..rates.len()], scale);
-        let inertia = largest(&residual(model, &solved)[..n]);
-        for (mine, row) in solved.lambda.iter_mut().zip(&embedding.rows) {
-            *mine = row.map_or(0.0, |row| lambda[row]);
-        }
-        let scale = inertia.max(rounding).max(f64::MIN_POSITIVE);
+        let [forces, all] = [&still, &solved].map(|state| residual(model, state));
+        let inertia = all
+            .iter()
+            .zip(&forces)
+            .take(n)
+            .fold(0.0, |m: f64, (a, f)| m.max((a - f).abs()));
+        solved
+            .lambda
+            .copy_from_slice((&self.rows * lambda).as_slice());
+        let scale = inertia.max(rounding / TOLERANCE).max(f64::MIN_POSITIVE);
         let balance = &residual(model, &solved)[..n];
         parts
             .of(EquationPart::Balance)
@@ -290,29 +330,40 @@ impl ScenePair {
 
     /// Looselink's constraint rows against those of the same name.
     fn compare_constraints(&self, at: &State, parts: &mut EquationDifferences) -> Result<()> {
-        let (model, embedding) = (self.simulation.model(), &self.embedding);
-        let (q, v) = (&embedding.spread(&at.q), &embedding.spread(&at.v));
-        let rows = |q: &[f64]| self.reference.constraint_rows(at.t, q).into_diagnostic();
-        let (n, m, width) = (model.shape().unknowns, model.shape().multipliers, q.len());
+        let model = self.simulation.model();
+        let (n, m) = (model.shape().unknowns, model.shape().multipliers);
+        if m == 0 {
+            return Ok(());
+        }
+        // values, derivatives by the full coordinates, and by time
+        let rows = |q: &DVector<f64>| -> Result<ConstraintRows> {
+            let cpp = self.reference.constraint_rows(at.t, q.as_slice());
+            let (phi, phi_q, phi_t) = cpp.into_diagnostic()?;
+            Ok((&self.rows * phi, &self.rows * phi_q, &self.rows * phi_t))
+        };
+        let full = self.embedding.at(at);
+        let (cpp_phi, cpp_phi_q, cpp_phi_t) = rows(&full.q)?;
+        let cpp_rates = &cpp_phi_q * &full.v + cpp_phi_t;
+        let gradients = &cpp_phi_q * &full.jacobian;
         let (phi, phi_q) = rust_constraints(model, at);
         let mut rates = vec![0.0; m];
         model.constraint_velocity(at, &mut rates);
-        let [cpp_phi, cpp_phi_q, cpp_phi_t] = rows(q)?;
-        let places = embedding.rows.iter().enumerate();
-        let places = places.filter_map(|(row, place)| Some((row, (*place)?)));
-        for (row, place) in places.clone() {
-            let gradient = &cpp_phi_q[place * width..(place + 1) * width];
-            let rate = gradient.iter().zip(v).map(|(g, v)| g * v).sum::<f64>();
+        // rows that are left out are zero
+        let kept = |row: &usize| self.rows.row(*row).amax() > 0.0;
+        for row in (0..m).filter(kept) {
             parts
                 .of(EquationPart::Velocity)
-                .see(rates[row], rate + cpp_phi_t[place], 1.0);
+                .see(rates[row], cpp_rates[row], 1.0);
             parts
                 .of(EquationPart::Value)
-                .see(phi[row], cpp_phi[place], 1.0);
-            let gradient = &embedding.gather(gradient)[..n];
-            parts
-                .of(EquationPart::Gradient)
-                .see_all(&phi_q[row * n..(row + 1) * n], gradient);
+                .see(phi[row], cpp_phi[row], 1.0);
+            let [rust, cpp] = [&phi_q, &gradients].map(|rows| rows.rows(row, 1).into_owned());
+            parts.see(
+                EquationPart::Gradient,
+                rust.as_slice(),
+                cpp.as_slice(),
+                ROUNDING,
+            );
         }
 
         let mut loaded = State {
@@ -320,40 +371,29 @@ impl ScenePair {
             ..at.clone()
         };
         let [unloaded, ..] = rust_matrices(model, &loaded);
-        for (row, _) in places.clone() {
+        for row in (0..m).filter(kept) {
             loaded.lambda[row] = 1.0 + row as f64;
         }
         let [rust, ..] = rust_matrices(model, &loaded);
-        let rust: Vec<f64> = rust.iter().zip(&unloaded).map(|(l, u)| l - u).collect();
-        let mut bent = vec![0.0; n * n];
+        let lambda = DVector::from_column_slice(&loaded.lambda);
+        let mut bent = DMatrix::zeros(n, n);
         for j in 0..n {
-            let mut unit = vec![0.0; at.q.len()];
-            unit[j] = SPAN;
-            let step = embedding.spread(&unit);
-            let moved = |sign: f64| {
-                let q: Vec<f64> = q.iter().zip(&step).map(|(q, d)| q + sign * d).collect();
-                rows(&q)
+            let couples = |by: f64| -> Result<DVector<f64>> {
+                let mut moved = at.clone();
+                moved.q[j] += by;
+                let full = self.embedding.at(&moved);
+                let (_, phi_q, _) = rows(&full.q)?;
+                Ok(full.gather(&phi_q.tr_mul(&lambda)))
             };
-            let ([_, low, _], [_, high, _]) = (moved(-1.0)?, moved(1.0)?);
-            let mut column = vec![0.0; width];
-            for (row, place) in places.clone() {
-                for (c, sum) in column.iter_mut().enumerate() {
-                    let entry = place * width + c;
-                    *sum += loaded.lambda[row] * (high[entry] - low[entry]);
-                }
-            }
-            for (i, value) in embedding.gather(&column)[..n].iter().enumerate() {
-                bent[i * n + j] = value / (2.0 * SPAN);
-            }
+            bent.set_column(j, &((couples(SPAN)? - couples(-SPAN)?) / (2.0 * SPAN)));
         }
         // rounding in the difference quotient of rows of size 1
-        let rounding = largest(&loaded.lambda) * 1e-15 / SPAN / DIFFERENCING;
-        if m > 0 {
-            let scale = largest(&bent).max(rounding);
-            parts
-                .of(EquationPart::Curvature)
-                .see_scaled(&rust, &bent, scale);
-        }
+        let rounding = lambda.amax() * 1e-15 / SPAN / DIFFERENCING;
+        let scale = bent.amax().max(rounding);
+        let rust = rust - unloaded;
+        parts
+            .of(EquationPart::Curvature)
+            .see_scaled(rust.as_slice(), bent.as_slice(), scale);
         Ok(())
     }
 }
@@ -393,33 +433,22 @@ fn residual(model: &Model, at: &State) -> Vec<f64> {
 }
 
 /// df/dq, df/dv and M over the unknowns: the stage matrix for a weight in one of the tangents less M, which has none.
-fn rust_matrices(model: &Model, at: &State) -> [Vec<f64>; 3] {
+fn rust_matrices(model: &Model, at: &State) -> [DMatrix<f64>; 3] {
     let shape = model.shape();
     let n = shape.unknowns;
-    let matrix = |q: f64, v: f64| -> Vec<f64> {
+    let matrix = |q: f64, v: f64| {
         let (mut r, mut phi) = (vec![0.0; shape.coordinates], vec![0.0; shape.multipliers]);
-        let mut k = vec![0.0; model.symbolic().len()];
-        model.linearise(
-            at,
-            Weights { q, v },
-            &mut r,
-            &mut phi,
-            &mut k,
-            &mut model.work(),
-        );
+        let (mut k, w) = (vec![0.0; model.symbolic().len()], Weights { q, v });
+        model.linearise(at, w, &mut r, &mut phi, &mut k, &mut model.work());
         let dense = model.symbolic().to_dense(&k);
-        (0..n * n).map(|e| dense[(e / n, e % n)]).collect()
+        DMatrix::from_fn(n, n, |i, j| dense[(i, j)])
     };
     let mass = matrix(0.0, 0.0);
-    let [stiffness, damping] = [(1.0, 0.0), (0.0, 1.0)].map(|(q, v)| {
-        let both = matrix(q, v).into_iter().zip(&mass);
-        both.map(|(k, m)| k - m).collect()
-    });
-    [stiffness, damping, mass]
+    [matrix(1.0, 0.0) - &mass, matrix(0.0, 1.0) - &mass, mass]
 }
 
 /// Phi and Phi_q over the unknowns.
-fn rust_constraints(model: &Model, at: &State) -> (Vec<f64>, Vec<f64>) {
+fn rust_constraints(model: &Model, at: &State) -> (Vec<f64>, DMatrix<f64>) {
     let shape = model.shape();
     let (n, m) = (shape.unknowns, shape.multipliers);
     let mut phi = vec![0.0; m];
@@ -427,12 +456,5 @@ fn rust_constraints(model: &Model, at: &State) -> (Vec<f64>, Vec<f64>) {
     let mut gradient = matrix.factors().gradient;
     model.acceleration_level(at, &mut phi, &mut gradient);
     let dense = matrix.to_dense(&gradient);
-    let entries = (0..m * n).map(|e| dense[(n + e / n, e % n)]);
-    (phi, entries.collect())
-}
-
-/// The upper left n x n of a square matrix of `width`.
-fn block(matrix: &[f64], width: usize, n: usize) -> Vec<f64> {
-    let rows = matrix.chunks_exact(width).take(n);
-    rows.flat_map(|row| &row[..n]).copied().collect()
+    (phi, DMatrix::from_fn(m, n, |row, i| dense[(n + row, i)]))
 }

@@ -145,14 +145,13 @@ impl Convergence {
                 // without one there is nothing to show: a row that fails
                 orders.push((first, f64::NAN));
             }
-            rows.extend(orders.into_iter().map(|(h, order)| Agreement {
-                quantity: format!("order of the difference in {name}"),
-                scene: scene.clone(),
-                rust: order,
-                cpp: 2.0,
-                difference: (order - 2.0).abs(),
-                tolerance: ORDER_BAND,
-                reason: format!("Bathe's scheme is of order 2; from h = {h:e} s to the half"),
+            rows.extend(orders.into_iter().map(|(h, order)| {
+                LargestDifference::of(order, 2.0, 1.0).row(
+                    &format!("order of the difference in {name}"),
+                    &scene,
+                    ORDER_BAND,
+                    &format!("Bathe's scheme is of order 2; from h = {h:e} s to the half"),
+                )
             }));
             let step = numbers::number(self.steps[self.steps.len() - 1], 3);
             let unit = if is_position { 1.0 } else { curve.size };

@@ -76,13 +76,13 @@ impl ImpactSeries {
         let scene = format!("{}, first {} impacts", self.plan.name(), self.impacts);
         let [mut instant, mut velocity, mut first, mut angle, mut depth] =
             [LargestDifference::default(); 5];
-        let mut mismatches = 0;
+        let mut mismatches = 0_u32;
         for i in 0..self.impacts {
             let (Some(r), Some(c)) = (rust.impacts.get(i), cpp.impacts.get(i)) else {
                 mismatches += 1;
                 continue;
             };
-            mismatches += usize::from(r.joint != c.joint);
+            mismatches += u32::from(r.joint != c.joint);
             instant.see(r.t, c.t, c.t);
             velocity.see(r.velocity, c.velocity, c.velocity);
             if i == 0 {
@@ -102,15 +102,18 @@ impl ImpactSeries {
         let [instants, others] = self.allowed;
         let last = |impacts: &[ComparedImpact]| impacts.len().min(self.impacts) as f64;
         let mut rows = vec![
-            Agreement {
-                quantity: "joints in the order of their impacts".into(),
-                scene: scene.clone(),
+            LargestDifference {
                 rust: last(&rust.impacts),
                 cpp: last(&cpp.impacts),
-                difference: f64::from(u32::try_from(mismatches).unwrap_or(u32::MAX)),
-                tolerance: 0.0,
-                reason: "number of impacts that are missing or occur in another joint".into(),
-            },
+                difference: f64::from(mismatches),
+                size: self.impacts as f64,
+            }
+            .row(
+                "joints in the order of their impacts",
+                &scene,
+                0.0,
+                "number of impacts that are missing or occur in another joint",
+            ),
             instant.row("instants of the impacts [s]", &scene, instants, &relative),
             velocity.row("impact velocities [m/s]", &scene, others, &relative),
             angle.row(

@@ -2,8 +2,8 @@
 
 use super::classes::{self, KINDS};
 use super::scenes;
-use crate::check::Agreement;
-use crate::trajectory::{ComparisonPlan, tolerances};
+use crate::check::{Agreement, LargestDifference, Standing};
+use crate::trajectory::{ComparisonPlan, Trajectory, tolerances};
 use looselink::scene::Analysis;
 use miette::Result;
 
@@ -12,8 +12,8 @@ const STEPS: [f64; 2] = [2e-5, 1e-5];
 /// Relative tolerance of IDA for it; positions are held to 1e-3 m of that, velocities to 0.1 m/s.
 const RELATIVE: f64 = 1e-10;
 /// Accuracies of Looselink's error control \[m\], so tight that stability does not bound the steps, and relative tolerances of IDA.
-const ACCURACIES: [f64; 2] = [1e-9, 1e-10];
-const TOLERANCES: [f64; 2] = [1e-9, 1e-10];
+/// The tightest ones are for scenes with channels that would not count otherwise.
+const LEVELS: [f64; 3] = [1e-9, 1e-10, 1e-11];
 /// How far an order may be from the 2 of Bathe's scheme.
 const ORDER_BAND: f64 = 0.1;
 
@@ -34,15 +34,12 @@ pub fn smooth() -> Result<Vec<Agreement>> {
         .map(|run| classes::agreements([0.0; KINDS], &scene, &run, &cpp, 1e-6, &reason));
     let orders = coarse.iter().zip(&rows).map(|(coarse, fine)| {
         let order = (coarse.difference / fine.difference).log2();
-        Agreement {
-            quantity: format!("order of {}", fine.quantity),
-            scene: scene.clone(),
-            rust: order,
-            cpp: 2.0,
-            difference: (order - 2.0).abs(),
-            tolerance: ORDER_BAND,
-            reason: format!("Bathe's scheme, from h = {:.0e} s to the half", STEPS[0]),
-        }
+        LargestDifference::of(order, 2.0, 1.0).row(
+            &format!("order of {}", fine.quantity),
+            &scene,
+            ORDER_BAND,
+            &format!("Bathe's scheme, from h = {:.0e} s to the half", STEPS[0]),
+        )
     });
     let orders: Vec<Agreement> = orders.collect();
     rows.extend(orders);
@@ -72,8 +69,7 @@ pub fn fine_meshes() -> Vec<ComparisonPlan> {
     ]
 }
 
-/// The first rows of a scene, by Dormand and Prince's pair with two accuracies and by IDA with two tolerances. The sides may
-/// differ by what each of them differs from its coarser run, which is about ten times the error of the finer one.
+/// The first rows of a scene, by Dormand and Prince's pair with growing accuracies and by IDA with falling tolerances.
 pub fn first_rows(plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
     let rust = |position: f64| {
         let accuracy = format!("{{position={position:e},horizon={:?}}}", plan.duration);
@@ -81,22 +77,21 @@ pub fn first_rows(plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
         let accurate = plan.clone().with("", &[&integrator, "assumptions={}"]);
         accurate.run(None, usize::MAX)
     };
-    let cpp = |relative: f64| plan.cpp(&tolerances(relative));
-    let (cpp, rust) = rayon::join(|| TOLERANCES.map(cpp), || ACCURACIES.map(rust));
-    let ([coarse_cpp, cpp], [coarse_rust, rust]) = (cpp, rust);
-    let (cpp, rust) = (cpp?, rust?);
-    let floors = scenes::rounding(&plan.reference()?)?;
+    let both = |level: f64| -> Result<[Trajectory; 2]> {
+        let (rust, cpp) = rayon::join(|| rust(level), || plan.cpp(&tolerances(level)));
+        Ok([rust?, cpp?])
+    };
+    let rounding = scenes::rounding(&mut plan.reference()?)?;
     let name = format!("{}, {} s", plan.name(), numbers::number(plan.duration, 3));
-    let reason = "relative to the largest value of its kind; allowed: the differences of each program from its own run with ten times the tolerance";
-    let compare = |a: &_, b: &_| classes::agreements(floors, &name, a, b, 0.0, reason);
-    let own = compare(&coarse_rust?, &rust)
-        .into_iter()
-        .zip(compare(&coarse_cpp?, &cpp));
-    let mut rows = compare(&rust, &cpp);
-    for (row, (rust, cpp)) in rows.iter_mut().zip(own) {
-        let kinds = [&rust.quantity, &cpp.quantity];
-        assert_eq!(kinds, [&row.quantity; 2]);
-        row.tolerance = rust.difference + cpp.difference + scenes::CHANNELS;
+    let [first, others @ ..] = LEVELS;
+    let (mut coarse, mut rows) = (both(first)?, Vec::new());
+    for level in others {
+        let fine = both(level)?;
+        rows = classes::converged(rounding, &name, &coarse, &fine);
+        if rows.iter().all(|row| row.standing != Standing::Apart) {
+            break;
+        }
+        coarse = fine;
     }
     Ok(rows)
 }

@@ -2,7 +2,7 @@
 
 use super::classes::{self, KINDS};
 use crate::check::{Agreement, LargestDifference, largest};
-use crate::embedding;
+use crate::embedding::Embedding;
 use crate::reference::{ReferenceScene, ReferenceState};
 use crate::trajectory::{ComparisonPlan, tolerances};
 use looselink::scene::Analysis;
@@ -18,7 +18,7 @@ pub const ROWS: f64 = 20.0;
 /// Difference of a start, over its largest coordinate or velocity.
 const START: f64 = 1e-12;
 /// Difference of a channel at the start, over the largest of its kind.
-pub const CHANNELS: f64 = 1e-9;
+const CHANNELS: f64 = 1e-9;
 /// The measure of that difference.
 const REASON: &str = "relative to the largest value of its kind, or to 1e9 times what rounding of the state does to it";
 /// Rounding in some tens of operations with numbers of size 1.
@@ -71,42 +71,42 @@ pub fn of(analysis: Analysis) -> Result<Vec<ComparisonPlan>> {
 
 /// The starts of a scene.
 pub fn start(plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
-    let reference = plan.reference()?;
+    let mut reference = plan.reference()?;
     let simulation = Simulation::new(&plan.scene(None)?)?;
     let [q, v] = reference.start().into_diagnostic()?;
-    let [own_q, own_v] = embedding::full(&reference, simulation.model(), simulation.state());
+    let own = Embedding::new(&reference, simulation.model()).at(simulation.state());
     let mut rows = Vec::new();
     for (what, rust, cpp, reason) in [
         (
             "coordinates of the start",
-            own_q,
+            own.q,
             &q,
             "relative to the largest, at least 1 m or 1 rad; each side closes the mechanism to rounding",
         ),
         (
             "velocities of the start",
-            own_v,
+            own.v,
             &v,
             "relative to the largest, at least 1 m/s or 1 rad/s; rounding",
         ),
     ] {
         let mut worst = LargestDifference::default();
-        worst.see_scaled(&rust, cpp, largest(cpp).max(1.0));
+        worst.see_scaled(rust.as_slice(), cpp, largest(cpp).max(1.0));
         rows.push(worst.row(what, &plan.name(), START, reason));
     }
     if !reference.is_static {
         // the first row alone
         let rust = plan.run(None, 0)?;
         let cpp = plan.cpp_until(&tolerances(1e-6), 0)?;
-        let floors = rounding(&reference)?;
-        let channels = classes::agreements(floors, &plan.name(), &rust, &cpp, CHANNELS, REASON);
+        let rounding = rounding(&mut reference)?;
+        let channels = classes::agreements(rounding, &plan.name(), &rust, &cpp, CHANNELS, REASON);
         rows.extend(channels);
     }
     Ok(rows)
 }
 
-/// What a change of the start by some tens of units in the last place does to the channels of each kind, over [`CHANNELS`].
-pub fn rounding(reference: &ReferenceScene) -> Result<[f64; KINDS]> {
+/// What a change of the start by some tens of units in the last place does to the channels of each kind.
+pub fn rounding(reference: &mut ReferenceScene) -> Result<[f64; KINDS]> {
     let z = vec![0.0; reference.joints.len()];
     let start = reference.start().into_diagnostic()?;
     let mut random = ChaCha8Rng::seed_from_u64(5);
@@ -124,24 +124,27 @@ pub fn rounding(reference: &ReferenceScene) -> Result<[f64; KINDS]> {
             .into_diagnostic()
     };
     let still = values(0.0)?;
-    let mut floors = [0.0_f64; KINDS];
-    for _ in 0..MOVES {
-        for ((name, moved), still) in reference.channels.iter().zip(values(ROUNDING)?).zip(&still) {
+    let moved = (0..MOVES)
+        .map(|_| values(ROUNDING))
+        .collect::<Result<Vec<_>>>()?;
+    let mut effects = [0.0_f64; KINDS];
+    for moved in moved {
+        for ((name, moved), still) in reference.channels.iter().zip(moved).zip(&still) {
             if let Some(kind) = classes::class(name) {
-                floors[kind] = floors[kind].max((moved - still).abs() / CHANNELS);
+                effects[kind] = effects[kind].max((moved - still).abs());
             }
         }
     }
-    Ok(floors)
+    Ok(effects)
 }
 
 /// A static scene from its first load to the last.
 pub fn equilibrium(plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
-    let floors = rounding(&plan.reference()?)?;
+    let rounding = rounding(&mut plan.reference()?)?;
     let rust = plan.run(None, usize::MAX)?;
     let cpp = plan.cpp(&tolerances(1e-10))?;
     let name = plan.name();
     Ok(classes::agreements(
-        floors, &name, &rust, &cpp, CHANNELS, REASON,
+        rounding, &name, &rust, &cpp, CHANNELS, REASON,
     ))
 }

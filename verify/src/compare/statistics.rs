@@ -3,7 +3,7 @@
 //! Two runs part after some tens of milliseconds, whoever computes them. What is compared are sizes, means and energies over
 //! two cycles.
 
-use crate::check::{Agreement, largest};
+use crate::check::{Agreement, LargestDifference, largest};
 use crate::trajectory::{ComparisonPlan, Trajectory, tolerances};
 use miette::Result;
 
@@ -70,16 +70,16 @@ pub fn agreements(case: u32) -> Result<Vec<Agreement>> {
     let (rust, cpp) = rayon::join(|| plan(case).rust(STEP), || plan(case).cpp(&tolerances));
     let both = measures(&rust?).into_iter().zip(measures(&cpp?));
     let row = |((name, unit, tolerance, relative), (rust, cpp)): (_, (f64, f64))| {
-        let measure = if relative { "relative" } else { "absolute" };
-        Agreement {
-            quantity: format!("{name} [{unit}]"),
-            scene: format!("case{case}, cycles 2 and 3"),
-            rust,
-            cpp,
-            difference: (rust - cpp).abs() / if relative { cpp.abs() } else { 1.0 },
+        let (measure, scale) = match relative {
+            true => ("relative", cpp.abs()),
+            false => ("absolute", 1.0),
+        };
+        LargestDifference::of(rust, cpp, scale).row(
+            &format!("{name} [{unit}]"),
+            &format!("case{case}, cycles 2 and 3"),
             tolerance,
-            reason: format!("{measure}; scatter between chaotic runs"),
-        }
+            &format!("{measure}; scatter between chaotic runs"),
+        )
     };
     Ok(QUANTITIES.into_iter().zip(both).map(row).collect())
 }
