@@ -11,10 +11,10 @@
 //! With W = M A + f of the full coordinates, the equations in q are r = J^T W, and dr/dq contains W dJ/dq.
 
 use crate::reference::ReferenceScene;
-use looselink::body::CentredLink;
+use looselink::body::{CentredLink, Content};
 use looselink::interaction::{SlopeClamp, Weld};
 use looselink::model::{Model, PlacedBody};
-use looselink::scene::Scene;
+use looselink::scene::{PointRef, Scene};
 use looselink::system::State;
 use nalgebra::{DMatrix, DVector};
 
@@ -66,7 +66,7 @@ fn placement(model: &Model, name: &str) -> Option<Placement> {
     };
     let slots = || body.placed.x.iter().zip(&body.contents);
     let coordinate = |quantity: &str, from: usize| {
-        let of = |(x, content): (&usize, &looselink::body::Content)| {
+        let of = |(x, content): (&usize, &Content)| {
             Some(x + content.names().iter().position(|n| *n == quantity)?)
         };
         slots().skip(from).find_map(of)
@@ -74,18 +74,12 @@ fn placement(model: &Model, name: &str) -> Option<Placement> {
     let axis = last.unwrap_or(part);
     if is_rooted(body) && axis != "theta" {
         let kind = &body.placed.kind;
-        let length = kind.length();
-        // in the frame of the points of the body: a link starts at the origin, other bodies have their centre of mass there
-        let [at, root] = [
-            match part {
-                "end" => length?,
-                _ => 0.0,
-            },
-            length.map_or(0.0, |length| 0.5 * length),
-        ];
-        let held = kind.hold().map(|hold| kind.points()[hold.point].at);
-        let root = held.map_or([root, 0.0], Into::into);
-        let [x, y] = [at - root[0], -root[1]];
+        // in the frame of the points: a link starts at its origin, other bodies have their centre of mass there
+        let length = kind.length().unwrap_or(0.0);
+        let at = if part == "end" { length } else { 0.0 };
+        let held = kind.hold().map(|hold| kind.points()[hold.point].at.into());
+        let [root_x, root_y] = held.unwrap_or([0.5 * length, 0.0]);
+        let [x, y] = [at - root_x, -root_y];
         let arm = match axis {
             "x" => [x, -y],
             _ => [y, x],
@@ -237,7 +231,7 @@ pub fn rows(reference: &ReferenceScene, model: &Model, scene: &Scene) -> DMatrix
 fn slope_of_first_side(scene: &Scene, joint: &str) -> Option<(f64, f64)> {
     let joint = scene.joints.iter().find(|j| j.name == joint)?;
     let weld = joint.model.get::<Weld>()?;
-    let is_flexible = |side: looselink::scene::PointRef| !scene.bodies[side.body].kind.is_rigid();
+    let is_flexible = |side: PointRef| !scene.bodies[side.body].kind.is_rigid();
     let first = is_flexible(joint.bearing) && !is_flexible(joint.journal);
     (weld.slope == SlopeClamp::Vector && first).then(|| weld.angle.sin_cos())
 }
