@@ -2,6 +2,7 @@
 
 use crate::ffi::*;
 pub use crate::ffi::{LsEvent, LsStatistics, LsTolerances};
+use crate::trajectory::tolerances;
 use nalgebra::{DMatrix, DVector};
 use std::ffi::{CStr, CString, c_char, c_int};
 use std::ptr::{NonNull, null_mut};
@@ -192,10 +193,7 @@ impl ReferenceScene {
         let names = names(6).into_iter().map(|force| force + ".elongation");
         let names: Vec<String> = names.collect();
         if !names.is_empty() {
-            // before they are set, they are those of the start
-            let [q, v] = scene.start()?;
-            let z = vec![0.0; scene.joints.len()];
-            let [values] = scene.channels_at(0.0, &q, &v, &z)?;
+            let values = scene.run(&tolerances(1e-6))?.advance(0.0)?;
             let channels = scene.channels.iter().zip(values);
             let found = channels.filter(|(name, _)| names.contains(name));
             scene.elongations = found.map(|(_, value)| value).collect();
@@ -322,22 +320,12 @@ impl ReferenceScene {
     /// All channels, in the order of their names.
     pub fn values(&mut self, at: ReferenceState) -> Result<Vec<f64>, ReferenceError> {
         self.go_to(at)?;
-        let [values] = self.channels_at(at.t, at.q, at.v, at.z)?;
-        Ok(values)
-    }
-
-    fn channels_at(
-        &self,
-        t: f64,
-        q: &[f64],
-        v: &[f64],
-        z: &[f64],
-    ) -> Result<[Vec<f64>; 1], ReferenceError> {
-        let scene = self.handle.as_ptr();
+        let (scene, z) = (self.handle.as_ptr(), at.z.as_ptr());
         // SAFETY: the state fits the scene; a number for every channel
-        filled([self.channels.len()], |[values], e| unsafe {
-            ls_scene_channels(scene, t, q.as_ptr(), v.as_ptr(), z.as_ptr(), values, e)
-        })
+        let [values] = filled([self.channels.len()], |[values], e| unsafe {
+            ls_scene_channels(scene, at.t, at.q.as_ptr(), at.v.as_ptr(), z, values, e)
+        })?;
+        Ok(values)
     }
 
     /// Begins a run at the start of the scene.

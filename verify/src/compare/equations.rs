@@ -79,60 +79,60 @@ struct ScenePair {
     spread: f64,
 }
 
-/// A part of the equations.
-#[derive(Clone, Copy)]
-enum EquationPart {
-    Mass,
-    Open,
-    Closed,
-    Damping,
-    Stiffness,
-    Balance,
-    Value,
-    Gradient,
-    Velocity,
-    Acceleration,
-    Curvature,
-}
-
+/// A part of the equations: its name, the measure of the difference with the reason of what is allowed, and that.
+type Part = (&'static str, &'static str, f64);
 const RELATIVE: &str = "relative to the largest entry; rounding";
 const STRAINS: &str =
     "relative to the largest entry, or to what rounding of the coordinates does to it; rounding";
-/// For each part its name, the measure of the difference with the reason of what is allowed, and that.
-#[rustfmt::skip]
-const PARTS: [(&str, &str, f64); 11] = [
-    ("assembled mass matrix", RELATIVE, TOLERANCE),
-    ("assembled force, contacts open", STRAINS, TOLERANCE),
-    ("assembled force, contacts closed", STRAINS, TOLERANCE),
-    ("assembled df/dv", RELATIVE, TOLERANCE),
-    ("assembled df/dq", RELATIVE, TOLERANCE),
-    ("residual of Looselink's equations of motion with the accelerations and multipliers of the reference",
-     "relative to the inertia force, or to what rounding of the coordinates does to forces; rounding", TOLERANCE),
-    ("constraint values", "m; rounding of coordinates", TOLERANCE),
-    ("constraint gradients", RELATIVE, TOLERANCE),
-    ("constraint velocities, Φ_q v + Φ_t", "m/s; rounding", TOLERANCE),
-    ("constraint accelerations with the accelerations of the reference",
-     "relative to the largest acceleration, at least 1 m/s²; rounding", TOLERANCE),
-    ("geometric stiffness of the constraints, d(Φ_qᵀλ)/dq",
-     "relative to the largest entry; truncation and rounding of the reference's difference quotient", DIFFERENCING),
-];
+const MASS: Part = ("assembled mass matrix", RELATIVE, TOLERANCE);
+const OPEN: Part = ("assembled force, contacts open", STRAINS, TOLERANCE);
+const CLOSED: Part = ("assembled force, contacts closed", STRAINS, TOLERANCE);
+const DAMPING: Part = ("assembled df/dv", RELATIVE, TOLERANCE);
+const STIFFNESS: Part = ("assembled df/dq", RELATIVE, TOLERANCE);
+const BALANCE: Part = (
+    "residual of Looselink's equations of motion with the accelerations and multipliers of the reference",
+    "relative to the inertia force, or to what rounding of the coordinates does to forces; rounding",
+    TOLERANCE,
+);
+const VALUE: Part = ("constraint values", "m; rounding of coordinates", TOLERANCE);
+const GRADIENT: Part = ("constraint gradients", RELATIVE, TOLERANCE);
+const VELOCITY: Part = (
+    "constraint velocities, Φ_q v + Φ_t",
+    "m/s; rounding",
+    TOLERANCE,
+);
+const ACCELERATION: Part = (
+    "constraint accelerations with the accelerations of the reference",
+    "relative to the largest acceleration, at least 1 m/s²; rounding",
+    TOLERANCE,
+);
+const CURVATURE: Part = (
+    "geometric stiffness of the constraints, d(Φ_qᵀλ)/dq",
+    "relative to the largest entry; truncation and rounding of the reference's difference quotient",
+    DIFFERENCING,
+);
 
 /// The largest difference of each part over all states.
 #[derive(Default)]
-struct EquationDifferences([LargestDifference; PARTS.len()]);
+struct EquationDifferences(Vec<(Part, LargestDifference)>);
 
 impl EquationDifferences {
-    fn of(&mut self, part: EquationPart) -> &mut LargestDifference {
-        &mut self.0[part as usize]
+    /// Looks at two vectors or matrices, measured in units of `scale`.
+    fn see_scaled(&mut self, part: Part, rust: &[f64], cpp: &[f64], scale: f64) {
+        let known = self.0.iter().position(|(known, _)| *known == part);
+        let place = known.unwrap_or_else(|| {
+            self.0.push((part, LargestDifference::default()));
+            self.0.len() - 1
+        });
+        self.0[place].1.see_scaled(rust, cpp, scale);
     }
 
-    /// Looks at two vectors or matrices, measured in units of the largest entry of the second. Below `rounding` both are zero.
-    fn see(&mut self, part: EquationPart, rust: &[f64], cpp: &[f64], rounding: f64) {
-        let worst = self.of(part);
+    /// The same in units of the largest entry of the second. Below `rounding` both are zero.
+    fn see(&mut self, part: Part, rust: &[f64], cpp: &[f64], rounding: f64) {
         if largest(rust).max(largest(cpp)) <= rounding {
-            worst.see(0.0, 0.0, 1.0);
+            self.see_scaled(part, &[0.0], &[0.0], 1.0);
         } else {
-            worst.see_scaled(rust, cpp, largest(cpp).max(rounding / TOLERANCE));
+            self.see_scaled(part, rust, cpp, largest(cpp).max(rounding / TOLERANCE));
         }
     }
 }
@@ -200,12 +200,14 @@ impl ScenePair {
             self.compare_constraints(&at, &mut differences)?;
         }
         // without constraints and contacts some parts do not exist
-        let parts = PARTS.iter().zip(differences.0);
-        let seen = parts.filter(|(_, worst)| worst.is_seen());
-        let rows = seen.map(|((quantity, reason, tolerance), worst)| {
-            worst.row(quantity, &name, *tolerance, reason)
-        });
-        Ok(rows.collect())
+        let seen = differences
+            .0
+            .into_iter()
+            .filter(|(_, worst)| worst.is_seen());
+        let row = |((what, reason, allowed), worst): (Part, LargestDifference)| {
+            worst.row(what, &name, allowed, reason)
+        };
+        Ok(seen.map(row).collect())
     }
 
     /// The state that the run has reached, moved at random, with random rates and contacts.
@@ -241,22 +243,15 @@ impl ScenePair {
         let n = shape.unknowns;
         let mass = self.embedding.at(at).mass(&self.mass);
         let [_, _, rust_mass] = rust_matrices(model, at);
-        parts.see(
-            EquationPart::Mass,
-            rust_mass.as_slice(),
-            mass.as_slice(),
-            0.0,
-        );
+        parts.see(MASS, rust_mass.as_slice(), mass.as_slice(), 0.0);
 
         let open = State {
             z: vec![0.0; at.z.len()],
             ..at.clone()
         };
-        let closed = (EquationPart::Closed, at.clone());
+        let closed = (CLOSED, at.clone());
         let closed = Some(closed).filter(|_| !at.z.is_empty());
-        let states = closed
-            .into_iter()
-            .chain([(EquationPart::Open, open.clone())]);
+        let states = closed.into_iter().chain([(OPEN, open.clone())]);
         let mut rounding = 0.0;
         for (part, mut mine) in states {
             let mut z = vec![0.0; self.reference.joints.len()];
@@ -279,9 +274,9 @@ impl ScenePair {
             let momentum = ROUNDING * self.mass.amax() * full.v.amax();
             let inertia = ROUNDING * (self.mass.amax() * full.a.amax() + cpp.0.amax());
             let (rust, cpp_k) = (rust_stiffness.as_slice(), stiffness.as_slice());
-            parts.see(EquationPart::Stiffness, rust, cpp_k, inertia);
+            parts.see(STIFFNESS, rust, cpp_k, inertia);
             let (rust, cpp_c) = (rust_damping.as_slice(), damping.as_slice());
-            parts.see(EquationPart::Damping, rust, cpp_c, momentum);
+            parts.see(DAMPING, rust, cpp_c, momentum);
 
             mine.a.fill(0.0);
             let full = self.embedding.at(&mine);
@@ -308,23 +303,16 @@ impl ScenePair {
         solved.a[..n].copy_from_slice(full.missing(&a).as_slice());
         model.constraint_acceleration(&solved, &mut rates);
         let zeros = vec![0.0; n.max(rates.len())];
-        parts
-            .of(EquationPart::Acceleration)
-            .see_scaled(&rates, &zeros[..rates.len()], scale);
+        parts.see_scaled(ACCELERATION, &rates, &zeros[..rates.len()], scale);
         let [forces, all] = [&still, &solved].map(|state| residual(model, state));
-        let inertia = all
-            .iter()
-            .zip(&forces)
-            .take(n)
-            .fold(0.0, |m: f64, (a, f)| m.max((a - f).abs()));
+        let inertia = all[..n].iter().zip(&forces).map(|(all, force)| all - force);
+        let inertia = largest(&inertia.collect::<Vec<f64>>());
         solved
             .lambda
             .copy_from_slice((&self.rows * lambda).as_slice());
         let scale = inertia.max(rounding / TOLERANCE).max(f64::MIN_POSITIVE);
         let balance = &residual(model, &solved)[..n];
-        parts
-            .of(EquationPart::Balance)
-            .see_scaled(balance, &zeros[..n], scale);
+        parts.see_scaled(BALANCE, balance, &zeros[..n], scale);
         Ok(())
     }
 
@@ -351,19 +339,10 @@ impl ScenePair {
         // rows that are left out are zero
         let kept = |row: &usize| self.rows.row(*row).amax() > 0.0;
         for row in (0..m).filter(kept) {
-            parts
-                .of(EquationPart::Velocity)
-                .see(rates[row], cpp_rates[row], 1.0);
-            parts
-                .of(EquationPart::Value)
-                .see(phi[row], cpp_phi[row], 1.0);
+            parts.see_scaled(VELOCITY, &[rates[row]], &[cpp_rates[row]], 1.0);
+            parts.see_scaled(VALUE, &[phi[row]], &[cpp_phi[row]], 1.0);
             let [rust, cpp] = [&phi_q, &gradients].map(|rows| rows.rows(row, 1).into_owned());
-            parts.see(
-                EquationPart::Gradient,
-                rust.as_slice(),
-                cpp.as_slice(),
-                ROUNDING,
-            );
+            parts.see(GRADIENT, rust.as_slice(), cpp.as_slice(), ROUNDING);
         }
 
         let mut loaded = State {
@@ -391,9 +370,7 @@ impl ScenePair {
         let rounding = lambda.amax() * 1e-15 / SPAN / DIFFERENCING;
         let scale = bent.amax().max(rounding);
         let rust = rust - unloaded;
-        parts
-            .of(EquationPart::Curvature)
-            .see_scaled(rust.as_slice(), bent.as_slice(), scale);
+        parts.see_scaled(CURVATURE, rust.as_slice(), bent.as_slice(), scale);
         Ok(())
     }
 }
