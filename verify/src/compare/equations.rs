@@ -39,12 +39,20 @@ pub fn plans() -> Result<Vec<ComparisonPlan>> {
     let link = ComparisonPlan::new("../verify/scenes/link", 1e-3, 1e-4);
     let journal = ComparisonPlan::new("../verify/scenes/journal", 1e-4, 1e-5);
     let everything = ComparisonPlan::new("../verify/scenes/everything", 0.5, 1e-3);
+    let maxwell = [
+        "forces.dash={type=\"maxwell\",from=\"base.hook\",to=\"rod.middle\",stiffness=40,damping=3,rest_length=0.2}",
+        "forces.strut={type=\"maxwell\",from=\"block.left\",to=\"lever.end\",stiffness=25,damping=8,rest_length=0.5}",
+    ];
+    let turned = "initial.bodies.flag={point=\"edge\",x=0.3,y=0.0,theta=0.3}";
+    let slope = ComparisonPlan::new("hard/slope-on-the-first-side", 0.04, 2e-3);
     let mut plans = vec![
         case("3rrr/case2").with(", 4 elements in link 2", &["bodies.link2.elements=4"]),
         case("3rrr/case1").with(", path from a table", &[&format!("drives.input.path={table}")]),
         case("3rrr/case2").with(", straight path", &[&format!("drives.input.path={line}")]),
         loose("3rrr/case3").with_friction(),
         loose("3rrr/case4").with_friction(),
+        slope.with(", turned by 0.3 rad", &["joints.weld.angle=0.3", turned]),
+        everything.clone().with(", two Maxwell elements", &maxwell),
         everything.clone().with(", y from a table", &[&format!("drives.push.y={spline}")]),
         everything,
         link.clone().with(", slender", &["sections.any.width=1e-5", "materials.any.youngs_modulus=2e11"]),
