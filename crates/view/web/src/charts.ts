@@ -120,7 +120,7 @@ export class Charts {
               fill: s.fill ? `color-mix(in srgb, ${c} 65%, ${colour("--panel")})` : undefined,
               pxAlign: 0,
               points: { show: false },
-              value: (_: uPlot, v: number | null, __: number, i: number | null) => (v == null ? "–" : (s.own && i != null ? s.own[i] : v).toPrecision(6)),
+              value: (_: uPlot, v: number | null, __: number, i: number | null) => (v == null ? "–" : written(s.own && i != null ? s.own[i] : v, unit)),
             };
           }),
         ],
@@ -179,6 +179,11 @@ export class Charts {
       }
     });
   }
+}
+
+/** A value with its unit. */
+function written(value: number, unit: string): string {
+  return unit === "1" ? value.toPrecision(6) : `${value.toPrecision(6)} ${unit}`;
 }
 
 /** Channels that are shown at the beginning: errors of the driven body and forces of joints, or else the first that vary. */

@@ -81,7 +81,7 @@ function inset(parent: HTMLElement, run: Run, joint: Joint, loose: Clearance, gh
     const length = share < WEAKEST ? 0 : LONGEST_ARROW * (1 - Math.log(share) / Math.log(WEAKEST));
     set(force, { d: length > 0 ? arrow(contact, angle, length, 3) : "" });
     const part = Math.hypot(x, y) / clearance;
-    caption.textContent = `${joint.name}: e = ${part.toFixed(2)} c\n${quantity(newtons, "N")}`;
+    caption.textContent = `${joint.name}: e = ${quantity(part * clearance, "m")}\n${part.toFixed(2)} c, ${quantity(newtons, "N")}`;
     title.textContent = `Joint ${joint.name}, play ${quantity(clearance, "m")} magnified: eccentricity ${part.toFixed(2)} of the clearance, contact force ${quantity(newtons, "N")}`;
   };
 }

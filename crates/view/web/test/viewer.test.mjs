@@ -223,6 +223,10 @@ test("a ghost, a phone, the dark, the keyboard and names for screen readers", as
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "it is wider than the phone");
   await page.click("#theme");
   const time = () => page.evaluate(() => Number(document.getElementById("time").value));
+  // a run with a loose pin opens in mid-motion, its values have units
+  assert.ok(Math.abs((await time()) - 0.01) < 1e-4, `it opens at ${await time()} s`);
+  const inset = await page.evaluate(() => document.querySelector('[data-inset="slider_pin"]').closest("figure").textContent);
+  assert.match(inset, /slider_pin: e = [\d.]+ [µm]m.*N/s);
   await page.focus("#mechanism");
   await page.keyboard.press("End");
   assert.ok(Math.abs((await time()) - 0.02) < 1e-9);
