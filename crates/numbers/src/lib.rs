@@ -62,6 +62,12 @@ pub fn exact(value: f64) -> String {
     text.trim_end_matches(".0").to_owned()
 }
 
+/// A value with so many significant digits, as it is kept in a file.
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    let text = format!("{value:.*e}", digits - 1);
+    text.parse().unwrap_or(value)
+}
+
 /// Zero, which has no sign here, or what is not finite.
 fn plain(value: f64) -> String {
     format!("{}", value + 0.0)
@@ -140,6 +146,9 @@ mod tests {
         ] {
             assert_eq!(number(value, digits), text);
         }
+        assert_eq!(rounded(-1234.567, 6), -1234.57);
+        assert_eq!(rounded(0.1 + 0.2, 4), 0.3);
+        assert!(rounded(f64::NAN, 4).is_nan());
         for text in ["0", "10", "100", "0.001", "1.25e-6", "-1e-9", "1e300"] {
             assert_eq!(exact(text.parse().unwrap()), text);
         }

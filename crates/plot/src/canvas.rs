@@ -33,7 +33,7 @@ impl Canvas {
         let color = code(color);
         let points = points.iter().map(|(x, y)| format!("{x},{y} "));
         self.0 += &format!(
-            "<polyline fill=\"none\" opacity=\"1\" stroke=\"{color}\" stroke-width=\"{width}\" points=\"{}\"/>\n",
+            "<polyline fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" points=\"{}\"/>\n",
             points.collect::<String>()
         );
     }
@@ -65,14 +65,18 @@ impl Canvas {
     /// A dot.
     pub fn dot(&mut self, (x, y): (i32, i32), radius: u32, color: Color) {
         let color = code(color);
-        self.0 += &format!(
-            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" opacity=\"1\" fill=\"{color}\" stroke=\"none\" stroke-width=\"1\"/>\n"
-        );
+        self.0 += &format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"{color}\"/>\n");
     }
 
     /// A line of text around its vertical centre; `anchor` is what stands at x: `start`, `middle` or `end`.
     pub fn text(&mut self, text: &str, at: (i32, i32), size: u32, anchor: &str) {
-        self.text_with(text, at, size, anchor, "");
+        self.text_with(text, at, size, anchor, palette::BLACK, "");
+    }
+
+    /// A line of text in a colour, readable where it stands on a curve.
+    pub fn name(&mut self, text: &str, at: (i32, i32), size: u32, anchor: &str, color: Color) {
+        let halo = " paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"8\"";
+        self.text_with(text, at, size, anchor, color, halo);
     }
 
     /// Lines of small text below each other.
@@ -85,13 +89,20 @@ impl Canvas {
 
     /// A line of bold text.
     pub fn bold(&mut self, text: &str, at: (i32, i32), size: u32) {
-        self.text_with(text, at, size, "start", " font-weight=\"bold\"");
+        self.text_with(
+            text,
+            at,
+            size,
+            "start",
+            palette::BLACK,
+            " font-weight=\"bold\"",
+        );
     }
 
     /// A line of text that is read upwards.
     pub fn upright(&mut self, text: &str, at: (i32, i32), size: u32) {
         let turned = format!(" transform=\"rotate(270, {}, {})\"", at.0, at.1);
-        self.text_with(text, at, size, "middle", &turned);
+        self.text_with(text, at, size, "middle", palette::BLACK, &turned);
     }
 
     fn text_with(
@@ -100,15 +111,15 @@ impl Canvas {
         (x, y): (i32, i32),
         size: u32,
         anchor: &str,
+        color: Color,
         attributes: &str,
     ) {
-        let color = code(palette::BLACK);
+        let color = code(color);
         let text = text.replace('&', "&amp;").replace('<', "&lt;");
         let text = text.replace('>', "&gt;").replace('"', "&quot;");
         let text = text.replace('\'', "&apos;");
         self.0 += &format!(
-            "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-family=\"{FAMILIES}\" font-size=\"{size}\" \
-             opacity=\"1\" fill=\"{color}\"{attributes}>\n{text}\n</text>\n"
+            "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"{color}\"{attributes}>\n{text}\n</text>\n"
         );
     }
 }

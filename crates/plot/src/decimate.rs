@@ -3,10 +3,14 @@
 /// A point in pixels.
 pub type PixelPoint = (f64, f64);
 
-/// The envelope of a series whose x never decreases: of every pixel column the first, lowest, highest and last point,
-/// in their order. No extreme value is lost and at most four points a column remain.
-pub fn envelope(points: &[PixelPoint]) -> Vec<PixelPoint> {
+/// How far a thinned polyline may be from the full one: 0.1 pixels of a screen with 96 dots an inch, in units of the drawing.
+const TOLERANCE: f64 = 0.1 * 300.0 / 96.0;
+
+/// Indices of the points of a series whose x never decreases: of every pixel column the first, lowest, highest and last point,
+/// in their order, but for those on the chord of their neighbours. No extreme value of a column is lost.
+pub fn envelope(points: &[PixelPoint]) -> Vec<usize> {
     let mut kept = Vec::new();
+    let mut first = 0;
     for column in points.chunk_by(|a, b| a.0.floor() == b.0.floor()) {
         let by = |a: &usize, b: &usize| column[*a].1.total_cmp(&column[*b].1);
         let low = (0..column.len()).min_by(by).unwrap_or(0);
@@ -14,44 +18,39 @@ pub fn envelope(points: &[PixelPoint]) -> Vec<PixelPoint> {
         let mut order = vec![0, low, high, column.len() - 1];
         order.sort_unstable();
         order.dedup();
-        kept.extend(order.into_iter().map(|i| column[i]));
+        kept.extend(order.into_iter().map(|i| first + i));
+        first += column.len();
     }
-    kept
+    chords(points, kept, TOLERANCE)
 }
 
-/// A curve of at most `budget` points: points closer than a quarter pixel to the last one kept are dropped, then those
-/// that lie within half a pixel of the chord of their neighbours; the tolerance is doubled until the budget is met.
-pub fn portrait(points: &[PixelPoint], budget: usize) -> Vec<PixelPoint> {
-    let mut kept: Vec<PixelPoint> = Vec::new();
-    for (i, &(x, y)) in points.iter().enumerate() {
-        let far = kept
-            .last()
-            .is_none_or(|&(kx, ky)| (x - kx).hypot(y - ky) >= 0.25);
-        if far || i + 1 == points.len() {
-            kept.push((x, y));
-        }
-    }
-    let mut tolerance = 0.5;
+/// Indices of at most `budget` points of a curve: those on the chord of their neighbours are dropped; the tolerance is doubled
+/// until the budget is met.
+pub fn portrait(points: &[PixelPoint], budget: usize) -> Vec<usize> {
+    let mut tolerance = TOLERANCE;
+    let mut kept = chords(points, (0..points.len()).collect(), tolerance);
     while kept.len() > budget {
-        kept = chords(&kept, tolerance);
         tolerance *= 2.0;
+        kept = chords(points, kept, tolerance);
     }
     kept
 }
 
-/// Douglas & Peucker (1973) on pieces of a thousand points, which bounds its cost.
-fn chords(points: &[PixelPoint], tolerance: f64) -> Vec<PixelPoint> {
+/// Douglas & Peucker (1973) on the points with these indices, in pieces of a thousand, which bounds its cost.
+fn chords(points: &[PixelPoint], indices: Vec<usize>, tolerance: f64) -> Vec<usize> {
     const PIECE: usize = 1000;
-    let mut keep = vec![false; points.len()];
-    let mut open: Vec<(usize, usize)> = (0..points.len() - 1)
+    let last = indices.len().saturating_sub(1);
+    let mut keep = vec![indices.len() == 1; indices.len()];
+    let mut open: Vec<(usize, usize)> = (0..last)
         .step_by(PIECE)
-        .map(|a| (a, (a + PIECE).min(points.len() - 1)))
+        .map(|a| (a, (a + PIECE).min(last)))
         .collect();
     while let Some((a, b)) = open.pop() {
         keep[a] = true;
         keep[b] = true;
+        let [from, to] = [a, b].map(|i| points[indices[i]]);
         let farthest = (a + 1..b)
-            .map(|i| (i, chord_distance(points[i], points[a], points[b])))
+            .map(|i| (i, chord_distance(points[indices[i]], from, to)))
             .max_by(|x, y| x.1.total_cmp(&y.1));
         if let Some((i, distance)) = farthest
             && distance > tolerance
@@ -59,8 +58,8 @@ fn chords(points: &[PixelPoint], tolerance: f64) -> Vec<PixelPoint> {
             open.extend([(a, i), (i, b)]);
         }
     }
-    let kept = points.iter().zip(keep).filter(|(_, keep)| *keep);
-    kept.map(|(point, _)| *point).collect()
+    let kept = indices.into_iter().zip(keep).filter(|(_, keep)| *keep);
+    kept.map(|(index, _)| index).collect()
 }
 
 /// Distance of a point from the segment a-b.
@@ -79,6 +78,22 @@ fn chord_distance(p: PixelPoint, a: PixelPoint, b: PixelPoint) -> f64 {
 mod tests {
     use super::*;
 
+    /// The points with these indices.
+    fn at(points: &[PixelPoint], indices: &[usize]) -> Vec<PixelPoint> {
+        indices.iter().map(|i| points[*i]).collect()
+    }
+
+    /// The largest distance of a point from the polyline through the points with these indices.
+    fn distance(points: &[PixelPoint], indices: &[usize]) -> f64 {
+        let mut largest = 0.0_f64;
+        for pair in indices.windows(2) {
+            for p in &points[pair[0]..=pair[1]] {
+                largest = largest.max(chord_distance(*p, points[pair[0]], points[pair[1]]));
+            }
+        }
+        largest
+    }
+
     #[test]
     fn envelope_is_short_and_keeps_every_peak() {
         let mut points: Vec<PixelPoint> = (0..300_000)
@@ -88,26 +103,36 @@ mod tests {
         points[7].1 = -40.0;
         let kept = envelope(&points);
         assert!(kept.len() <= 4 * 601);
-        assert!(kept.contains(&points[123_456]) && kept.contains(&points[7]));
-        assert_eq!(kept.first(), points.first());
-        assert_eq!(kept.last(), points.last());
-        assert!(kept.windows(2).all(|w| w[0].0 <= w[1].0));
+        assert!(kept.contains(&123_456) && kept.contains(&7));
+        assert_eq!((kept[0], kept[kept.len() - 1]), (0, points.len() - 1));
+        assert!(kept.is_sorted());
     }
 
     #[test]
-    fn portrait_stays_within_a_quarter_pixel() {
-        let points: Vec<PixelPoint> = (0..10_000)
+    fn thinned_lines_stay_within_a_tenth_of_a_pixel() {
+        let circle: Vec<PixelPoint> = (0..10_000)
             .map(|i| f64::from(i) * 1e-3)
             .map(|a| (50.0 * a.cos(), 50.0 * a.sin()))
             .collect();
-        let kept = portrait(&points, usize::MAX);
-        assert!(kept.len() < 2100);
-        for p in &points {
-            let nearest = kept
-                .iter()
-                .map(|k| (k.0 - p.0).hypot(k.1 - p.1))
-                .fold(f64::MAX, f64::min);
-            assert!(nearest <= 0.25);
+        let kept = portrait(&circle, usize::MAX);
+        // an arc of 50 units is within t of its chord up to an angle of sqrt(8 t / 50)
+        assert!((44..200).contains(&kept.len()), "{}", kept.len());
+        assert!(distance(&circle, &kept) <= TOLERANCE);
+        let line: Vec<PixelPoint> = (0..5000).map(|i| (0.7 * f64::from(i), 3.0)).collect();
+        assert!(envelope(&line).len() <= 12);
+        let wave = line.iter().map(|(x, _)| (*x, 40.0 * (0.01 * x).sin()));
+        let wave: Vec<PixelPoint> = wave.collect();
+        let kept = envelope(&wave);
+        assert!(kept.len() < 700 && distance(&wave, &kept) <= TOLERANCE);
+    }
+
+    #[test]
+    fn few_points_stay() {
+        for count in 0..3 {
+            let points: Vec<PixelPoint> = (0..count).map(|i| (f64::from(i), 0.0)).collect();
+            let all: Vec<usize> = (0..points.len()).collect();
+            assert_eq!(envelope(&points), all);
+            assert_eq!(portrait(&points, 9), all);
         }
     }
 
@@ -122,7 +147,7 @@ mod tests {
                 )
             })
             .collect();
-        let kept = portrait(&points, 20_000);
+        let kept = at(&points, &portrait(&points, 20_000));
         assert!(kept.len() <= 20_000);
         let top = |p: &[PixelPoint]| p.iter().map(|p| p.1).fold(f64::MIN, f64::max);
         assert!((top(&kept) - top(&points)).abs() <= 1.0);

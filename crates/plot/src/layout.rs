@@ -1,7 +1,7 @@
 //! Where everything stands on the page, in pixels.
 
 use crate::ticks::Ticks;
-use crate::{Axis, Figure, Panel, Scale, text};
+use crate::{Axis, Figure, Mark, MarkShape, Panel, Scale, text};
 
 /// Width of every figure: 178 mm at 300 dpi.
 pub const WIDTH: i32 = 2100;
@@ -122,7 +122,8 @@ impl Head {
         let mut legend: Vec<Vec<(usize, i32)>> = Vec::new();
         let mut right = 0;
         let marks = panel.marks.iter().enumerate();
-        for (index, mark) in marks.filter(|(_, mark)| !mark.label.is_empty()) {
+        let entry = |mark: &Mark| !mark.label.is_empty() && mark.shape != MarkShape::Name;
+        for (index, mark) in marks.filter(|(_, mark)| entry(mark)) {
             let needed = SAMPLE + 12 + text::width(&mark.label, SMALL);
             match legend.last_mut() {
                 Some(line) if right + 30 + needed <= width => {
@@ -182,8 +183,8 @@ fn left_margin(panel: &Panel) -> i32 {
     let ticks = Ticks::new(&panel.y, extent(panel, &panel.y, false), 6);
     let widest = ticks.widths().max().unwrap_or(0);
     match (panel.y.names.is_empty(), panel.x.equal) {
-        // no axis label stands on the left of names
-        (false, _) => widest + 24,
+        (false, _) if panel.y.label.is_empty() => widest + 24,
+        (false, _) => widest + 70,
         // the widened range of equal axes may ask for longer labels
         (true, true) => widest + 85,
         (true, false) => widest + 70,
@@ -211,7 +212,6 @@ fn extent(panel: &Panel, axis: &Axis, horizontal: bool) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Mark;
 
     #[test]
     fn equal_axes_have_one_scale_and_hold_all_data() {

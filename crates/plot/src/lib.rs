@@ -21,6 +21,8 @@ pub use output::{save, svg};
 #[cfg(feature = "png")]
 pub use png::png;
 
+use serde::{Deserialize, Serialize};
+
 /// An RGB colour.
 pub type Color = (u8, u8, u8);
 
@@ -71,6 +73,7 @@ pub mod palette {
 }
 
 /// A figure: rows of panels and a caption below.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     /// Rows from top to bottom; panels of a row share its width.
     pub rows: Vec<Vec<Panel>>,
@@ -90,9 +93,31 @@ impl Figure {
         }
         Figure { rows, caption }
     }
+
+    /// The figure with the points alone that make a difference in the drawing, to six digits: what a record keeps of it.
+    pub fn thinned(mut self) -> Figure {
+        let (placed, _) = layout::place(&self);
+        let drawn = |panel: &layout::PlacedPanel| {
+            let marks = panel.panel.marks.iter();
+            marks.map(|mark| panel.drawn(mark)).collect::<Vec<_>>()
+        };
+        let kept: Vec<Vec<usize>> = placed.iter().flat_map(drawn).collect();
+        let marks = self.rows.iter_mut().flatten().flat_map(|p| &mut p.marks);
+        for (mark, kept) in marks.zip(kept) {
+            let pick = |from: &[f64]| {
+                let kept = kept.iter().map(|i| from[*i]);
+                kept.map(|x| numbers::rounded(x, 6)).collect()
+            };
+            if !mark.x.is_empty() {
+                (mark.x, mark.y) = (pick(&mark.x), pick(&mark.y));
+            }
+        }
+        self
+    }
 }
 
 /// One pair of axes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
     /// Title above the frame, such as `a) Case 2`.
     pub title: String,
@@ -107,7 +132,7 @@ pub struct Panel {
 }
 
 /// One axis: label, unit and range.
-#[derive(Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// Quantity without the unit.
     pub label: String,
@@ -128,7 +153,7 @@ pub struct Axis {
 }
 
 /// Spacing of an axis.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Scale {
     /// Equal differences.
     Linear,
@@ -137,8 +162,9 @@ pub enum Scale {
 }
 
 /// Something drawn inside a panel, in SI units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Mark {
-    /// Entry of the legend; empty for none.
+    /// Entry of the legend; empty for none. Text of a [`MarkShape::Name`].
     pub label: String,
     /// Colour.
     pub color: Color,
@@ -151,6 +177,7 @@ pub struct Mark {
 }
 
 /// The kinds of mark; widths and radii are in pixels.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum MarkShape {
     /// y over an x that never decreases; thinned to the envelope of every pixel column.
     Series {
@@ -171,6 +198,8 @@ pub enum MarkShape {
     Cross,
     /// A horizontal dashed line over the width of the panel; it takes part in the automatic range.
     Level,
+    /// The label itself, beside one place; labels of a panel that would overlap are moved apart.
+    Name,
     /// The inside of a polygon, so opaque \[%\]; what lies outside the frame is pushed to its edge.
     Area {
         /// 100 hides what is drawn before.
@@ -268,6 +297,11 @@ impl Mark {
     /// A dashed horizontal line.
     pub fn level(label: &str, color: Color, y: f64) -> Mark {
         Mark::new(label, color, MarkShape::Level, &[], &[y])
+    }
+
+    /// A text in the colour of the curve that passes here.
+    pub fn name(label: &str, color: Color, at: (f64, f64)) -> Mark {
+        Mark::new(label, color, MarkShape::Name, &[at.0], &[at.1])
     }
 
     /// What lies between two curves over an increasing abscissa, so pale that curves in the same colour stand out from it.

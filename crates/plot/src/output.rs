@@ -72,4 +72,23 @@ pub mod tests {
         assert!(svg.len() < 1_000_000);
         assert!(svg.contains("177.800mm") && svg.contains("h &lt; 2"));
     }
+
+    #[test]
+    fn a_thinned_figure_has_few_points_and_all_extremes() {
+        let (full, thinned) = (sample(), sample().thinned());
+        let mark = |figure: &Figure| figure.rows[0][0].marks[0].clone();
+        let (before, after) = (mark(&full), mark(&thinned));
+        assert!(after.x.len() * 10 < before.x.len(), "{}", after.x.len());
+        let range = |y: &[f64]| {
+            let fold = |pick: fn(f64, f64) -> f64, from| y.iter().copied().fold(from, pick);
+            [fold(f64::min, f64::MAX), fold(f64::max, f64::MIN)].map(|y| numbers::rounded(y, 6))
+        };
+        assert_eq!(range(&after.y), range(&before.y));
+        // thinned again it loses little: pieces of the simplification begin elsewhere
+        let lengths = [&full, &thinned].map(svg).map(|text| text.len());
+        assert!(
+            lengths[0].abs_diff(lengths[1]) * 20 < lengths[0],
+            "{lengths:?}"
+        );
+    }
 }

@@ -6,11 +6,22 @@ use crate::decimate::{PixelPoint, envelope, portrait};
 use crate::layout::{
     GAP, LABEL, LEGEND_LINE, PlacedPanel, SAMPLE, SMALL, SMALL_LINE, TITLE, TITLE_LINE,
 };
-use crate::{Color, Mark, MarkShape, palette};
+use crate::{Color, Mark, MarkShape, palette, text};
 
 const GRID: Color = (228, 228, 228);
+/// Space between a place and its name.
+const NAME_GAP: i32 = 16;
 /// Points a curve may have: 25,000 are 250 kB of SVG.
 const CURVE_BUDGET: usize = 25_000;
+
+/// Indices of the points that a line is drawn through; all of another mark.
+fn thinned(mark: &Mark, points: &[PixelPoint]) -> Vec<usize> {
+    match mark.shape {
+        MarkShape::Series { .. } => envelope(points),
+        MarkShape::Curve { .. } => portrait(points, CURVE_BUDGET),
+        _ => (0..points.len()).collect(),
+    }
+}
 
 impl PlacedPanel<'_> {
     /// Draws grid, marks, frame, ticks and texts.
@@ -19,6 +30,7 @@ impl PlacedPanel<'_> {
         for mark in &self.panel.marks {
             self.mark(canvas, mark);
         }
+        self.names(canvas);
         self.axes(canvas);
         self.heading(canvas);
     }
@@ -47,16 +59,25 @@ impl PlacedPanel<'_> {
         }
     }
 
+    fn pixels(&self, mark: &Mark) -> Vec<PixelPoint> {
+        let points = mark.x.iter().zip(&mark.y);
+        points
+            .map(|(x, y)| (self.across(self.x.place(*x)), self.up(self.y.place(*y))))
+            .collect()
+    }
+
+    /// Indices of the points of a line that make a difference in the drawing; all of another mark.
+    pub fn drawn(&self, mark: &Mark) -> Vec<usize> {
+        thinned(mark, &self.pixels(mark))
+    }
+
     fn mark(&self, canvas: &mut Canvas, mark: &Mark) {
         let [left, top, right, bottom] = self.frame;
         let frame = ClipRectangle {
             low: (f64::from(left), f64::from(top)),
             high: (f64::from(right), f64::from(bottom)),
         };
-        let points = mark.x.iter().zip(&mark.y);
-        let points =
-            points.map(|(x, y)| (self.across(self.x.place(*x)), self.up(self.y.place(*y))));
-        let points: Vec<PixelPoint> = points.collect();
+        let points = self.pixels(mark);
         let pixel = |p: &PixelPoint| (p.0.round() as i32, p.1.round() as i32);
         let mut polyline = |points: &[PixelPoint], width| {
             for part in frame.clip(points) {
@@ -67,12 +88,15 @@ impl PlacedPanel<'_> {
         };
         let inside = points.iter().filter(|p| frame.contains(**p)).map(pixel);
         match mark.shape {
-            MarkShape::Series { width } => polyline(&envelope(&points), width),
-            MarkShape::Curve { width } => polyline(&portrait(&points, CURVE_BUDGET), width),
+            MarkShape::Series { width } | MarkShape::Curve { width } => {
+                let kept = thinned(mark, &points).into_iter().map(|i| points[i]);
+                polyline(&kept.collect::<Vec<_>>(), width);
+            }
             MarkShape::Points { radius } => {
                 inside.for_each(|at| canvas.dot(at, radius, mark.color))
             }
             MarkShape::Cross => inside.for_each(|at| canvas.cross(at, mark.color)),
+            MarkShape::Name => {}
             MarkShape::Area { opacity } => {
                 let within = |(x, y): (i32, i32)| (x.clamp(left, right), y.clamp(top, bottom));
                 let corners = points.iter().map(|point| within(pixel(point)));
@@ -84,6 +108,34 @@ impl PlacedPanel<'_> {
                     canvas.dashes(left, right, y, mark.color);
                 }
             }
+        }
+    }
+
+    /// The names beside their places, from the lowest up, each above those that it would overlap.
+    fn names(&self, canvas: &mut Canvas) {
+        let [left, top, right, bottom] = self.frame;
+        let marks = self.panel.marks.iter();
+        let names = marks.filter(|mark| mark.shape == MarkShape::Name);
+        let mut names: Vec<(&Mark, PixelPoint)> = names
+            .flat_map(|mark| self.pixels(mark).into_iter().map(move |at| (mark, at)))
+            .collect();
+        names.sort_by(|a, b| b.1.1.total_cmp(&a.1.1));
+        let mut placed: Vec<[i32; 3]> = Vec::new();
+        for (mark, (x, y)) in names {
+            let (x, mut y) = (x.round() as i32, y.round() as i32);
+            y = y.clamp(top + SMALL_LINE / 2, bottom - SMALL_LINE / 2);
+            let width = text::width(&mark.label, SMALL);
+            let from = match x + NAME_GAP + width < right {
+                true => x + NAME_GAP,
+                false => (x - NAME_GAP - width).max(left),
+            };
+            for [other, end, at] in &placed {
+                if *other < from + width && from < *end && (y - at).abs() < SMALL_LINE {
+                    y = at - SMALL_LINE;
+                }
+            }
+            placed.push([from, from + width, y]);
+            canvas.name(&mark.label, (from, y), SMALL, "start", mark.color);
         }
     }
 
@@ -146,6 +198,7 @@ impl PlacedPanel<'_> {
                 canvas.area(&corners, mark.color, opacity);
             }
             MarkShape::Points { radius } => canvas.dot(middle, radius.max(6), mark.color),
+            MarkShape::Name => {}
         }
         canvas.text(&mark.label, (x + SAMPLE + 12, y), SMALL, "start");
     }

@@ -2,7 +2,7 @@
 
 use crate::layout::SMALL;
 use crate::{Axis, Scale, text};
-use numbers::digits;
+use numbers::{digits, rounded, si};
 
 /// A laid-out axis: the range in drawing values (after factor, power of ten and logarithm) and its ticks.
 pub struct Ticks {
@@ -131,8 +131,21 @@ fn logarithmic(axis: &Axis, data: (f64, f64), wanted: usize) -> Ticks {
     if stride > 2 {
         minor.retain(|v| (v - v.round()).abs() < 1e-9);
     }
+    // a tick has its unit, where it has a prefix for it
+    let prefixed = axis.factor == 1.0 && !axis.unit.is_empty() && axis.labels.is_empty();
+    let values = major.iter().map(|(at, _)| 10f64.powf(*at));
+    let prefixed = prefixed && values.clone().all(|v| (0.9e-12..1e12).contains(&v));
+    let label = match prefixed {
+        true => {
+            let texts: Vec<String> = values.map(|v| si(rounded(v, 1), &axis.unit)).collect();
+            let ticks = major.iter_mut().zip(texts);
+            ticks.for_each(|((_, text), prefixed)| *text = prefixed);
+            axis.label.clone()
+        }
+        false => label(axis, 0),
+    };
     Ticks {
-        label: label(axis, 0),
+        label,
         range: (low, high),
         major,
         minor,
@@ -164,9 +177,14 @@ fn is_quarter(step: f64) -> bool {
 }
 
 fn label(axis: &Axis, power: i32) -> String {
-    let scale = match power {
-        0 => String::new(),
-        power => format!("10{}", numbers::superscript(power)),
+    const PREFIXES: [&str; 7] = ["p", "n", "µ", "m", "", "k", "M"];
+    let prefix = usize::try_from(power / 3 + 4).ok();
+    let scale = match prefix.and_then(|place| PREFIXES.get(place)) {
+        Some(prefix) if axis.factor == 1.0 && !axis.unit.is_empty() => {
+            return format!("{} ({prefix}{})", axis.label, axis.unit);
+        }
+        _ if power == 0 => String::new(),
+        _ => format!("10{}", numbers::superscript(power)),
     };
     match format!("{scale} {}", axis.unit).trim() {
         "" => axis.label.clone(),
@@ -221,15 +239,26 @@ mod tests {
 
     #[test]
     fn small_values_move_their_power_into_the_label() {
-        let ticks = Ticks::new(&Axis::new("a", "m/s²", 1.0), (-2e-6, 2e-6), 5);
-        assert_eq!(ticks.label, "a (10⁻⁶ m/s²)");
-        assert!(ticks.major.iter().all(|(_, t)| t.chars().count() <= 4));
+        for (unit, factor, label) in [
+            ("m/s²", 1.0, "a (µm/s²)"),
+            ("m/s²", 2.0, "a (10⁻⁶ m/s²)"),
+            ("", 1.0, "a (10⁻⁶)"),
+        ] {
+            let range = (-2e-6 / factor, 2e-6 / factor);
+            let ticks = Ticks::new(&Axis::new("a", unit, factor), range, 5);
+            assert_eq!(ticks.label, label);
+            assert!(ticks.major.iter().all(|(_, t)| t.chars().count() <= 4));
+        }
     }
 
     #[test]
     fn log_axes_label_decades() {
         assert_eq!(
-            texts(&Axis::new("E", "Pa", 1.0).log(), (1e8, 1e12)),
+            texts(&Axis::new("E", "Pa", 1.0).log(), (1e8, 5e11)),
+            ["100 MPa", "1 GPa", "10 GPa", "100 GPa"].map(|t| t.replace(' ', "\u{a0}"))
+        );
+        assert_eq!(
+            texts(&Axis::new("E", "", 1.0).log(), (1e8, 1e12)),
             ["10⁸", "10⁹", "10¹⁰", "10¹¹", "10¹²"]
         );
         assert_eq!(
