@@ -1,5 +1,5 @@
-//! The architecture as tests: files and folders of `src` depend on each other in one direction, the solver on few crates, and
-//! a type name means one thing in the whole workspace.
+//! The architecture as tests: files and folders of `src` depend on each other in one direction, and the solver on few
+//! crates.
 
 use petgraph::algo::kosaraju_scc;
 use petgraph::graphmap::DiGraphMap;
@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 use syn::visit::Visit;
-use syn::{Item, ItemUse, UseTree};
+use syn::{ItemUse, UseTree};
 
 /// Folders and files at the top of `src`, the lowest first: each uses those before it only.
 const LAYERS: [&str; 27] = [
@@ -62,22 +62,6 @@ const CRATES: [&str; 16] = [
     "wildmatch",
     "winnow",
 ];
-
-/// Folders with the files of the workspace; `fuzz` lies outside it.
-const WORKSPACE: [&str; 9] = [
-    "src",
-    "crates",
-    "pages",
-    "paper-figures",
-    "python",
-    "verify",
-    "tests",
-    "benches",
-    "examples",
-];
-
-/// Type names that each program may define: its command line has the same meaning everywhere.
-const OF_PROGRAMS: [&str; 2] = ["Arguments", "Command"];
 
 /// Paths of a module, such as `scene::joints`, with the text of its file.
 type Modules = BTreeMap<Vec<String>, syn::File>;
@@ -251,100 +235,4 @@ fn the_solver_is_made_of_few_crates() {
         .map(String::as_str)
         .collect();
     assert_eq!(crates, CRATES);
-}
-
-/// Names of types with the files that define them, also inside modules and functions. Associated types do not count.
-#[derive(Default, Clone)]
-struct TypeNames {
-    file: String,
-    found: BTreeMap<String, Vec<String>>,
-}
-
-impl TypeNames {
-    fn read(&mut self, file: &str, text: &str) {
-        file.clone_into(&mut self.file);
-        self.visit_file(&syn::parse_file(text).unwrap());
-    }
-
-    fn read_folder(&mut self, folder: &Path) {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                self.read_folder(&path);
-            } else if path.extension().is_some_and(|e| e == "rs") {
-                let file = path.strip_prefix(env!("CARGO_MANIFEST_DIR")).unwrap();
-                self.read(file.to_str().unwrap(), &fs::read_to_string(&path).unwrap());
-            }
-        }
-    }
-
-    fn of_the_workspace() -> TypeNames {
-        let mut names = TypeNames::default();
-        for folder in WORKSPACE {
-            names.read_folder(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder));
-        }
-        let count = names.found.len();
-        assert!(count > 500, "{count} names were read");
-        names
-    }
-
-    /// Names that are defined more than once, each with its files.
-    fn repeated(&self) -> Vec<String> {
-        let repeated = self
-            .found
-            .iter()
-            .filter(|(name, files)| files.len() > 1 && !OF_PROGRAMS.contains(&name.as_str()));
-        repeated
-            .map(|(name, files)| format!("{name} is defined in {}", files.join(" and in ")))
-            .collect()
-    }
-}
-
-impl<'ast> Visit<'ast> for TypeNames {
-    fn visit_item(&mut self, item: &'ast Item) {
-        let name = match item {
-            Item::Struct(item) => Some(&item.ident),
-            Item::Enum(item) => Some(&item.ident),
-            Item::Union(item) => Some(&item.ident),
-            Item::Trait(item) => Some(&item.ident),
-            Item::Type(item) => Some(&item.ident),
-            _ => None,
-        };
-        if let Some(name) = name {
-            let files = self.found.entry(name.to_string()).or_default();
-            files.push(self.file.clone());
-        }
-        syn::visit::visit_item(self, item);
-    }
-}
-
-#[test]
-fn a_type_name_means_one_thing() {
-    assert_eq!(TypeNames::of_the_workspace().repeated(), [""; 0]);
-}
-
-/// The check sees what it is for.
-#[test]
-fn a_type_name_with_two_meanings_is_found() {
-    let workspace = TypeNames::of_the_workspace();
-    for (text, repeated) in [
-        (
-            "struct State;",
-            vec!["State is defined in src/system.rs and in new.rs"],
-        ),
-        (
-            "fn f() { mod m { #[cfg(test)] type Model = f64; } }",
-            vec!["Model is defined in src/model/mod.rs and in new.rs"],
-        ),
-        (
-            "enum Once {} trait T { fn f() { union Once { x: u8 } } }",
-            vec!["Once is defined in new.rs and in new.rs"],
-        ),
-        ("struct Command;", vec![]),
-        ("impl Iterator for I { type Model = f64; }", vec![]),
-    ] {
-        let mut names = workspace.clone();
-        names.read("new.rs", text);
-        assert_eq!(names.repeated(), repeated);
-    }
 }
