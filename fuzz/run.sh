@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Random input to the reader of scenes, the compiler and the reader of studies, so many seconds each, from the seeds and
-# from what earlier runs have kept in fuzz/corpus; writes pages/stability/records/fuzz.json. Stable Rust will do: RUSTC_BOOTSTRAP
-# lets it instrument for coverage.
+# from what earlier runs have kept in fuzz/corpus; writes the record evidence/data/fuzz.json, which belongs to the commit
+# that is checked out. Stable Rust will do: RUSTC_BOOTSTRAP lets it instrument for coverage.
 #
 #   cargo install cargo-fuzz
 #   fuzz/run.sh 1200 1800 600
@@ -14,9 +14,15 @@ cargo fuzz --version > /dev/null 2>&1 || {
     echo "cargo-fuzz is missing: cargo install cargo-fuzz" >&2
     exit 2
 }
-# what is fuzzed, for pages/records/state
-digests=$(cargo run --quiet --release -p records -- --digests fuzz)
-mkdir -p fuzz/corpus fuzz/artifacts/{scene,mechanism,study} pages/records/state
+[ -z "$(git status --porcelain)" ] || {
+    echo "the record belongs to a commit: commit the changes first" >&2
+    exit 2
+}
+commit=$(git rev-parse --short=12 HEAD)
+version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
+processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1)
+record=evidence/data/fuzz.json
+mkdir -p fuzz/corpus fuzz/artifacts/{scene,mechanism,study}
 
 # seconds an input, MiB of memory, bytes of an input
 limits=(-timeout=5 -rss_limit_mb=1024 -max_len=16384)
@@ -36,41 +42,37 @@ fuzz() {
     open=$(find "fuzz/artifacts/$target" -type f | wc -l)
 }
 
-record() {
-    cat << END
-    {
-      "target": "$1",
-      "inputs": ${executed:-0},
-      "seconds": ${took:-0},
-      "edges_covered": ${edges:-0},
-      "slowest_input_seconds": ${slowest:-0},
-      "peak_memory_mib": ${peak:-0},
-      "open_failures": $open
-    }
-END
+result() {
+    printf '{"target":"%s","inputs":%s,"seconds":%s,"edges_covered":%s,"slowest_input_seconds":%s,"peak_memory_mib":%s,"open_failures":%s}' \
+        "$1" "${executed:-0}" "${took:-0}" "${edges:-0}" "${slowest:-0}" "${peak:-0}" "$open"
 }
 
-fuzz scene "${seconds[0]}" && scene=$(record scene)
-fuzz mechanism "${seconds[1]}" && mechanism=$(record mechanism)
-fuzz study "${seconds[2]}" && study=$(record study)
-found=$(sed 's/.*/    "&"/' fuzz/found.txt | paste -sd, | sed 's/,    /,\n    /g')
-cat > pages/stability/records/fuzz.json.tmp << END
-{
-  "command": "fuzz/run.sh ${seconds[*]}",
-  "engine": "libFuzzer (cargo-fuzz), mutation by line and value and by byte",
-  "limits": "${limits[*]}",
-  "targets": [
+SECONDS=0
+fuzz scene "${seconds[0]}" && scene=$(result scene)
+fuzz mechanism "${seconds[1]}" && mechanism=$(result mechanism)
+fuzz study "${seconds[2]}" && study=$(result study)
+found=$(sed 's/.*/"&"/' fuzz/found.txt | paste -sd,)
+cat > "$record.draft" << END
+{"origin": {
+  "version": "$version",
+  "commit": "$commit",
+  "date": "$(date -u +%F)",
+  "machine": "$processor",
+  "seeds": "none",
+  "seconds": $SECONDS
+},
+"results": {
+"command": "fuzz/run.sh ${seconds[*]}",
+"engine": "libFuzzer (cargo-fuzz), mutation by line and value and by byte",
+"limits": "${limits[*]}",
+"targets": [
 $scene,
 $mechanism,
 $study
-  ],
-  "found_and_fixed": [
-$found
-  ]
-}
+],
+"found_and_fixed": [$found]
+}}
 END
 # the earlier record stays until this one is whole
-mv pages/stability/records/fuzz.json.tmp pages/stability/records/fuzz.json
-echo "$digests" > pages/records/state/fuzz.json
-cargo run --quiet --release -p records
-cat pages/stability/records/fuzz.json
+mv "$record.draft" "$record"
+cat "$record"

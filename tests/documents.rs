@@ -14,7 +14,7 @@ fn files_named_in_documents_exist() {
     let folders = [
         "src/",
         "crates/",
-        "pages/",
+        "evidence/",
         "tests/",
         "scenes/",
         "benches/",

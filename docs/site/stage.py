@@ -2,7 +2,7 @@
 
     python3 docs/site/stage.py
 
-The pages are those that SUMMARY.md links to. Each keeps its path in the repository, so links between pages need no change. A link
+The pages are those that SUMMARY.md links to, and the long tables in target/tables, which `evidence render` makes. Each keeps its path in the repository, so links between pages need no change. A link
 to any other file of the repository leads to the file at `git-repository-url` of book.toml; without such an address only its text
 remains.
 """
@@ -36,9 +36,8 @@ def links(text, rewrite):
     return LINK.sub(lambda match: match[0] if match[3] is None else rewrite(match), text)
 
 
-def stage(page, pages, address):
-    """Copies a page and its pictures."""
-    folder = os.path.dirname(page)
+def rewritten(text, folder, pages, address):
+    """The text of a page in `folder` with the links of the site; its pictures are copied."""
 
     def rewrite(match):
         path = resolve(folder, match[3])
@@ -54,7 +53,10 @@ def stage(page, pages, address):
             return match[0]
         return f"[{match[2]}]({address}/blob/HEAD/{path})" if address else match[2]
 
-    text = links((TOP / page).read_text("utf-8"), rewrite)
+    return links(text, rewrite)
+
+
+def write(page, text):
     (SOURCE / page).parent.mkdir(parents=True, exist_ok=True)
     (SOURCE / page).write_text(text, "utf-8")
 
@@ -72,9 +74,19 @@ def main():
         return f"[{match[2]}]({pages[-1]})"
 
     summary = links((TOP / HERE / "SUMMARY.md").read_text("utf-8"), chapter)
+    tables = sorted((TOP / "target/tables").glob("*.md"))
+    if tables:
+        summary += "\n# Tables\n\n"
+    for table in tables:
+        text = table.read_text("utf-8")
+        title = text.splitlines()[0].lstrip("# ")
+        summary += f"- [{title}](table-{table.name})\n"
+        # links of a table are those of a page at the top
+        write(f"table-{table.name}", rewritten(text, "", pages, address and address[1]))
     (SOURCE / "SUMMARY.md").write_text(summary, "utf-8")
     for page in pages:
-        stage(page, pages, address and address[1])
+        text = (TOP / page).read_text("utf-8")
+        write(page, rewritten(text, os.path.dirname(page), pages, address and address[1]))
 
 
 main()

@@ -11,7 +11,7 @@
 //!
 //! ```text
 //! cargo install cargo-fuzz
-//! fuzz/run.sh 1200 1800 600   # seconds of each; writes pages/stability/records/fuzz.json
+//! fuzz/run.sh 1200 1800 600   # seconds of each; writes evidence/data/fuzz.json
 //! ```
 //!
 //! An input that fails is left in `fuzz/artifacts`. What is fixed stands, made small, in tests/stability/input.rs.

@@ -13,14 +13,12 @@
 use looselink::motion::Circle;
 use looselink::scene::{PointRef, Scene, Sketched};
 use miette::{Result, miette};
+use nalgebra::{Matrix3, Rotation2, Vector2};
 use std::any::Any;
 use std::f64::consts::TAU;
 
 /// A point or vector in the plane \[m\].
-pub type Vector = [f64; 2];
-
-/// By rows.
-type Jacobian = [[f64; 3]; 3];
+type Vector = Vector2<f64>;
 
 /// Dimensions of a 3-RRR and the circle its platform is meant to follow.
 #[derive(Debug, Clone)]
@@ -62,15 +60,14 @@ impl MechanismGeometry {
                 "the path is not a circle about the origin that starts on the x axis"
             ));
         };
-        let mut base = [[0.0; 2]; 3];
-        let mut platform = [[0.0; 2]; 3];
+        let (mut base, mut platform) = ([Vector::zeros(); 3], [Vector::zeros(); 3]);
         let mut elbow = [0.0; 3];
         for i in 0..3 {
             base[i] = end_on(scene, &format!("A{}", i + 1), "ground")?;
             platform[i] = end_on(scene, &format!("C{}", i + 1), "platform")?;
-            let pin = sketched(scene, &format!("B{}", i + 1))?;
-            let corner = [radius + platform[i][0], platform[i][1]];
-            elbow[i] = cross(minus(corner, base[i]), minus(pin, base[i])).signum();
+            let pin = sketched(scene, &format!("B{}", i + 1))? - base[i];
+            let corner = Vector::new(radius, 0.0) + platform[i] - base[i];
+            elbow[i] = corner.perp(&pin).signum();
         }
         let contact = scene.joint("B1").and_then(|j| scene.joints[j].contact());
         let clearance = contact.map_or(0.0, |contact| contact.clearance);
@@ -105,39 +102,33 @@ impl MechanismGeometry {
 
     /// C_i at a pose.
     fn corner(&self, leg: usize, pose: [f64; 3]) -> Vector {
-        let r = self.arm(leg, pose);
-        [pose[0] + r[0], pose[1] + r[1]]
+        Vector::new(pose[0], pose[1]) + self.arm(leg, pose)
     }
 
     /// B_i of the ideal mechanism at a pose; NaN where the leg does not reach.
     pub fn pin(&self, leg: usize, pose: [f64; 3]) -> Vector {
         let a = self.base[leg];
-        let d = minus(self.corner(leg, pose), a);
-        let distance = d[0].hypot(d[1]);
-        let along =
-            (distance * distance + self.crank.powi(2) - self.link.powi(2)) / (2.0 * distance);
+        let d = self.corner(leg, pose) - a;
+        let distance = d.norm();
+        let along = (d.norm_squared() + self.crank.powi(2) - self.link.powi(2)) / (2.0 * distance);
         let aside = self.elbow[leg] * (self.crank.powi(2) - along * along).sqrt();
-        [
-            a[0] + (d[0] * along - d[1] * aside) / distance,
-            a[1] + (d[1] * along + d[0] * aside) / distance,
-        ]
+        a + (d * along + Vector::new(-d.y, d.x) * aside) / distance
     }
 
     /// The velocity Jacobian J of the three lengths by (x, y, theta), with the pins held.
-    fn jacobian(&self, pose: [f64; 3]) -> Jacobian {
-        std::array::from_fn(|leg| {
-            let d = minus(self.corner(leg, pose), self.pin(leg, pose));
-            let u = [d[0] / self.link, d[1] / self.link];
-            [u[0], u[1], cross(self.arm(leg, pose), u)]
+    fn jacobian(&self, pose: [f64; 3]) -> Matrix3<f64> {
+        Matrix3::from_fn(|leg, column| {
+            let u = (self.corner(leg, pose) - self.pin(leg, pose)) / self.link;
+            [u.x, u.y, self.arm(leg, pose).perp(&u)][column]
         })
     }
 
     /// sum_i |J^-1|_{xi} slack_i at time t \[m\]; infinite where J is singular.
     pub fn bound_x(&self, t: f64, slack: [f64; 3]) -> f64 {
-        let Some(inverse) = inverse(self.jacobian(self.pose(t))) else {
+        let Some(inverse) = self.jacobian(self.pose(t)).try_inverse() else {
             return f64::INFINITY;
         };
-        (0..3).map(|i| inverse[0][i].abs() * slack[i]).sum()
+        (0..3).map(|i| inverse[(0, i)].abs() * slack[i]).sum()
     }
 
     /// The largest bound over one revolution for equal slacks, on 3600 poses \[m\].
@@ -149,29 +140,8 @@ impl MechanismGeometry {
     }
 
     fn arm(&self, leg: usize, pose: [f64; 3]) -> Vector {
-        let (sin, cos) = pose[2].sin_cos();
-        let c = self.platform[leg];
-        [cos * c[0] - sin * c[1], sin * c[0] + cos * c[1]]
+        Rotation2::new(pose[2]) * self.platform[leg]
     }
-}
-
-fn minus(a: Vector, b: Vector) -> Vector {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-fn cross(a: Vector, b: Vector) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-/// Inverse by cofactors; none where the determinant vanishes.
-fn inverse(m: Jacobian) -> Option<Jacobian> {
-    let minor = |r: usize, c: usize| {
-        let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
-        m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
-    };
-    let determinant: f64 = (0..3).map(|c| m[0][c] * minor(0, c)).sum();
-    (determinant != 0.0)
-        .then(|| std::array::from_fn(|r| std::array::from_fn(|c| minor(c, r) / determinant)))
 }
 
 /// Coordinates of the end of a joint that lies on a body, in the frame of that body.
@@ -184,14 +154,14 @@ fn end_on(scene: &Scene, joint: &str, body: &str) -> Result<Vector> {
         .into_iter()
         .find(on)
         .ok_or_else(missing)?;
-    Ok(scene.bodies[body].kind.points()[end.point].at.into())
+    Ok(scene.bodies[body].kind.points()[end.point].at)
 }
 
 fn sketched(scene: &Scene, joint: &str) -> Result<Vector> {
     let place = scene.joint(joint).map(Sketched::Joint);
     let point = scene.initial.sketch.iter().find(|p| Some(p.what) == place);
     point
-        .map(|p| p.at.into())
+        .map(|p| p.at)
         .ok_or_else(|| miette!("the scene does not sketch the joint {joint}"))
 }
 
@@ -206,22 +176,17 @@ mod tests {
 
     /// The mechanism of Table 1 with a circumradius `fixed` of the fixed platform.
     fn table_1(fixed: f64, elbow: [f64; 3]) -> MechanismGeometry {
-        let at = |radius: f64| {
-            [210.0_f64, 330.0, 90.0]
-                .map(|a| a.to_radians())
-                .map(|a| [radius * a.cos(), radius * a.sin()])
-        };
-        let (base, platform) = (at(fixed), at(0.112));
-        let (crank, link, radius, frequency, clearance) = (0.245, 0.242, 0.1, 1.0, 2e-5);
+        let angles = [210.0_f64, 330.0, 90.0].map(f64::to_radians);
+        let at = |radius: f64| angles.map(|a| Vector::new(a.cos(), a.sin()) * radius);
         MechanismGeometry {
-            base,
-            platform,
-            crank,
-            link,
+            base: at(fixed),
+            platform: at(0.112),
+            crank: 0.245,
+            link: 0.242,
             elbow,
-            radius,
-            frequency,
-            clearance,
+            radius: 0.1,
+            frequency: 1.0,
+            clearance: 2e-5,
         }
     }
 
@@ -232,11 +197,10 @@ mod tests {
             let pose = g.pose(f64::from(k) / 100.0);
             for leg in 0..3 {
                 let (b, c) = (g.pin(leg, pose), g.corner(leg, pose));
-                let length = |a: Vector, b: Vector| minus(a, b)[0].hypot(minus(a, b)[1]);
                 // round-off of lengths below 1 m
                 assert!(
-                    (length(b, c) - g.link).abs() < 1e-14
-                        && (length(b, g.base[leg]) - g.crank).abs() < 1e-14
+                    ((b - c).norm() - g.link).abs() < 1e-14
+                        && ((b - g.base[leg]).norm() - g.crank).abs() < 1e-14
                 );
             }
         }
@@ -249,10 +213,7 @@ mod tests {
             let jacobian = g.jacobian(pose);
             for leg in 0..3 {
                 let pin = g.pin(leg, pose);
-                let length = |q: [f64; 3]| {
-                    let d = minus(g.corner(leg, q), pin);
-                    d[0].hypot(d[1])
-                };
+                let length = |q: [f64; 3]| (g.corner(leg, q) - pin).norm();
                 for k in 0..3 {
                     let step = 1e-6;
                     let (mut up, mut down) = (pose, pose);
@@ -260,21 +221,9 @@ mod tests {
                     down[k] -= step;
                     let difference = (length(up) - length(down)) / (2.0 * step);
                     // central difference: round-off 1e-16 / 1e-6 and truncation 1e-12 / 0.24^2
-                    assert!((jacobian[leg][k] - difference).abs() < 1e-9, "{leg} {k}");
-                    assert!(jacobian[leg][k] != 0.0);
+                    assert!((jacobian[(leg, k)] - difference).abs() < 1e-9, "{leg} {k}");
+                    assert!(jacobian[(leg, k)] != 0.0);
                 }
-            }
-        }
-    }
-
-    #[test]
-    fn inverse_times_matrix_is_the_identity() {
-        let m = table_1(0.4, [1.0; 3]).jacobian([0.1, 0.0, 0.0]);
-        let n = inverse(m).unwrap();
-        for r in 0..3 {
-            for c in 0..3 {
-                let product: f64 = (0..3).map(|k| m[r][k] * n[k][c]).sum();
-                assert!((product - f64::from(u8::from(r == c))).abs() < 1e-12);
             }
         }
     }

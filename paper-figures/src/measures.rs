@@ -1,8 +1,7 @@
 //! The quantities that the statements of the paper are decided by, over the last two of three cycles.
 
-use crate::campaign::{DURATION, FROM};
 use crate::kinematics::MechanismGeometry;
-use crate::runs::CaseRecording;
+use crate::runs::{CaseRecording, DURATION, FROM};
 use crate::signal::{
     coincidence, cycle_distance, fraction, mean, median_frequency, peak, peaks, rms,
 };
@@ -31,54 +30,42 @@ impl Measures {
     /// # Panics
     /// When the run has no such number: the callers name those that their case has.
     pub fn get(&self, name: &str) -> f64 {
-        *self
-            .0
-            .get(name)
-            .unwrap_or_else(|| panic!("no measure {name}"))
+        let found = self.0.get(name);
+        *found.unwrap_or_else(|| panic!("no measure {name}"))
     }
 
-    fn put(&mut self, name: &str, value: f64) {
-        self.0.insert(name.into(), value);
+    /// Keeps a number to nine digits; one that is none, such as a part of nothing, is left out.
+    pub fn put(&mut self, name: &str, value: f64) {
+        if value.is_finite() {
+            self.0.insert(name.into(), numbers::rounded(value, 9));
+        }
     }
 
     /// Measures a run of [`DURATION`].
     pub fn of(g: &MechanismGeometry, recording: &CaseRecording) -> Measures {
         let mut m = Measures::default();
         let between = |channel: &str| recording.between(channel, FROM, DURATION).1;
-        let (error, acceleration, force) = (
-            between("error.x"),
-            between("platform.ax"),
-            between("B1.force"),
-        );
+        let (error, acceleration) = (between("error.x"), between("platform.ax"));
+        let force = between("B1.force");
         let interval = recording.plan.interval;
-        let deviation = deviation(g, recording, FROM, DURATION);
-        let ideal = |t: &[f64]| rms(&t.iter().map(|&t| g.acceleration_x(t)).collect::<Vec<_>>());
-        let cycle = |from: f64| {
-            rms(&self::deviation(
-                g,
-                recording,
-                from,
-                from + 1.0 / g.frequency,
-            ))
-        };
+        let deviated = deviation(g, recording, FROM, DURATION);
+        let times = recording.t[recording.rows(FROM, DURATION)].iter();
+        let ideal: Vec<f64> = times.map(|&t| g.acceleration_x(t)).collect();
+        let cycle = |from: f64| rms(&deviation(g, recording, from, from + 1.0 / g.frequency));
         let average = mean(force);
         let ripple: Vec<f64> = force.iter().map(|f| f - average).collect();
         let cubes: Vec<f64> = force.iter().map(|f| f.powi(3)).collect();
         // largest |e_x| [m]
         m.put("error_peak", peak(error));
         m.put("error_rms", rms(error));
+        m.put("acceleration_peak", peak(acceleration));
         // deviation of the acceleration along x from the ideal one [m/s2]
-        m.put("deviation_peak", peak(&deviation));
-        m.put("deviation_rms", rms(&deviation));
-        m.put(
-            "deviation_share",
-            rms(&deviation) / ideal(&recording.t[recording.rows(FROM, DURATION)]),
-        );
+        m.put("deviation_peak", peak(&deviated));
+        m.put("deviation_rms", rms(&deviated));
+        m.put("deviation_share", rms(&deviated) / rms(&ideal));
         // the frequency below which half of its power lies [Hz]
-        m.put(
-            "deviation_frequency",
-            median_frequency(&deviation, interval),
-        );
+        let frequency = median_frequency(&deviated, interval);
+        m.put("deviation_frequency", frequency);
         // its rms in the last cycle over that in the first
         m.put("settling", cycle(2.0) / cycle(0.0));
         // rms difference between the accelerations of cycles 2 and 3 over their rms deviation from the mean; the last
@@ -87,12 +74,13 @@ impl Measures {
         m.put("repetition", cycle_distance(whole));
         // force in B1 [N]; its cubic mean is the equivalent load of bearing life
         m.put("force_peak", peak(force));
+        m.put("force_mean", average);
         m.put("force_cubic_mean", mean(&cubes).cbrt());
         m.put("force_ripple", rms(&ripple));
         m.put("force_frequency", median_frequency(&ripple, interval));
         m.put("energy_lost", energy_lost(recording));
         if recording.plan.case >= 3 {
-            m.contacts(g, recording, &deviation);
+            m.contacts(g, recording, &deviated);
         }
         m
     }
@@ -101,13 +89,14 @@ impl Measures {
     fn contacts(&mut self, g: &MechanismGeometry, recording: &CaseRecording, deviation: &[f64]) {
         let t = &recording.t[recording.rows(FROM, DURATION)];
         let between = |channel: &str| recording.between(channel, FROM, DURATION).1;
-        let share = JOINTS.map(|joint| {
-            fraction(between(&format!("{joint}.penetration")), |delta| {
-                delta > 0.0
-            })
-        });
+        let contact = |joint| fraction(between(&format!("{joint}.penetration")), |d| d > 0.0);
+        let share = JOINTS.map(contact);
         self.put("contact_b1", share[0]);
         self.put("contact_least", share.into_iter().fold(1.0, f64::min));
+        self.put(
+            "energy_gained_in_cycles",
+            energy_gained_in_cycles(recording),
+        );
         // part of the bound of the error that is used at the same instant
         let used = between("error.x").iter().zip(bound(g, recording));
         let used = used.map(|(e, b)| e.abs() / b);
@@ -119,19 +108,13 @@ impl Measures {
         };
         let highest = times(deviation);
         let middle = 0.5 * AFTER_ONSET;
-        let shifted: Vec<f64> = recording.onsets.iter().map(|t| t + middle).collect();
+        let onsets = recording.onsets.iter();
+        let shifted: Vec<f64> = onsets.clone().map(|t| t + middle).collect();
         self.put("peaks_after_onset", coincidence(&highest, &shifted, middle));
-        let onsets: Vec<f64> = recording
-            .onsets
-            .iter()
-            .copied()
-            .filter(|t| *t >= FROM)
-            .collect();
+        let onsets: Vec<f64> = onsets.copied().filter(|t| *t >= FROM).collect();
         self.put("onsets", onsets.len() as f64);
-        self.put(
-            "after_onset_by_chance",
-            covered(&onsets) / (DURATION - FROM),
-        );
+        let chance = covered(&onsets) / (DURATION - FROM);
+        self.put("after_onset_by_chance", chance);
         let forces = ["B1", "B2", "B3"].map(|joint| times(between(&format!("{joint}.force"))));
         let one = coincidence(&highest, &forces[0], SIMULTANEOUS);
         self.put("peaks_with_b1", one);
@@ -139,23 +122,20 @@ impl Measures {
         self.put("peaks_with_any", any);
         // rows in which there is no force without positive penetration
         let rows = recording.column("B1.penetration").iter();
-        let rows: Vec<f64> = rows
-            .zip(recording.column("B1.force"))
-            .map(|(delta, force)| f64::from(u8::from(*delta > 0.0 || *force == 0.0)))
-            .collect();
+        let rows = rows.zip(recording.column("B1.force"));
+        let none = |(delta, force): (&f64, &f64)| *delta > 0.0 || *force == 0.0;
+        let rows: Vec<f64> = rows.map(|row| f64::from(u8::from(none(row)))).collect();
         self.put("force_only_in_contact", mean(&rows));
-        if let Some(ledger) = &recording.report.ledger {
+        let report = &recording.report;
+        if let Some(ledger) = &report.ledger {
             self.put("contact_dissipated", ledger.contact_dissipated);
         }
-        let report = &recording.report;
         self.put("unlocated", report.unlocated_changes as f64);
         let changes = (report.onsets + report.ended_contacts) as f64;
         self.put("trials_a_change", report.location_trials as f64 / changes);
         let first = |joint: &str| recording.column(&format!("{joint}.eccentricity"))[0];
-        self.put(
-            "start_eccentricity",
-            JOINTS.map(first).into_iter().fold(0.0, f64::max),
-        );
+        let largest = JOINTS.map(first).into_iter().fold(0.0, f64::max);
+        self.put("start_eccentricity", largest);
     }
 }
 
@@ -185,6 +165,17 @@ pub fn energy_lost(recording: &CaseRecording) -> f64 {
     lost / of
 }
 
+/// Largest energy that the integrator has gained, or lost (negative), in the last two cycles, over that dissipated in contacts
+/// in them.
+pub fn energy_gained_in_cycles(recording: &CaseRecording) -> f64 {
+    let between = |name: &str| recording.between(name, FROM, DURATION).1;
+    let numerical = between("energy.numerical");
+    let dissipated = between("energy.contact_dissipated");
+    let change = numerical.iter().map(|lost| numerical[0] - lost);
+    let largest = change.fold(0.0, |m: f64, x| if x.abs() > m.abs() { x } else { m });
+    largest / (dissipated[dissipated.len() - 1] - dissipated[0])
+}
+
 /// The bound of the error along x over the last two cycles \[m\]: sum_i |J^-1|_{xi} s_i, where the slack s_i of a
 /// leg is 2 c, the penetrations of its two joints and, of a flexible link, its length times its strain.
 pub fn bound(g: &MechanismGeometry, recording: &CaseRecording) -> Vec<f64> {
@@ -192,24 +183,19 @@ pub fn bound(g: &MechanismGeometry, recording: &CaseRecording) -> Vec<f64> {
     let column = |kind: &str, leg: usize, name: &str| {
         &recording.column(&format!("{kind}{}.{name}", leg + 1))[rows.clone()]
     };
-    let penetrations: [_; 3] =
-        std::array::from_fn(|i| (column("B", i, "penetration"), column("C", i, "penetration")));
-    let strains: Option<[_; 3]> =
-        (recording.plan.case == 4).then(|| std::array::from_fn(|i| column("link", i, "strain")));
-    recording.t[rows.clone()]
-        .iter()
-        .enumerate()
-        .map(|(k, &t)| {
-            let slack = std::array::from_fn(|i| {
-                let stretch = strains.map_or(0.0, |s| g.link * s[i][k].abs());
-                2.0 * g.clearance
-                    + penetrations[i].0[k].max(0.0)
-                    + penetrations[i].1[k].max(0.0)
-                    + stretch
-            });
-            g.bound_x(t, slack)
+    let flexible = recording.plan.case == 4;
+    let legs = [0, 1, 2].map(|leg| {
+        let pair = ["B", "C"].map(|joint| column(joint, leg, "penetration"));
+        (pair, flexible.then(|| column("link", leg, "strain")))
+    });
+    let slack = |k: usize| {
+        legs.map(|([b, c], strain)| {
+            let stretch = strain.map_or(0.0, |strain| g.link * strain[k].abs());
+            2.0 * g.clearance + b[k].max(0.0) + c[k].max(0.0) + stretch
         })
-        .collect()
+    };
+    let times = recording.t[rows.clone()].iter().enumerate();
+    times.map(|(k, &t)| g.bound_x(t, slack(k))).collect()
 }
 
 /// The time that lies within [`AFTER_ONSET`] after one of these instants, which are in order \[s\].

@@ -1,23 +1,34 @@
 //! Explicit and implicit methods in counted work, and what they do over many cycles.
 
-use crate::ensembles::{MOVED, moved};
-use crate::interval::STARTS;
+use crate::ensembles::{MOVED, STARTS, moved};
 use crate::kinematics::MechanismGeometry;
 use crate::measures::deviation;
-use crate::record::{Long, MethodWork};
-use crate::runs::{CaseRecording, RunPace, RunPlan, causes, each};
+use crate::runs::{CaseRecording, RunPace, RunPlan, causes, words};
+use crate::shown::mean;
 use crate::signal::{peak, rms};
+use crate::verdict::{CriterionVerdict, below};
+use crate::warned::merged;
 use miette::Result;
+use minijinja::{Value, context};
+use numbers::{rounded, si};
+use records::{Journal, threads};
+use serde::{Deserialize, Serialize};
+use statistics::Interval;
 
-/// Methods that are compared, the implicit ones first.
-const METHODS: [&str; 6] = [
+/// Methods that are compared, the explicit ones last. Implicit Euler, of order one, is none of the paper's.
+pub const METHODS: [&str; 9] = [
     "bathe",
     "trapezoidal",
     "generalized_alpha",
     "hht",
+    "esdirk3",
+    "esdirk5",
     "dormand_prince",
+    "dop853",
     "velocity_verlet",
 ];
+/// The implicit methods of the statements about long runs.
+const OF_LONG_RUNS: [&str; 4] = ["bathe", "trapezoidal", "generalized_alpha", "hht"];
 /// Spectral radius at infinite frequency of generalised-alpha and HHT.
 const RADIUS: f64 = 0.8;
 /// Compared over this time \[s\], which the first impacts of case 4 fall into.
@@ -37,17 +48,90 @@ const LONG: [(u32, f64, f64, usize); 3] = [
     (4, 1e-4, 10.0, STARTS),
 ];
 
+/// One run of a comparison of methods.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct MethodWork {
+    /// Case of Table 2.
+    pub case: u32,
+    /// Method as in the scene.
+    pub method: String,
+    /// Step \[s\].
+    pub step: f64,
+    /// Evaluations of the elastic force of an element.
+    pub evaluations: u64,
+    /// Largest difference of e_x from the reference \[m\]; none where the run stopped.
+    pub error: Option<f64>,
+    /// Largest |e_x| of the reference \[m\].
+    pub size: f64,
+    /// What the run warns of, or why it stopped.
+    pub warnings: Vec<String>,
+}
+
+/// Runs over many cycles that differ in the start: one of case 2, an ensemble of case 4.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Long {
+    /// Case of Table 2.
+    pub case: u32,
+    /// Method as in the scene.
+    pub method: String,
+    /// Step \[s\].
+    pub step: f64,
+    /// Cycles of a run.
+    pub cycles: f64,
+    /// How many there are.
+    pub runs: usize,
+    /// How many of them stopped.
+    pub stopped: usize,
+    /// Rms deviation of the acceleration in the last cycle over that in the second, of every run that did not stop.
+    pub growth: Vec<f64>,
+    /// What the runs warn of, or why they stopped.
+    pub warnings: Vec<String>,
+}
+
+impl MethodWork {
+    /// The run in words.
+    pub fn name(&self) -> String {
+        named(self.case, &self.method, self.step)
+    }
+}
+
+fn named(case: u32, method: &str, step: f64) -> String {
+    format!("case {case}, {} with h = {}", words(method), si(step, "s"))
+}
+
+impl Long {
+    /// The runs in words.
+    pub fn name(&self) -> String {
+        let name = named(self.case, &self.method, self.step);
+        format!("{name} over {} cycles", self.cycles)
+    }
+
+    /// The runs with their name and mean growth, for templates.
+    pub fn shown(&self) -> Value {
+        let mean = (self.stopped == 0).then(|| mean(&self.growth));
+        context! { name => self.name(), mean, ..Value::from_serialize(self) }
+    }
+
+    /// Whether the motion has not grown by more than a factor.
+    pub fn stays(&self, factor: f64) -> CriterionVerdict {
+        match self.growth.as_slice() {
+            _ if self.stopped > 0 => CriterionVerdict::Fails,
+            [one] => CriterionVerdict::of(*one <= factor),
+            all => below(&[Interval::of(all)], factor),
+        }
+    }
+}
+
 /// Whether a method is explicit.
 pub fn explicit(method: &str) -> bool {
-    method == "dormand_prince" || method == "velocity_verlet"
+    ["dormand_prince", "dop853", "velocity_verlet"].contains(&method)
 }
 
 fn plan(case: u32, method: &'static str, step: f64, interval: f64, duration: f64) -> RunPlan {
     let plan = RunPlan::new(case, RunPace::Steps(method, step), interval, duration);
-    if method == "generalized_alpha" || method == "hht" {
-        plan.with("integrator.spectral_radius", RADIUS)
-    } else {
-        plan
+    match method {
+        "generalized_alpha" | "hht" => plan.with(format!("integrator.spectral_radius={RADIUS}")),
+        _ => plan,
     }
 }
 
@@ -55,43 +139,51 @@ fn plan(case: u32, method: &'static str, step: f64, interval: f64, duration: f64
 ///
 /// # Errors
 /// When the reference fails; a run that stops is a result.
-pub fn work() -> Result<Vec<MethodWork>> {
+pub fn work(journal: &Journal) -> Result<Vec<MethodWork>> {
     let mut all = Vec::new();
     for case in [2, 4] {
-        let reference = plan(case, "dormand_prince", REFERENCE, ROWS, HORIZON).run()?;
-        let reference = reference.column("error.x");
+        let reference: Vec<f64> = journal.item(&format!("reference {case}"), || {
+            let run = plan(case, "dormand_prince", REFERENCE, ROWS, HORIZON).run()?;
+            Ok(run.column("error.x").to_vec())
+        })?;
         // velocity Verlet keeps no constraints, and case 2 has those of its ideal joints
         let methods = METHODS
             .iter()
             .filter(|m| case > 2 || **m != "velocity_verlet");
-        let jobs: Vec<(&'static str, f64)> = methods
-            .flat_map(|m| PARTS.map(|parts| (*m, ROWS / f64::from(parts))))
+        let keys: Vec<(&'static str, u32)> = methods
+            .flat_map(|m| PARTS.map(|parts| (*m, parts)))
             .collect();
-        let run = |&(method, step): &(&'static str, f64)| {
-            let mut work = MethodWork {
-                case,
-                method: method.into(),
-                step,
-                evaluations: 0,
-                error: None,
-                size: peak(reference),
-                warnings: Vec::new(),
-            };
-            match plan(case, method, step, ROWS, HORIZON).run() {
-                Err(error) => work.warnings.push(format!("stopped: {}", causes(&error))),
-                Ok(done) => {
-                    let pairs = done.column("error.x").iter().zip(reference);
-                    let apart: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
-                    work.error = Some(peak(&apart));
-                    work.evaluations = evaluations(&done);
-                    work.warnings.clone_from(&done.warnings);
-                }
-            }
-            work
+        let name = |(method, parts): &(&str, u32)| format!("work {case} {method} {parts}");
+        let run = |(method, parts): &(&'static str, u32)| {
+            let step = ROWS / f64::from(*parts);
+            Ok(work_of(case, method, step, &reference))
         };
-        all.extend(each(&jobs, run));
+        all.extend(journal.items(&keys, threads(), name, run)?);
     }
     Ok(all)
+}
+
+fn work_of(case: u32, method: &'static str, step: f64, reference: &[f64]) -> MethodWork {
+    let mut work = MethodWork {
+        case,
+        method: method.into(),
+        step: rounded(step, 9),
+        evaluations: 0,
+        error: None,
+        size: rounded(peak(reference), 6),
+        warnings: Vec::new(),
+    };
+    match plan(case, method, step, ROWS, HORIZON).run() {
+        Err(error) => work.warnings.push(format!("stopped: {}", causes(&error))),
+        Ok(done) => {
+            let pairs = done.column("error.x").iter().zip(reference);
+            let apart: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
+            work.error = Some(rounded(peak(&apart), 6));
+            work.evaluations = evaluations(&done);
+            work.warnings = done.warnings;
+        }
+    }
+    work
 }
 
 /// How often the elastic force of an element was evaluated; implicit methods evaluate its tangent with it.
@@ -101,41 +193,48 @@ pub fn evaluations(recording: &CaseRecording) -> u64 {
 }
 
 /// The implicit methods over many cycles. A run that stops is a result.
-pub fn long(g: &MechanismGeometry) -> Vec<Long> {
-    let methods = METHODS.iter().filter(|m| !explicit(m));
-    let groups: Vec<(&'static str, u32, f64, f64, usize)> = methods
-        .flat_map(|m| LONG.map(|(case, step, cycles, starts)| (*m, case, step, cycles, starts)))
-        .collect();
-    let jobs: Vec<(usize, usize)> = (0..groups.len())
-        .flat_map(|i| (0..groups[i].4).map(move |k| (i, k)))
-        .collect();
-    let run = |&(i, k): &(usize, usize)| {
-        let (method, case, step, cycles, _) = groups[i];
-        let mut plan = plan(case, method, step, step, cycles / g.frequency);
-        if case > 2 {
-            plan.overrides.push(moved(g, MOVED, k));
-        }
-        match plan.run() {
-            Err(error) => (None, vec![format!("stopped: {}", causes(&error))]),
-            Ok(done) => {
-                let cycle = |last: f64| {
-                    let end = last / g.frequency;
-                    rms(&deviation(g, &done, end - 1.0 / g.frequency, end))
-                };
-                (Some(cycle(cycles) / cycle(2.0)), done.warnings)
+///
+/// # Errors
+/// A journal that cannot be written.
+pub fn long(g: &MechanismGeometry, journal: &Journal) -> Result<Vec<Long>> {
+    let groups = OF_LONG_RUNS
+        .iter()
+        .flat_map(|m| LONG.map(|long| (*m, long)));
+    let made = groups.map(|(method, (case, step, cycles, starts))| {
+        let keys: Vec<usize> = (0..starts).collect();
+        let name = |k: &usize| format!("long {case} {method} {step:e} {k}");
+        let run = |k: &usize| {
+            let mut plan = plan(case, method, step, step, cycles / g.frequency);
+            if case > 2 {
+                plan.overrides.push(moved(g, MOVED, *k));
             }
-        }
-    };
-    let done: Vec<(Option<f64>, Vec<String>)> = each(&jobs, run);
-    let of = |i: usize| jobs.iter().zip(&done).filter(move |((j, _), _)| *j == i);
-    let long = |(i, &(method, case, step, cycles, _)): (usize, &(_, u32, f64, f64, usize))| Long {
-        case,
-        method: str::to_owned(method),
-        step,
-        cycles,
-        stopped: of(i).filter(|(_, (growth, _))| growth.is_none()).count(),
-        growth: of(i).filter_map(|(_, (growth, _))| *growth).collect(),
-        warnings: of(i).map(|(_, (_, warnings))| warnings.clone()).collect(),
-    };
-    groups.iter().enumerate().map(long).collect()
+            let cycle = |done: &CaseRecording, last: f64| {
+                let end = last / g.frequency;
+                rms(&deviation(g, done, end - 1.0 / g.frequency, end))
+            };
+            Ok(match plan.run() {
+                Err(error) => (None, vec![format!("stopped: {}", causes(&error))]),
+                Ok(done) => {
+                    let growth = cycle(&done, cycles) / cycle(&done, 2.0);
+                    (Some(rounded(growth, 9)), done.warnings)
+                }
+            })
+        };
+        let done: Vec<(Option<f64>, Vec<String>)> = journal.items(&keys, threads(), name, run)?;
+        let growth: Vec<f64> = done.iter().filter_map(|(growth, _)| *growth).collect();
+        Ok(Long {
+            case,
+            method: method.into(),
+            step,
+            cycles,
+            runs: starts,
+            stopped: starts - growth.len(),
+            growth,
+            warnings: match done.as_slice() {
+                [(_, one)] => one.clone(),
+                all => merged(all.iter().map(|(_, warnings)| warnings)),
+            },
+        })
+    });
+    made.collect()
 }

@@ -1,14 +1,16 @@
 //! Runs scenes through the library, one a thread, and keeps their channels in memory.
 
-use crate::warned::WarningSource;
 use looselink::scene::Scene;
 use looselink::simulate::{Recording, Report, Simulation};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use numbers::si;
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+
+/// Three cycles are run and the last two are looked at, as in the paper \[s\].
+pub const DURATION: f64 = 3.0;
+/// First instant looked at \[s\].
+pub const FROM: f64 = 1.0;
 
 /// How a run integrates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,8 +80,6 @@ pub struct RunPlan {
 
 /// What a run left behind.
 pub struct CaseRecording {
-    /// Its number in the report; 0 for a run that has none.
-    pub number: usize,
     /// The run.
     pub plan: RunPlan,
     /// The scene with the overrides applied.
@@ -107,11 +107,6 @@ fn channels(case: u32) -> String {
     format!("output.channels={names:?}")
 }
 
-/// The root of the workspace.
-pub fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
 impl RunPlan {
     /// A case as its scene has it.
     pub fn new(case: u32, pace: RunPace, interval: f64, duration: f64) -> RunPlan {
@@ -124,24 +119,20 @@ impl RunPlan {
         }
     }
 
+    /// Three cycles of a case with controlled steps.
+    pub fn controlled(case: u32, interval: f64) -> RunPlan {
+        RunPlan::new(case, RunPace::Controlled, interval, DURATION)
+    }
+
     /// Path of the scene relative to the workspace.
     pub fn scene_name(&self) -> String {
         format!("scenes/3rrr/case{}.toml", self.case)
     }
 
-    /// The same plan with one more override.
-    pub fn with(mut self, path: &str, value: impl std::fmt::Display) -> RunPlan {
-        self.overrides.push(format!("{path}={value}"));
+    /// The same plan with one more override `path=value`.
+    pub fn with(mut self, change: String) -> RunPlan {
+        self.overrides.push(change);
         self
-    }
-
-    /// How long the run takes, roughly: Bathe's method counts its steps, the controlled steps are some microseconds.
-    pub fn effort(&self) -> u64 {
-        let step = match self.pace {
-            RunPace::Steps(_, step) => step,
-            RunPace::Controlled => 5e-6,
-        };
-        u64::from(self.case) * (self.duration / step) as u64
     }
 
     /// Reads the scene with all overrides.
@@ -156,10 +147,8 @@ impl RunPlan {
             channels(self.case),
         ]);
         overrides.extend_from_slice(&self.overrides);
-        Ok(Scene::load(
-            &workspace().join(self.scene_name()),
-            &overrides,
-        )?)
+        let path = records::root().join(self.scene_name());
+        Ok(Scene::load(&path, &overrides)?)
     }
 
     /// Runs to the end.
@@ -177,11 +166,9 @@ impl RunPlan {
         let report = simulation.report();
         let onsets = recorder.onsets.iter().map(|o| o.t).collect();
         let mut columns: HashMap<String, Vec<f64>> = recorder.into_columns().collect();
-        let t = columns
-            .remove("t")
-            .ok_or_else(|| miette!("the recording has no time channel"))?;
+        let t = columns.remove("t");
+        let t = t.ok_or_else(|| miette!("the recording has no time channel"))?;
         Ok(CaseRecording {
-            number: 0,
             plan: self.clone(),
             scene,
             t,
@@ -193,12 +180,6 @@ impl RunPlan {
     }
 }
 
-/// Does all jobs, one a core, and returns the results in their order. Jobs share nothing, so the number of cores changes
-/// no result.
-pub fn each<J: Sync, T: Send>(jobs: &[J], run: impl Fn(&J) -> T + Send + Sync) -> Vec<T> {
-    jobs.par_iter().with_max_len(1).map(run).collect()
-}
-
 /// What an error says, with its causes.
 pub fn causes(error: &miette::Report) -> String {
     let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
@@ -206,22 +187,13 @@ pub fn causes(error: &miette::Report) -> String {
 }
 
 impl CaseRecording {
-    /// The number and the warnings.
-    pub fn source(&self) -> WarningSource {
-        WarningSource {
-            name: format!("run {}", self.number),
-            warnings: self.warnings.clone(),
-        }
-    }
-
     /// A channel.
     ///
     /// # Panics
     /// When the run has no such channel: the callers name channels that their case has.
     pub fn column(&self, name: &str) -> &[f64] {
-        self.columns
-            .get(name)
-            .unwrap_or_else(|| panic!("{} records no channel {name}", self.plan.scene_name()))
+        let column = self.columns.get(name);
+        column.unwrap_or_else(|| panic!("{} records no channel {name}", self.plan.scene_name()))
     }
 
     /// Rows with from <= t <= to, a rounding error wider at both ends.
@@ -242,28 +214,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn number_of_threads_changes_no_bit() -> Result<()> {
+    fn number_of_threads_changes_no_bit() {
         // both chaotic cases over their first impacts, of which the least difference would grow
         let plan = |case| RunPlan::new(case, RunPace::Controlled, 1e-4, 0.02);
         let plans = [3, 4, 3, 4].map(plan);
-        let made = |threads: usize| -> Result<Vec<Vec<u64>>> {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-            let done = pool
-                .build()
-                .into_diagnostic()?
-                .install(|| each(&plans, RunPlan::run));
-            let bits = |done: Result<CaseRecording>| {
-                let done = done?;
-                let numbers = done.onsets.iter().chain(done.column("B1.force"));
-                let numbers = numbers.chain(done.column("error.x"));
-                Ok(numbers.map(|v| v.to_bits()).collect())
-            };
-            done.into_iter().map(bits).collect()
+        let bits = |plan: &RunPlan| -> Vec<u64> {
+            let done = plan.run().unwrap();
+            let numbers = done.onsets.iter().chain(done.column("B1.force"));
+            let numbers = numbers.chain(done.column("error.x"));
+            numbers.map(|v| v.to_bits()).collect()
         };
-        let (one, three) = (made(1)?, made(3)?);
+        let [one, three] = [1, 3].map(|threads| records::each(&plans, threads, bits));
         assert_eq!(one, three);
         // the runs are no trivial ones, and they are in their order
         assert!(one[0] != one[1] && one[0] == one[2] && one[1] == one[3]);
-        Ok(())
     }
 }

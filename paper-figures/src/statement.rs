@@ -1,13 +1,22 @@
 //! One statement of the paper and what decides it.
 
-use crate::interval::CriterionVerdict;
-use crate::warned::WarningSource;
-use std::fmt::Write;
+use crate::decisions;
+use crate::evidence::{Evidence, ReadSource};
+use crate::shown::environment;
+use crate::verdict::CriterionVerdict;
+use miette::{IntoDiagnostic, Result, miette};
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+
+/// All statements, without what was measured.
+const STATEMENTS: &str = include_str!("../statements.toml");
 
 /// What a verdict rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Basis {
     /// A quantity of runs, which could have come out otherwise.
+    #[default]
     Measurement,
     /// The equations or the scene: it could not have come out otherwise.
     Construction,
@@ -15,147 +24,91 @@ pub enum Basis {
     Assumption,
 }
 
-impl Basis {
-    /// In words, after "decided".
-    pub fn words(self) -> &'static str {
-        match self {
-            Basis::Measurement => "by measurement",
-            Basis::Construction => "by construction",
-            Basis::Assumption => "by an assumed value",
-        }
-    }
-}
-
-/// A statement.
-pub struct Statement {
+/// A statement as the paper has it; the texts are templates in statements.toml.
+#[derive(Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct PrintedStatement {
     /// By which other parts of the report refer to it.
-    pub key: &'static str,
+    pub key: String,
     /// Where the paper says it.
-    pub place: &'static str,
+    pub place: String,
     /// What the paper says.
-    pub says: &'static str,
+    pub says: String,
     /// What the runs give.
     pub measured: String,
+    /// More of it.
+    #[serde(default)]
+    pub details: String,
     /// The condition under which the statement counts as holding.
-    pub criterion: &'static str,
-    /// How that condition comes out.
-    pub verdict: CriterionVerdict,
+    pub criterion: String,
     /// What the verdict rests on.
+    #[serde(default)]
     pub basis: Basis,
-    /// Measured over claimed, where the paper gives a number.
-    pub factor: Option<f64>,
     /// What is behind it.
     pub why: String,
-    /// The runs it comes from, with their warnings.
-    pub sources: Vec<WarningSource>,
 }
 
-impl Statement {
-    /// The verdict in words.
-    pub fn verdict(&self) -> &'static str {
-        match self.verdict {
-            CriterionVerdict::Holds => "holds",
-            CriterionVerdict::Fails => "**does not hold**",
-            CriterionVerdict::Undecided => "undecided",
-        }
-    }
-
-    /// The verdict and what it rests on.
-    pub fn decided(&self) -> String {
-        match self.verdict {
-            CriterionVerdict::Undecided => "undecided".into(),
-            _ => format!("{}, {}", self.verdict(), self.basis.words()),
-        }
-    }
-
-    /// The row of the list of all statements.
-    pub fn row(&self, number: usize) -> String {
-        let says = self.says.replace('|', "\\|");
-        format!(
-            "| {number} | {} | {says} | {} |\n",
-            self.place,
-            self.decided()
-        )
-    }
-
-    /// The paragraph with what decides it.
-    pub fn paragraph(&self, number: usize) -> String {
-        let mut text = format!(
-            "### {number}. {}\n\n*{}* Verdict: {}.\n\n* Measured: {}",
-            self.place,
-            self.says,
-            self.decided(),
-            self.measured
-        );
-        if let Some(factor) = self.factor {
-            let _ = write!(
-                text,
-                " The paper's number is {} times as large.",
-                numbers::digits(1.0 / factor)
-            );
-        }
-        let _ = write!(text, "\n* Criterion: {}.\n* {}\n", self.criterion, self.why);
-        text += &from(&self.sources);
-        text + "\n"
-    }
+/// The statements as printed.
+fn printed() -> Result<Vec<PrintedStatement>> {
+    let mut list: HashMap<String, Vec<PrintedStatement>> =
+        toml::from_str(STATEMENTS).into_diagnostic()?;
+    Ok(list.remove("statement").unwrap_or_default())
 }
 
-/// The runs, each once, those without warnings together.
-fn from(sources: &[WarningSource]) -> String {
-    let mut reported: Vec<String> = Vec::new();
-    let silent = sources.iter().filter(|s| s.warnings.is_empty());
-    let mut names: Vec<&str> = silent.map(|s| s.name.as_str()).collect();
-    names.sort_unstable();
-    names.dedup();
-    if !names.is_empty() {
-        reported.push(format!("* Runs without warnings: {}.\n", names.join("; ")));
-    }
-    for source in sources.iter().filter(|s| !s.warnings.is_empty()) {
-        let line = format!(
-            "* Warnings of {}: {}.\n",
-            source.name,
-            source.warnings.join("; ")
-        );
-        if !reported.contains(&line) {
-            reported.push(line);
+/// A statement that is decided.
+#[derive(Debug, Serialize)]
+pub struct Statement {
+    /// Its number in the report.
+    pub number: usize,
+    /// The statement, its texts filled in.
+    #[serde(flatten)]
+    pub listed: PrintedStatement,
+    /// How its criterion comes out.
+    pub verdict: CriterionVerdict,
+    /// The runs that it rests on, with their warnings.
+    pub sources: Vec<ReadSource>,
+    /// The commit of the data, where it is another than that of the figures.
+    pub commit: Option<String>,
+}
+
+/// All statements, decided. `commit` is that of the ensembles, where it is another than that of the figures.
+///
+/// # Errors
+/// An entry of statements.toml without a predicate or with a name that the predicate does not give.
+pub fn all(evidence: &Evidence, commit: Option<&str>) -> Result<Vec<Statement>> {
+    let templates = environment();
+    let decided = |(mut listed, number): (PrintedStatement, usize)| {
+        let key = listed.key.clone();
+        let decide = decisions::find(&key).ok_or_else(|| miette!("nothing decides \"{key}\""))?;
+        let (verdict, values) = decide(evidence);
+        for text in [&mut listed.measured, &mut listed.details, &mut listed.why] {
+            let filled = templates.render_str(text, &values);
+            *text = filled.map_err(|e| miette!("statements.toml, \"{key}\": {e:#}"))?;
         }
-    }
-    reported.concat()
+        let sources = evidence.take_sources();
+        let of_ensembles = sources.iter().any(|s| s.of_ensembles);
+        Ok(Statement {
+            number,
+            listed,
+            verdict,
+            sources,
+            commit: commit.filter(|_| of_ensembles).map(str::to_owned),
+        })
+    };
+    printed()?.into_iter().zip(1..).map(decided).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn statement() -> Statement {
-        Statement {
-            key: "small",
-            place: "Sect. 6",
-            says: "|e| is small",
-            measured: "|e| = 1.".into(),
-            criterion: "|e| < 2",
-            verdict: CriterionVerdict::Fails,
-            basis: Basis::Measurement,
-            factor: Some(0.5),
-            why: "Because.".into(),
-            sources: vec![WarningSource {
-                name: "run 4".into(),
-                warnings: vec!["clamps: 2".into()],
-            }],
-        }
-    }
+    use std::collections::HashSet;
 
     #[test]
-    fn bars_inside_a_cell_do_not_split_it() {
-        let row = statement().row(7);
-        assert_eq!(row.replace("\\|", "").matches('|').count(), 5);
-        assert!(row.contains("**does not hold**, by measurement"));
-    }
-
-    #[test]
-    fn warnings_stand_beside_the_verdict() {
-        let text = statement().paragraph(7);
-        assert!(text.contains("* Warnings of run 4: clamps: 2."));
-        assert!(text.contains("The paper's number is 2 times as large."));
+    fn every_statement_has_one_predicate_and_no_predicate_is_left() {
+        let list = printed().unwrap();
+        let keys: HashSet<&str> = list.iter().map(|s| s.key.as_str()).collect();
+        assert_eq!(keys.len(), list.len());
+        let predicates: HashSet<&str> = decisions::all().map(|(key, _)| key).collect();
+        assert_eq!(keys, predicates);
     }
 }

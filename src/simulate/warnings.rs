@@ -15,8 +15,20 @@ const CRUSHED: f64 = -0.4;
 const OF_TRAVEL: f64 = 0.01;
 
 impl Report {
-    /// One line for every reason why the results may be less accurate than they look.
+    /// One line for every reason why the results may be less accurate than they look: [`Report::error_warnings`] first, then what
+    /// is unusual about the scene and how its equations were solved.
     pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = self.error_warnings();
+        self.remark(&mut warnings);
+        warnings
+    }
+
+    /// Warnings that the motion itself may be off: by the energy that the integrator lost or gained, by its estimated error, by
+    /// accelerations or contacts that the steps do not resolve.
+    ///
+    /// No other warning says so: a force that was clamped, a step that was halved or a pose that was nearly singular is consistent
+    /// with a motion of any accuracy.
+    pub fn error_warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         warnings.extend(self.energy_warning());
         warnings.extend(self.error_warning());
@@ -36,6 +48,10 @@ impl Report {
                 self.brief_contacts, self.ended_contacts
             ));
         }
+        warnings
+    }
+
+    fn remark(&self, warnings: &mut Vec<String>) {
         warnings.extend(self.redundant.iter().map(|name| {
             format!("{name} is redundant: the constraint forces in its loop are not unique")
         }));
@@ -85,7 +101,6 @@ impl Report {
         ];
         let counted = counts.iter().filter(|(count, _)| *count > 0);
         warnings.extend(counted.map(|(count, what)| format!("{what}: {count}")));
-        warnings
     }
 
     fn energy_warning(&self) -> Option<String> {

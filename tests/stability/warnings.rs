@@ -27,6 +27,54 @@ fn a_run_that_can_be_trusted_has_no_warnings() {
     }
 }
 
+/// Only some warnings speak of an error: that a force was clamped, a step halved or a pose singular is no word about it.
+#[test]
+fn warnings_of_an_error_are_told_from_remarks() {
+    let settings = ["simulation.duration=0.5", "output.interval=0.01"];
+    let (_, sound) = run("pendulum.toml", &settings);
+    let changed = |change: fn(&mut Report)| {
+        let mut report = sound.clone();
+        change(&mut report);
+        report
+    };
+    let remarks: [fn(&mut Report); 7] = [
+        |report| report.clamps = 1,
+        |report| report.stagnations = 1,
+        |report| report.singular_poses = 1,
+        |report| report.position_level_stages = 1,
+        |report| report.unlocated_changes = 1,
+        |report| report.fallbacks = 1,
+        |report| report.rejected_steps = 1,
+    ];
+    for report in remarks.map(changed) {
+        assert_eq!(report.warnings().len(), 1);
+        assert_eq!(report.error_warnings(), Vec::<String>::new());
+    }
+    fn of_motion(report: &mut Report, change: impl Fn(&mut Integration)) {
+        change(report.integration.as_mut().unwrap());
+    }
+    let errors: [fn(&mut Report); 5] = [
+        |report| report.brief_contacts = 1,
+        |report| of_motion(report, |i| i.lost[1] = 1.01e-2 * i.turnover),
+        |report| of_motion(report, |i| i.lost[0] = -1.01e-2 * i.turnover),
+        |report| of_motion(report, |i| i.estimated_error = 1.01e-2 * i.travel),
+        |report| of_motion(report, |i| i.acceleration_change = 1.01),
+    ];
+    for report in errors.map(changed) {
+        assert_eq!(report.error_warnings().len(), 1);
+        assert_eq!(report.error_warnings(), report.warnings());
+    }
+    let below: [fn(&mut Report); 4] = [
+        |report| of_motion(report, |i| i.lost[1] = 0.99e-2 * i.turnover),
+        |report| of_motion(report, |i| i.lost[0] = -0.99e-2 * i.turnover),
+        |report| of_motion(report, |i| i.estimated_error = 0.99e-2 * i.travel),
+        |report| of_motion(report, |i| i.acceleration_change = 0.99),
+    ];
+    for report in below.map(changed) {
+        assert_eq!(report.warnings(), Vec::<String>::new());
+    }
+}
+
 /// A modulus in GPa where the scene expects Pa: the contact is too soft to stop the slider.
 #[test]
 fn a_journal_that_passes_through_its_bearing_is_reported() {

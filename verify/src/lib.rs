@@ -20,5 +20,4 @@ pub mod figures;
 pub mod ida_of_system;
 #[allow(unsafe_code, reason = "the only file that calls the library")]
 pub mod reference;
-pub mod report;
 pub mod trajectory;

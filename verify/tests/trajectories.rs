@@ -2,7 +2,7 @@
 
 use verify::check::{Agreement, assert_all};
 use verify::compare::impacts::ImpactSeries;
-use verify::compare::{flexible, impacts, machines, rigid, statistics};
+use verify::compare::{flexible, impacts, machines, rigid};
 
 #[test]
 fn motion_of_case_1_agrees() {
@@ -48,18 +48,6 @@ fn impacts_of_flexible_links_agree() {
 fn first_impacts_of_other_mechanisms_agree() {
     let what = "First impacts of a slider-crank and of a body that hangs in a frame";
     impacts_agree(what, |s| !s.plan.scene.contains("case"));
-}
-
-#[test]
-fn statistics_of_rigid_loose_joints_agree() {
-    let rows = statistics::agreements(3).unwrap();
-    assert_all("Two cycles of case 3, statistics", &rows);
-}
-
-#[test]
-fn statistics_of_flexible_loose_joints_agree() {
-    let rows = statistics::agreements(4).unwrap();
-    assert_all("Two cycles of case 4, statistics", &rows);
 }
 
 #[test]

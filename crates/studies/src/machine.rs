@@ -1,7 +1,7 @@
 //! Processor times of repeated runs: where they were measured, with what, and their middle; counts of instructions, where the
 //! machine has them.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt;
 use std::path::Path;
@@ -86,7 +86,7 @@ pub fn count_instructions() -> impl FnMut() -> Option<u64> {
 }
 
 /// Processor time of a run that was made several times \[s\].
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunTiming {
     /// See [`median`]; of a single run its time.
     pub median: f64,

@@ -138,9 +138,9 @@ pub fn agreements(
     rows
 }
 
-/// The channels of each kind, measured in units of their own ranges, in a fine run of each program. Each may differ by [`SAFETY`] times
+/// The channels of each kind, measured in units of their own ranges, in a fine run of each program. Each may differ by `SAFETY` times
 /// what the coarse run of either program differs from its fine run, which is about ten times the error of the fine one. Channels for
-/// which this is more than [`LARGEST`] have a row of their own, which does not count.
+/// which this is more than `LARGEST` have a row of their own, which does not count.
 pub fn converged(
     rounding: [f64; KINDS],
     scene: &str,

@@ -5,10 +5,10 @@ use super::table::table;
 use super::{ColumnLookup, Compared, Found, Study, WorkCounts, column};
 use crate::StudyError;
 use plot::Figure;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The distance of a run from the reference.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
     /// Largest difference of a position over the whole time \[m\].
     pub position: f64,
@@ -35,7 +35,7 @@ pub const NORMS: [Norm; 4] = [
 ];
 
 /// The reference of a study of errors.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct MotionReference {
     /// Difference between the two runs of the reference: nothing below it is distinguished.
     pub floor: Errors,
@@ -45,7 +45,7 @@ pub struct MotionReference {
 }
 
 /// What a run that reached its end gave.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredRun {
     /// Against the reference.
     pub errors: Errors,
@@ -99,7 +99,7 @@ impl Compared for MotionReference {
 }
 
 /// What a run recorded of what is compared.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct RecordedSeries {
     interval: f64,
     position: Vec<Vec<f64>>,

@@ -27,7 +27,8 @@ use looselink::scene::Scene;
 use looselink::simulate::{Notice, Report, Simulation};
 use motion::MotionRecording;
 use plot::Figure;
-use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use std::error::Error;
 
 /// How thoroughly a study is made.
@@ -49,11 +50,11 @@ fn column<'a>(get: ColumnLookup<'a>, name: &str) -> Result<&'a [f64], StudyError
 }
 
 /// What of the runs of a study is compared with what of its reference.
-pub trait Compared: Serialize + Sized {
+pub trait Compared: Serialize + DeserializeOwned {
     /// What is kept of a run to compare it.
     type Kept;
     /// What a run that reached its end gave.
-    type Measured: Serialize;
+    type Measured: Serialize + DeserializeOwned;
     /// What the figure shows, in words.
     const FIGURE: &str;
 
@@ -81,7 +82,8 @@ pub trait Compared: Serialize + Sized {
 }
 
 /// All runs of a study.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub struct Found<C: Compared> {
     /// The study's title.
     pub title: String,
@@ -118,7 +120,7 @@ pub struct CompletedRun<'a> {
 }
 
 /// One point of a curve.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CurvePoint<T> {
     /// Name of the curve.
     pub curve: String,
@@ -131,7 +133,7 @@ pub struct CurvePoint<T> {
 }
 
 /// Counts of work.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names are those of the report of a run")]
 pub struct WorkCounts {
     pub steps: u64,

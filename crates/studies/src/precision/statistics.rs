@@ -9,10 +9,10 @@ use super::{ColumnLookup, Compared, CurvePoint, Study, Survey, WorkCounts, colum
 use crate::StudyError;
 use numbers::{digits, percent, si};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Statistics of one run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunStatistics {
     /// Largest magnitude of every position \[m\].
     pub envelope: Vec<f64>,
@@ -27,7 +27,7 @@ pub struct RunStatistics {
 }
 
 /// The reference of a study of statistics.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct StatisticsReference {
     /// Its runs: coarse and fine.
     #[serde(rename = "reference")]

@@ -86,7 +86,7 @@ pub struct StudyCurve {
 }
 
 /// What the steps of a run follow.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StudyPace {
     /// A step \[s\].

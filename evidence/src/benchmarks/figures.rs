@@ -1,0 +1,142 @@
+//! The pictures of the page.
+
+use crate::accuracy::settings::levels;
+use crate::benchmarks::Measured;
+use crate::benchmarks::family::Family;
+use crate::benchmarks::growth::{self, SizeOf};
+use crate::benchmarks::rivals::{Code, STUDIES, best};
+use crate::benchmarks::steps::StepCost;
+use numbers::si;
+use plot::{Axis, Color, Figure, Mark, Panel, palette};
+use studies::precision::Times;
+
+/// Radius of dots.
+const DOT: u32 = 7;
+
+/// Colours of the kinds of mechanism, and of the codes.
+const COLORS: [Color; 4] = [
+    palette::BLUE,
+    palette::VERMILION,
+    palette::GREEN,
+    palette::PURPLE,
+];
+
+/// Instructions and processor time of every step.
+pub fn steps(measured: &Measured) -> Figure {
+    let panel = |title: &str, x: Axis, names: bool, of: &dyn Fn(&StepCost) -> f64| {
+        let rows = measured.steps.iter().enumerate();
+        let (y, x_of): (Vec<f64>, Vec<f64>) = rows.map(|(k, step)| (k as f64, of(step))).unzip();
+        let name = |step: &StepCost| {
+            if names {
+                step.name.clone()
+            } else {
+                String::new()
+            }
+        };
+        Panel {
+            title: title.to_owned(),
+            note: String::new(),
+            x: x.log(),
+            y: Axis::categories(measured.steps.iter().map(name).collect()),
+            marks: vec![Mark::points("", palette::BLUE, &x_of, &y, DOT)],
+        }
+    };
+    let count = Axis::new("Instructions of a step", "", 1.0);
+    let time = Axis::new("Processor time of a step", "s", 1.0);
+    let panels = vec![
+        panel("a) Instructions", count, true, &|step| {
+            step.instructions as f64
+        }),
+        panel("b) Processor time", time, false, &|step| step.seconds),
+    ];
+    let caption = "A step of 10 µs in the release build: instructions are the mean over the steps between 2 and 12 ms of motion, counted \
+                   by callgrind; times are those between 2 and 52 ms.";
+    Figure::grid(panels, 2, caption.to_owned())
+}
+
+/// Costs over the size.
+pub fn growth(measured: &Measured) -> Figure {
+    let panel = |title: &str, axis: Axis, legend: bool, cost: &SizeOf| {
+        let mut marks = Vec::new();
+        for (family, color) in Family::ALL.into_iter().zip(COLORS) {
+            let (bodies, costs) = sizes(measured, family, cost);
+            if bodies.is_empty() {
+                continue;
+            }
+            let label = if legend { family.name() } else { "" };
+            marks.push(Mark::series("", color, &bodies, &costs));
+            marks.push(Mark::points(label, color, &bodies, &costs, DOT));
+        }
+        Panel {
+            title: title.to_owned(),
+            note: String::new(),
+            x: Axis::new("Number of bodies", "", 1.0).log(),
+            y: axis.log(),
+            marks,
+        }
+    };
+    let time = Axis::new("Processor time", "s", 1.0);
+    let memory = Axis::new("Largest memory", "B", 1.0);
+    let count = Axis::new("Instructions", "", 1.0);
+    let panels = vec![
+        panel("a) Compilation", time.clone(), true, &|cost| {
+            Some(cost.compile)
+        }),
+        panel("b) A step", time, false, &|cost| Some(cost.step)),
+        panel("c) Memory of the process", memory, false, &|cost| {
+            Some(cost.memory? as f64)
+        }),
+        panel("d) A step", count, false, &|cost| {
+            Some(cost.instructions? as f64)
+        }),
+    ];
+    let caption = format!(
+        "Rigid bodies, Bathe's method with a step of {}, the first {} steps.",
+        si(growth::STEP, "s"),
+        growth::STEPS,
+    );
+    Figure::grid(panels, 2, caption)
+}
+
+/// Sizes and costs of the mechanisms of one kind.
+pub fn sizes(measured: &Measured, family: Family, cost: &SizeOf) -> (Vec<f64>, Vec<f64>) {
+    let sizes = measured.sizes.iter().filter(|size| size.family == family);
+    sizes
+        .filter_map(|size| Some((size.bodies as f64, cost(size)?)))
+        .unzip()
+}
+
+/// Errors against processor time, a panel a study.
+pub fn rivals(measured: &Measured) -> Figure {
+    let curves = &measured.rivals.curves;
+    let panels = STUDIES.iter().enumerate().map(|(k, study)| {
+        let mut marks = Vec::new();
+        for (code, color) in Code::ALL.into_iter().zip(COLORS) {
+            let own = curves
+                .iter()
+                .filter(|c| c.study == *study && c.code == code);
+            let points = own.flat_map(|curve| curve.points.iter().filter(|p| p[0] > curve.floor));
+            let (errors, times): (Vec<f64>, Vec<f64>) = points.map(|[e, t]| (*e, *t)).unzip();
+            marks.push(Mark::points("", color, &times, &errors, 3));
+            let line = levels().filter_map(|error| {
+                let found = best(curves, study, code, error, Times::Interpolated)?;
+                Some((found.seconds, error))
+            });
+            let (times, errors): (Vec<f64>, Vec<f64>) = line.unzip();
+            let label = if k == 0 { code.name() } else { "" };
+            marks.push(Mark::curve(label, color, &times, &errors).width(4));
+        }
+        Panel {
+            title: (*study).to_owned(),
+            note: String::new(),
+            x: Axis::new("Processor time", "s", 1.0).log(),
+            y: Axis::new("Error of position", "m", 1.0)
+                .log()
+                .over(1e-12, 1e-4),
+            marks,
+        }
+    });
+    let caption = "The first 3 to 20 ms of six mechanisms. Dots: runs of all methods of a code. Lines: the fastest method that comes below an \
+                   error and stays there with finer steps, interpolated between its runs.";
+    Figure::grid(panels.collect(), 2, caption.to_owned())
+}

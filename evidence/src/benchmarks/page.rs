@@ -1,0 +1,190 @@
+//! BENCHMARKS.md. Only times of runs that were made count.
+
+use crate::accuracy::page::AUTOMATIC;
+use crate::accuracy::settings::{ORDERS, RATIOS, SettingsSweep, TOLERANCES};
+use crate::accuracy::study;
+use crate::benchmarks::Measured;
+use crate::benchmarks::family::Family;
+use crate::benchmarks::figures::{self, sizes};
+use crate::benchmarks::growth::{self, SizeCost, SizeOf, exponent};
+use crate::benchmarks::rivals::{Code, Rivals, STUDIES, best};
+use crate::benchmarks::standings::{LEVELS, Standing};
+use crate::output::{Data, Output, stamp};
+use miette::Result;
+use minijinja::{Value, context};
+use numbers::{digits, si};
+use std::path::Path;
+use studies::precision::Times;
+
+/// BENCHMARKS.md, its pictures, and the tables of all times.
+///
+/// # Errors
+/// A record or a study that is missing.
+pub fn render(data: &Data, out: &mut Output) -> Result<()> {
+    let record = data.read::<Measured>("benchmarks")?;
+    let measured = &record.results;
+    out.picture("benchmarks/steps", &figures::steps(measured))?;
+    out.picture("benchmarks/growth", &figures::growth(measured))?;
+    out.picture("benchmarks/rivals", &figures::rivals(measured))?;
+    let steps = measured.steps.iter().map(|step| {
+        let seconds = si(step.seconds, "s");
+        context! { name => step.name, instructions => step.instructions, seconds }
+    });
+    let seconds = measured.steps.iter().map(|step| step.seconds);
+    let [shortest, longest] = range(seconds).map(|t| si(t, "s"));
+    // of a route over the first, the one that is used
+    let routes = measured.routes.iter().map(|route| {
+        let ratio = digits(route.seconds / measured.routes[0].seconds);
+        context! { name => route.name, seconds => si(route.seconds, "s"), ratio }
+    });
+    let most = measured.sizes.iter().map(|cost| cost.bodies).max();
+    let page = context! {
+        stamp => stamp(&record.origin),
+        steps => steps.collect::<Vec<_>>(), shortest, longest,
+        routes => routes.collect::<Vec<_>>(),
+        most_bodies => most, decade => most.unwrap_or(0) / 10, growth_steps => growth::STEPS,
+        largest => Family::ALL.iter().filter_map(|family| largest(measured, *family)).collect::<Vec<_>>(),
+        exponents => exponents(measured),
+        rivals => rivals(data.root(), &measured.rivals)?,
+    };
+    out.page("BENCHMARKS.md", "benchmarks.md", &page)?;
+    out.site_page("rivals.md", "site/rivals.md", &page)
+}
+
+/// The least and the greatest.
+fn range(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
+    [f64::min, f64::max].map(|of| values.clone().reduce(of).unwrap_or(f64::NAN))
+}
+
+/// The exponent of a cost of a kind, where it has been measured.
+fn growth_of(measured: &Measured, family: Family, cost: &SizeOf) -> Option<f64> {
+    let (bodies, costs) = sizes(measured, family, cost);
+    (bodies.len() > 1).then(|| exponent(&bodies, &costs))
+}
+
+/// Costs of a mechanism: name, unit, value.
+const COSTS: [(&str, &str, &SizeOf); 4] = [
+    ("compilation", "s", &|cost| Some(cost.compile)),
+    ("step", "s", &|cost| Some(cost.step)),
+    ("instructions", "", &|cost| Some(cost.instructions? as f64)),
+    ("memory", "B", &|cost| Some(cost.memory? as f64)),
+];
+
+/// Least and greatest exponent of every cost over the kinds of mechanism.
+fn exponents(measured: &Measured) -> Vec<Value> {
+    let exponents = COSTS.iter().map(|(name, _, cost)| {
+        let all = Family::ALL
+            .iter()
+            .filter_map(|family| growth_of(measured, *family, cost));
+        let [least, most] = range(all).map(digits);
+        context! { name, least, most }
+    });
+    exponents.collect()
+}
+
+/// The largest mechanism of a kind: its costs, with the exponents of their growth.
+fn largest(measured: &Measured, family: Family) -> Option<Value> {
+    let own = measured.sizes.iter().filter(|cost| cost.family == family);
+    let largest: &SizeCost = own.max_by_key(|cost| cost.bodies)?;
+    let cells = COSTS.iter().map(|(_, unit, cost)| {
+        let value = cost(largest)?;
+        let exponent = growth_of(measured, family, cost).map(digits);
+        let text = if unit.is_empty() {
+            value.to_string()
+        } else {
+            si(value, unit)
+        };
+        Some(context! { text, exponent })
+    });
+    let cells: Vec<_> = cells.collect();
+    Some(context! { name => family.name(), bodies => largest.bodies, cells })
+}
+
+/// Other codes.
+fn rivals(root: &Path, rivals: &Rivals) -> Result<Value> {
+    let durations = STUDIES.iter().map(|name| {
+        let duration = si(study(root, name)?.duration, "s");
+        Ok(format!("{name} {duration}"))
+    });
+    let all = Standing::all(&rivals.curves);
+    // `auto` stands below the fastest of all methods
+    let mut methods: Vec<Option<&str>> = vec![None, Some(AUTOMATIC)];
+    for standing in &all {
+        if !methods.contains(&standing.method.as_deref()) {
+            methods.push(standing.method.as_deref());
+        }
+    }
+    let of = |method: Option<&str>| {
+        let own = all.iter().filter(move |s| s.method.as_deref() == method);
+        own.map(standing).collect::<Vec<Value>>()
+    };
+    let methods = methods.iter().map(|method| {
+        context! { name => method.unwrap_or("the fastest of all methods"), cells => of(*method) }
+    });
+    let solutions = rivals.solutions.iter().map(|solution| {
+        let difference = solution.difference_from_looselink.map(|d| si(d, "m"));
+        context! {
+            study => solution.study, code => solution.code.name(), own => solution.code == solution.of,
+            of => solution.of.name(), method => solution.method, difference,
+        }
+    });
+    Ok(context! {
+        exudyn => Code::Exudyn.name(), durations => durations.collect::<Result<Vec<_>>>()?.join(", "),
+        loosest => TOLERANCES[0], ratios => RATIOS, orders => ORDERS,
+        errors => LEVELS.map(|error| si(error, "m")),
+        methods => methods.collect::<Vec<_>>(),
+        solutions => solutions.collect::<Vec<_>>(),
+        times => times(rivals),
+        settings => rivals.sweeps.iter().map(settings).collect::<Vec<_>>(),
+    })
+}
+
+/// How one of our methods stands against another code.
+fn standing(standing: &Standing) -> Value {
+    let [ours, other] = standing.reached_alone;
+    let summary = standing.summary().map(|summary| summary.map(digits));
+    let most = range(standing.ratios.iter().map(|r| r.ratio))[1];
+    let faster = standing.ratios.iter().filter(|r| r.ratio < 1.0);
+    let faster = faster.map(|r| {
+        let (error, ratio) = (si(r.error, "m"), digits(r.ratio));
+        format!("{} at {error} ({ratio} times)", r.study)
+    });
+    context! {
+        rival => standing.rival.name(), pairs => standing.ratios.len(), ours, other,
+        median => summary.as_ref().map(|s| &s[0]), least => summary.as_ref().map(|s| &s[1]),
+        most => digits(most), faster => faster.collect::<Vec<_>>(),
+    }
+}
+
+/// The fastest run of every code for every study and error.
+fn times(rivals: &Rivals) -> Vec<Value> {
+    let pairs = STUDIES
+        .iter()
+        .flat_map(|study| LEVELS.map(|error| (study, error)));
+    let rows = pairs.filter_map(|(study, error)| {
+        let of = |code| best(&rivals.curves, study, code, error, Times::Measured);
+        let own = of(Code::Looselink)?.seconds;
+        let cells = Code::ALL.map(|code| {
+            let found = of(code)?;
+            let (seconds, ratio) = (si(found.seconds, "s"), digits(found.seconds / own));
+            Some(format!("{seconds} ({ratio}): {}", found.method))
+        });
+        Some(context! { study, error => si(error, "m"), cells })
+    });
+    rows.collect()
+}
+
+/// The best settings of IDA in a study.
+fn settings(sweep: &SettingsSweep) -> Value {
+    let settings = sweep.settings();
+    let solver = format!("{:?}", settings.linear_solver);
+    let failures = sweep
+        .tried
+        .iter()
+        .map(|tried| tried.failures.len())
+        .sum::<usize>();
+    context! {
+        study => sweep.study, curve => sweep.curve, ratio => settings.ratio, solver,
+        tried => sweep.tried.len(), failures,
+    }
+}

@@ -1,0 +1,194 @@
+//! Pages and pictures on their way from records to files.
+
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use minijinja::{Environment, UndefinedBehavior, Value, path_loader};
+use numbers::number;
+use plot::Figure;
+use records::{Origin, Record};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The records in `evidence/data`.
+pub struct Data {
+    root: PathBuf,
+}
+
+impl Data {
+    /// Those below this root of a workspace.
+    pub fn of(root: &Path) -> Data {
+        let root = root.to_owned();
+        Data { root }
+    }
+
+    /// Root of the workspace.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// True once the campaign has been recorded.
+    pub fn has(&self, campaign: &str) -> bool {
+        path(&self.root, campaign).exists()
+    }
+
+    /// The record of a campaign.
+    ///
+    /// # Errors
+    /// A record that is missing or of another form.
+    pub fn read<T: DeserializeOwned>(&self, campaign: &str) -> Result<Record<T>> {
+        let path = path(&self.root, campaign);
+        Record::read(&path).wrap_err_with(|| {
+            format!("`cargo run --release -p evidence -- record {campaign}` makes it")
+        })
+    }
+}
+
+/// The file of a campaign.
+pub fn path(root: &Path, campaign: &str) -> PathBuf {
+    root.join(format!("evidence/data/{campaign}.json"))
+}
+
+/// Files that are rendered, by their path from the root of the workspace.
+pub struct Output {
+    templates: Environment<'static>,
+    contexts: BTreeMap<String, Value>,
+    /// Tracked pages and pictures.
+    pub tracked: BTreeMap<String, String>,
+    /// Pages of the site with the long tables, by their names.
+    pub site: BTreeMap<String, String>,
+}
+
+impl Output {
+    /// Nothing rendered yet; templates are those below this root of a workspace.
+    pub fn new(root: &Path) -> Output {
+        let mut templates = Environment::new();
+        templates.set_loader(path_loader(root.join("evidence/templates")));
+        // a name that the page gets wrong is an error, no empty text
+        templates.set_undefined_behavior(UndefinedBehavior::Strict);
+        templates.set_trim_blocks(true);
+        templates.set_keep_trailing_newline(true);
+        templates.set_auto_escape_callback(|_| minijinja::AutoEscape::None);
+        templates.add_filter("number", |x: f64, digits: usize| number(x, digits));
+        // of numbers and of means with their intervals
+        paper_figures::add_filters(&mut templates);
+        templates.add_filter("cell", |text: String| text.replace('|', "\\|"));
+        Output {
+            templates,
+            contexts: BTreeMap::new(),
+            tracked: BTreeMap::new(),
+            site: BTreeMap::new(),
+        }
+    }
+
+    /// A tracked page, made by the template `<template>` with the names in `context`. Pages that are rendered later find these
+    /// names below that of the template.
+    ///
+    /// # Errors
+    /// A template that is missing or asks for a name that is not in the context.
+    pub fn page(&mut self, path: &str, template: &str, context: impl Serialize) -> Result<()> {
+        let context = Value::from_serialize(context);
+        let text = self.rendered(template, &context)?;
+        let name = template.trim_end_matches(".md").to_owned();
+        self.contexts.insert(name, context);
+        keep(&mut self.tracked, path, text)
+    }
+
+    /// A tracked page about other pages: its names are those of the templates rendered so far.
+    ///
+    /// # Errors
+    /// As [`Output::page`].
+    pub fn page_of_pages(&mut self, path: &str, template: &str) -> Result<()> {
+        let text = self.rendered(template, &self.contexts)?;
+        keep(&mut self.tracked, path, text)
+    }
+
+    /// A page of the site.
+    ///
+    /// # Errors
+    /// As [`Output::page`].
+    pub fn site_page(&mut self, name: &str, template: &str, context: impl Serialize) -> Result<()> {
+        let text = self.rendered(template, context)?;
+        keep(&mut self.site, name, text)
+    }
+
+    /// The picture `evidence/pictures/<name>.svg`.
+    ///
+    /// # Errors
+    /// A name that another picture has.
+    pub fn picture(&mut self, name: &str, figure: &Figure) -> Result<()> {
+        let path = format!("evidence/pictures/{name}.svg");
+        keep(&mut self.tracked, &path, plot::svg(figure))
+    }
+
+    fn rendered(&self, template: &str, context: impl Serialize) -> Result<String> {
+        let page = self.templates.get_template(template);
+        // the message of minijinja has the line of the template and what it asked for
+        let text = page.and_then(|page| page.render(context));
+        text.map_err(|e| miette!("evidence/templates/{template}: {e:#}"))
+    }
+
+    /// Writes what differs from the files below this root; the paths of those that differed.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write(&self, root: &Path) -> Result<Vec<String>> {
+        let changed = self.differing(root);
+        for path in &changed {
+            let file = root.join(path);
+            let folder = file.parent().unwrap_or(root);
+            fs::create_dir_all(folder)
+                .and_then(|()| fs::write(&file, &self.tracked[path]))
+                .into_diagnostic()
+                .wrap_err_with(|| format!("cannot write {path}"))?;
+        }
+        Ok(changed)
+    }
+
+    /// Paths of the files below this root that are not what their data give, and of pictures that nothing gives.
+    pub fn differing(&self, root: &Path) -> Vec<String> {
+        let differs = |(path, text): (&String, &String)| {
+            let same = fs::read_to_string(root.join(path)).is_ok_and(|there| there == *text);
+            (!same).then(|| path.clone())
+        };
+        self.tracked.iter().filter_map(differs).collect()
+    }
+
+    /// Writes the pages of the site.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write_site(&self, folder: &Path) -> Result<()> {
+        fs::create_dir_all(folder).into_diagnostic()?;
+        for (name, text) in &self.site {
+            fs::write(folder.join(name), text)
+                .into_diagnostic()
+                .wrap_err_with(|| format!("cannot write {name}"))?;
+        }
+        Ok(())
+    }
+}
+
+/// The sentence on every page that says which version its numbers belong to.
+pub fn stamp(origin: &Origin) -> String {
+    let Origin {
+        version,
+        commit,
+        date,
+        machine,
+        seeds,
+        seconds,
+    } = origin;
+    let duration = seconds.map_or(String::new(), |s| format!(", in {} min", (s / 60.0).ceil()));
+    format!(
+        "Measured at version {version}, commit {commit}, on {date}{duration}; seeds: {seeds}; machine: {machine}."
+    )
+}
+
+fn keep(files: &mut BTreeMap<String, String>, path: &str, text: String) -> Result<()> {
+    match files.insert(path.to_owned(), text) {
+        None => Ok(()),
+        Some(_) => Err(miette!("{path} is rendered twice")),
+    }
+}

@@ -1,0 +1,121 @@
+//! Campaigns run in a worktree of one commit, so that their results belong to it whatever happens to the files meanwhile.
+
+use crate::campaign::Campaign;
+use crate::output;
+use miette::{IntoDiagnostic, Result, WrapErr, ensure, miette};
+use records::{Journal, Origin, Record, root};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Runs campaigns at the commit that is checked out; with `resume` at the commit of the interrupted ones, whose finished items are
+/// kept.
+///
+/// # Errors
+/// Changes that are not committed, a commit that does not compile, a campaign that fails.
+pub fn record(campaigns: &[&Campaign], resume: bool) -> Result<()> {
+    let folder = root().join("target/evidence");
+    let begun = folder.join("commit");
+    let commit = match resume {
+        true => fs::read_to_string(&begun)
+            .into_diagnostic()
+            .wrap_err("no campaign was interrupted")?,
+        false => {
+            let changes = git(&["status", "--porcelain"])?;
+            ensure!(
+                changes.is_empty(),
+                help = "results belong to a commit: commit the changes first",
+                "these files are not as the commit has them:\n{changes}"
+            );
+            git(&["rev-parse", "--short=12", "HEAD"])?
+        }
+    };
+    let tree = folder.join("tree");
+    check_out(&tree, &commit)?;
+    fs::write(&begun, &commit).into_diagnostic()?;
+    for campaign in campaigns {
+        eprintln!("{}: {} min at most", campaign.name, campaign.minutes);
+        let mut command = Command::new("cargo");
+        command.args([
+            "run",
+            "--release",
+            "--quiet",
+            "-p",
+            "evidence",
+            "--",
+            "measure",
+        ]);
+        command.arg(campaign.name).arg(&commit);
+        command.arg(folder.join(format!("{}.jsonl", campaign.name)));
+        command.arg(output::path(&root(), campaign.name));
+        if resume {
+            command.arg("--resume");
+        }
+        command.env("CARGO_TARGET_DIR", folder.join("build"));
+        let status = command.current_dir(&tree).status().into_diagnostic()?;
+        ensure!(
+            status.success(),
+            help = "`--resume` continues it",
+            "campaign {} failed",
+            campaign.name
+        );
+    }
+    Ok(())
+}
+
+/// Measures in this process, which belongs to `commit`, and writes the record.
+///
+/// # Errors
+/// Those of the campaign.
+pub fn measure(
+    campaign: &Campaign,
+    commit: &str,
+    journal: &Path,
+    path: &Path,
+    resume: bool,
+) -> Result<()> {
+    let journal = Journal::open(journal, resume)?;
+    let results: Value = (campaign.measure)(&journal)?;
+    let origin = Origin {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        commit: commit.to_owned(),
+        date: said(Command::new("date").args(["-u", "+%F"]))?,
+        machine: studies::machine::machine().processor,
+        seeds: campaign.seeds.to_owned(),
+        seconds: Some(journal.seconds().round()),
+    };
+    Record { origin, results }.write(path)
+}
+
+/// A worktree of the commit in this folder; one that is there is brought to it.
+fn check_out(tree: &Path, commit: &str) -> Result<()> {
+    let shown = tree.display().to_string();
+    match tree.join(".git").exists() {
+        true => git(&[
+            "-C", &shown, "checkout", "--quiet", "--detach", "--force", commit,
+        ]),
+        false => {
+            git(&["worktree", "prune"])?;
+            git(&["worktree", "add", "--quiet", "--detach", &shown, commit])
+        }
+    }
+    .map(drop)
+}
+
+fn git(arguments: &[&str]) -> Result<String> {
+    said(Command::new("git").args(arguments).current_dir(root()))
+}
+
+/// What a command prints.
+fn said(command: &mut Command) -> Result<String> {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = command.output().into_diagnostic()?;
+    match status.success() {
+        true => Ok(String::from_utf8_lossy(&stdout).trim().to_owned()),
+        false => Err(miette!("{}", String::from_utf8_lossy(&stderr).trim())),
+    }
+}

@@ -1,0 +1,4 @@
+//! Tests of the campaigns and of what they leave.
+
+mod size;
+mod stability;

@@ -1,0 +1,68 @@
+//! The evidence fits in a hand.
+
+use records::root;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// Pages that a person reads, as far as they are rendered.
+const PAGES: [&str; 1] = ["README.md"];
+/// Folders of what is measured and rendered.
+const FOLDERS: [&str; 2] = ["evidence/data/", "evidence/pictures/"];
+/// Of the pages and folders together \[bytes\].
+const LARGEST: u64 = 6_000_000;
+/// Of a page: lines and bytes. Two screens of tables are read, more are not.
+const LONGEST: (usize, usize) = (200, 25_000);
+/// Of the programs that measure and render.
+const PROGRAMS: [&str; 3] = ["evidence/", "paper-figures/", "verify/"];
+/// Less than three quarters of the lines of the solver.
+const LINES: usize = 18_500;
+
+/// Files under version control whose paths begin and end so.
+fn tracked(begins: &[&str], ends: &str) -> Vec<String> {
+    let mut git = Command::new("git");
+    let listed = git.args(["ls-files"]).current_dir(root()).output().unwrap();
+    assert!(listed.status.success(), "git lists the files");
+    let text = String::from_utf8(listed.stdout).unwrap();
+    let chosen = text
+        .lines()
+        .filter(|path| path.ends_with(ends) && begins.iter().any(|begin| path.starts_with(begin)));
+    chosen.map(str::to_owned).collect()
+}
+
+fn bytes(path: impl AsRef<Path>) -> u64 {
+    fs::metadata(root().join(path)).map_or(0, |data| data.len())
+}
+
+#[test]
+fn data_pictures_and_pages_are_small() {
+    let files = tracked(&[&PAGES[..], &FOLDERS].concat(), "");
+    let sum: u64 = files.iter().map(bytes).sum();
+    assert!(sum <= LARGEST, "{sum} bytes in {} files", files.len());
+}
+
+#[test]
+fn pages_are_short() {
+    for page in PAGES {
+        let Ok(text) = fs::read_to_string(root().join(page)) else {
+            panic!("{page} is not there");
+        };
+        let size = (text.lines().count(), text.len());
+        assert!(
+            size.0 <= LONGEST.0 && size.1 <= LONGEST.1,
+            "{page}: {} lines, {} bytes",
+            size.0,
+            size.1
+        );
+    }
+}
+
+#[test]
+fn programs_that_make_them_are_short() {
+    let count = |path: &String| {
+        let text = fs::read_to_string(root().join(path));
+        text.map_or(0, |text| text.lines().count())
+    };
+    let lines: usize = tracked(&PROGRAMS, ".rs").iter().map(count).sum();
+    assert!(lines <= LINES, "{lines} lines of Rust");
+}

@@ -1,4 +1,0 @@
-//! IDA as a rival in studies.
-
-pub mod ida;
-pub mod settings;

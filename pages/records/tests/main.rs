@@ -1,5 +1,0 @@
-//! A changed token outdates the records that depend on it, by name; a changed comment none; pages say which.
-
-mod format;
-mod pages;
-mod support;

@@ -1,0 +1,117 @@
+//! Figs. 5 to 9, and what they have in common.
+
+mod fig05;
+mod fig06;
+mod fig07;
+mod fig08;
+mod fig09;
+
+pub use fig09::{section, spread};
+
+use crate::figures::FigureRuns;
+use crate::runs::{CaseRecording, DURATION, FROM};
+use numbers::si;
+use plot::{Axis, Color, Figure, Mark, Panel, palette};
+use std::collections::BTreeSet;
+
+/// The error that the paper reads off its Figs. 5a and 5b \[m\].
+pub const CLAIMED: f64 = 2e-4;
+
+/// Name and content of every figure.
+pub fn all(runs: &FigureRuns) -> Vec<(String, Figure)> {
+    let figures = [
+        ("fig5", fig05::figure(runs)),
+        ("fig6", fig06::figure(runs)),
+        ("fig7", fig07::figure(runs)),
+        ("fig8", fig08::figure(runs)),
+        ("fig9", fig09::figure(runs)),
+    ];
+    let thinned = |(name, figure): (&str, Figure)| (name.to_owned(), figure.thinned());
+    figures.map(thinned).into()
+}
+
+/// Color of a case where several are in one picture.
+pub fn case_color(case: u32) -> Color {
+    match case {
+        2 => palette::GREEN,
+        3 => palette::BLUE,
+        _ => palette::VERMILION,
+    }
+}
+
+/// A panel over the last two cycles.
+fn over_time(title: &str, note: String, y: Axis, marks: Vec<Mark>) -> Panel {
+    Panel {
+        title: title.into(),
+        note,
+        x: Axis::new("Time t", "s", 1.0).over(FROM, DURATION),
+        y,
+        marks,
+    }
+}
+
+/// Both steps of case 2, the finer first.
+fn flexible(runs: &FigureRuns) -> [(&CaseRecording, Color); 2] {
+    let colors = [("flexible", palette::BLUE), ("coarse", palette::VERMILION)];
+    colors.map(|(name, color)| (runs.get(name), color))
+}
+
+/// A channel over the last two cycles.
+fn curve((run, color): (&CaseRecording, Color), channel: &str) -> Mark {
+    let (t, y) = run.between(channel, FROM, DURATION);
+    Mark::series(&run.plan.pace.label(), color, t, y).width(2)
+}
+
+/// A channel of case 2 with both steps, of case 3 and of case 4, with a note of the first run and with what is drawn beside it.
+fn of_cases(
+    runs: &FigureRuns,
+    (channel, axis): (&str, Axis),
+    note: impl Fn(&CaseRecording) -> String,
+    beside: impl Fn(&CaseRecording, Vec<Mark>) -> Vec<Mark>,
+    text: &str,
+) -> Figure {
+    let panel = |title: &str, shown: &[(&CaseRecording, Color)]| {
+        let first = shown[0].0;
+        let curves = shown.iter().map(|run| curve(*run, channel)).collect();
+        over_time(title, note(first), axis.clone(), beside(first, curves))
+    };
+    let row = vec![
+        panel("a) Case 2", &flexible(runs)),
+        panel("b) Case 3", &[(runs.get("loose"), palette::BLUE)]),
+        panel("c) Case 4", &[(runs.get("both"), palette::BLUE)]),
+    ];
+    let made_with = ["flexible", "coarse", "loose", "both"].map(|name| runs.get(name));
+    Figure {
+        rows: vec![row],
+        caption: caption(text, &made_with),
+    }
+}
+
+/// A caption: what is seen, then the scenes it was made with, and what every run warns of.
+fn caption(text: &str, made_with: &[&CaseRecording]) -> String {
+    let scenes: BTreeSet<String> = made_with.iter().map(|r| r.plan.scene_name()).collect();
+    let scenes: Vec<String> = scenes.into_iter().collect();
+    let warns = |r: &&&CaseRecording| !r.warnings.is_empty();
+    let warned = made_with.iter().filter(warns).map(|r| {
+        let (case, pace) = (r.plan.case, r.plan.pace.label());
+        format!("Case {case} ({pace}) warns: {}.", r.warnings.join("; "))
+    });
+    let warned: Vec<String> = warned.collect();
+    let warned = match warned.is_empty() {
+        true => "No run warns of anything.".to_owned(),
+        false => warned.join(" "),
+    };
+    let mut intervals: Vec<f64> = made_with.iter().map(|r| r.plan.interval).collect();
+    intervals.sort_by(f64::total_cmp);
+    intervals.dedup();
+    let rows: Vec<String> = intervals.iter().map(|i| si(*i, "s")).collect();
+    let chaotic = match made_with.iter().any(|r| r.plan.case > 2) {
+        true => " Cases 3 and 4 are chaotic: each curve is one run of many, and decides nothing.",
+        false => "",
+    };
+    format!(
+        "{text} Scenes: {}. Bathe's method with the step h, unless the legend says otherwise; rows every {}.{chaotic} {warned}",
+        scenes.join(", "),
+        rows.join(" or "),
+    )
+}
