@@ -146,7 +146,7 @@ impl Output {
         Ok(changed)
     }
 
-    /// Paths of the files below this root that are not what their data give, and of pictures that nothing gives.
+    /// Paths of the files below this root that are not what their data give. A picture that nothing gives any more is not found.
     pub fn differing(&self, root: &Path) -> Vec<String> {
         let differs = |(path, text): (&String, &String)| {
             let same = fs::read_to_string(root.join(path)).is_ok_and(|there| there == *text);
