@@ -18,10 +18,13 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Runs campaigns at the commit that is checked out and writes evidence/data.
+    /// Runs campaigns in a worktree of a commit and writes evidence/data.
     Record {
         /// One campaign, instead of all.
         campaign: Option<String>,
+        /// The commit, instead of the one that is checked out.
+        #[arg(long, value_name = "COMMIT")]
+        at: Option<String>,
         /// Continues campaigns that were interrupted, at the commit at which they began.
         #[arg(long)]
         resume: bool,
@@ -59,12 +62,16 @@ enum Command {
 
 fn main() -> Result<()> {
     match Arguments::parse().command {
-        Command::Record { campaign, resume } => {
+        Command::Record {
+            campaign,
+            at,
+            resume,
+        } => {
             let chosen: Vec<&Campaign> = match campaign {
                 Some(name) => vec![find(&name)?],
                 None => campaign::all().collect(),
             };
-            worktree::record(&chosen, resume)
+            worktree::record(&chosen, at.as_deref(), resume)
         }
         Command::Render { check } => render(check),
         Command::Count { check: true } => gate::check(&root()),

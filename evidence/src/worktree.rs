@@ -9,28 +9,33 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Runs campaigns at the commit that is checked out; with `resume` at the commit of the interrupted ones, whose finished items are
-/// kept.
+/// Runs campaigns at a commit, or at the one that is checked out; with `resume` those that were interrupted, at theirs, whose
+/// finished items are kept.
 ///
 /// # Errors
 /// Changes that are not committed, a commit that does not compile, a campaign that fails.
-pub fn record(campaigns: &[&Campaign], resume: bool) -> Result<()> {
+pub fn record(campaigns: &[&Campaign], at: Option<&str>, resume: bool) -> Result<()> {
     let folder = root().join("target/evidence");
-    let begun = folder.join("commit");
-    let commit = match resume {
-        true => fs::read_to_string(&begun)
+    let begun = folder.join("interrupted");
+    let hash = |name: &str| git(&["rev-parse", "--short=12", "--verify", name]);
+    let commit = match at {
+        Some(name) => hash(&format!("{name}^{{commit}}"))?,
+        None if resume => fs::read_to_string(&begun)
             .into_diagnostic()
             .wrap_err("no campaign was interrupted")?,
-        false => {
+        None => {
             let changes = git(&["status", "--porcelain"])?;
             ensure!(
                 changes.is_empty(),
                 help = "results belong to a commit: commit the changes first",
                 "these files are not as the commit has them:\n{changes}"
             );
-            git(&["rev-parse", "--short=12", "HEAD"])?
+            hash("HEAD")?
         }
     };
+    // what another commit has finished is nothing of this one
+    let journals = folder.join(&commit);
+    fs::create_dir_all(&journals).into_diagnostic()?;
     let tree = folder.join("tree");
     check_out(&tree, &commit)?;
     fs::write(&begun, &commit).into_diagnostic()?;
@@ -47,7 +52,7 @@ pub fn record(campaigns: &[&Campaign], resume: bool) -> Result<()> {
             "measure",
         ]);
         command.arg(campaign.name).arg(&commit);
-        command.arg(folder.join(format!("{}.jsonl", campaign.name)));
+        command.arg(journals.join(format!("{}.jsonl", campaign.name)));
         command.arg(output::path(&root(), campaign.name));
         if resume {
             command.arg("--resume");
@@ -61,7 +66,7 @@ pub fn record(campaigns: &[&Campaign], resume: bool) -> Result<()> {
             campaign.name
         );
     }
-    Ok(())
+    fs::remove_file(&begun).into_diagnostic()
 }
 
 /// Measures in this process, which belongs to `commit`, and writes the record.
