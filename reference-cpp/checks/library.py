@@ -15,7 +15,7 @@ class Error(c.Structure):
 
 class Tolerances(c.Structure):
     _fields_ = [("relative", c.c_double), ("position", c.c_double), ("velocity", c.c_double), ("max_step", c.c_double),
-                ("max_order", c.c_int32), ("linear_solver", c.c_int32), ("max_steps", c.c_int64)]
+                ("newton", c.c_double), ("max_order", c.c_int32), ("linear_solver", c.c_int32), ("max_steps", c.c_int64)]
 
 
 class Description(c.Structure):
@@ -50,7 +50,7 @@ class Scene:
         lib.ls_scene_describe(self.handle, c.byref(self.description))
 
     def state_at(self, t):
-        tolerances = Tolerances(1e-8, 1e-9, 1e-6, 0.0, 5, 0, 10**7)
+        tolerances = Tolerances(1e-8, 1e-9, 1e-6, 0.0, 0.05, 5, 0, 10**7)
         run = c.c_void_p(lib.ls_run_new(self.handle, c.byref(tolerances), c.byref(error)))
         if not run:
             raise RuntimeError(error.message.decode())

@@ -25,7 +25,7 @@ struct Options {
     std::vector<std::string> overrides;
     double until = -1.0;
     bool start_only = false, all = false;
-    ls_tolerances tolerances{1e-8, 1e-9, 1e-6, 0.0, 5, LS_DENSE, 100000000};
+    ls_tolerances tolerances{1e-8, 1e-9, 1e-6, 0.0, 0.05, 5, LS_DENSE, 100000000};
 };
 
 struct Free {

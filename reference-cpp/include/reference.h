@@ -147,6 +147,7 @@ typedef struct {
     double position;       /* m; angles and slopes: divided by a length of the body */
     double velocity;       /* m/s, likewise */
     double max_step;       /* s; 0: none */
+    double newton;         /* share of an error test up to which Newton's method iterates; IDA's own is 0.33 */
     int32_t max_order;     /* of BDF, 1 to 5 */
     int32_t linear_solver;
     int64_t max_steps;     /* between two calls of ls_run_advance; reaching it is an error of IDA's kind */

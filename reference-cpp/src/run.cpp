@@ -9,8 +9,6 @@
 
 namespace {
 
-// Newton's method stops at this fraction of the error tolerance. Tighter than IDA's 0.33: the drift of energy counts.
-constexpr double newton_fraction = 0.05;
 // Constraints make Newton's method slow with the matrix of another step length; IDA would tolerate more.
 constexpr double refresh_threshold = 0.1;
 
@@ -52,6 +50,7 @@ void Run::set_up(const ls_tolerances &tol) {
     require(std::isfinite(tol.position) && tol.position > 0.0, "tolerances: position must be positive");
     require(std::isfinite(tol.velocity) && tol.velocity > 0.0, "tolerances: velocity must be positive");
     require(std::isfinite(tol.max_step) && tol.max_step >= 0.0, "tolerances: max_step must not be negative");
+    require(std::isfinite(tol.newton) && tol.newton > 0.0, "tolerances: newton must be positive");
     require(tol.max_order >= 1 && tol.max_order <= 5, "tolerances: max_order must be 1 to 5");
     require(tol.max_steps > 0, "tolerances: max_steps must be positive");
 
@@ -71,7 +70,7 @@ void Run::set_up(const ls_tolerances &tol) {
     check(IDASetJacFn(ida_, jacobian));
     check(IDASetMaxOrd(ida_, tol.max_order));
     if (tol.max_step > 0.0) check(IDASetMaxStep(ida_, tol.max_step));
-    check(IDASetNonlinConvCoef(ida_, newton_fraction));
+    check(IDASetNonlinConvCoef(ida_, tol.newton));
     check(ida::set_refresh_threshold(ida_, refresh_threshold));
     if (!system_.loose_joints().empty()) {
         check(IDARootInit(ida_, static_cast<int>(system_.loose_joints().size()), roots));

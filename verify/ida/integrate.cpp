@@ -97,6 +97,7 @@ void integrate(const li_equations &e, const li_run &run, double *start, double *
     check(IDASetUserData(integrator, &problem), "IDASetUserData");
     check(IDAWFtolerances(integrator, weights), "IDAWFtolerances");
     check(IDASetMaxOrd(integrator, run.max_order), "IDASetMaxOrd");
+    check(IDASetNonlinConvCoef(integrator, run.newton), "IDASetNonlinConvCoef");
     check(IDASetMaxNumSteps(integrator, 10000000), "IDASetMaxNumSteps");
     const ida::Vector b(N_VNew_Serial(condensed, context)), x(N_VNew_Serial(condensed, context));
     const ida::Matrix matrix(run.dense ? SUNDenseMatrix(condensed, condensed, context)

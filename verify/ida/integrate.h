@@ -34,6 +34,8 @@ typedef struct {
     /* largest local error: relative, and added to that of a position [m] and of a velocity [m/s] */
     double relative, position, velocity;
     double duration, interval;
+    /* share of an error test up to which Newton's method iterates */
+    double newton;
     /* of BDF, 1 to 5 */
     int32_t max_order;
     /* 0: KLU, 1: a dense matrix */

@@ -22,8 +22,8 @@ pub const INPUTS: [(&str, &str, &str); 13] = [
 
 /// The fields of `ls_tolerances`.
 #[rustfmt::skip]
-pub const TOLERANCES: [&str; 7] =
-    ["relative", "position", "velocity", "max_step", "max_order", "linear_solver", "max_steps"];
+pub const TOLERANCES: [&str; 8] =
+    ["relative", "position", "velocity", "max_step", "newton", "max_order", "linear_solver", "max_steps"];
 
 /// A function of the header.
 #[derive(Debug, PartialEq)]

@@ -33,6 +33,7 @@ pub struct LsTolerances {
     pub position: f64,
     pub velocity: f64,
     pub max_step: f64,
+    pub newton: f64,
     pub max_order: i32,
     pub linear_solver: i32,
     pub max_steps: i64,

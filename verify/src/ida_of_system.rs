@@ -51,6 +51,7 @@ struct LiRun {
     velocity: f64,
     duration: f64,
     interval: f64,
+    newton: f64,
     max_order: i32,
     dense: i32,
 }
@@ -96,6 +97,9 @@ pub enum LinearSolver {
     Dense,
 }
 
+/// Shares of an error test up to which Newton's method may iterate: that of the comparisons, IDA's own, a loose one.
+pub const NEWTON: [f64; 3] = [0.05, 0.33, 1.0];
+
 /// How IDA integrates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct IdaSettings {
@@ -105,6 +109,8 @@ pub struct IdaSettings {
     pub ratio: f64,
     /// Of Newton's matrix.
     pub linear_solver: LinearSolver,
+    /// Share of an error test up to which Newton's method iterates.
+    pub newton: f64,
 }
 
 /// Unknowns and multipliers: the size of Newton's matrix.
@@ -152,6 +158,7 @@ pub fn integrate(scene: &Scene, settings: IdaSettings, tolerance: f64) -> Result
         velocity: 0.1 * tolerance,
         duration: scene.simulation.duration,
         interval: scene.output.interval,
+        newton: settings.newton,
         max_order: settings.max_order,
         dense: i32::from(settings.linear_solver == LinearSolver::Dense),
     };

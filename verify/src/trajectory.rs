@@ -1,6 +1,6 @@
 //! The same scene on both sides, as columns with the same names.
 
-use crate::ida_of_system::LinearSolver;
+use crate::ida_of_system::{LinearSolver, NEWTON};
 use crate::reference::{LsStatistics, LsTolerances, ReferenceScene};
 use cpu_time::ThreadTime;
 use looselink::scene::Scene;
@@ -243,6 +243,8 @@ pub fn tolerances(relative: f64) -> LsTolerances {
         position: 1e-3 * relative,
         velocity: 0.1 * relative,
         max_step: 0.0,
+        // tighter than IDA's own: the drift of energy counts
+        newton: NEWTON[0],
         max_order: 5,
         linear_solver: 0,
         max_steps: 100_000_000,

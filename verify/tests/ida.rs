@@ -3,7 +3,7 @@
 use ladder::Rung;
 use looselink::scene::Scene;
 use std::path::Path;
-use verify::ida_of_system::{IdaRun, IdaSettings, LinearSolver, integrate};
+use verify::ida_of_system::{IdaRun, IdaSettings, LinearSolver, NEWTON, integrate};
 
 /// Simulated time \[s\].
 const DURATION: f64 = 5e-3;
@@ -22,6 +22,7 @@ fn run(elements: usize, max_order: i32, linear_solver: LinearSolver, tolerance: 
         max_order,
         ratio: 0.0,
         linear_solver,
+        newton: NEWTON[0],
     };
     integrate(&scene, settings, tolerance).unwrap()
 }

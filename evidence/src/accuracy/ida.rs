@@ -5,7 +5,7 @@ use looselink::simulate::Notice;
 use miette::{Result, miette};
 use studies::StudyError;
 use studies::precision::{CompletedRun, RunTiming, Study, StudyOutcome, StudyPace, WorkCounts};
-use verify::ida_of_system::IdaSettings;
+use verify::ida_of_system::{IdaSettings, NEWTON};
 use verify::reference::LsTolerances;
 use verify::trajectory::{ComparisonPlan, Trajectory, linear_solver, tolerances};
 
@@ -74,6 +74,7 @@ pub fn usual_settings(study: &Study, max_order: i32) -> Result<IdaSettings> {
         max_order,
         ratio: 1.0,
         linear_solver: linear_solver(&plan(study).reference()?),
+        newton: NEWTON[0],
     })
 }
 
@@ -131,6 +132,7 @@ fn run(plan: &ComparisonPlan, settings: IdaSettings, tolerance: f64) -> Result<T
     plan.cpp(&LsTolerances {
         relative: settings.ratio * tolerance,
         max_order: settings.max_order,
+        newton: settings.newton,
         ..tolerances(tolerance)
     })
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use studies::precision::{Times, reached};
-use verify::ida_of_system::IdaSettings;
+use verify::ida_of_system::{IdaSettings, NEWTON};
 
 /// Largest orders of BDF, a curve each. Orders above 2 are unstable on a part of the imaginary axis, where undamped vibrations
 /// are.
@@ -59,14 +59,35 @@ pub struct SettingsSweep {
 }
 
 impl SettingsSweep {
-    /// Tries all candidates with every tolerance.
+    /// Tries all candidates with every tolerance, and the best of them with other tests of Newton's method.
     pub fn new(
         study: &str,
         curve: &str,
         candidates: &[IdaSettings],
         mut run: impl FnMut(IdaSettings, f64) -> Result<Trial, String>,
     ) -> SettingsSweep {
-        let mut tried = Vec::new();
+        let mut sweep = SettingsSweep {
+            study: study.to_owned(),
+            curve: curve.to_owned(),
+            tried: Vec::new(),
+            best: 0,
+        };
+        sweep.try_all(candidates, &mut run);
+        let best = sweep.settings();
+        let others = NEWTON.into_iter().filter(|&newton| newton != best.newton);
+        let others: Vec<IdaSettings> = others
+            .map(|newton| IdaSettings { newton, ..best })
+            .collect();
+        sweep.try_all(&others, &mut run);
+        sweep
+    }
+
+    /// Adds runs with these settings, and chooses among all.
+    fn try_all(
+        &mut self,
+        candidates: &[IdaSettings],
+        run: &mut impl FnMut(IdaSettings, f64) -> Result<Trial, String>,
+    ) {
         for &settings in candidates {
             let (mut trials, mut failures) = (Vec::new(), Vec::new());
             for tolerance in TOLERANCES {
@@ -81,22 +102,17 @@ impl SettingsSweep {
                     break;
                 }
             }
-            tried.push(TriedSettings {
+            self.tried.push(TriedSettings {
                 settings,
                 trials,
                 failures,
             });
         }
-        let curves = tried.iter().map(|t| {
+        let curves = self.tried.iter().map(|t| {
             let points = t.trials.iter().map(|trial| [trial.error, trial.seconds]);
             points.collect()
         });
-        SettingsSweep {
-            study: study.to_owned(),
-            curve: curve.to_owned(),
-            best: fastest(&curves.collect::<Vec<_>>()),
-            tried,
-        }
+        self.best = fastest(&curves.collect::<Vec<_>>());
     }
 
     /// The best settings.
@@ -131,7 +147,7 @@ fn fastest(curves: &[Vec<[f64; 2]>]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::{RATIOS, SettingsSweep, Trial, fastest};
-    use verify::ida_of_system::{IdaSettings, LinearSolver};
+    use verify::ida_of_system::{IdaSettings, LinearSolver, NEWTON};
 
     #[test]
     fn the_curve_that_is_faster_at_most_errors_is_the_fastest() {
@@ -161,6 +177,7 @@ mod tests {
             max_order: 2,
             ratio,
             linear_solver: LinearSolver::Klu,
+            newton: NEWTON[0],
         });
         // the second is the fastest, the third fails with loose tolerances, all others take the same
         let sweep = SettingsSweep::new("study", "curve", &candidates, |settings, tolerance| {

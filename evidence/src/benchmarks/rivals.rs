@@ -13,7 +13,7 @@ use std::path::Path;
 use std::process::Command;
 use studies::machine::median;
 use studies::precision::{Effort, Study, StudyOutcome, StudyPace, Times, reached};
-use verify::ida_of_system::{self, IdaSettings, LinearSolver};
+use verify::ida_of_system::{self, IdaSettings, LinearSolver, NEWTON};
 
 /// Studies that all codes run.
 pub const STUDIES: [&str; 6] = [
@@ -292,6 +292,7 @@ impl Rivals {
                     max_order,
                     ratio,
                     linear_solver,
+                    newton: NEWTON[0],
                 })
             });
             let candidates: Vec<IdaSettings> = candidates.collect();
