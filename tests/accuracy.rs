@@ -473,7 +473,7 @@ initial.bodies.journal = { x = 0, y = 0, theta = 0, vx = 0, vy = 0.633, omega = 
         assert_eq!(report.unlocated_changes, 0, "{method}");
         worst.see(recording.onsets[0].t - onset);
     }
-    Rung::Published
+    Rung::ClosedForms
         .asks("Journal that touches its bearing and leaves within one step, four methods: instant of contact against the closed form [s]")
         .within(&worst, 1e-11, "the onset tolerance of 1e-13 m over 0.026 m/s");
 }

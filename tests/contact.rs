@@ -140,7 +140,7 @@ fn delivered_restitution_follows_the_exact_map() {
             worst.see(law.delivered_restitution() / expected - 1.0);
         }
     }
-    Rung::Published
+    Rung::ClosedForms
         .asks("Does a free impact deliver the restitution of the exact map, for three laws? Relative error")
         .within(&worst, 2e-14, "the equation is flat near e = 1: a rounding of chi² becomes 1e-16/chi");
 }

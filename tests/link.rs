@@ -514,7 +514,7 @@ fn published_element() {
         worst.see(trace / 1827.619047619047 - 1.0);
         worst.see(square.sqrt() / 1326.7286049150268 - 1.0);
     }
-    Rung::Published
+    Rung::Computed
         .asks("Are energy, force and tangent of the regression element those listed, by every route? Relative error")
         .within(&worst, 1e-12, "the listed digits; the least entry is a difference of numbers 500 times its size");
 }

@@ -4,6 +4,8 @@
 use crate::support::{TestRecording, run};
 use ladder::{Rung, Worst};
 
+const SOURCE: &str =
+    "Test Set for IVP Solvers, problem Car axis, https://github.com/cran/deTestSet, src/Ex_car.f";
 const SCENE: &str = "car-axis.toml";
 
 /// x and y of the left and of the right end, their rates, and both multipliers, to the digits of a double.
@@ -62,12 +64,15 @@ fn the_car_axis_meets_the_published_digits() {
         6e-10 elsewhere; the scheme's error at this step is smaller";
     Rung::Published
         .asks("Car axis: published positions after 3 s [m]")
+        .from(SOURCE)
         .within(&places, 1e-12, OTHERS);
     Rung::Published
         .asks("Car axis: published rates after 3 s [m/s]")
+        .from(SOURCE)
         .within(&rates, 1e-9, OTHERS);
     Rung::Published
         .asks("Car axis: published multipliers after 3 s [N]")
+        .from(SOURCE)
         .within(&forces, 1e-9, OTHERS);
 }
 

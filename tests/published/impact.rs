@@ -144,7 +144,7 @@ fn single_impacts_follow_the_table() {
             worst.see(g / l - 1.0);
         }
     }
-    Rung::Published
+    Rung::ClosedForms
         .asks("One impact, Hertz and Lankarani-Nikravesh: restitution, depth, instants and largest force against the table, relative error")
         .within(&worst,
             1e-6,

@@ -1,7 +1,7 @@
-//! Published and exact cases: digits that nobody on this project computed, one family a file.
+//! Closed forms, computed and published digits, one family a file.
 //!
-//! Status of every number, as its source has it: E exact or closed form, P published, I computed once by others with
-//! quadrature, DOP853 or extended precision.
+//! Status of every number: E closed form, P published in a source that the row names, I computed once by another way than this
+//! program's, with quadrature, collocation, DOP853 or extended precision.
 
 mod andrews;
 mod cantilever;

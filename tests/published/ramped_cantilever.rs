@@ -74,17 +74,17 @@ fn the_cantilever_follows_the_listed_motion() {
         energies.see(energy);
     }
     const DIGITS: &str = "relative tolerance of 1e-10 of the reference integration";
-    Rung::Published
+    Rung::Computed
         .asks("Ramped cantilever, n = 1 ... 8: listed positions of the tip over 10 s [m]")
         .within(&places, 1e-9, &format!("{DIGITS}, on 5 m"));
-    Rung::Published
+    Rung::Computed
         .asks("Ramped cantilever, n = 1 ... 8: listed velocities of the tip over 10 s [m/s]")
         .within(
             &velocities,
             1e-7,
             &format!("{DIGITS} on 5 m, times 1000 rad/s of the vibrations"),
         );
-    Rung::Published
+    Rung::Computed
         .asks("Ramped cantilever, n = 1 ... 8: listed strain and kinetic energies over 10 s [J]")
         .within(&energies, 1e-6, &format!("{DIGITS}, on 2000 J"));
 }
@@ -105,7 +105,7 @@ fn the_scene_has_the_load_of_the_paper() {
             5.0 / 384.0 * 0.02_f64.powi(4) * 250.0 * (0.5 * PI).powi(4),
             "error bound of a cubic spline through points 0.02 s apart",
         );
-    Rung::Published
+    Rung::Computed
         .asks("Scene of the ramped cantilever: listed positions of the tip over 10 s [m]")
         .within(
             errors(&run, 4)[0],

@@ -120,7 +120,7 @@ fn spectra_follow_the_tables() {
         rows += 1;
     }
     assert_eq!(rows, 126 - 4 * 3);
-    Rung::Published
+    Rung::ClosedForms
         .asks("Bathe's scheme with spectral radius 0, 0.5, 0.9, trapezoidal rule, generalised-α with 0, 0.5, 0.8, 0.9, at 0.01 ... 1000 periods a step (generalised-α: 5): spectral radius, period elongation and amplitude decay against the listed digits")
         .within(&worst,
             1e-10,
@@ -134,7 +134,7 @@ fn spectra_follow_the_tables() {
         let [r, ..] = spectrum(Method::new(&bathe::SCHEME), dt);
         worst.see((r - exact) / (1e-2 + exact));
     }
-    Rung::Published
+    Rung::ClosedForms
         .asks("Bathe's scheme, γ = 1/2, 0.02 ... 1000 periods a step: spectral radius ρ against the closed form, over 0.01 + ρ")
         .within(&worst, 1e-10, "rounding of the amplification matrix, whose entries vanish with ρ");
 }

@@ -1,4 +1,4 @@
-//! The stiff spring pendulum of the IVP test set (P): x'' = -x lambda, y'' = -y lambda - 1, 1e-6 lambda = (r - 1)/r, from
+//! The stiff spring pendulum of the drivers of MEBDF (J. R. Cash; I): x'' = -x lambda, y'' = -y lambda - 1, 1e-6 lambda = (r - 1)/r, from
 //! (1, 0) at rest, at t = 10. A point mass of 1 kg on a spring of 1e6 N/m and 1 m, gravity 1 m/s2.
 
 use super::{last, run};
@@ -43,7 +43,7 @@ const LISTED: [f64; 5] = [
 ];
 
 #[test]
-fn bathe_converges_to_the_published_digits() {
+fn bathe_converges_to_the_listed_digits() {
     let mut errors = Vec::new();
     let (rates, forces) = (Worst::new(), Worst::new());
     for step in [1e-3, 5e-4, 2.5e-4] {
@@ -56,27 +56,22 @@ fn bathe_converges_to_the_published_digits() {
         forces.see(lambda - LISTED[4]);
     }
     Rung::OrderInTime
-        .asks("Stiff spring pendulum: distance from the published position after 10 s [m]")
+        .asks("Stiff spring pendulum: distance from the listed position after 10 s [m]")
         .falls(
             "Step h [s]",
             &errors,
             1.8..2.2,
             "order 2 of Bathe's scheme; the reference is known to 7e-9 only, so no finer steps",
         );
-    Rung::Published
-        .asks(
-            "Stiff spring pendulum, h = 2.5e-4 s: distance from the published position after 10 s [m]",
-        )
-        .within(errors[2].1, 1e-6, "the scheme's error at this step");
-    Rung::Published
-        .asks("Stiff spring pendulum, h = 2.5e-4 ... 1e-3 s: published velocity after 10 s [m/s]")
+    Rung::Computed
+        .asks("Stiff spring pendulum, h = 2.5e-4 ... 1e-3 s: listed velocity after 10 s [m/s]")
         .within(
             &rates,
             3e-3,
             "the fast mode of 1000 rad/s has an amplitude of 1e-6 m, that is 1e-3 m/s",
         );
-    Rung::Published
-        .asks("Stiff spring pendulum, h = 2.5e-4 ... 1e-3 s: published force over length after 10 s [N/m]")
+    Rung::Computed
+        .asks("Stiff spring pendulum, h = 2.5e-4 ... 1e-3 s: listed force over length after 10 s [N/m]")
         .within(&forces,
             2.0,
             "the fast mode's amplitude of 1e-6 m times the stiffness of 1e6 N/m",

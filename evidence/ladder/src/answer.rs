@@ -39,6 +39,9 @@ pub struct Answer {
     pub rung: Rung,
     /// The question.
     pub question: String,
+    /// Where published digits stand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
     /// The number obtained. Not a number is written as null.
     #[serde(deserialize_with = "number")]
     pub number: f64,

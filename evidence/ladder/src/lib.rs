@@ -38,7 +38,11 @@ pub enum Rung {
     Balance,
     /// Against the second implementation.
     Codes,
-    /// Against digits that nobody on this project computed.
+    /// Against closed forms.
+    ClosedForms,
+    /// Against digits that were computed once by another way.
+    Computed,
+    /// Against digits in a source that anyone can open, which the row names.
     Published,
     /// What is known to be difficult.
     HardCases,
@@ -46,7 +50,7 @@ pub enum Rung {
 
 impl Rung {
     /// All rungs from the lowest up.
-    pub const ALL: [Rung; 9] = [
+    pub const ALL: [Rung; 11] = [
         Rung::Identities,
         Rung::Derivatives,
         Rung::Routes,
@@ -54,6 +58,8 @@ impl Rung {
         Rung::OrderInElements,
         Rung::Balance,
         Rung::Codes,
+        Rung::ClosedForms,
+        Rung::Computed,
         Rung::Published,
         Rung::HardCases,
     ];
@@ -88,9 +94,18 @@ impl Rung {
                 "Does the independent C++ implementation agree? [verify/REPORT.md](verify/REPORT.md) has every row; listed here \
                  is the row of each comparison that is closest to its tolerance.",
             ),
+            Rung::ClosedForms => (
+                "Closed forms",
+                "Do results agree with formulas that follow on paper?",
+            ),
+            Rung::Computed => (
+                "Computed digits",
+                "Do results agree with digits that were computed once by another way: quadrature, collocation, extrapolation, \
+                 arithmetic with more digits? Nobody else published them.",
+            ),
             Rung::Published => (
-                "Published and exact cases",
-                "Do results agree with published digits and closed forms?",
+                "Published digits",
+                "Do results agree with digits in a source that anyone can open?",
             ),
             Rung::HardCases => (
                 "Hard cases",
@@ -105,6 +120,7 @@ impl Rung {
         Question {
             rung: self,
             text: question.into(),
+            source: None,
             place: Location::caller(),
         }
     }
@@ -115,10 +131,17 @@ impl Rung {
 pub struct Question {
     rung: Rung,
     text: String,
+    source: Option<String>,
     place: &'static Location<'static>,
 }
 
 impl Question {
+    /// Names the source of published digits, with its address.
+    pub fn from(mut self, source: &str) -> Question {
+        self.source = Some(source.to_owned());
+        self
+    }
+
     /// Answers with an error: its magnitude is at most `tolerance`.
     ///
     /// # Panics
@@ -220,8 +243,16 @@ impl Question {
         reason: &str,
         curve: Option<ErrorCurve>,
     ) {
+        let is_open = |source: &String| source.contains("https://");
+        assert_eq!(
+            self.rung == Rung::Published,
+            self.source.as_ref().is_some_and(is_open),
+            "{}: published digits, and they alone, have a source with an address",
+            self.text
+        );
         let answer = Answer {
             rung: self.rung,
+            source: self.source,
             question: self.text,
             number,
             allowed,
@@ -262,6 +293,25 @@ mod tests {
             let ask = move || Rung::Identities.asks("fails?").within(error, 1.0, "more");
             assert!(catch_unwind(ask).is_err(), "{error}");
         }
+    }
+
+    #[test]
+    fn published_digits_name_a_source_that_opens() {
+        let ask = |rung: Rung, source: Option<&'static str>| {
+            catch_unwind(move || {
+                let question = rung.asks("open?");
+                let question = match source {
+                    Some(source) => question.from(source),
+                    None => question,
+                };
+                question.within(0.0, 0.0, "equal");
+            })
+        };
+        let open = Some("a test set, https://example.org/digits");
+        assert!(ask(Rung::Published, open).is_ok());
+        assert!(ask(Rung::Published, None).is_err());
+        assert!(ask(Rung::Published, Some("a talk")).is_err());
+        assert!(ask(Rung::Computed, open).is_err());
     }
 
     #[test]
