@@ -2,6 +2,7 @@
 
 import uPlot from "uplot";
 import type { Channel, Run } from "./data";
+import { tickLabels } from "./text";
 
 const HEIGHT = 170;
 /** Charts that are open at the beginning. */
@@ -106,7 +107,7 @@ export class Charts {
         scales: { x: { time: false }, y: least === undefined ? {} : { range: (_, min, max) => [Math.min(least, min), 1.05 * max] } },
         axes: [
           { ...axis, label: this.run.is_static ? "t" : "t [s]", labelSize: 16, size: 32 },
-          { ...axis, label: unit === "1" ? "" : `[${unit}]`, labelSize: 16, size: 74, space: 26, values: (_, ticks) => ticks.map(short) },
+          { ...axis, size: 82, space: 26, values: (_, ticks) => tickLabels(ticks, unit) },
         ],
         series: [
           { label: "t", value: (_, v) => (v == null ? "–" : `${v.toPrecision(6)} s`) },
@@ -225,8 +226,4 @@ function ledger(run: Run): Series[] {
   const work = run.channels.find((c) => c.name === "energy.work")!.values;
   const supplied = Float64Array.from(work, (w) => sum[0] - work[0] + w);
   return [...stacked.reverse(), { label: "supplied: energy at the start + work", values: supplied }];
-}
-
-function short(tick: number): string {
-  return tick !== 0 && (Math.abs(tick) < 1e-3 || Math.abs(tick) >= 1e5) ? tick.toExponential(1).replace(".0e", "e") : String(Number(tick.toPrecision(6)));
 }
