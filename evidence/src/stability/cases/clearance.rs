@@ -1,6 +1,7 @@
 //! Clearance to nothing.
 
-use super::{amplitude, apart, largest, order, run};
+use super::{amplitude, apart, order, run};
+use crate::stability::outcome::largest;
 
 pub(super) fn limit() -> Vec<f64> {
     let settings = "simulation.duration=0.25; output.interval=1e-3; integrator.step=2e-6";

@@ -1,7 +1,7 @@
 //! Where schemes differ most: stiff springs.
 
-use super::{apart, column, gain, largest, order, run, try_run, yes};
-use crate::stability::outcome::Stopped;
+use super::{apart, column, gain, run};
+use crate::stability::outcome::largest;
 
 const TRUSS: &str = "hard/stiff-truss.toml";
 const PENDULUM: &str = "stiff-spring-pendulum.toml";
@@ -11,25 +11,8 @@ const SWING: f64 = 7.416_298_7;
 const TURN: f64 = 2.477_689_2;
 
 pub(super) fn stiff_springs() -> Vec<f64> {
-    let stopped = match try_run(TRUSS, "integrator.method=trapezoidal") {
-        Err(Stopped::Refused(message, _)) => message.contains("unstable"),
-        _ => false,
-    };
-    let (fine, _) = run(
-        PENDULUM,
-        "integrator.method=trapezoidal; integrator.step=5e-5",
-    );
-    // two stages a step against one
-    let errors = [("bathe", "5e-4"), ("trapezoidal", "2.5e-4")].map(|(method, step)| {
-        let chosen = format!("integrator.method={method}; integrator.step={step}");
-        apart(&run(PENDULUM, &chosen).0, &fine, "points.bob.center.x")
-    });
-    vec![
-        gain(&run(TRUSS, "").1),
-        yes(stopped),
-        gain(&run(PENDULUM, "integrator.step=0.01").1),
-        errors[0] / errors[1],
-    ]
+    let bathe = run(PENDULUM, "integrator.step=0.01");
+    vec![gain(&run(TRUSS, "").1), gain(&bathe.1)]
 }
 
 pub(super) fn three_springs() -> Vec<f64> {
@@ -73,16 +56,4 @@ pub(super) fn pendulum(swings: f64) -> f64 {
     let duration = (swings * SWING).ceil();
     let settings = "integrator.step=0.01; output.interval=1; simulation.duration";
     gain(&run(PENDULUM, &format!("{settings}={duration}")).1)
-}
-
-/// Order of the error of position of the truss.
-pub(super) fn truss_order() -> f64 {
-    let place = |step: f64| {
-        let settings = "simulation.duration=5; output.interval=5; integrator.step";
-        let (recording, _) = run(TRUSS, &format!("{settings}={step}"));
-        column(&recording, "points.bob.center.x")[1]
-    };
-    let fine = place(5e-4);
-    let error = |step| (step, (place(step) - fine).abs());
-    order(error(2e-2), error(1e-2))
 }
