@@ -22,23 +22,28 @@ const REFINEMENTS: usize = 5;
 const SHRINKS: f64 = 0.5;
 
 const STORED: [&str; 6] = [
-    "energy.kinetic",
-    "energy.axial",
-    "energy.bending",
-    "energy.contact",
-    "energy.gravity",
-    "energy.springs",
+    "kinetic", "axial", "bending", "contact", "gravity", "springs",
 ];
 const GONE: [&str; 3] = [
-    "energy.contact_dissipated",
-    "energy.friction_dissipated",
-    "energy.damping_dissipated",
+    "contact_dissipated",
+    "friction_dissipated",
+    "damping_dissipated",
 ];
 
-/// Sum of channels in a row, and of their magnitudes.
+/// Sum of energies in a row, and of their magnitudes.
 fn sum(run: &RandomRun, names: &[&str], row: usize) -> (f64, f64) {
-    let each = names.iter().map(|name| run.get(name, row));
+    let each = names
+        .iter()
+        .map(|name| run.get(&format!("energy.{name}"), row));
     each.fold((0.0, 0.0), |(sum, size), e| (sum + e, size + e.abs()))
+}
+
+/// Least and greatest value of an energy.
+fn range(run: &RandomRun, name: &str) -> (f64, f64) {
+    let values = run.rows.get(&format!("energy.{name}")).unwrap_or(&[]);
+    let limits = (f64::INFINITY, f64::NEG_INFINITY);
+    let wider = |(low, high): (f64, f64), x: &f64| (x.min(low), x.max(high));
+    values.iter().fold(limits, wider)
 }
 
 /// The ledger's identity: what is stored, was done and has gone adds up to what is called numerical.
@@ -61,14 +66,14 @@ pub fn identity(run: &RandomRun) -> Result<(), Breach> {
 fn defect(run: &RandomRun) -> (f64, f64) {
     let scene = &run.scene;
     // what moves: the kinetic energy, and changes of all others
-    let moving = STORED[1..].iter().chain(&GONE).chain(&["energy.work"]);
-    let size = moving.fold(run.range(STORED[0]).1, |size, name| {
-        let (low, high) = run.range(name);
+    let moving = STORED[1..].iter().chain(&GONE).chain(&["work"]);
+    let size = moving.fold(range(run, STORED[0]).1, |size, name| {
+        let (low, high) = range(run, name);
         size.max(high - low)
     });
-    let (low, high) = run.range("energy.numerical");
+    let (low, high) = range(run, "numerical");
     // rounding of the largest terms, and energies of strains and of ways of 1e-10: what rounding makes of things at rest
-    let stored = STORED.iter().map(|name| run.range(name));
+    let stored = STORED.iter().map(|name| range(run, name));
     let largest = stored.fold(0.0, |m: f64, (a, b)| b.max(-a).max(m));
     let length = extent(run, 0);
     let pace = length / scene.simulation.duration;
