@@ -52,9 +52,6 @@ pub const SOLVER: Scope = Scope {
     tests: "--test-package=looselink,looselink-cli,studies,evidence",
 };
 
-/// The lists in which cargo-mutants keeps the names of mutants, by its verdicts on them.
-const VERDICTS: [&str; 4] = ["caught", "timeout", "missed", "unviable"];
-
 /// A mutation run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Mutants {
@@ -114,8 +111,21 @@ pub fn measure(scope: &Scope, journal: &Journal) -> Result<Value> {
     drawn.shuffle(&mut ChaCha8Rng::seed_from_u64(SEED));
     drawn.truncate(scope.count);
     for (index, part) in drawn.chunks(PART).enumerate() {
-        let lists = journal.item(&format!("part {index}"), || test(scope, &tree, part))?;
-        found.add(part, lists);
+        let tried = journal.item(&format!("part {index}"), || test(scope, &tree, part))?;
+        // cargo-mutants 27.1 tests some deleted fields that no expression names
+        for (name, verdict) in tried.into_iter().filter(|(name, _)| part.contains(name)) {
+            let file = name.split(':').next().unwrap_or(&name).to_owned();
+            let counts = found.files.entry(file).or_default();
+            match &verdict[..] {
+                "caught" => counts.caught += 1,
+                "timeout" => counts.timeout += 1,
+                "unviable" => counts.unviable += 1,
+                _ => {
+                    counts.survived += 1;
+                    found.survivors.push(name);
+                }
+            }
+        }
     }
     found.survivors.sort();
     let judged = found.files.values().map(|c| c.viable() + c.unviable);
@@ -128,8 +138,8 @@ pub fn measure(scope: &Scope, journal: &Journal) -> Result<Value> {
     results(found)
 }
 
-/// Has cargo-mutants try these mutants in the copy; their names by its verdicts.
-fn test(scope: &Scope, tree: &Path, drawn: &[String]) -> Result<[Vec<String>; 4]> {
+/// Has cargo-mutants try these mutants in the copy; their names and its verdicts.
+fn test(scope: &Scope, tree: &Path, drawn: &[String]) -> Result<Vec<(String, String)>> {
     let output = root().join("target/mutation");
     let mut command = Command::new("cargo");
     command.arg("mutants").current_dir(tree);
@@ -151,14 +161,17 @@ fn test(scope: &Scope, tree: &Path, drawn: &[String]) -> Result<[Vec<String>; 4]
     // its exit code says whether there are survivors; what became of each mutant stands in its files
     let started = command.status().into_diagnostic();
     started.wrap_err("cargo-mutants cannot be started")?;
-    let mut lists = [const { Vec::new() }; 4];
-    for (verdict, list) in VERDICTS.iter().zip(&mut lists) {
+    let mut tried = Vec::new();
+    for verdict in ["caught", "timeout", "missed", "unviable"] {
         let path = output.join(format!("mutants.out/{verdict}.txt"));
         let text = fs::read_to_string(&path).into_diagnostic();
         let text = text.wrap_err_with(|| format!("cannot read {}", path.display()))?;
-        list.extend(text.lines().map(str::to_owned));
+        tried.extend(
+            text.lines()
+                .map(|name| (name.to_owned(), verdict.to_owned())),
+        );
     }
-    Ok(lists)
+    Ok(tried)
 }
 
 /// Names of all mutants of a scope.
@@ -175,26 +188,4 @@ fn list(scope: &Scope, tree: &Path) -> Result<Vec<String>> {
     );
     let text = String::from_utf8(listed.stdout).into_diagnostic()?;
     Ok(text.lines().map(str::to_owned).collect())
-}
-
-impl Mutants {
-    /// Adds the verdicts on the mutants that were drawn.
-    fn add(&mut self, drawn: &[String], lists: [Vec<String>; 4]) {
-        for (verdict, names) in VERDICTS.iter().zip(lists) {
-            // cargo-mutants 27.1 tests some deleted fields that no expression names
-            for name in names.into_iter().filter(|name| drawn.contains(name)) {
-                let file = name.split(':').next().unwrap_or(&name).to_owned();
-                let counts = self.files.entry(file).or_default();
-                match *verdict {
-                    "caught" => counts.caught += 1,
-                    "timeout" => counts.timeout += 1,
-                    "unviable" => counts.unviable += 1,
-                    _ => {
-                        counts.survived += 1;
-                        self.survivors.push(name);
-                    }
-                }
-            }
-        }
-    }
 }

@@ -30,36 +30,12 @@ const GONE: [&str; 3] = [
     "damping_dissipated",
 ];
 
-/// Sum of energies in a row, and of their magnitudes.
-fn sum(run: &RandomRun, names: &[&str], row: usize) -> (f64, f64) {
-    let each = names
-        .iter()
-        .map(|name| run.get(&format!("energy.{name}"), row));
-    each.fold((0.0, 0.0), |(sum, size), e| (sum + e, size + e.abs()))
-}
-
 /// Least and greatest value of an energy.
 fn range(run: &RandomRun, name: &str) -> (f64, f64) {
     let values = run.rows.get(&format!("energy.{name}")).unwrap_or(&[]);
     let limits = (f64::INFINITY, f64::NEG_INFINITY);
     let wider = |(low, high): (f64, f64), x: &f64| (x.min(low), x.max(high));
     values.iter().fold(limits, wider)
-}
-
-/// The ledger's identity: what is stored, was done and has gone adds up to what is called numerical.
-pub fn identity(run: &RandomRun) -> Result<(), Breach> {
-    for row in 0..run.rows.rows() {
-        let (initial, first) = sum(run, &STORED, 0);
-        let ((stored, a), (gone, b)) = (sum(run, &STORED, row), sum(run, &GONE, row));
-        let work = run.get("energy.work", row);
-        let rest = initial + work - gone - stored - run.get("energy.numerical", row);
-        let size = first + a + b + work.abs();
-        if rest.abs() > ROUNDING * size {
-            let detail = format!("{rest:e} J of {size:e} J are left over in row {row}");
-            return breach("the ledger adds up", detail);
-        }
-    }
-    Ok(())
 }
 
 /// Largest defect of the ledger \[J\], and what it is measured by.
