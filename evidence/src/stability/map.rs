@@ -1,6 +1,8 @@
 //! Maps: a scene over a parameter and the step, with every method.
 
-use crate::stability::outcome::{OutcomeClass, Stopped, gist, judge, judge_stop, largest, record};
+use crate::stability::outcome::{
+    OutcomeClass, Stopped, gist, judge, judge_stop, largest, limits, record,
+};
 use indexmap::IndexSet;
 use looselink::scene::Scene;
 use looselink::simulate::Recording;
@@ -186,8 +188,8 @@ fn range(recording: &Recording) -> f64 {
     let columns = recording.names().iter().skip(1);
     let columns = columns.filter_map(|name| recording.get(name));
     let widths = columns.map(|x| {
-        let greatest = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        greatest - x.iter().copied().fold(f64::INFINITY, f64::min)
+        let [least, greatest] = limits(x.iter().copied());
+        greatest - least
     });
     widths.fold(0.0, f64::max)
 }

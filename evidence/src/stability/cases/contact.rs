@@ -1,7 +1,7 @@
 //! Contacts and friction at their limits.
 
 use super::{amplitude, apart, column, imbalance, order, refined, run, try_run, yes};
-use crate::stability::outcome::largest;
+use crate::stability::outcome::{largest, limits};
 
 const JOURNAL: &str = "bouncing-journal.toml";
 const GRAZING: &str = "hard/grazing.toml";
@@ -46,16 +46,14 @@ fn six_at_once() -> [f64; 3] {
     // the fastest is the last of the scene
     let arrivals = speeds.iter().rev().map(|speed| 2e-5 / speed);
     let errors = onsets.iter().zip(arrivals).map(|(onset, t)| onset.t - t);
-    let rebounds = || {
-        speeds.iter().enumerate().map(|(k, speed)| {
-            let name = format!("journal{k}.vx").replace('0', "");
-            column(&recording, &name).last().expect("rows") / speed
-        })
-    };
+    let [least, greatest] = limits(speeds.iter().enumerate().map(|(k, speed)| {
+        let name = format!("journal{k}.vx").replace('0', "");
+        column(&recording, &name).last().expect("rows") / speed
+    }));
     [
         (onsets[5].t - onsets[0].t) / 1.6e-6,
         largest(errors),
-        rebounds().fold(f64::MIN, f64::max) - rebounds().fold(f64::MAX, f64::min),
+        greatest - least,
     ]
 }
 
@@ -75,8 +73,8 @@ pub(super) fn onsets() -> Vec<f64> {
                    simulation.duration=0.05; output.interval=1e-3";
     let (together, report) = run("3rrr/case3.toml", turning);
     let spreads = together.onsets.chunks(3).take(4).map(|group| {
-        let times = || group.iter().map(|onset| onset.t);
-        times().fold(0.0, f64::max) - times().fold(f64::MAX, f64::min)
+        let [first, last] = limits(group.iter().map(|onset| onset.t));
+        last - first
     });
     let [within, instants, rebounds] = six_at_once();
     vec![
@@ -104,9 +102,7 @@ pub(super) fn stick_slip() -> Vec<f64> {
     let least = [0.1, 0.5, 1.0, 2.0].map(|coefficient| {
         let rows = rows(1e-4, coefficient);
         let losses = column(&rows, "energy.friction_dissipated").windows(2);
-        losses
-            .map(|pair| pair[1] - pair[0])
-            .fold(f64::MAX, f64::min)
+        limits(losses.map(|pair| pair[1] - pair[0]))[0]
     });
     let named = match try_run(SLIDING, &settings(1e-9, 0.5)) {
         Ok((_, report)) => !report.warnings().is_empty(),
@@ -114,7 +110,7 @@ pub(super) fn stick_slip() -> Vec<f64> {
     };
     vec![
         order(error(1e-2), error(1e-3)),
-        least.into_iter().fold(f64::MAX, f64::min),
+        limits(least)[0],
         yes(named),
     ]
 }

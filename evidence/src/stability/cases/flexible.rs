@@ -5,18 +5,6 @@ use crate::stability::outcome::largest;
 use looselink::simulate::{Recording, Simulation};
 use looselink::system::System;
 
-/// What a free flight has changed.
-pub(super) struct Flight {
-    /// Largest deviation of the velocity of the centre of mass, relative.
-    pub linear: f64,
-    /// Angular momentum about the origin at the end over that at the start, less 1.
-    pub angular: f64,
-    /// Energy gained, relative.
-    pub gain: f64,
-    /// Energy lost, relative.
-    pub lost: f64,
-}
-
 /// Angular momentum about the origin \[kg m2/s\]: a turn changes every pair of coordinates, of nodes and of slopes, as a vector.
 fn spin(simulation: &Simulation) -> f64 {
     let at = simulation.state();
@@ -26,8 +14,9 @@ fn spin(simulation: &Simulation) -> f64 {
     pairs.map(|(q, p)| q[0] * p[1] - q[1] * p[0]).sum()
 }
 
-/// Flies the link.
-pub(super) fn fly(step: f64, duration: f64, rows: usize) -> Flight {
+/// What a free flight of the link changes, relative: the velocity of the centre of mass, by its largest deviation; the energy
+/// gained, and lost; the angular momentum.
+pub(super) fn fly(step: f64, duration: f64, rows: usize) -> [f64; 4] {
     let settings = format!("integrator.step={step}; simulation.duration={duration}");
     let rows = format!("{settings}; output.interval={}", duration / rows as f64);
     let scene = load("hard/spinning-link.toml", &rows);
@@ -39,23 +28,13 @@ pub(super) fn fly(step: f64, duration: f64, rows: usize) -> Flight {
     let report = simulation.report();
     let [vx, vy] = ["rod.vx", "rod.vy"].map(|name| column(&recording, name));
     let drift = [vx, vy].map(|v| largest(v.iter().map(|x| x - v[0])));
-    Flight {
-        linear: largest(drift) / vx[0].hypot(vy[0]),
-        angular: after / before - 1.0,
-        gain: gain(&report),
-        lost: lost(&report)[1],
-    }
+    let linear = largest(drift) / vx[0].hypot(vy[0]);
+    let angular = (after / before - 1.0).abs();
+    [linear, gain(&report), lost(&report)[1], angular]
 }
 
 pub(super) fn spinning_link() -> Vec<f64> {
-    let flight = fly(5e-4, 50.0, 100);
-    let Flight {
-        linear,
-        gain,
-        lost,
-        angular,
-    } = flight;
-    vec![linear, gain, lost, angular.abs()]
+    fly(5e-4, 50.0, 100).to_vec()
 }
 
 pub(super) fn rigid_limit() -> Vec<f64> {

@@ -65,7 +65,7 @@ type Numbers = fn() -> Vec<f64>;
 
 /// In the order of the cases: the numbers of tests, and those that take minutes.
 const NUMBERS: [(Numbers, Option<Numbers>); 15] = [
-    (schemes::stiff_springs, Some(long::revolutions)),
+    (schemes::stiff_springs, Some(schemes::revolutions)),
     (schemes::three_springs, None),
     (flexible::spinning_link, Some(long::spinning_link)),
     (clearance::limit, None),

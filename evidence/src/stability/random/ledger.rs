@@ -10,6 +10,7 @@
 
 use super::newton_law::{extent, mass, stiffness};
 use super::run::{Breach, RandomRun, breach, run};
+use crate::stability::outcome::limits;
 use looselink::scene::{Pace, Scene};
 
 /// Terms of the ledger are sums of a few dozen numbers each, which may cancel each other.
@@ -33,9 +34,7 @@ const GONE: [&str; 3] = [
 /// Least and greatest value of an energy.
 fn range(run: &RandomRun, name: &str) -> (f64, f64) {
     let values = run.rows.get(&format!("energy.{name}")).unwrap_or(&[]);
-    let limits = (f64::INFINITY, f64::NEG_INFINITY);
-    let wider = |(low, high): (f64, f64), x: &f64| (x.min(low), x.max(high));
-    values.iter().fold(limits, wider)
+    limits(values.iter().copied()).into()
 }
 
 /// Largest defect of the ledger \[J\], and what it is measured by.
