@@ -70,7 +70,8 @@ fn silent(one: &MadeMap, known: &[KnownSilent]) -> Vec<Value> {
         let listed = known.find(|k| k.is(&one.name, method, parameter, column));
         context! {
             because => listed.map_or("**not known**", |listed| &listed.because),
-            map => &one.name, method, value => value(one, parameter), column => si(column, unit(one, method)),
+            map => &one.name, method, value => value(one, parameter),
+            column => si(column, unit(one, method)),
             error => cell.1.map(|error| si(error, channel_unit(one))),
         }
     };

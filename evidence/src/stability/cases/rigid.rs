@@ -4,7 +4,8 @@ use super::{amplitude, apart, run, try_run, yes};
 use crate::stability::outcome::largest;
 
 pub(super) fn singular_poses() -> Vec<f64> {
-    let flat = "initial.sketch={ B0 = [1.0, 0.0], B1 = [2.0, 0.0], B2 = [3.0, 0.0] }; initial.velocities={}";
+    let flat = "initial.sketch={ B0 = [1.0, 0.0], B1 = [2.0, 0.0], B2 = [3.0, 0.0] }; \
+                initial.velocities={}";
     let refused = match try_run("n-four-bar.toml", flat) {
         Err(stopped) => stopped.to_string().contains("singular pose"),
         Ok(_) => false,
