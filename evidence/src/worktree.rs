@@ -6,7 +6,7 @@ use miette::{IntoDiagnostic, Result, WrapErr, ensure, miette};
 use records::{Journal, Origin, Record, root};
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Runs campaigns at a commit, or at the one that is checked out; with `resume` those that were interrupted, at theirs, whose
@@ -91,6 +91,16 @@ pub fn measure(
         seconds: Some(journal.seconds().round()),
     };
     Record { origin, results }.write(path)
+}
+
+/// A copy of this workspace at its commit, in `target/<name>/tree`: a worktree of its own, which changes to it do not leave.
+///
+/// # Errors
+/// A folder that cannot be written.
+pub fn copy(name: &str) -> Result<PathBuf> {
+    let tree = root().join("target").join(name).join("tree");
+    check_out(&tree, &git(&["rev-parse", "HEAD"])?)?;
+    Ok(tree)
 }
 
 /// A worktree of the commit in this folder; one that is there is brought to it.

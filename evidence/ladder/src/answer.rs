@@ -1,10 +1,10 @@
 //! One row of the ladder, and the folder that rows are kept in between the tests and the page.
 
 use crate::Rung;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr, ensure};
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use std::fs;
+use std::fs::{self, File};
 use std::path::Path;
 
 /// What is allowed of a number.
@@ -23,13 +23,6 @@ pub struct ErrorCurve {
     pub abscissa: String,
     /// Abscissa and error.
     pub errors: Vec<(f64, f64)>,
-}
-
-impl ErrorCurve {
-    /// The first abscissa and the error there.
-    pub fn start(&self) -> Option<(f64, f64)> {
-        self.errors.first().copied()
-    }
 }
 
 /// A question with its answer.
@@ -108,17 +101,12 @@ impl Answer {
             if c.is_ascii_alphanumeric() { c } else { '-' }
         };
         let name: String = self.question.chars().map(slug).collect();
-        let path = folder.join(format!("{:?}-{name}.json", self.rung));
-        if path.exists() {
-            return Err(miette!("asked twice: {}", self.question));
-        }
-        let text = serde_json::to_string_pretty(self).into_diagnostic()?;
-        // under another name first: another program never sees half an answer
-        let draft = path.with_extension("draft");
-        fs::write(&draft, text)
-            .and_then(|()| fs::rename(&draft, &path))
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot write {}", path.display()))
+        let name = format!("{:?}-{name}.json", self.rung);
+        // a file that is there is an error: the question has been asked before
+        let file = File::create_new(folder.join(name)).into_diagnostic();
+        let file =
+            file.wrap_err_with(|| format!("cannot keep the answer to: {}", self.question))?;
+        serde_json::to_writer(file, self).into_diagnostic()
     }
 
     /// The answers of a folder, rung by rung and in the order of the tests' files.
@@ -127,24 +115,14 @@ impl Answer {
     /// A folder that cannot be read or has no answers.
     pub fn read_all(folder: &Path) -> Result<Vec<Answer>> {
         let mut answers: Vec<Answer> = Vec::new();
-        let entries = fs::read_dir(folder)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot read {}", folder.display()))?;
-        for entry in entries {
+        for entry in fs::read_dir(folder).into_diagnostic()? {
             let path = entry.into_diagnostic()?.path();
-            if path.extension().is_some_and(|e| e == "json") {
-                let text = fs::read_to_string(&path).into_diagnostic()?;
-                let answer = serde_json::from_str(&text).into_diagnostic();
-                answers.push(answer.wrap_err_with(|| path.display().to_string())?);
-            }
+            let text = fs::read_to_string(&path).into_diagnostic()?;
+            let answer = serde_json::from_str(&text).into_diagnostic();
+            answers.push(answer.wrap_err_with(|| path.display().to_string())?);
         }
-        if answers.is_empty() {
-            return Err(miette!("no answers in {}", folder.display()));
-        }
-        answers.sort_by(|a, b| {
-            let key = |x: &Answer| (x.rung, x.file.clone(), x.line, x.question.clone());
-            key(a).cmp(&key(b))
-        });
+        ensure!(!answers.is_empty(), "no answers in {}", folder.display());
+        answers.sort_by_cached_key(|x| (x.rung, x.file.clone(), x.line, x.question.clone()));
         Ok(answers)
     }
 }

@@ -49,71 +49,6 @@ pub enum Rung {
 }
 
 impl Rung {
-    /// All rungs from the lowest up.
-    pub const ALL: [Rung; 11] = [
-        Rung::Identities,
-        Rung::Derivatives,
-        Rung::Routes,
-        Rung::OrderInTime,
-        Rung::OrderInElements,
-        Rung::Balance,
-        Rung::Codes,
-        Rung::ClosedForms,
-        Rung::Computed,
-        Rung::Published,
-        Rung::HardCases,
-    ];
-
-    /// Title and what the rung asks.
-    pub fn title(self) -> (&'static str, &'static str) {
-        match self {
-            Rung::Identities => (
-                "Identities",
-                "Properties that hold for all inputs, tested on random ones.",
-            ),
-            Rung::Derivatives => (
-                "Derivatives",
-                "Do derivatives agree with central differences, whose error is of order 2 in the span? A lower order means a \
-                 wrong derivative; a higher order, a test that does not see it.",
-            ),
-            Rung::Routes => (
-                "Routes",
-                "Do two independent ways to compute a quantity agree?",
-            ),
-            Rung::OrderInTime => (
-                "Order in time",
-                "Does the error fall with the order of the scheme? Orders are bounded from below and above.",
-            ),
-            Rung::OrderInElements => (
-                "Order in elements",
-                "Does the error fall with the order of the element?",
-            ),
-            Rung::Balance => ("Balance", "Do energy and momentum balance?"),
-            Rung::Codes => (
-                "Code to code",
-                "Does the independent C++ implementation agree? [verify/REPORT.md](verify/REPORT.md) has every row; listed here \
-                 is the row of each comparison that is closest to its tolerance.",
-            ),
-            Rung::ClosedForms => (
-                "Closed forms",
-                "Do results agree with formulas that follow on paper?",
-            ),
-            Rung::Computed => (
-                "Computed digits",
-                "Do results agree with digits that were computed once by another way: quadrature, collocation, extrapolation, \
-                 arithmetic with more digits? Nobody else published them.",
-            ),
-            Rung::Published => (
-                "Published digits",
-                "Do results agree with digits in a source that anyone can open?",
-            ),
-            Rung::HardCases => (
-                "Hard cases",
-                "Are results right in cases known to be difficult?",
-            ),
-        }
-    }
-
     /// Begins a row. A question is asked once.
     #[track_caller]
     pub fn asks(self, question: impl Into<String>) -> Question {
@@ -147,14 +82,9 @@ impl Question {
     /// # Panics
     /// When it is not.
     pub fn within(self, error: impl MeasuredError, tolerance: f64, reason: &str) {
-        let number = error.error().abs();
-        self.answer(
-            number,
-            &error.place(),
-            Allowed::AtMost(tolerance),
-            reason,
-            None,
-        );
+        let (error, place) = error.error();
+        let allowed = Allowed::AtMost(tolerance);
+        self.answer(error.abs(), &place, allowed, reason, None);
     }
 
     /// Answers with a number between two others.
@@ -162,13 +92,8 @@ impl Question {
     /// # Panics
     /// When it is not.
     pub fn between(self, value: f64, bounds: Range<f64>, reason: &str) {
-        self.answer(
-            value,
-            "",
-            Allowed::Between(bounds.start, bounds.end),
-            reason,
-            None,
-        );
+        let allowed = Allowed::Between(bounds.start, bounds.end);
+        self.answer(value, "", allowed, reason, None);
     }
 
     /// Answers with errors that fall, from each abscissa to the next, with an order within the bounds. The number of the
@@ -226,13 +151,8 @@ impl Question {
             abscissa: abscissa.into(),
             errors: errors.to_vec(),
         };
-        self.answer(
-            order,
-            "",
-            Allowed::Between(orders.start, orders.end),
-            reason,
-            Some(curve),
-        );
+        let allowed = Allowed::Between(orders.start, orders.end);
+        self.answer(order, "", allowed, reason, Some(curve));
     }
 
     fn answer(
@@ -263,20 +183,14 @@ impl Question {
         };
         // what this crate asks to test itself is no evidence
         if let Some(folder) = std::env::var_os(FOLDER).filter(|_| !cfg!(test)) {
-            answer
-                .write(folder.as_ref())
-                .unwrap_or_else(|e| panic!("{e}"));
+            let written = answer.write(folder.as_ref());
+            written.unwrap_or_else(|e| panic!("{e:?}"));
         }
+        let errors = answer.curve.as_ref().map(|curve| &curve.errors);
         assert!(
             answer.holds(),
-            "{}\n  {} {place} is not {}: {}{}",
+            "{}\n  {number} {place} is not {allowed}: {reason}\n  errors {errors:?}",
             answer.question,
-            answer.number,
-            answer.allowed,
-            answer.reason,
-            answer
-                .curve
-                .map_or(String::new(), |c| format!("\n  errors {:?}", c.errors))
         );
     }
 }
@@ -317,35 +231,17 @@ mod tests {
     #[test]
     fn orders_are_bounded_on_both_sides() {
         let errors = |order: f64| [0.4_f64, 0.2, 0.1].map(|h| (h, 3.0 * h.powf(order)));
-        Rung::OrderInTime
-            .asks("2?")
-            .falls("h", &errors(2.0), 1.9..2.1, "");
-        Rung::OrderInTime
-            .asks("2 on average?")
-            .falls_on_average("h", &errors(2.0), 1.9..2.1, "");
+        let ask = || Rung::OrderInTime.asks("2?");
+        ask().falls("h", &errors(2.0), 1.9..2.1, "");
+        ask().falls_on_average("h", &errors(2.0), 1.9..2.1, "");
         for order in [1.8, 2.2, f64::NAN] {
-            let pairs = move || {
-                Rung::OrderInTime
-                    .asks("no?")
-                    .falls("h", &errors(order), 1.9..2.1, "");
-            };
-            let line = move || {
-                Rung::OrderInTime
-                    .asks("no?")
-                    .falls_on_average("h", &errors(order), 1.9..2.1, "");
-            };
-            assert!(
-                catch_unwind(pairs).is_err() && catch_unwind(line).is_err(),
-                "{order}"
-            );
+            let pairs = || ask().falls("h", &errors(order), 1.9..2.1, "");
+            let line = || ask().falls_on_average("h", &errors(order), 1.9..2.1, "");
+            assert!(catch_unwind(pairs).is_err() && catch_unwind(line).is_err());
         }
         // one pair of three with another order
         let bent = [(0.4, 0.16), (0.2, 0.04), (0.1, 0.03)];
-        let ask = move || {
-            Rung::OrderInTime
-                .asks("bent?")
-                .falls("h", &bent, 1.9..2.1, "")
-        };
+        let ask = || ask().falls("h", &bent, 1.9..2.1, "");
         assert!(catch_unwind(ask).is_err());
     }
 }

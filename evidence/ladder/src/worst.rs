@@ -10,29 +10,21 @@ pub struct Worst {
     place: RefCell<String>,
 }
 
-/// An error, and where it was seen if that is known.
+/// An error, and where it was seen; the place is empty when it is not known.
 pub trait MeasuredError {
-    /// The error.
-    fn error(&self) -> f64;
-    /// Where; empty when it is not known.
-    fn place(&self) -> String {
-        String::new()
-    }
+    /// Both.
+    fn error(&self) -> (f64, String);
 }
 
 impl MeasuredError for f64 {
-    fn error(&self) -> f64 {
-        *self
+    fn error(&self) -> (f64, String) {
+        (*self, String::new())
     }
 }
 
 impl MeasuredError for &Worst {
-    fn error(&self) -> f64 {
-        self.value()
-    }
-
-    fn place(&self) -> String {
-        self.place.borrow().clone()
+    fn error(&self) -> (f64, String) {
+        (self.value(), self.place.borrow().clone())
     }
 }
 
@@ -49,12 +41,8 @@ impl Worst {
 
     /// Looks at an error, of either sign.
     pub fn see(&self, error: f64) {
-        let error = error.abs();
-        let replaces = match self.largest.get() {
-            None => true,
-            Some(largest) => error.is_nan() || error > largest,
-        };
-        if replaces && !self.largest.get().is_some_and(f64::is_nan) {
+        let (error, largest) = (error.abs(), self.largest.get());
+        if largest.is_none_or(|largest| error > largest || error.is_nan() && !largest.is_nan()) {
             self.largest.set(Some(error));
             self.place.borrow_mut().clone_from(&self.here.borrow());
         }
@@ -91,7 +79,7 @@ mod tests {
             worst.at(place);
             worst.see(error);
         }
-        assert_eq!((&worst).place(), "b");
+        assert_eq!((&worst).error(), (3.0, "b".to_owned()));
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! The journal of a campaign: what it has measured so far, and for how long.
 
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -9,8 +11,6 @@ use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::Path;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::thread;
 use std::time::Instant;
 
 /// Finished items by their name. An item that is in the journal is not measured again.
@@ -65,25 +65,20 @@ impl Journal {
         let file = file
             .into_diagnostic()
             .wrap_err_with(|| format!("cannot write {name}"))?;
-        Ok(Journal {
-            lines: Mutex::new(Lines {
-                done,
-                file: Some(file),
-            }),
-            begun: Instant::now(),
-            before,
-        })
+        Ok(Journal::of(done, Some(file), before))
     }
 
     /// A journal without a file.
     pub fn unkept() -> Journal {
+        Journal::of(HashMap::new(), None, 0.0)
+    }
+
+    fn of(done: HashMap<String, Value>, file: Option<File>, before: f64) -> Journal {
+        let lines = Mutex::new(Lines { done, file });
         Journal {
-            lines: Mutex::new(Lines {
-                done: HashMap::new(),
-                file: None,
-            }),
+            lines,
             begun: Instant::now(),
-            before: 0.0,
+            before,
         }
     }
 
@@ -119,7 +114,7 @@ impl Journal {
     /// Items side by side on so many threads; the results have the order of `keys`.
     ///
     /// # Errors
-    /// That of the first item that failed, in the order of `keys`.
+    /// That of an item that failed.
     pub fn items<K: Sync, T: Serialize + DeserializeOwned + Send>(
         &self,
         keys: &[K],
@@ -127,17 +122,12 @@ impl Journal {
         name: impl Fn(&K) -> String + Sync,
         measure: impl Fn(&K) -> Result<T> + Sync,
     ) -> Result<Vec<T>> {
-        let failed = AtomicBool::new(false);
-        let work = |key: &K| {
-            // after a failure nothing else begins
-            if failed.load(Ordering::Relaxed) {
-                return None;
-            }
-            let result = self.item(&name(key), || measure(key));
-            failed.fetch_or(result.is_err(), Ordering::Relaxed);
-            Some(result)
-        };
-        each(keys, threads, work).into_iter().flatten().collect()
+        // after a failure nothing else begins
+        pool(threads).install(|| {
+            let keys = keys.par_iter().with_max_len(1);
+            keys.map(|key| self.item(&name(key), || measure(key)))
+                .collect()
+        })
     }
 
     fn keep(&self, name: &str, value: &Value) -> Result<()> {
@@ -163,25 +153,14 @@ impl Journal {
     }
 }
 
-/// Does something with every key on so many threads, each taking the next key; results in the order of `keys`.
+/// Does something with every key on so many threads; results in the order of `keys`.
 pub fn each<K: Sync, T: Send>(keys: &[K], threads: usize, work: impl Fn(&K) -> T + Sync) -> Vec<T> {
-    let next = AtomicUsize::new(0);
-    let found = Mutex::new(Vec::new());
-    let take = || {
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(key) = keys.get(index) else { return };
-            let result = work(key);
-            found
-                .lock()
-                .unwrap_or_else(|e| e.into_inner())
-                .push((index, result));
-        }
-    };
-    thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(take))));
-    let mut found = found.into_inner().unwrap_or_else(|e| e.into_inner());
-    found.sort_by_key(|(index, _)| *index);
-    found.into_iter().map(|(_, result)| result).collect()
+    pool(threads).install(|| keys.par_iter().with_max_len(1).map(&work).collect())
+}
+
+fn pool(threads: usize) -> ThreadPool {
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.expect("threads can be started")
 }
 
 #[cfg(test)]

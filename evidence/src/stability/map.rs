@@ -1,9 +1,12 @@
 //! Maps: a scene over a parameter and the step, with every method.
 
-use crate::stability::outcome::{OutcomeClass, Stopped, gist, judge, judge_stop, record};
+use crate::stability::outcome::{
+    OutcomeClass, Stopped, gist, judge, judge_stop, largest, limits, record,
+};
+use indexmap::IndexSet;
 use looselink::scene::Scene;
 use looselink::simulate::Recording;
-use miette::{IntoDiagnostic, Result, WrapErr, bail, ensure, miette};
+use miette::{IntoDiagnostic, Result, WrapErr, ensure, miette};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -124,7 +127,7 @@ pub struct MadeMap {
     /// What came of it.
     pub panels: Vec<MapPanel>,
     /// First warnings of errors and causes of stops, without their numbers.
-    pub said: Vec<String>,
+    pub said: IndexSet<String>,
 }
 
 /// Silent runs of one kind, in `evidence/silent.toml`.
@@ -166,11 +169,9 @@ pub fn known_silent() -> Result<Vec<KnownSilent>> {
 /// # Errors
 /// A folder that cannot be read.
 pub fn files() -> Result<Vec<PathBuf>> {
-    let folder = records::root().join("evidence/maps");
-    let mut paths = Vec::new();
-    for entry in std::fs::read_dir(folder).into_diagnostic()? {
-        paths.push(entry.into_diagnostic()?.path());
-    }
+    let entries = std::fs::read_dir(records::root().join("evidence/maps")).into_diagnostic()?;
+    let paths = entries.map(|entry| Ok(entry.into_diagnostic()?.path()));
+    let mut paths = paths.collect::<Result<Vec<_>>>()?;
     paths.sort();
     Ok(paths)
 }
@@ -179,16 +180,16 @@ pub fn files() -> Result<Vec<PathBuf>> {
 pub fn difference(a: &Recording, b: &Recording) -> f64 {
     let columns = a.names().iter().skip(1);
     let pairs = columns.filter_map(|name| Some(a.get(name)?.iter().zip(b.get(name)?)));
-    let differences = pairs.flatten().map(|(a, b)| (a - b).abs());
-    differences.fold(0.0, |m: f64, d| if m.is_nan() || d <= m { m } else { d })
+    largest(pairs.flatten().map(|(a, b)| a - b))
 }
 
 /// Widest range of the channels of a recording.
-pub fn range(recording: &Recording) -> f64 {
+fn range(recording: &Recording) -> f64 {
     let columns = recording.names().iter().skip(1);
-    let widths = columns.filter_map(|name| recording.get(name)).map(|x| {
-        let greatest = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        greatest - x.iter().copied().fold(f64::INFINITY, f64::min)
+    let columns = columns.filter_map(|name| recording.get(name));
+    let widths = columns.map(|x| {
+        let [least, greatest] = limits(x.iter().copied());
+        greatest - least
     });
     widths.fold(0.0, f64::max)
 }
@@ -199,23 +200,20 @@ impl Map {
     /// # Errors
     /// A file that cannot be read, or a fault with its line.
     pub fn load(path: &Path) -> Result<Map> {
-        let name = || path.display().to_string();
-        let text = std::fs::read_to_string(path);
-        let text = text.into_diagnostic().wrap_err_with(name)?;
-        let map: Map = toml::from_str(&text)
-            .into_diagnostic()
-            .wrap_err_with(name)?;
+        let name = path.display();
+        let text = std::fs::read_to_string(path).into_diagnostic();
+        let read = text.and_then(|text| toml::from_str(&text).into_diagnostic());
+        let map: Map = read.wrap_err_with(|| name.to_string())?;
         let (steps, values) = (map.reference.steps.len(), map.parameter.values.len());
         ensure!(
             steps == 1 || steps == values,
-            "{}: {steps} steps of the reference for {values} values",
-            name()
+            "{name}: {steps} steps of the reference for {values} values"
         );
-        let known = |name: &&String| METHODS.iter().any(|(method, _)| method == name);
-        match map.without.iter().find(|name| !known(name)) {
-            Some(unknown) => bail!("{}: no method is called {unknown:?}", name()),
-            None => Ok(map),
+        for method in &map.without {
+            let known = METHODS.iter().any(|(known, _)| known == method);
+            ensure!(known, "{name}: no method is called {method:?}");
         }
+        Ok(map)
     }
 
     /// What the columns of a panel are: steps \[s\], or accuracies in the unit of the channels.
@@ -299,7 +297,7 @@ impl Map {
             .into_par_iter()
             .map(|index| self.reference(index).wrap_err_with(|| name.to_owned()))
             .collect::<Result<_>>()?;
-        let (mut panels, mut said) = (Vec::new(), Vec::new());
+        let (mut panels, mut said) = (Vec::new(), IndexSet::new());
         for method in METHODS {
             if self.without.iter().any(|name| *name == method.0) {
                 continue;
@@ -313,14 +311,7 @@ impl Map {
             let rows: Vec<Vec<_>> = (0..values.len()).into_par_iter().map(row).collect();
             let mut cell = |(outcome, error, text): (_, _, Option<String>)| {
                 let text = text.filter(|_| outcome != OutcomeClass::Accurate);
-                let index = text.map(|text| {
-                    let text = gist(&text);
-                    let known = said.iter().position(|other| *other == text);
-                    known.unwrap_or_else(|| {
-                        said.push(text);
-                        said.len() - 1
-                    })
-                });
+                let index = text.map(|text| said.insert_full(gist(&text)).0);
                 MapCell(outcome, error, index)
             };
             let mut row = |row: Vec<_>| row.into_iter().map(&mut cell).collect();

@@ -127,3 +127,16 @@ pub fn gist(text: &str) -> String {
     let words = text.split_whitespace().filter(plain);
     words.collect::<Vec<_>>().join(" ")
 }
+
+/// Largest magnitude of what is in a list; not a number where one of it is none.
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    let magnitudes = values.into_iter().map(f64::abs);
+    magnitudes.fold(0.0, |m: f64, x| if m.is_nan() || x <= m { m } else { x })
+}
+
+/// Least and greatest of a list.
+pub fn limits(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let wider = |[low, high]: [f64; 2], x: f64| [x.min(low), x.max(high)];
+    let nothing = [f64::INFINITY, f64::NEG_INFINITY];
+    values.into_iter().fold(nothing, wider)
+}

@@ -9,9 +9,16 @@ use miette::Result;
 use minijinja::{Value, context};
 use numbers::{number, si};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
+use std::collections::BTreeMap;
 
 /// Panels beside each other.
 const COLUMNS: usize = 4;
+/// The colours of outcomes, in their order: green where all is well, blue with a warning, grey and red where a run is stopped or
+/// should have been, black for what must not happen.
+const COLORS: [Color; 6] = {
+    use palette::*;
+    [GREEN, SKY, BLUE, GREY, VERMILION, BLACK]
+};
 
 /// Makes the pages and pictures of the records `maps`, `long`, `soak` and `fuzz`; one that is missing is an error.
 pub fn render(data: &Data, out: &mut Output) -> Result<()> {
@@ -23,8 +30,18 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
     for one in made {
         out.picture(&format!("stability/{}", one.name), &figure(one))?;
     }
-    let checks = || maps.results.checks.iter().chain(&long.results);
-    let titles: Vec<String> = cases()?.into_iter().map(|case| case.title).collect();
+    let runs: Vec<_> = made.iter().flat_map(MadeMap::runs).collect();
+    let method = |(method, _): &(&str, &str)| {
+        let own = || runs.iter().filter(|run| run.0 == *method);
+        let count = |class| own().filter(|run| run.3.0 == class).count();
+        context! { method, counts => OutcomeClass::ALL.map(count) }
+    };
+    let map = |one: &MadeMap| {
+        let (unit, accuracies) = (channel_unit(one), one.map.columns(AUTO));
+        context! { unit, accuracies, ..Value::from_serialize(one) }
+    };
+    let check = |check: &Check| context! { holds => check.holds(), ..Value::from_serialize(check) };
+    let checks = maps.results.checks.iter().chain(&long.results);
     let known = known_silent()?;
     let page = context! {
         stamps => context! {
@@ -32,56 +49,17 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
             fuzz => stamp(&fuzz.origin),
         },
         classes => OutcomeClass::ALL.map(OutcomeClass::name),
-        runs => made.iter().map(|one| one.runs().count()).sum::<usize>(),
-        methods => methods(made),
+        names => BTreeMap::from(OutcomeClass::ALL.map(|class| (class, class.name()))),
+        runs => runs.len(),
+        methods => METHODS.iter().map(method).collect::<Vec<_>>(),
         silent => made.iter().flat_map(|one| silent(one, &known)).collect::<Vec<_>>(),
-        saved => rivalry(made, |bathe, trapezoidal| gone(trapezoidal) && !gone(bathe)),
-        lost => rivalry(made, |b, t| t == OutcomeClass::Accurate && b != OutcomeClass::Accurate),
-        checks => checks().map(row).collect::<Vec<_>>(),
-        maps => made.iter().map(table).collect::<Vec<_>>(),
-        titles, soak => &soak.results, fuzz => &fuzz.results,
+        checks => checks.map(check).collect::<Vec<_>>(),
+        maps => made.iter().map(map).collect::<Vec<_>>(),
+        titles => cases()?.into_iter().map(|case| case.title).collect::<Vec<_>>(),
+        soak => &soak.results, fuzz => &fuzz.results,
     };
     out.page("STABILITY.md", "stability.md", &page)?;
     out.site_page("stability.md", "site/stability.md", &page)
-}
-
-/// A criterion as the tables have it.
-fn row(check: &Check) -> Value {
-    let shown = |x: f64| number(x, 4);
-    let asked = &check.criterion;
-    let bound = match (asked.least, asked.most) {
-        (Some(least), Some(most)) if least == most => "yes".to_owned(),
-        (Some(least), Some(most)) => format!("{} to {}", shown(least), shown(most)),
-        (Some(least), None) => format!("at least {}", shown(least)),
-        (None, most) => most.map_or(String::new(), |most| format!("at most {}", shown(most))),
-    };
-    let found = match &bound[..] {
-        "yes" => if check.holds() { "yes" } else { "no" }.to_owned(),
-        _ => check.value.map_or("no number".to_owned(), shown),
-    };
-    context! { case => check.case, asks => &asked.asks, found, bound, holds => check.holds() }
-}
-
-/// How many runs of every method ended how.
-fn methods(made: &[MadeMap]) -> Vec<Value> {
-    let counted = METHODS.iter().map(|(method, _)| {
-        let runs = || {
-            made.iter()
-                .flat_map(MadeMap::runs)
-                .filter(|run| run.0 == *method)
-        };
-        let count = |class| runs().filter(|run| run.3.0 == class).count();
-        context! { method, counts => OutcomeClass::ALL.map(count) }
-    });
-    counted.collect()
-}
-
-/// The unit of the columns of a panel.
-fn unit(one: &MadeMap, method: &str) -> &'static str {
-    match method {
-        AUTO => channel_unit(one),
-        _ => "s",
-    }
 }
 
 /// Runs of a map that are wrong in silence.
@@ -100,48 +78,11 @@ fn silent(one: &MadeMap, known: &[KnownSilent]) -> Vec<Value> {
     runs.map(run).collect()
 }
 
-fn gone(class: OutcomeClass) -> bool {
-    matches!(class, OutcomeClass::Failed | OutcomeClass::Refused)
-}
-
-/// In which maps how many runs of Bathe's scheme and the trapezoidal rule with the same step differ in this way.
-fn rivalry(made: &[MadeMap], differ: fn(OutcomeClass, OutcomeClass) -> bool) -> String {
-    let counts = made.iter().filter_map(|one| {
-        let of = |method| one.runs().filter(move |run| run.0 == method);
-        let pairs = of("Bathe").zip(of("trapezoidal"));
-        let count = pairs.filter(|(b, t)| differ(b.3.0, t.3.0)).count();
-        (count > 0).then(|| format!("{count} in {}", one.name))
-    });
-    match &counts.collect::<Vec<String>>()[..] {
-        [] => "none".to_owned(),
-        counts => counts.join(", "),
-    }
-}
-
-/// A map with all its runs.
-fn table(one: &MadeMap) -> Value {
-    let cell = |MapCell(class, error, said): &MapCell| {
-        let error = error.map_or(String::new(), |error| format!(" {}", number(error, 2)));
-        let said = said.map_or(String::new(), |said| format!(" ({})", said + 1));
-        format!("{}{error}{said}", class.name())
-    };
-    let panel = |panel: &MapPanel| {
-        let columns = one.map.columns(&panel.method).into_iter();
-        let rows = one.map.parameter.values.iter().zip(&panel.cells);
-        let rows = rows.map(|(v, row)| {
-            let cells: Vec<String> = row.iter().map(cell).collect();
-            context! { value => value(one, *v), cells }
-        });
-        context! {
-            method => &panel.method, rows => rows.collect::<Vec<_>>(),
-            columns => columns.map(|c| si(c, unit(one, &panel.method))).collect::<Vec<_>>(),
-        }
-    };
-    context! {
-        name => &one.name, title => &one.map.title, remark => &one.map.remark,
-        parameter => &one.map.parameter.label, large => one.map.unsaid, said => &one.said,
-        tolerance => si(one.map.tolerance, channel_unit(one)),
-        panels => one.panels.iter().map(panel).collect::<Vec<_>>(),
+/// The unit of the columns of a panel.
+fn unit(one: &MadeMap, method: &str) -> &'static str {
+    match method {
+        AUTO => channel_unit(one),
+        _ => "s",
     }
 }
 
@@ -161,47 +102,25 @@ fn channel_unit(one: &MadeMap) -> &'static str {
     }
 }
 
-/// The colour of an outcome: green where all is well, blue with a warning, grey and red where a run is stopped or should have
-/// been, black for what must not happen.
-fn color(class: OutcomeClass) -> Color {
-    match class {
-        OutcomeClass::Accurate => palette::GREEN,
-        OutcomeClass::Coarse => palette::SKY,
-        OutcomeClass::Damped => palette::BLUE,
-        OutcomeClass::Refused => palette::GREY,
-        OutcomeClass::Failed => palette::VERMILION,
-        OutcomeClass::Silent => palette::BLACK,
-    }
-}
-
-/// An axis of positive values in the prefixed unit in which the largest is below a thousand.
-fn prefixed(label: &str, unit: &str, values: &[f64]) -> Axis {
-    const PREFIXES: [(&str, f64); 4] = [("n", 1e9), ("µ", 1e6), ("m", 1e3), ("", 1.0)];
-    let largest = values.iter().copied().fold(0.0, f64::max);
-    let fits = |(_, factor): &&(&str, f64)| largest * factor < 1e3;
-    let (prefix, factor) = PREFIXES.iter().find(fits).unwrap_or(&PREFIXES[3]);
-    Axis::new(label, &format!("{prefix}{unit}"), *factor).log()
-}
-
 /// A panel a method, a dot a run.
 fn figure(one: &MadeMap) -> Figure {
     let map = &one.map;
     let count = map.parameter.values.len();
     let panel = |(index, panel): (usize, &MapPanel)| {
         let columns = map.columns(&panel.method);
-        let x = match &panel.method[..] {
-            AUTO => prefixed("Accuracy asked for", "m", &columns),
-            _ => prefixed("Step", "s", &columns),
+        let label = match &panel.method[..] {
+            AUTO => "Accuracy asked for",
+            _ => "Step",
         };
-        // the greatest value at the top
-        let left = index % COLUMNS == 0;
-        let names = map.parameter.values.iter().rev();
-        let mut y = Axis::categories(match left {
-            true => names.map(|v| value(one, *v)).collect(),
-            false => vec![String::new(); count],
-        });
+        // the greatest value at the top, and the first panel of a row with the names of all
+        let named = |v: &f64| match index % COLUMNS {
+            0 => value(one, *v),
+            _ => String::new(),
+        };
+        let mut y = Axis::categories(map.parameter.values.iter().rev().map(named).collect());
         y.label = map.parameter.label.clone();
-        let dots = |class: OutcomeClass| {
+        let classes = OutcomeClass::ALL.into_iter().zip(COLORS);
+        let dots = |(class, color): (OutcomeClass, Color)| {
             let places = panel.cells.iter().enumerate().flat_map(|(v, row)| {
                 let own = columns.iter().zip(row).filter(|(_, cell)| cell.0 == class);
                 own.map(move |(column, _)| (*column, (count - 1 - v) as f64))
@@ -209,14 +128,14 @@ fn figure(one: &MadeMap) -> Figure {
             let (x, y): (Vec<f64>, Vec<f64>) = places.unzip();
             // the first panel has the legend of all
             let label = if index == 0 { &class.name() } else { "" };
-            Mark::points(label, color(class), &x, &y, 15)
+            Mark::points(label, color, &x, &y, 15)
         };
         Panel {
             title: panel.method.clone(),
             note: String::new(),
-            x,
+            x: Axis::new(label, unit(one, &panel.method), 1.0).log(),
             y,
-            marks: OutcomeClass::ALL.map(dots).to_vec(),
+            marks: classes.map(dots).collect(),
         }
     };
     let caption = format!(
@@ -227,9 +146,6 @@ fn figure(one: &MadeMap) -> Figure {
         si(map.tolerance, channel_unit(one)),
         map.remark
     );
-    Figure::grid(
-        one.panels.iter().enumerate().map(panel).collect(),
-        COLUMNS,
-        caption,
-    )
+    let panels = one.panels.iter().enumerate().map(panel);
+    Figure::grid(panels.collect(), COLUMNS, caption)
 }

@@ -2,13 +2,14 @@
 //! convention that both sides share, which must not change the results.
 
 use crate::campaign::results;
-use crate::verification::copy::WorkspaceCopy;
-use miette::{IntoDiagnostic, Result, WrapErr, ensure};
+use crate::worktree;
+use miette::{IntoDiagnostic, Result, WrapErr, ensure, miette};
 use records::{Journal, root};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 /// Tests that take seconds, and those that take a minute and are asked only when the first catch nothing.
 const STAGES: [&[&str]; 2] = [
@@ -107,14 +108,13 @@ impl FaultOutcome {
 /// # Errors
 /// Tests that fail without a fault; a fault that is not caught; a variant that changes results.
 pub fn measure(journal: &Journal) -> Result<Value> {
-    let copy = WorkspaceCopy::new("faults")?;
-    let sound = tests(&copy, STAGES[0])?;
+    let tree = worktree::copy("faults")?;
+    let sound = failing(&tree, STAGES[0])?.join(", ");
     ensure!(
         sound.is_empty(),
-        "without a fault these tests fail: {}",
-        sound.join(", ")
+        "without a fault these tests fail: {sound}"
     );
-    let seed = |fault: Fault| journal.item(&fault.name.clone(), || seed(&copy, fault));
+    let seed = |fault: Fault| journal.item(&fault.name.clone(), || seed(&tree, fault));
     let outcomes = list()?.into_iter().map(seed).collect::<Result<Vec<_>>>()?;
     let wrong = outcomes.iter().filter(|o| !o.is_right());
     let wrong: Vec<&str> = wrong.map(|o| o.fault.name.as_str()).collect();
@@ -127,34 +127,51 @@ pub fn measure(journal: &Journal) -> Result<Value> {
 }
 
 /// Puts a fault in, asks the tests, takes it out.
-fn seed(copy: &WorkspaceCopy, fault: Fault) -> Result<FaultOutcome> {
-    let text = fault.applied(&copy.tree())?;
-    let caught_by = copy.with(&fault.file, &text, || {
-        if fault.is_variant() {
-            let names: Vec<&str> = fault.tests.iter().map(String::as_str).collect();
-            return tests(copy, &names);
-        }
-        match tests(copy, STAGES[0])? {
-            quick if quick.is_empty() => tests(copy, STAGES[1]),
-            quick => Ok(quick),
-        }
-    });
+fn seed(tree: &Path, fault: Fault) -> Result<FaultOutcome> {
+    let path = tree.join(&fault.file);
+    let sound = read(&path)?;
+    fs::write(&path, fault.applied(tree)?).into_diagnostic()?;
+    let own: Vec<&str> = fault.tests.iter().map(String::as_str).collect();
+    let stages = match fault.is_variant() {
+        true => vec![&own[..]],
+        false => STAGES.to_vec(),
+    };
+    let mut asked = stages.into_iter().map(|filters| failing(tree, filters));
+    // the first stage in which a test fails, or in which the tests do not run
+    let caught = asked.find(|failed| !matches!(failed, Ok(none) if none.is_empty()));
+    fs::write(&path, sound).into_diagnostic()?;
+    let caught_by = caught.unwrap_or(Ok(Vec::new()));
     let caught_by = caught_by.wrap_err_with(|| fault.name.clone())?;
     Ok(FaultOutcome { fault, caught_by })
 }
 
-/// Names of the tests that fail.
-fn tests(copy: &WorkspaceCopy, filters: &[&str]) -> Result<Vec<String>> {
+/// Names of the tests of the comparison that fail, of those whose names have one of the filters.
+///
+/// # Errors
+/// Tests that do not compile or do not run.
+fn failing(tree: &Path, filters: &[&str]) -> Result<Vec<String>> {
     // many builds, short tests: little optimisation
-    let arguments = [
-        "--profile",
-        "mutants",
-        "-p",
-        "verify",
-        "--test",
-        "agreement",
-    ];
-    copy.failing(&arguments, filters)
+    let output = Command::new(env!("CARGO"))
+        .args(["test", "--quiet", "--profile", "mutants"])
+        .args(["-p", "verify", "--test", "agreement"])
+        .args(["--", "--format", "pretty"])
+        .args(filters)
+        .env("CARGO_TARGET_DIR", tree.with_file_name("build"))
+        .env("RUST_BACKTRACE", "0")
+        .current_dir(tree)
+        .output()
+        .into_diagnostic()?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let failed = text.lines().filter_map(|line| {
+        let name = line.strip_prefix("test ")?.strip_suffix(" ... FAILED")?;
+        Some(name.rsplit("::").next().unwrap_or(name).to_owned())
+    });
+    let failed: Vec<String> = failed.collect();
+    if failed.is_empty() && !output.status.success() {
+        let errors = String::from_utf8_lossy(&output.stderr);
+        return Err(miette!("the tests did not run:\n{errors}"));
+    }
+    Ok(failed)
 }
 
 #[cfg(test)]

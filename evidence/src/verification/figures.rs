@@ -1,104 +1,78 @@
 //! Convergence pictures: error against abscissa, with the slopes that bound the order.
 
-use ladder::{Allowed, Answer, ErrorCurve, Rung};
+use ladder::{Allowed, Answer, ErrorCurve};
+use numbers::digits;
 use plot::{Axis, Figure, Mark, Panel, palette};
 
 /// Panels a row.
 const COLUMNS: usize = 3;
-/// Colours of curves; a seventh curve has the first again.
-const COLORS: usize = 6;
 /// A panel with more curves than this has no legend for them.
 const LABELLED: usize = 6;
 
-/// All curves of a rung; none when it has no curves.
-pub fn convergence(rung: Rung, answers: &[Answer]) -> Option<Figure> {
-    let mut families: Vec<Vec<&Answer>> = Vec::new();
-    for answer in answers.iter().filter(|a| a.rung == rung) {
-        if answer.curve.is_none() {
-            continue;
-        }
-        match families.iter_mut().find(|f| are_kin(f[0], answer)) {
-            Some(family) => family.push(answer),
-            None => families.push(vec![answer]),
+/// All curves of a rung with this title. Curves share a panel that are asked for at one place of one test, over the same
+/// abscissae, with the same bounds.
+pub fn convergence<'a>(title: &str, answers: impl Iterator<Item = &'a Answer>) -> Figure {
+    let mut families: Vec<Vec<(&Answer, &ErrorCurve)>> = Vec::new();
+    let key =
+        |(a, curve): (&Answer, &ErrorCurve)| (a.file.clone(), a.line, a.allowed, curve.errors[0].0);
+    for answer in answers {
+        let Some(curve) = &answer.curve else { continue };
+        let one = (answer, curve);
+        match families.iter_mut().find(|f| key(f[0]) == key(one)) {
+            Some(family) => family.push(one),
+            None => families.push(vec![one]),
         }
     }
-    let panels: Vec<Panel> = families.iter().filter_map(|f| panel(f)).collect();
-    if panels.is_empty() {
-        return None;
-    }
-    let rows = panels.len().div_ceil(COLUMNS);
-    let mut panels = panels.into_iter();
-    let rows = (0..rows).map(|_| panels.by_ref().take(COLUMNS).collect());
-    let (title, _) = rung.title();
-    Some(Figure {
-        rows: rows.collect(),
-        caption: format!(
-            "{title}: measured errors (dots) and the least and greatest slopes that the tests allow (lines). Where a panel \
-             has several curves, each is divided by its error at the largest abscissa. The table has scene, method and \
-             reference of every curve."
-        ),
-    })
+    let caption = format!(
+        "{title}: measured errors (dots) and the least and greatest slopes that the tests allow (lines). Where a panel has \
+         several curves, each is divided by its error at the largest abscissa. The table has scene, method and reference \
+         of every curve."
+    );
+    let panels = families.iter().filter_map(|family| panel(family));
+    Figure::grid(panels.collect(), COLUMNS, caption)
 }
 
-/// Asked at one place of one test, over the same abscissae, with the same bounds.
-fn are_kin(a: &Answer, b: &Answer) -> bool {
-    let start = |x: &Answer| x.curve.as_ref().and_then(ErrorCurve::start).map(|(h, _)| h);
-    (&a.file, a.line, a.allowed) == (&b.file, b.line, b.allowed) && start(a) == start(b)
-}
-
-fn panel(family: &[&Answer]) -> Option<Panel> {
-    let Allowed::Between(low, high) = family[0].allowed else {
+fn panel(family: &[(&Answer, &ErrorCurve)]) -> Option<Panel> {
+    let Allowed::Between(low, high) = family[0].0.allowed else {
         return None;
     };
-    let curves: Vec<&ErrorCurve> = family.iter().filter_map(|a| a.curve.as_ref()).collect();
-    let longest = curves.iter().max_by_key(|c| c.errors.len())?;
-    let (start, top) = longest.start()?;
+    let (_, longest) = family.iter().max_by_key(|(_, c)| c.errors.len())?;
     let alone = family.len() == 1;
-    let top = if alone { top } else { 1.0 };
+    let unit = |curve: &ErrorCurve| if alone { 1.0 } else { curve.errors[0].1 };
+    let (start, first) = longest.errors[0];
+    let top = first / unit(longest);
     let x: Vec<f64> = longest.errors.iter().map(|e| e.0).collect();
-    let mut marks: Vec<Mark> = [(low, palette::GREY), (high, palette::BLACK)]
-        .map(|(order, color)| {
-            let y: Vec<f64> = x.iter().map(|x| top * (x / start).powf(order)).collect();
-            Mark::curve(&format!("slope {}", numbers::digits(order)), color, &x, &y)
-        })
-        .into();
-    let questions: Vec<&str> = family.iter().map(|a| a.question.as_str()).collect();
-    let (common, own) = common(&questions);
-    for (i, curve) in curves.iter().enumerate() {
-        let (_, first) = curve.start()?;
-        let unit = if alone { 1.0 } else { first };
-        let (x, y): (Vec<f64>, Vec<f64>) = curve.errors.iter().map(|e| (e.0, e.1 / unit)).unzip();
-        let color = palette::SERIES[i % COLORS];
-        let label = match (alone, family.len() <= LABELLED) {
-            (false, true) => own[i].as_str(),
-            _ => "",
-        };
-        marks.push(Mark::curve("", color, &x, &y));
-        marks.push(Mark::points(label, color, &x, &y, 8));
+    let bounds = [(low, palette::GREY), (high, palette::BLACK)];
+    let mut marks: Vec<Mark> = Vec::from(bounds.map(|(order, color)| {
+        let y: Vec<f64> = x.iter().map(|x| top * (x / start).powf(order)).collect();
+        Mark::curve(&format!("slope {}", digits(order)), color, &x, &y)
+    }));
+    let questions: Vec<&str> = family.iter().map(|(a, _)| a.question.as_str()).collect();
+    let (note, own) = common(&questions);
+    let colors = palette::SERIES[..LABELLED].iter().cycle();
+    for (((_, curve), own), color) in family.iter().zip(&own).zip(colors) {
+        let errors = curve.errors.iter();
+        let (x, y): (Vec<f64>, Vec<f64>) = errors.map(|e| (e.0, e.1 / unit(curve))).unzip();
+        let label = if family.len() <= LABELLED { own } else { "" };
+        marks.push(Mark::curve("", *color, &x, &y));
+        marks.push(Mark::points(label, *color, &x, &y, 8));
     }
-    let orders = family.iter().map(|a| a.number);
-    let least = orders.clone().fold(f64::INFINITY, f64::min);
-    let greatest = orders.fold(f64::NEG_INFINITY, f64::max);
-    let order = |x: f64| numbers::digits((1e2 * x).round() / 1e2);
-    let title = match (alone, order(least) == order(greatest)) {
-        (false, false) => format!("Order {} … {}", order(least), order(greatest)),
-        _ => format!("Order {}", order(least)),
-    };
-    let note = match family.len() {
-        1 => common,
-        n if n <= LABELLED => common,
-        n => format!("{n} curves: {}, and others", questions[0]),
-    };
-    let y = if alone {
-        "Error"
-    } else {
-        "Error over its largest value"
-    };
+    let orders = || family.iter().map(|(a, _)| (1e2 * a.number).round() / 1e2);
+    let (least, greatest) = (
+        orders().fold(f64::INFINITY, f64::min),
+        orders().fold(f64::NEG_INFINITY, f64::max),
+    );
     Some(Panel {
-        title,
+        title: match least == greatest {
+            true => format!("Order {}", digits(least)),
+            false => format!("Order {} … {}", digits(least), digits(greatest)),
+        },
         note,
         x: Axis::new(&longest.abscissa, "", 1.0).log(),
-        y: Axis::new(y, "", 1.0).log(),
+        y: match alone {
+            true => Axis::new("Error", "", 1.0).log(),
+            false => Axis::new("Error over its largest value", "", 1.0).log(),
+        },
         marks,
     })
 }
@@ -106,26 +80,21 @@ fn panel(family: &[&Answer]) -> Option<Panel> {
 /// What the questions begin and end with, and what is left of each.
 fn common(questions: &[&str]) -> (String, Vec<String>) {
     let words: Vec<Vec<&str>> = questions.iter().map(|q| q.split(' ').collect()).collect();
-    let shortest = words.iter().map(Vec::len).min().unwrap_or(0);
+    let first = &words[0];
     if words.len() == 1 {
         return (questions[0].to_owned(), vec![String::new()]);
     }
-    let agree = |pick: &dyn Fn(&Vec<&str>) -> String| {
-        let first = pick(&words[0]);
-        words.iter().all(|w| pick(w) == first)
+    let shortest = words.iter().map(Vec::len).min().unwrap_or(0);
+    let begins = |i: &usize| words.iter().all(|w| w[*i] == first[*i]);
+    let head = (0..shortest).take_while(begins).count();
+    let ends = |i: &usize| {
+        let mut words = words.iter();
+        words.all(|w| w[w.len() - 1 - i] == first[first.len() - 1 - i])
     };
-    let head = (0..shortest).take_while(|&i| agree(&|w| w[i].to_owned()));
-    let head = head.count();
-    let tail = (0..shortest - head).take_while(|&i| agree(&|w| w[w.len() - 1 - i].to_owned()));
-    let tail = tail.count();
-    let first = &words[0];
+    let tail = (0..shortest - head).take_while(ends).count();
     let joined = [&first[..head], &["…"], &first[first.len() - tail..]].concat();
-    let own = words.iter().map(|w| {
-        w[head..w.len() - tail]
-            .join(" ")
-            .trim_end_matches([',', ':'])
-            .to_owned()
-    });
+    let own = words.iter().map(|w| w[head..w.len() - tail].join(" "));
+    let own = own.map(|own| own.trim_end_matches([',', ':']).to_owned());
     (joined.join(" "), own.collect())
 }
 

@@ -1,8 +1,8 @@
 //! Mutation testing: mutants are drawn by a fixed seed, and cargo-mutants tries them in parts, each with the tests of its scope.
 
 use crate::campaign::results;
-use crate::verification::copy::WorkspaceCopy;
-use miette::{IntoDiagnostic, Result, WrapErr, ensure, miette};
+use crate::worktree;
+use miette::{IntoDiagnostic, Result, WrapErr, ensure};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
@@ -28,8 +28,8 @@ pub struct Scope {
     pub name: &'static str,
     /// How many mutants are drawn.
     count: usize,
-    /// Arguments that choose the files.
-    files: &'static [&'static str],
+    /// Arguments that choose the files, with spaces between them.
+    files: &'static str,
     /// Argument that chooses the tests.
     tests: &'static str,
 }
@@ -38,14 +38,8 @@ pub struct Scope {
 pub const KERNELS: Scope = Scope {
     name: "mutation-kernels",
     count: 500,
-    files: &[
-        "--package=looselink",
-        "--file=src/link/**",
-        "--file=src/contact/**",
-        "--file=src/constraint/**",
-        "--file=src/force/**",
-        "--file=src/stepper/**",
-    ],
+    files: "--package=looselink --file=src/link/** --file=src/contact/** --file=src/constraint/** \
+            --file=src/force/** --file=src/stepper/**",
     tests: "--cargo-arg=--test=kernels",
 };
 
@@ -53,14 +47,8 @@ pub const KERNELS: Scope = Scope {
 pub const SOLVER: Scope = Scope {
     name: "mutation-solver",
     count: 250,
-    files: &[
-        "--package=looselink",
-        "--package=looselink-cli",
-        "--package=studies",
-        "--file=src/**",
-        "--file=crates/cli/src/**",
-        "--file=crates/studies/src/**",
-    ],
+    files: "--package=looselink --package=looselink-cli --package=studies \
+            --file=src/** --file=crates/cli/src/** --file=crates/studies/src/**",
     tests: "--test-package=looselink,looselink-cli,studies,evidence",
 };
 
@@ -69,8 +57,6 @@ pub const SOLVER: Scope = Scope {
 pub struct Mutants {
     /// Number of mutants from which those of this record were drawn.
     pub possible: usize,
-    /// Version of cargo-mutants.
-    pub tool: String,
     /// Counts by source file.
     pub files: BTreeMap<String, MutantCounts>,
     /// Mutants that no test noticed, as cargo-mutants names them.
@@ -111,72 +97,13 @@ impl MutantCounts {
     }
 }
 
-impl Mutants {
-    /// Counts by the folder or file below `src`.
-    pub fn folders(&self) -> BTreeMap<String, MutantCounts> {
-        let mut folders = BTreeMap::new();
-        for (file, counts) in &self.files {
-            let folder: Vec<&str> = file.split('/').take(2).collect();
-            *folders.entry(folder.join("/")).or_default() += *counts;
-        }
-        folders
-    }
-
-    /// All files together.
-    pub fn total(&self) -> MutantCounts {
-        let mut total = MutantCounts::default();
-        self.files.values().for_each(|counts| total += *counts);
-        total
-    }
-}
-
-/// Why no test detects each survivor, by its name.
-///
-/// # Errors
-/// A file that cannot be read.
-pub fn reasons(root: &Path) -> Result<BTreeMap<String, String>> {
-    let path = root.join("evidence/survivors.toml");
-    let text = fs::read_to_string(&path).into_diagnostic();
-    let text = text.wrap_err_with(|| format!("cannot read {}", path.display()))?;
-    toml::from_str(&text).into_diagnostic()
-}
-
-/// `outcomes.json` of cargo-mutants, as far as it is read here.
-#[derive(Serialize, Deserialize)]
-struct Outcomes {
-    outcomes: Vec<MutantOutcome>,
-    cargo_mutants_version: String,
-}
-
-#[derive(Serialize, Deserialize)]
-struct MutantOutcome {
-    scenario: Scenario,
-    summary: MutantSummary,
-}
-
-#[derive(Serialize, Deserialize)]
-enum Scenario {
-    Baseline,
-    Mutant { name: String },
-}
-
-#[derive(Serialize, Deserialize)]
-enum MutantSummary {
-    Success,
-    CaughtMutant,
-    MissedMutant,
-    Timeout,
-    Unviable,
-    Failure,
-}
-
 /// Draws and tries mutants.
 ///
 /// # Errors
 /// When cargo-mutants is missing, or has no verdict on a mutant.
 pub fn measure(scope: &Scope, journal: &Journal) -> Result<Value> {
-    let copy = WorkspaceCopy::new("mutation")?;
-    let mut drawn = journal.item("all", || list(scope, &copy.tree()))?;
+    let tree = worktree::copy("mutation")?;
+    let mut drawn = journal.item("all", || list(scope, &tree))?;
     let mut found = Mutants {
         possible: drawn.len(),
         ..Mutants::default()
@@ -184,25 +111,41 @@ pub fn measure(scope: &Scope, journal: &Journal) -> Result<Value> {
     drawn.shuffle(&mut ChaCha8Rng::seed_from_u64(SEED));
     drawn.truncate(scope.count);
     for (index, part) in drawn.chunks(PART).enumerate() {
-        let outcomes = journal.item(&format!("part {index}"), || test(scope, &copy, part))?;
-        found.add(part, outcomes)?;
+        let tried = journal.item(&format!("part {index}"), || test(scope, &tree, part))?;
+        // cargo-mutants 27.1 tests some deleted fields that no expression names
+        for (name, verdict) in tried.into_iter().filter(|(name, _)| part.contains(name)) {
+            let file = name.split(':').next().unwrap_or(&name).to_owned();
+            let counts = found.files.entry(file).or_default();
+            match &verdict[..] {
+                "caught" => counts.caught += 1,
+                "timeout" => counts.timeout += 1,
+                "unviable" => counts.unviable += 1,
+                _ => {
+                    counts.survived += 1;
+                    found.survivors.push(name);
+                }
+            }
+        }
     }
     found.survivors.sort();
-    let total = found.total();
+    let judged = found.files.values().map(|c| c.viable() + c.unviable);
+    let judged: usize = judged.sum();
     ensure!(
-        total.viable() + total.unviable == drawn.len(),
-        "{} mutants were tried, {total:?} have a verdict",
+        judged == drawn.len(),
+        "{} mutants were tried, {judged} have a verdict",
         drawn.len()
     );
     results(found)
 }
 
-/// Has cargo-mutants try these mutants in the copy.
-fn test(scope: &Scope, copy: &WorkspaceCopy, drawn: &[String]) -> Result<Outcomes> {
+/// Has cargo-mutants try these mutants in the copy; their names and its verdicts.
+fn test(scope: &Scope, tree: &Path, drawn: &[String]) -> Result<Vec<(String, String)>> {
     let output = root().join("target/mutation");
     let mut command = Command::new("cargo");
-    command.arg("mutants").current_dir(copy.tree());
-    command.args(scope.files).args(["--in-place", TIMEOUT]);
+    command.arg("mutants").current_dir(tree);
+    command
+        .args(scope.files.split(' '))
+        .args(["--in-place", TIMEOUT]);
     command.args(["--profile=mutants", "--test-tool=nextest"]);
     command.env("NEXTEST_PROFILE", "mutants");
     command.env("CARGO_TARGET_DIR", output.join("build"));
@@ -215,19 +158,28 @@ fn test(scope: &Scope, copy: &WorkspaceCopy, drawn: &[String]) -> Result<Outcome
     }
     // for the build as well as for the run
     command.arg(scope.tests);
-    // its exit code says whether there are survivors; what became of each mutant stands in its file
+    // its exit code says whether there are survivors; what became of each mutant stands in its files
     let started = command.status().into_diagnostic();
     started.wrap_err("cargo-mutants cannot be started")?;
-    let path = output.join("mutants.out/outcomes.json");
-    let text = fs::read_to_string(&path).into_diagnostic();
-    let text = text.wrap_err_with(|| format!("cannot read {}", path.display()))?;
-    serde_json::from_str(&text).into_diagnostic()
+    let mut tried = Vec::new();
+    for verdict in ["caught", "timeout", "missed", "unviable"] {
+        let path = output.join(format!("mutants.out/{verdict}.txt"));
+        let text = fs::read_to_string(&path).into_diagnostic();
+        let text = text.wrap_err_with(|| format!("cannot read {}", path.display()))?;
+        tried.extend(
+            text.lines()
+                .map(|name| (name.to_owned(), verdict.to_owned())),
+        );
+    }
+    Ok(tried)
 }
 
 /// Names of all mutants of a scope.
 fn list(scope: &Scope, tree: &Path) -> Result<Vec<String>> {
     let mut command = Command::new("cargo");
-    command.args(["mutants", "--list"]).args(scope.files);
+    command
+        .args(["mutants", "--list"])
+        .args(scope.files.split(' '));
     let listed = command.current_dir(tree).output().into_diagnostic()?;
     ensure!(
         listed.status.success(),
@@ -236,35 +188,4 @@ fn list(scope: &Scope, tree: &Path) -> Result<Vec<String>> {
     );
     let text = String::from_utf8(listed.stdout).into_diagnostic()?;
     Ok(text.lines().map(str::to_owned).collect())
-}
-
-impl Mutants {
-    /// Adds the verdicts on the mutants that were drawn.
-    fn add(&mut self, drawn: &[String], outcomes: Outcomes) -> Result<()> {
-        self.tool = format!("cargo-mutants {}", outcomes.cargo_mutants_version);
-        for outcome in outcomes.outcomes {
-            let Scenario::Mutant { name } = outcome.scenario else {
-                continue;
-            };
-            // cargo-mutants 27.1 tests some deleted fields that no expression names
-            if !drawn.contains(&name) {
-                continue;
-            }
-            let file = name.split(':').next().unwrap_or(&name).to_owned();
-            let counts = self.files.entry(file).or_default();
-            match outcome.summary {
-                MutantSummary::CaughtMutant => counts.caught += 1,
-                MutantSummary::Timeout => counts.timeout += 1,
-                MutantSummary::Unviable => counts.unviable += 1,
-                MutantSummary::MissedMutant => {
-                    counts.survived += 1;
-                    self.survivors.push(name);
-                }
-                MutantSummary::Success | MutantSummary::Failure => {
-                    return Err(miette!("cargo-mutants has no verdict on {name}"));
-                }
-            }
-        }
-        Ok(())
-    }
 }

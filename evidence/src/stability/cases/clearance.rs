@@ -1,6 +1,7 @@
 //! Clearance to nothing.
 
-use super::{amplitude, apart, largest, order, run};
+use super::{amplitude, apart, order, run};
+use crate::stability::outcome::{largest, limits};
 
 pub(super) fn limit() -> Vec<f64> {
     let settings = "simulation.duration=0.25; output.interval=1e-3; integrator.step=2e-6";
@@ -14,11 +15,7 @@ pub(super) fn limit() -> Vec<f64> {
         let error = (play, apart(&rows, &ideal, "platform.x"));
         (error, report.newton_iterations as f64)
     });
-    let orders = || runs.windows(2).map(|pair| order(pair[0].0, pair[1].0));
-    let cost = || runs.iter().map(|run| run.1);
-    vec![
-        orders().fold(f64::MAX, f64::min),
-        orders().fold(0.0, f64::max),
-        cost().fold(0.0, f64::max) / cost().fold(f64::MAX, f64::min),
-    ]
+    let [least, greatest] = limits(runs.windows(2).map(|pair| order(pair[0].0, pair[1].0)));
+    let [cheapest, dearest] = limits(runs.map(|run| run.1));
+    vec![least, greatest, dearest / cheapest]
 }

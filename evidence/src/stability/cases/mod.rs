@@ -8,7 +8,7 @@ mod rigid;
 mod schemes;
 mod shipped;
 
-use crate::stability::outcome::{Stopped, record};
+use crate::stability::outcome::{Stopped, largest, record};
 use looselink::scene::Scene;
 use looselink::simulate::{Recording, Report};
 use miette::{IntoDiagnostic, Result, ensure};
@@ -65,7 +65,7 @@ type Numbers = fn() -> Vec<f64>;
 
 /// In the order of the cases: the numbers of tests, and those that take minutes.
 const NUMBERS: [(Numbers, Option<Numbers>); 15] = [
-    (schemes::stiff_springs, Some(long::revolutions)),
+    (schemes::stiff_springs, Some(schemes::revolutions)),
     (schemes::three_springs, None),
     (flexible::spinning_link, Some(long::spinning_link)),
     (clearance::limit, None),
@@ -150,12 +150,6 @@ fn column<'a>(recording: &'a Recording, name: &str) -> &'a [f64] {
     column.unwrap_or_else(|| panic!("no channel {name}"))
 }
 
-/// Largest magnitude of what is in a list; not a number where one of it is none.
-fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    let magnitudes = values.into_iter().map(f64::abs);
-    magnitudes.fold(0.0, |m: f64, x| if m.is_nan() || x <= m { m } else { x })
-}
-
 /// Largest magnitude of a channel.
 fn amplitude(recording: &Recording, name: &str) -> f64 {
     largest(column(recording, name).iter().copied())
@@ -165,6 +159,21 @@ fn amplitude(recording: &Recording, name: &str) -> f64 {
 fn apart(a: &Recording, b: &Recording, name: &str) -> f64 {
     let pairs = column(a, name).iter().zip(column(b, name));
     largest(pairs.map(|(a, b)| a - b))
+}
+
+/// Over several overrides: the largest difference of a channel from a run with a finer step, and the largest imbalance.
+fn refined<const N: usize>(
+    scene: &str,
+    channel: &str,
+    settings: [String; N],
+    steps: [&str; 2],
+) -> Vec<f64> {
+    let found = settings.map(|set| {
+        let runs = steps.map(|step| run(scene, &format!("{set}; integrator.step={step}")));
+        let [(coarse, report), (fine, _)] = runs;
+        (apart(&coarse, &fine, channel), imbalance(&report))
+    });
+    vec![largest(found.map(|f| f.0)), largest(found.map(|f| f.1))]
 }
 
 /// Least and greatest energy lost by the integrator over the energy in play; a negative loss is a gain.

@@ -1,26 +1,15 @@
 //! The scenes of the project with steps far too long.
 
-use super::{largest, yes};
+use super::yes;
 use crate::stability::map::{UNSAID, difference};
-use crate::stability::outcome::{OutcomeClass, Stopped, judge, judge_stop, record};
+use crate::stability::outcome::{OutcomeClass, Stopped, judge, judge_stop, largest, record};
 use looselink::scene::{Analysis, Scene};
 use looselink::simulate::{Recording, Report};
-use records::root;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use verify::compare::scenes;
 
 /// Long steps that are taken.
 const STEPS: f64 = 20.0;
-
-fn scenes(folder: &Path, found: &mut Vec<PathBuf>) {
-    let entries = std::fs::read_dir(folder).expect("the folder of scenes");
-    for path in entries.map(|entry| entry.expect("an entry").path()) {
-        if path.is_dir() {
-            scenes(&path, found);
-        } else if path.extension().is_some_and(|e| e == "toml") {
-            found.push(path);
-        }
-    }
-}
 
 /// Positions of all bodies at every long step.
 fn rows(path: &Path, step: f64, interval: f64) -> Result<(Recording, Report), Stopped> {
@@ -36,17 +25,16 @@ fn rows(path: &Path, step: f64, interval: f64) -> Result<(Recording, Report), St
 
 /// Runs that are wrong in silence, and all runs.
 pub(super) fn long_steps() -> Vec<f64> {
-    let mut found = Vec::new();
-    scenes(&root().join("scenes"), &mut found);
-    found.sort();
+    let plans = scenes::of(Analysis::Dynamic).expect("the folder of scenes");
     let (mut silent, mut runs) = (0.0, 0.0);
-    for path in &found {
+    // without those of `verify`
+    for plan in plans.iter().filter(|plan| !plan.scene.starts_with("..")) {
+        let path = &plan.path;
         let scene = Scene::load(path, &[]).expect("a scene of the project");
         let Some(step) = scene.integrator.step() else {
             continue;
         };
-        let dynamic = scene.simulation.analysis == Analysis::Dynamic;
-        for long in [10.0 * step, 100.0 * step].into_iter().filter(|_| dynamic) {
+        for long in [10.0 * step, 100.0 * step] {
             let Ok((exact, _)) = rows(path, step, long) else {
                 continue;
             };

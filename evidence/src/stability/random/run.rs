@@ -22,8 +22,6 @@ pub enum RunOutcome {
     Refused(String),
     /// At the most steps that a run is given here; the report says what it needed them for.
     CutShort,
-    /// With a property that does not hold.
-    Failed,
 }
 
 impl RunOutcome {
@@ -35,7 +33,6 @@ impl RunOutcome {
             RunOutcome::Stopped(_) => "stopped with an error",
             RunOutcome::Refused(_) => "refused",
             RunOutcome::CutShort => "cut short",
-            RunOutcome::Failed => "failed",
         }
     }
 
@@ -79,14 +76,6 @@ impl RandomRun {
     /// A value of a channel; of the ground, which has none, zero.
     pub fn get(&self, name: &str, row: usize) -> f64 {
         self.rows.get(name).map_or(0.0, |column| column[row])
-    }
-
-    /// Least and greatest value of a channel.
-    pub fn range(&self, name: &str) -> (f64, f64) {
-        let values = (0..self.rows.rows()).map(|row| self.get(name, row));
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-            (x.min(a), x.max(b))
-        })
     }
 
     /// True of an explicit scheme whose step is too long: it has gained more energy than there was at the start.

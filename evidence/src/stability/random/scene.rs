@@ -169,22 +169,21 @@ impl Drawing {
         let middle = sum / points.len() as f64;
         let off = self.size * tape.between(0.0, 0.3) * unit(theta);
         let inertia = mass * self.size.powi(2) * tape.decades(-3.0, 0.0);
-        let (form, theta, centre, table) = match points[..] {
-            _ if index == 0 => (Form::Ground, 0.0, Vec2::zeros(), Value::Null),
-            [_] if light => {
-                let table = json!({ "type": "point_mass", "mass": mass });
-                (Form::Mass, 0.0, middle, table)
-            }
+        let (form, theta, centre) = match points[..] {
+            _ if index == 0 => (Form::Ground, 0.0, Vec2::zeros()),
+            [_] if light => (Form::Mass, 0.0, middle),
             [a, b] if !body => {
                 let way = self.points[b] - self.points[a];
                 let form = [Form::Rigid, Form::Flexible][usize::from(flexible)];
-                let table = self.link(tape, index, flexible, way.norm(), mass);
-                (form, way.y.atan2(way.x), middle, table)
+                (form, way.y.atan2(way.x), middle)
             }
-            _ => {
-                let table = json!({ "type": "rigid_body", "mass": mass, "inertia": inertia });
-                (Form::Body, theta, middle + off, table)
-            }
+            _ => (Form::Body, theta, middle + off),
+        };
+        let table = match form {
+            Form::Ground => Value::Null,
+            Form::Mass => json!({ "type": "point_mass", "mass": mass }),
+            Form::Body => json!({ "type": "rigid_body", "mass": mass, "inertia": inertia }),
+            Form::Rigid | Form::Flexible => self.link(tape, &points, form, mass),
         };
         let name = match index {
             0 => "ground".to_owned(),
@@ -214,14 +213,9 @@ impl Drawing {
     }
 
     /// A link with its section and material.
-    fn link(
-        &mut self,
-        tape: &mut Tape,
-        index: usize,
-        flexible: bool,
-        length: f64,
-        mass: f64,
-    ) -> Value {
+    fn link(&mut self, tape: &mut Tape, ends: &[usize], form: Form, mass: f64) -> Value {
+        let index = self.members.len();
+        let length = (self.points[ends[1]] - self.points[ends[0]]).norm();
         let [width, height] = [0, 1].map(|_| length * tape.decades(-2.0, -1.0));
         let density = mass / (width * height * length);
         let (section, material) = (format!("s{index}"), format!("m{index}"));
@@ -237,7 +231,7 @@ impl Drawing {
         let modulus = 12.0 * density * (frequency * length * length / (9.87 * width)).powi(2);
         let (damped, kelvin) = (tape.chance(0.3), tape.chance(0.7));
         let tau = tape.decades(-4.0, 0.0);
-        if flexible {
+        if form == Form::Flexible {
             material["youngs_modulus"] = json!(modulus);
             link["model"] = json!("flexible");
             link["elements"] = json!(tape.whole(1, 3));
@@ -266,7 +260,7 @@ impl Drawing {
                 let table = json!({
                     "type": "weld", "first": a, "second": b, "angle": angle, "slope": slope
                 });
-                self.hinge(table, [first, second], false, false);
+                self.hinge(table, [first, second]);
             }
             (true, false, [false, mass]) => self.slide([first, second], direction, locked && !mass),
             _ => {
@@ -279,7 +273,7 @@ impl Drawing {
                     table["model"] = json!("clearance");
                     table["contact"] = json!(format!("joint{}", self.hinges.len() + 1));
                 }
-                self.hinge(table, sides, true, loose || journal);
+                self.hinge(table, sides);
             }
         }
     }
@@ -295,18 +289,18 @@ impl Drawing {
             table["rotation"] = json!("locked");
             table["angle"] = json!(self.turned(sides));
         }
-        self.hinge(table, sides, false, false);
+        self.hinge(table, sides);
     }
 
-    fn hinge(&mut self, table: Value, sides: [Pin; 2], turns: bool, loose: bool) {
+    fn hinge(&mut self, table: Value, sides: [Pin; 2]) {
         let name = format!("joint{}", self.hinges.len() + 1);
-        self.scene["joints"][&name] = table;
         self.hinges.push(Hinge {
-            name,
+            name: name.clone(),
             sides,
-            turns,
-            loose,
+            turns: table["type"] == "revolute",
+            loose: table["model"] == "clearance",
         });
+        self.scene["joints"][name] = table;
     }
 
     /// The angle between the members of two pins \[rad\].
@@ -366,10 +360,35 @@ impl Drawing {
     fn contacts(&mut self, tape: &mut Tape) -> f64 {
         let mut least = f64::INFINITY;
         let (tolerance, located) = (tape.decades(-6.0, -2.0), !tape.chance(0.1));
-        let names = self.hinges.iter().filter(|hinge| hinge.loose);
-        for name in names.map(|hinge| hinge.name.clone()).collect::<Vec<_>>() {
-            let (table, clearance) = self.contact(&mut tape.part(14));
-            self.scene["contacts"][name] = table;
+        let speed = self.speed();
+        for hinge in self.hinges.iter().filter(|hinge| hinge.loose) {
+            let mut tape = tape.part(14);
+            let clearance = self.size * tape.decades(-4.0, -2.0);
+            let radius = clearance * tape.decades(0.5, 2.0);
+            let (law, exponent) = (tape.pick(&LAWS), tape.pick(&[1.5, 1.0, 2.0]));
+            // the stiffness at which an impact at the speed of the scene lasts from a few tenths of a step to many
+            let depth = (speed * self.step * tape.decades(-0.5, 2.0)).min(clearance);
+            let energy = 0.5 * self.mass * speed.powi(2);
+            let table = &mut self.scene["contacts"][&hinge.name];
+            *table = json!({
+                "law": law.name, "bearing_radius": radius, "clearance": clearance,
+                "stiffness": (exponent + 1.0) * energy / depth.powf(exponent + 1.0),
+                "exponent": exponent
+            });
+            let (restitution, floor) = (tape.between(0.2, 1.0), tape.decades(-8.0, -3.0));
+            if law.is_damped {
+                table["restitution"] = json!(restitution);
+                table["impact_velocity_floor"] = json!(speed * floor);
+            }
+            let (friction, coefficient) = (tape.chance(0.4), tape.decades(-2.0, 0.0));
+            let v0 = speed * tape.decades(-5.0, -2.0);
+            let v1 = v0 * tape.decades(0.5, 2.0);
+            let slip = tape.pick(&["material", "paper"]);
+            if friction {
+                table["friction"] = json!({
+                    "law": "ambrosio", "coefficient": coefficient, "v0": v0, "v1": v1, "slip": slip
+                });
+            }
             least = least.min(clearance);
         }
         if least.is_finite() {
@@ -379,78 +398,36 @@ impl Drawing {
         least
     }
 
-    /// A contact and its clearance \[m\].
-    fn contact(&self, tape: &mut Tape) -> (Value, f64) {
-        let clearance = self.size * tape.decades(-4.0, -2.0);
-        let radius = clearance * tape.decades(0.5, 2.0);
-        let (law, exponent) = (tape.pick(&LAWS), tape.pick(&[1.5, 1.0, 2.0]));
-        // the stiffness at which an impact at the speed of the scene lasts from a few tenths of a step to many
-        let speed = self.speed();
-        let depth = (speed * self.step * tape.decades(-0.5, 2.0)).min(clearance);
-        let energy = 0.5 * self.mass * speed.powi(2);
-        let mut table = json!({
-            "law": law.name, "bearing_radius": radius, "clearance": clearance,
-            "stiffness": (exponent + 1.0) * energy / depth.powf(exponent + 1.0),
-            "exponent": exponent
-        });
-        let (restitution, floor) = (tape.between(0.2, 1.0), tape.decades(-8.0, -3.0));
-        if law.is_damped {
-            table["restitution"] = json!(restitution);
-            table["impact_velocity_floor"] = json!(speed * floor);
-        }
-        let (friction, coefficient) = (tape.chance(0.4), tape.decades(-2.0, 0.0));
-        let v0 = speed * tape.decades(-5.0, -2.0);
-        let v1 = v0 * tape.decades(0.5, 2.0);
-        let slip = tape.pick(&["material", "paper"]);
-        if friction {
-            table["friction"] = json!({
-                "law": "ambrosio", "coefficient": coefficient, "v0": v0, "v1": v1, "slip": slip
-            });
-        }
-        (table, clearance)
-    }
-
     /// A function of time with this value at t = 0 that changes by about `amount` within the time of the scales, smooth where a
     /// motion follows it; and whether its rate at t = 0 is not zero.
     fn function(&self, tape: &mut Tape, start: f64, amount: f64, smooth: bool) -> (Value, bool) {
         let (t, end) = (self.time, self.duration);
         let (kind, a, phase) = (tape.whole(0, 4), tape.between(0.1, 1.0), tape.angle());
         let to = start + amount * (end / t).min(1.0);
-        match kind {
-            1 => {
-                let rates = [start, amount / t, 0.3 * amount / (t * t)];
-                let polynomial = json!({ "type": "polynomial", "coefficients": rates });
-                (polynomial, true)
-            }
-            2 => {
-                let (mean, frequency) = (start - amount * phase.sin(), a / t);
-                let harmonic = json!({
-                    "type": "harmonic", "mean": mean, "amplitude": amount,
-                    "frequency": frequency, "phase": phase
-                });
-                (harmonic, true)
-            }
-            3 | 4 => {
-                let (kind, from) = match kind == 4 && !smooth {
-                    true => ("ramp", 0.2 * end),
-                    false => ("smooth_step", 0.0),
-                };
-                let step = json!({
-                    "type": kind, "from": start, "to": to, "start": from, "duration": a * end
-                });
-                (step, false)
-            }
-            _ => (json!(start), false),
-        }
+        let value = match kind {
+            1 => json!({
+                "type": "polynomial", "coefficients": [start, amount / t, 0.3 * amount / (t * t)]
+            }),
+            2 => json!({
+                "type": "harmonic", "mean": start - amount * phase.sin(), "amplitude": amount,
+                "frequency": a / t, "phase": phase
+            }),
+            4 if !smooth => json!({
+                "type": "ramp", "from": start, "to": to, "start": 0.2 * end, "duration": a * end
+            }),
+            3 | 4 => json!({
+                "type": "smooth_step", "from": start, "to": to, "start": 0.0, "duration": a * end
+            }),
+            _ => json!(start),
+        };
+        (value, kind == 1 || kind == 2)
     }
 
     /// Hinges that turn and whose members have angles.
-    fn angles(&self) -> Vec<usize> {
-        let fits = |j: &usize| {
-            let hinge = &self.hinges[*j];
-            hinge.turns && !hinge.sides.iter().any(|pin| self.is_mass(*pin))
-        };
-        (0..self.hinges.len()).filter(fits).collect()
+    fn angles(&self) -> Vec<&Hinge> {
+        let fits =
+            |hinge: &&Hinge| hinge.turns && !hinge.sides.iter().any(|pin| self.is_mass(*pin));
+        self.hinges.iter().filter(fits).collect()
     }
 
     /// Adds a drive, or none.
@@ -461,7 +438,7 @@ impl Drawing {
         let choices = self.angles();
         let (inner, other) = (tape.chance(0.3), tape.between(0.0, 1.0));
         let other = (other * choices.len() as f64) as usize;
-        let hinge = &self.hinges[*choices.get(if inner { other } else { 0 })?];
+        let hinge = choices.get(if inner { other } else { 0 })?;
         let amount = tape.signed_decades(-1.0, 0.5);
         let (angle, moving) = self.function(tape, self.turned(hinge.sides), amount, true);
         let members = hinge.sides.map(|pin| pin.member);
@@ -470,8 +447,8 @@ impl Drawing {
             !hinge.loose && members.contains(&0) && matches!(form, Form::Rigid | Form::Body)
         });
         let moves = moves.collect();
-        self.scene["drives"]["drive1"] =
-            json!({ "type": "angle", "joint": hinge.name, "angle": angle });
+        let table = json!({ "type": "angle", "joint": hinge.name, "angle": angle });
+        self.scene["drives"]["drive1"] = table;
         Some(Drive { moving, moves })
     }
 
@@ -492,9 +469,9 @@ impl Drawing {
             let mut tape = tape.part(10);
             let (to, off) = (self.random_pin(&mut tape), tape.vector(-0.5, 0.0));
             let [from, to] = if masses {
-                [k - 1, k].map(|k| Pin {
-                    member: k,
-                    point: k,
+                [k - 1, k].map(|member| Pin {
+                    member,
+                    point: member,
                 })
             } else {
                 self.points.push(self.points[to.point] + self.size * off);
@@ -515,8 +492,7 @@ impl Drawing {
         }
         let (coil, load, motor) = (tape.chance(0.2), tape.chance(0.25), tape.chance(0.2));
         let couple = self.force() * self.size;
-        if let (true, Some(j)) = (coil, self.angles().first()) {
-            let hinge = &self.hinges[*j];
+        if let (true, Some(hinge)) = (coil, self.angles().first()) {
             let (stiffness, damping) = (tape.decades(-2.0, 2.0), tape.decades(-3.0, 0.0));
             made.push(json!({
                 "type": "torsion_spring", "joint": hinge.name, "stiffness": couple * stiffness,

@@ -70,25 +70,25 @@ fn soak(index: u64) -> SoakedScene {
         Ok(_) if begun.elapsed() > GUARD => breach("no hang", format!("{:?}", begun.elapsed())),
         judged => judged,
     };
-    let (class, failure) = match judged {
-        Ok(outcome) => (outcome, None),
+    let count = |table: &str, name: &str| (table.to_owned(), name.to_owned());
+    let outcome = match judged {
+        Ok(outcome) => outcome,
         Err(Breach { property, detail }) => {
             let failure = json!({
                 "scene": index, "property": property, "detail": detail, "text": text
             });
-            (RunOutcome::Failed, Some(failure))
+            return (vec![count("outcomes", "failed")], Some(failure));
         }
     };
-    let count = |table: &str, name: &str| (table.to_owned(), name.to_owned());
-    let mut counts = vec![count("outcomes", class.name())];
-    match &class {
+    let mut counts = vec![count("outcomes", outcome.name())];
+    match &outcome {
         RunOutcome::Remarked(remarks) => {
             counts.extend(remarks.iter().map(|remark| count("remarks", &gist(remark))));
         }
         RunOutcome::Stopped(text) | RunOutcome::Refused(text) => {
             counts.push(count("causes", &gist(text)));
         }
-        RunOutcome::Finished | RunOutcome::CutShort | RunOutcome::Failed => {}
+        RunOutcome::Finished | RunOutcome::CutShort => {}
     }
-    (counts, failure)
+    (counts, None)
 }
