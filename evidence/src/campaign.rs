@@ -1,7 +1,7 @@
 //! What can be measured, and what is made of it.
 
 use crate::output::{Data, Output};
-use crate::{accuracy, benchmarks, comparison, gallery, overview, paper, stability, verification};
+use crate::{accuracy, benchmarks, comparison, gallery, paper, stability, verification};
 use miette::{IntoDiagnostic, Result, miette};
 use records::Journal;
 use serde::Serialize;
@@ -41,8 +41,8 @@ pub struct Renderer {
     pub render: fn(&Data, &mut Output) -> Result<()>,
 }
 
-/// All renderers; the last ones make pages about the other pages.
-pub const RENDERERS: [&Renderer; 8] = [
+/// All renderers.
+pub const RENDERERS: [&Renderer; 7] = [
     &accuracy::RENDERER,
     &benchmarks::RENDERER,
     &comparison::RENDERER,
@@ -50,7 +50,6 @@ pub const RENDERERS: [&Renderer; 8] = [
     &stability::RENDERER,
     &verification::RENDERER,
     &gallery::RENDERER,
-    &overview::RENDERER,
 ];
 
 /// Results as they are kept.

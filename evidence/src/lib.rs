@@ -10,7 +10,6 @@ pub mod campaign;
 pub mod comparison;
 pub mod gallery;
 pub mod output;
-pub mod overview;
 pub mod paper;
 pub mod stability;
 pub mod verification;

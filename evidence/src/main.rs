@@ -29,7 +29,8 @@ enum Command {
         #[arg(long)]
         resume: bool,
     },
-    /// Makes every tracked page and picture from evidence/data, and the pages of the site with the long tables.
+    /// Makes every tracked page and picture from evidence/data, and the pages of the site with the long tables. Once all campaigns are
+    /// recorded, pictures that nothing gives any more are deleted.
     Render {
         /// Writes nothing; exit code 1 where a tracked file is not what its data give.
         #[arg(long)]
@@ -94,11 +95,19 @@ fn main() -> Result<()> {
 fn render(check: bool) -> Result<()> {
     let root = root();
     let (data, mut output) = (Data::of(&root), Output::new(&root));
+    let mut complete = true;
     for renderer in RENDERERS {
         match renderer.records.iter().find(|name| !data.has(name)) {
-            Some(missing) => eprintln!("not rendered, since {missing} is not recorded"),
+            Some(missing) => {
+                eprintln!("not rendered, since {missing} is not recorded");
+                complete = false;
+            }
             None => (renderer.render)(&data, &mut output)?,
         }
+    }
+    if complete {
+        output.page_of_pages("EVIDENCE.md", "evidence.md")?;
+        output.find_stale(&root)?;
     }
     output.write_site(&root.join("target/tables"))?;
     if !check {

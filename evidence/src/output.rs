@@ -1,8 +1,9 @@
 //! Pages and pictures on their way from records to files.
 
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use minijinja::{Environment, UndefinedBehavior, Value, path_loader};
+use minijinja::{Environment, Value, path_loader};
 use numbers::number;
+use paper_figures::environment;
 use plot::Figure;
 use records::{Origin, Record};
 use serde::Serialize;
@@ -10,6 +11,9 @@ use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// The folder of the tracked pictures.
+const PICTURES: &str = "evidence/pictures";
 
 /// The records in `evidence/data`.
 pub struct Data {
@@ -58,27 +62,23 @@ pub struct Output {
     pub tracked: BTreeMap<String, String>,
     /// Pages of the site with the long tables, by their names.
     pub site: BTreeMap<String, String>,
+    /// Pictures that nothing gives any more.
+    stale: Vec<String>,
 }
 
 impl Output {
     /// Nothing rendered yet; templates are those below this root of a workspace.
     pub fn new(root: &Path) -> Output {
-        let mut templates = Environment::new();
+        let mut templates = environment();
         templates.set_loader(path_loader(root.join("evidence/templates")));
-        // a name that the page gets wrong is an error, no empty text
-        templates.set_undefined_behavior(UndefinedBehavior::Strict);
-        templates.set_trim_blocks(true);
-        templates.set_keep_trailing_newline(true);
-        templates.set_auto_escape_callback(|_| minijinja::AutoEscape::None);
         templates.add_filter("number", |x: f64, digits: usize| number(x, digits));
-        // of numbers and of means with their intervals
-        paper_figures::add_filters(&mut templates);
         templates.add_filter("cell", |text: String| text.replace('|', "\\|"));
         Output {
             templates,
             contexts: BTreeMap::new(),
             tracked: BTreeMap::new(),
             site: BTreeMap::new(),
+            stale: Vec::new(),
         }
     }
 
@@ -104,6 +104,27 @@ impl Output {
         keep(&mut self.tracked, path, text)
     }
 
+    /// Finds the pictures below this root that nothing gives any more, once all pages have been rendered.
+    ///
+    /// # Errors
+    /// A folder that cannot be read.
+    pub fn find_stale(&mut self, root: &Path) -> Result<()> {
+        let mut folders = vec![root.join(PICTURES)];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).into_diagnostic()? {
+                let path = entry.into_diagnostic()?.path();
+                let name = path.strip_prefix(root).unwrap_or(&path);
+                let name = name.display().to_string();
+                if path.is_dir() {
+                    folders.push(path);
+                } else if !self.tracked.contains_key(&name) {
+                    self.stale.push(name);
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// A page of the site.
     ///
     /// # Errors
@@ -113,12 +134,12 @@ impl Output {
         keep(&mut self.site, name, text)
     }
 
-    /// The picture `evidence/pictures/<name>.svg`.
+    /// The picture `<name>.svg` below [`PICTURES`].
     ///
     /// # Errors
     /// A name that another picture has.
     pub fn picture(&mut self, name: &str, figure: &Figure) -> Result<()> {
-        let path = format!("evidence/pictures/{name}.svg");
+        let path = format!("{PICTURES}/{name}.svg");
         keep(&mut self.tracked, &path, plot::svg(figure))
     }
 
@@ -129,30 +150,32 @@ impl Output {
         text.map_err(|e| miette!("evidence/templates/{template}: {e:#}"))
     }
 
-    /// Writes what differs from the files below this root; the paths of those that differed.
+    /// Writes what differs from the files below this root, and deletes what nothing gives any more; the paths of those that differed.
     ///
     /// # Errors
-    /// A file that cannot be written.
+    /// A file that cannot be written or deleted.
     pub fn write(&self, root: &Path) -> Result<Vec<String>> {
         let changed = self.differing(root);
         for path in &changed {
             let file = root.join(path);
             let folder = file.parent().unwrap_or(root);
-            fs::create_dir_all(folder)
-                .and_then(|()| fs::write(&file, &self.tracked[path]))
-                .into_diagnostic()
+            let done = match self.tracked.get(path) {
+                Some(text) => fs::create_dir_all(folder).and_then(|()| fs::write(&file, text)),
+                None => fs::remove_file(&file),
+            };
+            done.into_diagnostic()
                 .wrap_err_with(|| format!("cannot write {path}"))?;
         }
         Ok(changed)
     }
 
-    /// Paths of the files below this root that are not what their data give. A picture that nothing gives any more is not found.
+    /// Paths of the files below this root that are not what their data give, and of the pictures that nothing gives any more.
     pub fn differing(&self, root: &Path) -> Vec<String> {
-        let differs = |(path, text): (&String, &String)| {
-            let same = fs::read_to_string(root.join(path)).is_ok_and(|there| there == *text);
-            (!same).then(|| path.clone())
+        let differs = |(path, text): &(&String, &String)| {
+            !fs::read_to_string(root.join(path)).is_ok_and(|there| there == **text)
         };
-        self.tracked.iter().filter_map(differs).collect()
+        let differing = self.tracked.iter().filter(differs).map(|(path, _)| path);
+        differing.chain(&self.stale).cloned().collect()
     }
 
     /// Writes the pages of the site.
@@ -190,5 +213,26 @@ fn keep(files: &mut BTreeMap<String, String>, path: &str, text: String) -> Resul
     match files.insert(path.to_owned(), text) {
         None => Ok(()),
         Some(_) => Err(miette!("{path} is rendered twice")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_that_nothing_gives_are_deleted_and_others_written() {
+        let root = tempfile::tempdir().unwrap();
+        let stale = root.path().join(PICTURES).join("page/stale.svg");
+        fs::create_dir_all(stale.parent().unwrap()).unwrap();
+        fs::write(&stale, "").unwrap();
+        let mut output = Output::new(root.path());
+        let figure = Figure::grid(Vec::new(), 1, String::new());
+        output.picture("page/kept", &figure).unwrap();
+        output.find_stale(root.path()).unwrap();
+        let names = ["kept", "stale"].map(|name| format!("{PICTURES}/page/{name}.svg"));
+        assert_eq!(output.differing(root.path()), names);
+        output.write(root.path()).unwrap();
+        assert!(root.path().join(&names[0]).exists() && !stale.exists());
     }
 }

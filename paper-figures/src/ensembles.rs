@@ -4,18 +4,18 @@ use crate::exponents::{self, Exponents};
 use crate::kinematics::MechanismGeometry;
 use crate::measures::Measures;
 use crate::methods::{self, Long, MethodWork};
-use crate::runs::{CaseRecording, DURATION, FROM, RunPace, RunPlan};
+use crate::runs::{CaseRecording, DURATION, FROM, RunPlan};
+use crate::shown::mean;
 use crate::signal::{rms, smooth};
 use crate::timings::{self, KernelTimings};
 use crate::warned::merged;
 use miette::{IntoDiagnostic, Result};
+use minijinja::Value;
 use records::{Journal, threads};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 use statistics::Interval;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::fmt::Write;
 
 /// Starts of every ensemble.
 pub const STARTS: usize = 16;
@@ -29,17 +29,8 @@ const MOVED_OTHERWISE: [f64; 2] = [1e-10, 1e-14];
 pub const MESHES: [usize; 4] = [1, 2, 4, 8];
 /// Means over this time \[s\] are compared where single impacts do not happen at the same instants.
 const AVERAGED: f64 = 0.02;
-/// Time in which the platform gets up to speed in the run that starts without deformation at rest \[s\].
-const SPIN_UP: f64 = 0.8;
-/// Knots of that path \[s\].
-const KNOTS: f64 = 1e-3;
 /// Retardation times of the passive links \[s\].
 pub const RETARDATIONS: [f64; 2] = [1e-6, 1e-5];
-/// Steps of Bathe's method whose energy is looked at \[s\]: that of the scenes, and one eight times as long.
-pub const BATHE: [f64; 2] = [1.25e-6, 1e-5];
-/// Starts of these runs, every second of an ensemble.
-const BATHE_STARTS: usize = 8;
-
 /// The ensemble of case 3.
 pub const LOOSE: &str = "A";
 /// That of case 4.
@@ -77,10 +68,9 @@ pub struct Ensemble {
     pub measures: BTreeMap<String, Vec<f64>>,
     /// What the runs warn of.
     pub warnings: Vec<String>,
+    #[serde(skip)]
+    plans: Vec<RunPlan>,
 }
-
-/// An ensemble to be made, and its runs.
-type Wanted = (Ensemble, Vec<RunPlan>);
 
 /// What is kept of a run: measures, warnings and, where it is composed, its slow error.
 type Kept = (Measures, Vec<String>, Vec<f64>);
@@ -89,7 +79,7 @@ type Kept = (Measures, Vec<String>, Vec<f64>);
 ///
 /// # Errors
 /// The first run that fails.
-pub fn measure(journal: &Journal) -> Result<Value> {
+pub fn measure(journal: &Journal) -> Result<serde_json::Value> {
     let geometry = MechanismGeometry::of(&RunPlan::controlled(3, INTERVAL).scene()?)?;
     // before other threads run
     let timings = journal.item("timings", timings::run)?;
@@ -98,7 +88,7 @@ pub fn measure(journal: &Journal) -> Result<Value> {
         work: methods::work(journal)?,
         long: methods::long(&geometry, journal)?,
         exponents: exponents::run(&geometry, journal)?,
-        ensembles: make(wanted(&geometry), journal)?,
+        ensembles: make(planned(&geometry), journal)?,
     };
     serde_json::to_value(record).into_diagnostic()
 }
@@ -128,16 +118,17 @@ impl EnsembleRecord {
 }
 
 impl Ensemble {
-    fn wanted(name: String, changed: String, moved: f64, plans: Vec<RunPlan>) -> Wanted {
-        let ensemble = Ensemble {
+    /// Runs that are to be made.
+    fn planned(name: String, changed: String, moved: f64, plans: Vec<RunPlan>) -> Ensemble {
+        Ensemble {
             name,
             case: plans[0].case,
             moved,
             changed,
             measures: BTreeMap::new(),
             warnings: Vec::new(),
-        };
-        (ensemble, plans)
+            plans,
+        }
     }
 
     /// The measures that all runs have, and the warnings.
@@ -150,15 +141,13 @@ impl Ensemble {
         self.warnings = merged(runs.iter().map(|(_, warnings, _)| warnings));
     }
 
-    /// Several ensembles as one.
+    /// The measures of several ensembles as one.
     ///
     /// # Panics
     /// Without any.
     pub fn together(all: &[&Ensemble]) -> Ensemble {
         let mut together = all[0].clone();
         for other in &all[1..] {
-            together.name = format!("{}, {}", together.name, other.name);
-            together.warnings.extend_from_slice(&other.warnings);
             for (name, values) in &mut together.measures {
                 values.extend(other.measures.get(name).into_iter().flatten());
             }
@@ -179,15 +168,23 @@ impl Ensemble {
     pub fn mean(&self, name: &str) -> Interval {
         Interval::of(self.values(name))
     }
+
+    /// All means with their intervals; of a single run the values.
+    pub fn means(&self) -> BTreeMap<&str, Value> {
+        let measures = self.measures.iter();
+        measures.map(|(name, v)| (name.as_str(), mean(v))).collect()
+    }
+
+    /// Mean of a function of a measure of these runs and the same of others, run by run.
+    pub fn pairs(&self, others: &Ensemble, name: &str, of: impl Fn(f64, f64) -> f64) -> Interval {
+        let of = |(one, other): (&f64, &f64)| of(*one, *other);
+        let pairs = self.values(name).iter().zip(others.values(name));
+        Interval::of(&pairs.map(of).collect::<Vec<f64>>())
+    }
 }
 
-/// All ensembles and single runs.
-fn wanted(g: &MechanismGeometry) -> Vec<Wanted> {
-    let starts = |plan: &RunPlan, size: f64, every: usize| {
-        let starts = (0..STARTS).step_by(every);
-        let plans = starts.map(|k| plan.clone().with(moved(g, size, k)));
-        plans.collect::<Vec<RunPlan>>()
-    };
+/// All ensembles and single runs, which are to be made.
+fn planned(g: &MechanismGeometry) -> Vec<Ensemble> {
     let mut all = Vec::new();
     let sizes = [MOVED].into_iter().chain(MOVED_OTHERWISE);
     let sizes = sizes.flat_map(|size| [3, 4].map(|case| (case, size, Vec::new())));
@@ -198,36 +195,27 @@ fn wanted(g: &MechanismGeometry) -> Vec<Wanted> {
         let (name, changed) = (letter.to_string(), overrides.join(" "));
         let mut plan = RunPlan::controlled(case, INTERVAL);
         plan.overrides = overrides;
-        let plans = starts(&plan, size, 1);
-        all.push(Ensemble::wanted(name, changed, size, plans));
+        let plans = (0..STARTS).map(|k| plan.clone().with(moved(g, size, k)));
+        all.push(Ensemble::planned(name, changed, size, plans.collect()));
     }
-    for (case, step) in [3, 4].map(|case| BATHE.map(|step| (case, step))).concat() {
-        let plan = RunPlan::new(case, RunPace::bathe(step), 1e-4, DURATION);
-        let (name, changed) = (bathe_name(case, step), plan.pace.label());
-        let plans = starts(&plan, MOVED, STARTS / BATHE_STARTS);
-        all.push(Ensemble::wanted(name, changed, MOVED, plans));
-    }
-    let mut single = |name: String, overrides: Vec<String>| {
+    let damped = RETARDATIONS.map(|time| {
+        let of = |i| format!("bodies.link{i}.kelvin_voigt={time:e}");
+        (damped_name(time), [1, 2, 3].map(of).into())
+    });
+    let singles = MESHES.map(|elements| (mesh_name(elements), mesh(elements)));
+    for (name, overrides) in singles.into_iter().chain(damped) {
         let mut plan = RunPlan::controlled(2, INTERVAL);
         plan.overrides = overrides;
         let changed = "case 2".into();
-        all.push(Ensemble::wanted(name, changed, 0.0, vec![plan]));
-    };
-    for elements in MESHES {
-        single(mesh_name(elements), mesh(elements));
-    }
-    single("quasi-static start".into(), spun_up(g));
-    for time in RETARDATIONS {
-        let damped = [1, 2, 3].map(|i| format!("bodies.link{i}.kelvin_voigt={time:e}"));
-        single(damped_name(time), damped.into());
+        all.push(Ensemble::planned(name, changed, 0.0, vec![plan]));
     }
     all
 }
 
-fn make(wanted: Vec<Wanted>, journal: &Journal) -> Result<Vec<Ensemble>> {
+fn make(mut all: Vec<Ensemble>, journal: &Journal) -> Result<Vec<Ensemble>> {
     let mut keys: Vec<(&str, usize, &RunPlan)> = Vec::new();
-    for (ensemble, plans) in &wanted {
-        let plans = plans.iter().enumerate();
+    for ensemble in &all {
+        let plans = ensemble.plans.iter().enumerate();
         keys.extend(plans.map(|(k, plan)| (ensemble.name.as_str(), k, plan)));
     }
     let composed = [LOOSE, BOTH, &mesh_name(1)];
@@ -242,14 +230,12 @@ fn make(wanted: Vec<Wanted>, journal: &Journal) -> Result<Vec<Ensemble>> {
     let mut done: Vec<Kept> = journal.items(&keys, threads(), name, run)?;
     let first = composed.map(|name| keys.iter().position(|key| key.0 == name).unwrap_or(0));
     compose(&mut done, first);
-    let mut done = done.as_slice();
-    let made = wanted.into_iter().map(|(mut ensemble, plans)| {
-        let (runs, rest) = done.split_at(plans.len());
-        done = rest;
-        ensemble.take(runs);
-        ensemble
-    });
-    Ok(made.collect())
+    let mut done = done.into_iter();
+    for ensemble in &mut all {
+        let runs: Vec<Kept> = done.by_ref().take(ensemble.plans.len()).collect();
+        ensemble.take(&runs);
+    }
+    Ok(all)
 }
 
 /// Adds to the runs of case 4 which part of their slow error is none of cases 2 and 3; the run of case 3 has the same start.
@@ -278,11 +264,6 @@ pub fn damped_name(time: f64) -> String {
     format!("retardation time {}", numbers::si(time, "s"))
 }
 
-/// The name of the runs with Bathe's method.
-pub fn bathe_name(case: u32, step: f64) -> String {
-    format!("Bathe, case {case}, {}", numbers::si(step, "s"))
-}
-
 /// The start of case 3 or 4 with the platform moved by `moved` \[m\], in one of [`STARTS`] directions.
 ///
 /// The velocity is that of the ideal mechanism, which the scene has without this override.
@@ -303,33 +284,6 @@ fn slow_error(recording: &CaseRecording) -> Vec<f64> {
     let every = (1e-3 / recording.plan.interval) as usize;
     let error = smooth(recording.between("error.x", FROM, DURATION).1, width);
     error.into_iter().step_by(every).collect()
-}
-
-/// Case 2 from rest: the platform gets up to speed on the circle so smoothly that the links follow in their quasi-static
-/// deformation, and is where the printed motion is from [`SPIN_UP`] on.
-///
-/// The angle is phi = pi T + 2 pi T R(t/T), its rate a polynomial with three vanishing derivatives at both ends.
-fn spun_up(g: &MechanismGeometry) -> Vec<String> {
-    let place = |t: f64| {
-        let u = (t / SPIN_UP).min(1.0);
-        let ramp = u.powi(5) * (7.0 - u * (14.0 - u * (10.0 - 2.5 * u)));
-        let turns = 0.5 * SPIN_UP + SPIN_UP * ramp + (t - SPIN_UP).max(0.0);
-        let (sin, cos) = (g.frequency * TAU * turns).sin_cos();
-        [g.radius * cos, g.radius * sin, 0.0]
-    };
-    let mut rows = String::new();
-    // beyond the end, where the spline has no curvature
-    for k in 0..=((DURATION + 0.05) / KNOTS) as usize {
-        let t = k as f64 * KNOTS;
-        let [x, y, theta] = place(t);
-        let _ = write!(rows, "[{t:?}, {x:?}, {y:?}, {theta:?}], ");
-    }
-    let path = format!("drives.input.path={{ type = \"table\", rows = [{rows}] }}");
-    let sketches = (0..3).map(|leg| {
-        let [x, y]: [f64; 2] = g.pin(leg, place(0.0)).into();
-        format!("initial.sketch.B{}=[{x:?}, {y:?}]", leg + 1)
-    });
-    [path].into_iter().chain(sketches).collect()
 }
 
 #[cfg(test)]
@@ -353,23 +307,10 @@ mod tests {
 
     #[test]
     fn scenes_of_all_ensembles_are_read() -> Result<()> {
-        let all = wanted(&geometry()?);
-        let names: HashSet<&str> = all.iter().map(|(e, _)| e.name.as_str()).collect();
+        let all = planned(&geometry()?);
+        let names: HashSet<&str> = all.iter().map(|e| e.name.as_str()).collect();
         assert!(names.len() == all.len() && names.contains(TIGHTER));
-        all.iter()
-            .try_for_each(|(_, plans)| plans[0].scene().map(drop))
-    }
-
-    #[test]
-    fn spun_up_path_ends_on_the_printed_one() -> Result<()> {
-        let geometry = geometry()?;
-        let path = &spun_up(&geometry)[0];
-        let row = path.split("[1.0, ").nth(1).unwrap_or_default();
-        let x = row.split(',').next().unwrap_or_default();
-        let x: f64 = x.parse().unwrap_or(f64::NAN);
-        // one turn after one second, to the rounding of an angle of 6
-        assert!((x - geometry.radius).abs() < 1e-15);
-        Ok(())
+        all.iter().try_for_each(|e| e.plans[0].scene().map(drop))
     }
 
     #[test]

@@ -73,7 +73,14 @@ pub fn run(g: &MechanismGeometry, journal: &Journal) -> Result<Vec<Exponents>> {
         for distance in distances {
             let starts: Vec<usize> = (0..STARTS).collect();
             let name = |k: &usize| format!("exponent {case} {distance:e} {k}");
-            let run = |k: &usize| exponent(g, case, pace, distance, *k);
+            let run = |k: &usize| {
+                let mut plan = RunPlan::new(case, pace, RETURN, DURATION);
+                // the starts of an ensemble; case 2 has no loose joint that would let the platform start elsewhere
+                if case > 2 {
+                    plan.overrides.push(moved(g, MOVED, *k));
+                }
+                exponent(&plan, distance, *k)
+            };
             let done = journal.items(&starts, threads(), name, run)?;
             let (values, warnings): (Vec<f64>, Vec<Vec<String>>) = done.into_iter().unzip();
             all.push(Exponents {
@@ -89,18 +96,7 @@ pub fn run(g: &MechanismGeometry, journal: &Journal) -> Result<Vec<Exponents>> {
 }
 
 /// The exponent of one pair of motions, and warnings.
-fn exponent(
-    g: &MechanismGeometry,
-    case: u32,
-    pace: RunPace,
-    distance: f64,
-    k: usize,
-) -> Result<(f64, Vec<String>)> {
-    let mut plan = RunPlan::new(case, pace, RETURN, DURATION);
-    // the starts of an ensemble; case 2 has no loose joint that would let the platform start elsewhere
-    if case > 2 {
-        plan.overrides.push(moved(g, MOVED, k));
-    }
+fn exponent(plan: &RunPlan, distance: f64, k: usize) -> Result<(f64, Vec<String>)> {
     let scene = plan.scene()?;
     let mut motion = Simulation::new(&scene)?;
     let mut neighbour = Simulation::new(&scene)?;
@@ -118,38 +114,40 @@ fn exponent(
         motion.advance_to(t, &mut ()).into_diagnostic()?;
         neighbour.advance_to(t, &mut ()).into_diagnostic()?;
         let (one, other) = (motion.state(), neighbour.state());
-        let apart = distance_of(one, other, unknowns);
+        let square = |i| apart(one, other, i).powi(2) + (RATES * (other.v[i] - one.v[i])).powi(2);
+        let apart = (0..unknowns).map(square).sum::<f64>().sqrt();
         if t > LEFT_OUT {
             sum += (apart / distance).ln();
         }
-        bring_back(&mut next, one, other, unknowns, distance / apart);
+        bring_back(&mut next, one, other, unknowns, [distance / apart; 2]);
         neighbour.continue_from(&next).into_diagnostic()?;
     }
     let exponent = rounded(sum / (DURATION - LEFT_OUT), 9);
     Ok((exponent, motion.report().warnings()))
 }
 
-/// Euclidean norm of the differences of two states.
-fn distance_of(one: &State, other: &State, unknowns: usize) -> f64 {
-    let squares = (0..unknowns).map(|i| {
-        let q = (other.q[i] - one.q[i]) + (other.q_low[i] - one.q_low[i]);
-        q.powi(2) + (RATES * (other.v[i] - one.v[i])).powi(2)
-    });
-    squares.sum::<f64>().sqrt()
+/// By how much a coordinate of another state is larger.
+pub fn apart(one: &State, other: &State, i: usize) -> f64 {
+    (other.q[i] - one.q[i]) + (other.q_low[i] - one.q_low[i])
 }
 
-/// Writes one + factor (other - one) into `next`. A contact that both have closed keeps its memory in the same proportion; one that
-/// only one of them has closed is closed where the gap says so.
-fn bring_back(next: &mut State, one: &State, other: &State, unknowns: usize, factor: f64) {
+/// Writes one + factor (other - one) into `next`, with factors of coordinates and of rates. A contact that both have closed keeps its
+/// memory in the proportion of rates; one that only one of them has closed is closed where the gap says so.
+pub fn bring_back(
+    next: &mut State,
+    one: &State,
+    other: &State,
+    unknowns: usize,
+    [of_q, of_v]: [f64; 2],
+) {
     next.copy_from(one);
     for i in 0..unknowns {
-        let q = (other.q[i] - one.q[i]) + (other.q_low[i] - one.q_low[i]);
-        next.q[i] += factor * q;
-        next.v[i] += factor * (other.v[i] - one.v[i]);
+        next.q[i] += of_q * apart(one, other, i);
+        next.v[i] += of_v * (other.v[i] - one.v[i]);
     }
     for (memory, other) in next.z.iter_mut().zip(&other.z) {
         if *memory > 0.0 && *other > 0.0 {
-            *memory = (*memory + factor * (other - *memory)).max(f64::MIN_POSITIVE);
+            *memory = (*memory + of_v * (other - *memory)).max(f64::MIN_POSITIVE);
         }
     }
 }

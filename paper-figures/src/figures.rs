@@ -238,7 +238,7 @@ impl FigureRuns {
     fn run_numbers(&self, m: &mut Measures) {
         let g = &self.geometry;
         let reached = ["flexible", "loose", "both"];
-        let reached = reached.map(|name| self.get(name).t.last().copied().unwrap_or(0.0));
+        let reached = reached.map(|name| self.get(name).column("t").last().copied().unwrap_or(0.0));
         m.put("reached", reached.into_iter().fold(DURATION, f64::min));
         let axes = ["error.x", "error.y"].map(|name| peak(self.get("ideal").column(name)));
         m.put("path_error", peak(&axes));
@@ -263,10 +263,7 @@ impl FigureRuns {
 
 /// Young's modulus of the passive links of a scene \[Pa\].
 fn youngs_modulus(scene: &Scene) -> Result<f64> {
-    let mut links = scene
-        .bodies
-        .iter()
-        .filter_map(|b| b.kind.get::<FlexibleLink>());
-    let link = links.next().ok_or_else(|| miette!("no link is flexible"))?;
+    let link = scene.bodies.iter().find_map(|b| b.kind.get());
+    let link: &FlexibleLink = link.ok_or_else(|| miette!("no link is flexible"))?;
     Ok(link.youngs_modulus)
 }

@@ -11,7 +11,7 @@
 //! |e_x| <= sum_i |J^-1|_{xi} (|e_B| + |e_C|)_i to first order in the eccentricities e.
 
 use looselink::motion::Circle;
-use looselink::scene::{PointRef, Scene, Sketched};
+use looselink::scene::{Scene, Sketched};
 use miette::{Result, miette};
 use nalgebra::{Matrix3, Rotation2, Vector2};
 use std::any::Any;
@@ -45,42 +45,46 @@ impl MechanismGeometry {
     /// Reads the geometry of a scene with the names of the paper (A1, B1, C1, crank1, link1, platform).
     ///
     /// # Errors
-    /// When the scene is not such a mechanism.
+    /// When the scene is not such a mechanism, or its path is no circle about the origin that starts on the x axis.
     pub fn of(scene: &Scene) -> Result<MechanismGeometry> {
-        let drive = scene
-            .drives
-            .first()
-            .ok_or_else(|| miette!("the scene has no drive"))?;
-        let path: &dyn Any = &*drive.path;
-        let circle = path.downcast_ref::<Circle>().filter(|circle| {
-            circle.center == [0.0, 0.0] && circle.phase == 0.0 && circle.theta == 0.0
-        });
-        let Some(&Circle { radius, rate, .. }) = circle else {
-            return Err(miette!(
-                "the path is not a circle about the origin that starts on the x axis"
-            ));
+        let found = MechanismGeometry::find(scene);
+        found.ok_or_else(|| miette!("the scene is not the mechanism of the paper on its circle"))
+    }
+
+    fn find(scene: &Scene) -> Option<MechanismGeometry> {
+        let path: &dyn Any = &*scene.drives.first()?.path;
+        let circle: &Circle = path.downcast_ref()?;
+        if circle.center != [0.0, 0.0] || circle.phase != 0.0 || circle.theta != 0.0 {
+            return None;
+        }
+        let length = |name: &str| scene.bodies[scene.body(name)?].kind.length();
+        // the end of a joint on a body, in the frame of that body
+        let end_on = |joint: String, body: &str| -> Option<Vector> {
+            let (joint, body) = (&scene.joints[scene.joint(&joint)?], scene.body(body)?);
+            let mut ends = [joint.bearing, joint.journal].into_iter();
+            let end = ends.find(|end| end.body == body)?;
+            Some(scene.bodies[body].kind.points()[end.point].at)
         };
         let (mut base, mut platform) = ([Vector::zeros(); 3], [Vector::zeros(); 3]);
         let mut elbow = [0.0; 3];
         for i in 0..3 {
-            base[i] = end_on(scene, &format!("A{}", i + 1), "ground")?;
-            platform[i] = end_on(scene, &format!("C{}", i + 1), "platform")?;
-            let pin = sketched(scene, &format!("B{}", i + 1))? - base[i];
-            let corner = Vector::new(radius, 0.0) + platform[i] - base[i];
+            base[i] = end_on(format!("A{}", i + 1), "ground")?;
+            platform[i] = end_on(format!("C{}", i + 1), "platform")?;
+            let pin = Sketched::Joint(scene.joint(&format!("B{}", i + 1))?);
+            let pin = scene.initial.sketch.iter().find(|p| p.what == pin)?.at - base[i];
+            let corner = Vector::new(circle.radius, 0.0) + platform[i] - base[i];
             elbow[i] = corner.perp(&pin).signum();
         }
-        let contact = scene.joint("B1").and_then(|j| scene.joints[j].contact());
-        let clearance = contact.map_or(0.0, |contact| contact.clearance);
-        let (crank, link) = (link_length(scene, "crank1")?, link_length(scene, "link1")?);
-        Ok(MechanismGeometry {
+        let contact = scene.joints[scene.joint("B1")?].contact();
+        Some(MechanismGeometry {
             base,
             platform,
-            crank,
-            link,
+            crank: length("crank1")?,
+            link: length("link1")?,
             elbow,
-            radius,
-            frequency: rate / TAU,
-            clearance,
+            radius: circle.radius,
+            frequency: circle.rate / TAU,
+            clearance: contact.map_or(0.0, |contact| contact.clearance),
         })
     }
 
@@ -142,32 +146,6 @@ impl MechanismGeometry {
     fn arm(&self, leg: usize, pose: [f64; 3]) -> Vector {
         Rotation2::new(pose[2]) * self.platform[leg]
     }
-}
-
-/// Coordinates of the end of a joint that lies on a body, in the frame of that body.
-fn end_on(scene: &Scene, joint: &str, body: &str) -> Result<Vector> {
-    let missing = || miette!("the scene has no joint {joint} on the body {body}");
-    let joint = &scene.joints[scene.joint(joint).ok_or_else(missing)?];
-    let body = scene.body(body).ok_or_else(missing)?;
-    let on = |end: &PointRef| end.body == body;
-    let end = [joint.bearing, joint.journal]
-        .into_iter()
-        .find(on)
-        .ok_or_else(missing)?;
-    Ok(scene.bodies[body].kind.points()[end.point].at)
-}
-
-fn sketched(scene: &Scene, joint: &str) -> Result<Vector> {
-    let place = scene.joint(joint).map(Sketched::Joint);
-    let point = scene.initial.sketch.iter().find(|p| Some(p.what) == place);
-    point
-        .map(|p| p.at)
-        .ok_or_else(|| miette!("the scene does not sketch the joint {joint}"))
-}
-
-fn link_length(scene: &Scene, name: &str) -> Result<f64> {
-    let link = scene.body(name).and_then(|b| scene.bodies[b].kind.length());
-    link.ok_or_else(|| miette!("the scene has no link {name}"))
 }
 
 #[cfg(test)]

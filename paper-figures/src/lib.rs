@@ -1,29 +1,27 @@
 //! Figs. 5 to 9 of Zhang & Zhang (2017), and its statements decided by computed quantities.
 //!
 //! Three campaigns measure: [`figures`] makes the runs of the figures, [`scans`] varies one parameter at a time, [`ensembles`] runs the
-//! chaotic cases from many starts. Their results are records; [`reproduction`], [`scans_page`] and [`ensembles_page`] make pictures and
-//! the contexts of the templates from them, without a run.
+//! chaotic cases from many starts. Their results are records; [`statement`], [`scans`] and [`ensembles_page`] make the contexts of the
+//! templates from them, without a run.
 #![forbid(unsafe_code)]
 
 mod decisions;
 pub mod ensembles;
 pub mod ensembles_page;
 mod evidence;
-mod exponents;
+pub mod exponents;
 pub mod figures;
 mod kinematics;
 mod measures;
 mod methods;
 mod pictures;
-pub mod reproduction;
 mod runs;
 pub mod scans;
-pub mod scans_page;
 mod shown;
 mod signal;
-mod statement;
+pub mod statement;
 mod timings;
 mod verdict;
 mod warned;
 
-pub use shown::{add_filters, environment};
+pub use shown::environment;

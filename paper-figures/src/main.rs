@@ -3,11 +3,10 @@
 use miette::{IntoDiagnostic, Result, WrapErr};
 use minijinja::context;
 use paper_figures::ensembles::EnsembleRecord;
-use paper_figures::figures::FigureRecord;
-use paper_figures::{environment, figures, reproduction};
+use paper_figures::figures::{self, FigureRecord};
+use paper_figures::{environment, statement};
 use records::{Journal, Record, root};
 use std::fs;
-use std::path::Path;
 
 /// The template that the tracked page has, too.
 const TEMPLATE: &str = include_str!("../../evidence/templates/reproduction.md");
@@ -19,30 +18,25 @@ fn main() -> Result<()> {
         Record::read(&root.join("evidence/data/ensembles.json"))
             .wrap_err("the verdicts on the chaotic cases rest on this record")?;
     let journal = Journal::unkept();
-    let results = serde_json::from_value(figures::measure(&journal)?).into_diagnostic()?;
+    let figures = figures::measure(&journal)?;
+    let figures: FigureRecord = serde_json::from_value(figures).into_diagnostic()?;
     let seconds = journal.seconds().round();
-    let mut origin = ensembles.origin.clone();
-    origin.commit = "these runs".into();
-    let figures: Record<FigureRecord> = Record { origin, results };
+    let commit = &ensembles.origin.commit;
     let page = context! {
         stamp => format!("The runs of the figures were made with the present sources in {seconds} s."),
+        stamp_ensembles => format!("The ensembles were made at commit {commit}."),
         pictures => ".",
-        ..reproduction::values(&figures, &ensembles)?
+        ..statement::values(&figures, &ensembles.results)?
     };
     let page = environment().render_str(TEMPLATE, page).into_diagnostic()?;
     let folder = root.join("out/paper");
-    for (name, figure) in &figures.results.pictures {
-        write(&folder.join(format!("{name}.svg")), &plot::svg(figure))?;
+    fs::create_dir_all(&folder).into_diagnostic()?;
+    let pictures = figures.pictures.iter();
+    let pictures = pictures.map(|(name, figure)| (format!("{name}.svg"), plot::svg(figure)));
+    for (name, text) in pictures.chain([("REPRODUCTION.md".to_owned(), page)]) {
+        let written = fs::write(folder.join(&name), text).into_diagnostic();
+        written.wrap_err_with(|| format!("cannot write {name}"))?;
     }
-    write(&folder.join("REPRODUCTION.md"), &page)?;
     println!("{}", folder.join("REPRODUCTION.md").display());
     Ok(())
-}
-
-fn write(path: &Path, text: &str) -> Result<()> {
-    let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
-    let written = folder.and_then(|()| fs::write(path, text));
-    written
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot write {}", path.display()))
 }

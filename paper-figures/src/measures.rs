@@ -49,7 +49,7 @@ impl Measures {
         let force = between("B1.force");
         let interval = recording.plan.interval;
         let deviated = deviation(g, recording, FROM, DURATION);
-        let times = recording.t[recording.rows(FROM, DURATION)].iter();
+        let times = between("t").iter();
         let ideal: Vec<f64> = times.map(|&t| g.acceleration_x(t)).collect();
         let cycle = |from: f64| rms(&deviation(g, recording, from, from + 1.0 / g.frequency));
         let average = mean(force);
@@ -87,16 +87,12 @@ impl Measures {
 
     /// What only loose joints have.
     fn contacts(&mut self, g: &MechanismGeometry, recording: &CaseRecording, deviation: &[f64]) {
-        let t = &recording.t[recording.rows(FROM, DURATION)];
+        let (t, _) = recording.between("t", FROM, DURATION);
         let between = |channel: &str| recording.between(channel, FROM, DURATION).1;
         let contact = |joint| fraction(between(&format!("{joint}.penetration")), |d| d > 0.0);
         let share = JOINTS.map(contact);
         self.put("contact_b1", share[0]);
         self.put("contact_least", share.into_iter().fold(1.0, f64::min));
-        self.put(
-            "energy_gained_in_cycles",
-            energy_gained_in_cycles(recording),
-        );
         // part of the bound of the error that is used at the same instant
         let used = between("error.x").iter().zip(bound(g, recording));
         let used = used.map(|(e, b)| e.abs() / b);
@@ -108,10 +104,10 @@ impl Measures {
         };
         let highest = times(deviation);
         let middle = 0.5 * AFTER_ONSET;
-        let onsets = recording.onsets.iter();
+        let onsets = recording.onsets();
         let shifted: Vec<f64> = onsets.clone().map(|t| t + middle).collect();
         self.put("peaks_after_onset", coincidence(&highest, &shifted, middle));
-        let onsets: Vec<f64> = onsets.copied().filter(|t| *t >= FROM).collect();
+        let onsets: Vec<f64> = onsets.filter(|t| *t >= FROM).collect();
         self.put("onsets", onsets.len() as f64);
         let chance = covered(&onsets) / (DURATION - FROM);
         self.put("after_onset_by_chance", chance);
@@ -165,17 +161,6 @@ pub fn energy_lost(recording: &CaseRecording) -> f64 {
     lost / of
 }
 
-/// Largest energy that the integrator has gained, or lost (negative), in the last two cycles, over that dissipated in contacts
-/// in them.
-pub fn energy_gained_in_cycles(recording: &CaseRecording) -> f64 {
-    let between = |name: &str| recording.between(name, FROM, DURATION).1;
-    let numerical = between("energy.numerical");
-    let dissipated = between("energy.contact_dissipated");
-    let change = numerical.iter().map(|lost| numerical[0] - lost);
-    let largest = change.fold(0.0, |m: f64, x| if x.abs() > m.abs() { x } else { m });
-    largest / (dissipated[dissipated.len() - 1] - dissipated[0])
-}
-
 /// The bound of the error along x over the last two cycles \[m\]: sum_i |J^-1|_{xi} s_i, where the slack s_i of a
 /// leg is 2 c, the penetrations of its two joints and, of a flexible link, its length times its strain.
 pub fn bound(g: &MechanismGeometry, recording: &CaseRecording) -> Vec<f64> {
@@ -194,7 +179,7 @@ pub fn bound(g: &MechanismGeometry, recording: &CaseRecording) -> Vec<f64> {
             2.0 * g.clearance + b[k].max(0.0) + c[k].max(0.0) + stretch
         })
     };
-    let times = recording.t[rows.clone()].iter().enumerate();
+    let times = recording.column("t")[rows.clone()].iter().enumerate();
     times.map(|(k, &t)| g.bound_x(t, slack(k))).collect()
 }
 

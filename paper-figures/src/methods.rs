@@ -3,10 +3,10 @@
 use crate::ensembles::{MOVED, STARTS, moved};
 use crate::kinematics::MechanismGeometry;
 use crate::measures::deviation;
-use crate::runs::{CaseRecording, RunPace, RunPlan, causes, words};
+use crate::runs::{CaseRecording, RunPace, RunPlan, words};
 use crate::shown::mean;
 use crate::signal::{peak, rms};
-use crate::verdict::{CriterionVerdict, below};
+use crate::verdict::{CriterionVerdict, below, holds};
 use crate::warned::merged;
 use miette::Result;
 use minijinja::{Value, context};
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use statistics::Interval;
 
 /// Methods that are compared, the explicit ones last. Implicit Euler, of order one, is none of the paper's.
-pub const METHODS: [&str; 9] = [
+const METHODS: [&str; 9] = [
     "bathe",
     "trapezoidal",
     "generalized_alpha",
@@ -116,7 +116,7 @@ impl Long {
     pub fn stays(&self, factor: f64) -> CriterionVerdict {
         match self.growth.as_slice() {
             _ if self.stopped > 0 => CriterionVerdict::Fails,
-            [one] => CriterionVerdict::of(*one <= factor),
+            [one] => holds(*one <= factor),
             all => below(&[Interval::of(all)], factor),
         }
     }
@@ -174,7 +174,7 @@ fn work_of(case: u32, method: &'static str, step: f64, reference: &[f64]) -> Met
         warnings: Vec::new(),
     };
     match plan(case, method, step, ROWS, HORIZON).run() {
-        Err(error) => work.warnings.push(format!("stopped: {}", causes(&error))),
+        Err(error) => work.warnings.push(format!("stopped: {error:#}")),
         Ok(done) => {
             let pairs = done.column("error.x").iter().zip(reference);
             let apart: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
@@ -213,7 +213,7 @@ pub fn long(g: &MechanismGeometry, journal: &Journal) -> Result<Vec<Long>> {
                 rms(&deviation(g, done, end - 1.0 / g.frequency, end))
             };
             Ok(match plan.run() {
-                Err(error) => (None, vec![format!("stopped: {}", causes(&error))]),
+                Err(error) => (None, vec![format!("stopped: {error:#}")]),
                 Ok(done) => {
                     let growth = cycle(&done, cycles) / cycle(&done, 2.0);
                     (Some(rounded(growth, 9)), done.warnings)

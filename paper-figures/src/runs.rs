@@ -2,9 +2,8 @@
 
 use looselink::scene::Scene;
 use looselink::simulate::{Recording, Report, Simulation};
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr};
 use numbers::si;
-use std::collections::HashMap;
 use std::ops::Range;
 
 /// Three cycles are run and the last two are looked at, as in the paper \[s\].
@@ -84,15 +83,11 @@ pub struct CaseRecording {
     pub plan: RunPlan,
     /// The scene with the overrides applied.
     pub scene: Scene,
-    /// Time \[s\].
-    pub t: Vec<f64>,
-    /// Instants of contact onset \[s\].
-    pub onsets: Vec<f64>,
     /// The library's own account of the run.
     pub report: Report,
     /// Its warnings.
     pub warnings: Vec<String>,
-    columns: HashMap<String, Vec<f64>>,
+    recording: Recording,
 }
 
 /// Channels that the figures and the tables read; a rigid link has no strain and an ideal joint no penetration.
@@ -158,32 +153,20 @@ impl RunPlan {
     pub fn run(&self) -> Result<CaseRecording> {
         let scene = self.scene()?;
         let mut simulation = Simulation::new(&scene)?;
-        let mut recorder = Recording::new(&simulation);
+        let mut recording = Recording::new(&simulation);
         simulation
-            .run(&mut recorder)
+            .run(&mut recording)
             .into_diagnostic()
             .wrap_err_with(|| self.scene_name())?;
         let report = simulation.report();
-        let onsets = recorder.onsets.iter().map(|o| o.t).collect();
-        let mut columns: HashMap<String, Vec<f64>> = recorder.into_columns().collect();
-        let t = columns.remove("t");
-        let t = t.ok_or_else(|| miette!("the recording has no time channel"))?;
         Ok(CaseRecording {
             plan: self.clone(),
             scene,
-            t,
-            onsets,
             warnings: report.warnings(),
             report,
-            columns,
+            recording,
         })
     }
-}
-
-/// What an error says, with its causes.
-pub fn causes(error: &miette::Report) -> String {
-    let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
-    causes.join(": ")
 }
 
 impl CaseRecording {
@@ -192,20 +175,25 @@ impl CaseRecording {
     /// # Panics
     /// When the run has no such channel: the callers name channels that their case has.
     pub fn column(&self, name: &str) -> &[f64] {
-        let column = self.columns.get(name);
+        let column = self.recording.get(name);
         column.unwrap_or_else(|| panic!("{} records no channel {name}", self.plan.scene_name()))
+    }
+
+    /// Instants of contact onset \[s\].
+    pub fn onsets(&self) -> impl Iterator<Item = f64> + Clone {
+        self.recording.onsets.iter().map(|onset| onset.t)
     }
 
     /// Rows with from <= t <= to, a rounding error wider at both ends.
     pub fn rows(&self, from: f64, to: f64) -> Range<usize> {
-        let slack = 0.01 * self.plan.interval;
-        self.t.partition_point(|&t| t < from - slack)..self.t.partition_point(|&t| t <= to + slack)
+        let (t, slack) = (self.column("t"), 0.01 * self.plan.interval);
+        t.partition_point(|&t| t < from - slack)..t.partition_point(|&t| t <= to + slack)
     }
 
     /// Time and a channel between two instants.
     pub fn between(&self, name: &str, from: f64, to: f64) -> (&[f64], &[f64]) {
         let rows = self.rows(from, to);
-        (&self.t[rows.clone()], &self.column(name)[rows])
+        (&self.column("t")[rows.clone()], &self.column(name)[rows])
     }
 }
 
@@ -220,9 +208,8 @@ mod tests {
         let plans = [3, 4, 3, 4].map(plan);
         let bits = |plan: &RunPlan| -> Vec<u64> {
             let done = plan.run().unwrap();
-            let numbers = done.onsets.iter().chain(done.column("B1.force"));
-            let numbers = numbers.chain(done.column("error.x"));
-            numbers.map(|v| v.to_bits()).collect()
+            let columns = [done.column("B1.force"), done.column("error.x")].concat();
+            done.onsets().chain(columns).map(f64::to_bits).collect()
         };
         let [one, three] = [1, 3].map(|threads| records::each(&plans, threads, bits));
         assert_eq!(one, three);

@@ -1,14 +1,15 @@
 //! Parameter scans, one at a time around the printed and assumed values, and the numbers that are read off their runs.
 
+use crate::ensembles::{Ensemble, EnsembleRecord};
 use crate::kinematics::MechanismGeometry;
 use crate::measures::Measures;
-use crate::runs::{RunPace, RunPlan, causes};
+use crate::pictures::CLAIMED;
+use crate::runs::{DURATION, FROM, RunPace, RunPlan};
 use miette::{IntoDiagnostic, Result};
+use minijinja::{Value, context};
 use numbers::{digits, si};
-use plot::Axis;
 use records::{Journal, threads};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 use std::collections::HashMap;
 
 /// Time between recorded rows, a whole multiple of every step scanned \[s\].
@@ -21,12 +22,10 @@ const SCANS: &str = include_str!("../scans.toml");
 /// One scanned quantity.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Scan {
-    /// Part of the names of files.
+    /// Part of the names of runs in the journal.
     pub slug: String,
     /// Heading.
     pub title: String,
-    /// Horizontal axis of the plots.
-    pub axis: Axis,
     /// The runs.
     pub entries: Vec<ScanEntry>,
 }
@@ -36,8 +35,6 @@ pub struct Scan {
 pub struct ScanEntry {
     /// The value as written in tables.
     pub label: String,
-    /// Its place on the axis.
-    pub at: f64,
     /// Whether it is the printed or assumed value.
     pub baseline: bool,
     /// Case of Table 2.
@@ -52,7 +49,7 @@ pub struct ScanEntry {
 ///
 /// # Errors
 /// When the baseline scene cannot be read.
-pub fn measure(journal: &Journal) -> Result<Value> {
+pub fn measure(journal: &Journal) -> Result<serde_json::Value> {
     let mut scans = Vec::new();
     for (mut scan, plans) in all()? {
         let keys: Vec<usize> = (0..plans.len()).collect();
@@ -65,7 +62,7 @@ pub fn measure(journal: &Journal) -> Result<Value> {
                     .retain(|name, _| READ.split(' ').any(|read| read == name));
                 Ok((Some(measures), run.warnings))
             });
-            Ok(measured.unwrap_or_else(|error| (None, vec![causes(&error)])))
+            Ok(measured.unwrap_or_else(|error| (None, vec![format!("{error:#}")])))
         };
         let done: Vec<(Option<Measures>, Vec<String>)> =
             journal.items(&keys, threads(), name, run)?;
@@ -83,9 +80,6 @@ pub fn measure(journal: &Journal) -> Result<Value> {
 struct ListedScan {
     slug: String,
     title: String,
-    axis: (String, String, f64),
-    #[serde(default)]
-    linear: bool,
     cases: Vec<u32>,
     values: Vec<f64>,
     unit: Option<String>,
@@ -100,53 +94,69 @@ struct ListedScan {
 }
 
 /// All scans, their runs not yet made.
-pub fn all() -> Result<Vec<(Scan, Vec<RunPlan>)>> {
+fn all() -> Result<Vec<(Scan, Vec<RunPlan>)>> {
     let mut listed: HashMap<String, Vec<ListedScan>> = toml::from_str(SCANS).into_diagnostic()?;
     let listed = listed.remove("scan").unwrap_or_default();
     Ok(listed.into_iter().map(scan).collect())
 }
 
 fn scan(list: ListedScan) -> (Scan, Vec<RunPlan>) {
-    let (mut entries, mut plans) = (Vec::new(), Vec::new());
-    for case in &list.cases {
-        for (i, at) in list.values.iter().copied().enumerate() {
-            let reading = list.readings.get(i);
-            let label = match (reading, &list.unit) {
-                (Some((label, _)), _) => label.clone(),
-                (None, Some(unit)) => si(at, unit),
-                (None, None) => digits(at),
-            };
-            let mut plan = RunPlan::controlled(*case, INTERVAL);
-            if list.bathe {
-                plan.pace = RunPace::bathe(at);
-            }
-            // the printed or assumed value is an override, too, so that its label is right whatever the scene says
-            let scaled = format!("{:?}", list.scale.unwrap_or(1.0) * at);
-            let change = list.change.as_ref().filter(|_| list.none != Some(at));
-            plan.overrides
-                .extend(change.map(|change| change.replace("{}", &scaled)));
-            plan.overrides
-                .extend(reading.iter().flat_map(|(_, changes)| changes.clone()));
-            plans.push(plan);
-            entries.push(ScanEntry {
-                label,
-                at,
-                baseline: list.base == Some(at),
-                case: *case,
-                values: None,
-                warnings: Vec::new(),
-            });
+    let values = || list.values.iter().copied().enumerate();
+    let points = list.cases.iter();
+    let points = points.flat_map(|case| values().map(|(i, at)| (*case, list.readings.get(i), at)));
+    let made = points.map(|(case, reading, at)| {
+        let label = match (reading, &list.unit) {
+            (Some((label, _)), _) => label.clone(),
+            (None, Some(unit)) => si(at, unit),
+            (None, None) => digits(at),
+        };
+        let mut plan = RunPlan::controlled(case, INTERVAL);
+        if list.bathe {
+            plan.pace = RunPace::bathe(at);
         }
-    }
-    let (label, unit, factor) = &list.axis;
-    let axis = Axis::new(label, unit, *factor);
+        // the printed or assumed value is an override, too, so that its label is right whatever the scene says
+        let scaled = format!("{:?}", list.scale.unwrap_or(1.0) * at);
+        let change = list.change.as_ref().filter(|_| list.none != Some(at));
+        let change = change.map(|change| change.replace("{}", &scaled));
+        let read = reading.map(|(_, changes)| changes.as_slice());
+        plan.overrides = change.into_iter().collect();
+        plan.overrides.extend_from_slice(read.unwrap_or_default());
+        let entry = ScanEntry {
+            label,
+            baseline: list.base == Some(at),
+            case,
+            values: None,
+            warnings: Vec::new(),
+        };
+        (entry, plan)
+    });
+    let (entries, plans) = made.unzip();
     let scan = Scan {
         slug: list.slug,
         title: list.title,
-        axis: if list.linear { axis } else { axis.log() },
         entries,
     };
     (scan, plans)
+}
+
+/// The values of the template.
+pub fn values(scans: &[Scan], record: &EnsembleRecord) -> Value {
+    let scatter = [3, 4].map(|case| scatter(record, case));
+    context! { scans, scatter, claimed => CLAIMED, duration => DURATION, from => FROM }
+}
+
+/// By how much two single runs of a case differ at the most with a probability of 95 %, over the mean, from all starts together:
+/// t s sqrt(2), of which the half width of the mean is t s/sqrt(n).
+fn scatter(record: &EnsembleRecord, case: u32) -> Value {
+    let ensemble = Ensemble::together(&record.sizes(case));
+    let runs = ensemble.values("error_peak").len();
+    let limit = |name: &str| {
+        let mean = ensemble.mean(name);
+        mean.half * (2.0 * runs as f64).sqrt() / mean.mean.abs()
+    };
+    let error = ["error_peak", "error_rms"].map(limit);
+    let other = ["deviation_rms", "force_peak", "contact_b1"].map(limit);
+    context! { case, runs, limits => [&error[..], &other].concat() }
 }
 
 #[cfg(test)]
@@ -158,10 +168,12 @@ mod tests {
         for (scan, plans) in all()? {
             plans.iter().try_for_each(|plan| plan.scene().map(drop))?;
             // the printed or assumed value is among them, once a case
-            let at = |x: &f64| scan.entries.iter().filter(|e| e.at == *x).count();
-            let baselines = scan.entries.iter().filter(|e| e.baseline).count();
-            let cases = at(&scan.entries[0].at);
-            assert!(scan.slug == "step" || baselines == cases, "{}", scan.slug);
+            let of_case = |case| {
+                let of_case = scan.entries.iter().filter(move |e| e.case == case);
+                of_case.filter(|e| e.baseline).count()
+            };
+            let once = scan.entries.iter().all(|e| of_case(e.case) == 1);
+            assert!(scan.slug == "step" || once, "{}", scan.slug);
         }
         Ok(())
     }

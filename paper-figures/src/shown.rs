@@ -5,19 +5,16 @@ use minijinja::{AutoEscape, Environment, Error, ErrorKind, UndefinedBehavior};
 use numbers::{digits, percent, si};
 use statistics::Interval;
 
-/// Templates of Markdown with the filters of [`add_filters`]. A name that a template gets wrong is an error, no empty text.
+/// Templates of Markdown. A name that a template gets wrong is an error, no empty text.
+///
+/// There are the filters `si(unit)`, `digits` and `percent` of a number, or of a mean with its interval as "a ± b", and `exact`, which
+/// writes all digits, as in a file. Units may be % and none.
 pub fn environment() -> Environment<'static> {
     let mut templates = Environment::new();
     templates.set_undefined_behavior(UndefinedBehavior::Strict);
     templates.set_trim_blocks(true);
     templates.set_keep_trailing_newline(true);
     templates.set_auto_escape_callback(|_| AutoEscape::None);
-    add_filters(&mut templates);
-    templates
-}
-
-/// Adds the filters `si(unit)`, `digits` and `percent` of a number, or of a mean with its interval as "a ± b". Units may be % and none. `exact` writes all digits, as in a file.
-pub fn add_filters(templates: &mut Environment) {
     templates.add_filter("si", |x: Value, unit: &str| match unit {
         "" => written(&x, digits),
         "%" => written(&x, percent),
@@ -26,6 +23,7 @@ pub fn add_filters(templates: &mut Environment) {
     templates.add_filter("exact", numbers::exact);
     templates.add_filter("digits", |x: Value| written(&x, digits));
     templates.add_filter("percent", |x: Value| written(&x, percent));
+    templates
 }
 
 /// Mean and interval of several runs; the value of a single one.

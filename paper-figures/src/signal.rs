@@ -81,13 +81,7 @@ pub fn peaks(y: &[f64], count: usize, apart: usize) -> Vec<usize> {
 
 /// The fraction of `of` that have a member of `with` within `reach`.
 pub fn coincidence(of: &[f64], with: &[f64], reach: f64) -> f64 {
-    let mut sorted = with.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    fraction(of, |t| {
-        sorted[sorted.partition_point(|&w| w < t - reach)..]
-            .first()
-            .is_some_and(|&w| w <= t + reach)
-    })
+    fraction(of, |t| with.iter().any(|w| (w - t).abs() <= reach))
 }
 
 /// How far the second half of a closed record is from repeating the first: the rms difference of the halves over the

@@ -1,10 +1,14 @@
-//! One statement of the paper and what decides it.
+//! The statements of the paper and what decides them: the values of REPRODUCTION.md and its page of the site.
 
 use crate::decisions;
-use crate::evidence::{Evidence, ReadSource};
+use crate::ensembles::{EnsembleRecord, STARTS};
+use crate::evidence::Evidence;
+use crate::figures::FigureRecord;
 use crate::shown::environment;
+use crate::timings::LINK;
 use crate::verdict::CriterionVerdict;
 use miette::{IntoDiagnostic, Result, miette};
+use minijinja::{Value, context};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
@@ -12,7 +16,7 @@ use std::collections::HashMap;
 const STATEMENTS: &str = include_str!("../statements.toml");
 
 /// What a verdict rests on.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Debug, Default, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Basis {
     /// A quantity of runs, which could have come out otherwise.
@@ -24,10 +28,10 @@ pub enum Basis {
     Assumption,
 }
 
-/// A statement as the paper has it; the texts are templates in statements.toml.
+/// A statement of the paper; the texts of statements.toml are templates, which are filled in when it is decided.
 #[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub struct PrintedStatement {
+pub struct Statement {
     /// By which other parts of the report refer to it.
     pub key: String,
     /// Where the paper says it.
@@ -46,56 +50,47 @@ pub struct PrintedStatement {
     pub basis: Basis,
     /// What is behind it.
     pub why: String,
+    /// How its criterion comes out; none before it is decided.
+    #[serde(skip_deserializing)]
+    pub verdict: Option<CriterionVerdict>,
 }
 
-/// The statements as printed.
-fn printed() -> Result<Vec<PrintedStatement>> {
-    let mut list: HashMap<String, Vec<PrintedStatement>> =
-        toml::from_str(STATEMENTS).into_diagnostic()?;
+/// The statements as listed.
+fn listed() -> Result<Vec<Statement>> {
+    let mut list: HashMap<String, Vec<Statement>> = toml::from_str(STATEMENTS).into_diagnostic()?;
     Ok(list.remove("statement").unwrap_or_default())
 }
 
-/// A statement that is decided.
-#[derive(Debug, Serialize)]
-pub struct Statement {
-    /// Its number in the report.
-    pub number: usize,
-    /// The statement, its texts filled in.
-    #[serde(flatten)]
-    pub listed: PrintedStatement,
-    /// How its criterion comes out.
-    pub verdict: CriterionVerdict,
-    /// The runs that it rests on, with their warnings.
-    pub sources: Vec<ReadSource>,
-    /// The commit of the data, where it is another than that of the figures.
-    pub commit: Option<String>,
-}
-
-/// All statements, decided. `commit` is that of the ensembles, where it is another than that of the figures.
+/// The values of the templates.
 ///
 /// # Errors
-/// An entry of statements.toml without a predicate or with a name that the predicate does not give.
-pub fn all(evidence: &Evidence, commit: Option<&str>) -> Result<Vec<Statement>> {
-    let templates = environment();
-    let decided = |(mut listed, number): (PrintedStatement, usize)| {
-        let key = listed.key.clone();
-        let decide = decisions::find(&key).ok_or_else(|| miette!("nothing decides \"{key}\""))?;
-        let (verdict, values) = decide(evidence);
-        for text in [&mut listed.measured, &mut listed.details, &mut listed.why] {
+/// An entry of statements.toml without a predicate, or with a name that neither this nor all statements have.
+pub fn values(figures: &FigureRecord, ensembles: &EnsembleRecord) -> Result<Value> {
+    let evidence = Evidence::of(figures, ensembles);
+    let (templates, of_all) = (environment(), evidence.values());
+    let decided = |mut statement: Statement| {
+        let key = statement.key.clone();
+        let decide = decisions::all().find(|(known, _)| *known == key);
+        let (_, decide) = decide.ok_or_else(|| miette!("nothing decides \"{key}\""))?;
+        let (verdict, own) = decide(&evidence);
+        let values = context! { ..own, ..of_all.clone() };
+        let Statement {
+            measured,
+            details,
+            why,
+            ..
+        } = &mut statement;
+        for text in [measured, details, why] {
             let filled = templates.render_str(text, &values);
             *text = filled.map_err(|e| miette!("statements.toml, \"{key}\": {e:#}"))?;
         }
-        let sources = evidence.take_sources();
-        let of_ensembles = sources.iter().any(|s| s.of_ensembles);
-        Ok(Statement {
-            number,
-            listed,
-            verdict,
-            sources,
-            commit: commit.filter(|_| of_ensembles).map(str::to_owned),
-        })
+        statement.verdict = Some(verdict);
+        Ok(statement)
     };
-    printed()?.into_iter().zip(1..).map(decided).collect()
+    let statements: Vec<Statement> = listed()?.into_iter().map(decided).collect::<Result<_>>()?;
+    let (length, axial, _) = LINK;
+    let link = context! { length, axial };
+    Ok(context! { statements, starts => STARTS, runs => figures.runs, link, ..of_all })
 }
 
 #[cfg(test)]
@@ -105,7 +100,7 @@ mod tests {
 
     #[test]
     fn every_statement_has_one_predicate_and_no_predicate_is_left() {
-        let list = printed().unwrap();
+        let list = listed().unwrap();
         let keys: HashSet<&str> = list.iter().map(|s| s.key.as_str()).collect();
         assert_eq!(keys.len(), list.len());
         let predicates: HashSet<&str> = decisions::all().map(|(key, _)| key).collect();

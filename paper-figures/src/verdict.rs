@@ -1,41 +1,23 @@
 //! How a criterion comes out.
 
+use minijinja::Value;
 use serde::Serialize;
 use statistics::Interval;
 
-/// How a criterion comes out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+/// How a criterion comes out, the worst first: of several that have to be met, the least counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum CriterionVerdict {
-    /// Met.
-    Holds,
     /// Missed.
     Fails,
     /// The interval straddles the limit.
     Undecided,
+    /// Met.
+    Holds,
 }
 
 use CriterionVerdict::{Fails, Holds, Undecided};
 
 impl CriterionVerdict {
-    /// Of a quantity that is known.
-    pub fn of(holds: bool) -> CriterionVerdict {
-        if holds { Holds } else { Fails }
-    }
-
-    /// All are met; one missed is enough to miss.
-    pub fn all(each: impl IntoIterator<Item = CriterionVerdict>) -> CriterionVerdict {
-        each.into_iter().fold(Holds, CriterionVerdict::and)
-    }
-
-    /// Both are met; one missed is enough to miss.
-    pub fn and(self, other: CriterionVerdict) -> CriterionVerdict {
-        match (self, other) {
-            (Fails, _) | (_, Fails) => Fails,
-            (Holds, Holds) => Holds,
-            _ => Undecided,
-        }
-    }
-
     /// The opposite.
     pub fn not(self) -> CriterionVerdict {
         match self {
@@ -44,6 +26,26 @@ impl CriterionVerdict {
             Undecided => Undecided,
         }
     }
+
+    /// With no values for the templates but those that all of them have.
+    pub fn alone(self) -> (CriterionVerdict, Value) {
+        (self, Value::UNDEFINED)
+    }
+}
+
+/// Of a quantity that is known.
+pub fn holds(condition: bool) -> CriterionVerdict {
+    if condition { Holds } else { Fails }
+}
+
+/// Whether a number lies between two others.
+pub fn between(x: f64, low: f64, high: f64) -> CriterionVerdict {
+    holds((low..=high).contains(&x))
+}
+
+/// All are met; one missed is enough to miss.
+pub fn all(each: impl IntoIterator<Item = CriterionVerdict>) -> CriterionVerdict {
+    each.into_iter().min().unwrap_or(Holds)
 }
 
 /// Whether a mean lies between two limits.
@@ -60,12 +62,12 @@ pub fn within(mean: &Interval, low: f64, high: f64) -> CriterionVerdict {
 
 /// Whether means lie above a limit, all of them.
 pub fn above(means: &[Interval], limit: f64) -> CriterionVerdict {
-    CriterionVerdict::all(means.iter().map(|m| within(m, limit, f64::INFINITY)))
+    all(means.iter().map(|m| within(m, limit, f64::INFINITY)))
 }
 
 /// Whether means lie below a limit, all of them.
 pub fn below(means: &[Interval], limit: f64) -> CriterionVerdict {
-    CriterionVerdict::all(means.iter().map(|m| within(m, f64::NEG_INFINITY, limit)))
+    all(means.iter().map(|m| within(m, f64::NEG_INFINITY, limit)))
 }
 
 #[cfg(test)]
@@ -86,14 +88,7 @@ mod tests {
         assert_eq!(below(&[mean], 4.9), Fails);
         assert_eq!(within(&mean, 9.0, 20.0), Undecided);
         assert_eq!(within(&mean, 0.0, 20.0), Holds);
-    }
-
-    #[test]
-    fn verdicts_are_joined_as_a_logic_with_an_unknown() {
-        assert_eq!(
-            [Holds.and(Undecided), Fails.and(Undecided)],
-            [Undecided, Fails]
-        );
-        assert_eq!([Holds.not(), Undecided.not()], [Fails, Undecided]);
+        assert_eq!(all([Holds, Undecided]), Undecided);
+        assert_eq!(all([Fails, Undecided]), Fails);
     }
 }

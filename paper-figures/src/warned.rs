@@ -3,22 +3,19 @@
 /// Warnings of several runs, each kind once: the words of the first run that has it, and how many have it. Warnings are of one kind
 /// that differ by numbers and names alone, that is by words with a digit or a dot inside.
 pub fn merged<'a>(runs: impl IntoIterator<Item = &'a Vec<String>>) -> Vec<String> {
-    let mut kinds: Vec<(String, &str, usize, usize)> = Vec::new();
-    let mut all = 0;
-    for (run, warnings) in runs.into_iter().enumerate() {
-        all = run + 1;
-        for warning in warnings {
-            let kind = kind(warning);
-            match kinds.iter_mut().find(|(known, ..)| *known == kind) {
-                None => kinds.push((kind, warning, run, 1)),
-                Some((_, _, last, count)) => {
-                    *count += usize::from(*last != run);
-                    *last = run;
-                }
-            }
+    let runs: Vec<&Vec<String>> = runs.into_iter().collect();
+    let mut kinds: Vec<(String, &str)> = Vec::new();
+    for warning in runs.iter().copied().flatten() {
+        let kind = kind(warning);
+        if kinds.iter().all(|(known, _)| *known != kind) {
+            kinds.push((kind, warning));
         }
     }
-    let line = |(_, first, _, count)| format!("{first} (like this in {count} of {all} runs)");
+    let line = |(known, first): (String, &str)| {
+        let has = |run: &&&Vec<String>| run.iter().any(|warning| kind(warning) == known);
+        let (count, all) = (runs.iter().filter(has).count(), runs.len());
+        format!("{first} (like this in {count} of {all} runs)")
+    };
     kinds.into_iter().map(line).collect()
 }
 

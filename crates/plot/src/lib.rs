@@ -94,7 +94,7 @@ impl Figure {
         Figure { rows, caption }
     }
 
-    /// The figure with the points alone that make a difference in the drawing, to six digits: what a record keeps of it.
+    /// The figure with the points alone that make a difference in the drawing, to five digits: what a record keeps of it.
     pub fn thinned(mut self) -> Figure {
         let (placed, _) = layout::place(&self);
         let drawn = |panel: &layout::PlacedPanel| {
@@ -106,7 +106,7 @@ impl Figure {
         for (mark, kept) in marks.zip(kept) {
             let pick = |from: &[f64]| {
                 let kept = kept.iter().map(|i| from[*i]);
-                kept.map(|x| numbers::rounded(x, 6)).collect()
+                kept.map(|x| numbers::rounded(x, 5)).collect()
             };
             if !mark.x.is_empty() {
                 (mark.x, mark.y) = (pick(&mark.x), pick(&mark.y));

@@ -81,7 +81,7 @@ pub mod tests {
         assert!(after.x.len() * 10 < before.x.len(), "{}", after.x.len());
         let range = |y: &[f64]| {
             let fold = |pick: fn(f64, f64) -> f64, from| y.iter().copied().fold(from, pick);
-            [fold(f64::min, f64::MAX), fold(f64::max, f64::MIN)].map(|y| numbers::rounded(y, 6))
+            [fold(f64::min, f64::MAX), fold(f64::max, f64::MIN)].map(|y| numbers::rounded(y, 5))
         };
         assert_eq!(range(&after.y), range(&before.y));
         // thinned again it loses little: pieces of the simplification begin elsewhere

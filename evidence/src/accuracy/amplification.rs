@@ -6,10 +6,11 @@
 //! more than [`BROUGHT_BACK`] d is brought back to d along the line between the two, and the factors are multiplied
 //! (Benettin et al. 1980, DOI 10.1007/BF02128236).
 
-use crate::accuracy::guarantee::{ROWS, loose, simulation};
+use crate::accuracy::guarantee::{ROWS, loose};
 use looselink::scene::Scene;
 use looselink::simulate::{Recording, RunError, Simulation};
 use looselink::system::State;
+use paper_figures::exponents::{apart, bring_back};
 
 /// Neighbouring motions of a scene without and with loose joints, every other one displaced in position. Each has another
 /// direction; the first leaves the motion at the start, the others later, up to half of the horizon: an impact may take away
@@ -30,13 +31,13 @@ const BROUGHT_BACK: f64 = 10.0;
 /// # Errors
 /// A scene that cannot start.
 pub fn amplification(scene: &Scene, position: f64, steps: u64) -> miette::Result<Option<f64>> {
-    let motion = simulation(scene)?;
+    let motion = Simulation::new(scene)?;
     let count = NEIGHBOURS[usize::from(loose(scene))];
     let mut neighbours = Vec::new();
     for k in 0..count {
         neighbours.push(Neighbour {
             next: motion.state().clone(),
-            simulation: simulation(scene)?,
+            simulation: Simulation::new(scene)?,
             leaves: k * ROWS / (2 * count),
             velocities: directions(&motion, k),
             displacement: 0.0,
@@ -144,8 +145,7 @@ impl Neighbour {
     }
 
     fn apart(&self, motion: &Simulation, i: usize) -> f64 {
-        let (one, other) = (motion.state(), self.simulation.state());
-        (other.q[i] - one.q[i]) + (other.q_low[i] - one.q_low[i])
+        apart(motion.state(), self.simulation.state(), i)
     }
 
     /// The amplification so far; a motion that has gone far is brought back.
@@ -159,20 +159,11 @@ impl Neighbour {
         Ok(amplification)
     }
 
-    /// Goes on from so many times the distances of coordinates and of velocities. A contact that both motions have closed
-    /// keeps its memory in the same proportion as velocities; one that only one of them has closed is closed where the gap says so.
+    /// Goes on from so many times the distances of coordinates and of velocities.
     fn bring_back(&mut self, motion: &Simulation, factors: [f64; 2]) -> Result<(), RunError> {
-        self.next.copy_from(motion.state());
-        for i in 0..motion.model().shape().unknowns {
-            self.next.q[i] += factors[0] * self.apart(motion, i);
-            self.next.v[i] += factors[1] * self.faster(motion, i);
-        }
-        let other = &self.simulation.state().z;
-        for (memory, other) in self.next.z.iter_mut().zip(other) {
-            if *memory > 0.0 && *other > 0.0 {
-                *memory = (*memory + factors[1] * (other - *memory)).max(f64::MIN_POSITIVE);
-            }
-        }
+        let (one, other) = (motion.state(), self.simulation.state());
+        let unknowns = motion.model().shape().unknowns;
+        bring_back(&mut self.next, one, other, unknowns, factors);
         self.simulation.continue_from(&self.next)
     }
 }

@@ -1,7 +1,6 @@
 //! Errors against processor time, so that one can read them: the least time of all methods, six of them in colour, the rest grey.
 
 use crate::accuracy::page::{AUTOMATIC, Motion, PAPER, winner, winners};
-use crate::accuracy::settings::levels;
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 use studies::precision::{Found, MotionReference, Times};
 
@@ -13,6 +12,11 @@ const FRONTIER: Color = (222, 222, 205);
 const OTHERS: Color = (185, 185, 185);
 /// Errors of position that panels show \[m\].
 const RANGE: [f64; 2] = [3e-14, 3e-5];
+
+/// Errors at which curves are compared \[m\], four a decade.
+pub fn levels() -> impl Iterator<Item = f64> {
+    (0..=28).map(|k| 1e-5 * 10_f64.powf(-0.25 * f64::from(k)))
+}
 
 /// A panel a study, two beside each other.
 pub fn work_and_precision(studies: &[&Motion]) -> Figure {

@@ -9,12 +9,11 @@ use crate::campaign::results;
 use looselink::scene::{AUTO, Analysis, Scene};
 use looselink::simulate::{Recording, RunError, Simulation};
 use looselink::stepper::SCHEMES;
-use miette::{Result, miette};
+use miette::{Result, WrapErr};
 use numbers::rounded;
 use records::{Journal, root};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use std::sync::OnceLock;
 use verify::compare::scenes;
 
 /// The method of the references.
@@ -142,17 +141,9 @@ fn parameters(method: &str) -> impl Iterator<Item = String> {
 /// # Errors
 /// A scene that cannot be read or has no start.
 pub fn measure(journal: &Journal) -> Result<serde_json::Value> {
-    let all = dynamic_scenes()?;
-    // the methods one after the other: as many scenes are measured at once as there are threads
-    let jobs: Vec<(&MeasuredScene, &str)> = methods()
-        .into_iter()
-        .flat_map(|method| all.iter().map(move |scene| (scene, method)))
-        .collect();
-    let name = |(scene, method): &(&MeasuredScene, &str)| format!("{}, {method}", scene.name);
-    let mut entries = journal.items(&jobs, THREADS, name, |(scene, method)| scene.entry(method))?;
-    // a scene with all its methods
-    entries.sort_by(|a: &GuaranteeEntry, b| a.scene.cmp(&b.scene));
-    results(entries)
+    let name = |scene: &MeasuredScene| scene.name.clone();
+    let entries = journal.items(&dynamic_scenes()?, THREADS, name, MeasuredScene::entries)?;
+    results(entries.concat())
 }
 
 /// Dynamic scenes of the project, in the order of their names.
@@ -165,10 +156,9 @@ fn dynamic_scenes() -> Result<Vec<MeasuredScene>> {
     let scenes = names.map(|name| {
         let path = root().join("scenes").join(format!("{name}.toml"));
         Ok(MeasuredScene {
-            scene: Scene::load(&path, &[]).map_err(|e| miette!("{e}"))?,
+            scene: Scene::load(&path, &[])?,
             name,
             path,
-            common: OnceLock::new(),
         })
     });
     scenes.collect()
@@ -176,15 +166,12 @@ fn dynamic_scenes() -> Result<Vec<MeasuredScene>> {
 
 /// Recorded positions, by channel.
 type RecordedPositions = Vec<Vec<f64>>;
-/// The facts and the reference, or why the scene cannot start.
-type Common = std::result::Result<(Facts, RecordedPositions), String>;
 
-/// A scene, and what its methods have in common once it is measured.
+/// A scene.
 struct MeasuredScene {
     name: String,
     path: PathBuf,
     scene: Scene,
-    common: OnceLock<Common>,
 }
 
 impl MeasuredScene {
@@ -208,14 +195,19 @@ impl MeasuredScene {
             overrides.push(format!("integrator.newton_tolerance={NEWTON_TOLERANCE:?}"));
         }
         overrides.extend(parameters(method));
-        Scene::load(&self.path, &overrides).map_err(|e| miette!("{e}"))
+        Ok(Scene::load(&self.path, &overrides)?)
     }
 
-    fn entry(&self, method: &str) -> Result<GuaranteeEntry> {
-        let common = self
-            .common
-            .get_or_init(|| self.measure().map_err(|e| format!("{e:?}")));
-        let (facts, exact) = common.as_ref().map_err(|e| miette!("{}: {e}", self.name))?;
+    /// All methods.
+    fn entries(&self) -> Result<Vec<GuaranteeEntry>> {
+        let (facts, exact) = self.measure().wrap_err_with(|| self.name.clone())?;
+        let methods = methods().into_iter();
+        methods
+            .map(|method| self.entry(method, &facts, &exact))
+            .collect()
+    }
+
+    fn entry(&self, method: &str, facts: &Facts, exact: &[Vec<f64>]) -> Result<GuaranteeEntry> {
         let mut entry = GuaranteeEntry {
             scene: self.name.clone(),
             method: method.to_owned(),
@@ -267,7 +259,7 @@ impl MeasuredScene {
         let mut best: Option<(f64, RecordedPositions)> = None;
         let (mut floor, mut steps) = (None, 0);
         for position in REFERENCES {
-            let mut simulation = simulation(&self.scene(METHOD, position)?)?;
+            let mut simulation = Simulation::new(&self.scene(METHOD, position)?)?;
             let (Ok(()), positions) = observe(&mut simulation, REFERENCE_STEPS) else {
                 break;
             };
@@ -315,14 +307,6 @@ fn not_made(position: f64, end: RunEnd) -> Asked {
 /// True where a joint has clearance.
 pub fn loose(scene: &Scene) -> bool {
     scene.smallest_clearance().is_some()
-}
-
-/// The scene, ready to run.
-///
-/// # Errors
-/// A scene that cannot start.
-pub fn simulation(scene: &Scene) -> Result<Simulation> {
-    Simulation::new(scene).map_err(|e| miette!("{e}"))
 }
 
 /// Runs to the end; the positions up to there.

@@ -5,11 +5,10 @@ mod amplification;
 mod diagram;
 mod guarantee;
 mod guarantee_page;
-pub mod ida;
 pub mod page;
-pub mod settings;
 
 use crate::campaign::{Campaign, Renderer, results};
+pub use diagram::levels;
 use looselink::scene::Scene;
 use miette::{IntoDiagnostic, Result, miette};
 use numbers::rounded;
@@ -91,8 +90,7 @@ fn measure(journal: &Journal) -> Result<Value> {
     }
     let effects = journal.item("effects of case 4", || {
         let path = root().join("scenes/3rrr/case4.toml");
-        let scene = Scene::load(&path, &["simulation.duration=1".to_owned()]);
-        let scene = scene.map_err(|e| miette!("{e}"))?;
+        let scene = Scene::load(&path, &["simulation.duration=1".to_owned()])?;
         let body = Observed::choose(&scene, None).map_err(|e| miette!("{e}"))?;
         let ablation = ablate(&scene, body, None, &mut |_| ());
         Ok(Effects {
@@ -127,7 +125,7 @@ fn names(folder: &Path) -> Result<Vec<String>> {
 /// When it cannot be read.
 pub fn study(root: &Path, name: &str) -> Result<Study> {
     let path = root.join("studies").join(name).with_extension("toml");
-    Study::load(&path).map_err(|e| miette!("{e}"))
+    Study::load(&path).into_diagnostic()
 }
 
 impl<C: Compared> MadeStudy<C> {
@@ -136,7 +134,7 @@ impl<C: Compared> MadeStudy<C> {
             repeats: REPEATS[usize::from(study.statistics.is_some())],
             smoke: false,
         };
-        let mut found = Found::run(study, effort, &mut |_| ()).map_err(|e| miette!("{e}"))?;
+        let mut found = Found::run(study, effort, &mut |_| ()).into_diagnostic()?;
         Ok(MadeStudy {
             name: name.to_owned(),
             timings: std::mem::take(&mut found.timings),

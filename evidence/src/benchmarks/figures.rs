@@ -1,11 +1,10 @@
 //! The pictures of the page.
 
-use crate::accuracy::settings::levels;
+use crate::accuracy::levels;
 use crate::benchmarks::Measured;
 use crate::benchmarks::family::Family;
 use crate::benchmarks::growth::{self, SizeOf};
 use crate::benchmarks::rivals::{Code, STUDIES, best};
-use crate::benchmarks::steps::StepCost;
 use numbers::si;
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 use studies::precision::Times;
@@ -20,39 +19,6 @@ const COLORS: [Color; 4] = [
     palette::GREEN,
     palette::PURPLE,
 ];
-
-/// Instructions and processor time of every step.
-pub fn steps(measured: &Measured) -> Figure {
-    let panel = |title: &str, x: Axis, names: bool, of: &dyn Fn(&StepCost) -> f64| {
-        let rows = measured.steps.iter().enumerate();
-        let (y, x_of): (Vec<f64>, Vec<f64>) = rows.map(|(k, step)| (k as f64, of(step))).unzip();
-        let name = |step: &StepCost| {
-            if names {
-                step.name.clone()
-            } else {
-                String::new()
-            }
-        };
-        Panel {
-            title: title.to_owned(),
-            note: String::new(),
-            x: x.log(),
-            y: Axis::categories(measured.steps.iter().map(name).collect()),
-            marks: vec![Mark::points("", palette::BLUE, &x_of, &y, DOT)],
-        }
-    };
-    let count = Axis::new("Instructions of a step", "", 1.0);
-    let time = Axis::new("Processor time of a step", "s", 1.0);
-    let panels = vec![
-        panel("a) Instructions", count, true, &|step| {
-            step.instructions as f64
-        }),
-        panel("b) Processor time", time, false, &|step| step.seconds),
-    ];
-    let caption = "A step of 10 µs in the release build: instructions are the mean over the steps between 2 and 12 ms of motion, counted \
-                   by callgrind; times are those between 2 and 52 ms.";
-    Figure::grid(panels, 2, caption.to_owned())
-}
 
 /// Costs over the size.
 pub fn growth(measured: &Measured) -> Figure {
@@ -119,8 +85,8 @@ pub fn rivals(measured: &Measured) -> Figure {
             let (errors, times): (Vec<f64>, Vec<f64>) = points.map(|[e, t]| (*e, *t)).unzip();
             marks.push(Mark::points("", color, &times, &errors, 3));
             let line = levels().filter_map(|error| {
-                let found = best(curves, study, code, error, Times::Interpolated)?;
-                Some((found.seconds, error))
+                let (_, seconds) = best(curves, study, code, error, Times::Interpolated)?;
+                Some((seconds, error))
             });
             let (times, errors): (Vec<f64>, Vec<f64>) = line.unzip();
             let label = if k == 0 { code.name() } else { "" };

@@ -109,11 +109,11 @@ fn measure(family: Family, bodies: usize, repeats: u16) -> Result<SizeCost> {
     let (mut compile, mut step) = (Vec::new(), Vec::new());
     for _ in 0..repeats {
         let clock = ThreadTime::now();
-        let scene = Scene::parse("mechanism.toml", &text, &[]).map_err(|e| miette!("{e}"))?;
-        let mut simulation = Simulation::new(&scene).map_err(|e| miette!("{e}"))?;
+        let scene = Scene::parse("mechanism.toml", &text, &[])?;
+        let mut simulation = Simulation::new(&scene)?;
         compile.push(clock.elapsed().as_secs_f64());
         let clock = ThreadTime::now();
-        simulation.run(&mut ()).map_err(|e| miette!("{e}"))?;
+        simulation.run(&mut ()).into_diagnostic()?;
         step.push(clock.elapsed().as_secs_f64() / STEPS as f64);
     }
     Ok(SizeCost {

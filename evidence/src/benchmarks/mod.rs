@@ -5,9 +5,10 @@ mod family;
 mod figures;
 pub mod gate;
 pub mod growth;
+mod ida;
 mod page;
 mod rivals;
-mod routes;
+mod settings;
 mod standings;
 mod steps;
 
@@ -38,7 +39,6 @@ pub const RENDERER: Renderer = Renderer {
 #[derive(Serialize, Deserialize)]
 struct Measured {
     steps: Vec<steps::StepCost>,
-    routes: Vec<routes::RouteCost>,
     sizes: Vec<growth::SizeCost>,
     rivals: rivals::Rivals,
 }
@@ -56,7 +56,6 @@ fn measure(journal: &Journal) -> Result<Value> {
     let steps = steps::read(&root)?;
     results(Measured {
         steps: steps.iter().map(step).collect::<Result<_>>()?,
-        routes: journal.item("elastic routes", || Ok(routes::measure()))?,
         sizes: growth::all(journal)?,
         rivals: rivals::measure(&root, &program, REPEATS, journal)?,
     })

@@ -1,13 +1,13 @@
 //! BENCHMARKS.md. Only times of runs that were made count.
 
 use crate::accuracy::page::AUTOMATIC;
-use crate::accuracy::settings::{ORDERS, RATIOS, SettingsSweep, TOLERANCES};
 use crate::accuracy::study;
 use crate::benchmarks::Measured;
 use crate::benchmarks::family::Family;
 use crate::benchmarks::figures::{self, sizes};
 use crate::benchmarks::growth::{self, SizeCost, SizeOf, exponent};
 use crate::benchmarks::rivals::{Code, Rivals, STUDIES, best};
+use crate::benchmarks::settings::{ORDERS, RATIOS, SettingsSweep, TOLERANCES};
 use crate::benchmarks::standings::{LEVELS, Standing};
 use crate::output::{Data, Output, stamp};
 use miette::Result;
@@ -23,7 +23,6 @@ use studies::precision::Times;
 pub fn render(data: &Data, out: &mut Output) -> Result<()> {
     let record = data.read::<Measured>("benchmarks")?;
     let measured = &record.results;
-    out.picture("benchmarks/steps", &figures::steps(measured))?;
     out.picture("benchmarks/growth", &figures::growth(measured))?;
     out.picture("benchmarks/rivals", &figures::rivals(measured))?;
     let steps = measured.steps.iter().map(|step| {
@@ -32,16 +31,10 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
     });
     let seconds = measured.steps.iter().map(|step| step.seconds);
     let [shortest, longest] = range(seconds).map(|t| si(t, "s"));
-    // of a route over the first, the one that is used
-    let routes = measured.routes.iter().map(|route| {
-        let ratio = digits(route.seconds / measured.routes[0].seconds);
-        context! { name => route.name, seconds => si(route.seconds, "s"), ratio }
-    });
     let most = measured.sizes.iter().map(|cost| cost.bodies).max();
     let page = context! {
         stamp => stamp(&record.origin),
         steps => steps.collect::<Vec<_>>(), shortest, longest,
-        routes => routes.collect::<Vec<_>>(),
         most_bodies => most, decade => most.unwrap_or(0) / 10, growth_steps => growth::STEPS,
         largest => Family::ALL.iter().filter_map(|family| largest(measured, *family)).collect::<Vec<_>>(),
         exponents => exponents(measured),
@@ -106,27 +99,25 @@ fn rivals(root: &Path, rivals: &Rivals) -> Result<Value> {
         let duration = si(study(root, name)?.duration, "s");
         Ok(format!("{name} {duration}"))
     });
-    let all = Standing::all(&rivals.curves);
     // `auto` stands below the fastest of all methods
     let mut methods: Vec<Option<&str>> = vec![None, Some(AUTOMATIC)];
-    for standing in &all {
-        if !methods.contains(&standing.method.as_deref()) {
-            methods.push(standing.method.as_deref());
+    for curve in &rivals.curves {
+        let method = Some(curve.method.as_str());
+        if curve.code == Code::Looselink && !methods.contains(&method) {
+            methods.push(method);
         }
     }
-    let of = |method: Option<&str>| {
-        let own = all.iter().filter(move |s| s.method.as_deref() == method);
-        own.map(standing).collect::<Vec<Value>>()
-    };
     let methods = methods.iter().map(|method| {
-        context! { name => method.unwrap_or("the fastest of all methods"), cells => of(*method) }
+        let cells = Code::ALL[1..].iter().map(|rival| {
+            let found = Standing::new(&rivals.curves, *rival, *method);
+            context! { rival => rival.name(), ..standing(&found) }
+        });
+        let name = method.unwrap_or("the fastest of all methods");
+        context! { name, cells => cells.collect::<Vec<_>>() }
     });
-    let solutions = rivals.solutions.iter().map(|solution| {
-        let difference = solution.difference_from_looselink.map(|d| si(d, "m"));
-        context! {
-            study => solution.study, code => solution.code.name(), own => solution.code == solution.of,
-            of => solution.of.name(), method => solution.method, difference,
-        }
+    let solutions = rivals.solutions.iter().filter_map(|solution| {
+        let difference = si(solution.difference_from_looselink?, "m");
+        Some(context! { study => solution.study, method => solution.method, difference })
     });
     Ok(context! {
         exudyn => Code::Exudyn.name(), durations => durations.collect::<Result<Vec<_>>>()?.join(", "),
@@ -150,7 +141,7 @@ fn standing(standing: &Standing) -> Value {
         format!("{} at {error} ({ratio} times)", r.study)
     });
     context! {
-        rival => standing.rival.name(), pairs => standing.ratios.len(), ours, other,
+        pairs => standing.ratios.len(), ours, other,
         median => summary.as_ref().map(|s| &s[0]), least => summary.as_ref().map(|s| &s[1]),
         most => digits(most), faster => faster.collect::<Vec<_>>(),
     }
@@ -163,11 +154,11 @@ fn times(rivals: &Rivals) -> Vec<Value> {
         .flat_map(|study| LEVELS.map(|error| (study, error)));
     let rows = pairs.filter_map(|(study, error)| {
         let of = |code| best(&rivals.curves, study, code, error, Times::Measured);
-        let own = of(Code::Looselink)?.seconds;
+        let (_, own) = of(Code::Looselink)?;
         let cells = Code::ALL.map(|code| {
-            let found = of(code)?;
-            let (seconds, ratio) = (si(found.seconds, "s"), digits(found.seconds / own));
-            Some(format!("{seconds} ({ratio}): {}", found.method))
+            let (method, seconds) = of(code)?;
+            let (time, ratio) = (si(seconds, "s"), digits(seconds / own));
+            Some(format!("{time} ({ratio}): {method}"))
         });
         Some(context! { study, error => si(error, "m"), cells })
     });

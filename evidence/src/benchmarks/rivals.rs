@@ -1,19 +1,16 @@
 //! Errors and processor times of other codes beside ours, in the studies of the project.
 
-use crate::accuracy::settings::{ORDERS, RATIOS, SettingsSweep, TOLERANCES, Trial};
-use crate::accuracy::{ida, study};
-use looselink::model::Model;
-use looselink::scene::Scene;
-use looselink::simulate::{Control, Observer, Progress, Simulation};
-use looselink::system::State;
+use crate::accuracy::study;
+use crate::benchmarks::ida;
+use crate::benchmarks::settings::SettingsSweep;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use records::Journal;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::process::Command;
 use studies::machine::median;
-use studies::precision::{Effort, Study, StudyOutcome, StudyPace, Times, reached};
-use verify::ida_of_system::{self, IdaSettings, LinearSolver, NEWTON};
+use studies::precision::{Effort, StudyOutcome, StudyPace, Times, reached};
+use verify::ida_of_system::IdaSettings;
 
 /// Studies that all codes run.
 pub const STUDIES: [&str; 6] = [
@@ -27,10 +24,6 @@ pub const STUDIES: [&str; 6] = [
 /// A virtual environment that has Exudyn.
 const ENVIRONMENT: &str = "target/tools/exudyn";
 const EXUDYN: &str = "exudyn==1.13.6";
-
-/// Unknowns and multipliers up to which IDA is also tried with a dense matrix: the time of its factorisation grows with the third
-/// power of their number, that of KLU about in proportion.
-const DENSE: usize = 200;
 
 /// Whose curves they are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -78,18 +71,14 @@ pub struct RivalCurve {
     pub floor: f64,
 }
 
-/// The converged solution from which the errors of a code are measured in a study.
+/// The converged solution of another code, from which its errors are measured in a study.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ConvergedSolution {
     /// Study.
     pub study: String,
-    /// Whose errors.
-    pub code: Code,
-    /// Whose solution.
-    pub of: Code,
     /// Its method and step or tolerance.
     pub method: String,
-    /// Largest difference of a position from Looselink's converged solution \[m\], where it is another one.
+    /// Largest difference of a position from Looselink's converged solution \[m\], from which the errors of all others are measured.
     pub difference_from_looselink: Option<f64>,
 }
 
@@ -98,46 +87,25 @@ pub struct ConvergedSolution {
 pub struct Rivals {
     /// Curves of ours and of other codes.
     pub curves: Vec<RivalCurve>,
-    /// What their errors are measured from.
+    /// What the errors of Exudyn are measured from.
     pub solutions: Vec<ConvergedSolution>,
     /// How the settings of IDA were found.
     pub sweeps: Vec<SettingsSweep>,
 }
 
-/// The time that an error takes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ErrorTime {
-    /// Method.
-    pub method: String,
-    /// Processor time \[s\].
-    pub seconds: f64,
-    /// True where it is on the line between two runs.
-    pub is_interpolated: bool,
-}
-
-impl RivalCurve {
-    /// When it comes below an error to stay there; never where the error is below the floor.
-    pub fn time_at(&self, error: f64, times: Times) -> Option<ErrorTime> {
-        let found = reached(&self.points, error, times).filter(|_| self.floor <= error)?;
-        Some(ErrorTime {
-            method: self.method.clone(),
-            seconds: found.seconds,
-            is_interpolated: found.is_interpolated(),
-        })
-    }
-}
-
-/// The method of a code that comes below an error first.
-pub fn best(
-    curves: &[RivalCurve],
+/// The method of a code that comes below an error first, to stay there, and its time \[s\]; never where the error is below the floor.
+pub fn best<'a>(
+    curves: &'a [RivalCurve],
     study: &str,
     code: Code,
     error: f64,
     times: Times,
-) -> Option<ErrorTime> {
+) -> Option<(&'a str, f64)> {
     let own = curves.iter().filter(|c| c.study == study && c.code == code);
-    own.filter_map(|curve| curve.time_at(error, times))
-        .min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    let known = own.filter(|curve| curve.floor <= error);
+    known
+        .filter_map(|c| Some((&*c.method, reached(&c.points, error, times)?.seconds)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Runs all codes in all studies.
@@ -149,8 +117,15 @@ pub fn measure(root: &Path, program: &Path, repeats: usize, journal: &Journal) -
     for name in STUDIES {
         let found = journal.item(&format!("rivals in {name}"), || {
             let (python, mut rivals) = (environment(root)?, Rivals::default());
-            rivals.own(root, name, repeats)?;
-            rivals.ida_on_ours(root, name, repeats)?;
+            let study = study(root, name)?;
+            let effort = Effort {
+                repeats,
+                smoke: false,
+            };
+            let outcome = StudyOutcome::run(&study, effort, &mut |_| ()).into_diagnostic()?;
+            rivals.own(name, &outcome);
+            ida::second(&mut rivals, name, &study, &outcome, repeats)?;
+            ida::on_ours(&mut rivals, name, &study, repeats)?;
             rivals.exudyn(root, &python, program, name, repeats)?;
             Ok(rivals)
         })?;
@@ -161,91 +136,9 @@ pub fn measure(root: &Path, program: &Path, repeats: usize, journal: &Journal) -
     Ok(all)
 }
 
-/// The unknown coordinates at every row.
-#[derive(Default)]
-struct CoordinateRows(Vec<Vec<f64>>);
-
-impl Observer for CoordinateRows {
-    fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
-        Ok(())
-    }
-
-    fn state(&mut self, model: &Model, at: &State) -> std::io::Result<()> {
-        self.0.push(at.q[..model.shape().unknowns].to_vec());
-        Ok(())
-    }
-
-    fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
-        Ok(Control::Continue)
-    }
-}
-
-/// Our two reference runs of a study, to compare other solutions of our equations with them.
-struct OurReference {
-    scene: Scene,
-    /// Indices of the studied positions among the unknowns.
-    studied: Vec<usize>,
-    coarse: Vec<Vec<f64>>,
-    fine: Vec<Vec<f64>>,
-}
-
-impl OurReference {
-    fn new(study: &Study) -> Result<OurReference> {
-        let [coarse, fine] = study.reference.paces().map(|pace| -> Result<_> {
-            let scene = study.scene(&study.reference.set, study.reference.elements, pace);
-            let scene = scene.map_err(|e| miette!("{e}"))?;
-            let mut simulation = Simulation::new(&scene).map_err(|e| miette!("{e}"))?;
-            let mut rows = CoordinateRows::default();
-            simulation.run(&mut rows).map_err(|e| miette!("{e}"))?;
-            Ok((rows.0, scene, simulation.model().unknown_names().to_vec()))
-        });
-        let ((coarse, ..), (fine, scene, names)) = (coarse?, fine?);
-        let studied = study.position.iter().map(|channel| {
-            // the path of the platform is known: its error is that of its position
-            let coordinate = channel.replace("error.", "platform.");
-            let place = names.iter().position(|name| *name == coordinate);
-            place.ok_or_else(|| miette!("{}: {channel} is no unknown coordinate", study.title))
-        });
-        Ok(OurReference {
-            studied: studied.collect::<Result<_>>()?,
-            scene,
-            coarse,
-            fine,
-        })
-    }
-
-    /// Largest difference of a studied position from the fine run \[m\].
-    fn distance(&self, rows: &[Vec<f64>]) -> f64 {
-        let pairs = rows.iter().zip(&self.fine);
-        let errors = pairs.flat_map(|(a, b)| self.studied.iter().map(|&i| (a[i] - b[i]).abs()));
-        errors.fold(0.0, f64::max)
-    }
-
-    /// A run of IDA.
-    fn trial(&self, settings: IdaSettings, tolerance: f64) -> Result<Trial, String> {
-        let run = ida_of_system::integrate(&self.scene, settings, tolerance)?;
-        let count = |n: i64| u64::try_from(n).unwrap_or(0);
-        Ok(Trial {
-            tolerance,
-            error: self.distance(&run.rows),
-            seconds: run.seconds,
-            residuals: count(run.counts.residuals),
-            jacobians: count(run.counts.jacobians),
-        })
-    }
-}
-
 impl Rivals {
-    /// Our curves and those of the second implementation, against our reference.
-    fn own(&mut self, root: &Path, name: &str, repeats: usize) -> Result<()> {
-        let study = study(root, name)?;
-        let effort = Effort {
-            repeats,
-            smoke: false,
-        };
-        let outcome = StudyOutcome::run(&study, effort, &mut |_| ());
-        let mut outcome = outcome.map_err(|e| miette!("{e}"))?;
-        let sweeps = ida::add_curves(&study, name, &mut outcome, repeats, &mut |_| ())?;
+    /// Our curves.
+    fn own(&mut self, name: &str, outcome: &StudyOutcome) {
         for curve in outcome.curves() {
             let runs = outcome.runs.iter().zip(&outcome.timings);
             let own = runs.filter(|(run, _)| run.curve == curve);
@@ -253,64 +146,15 @@ impl Rivals {
                 let error = run.result.as_ref().ok()?.errors.position;
                 Some([error, timing.as_ref()?.median])
             });
-            let sweep = sweeps.iter().find(|sweep| sweep.curve == curve);
             self.curves.push(RivalCurve {
                 study: name.to_owned(),
-                code: sweep.map_or(Code::Looselink, |_| Code::Ida),
+                code: Code::Looselink,
                 method: curve.to_owned(),
-                settings: sweep.map(SettingsSweep::settings),
+                settings: None,
                 points: points.collect(),
                 floor: outcome.reference.floor.position,
             });
         }
-        self.sweeps.extend(sweeps);
-        let [_, finest] = study.reference.paces();
-        for code in [Code::Looselink, Code::Ida, Code::IdaOnOurs] {
-            self.solutions.push(ConvergedSolution {
-                study: name.to_owned(),
-                code,
-                of: Code::Looselink,
-                method: format!("{}, {finest}", study.reference.set.join(", ")),
-                difference_from_looselink: None,
-            });
-        }
-        Ok(())
-    }
-
-    /// The curves of IDA on our equations, one for each largest order, against our reference.
-    fn ida_on_ours(&mut self, root: &Path, name: &str, repeats: usize) -> Result<()> {
-        let reference = OurReference::new(&study(root, name)?)?;
-        let size = ida_of_system::matrix_size(&reference.scene);
-        let size = size.map_err(|e| miette!("{name}: {e}"))?;
-        let mut solvers = vec![LinearSolver::Klu];
-        if size <= DENSE {
-            solvers.push(LinearSolver::Dense);
-        }
-        for max_order in ORDERS {
-            let candidates = solvers.iter().flat_map(|&linear_solver| {
-                RATIOS.map(|ratio| IdaSettings {
-                    max_order,
-                    ratio,
-                    linear_solver,
-                    newton: NEWTON[0],
-                })
-            });
-            let candidates: Vec<IdaSettings> = candidates.collect();
-            let method = format!("BDF, order up to {max_order}");
-            let trial = |settings, tolerance| reference.trial(settings, tolerance);
-            let sweep = SettingsSweep::new(name, &method, &candidates, trial);
-            let settings = sweep.settings();
-            self.curves.push(RivalCurve {
-                study: name.to_owned(),
-                code: Code::IdaOnOurs,
-                method,
-                settings: Some(settings),
-                points: ida_points(name, &reference, settings, repeats)?,
-                floor: reference.distance(&reference.coarse),
-            });
-            self.sweeps.push(sweep);
-        }
-        Ok(())
     }
 
     /// The curves of Exudyn, against its own reference.
@@ -341,8 +185,6 @@ impl Rivals {
         for model in result.models {
             self.solutions.push(ConvergedSolution {
                 study: name.to_owned(),
-                code: Code::Exudyn,
-                of: Code::Exudyn,
                 method: model.reference.name(),
                 difference_from_looselink: model.difference_from_looselink,
             });
@@ -361,29 +203,6 @@ impl Rivals {
         }
         Ok(())
     }
-}
-
-/// The points of IDA on our equations with its best settings.
-fn ida_points(
-    name: &str,
-    reference: &OurReference,
-    settings: IdaSettings,
-    repeats: usize,
-) -> Result<Vec<[f64; 2]>> {
-    let mut points = Vec::new();
-    for tolerance in TOLERANCES {
-        let run = || reference.trial(settings, tolerance);
-        // a loose tolerance may lead where no step converges: the sweep has what it says
-        let Ok(first) = run() else { continue };
-        let seconds = ida::times(first.seconds, repeats, || {
-            Ok(run().map_err(|e| miette!("{name}: {e}"))?.seconds)
-        })?;
-        points.push([first.error, median(&seconds)]);
-        if first.seconds > ida::LAST_RUN {
-            break;
-        }
-    }
-    Ok(points)
 }
 
 /// What `measure.py` writes.

@@ -1,20 +1,15 @@
 //! How the fastest of our methods, and each alone, stands against another code. Only runs that were made count.
 
 use crate::benchmarks::rivals::{Code, RivalCurve, STUDIES, best};
-use serde::{Deserialize, Serialize};
 use studies::machine::median;
 use studies::precision::Times;
 
 /// Errors at which codes are compared \[m\].
 pub const LEVELS: [f64; 7] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
 
-/// A method of ours against the fastest method of another code, in all studies.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A method of ours, or the fastest one of each study and error, against the fastest method of another code.
+#[derive(Debug)]
 pub struct Standing {
-    /// The other code.
-    pub rival: Code,
-    /// Our method; none is the fastest one of each study and error.
-    pub method: Option<String>,
     /// Where both reach the error.
     pub ratios: Vec<TimeRatio>,
     /// Errors in studies that have this method, which only one of both reaches: ours, the other.
@@ -22,7 +17,7 @@ pub struct Standing {
 }
 
 /// Times of two codes for an error.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq)]
 pub struct TimeRatio {
     /// Study.
     pub study: String,
@@ -33,27 +28,13 @@ pub struct TimeRatio {
 }
 
 impl Standing {
-    /// Every other code with the fastest of our methods, then with each of them.
-    pub fn all(curves: &[RivalCurve]) -> Vec<Standing> {
-        let mut methods: Vec<Option<&str>> = vec![None];
-        for curve in curves.iter().filter(|c| c.code == Code::Looselink) {
-            if !methods.contains(&Some(&*curve.method)) {
-                methods.push(Some(&*curve.method));
-            }
-        }
-        let rivals = [Code::Exudyn, Code::IdaOnOurs, Code::Ida];
-        let pairs = rivals.iter().flat_map(|r| methods.iter().map(|m| (*r, *m)));
-        pairs.map(|(r, m)| Standing::new(curves, r, m)).collect()
-    }
-
-    fn new(curves: &[RivalCurve], rival: Code, method: Option<&str>) -> Standing {
+    /// Against this code, of a method in all studies that have it.
+    pub fn new(curves: &[RivalCurve], rival: Code, method: Option<&str>) -> Standing {
         let is_own = |c: &&RivalCurve| {
             c.code == Code::Looselink && method.is_none_or(|method| c.method == method)
         };
         let own: Vec<RivalCurve> = curves.iter().filter(is_own).cloned().collect();
         let mut standing = Standing {
-            rival,
-            method: method.map(str::to_owned),
             ratios: Vec::new(),
             reached_alone: [0; 2],
         };
@@ -61,7 +42,7 @@ impl Standing {
         for study in studies.filter(|study| own.iter().any(|c| c.study == *study)) {
             for error in LEVELS {
                 let of = |curves: &[RivalCurve], code| {
-                    Some(best(curves, study, code, error, Times::Measured)?.seconds)
+                    Some(best(curves, study, code, error, Times::Measured)?.1)
                 };
                 match (of(&own, Code::Looselink), of(curves, rival)) {
                     (Some(own), Some(other)) => standing.ratios.push(TimeRatio {
@@ -116,9 +97,7 @@ mod tests {
     }
 
     fn standing(method: Option<&str>) -> Standing {
-        let all = Standing::all(&curves());
-        let mut own = all.into_iter().filter(|s| s.rival == Code::Exudyn);
-        own.find(|s| s.method.as_deref() == method).unwrap()
+        Standing::new(&curves(), Code::Exudyn, method)
     }
 
     fn ratio(study: &str, error: f64, ratio: f64) -> TimeRatio {
@@ -140,11 +119,7 @@ mod tests {
         assert_eq!(own.summary(), Some([0.5 * (0.1 + 0.1 / 4.0), 0.1 / 4.0]));
         let mut without = curves();
         without.remove(4);
-        let all = Standing::all(&without);
-        let own = all
-            .iter()
-            .find(|s| s.method.as_deref() == Some("a"))
-            .unwrap();
+        let own = Standing::new(&without, Code::Exudyn, Some("a"));
         let expected = [ratio("case2", 1e-6, 6.0), ratio("case2", 1e-7, 8.0 / 4.0)];
         assert_eq!(own.ratios, expected);
     }
@@ -169,11 +144,8 @@ mod tests {
     fn methods_without_a_common_error_have_no_summary() {
         let mut curves = curves();
         curves.retain(|c| c.code == Code::Looselink);
-        let all = Standing::all(&curves);
-        assert_eq!(all.len(), 9);
-        assert!(all.iter().all(|s| s.summary().is_none()));
-        assert_eq!(all[0].reached_alone, [4, 0]);
-        let text = serde_json::to_string(&all).unwrap();
-        assert_eq!(serde_json::from_str::<Vec<Standing>>(&text).unwrap(), all);
+        let fastest = Standing::new(&curves, Code::Ida, None);
+        assert!(fastest.summary().is_none());
+        assert_eq!(fastest.reached_alone, [4, 0]);
     }
 }

@@ -4,7 +4,7 @@ use crate::benchmarks::{REPEATS, count};
 use cpu_time::ThreadTime;
 use looselink::scene::Scene;
 use looselink::simulate::Simulation;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use studies::machine::median;
@@ -86,11 +86,10 @@ impl StepRow {
 
     /// Processor time of a run \[s\].
     fn run(&self, root: &Path, end: f64) -> Result<f64> {
-        let scene = Scene::load(&root.join(&self.scene), &self.overrides(end));
-        let mut simulation =
-            Simulation::new(&scene.map_err(|e| miette!("{e}"))?).map_err(|e| miette!("{e}"))?;
+        let scene = Scene::load(&root.join(&self.scene), &self.overrides(end))?;
+        let mut simulation = Simulation::new(&scene)?;
         let clock = ThreadTime::now();
-        simulation.run(&mut ()).map_err(|e| miette!("{e}"))?;
+        simulation.run(&mut ()).into_diagnostic()?;
         Ok(clock.elapsed().as_secs_f64())
     }
 }

@@ -1,8 +1,8 @@
 //! One figure a scene: the mechanism at a few instants, and a channel over time.
 
 use crate::gallery::Entry;
-use crate::gallery::runs::SceneRun;
-use looselink::body::{FlexibleLink, Ground, Known};
+use crate::gallery::runs::{SceneRun, nodes};
+use looselink::body::{Ground, Known};
 use looselink::scene::{Analysis, NamedBody, PointRef};
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
@@ -108,17 +108,9 @@ fn blend(from: Color, to: Color, share: f64) -> Color {
 
 /// Names of the points that the run has recorded of a body, in the order of the body.
 fn points(run: &SceneRun, body: &NamedBody) -> Vec<String> {
-    let all = || body.kind.points().iter();
-    let names: Vec<String> = match body.kind.get::<FlexibleLink>() {
-        None => all().map(|p| p.name.clone()).collect(),
-        Some(link) => {
-            let named = |k: usize| link.nodes.iter().position(|n| *n == k);
-            let nodes = (0..=link.elements).map(|k| match named(k) {
-                Some(point) => link.link.points[point].name.clone(),
-                None => format!("node{k}"),
-            });
-            nodes.collect()
-        }
+    let names: Vec<String> = match body.kind.get() {
+        Some(link) => nodes(link),
+        None => body.kind.points().iter().map(|p| p.name.clone()).collect(),
     };
     let recorded = |name: &String| run.get(&format!("points.{}.{name}.x", body.name)).is_some();
     names.into_iter().filter(recorded).collect()

@@ -39,7 +39,7 @@ impl SceneRun {
 pub fn run(root: &Path, entry: &Entry) -> Result<SceneRun> {
     let path = root.join(&entry.name).with_extension("toml");
     let scene = Scene::load(&path, &[])?;
-    let mut overrides = nodes(&scene);
+    let mut overrides = named(&scene);
     overrides.push(format!(
         "output.channels=[\"points.*\", \"{}\"]",
         entry.channel
@@ -59,26 +59,29 @@ pub fn run(root: &Path, entry: &Entry) -> Result<SceneRun> {
     })
 }
 
-/// Overrides that give every node of a flexible link a name, so that its place is recorded.
-fn nodes(scene: &Scene) -> Vec<String> {
-    let mut overrides = Vec::new();
-    for body in &scene.bodies {
-        let Some(flexible) = body.kind.get::<FlexibleLink>() else {
-            continue;
-        };
-        let (elements, link) = (flexible.elements, &flexible.link);
-        let named = |k: usize| Some(&link.points[flexible.nodes.iter().position(|n| *n == k)?]);
-        let points: Vec<String> = (1..elements)
-            .map(|k| {
-                let name = named(k).map_or_else(|| format!("node{k}"), |p| p.name.clone());
-                let place = link.length * k as f64 / elements as f64;
-                format!("{name} = {place:?}")
-            })
+/// Names of the nodes of a flexible link from end to end: that of a point of the link, or the number of the node.
+pub fn nodes(flexible: &FlexibleLink) -> Vec<String> {
+    let point = |k: usize| flexible.nodes.iter().position(|n| *n == k);
+    let name = |k| match point(k) {
+        Some(point) => flexible.link.points[point].name.clone(),
+        None => format!("node{k}"),
+    };
+    (0..=flexible.elements).map(name).collect()
+}
+
+/// Overrides that give every node of a flexible link its name, so that its place is recorded.
+fn named(scene: &Scene) -> Vec<String> {
+    let links = scene.bodies.iter();
+    let links = links.filter_map(|body| Some((&body.name, body.kind.get::<FlexibleLink>()?)));
+    let inner = links.filter(|(_, flexible)| flexible.elements > 1);
+    let named = inner.map(|(body, flexible)| {
+        let place = |k| flexible.link.length * k as f64 / flexible.elements as f64;
+        let names = nodes(flexible).into_iter().enumerate().skip(1);
+        let inner = names.take(flexible.elements - 1);
+        let list: Vec<String> = inner
+            .map(|(k, name)| format!("{name} = {:?}", place(k)))
             .collect();
-        if !points.is_empty() {
-            let list = points.join(", ");
-            overrides.push(format!("bodies.{}.points={{ {list} }}", body.name));
-        }
-    }
-    overrides
+        format!("bodies.{body}.points={{ {} }}", list.join(", "))
+    });
+    named.collect()
 }

@@ -1,9 +1,9 @@
 //! Abstract and section 1: what flexibility and clearance do, and what methods are good for.
 
-use super::{Decide, Decision, above, below, holds, within};
+use super::{Decide, Decision};
 use crate::evidence::Evidence;
-use crate::methods::{HORIZON, Long, MethodWork, explicit};
-use crate::verdict::CriterionVerdict;
+use crate::methods::{Long, MethodWork, explicit};
+use crate::verdict::{above, all, below, holds, within};
 use minijinja::context;
 use numbers::{digits, percent};
 
@@ -18,30 +18,25 @@ const GROWN: f64 = 1.5;
 pub const DECISIONS: [Decide; 9] = [
     ("represents", |e| {
         let lost = e.means_of("energy_lost", f64::abs);
-        let two = e.run("flexible", "energy_lost").abs();
-        let figures = ["loose", "both"].map(|run| e.run(run, "energy_lost").abs());
-        (below(&lost, 0.05), context! { lost, two, figures })
+        (below(&lost, 0.05), context! { lost })
     }),
     ("flexibility", |e| {
-        let share = e.run("flexible", "deviation_share");
+        let two = holds(e.run("flexible", "deviation_share") > 0.1);
         let peak = e.pairs("force_peak", |both, loose| both / loose);
         let changes = within(&peak, 0.9, 1.1).not();
-        (changes.and(holds(share > 0.1)), context! { share, peak })
+        (changes.min(two), context! { peak })
     }),
     ("vibration", |e| {
-        let two = e.run("flexible", "deviation_share");
-        let share = e.means("deviation_share");
-        let verdict = above(&share, 0.05);
-        (verdict.and(holds(two > 0.05)), context! { two, share })
+        let two = holds(e.run("flexible", "deviation_share") > 0.05);
+        above(&e.means("deviation_share"), 0.05).min(two).alone()
     }),
     ("modes", |e| {
-        let frequency = e.run("flexible", "deviation_frequency");
-        (holds(frequency > 50.0), context! { frequency })
+        holds(e.run("flexible", "deviation_frequency") > 50.0).alone()
     }),
     ("explicit", |e| {
         let (ratios, text) = work(e);
         let verdict = holds(ratios.iter().any(|r| *r > MUCH));
-        (verdict, context! { ratios, text, horizon => HORIZON })
+        (verdict, context! { ratios, text })
     }),
     ("explicit fails", explicit_fails),
     ("implicit", |e| {
@@ -50,12 +45,10 @@ pub const DECISIONS: [Decide; 9] = [
         (holds(met), context! { ratios })
     }),
     ("others unstable", |e| {
-        let (stays, values) = growth(&e.long(|method| method != "bathe"));
+        let (stays, values) = growth(e, |method| method != "bathe");
         (stays.not(), values)
     }),
-    ("bathe stable", |e| {
-        growth(&e.long(|method| method == "bathe"))
-    }),
+    ("bathe stable", |e| growth(e, |method| method == "bathe")),
 ];
 
 /// The least work of a class of methods that gives an error below a part of the largest error, with this step and with
@@ -66,14 +59,13 @@ fn cheapest<'a>(
     is_explicit: bool,
     level: f64,
 ) -> Option<&'a MethodWork> {
-    let runs: Vec<&MethodWork> = e.work().iter().filter(|w| w.case == case).collect();
+    let runs = || e.ensembles.work.iter().filter(|w| w.case == case);
     let good = |w: &MethodWork| w.error.is_some_and(|error| error <= level * w.size);
-    let reached = |w: &&&MethodWork| {
-        let same = runs.iter().filter(|f| f.method == w.method);
-        explicit(&w.method) == is_explicit && same.into_iter().all(|f| f.step > w.step || good(f))
+    let reached = |w: &&MethodWork| {
+        let mut same = runs().filter(|f| f.method == w.method);
+        explicit(&w.method) == is_explicit && same.all(|f| f.step > w.step || good(f))
     };
-    let reached = runs.iter().filter(reached);
-    reached.min_by_key(|w| w.evaluations).copied()
+    runs().filter(reached).min_by_key(|w| w.evaluations)
 }
 
 /// Explicit over implicit work at every level of both cases, and in words.
@@ -92,43 +84,41 @@ fn work(e: &Evidence) -> (Vec<f64>, String) {
             continue;
         };
         let ratio = one.evaluations as f64 / other.evaluations as f64;
-        let words = |w: &MethodWork| format!("{} ({})", w.evaluations, w.name());
-        let (first, second) = (words(one), words(other));
+        let [first, second] = [one, other].map(|w| format!("{} ({})", w.evaluations, w.name()));
+        let ratio_at = digits(ratio);
         text.push(format!(
-            "at {at} {first} against {second}, ratio {}",
-            digits(ratio)
+            "at {at} {first} against {second}, ratio {ratio_at}"
         ));
         ratios.push(ratio);
-        e.rests_on(one);
-        e.rests_on(other);
     }
     (ratios, text.join("; "))
 }
 
 fn explicit_fails(e: &Evidence) -> Decision {
+    let all = &e.ensembles.work;
     let useless = |w: &&&MethodWork| w.error.is_none_or(|error| error > w.size);
     let bathe_works = |w: &&&MethodWork| {
         let same = |b: &&MethodWork| b.method == "bathe" && b.case == w.case && b.step == w.step;
-        let error = e.work().iter().find(same).and_then(|b| b.error);
+        let error = all.iter().find(same).and_then(|b| b.error);
         error.is_some_and(|error| error < 0.1 * w.size)
     };
-    let runs: Vec<&MethodWork> = e.work().iter().filter(|w| explicit(&w.method)).collect();
+    let runs: Vec<&MethodWork> = all.iter().filter(|w| explicit(&w.method)).collect();
     let failed = runs.iter().filter(useless).filter(bathe_works);
-    let failed: Vec<&&MethodWork> = failed.inspect(|w| e.rests_on(w)).collect();
-    let failed: Vec<String> = failed.into_iter().map(|w| w.name()).collect();
+    let failed: Vec<String> = failed.map(|w| w.name()).collect();
     let verdict = holds(!failed.is_empty());
     (verdict, context! { failed, runs => runs.len() })
 }
 
-/// Whether no vibration of long runs grows.
-fn growth(all: &[&Long]) -> Decision {
-    let two = all.iter().filter(|l| l.case == 2).flat_map(|l| &l.growth);
+/// Whether no vibration of long runs with some methods grows.
+fn growth(e: &Evidence, wanted: fn(&str) -> bool) -> Decision {
+    let long = e.ensembles.long.iter().filter(|l| wanted(&l.method));
+    let long: Vec<&Long> = long.collect();
+    let two = long.iter().filter(|l| l.case == 2).flat_map(|l| &l.growth);
     let values = context! {
-        long => all.iter().map(|l| l.shown()).collect::<Vec<_>>(),
-        stopped => all.iter().map(|l| l.stopped).sum::<usize>(),
-        runs => all.iter().map(|l| l.runs).sum::<usize>(),
+        long => long.iter().map(|l| l.shown()).collect::<Vec<_>>(),
+        stopped => long.iter().map(|l| l.stopped).sum::<usize>(),
+        runs => long.iter().map(|l| l.runs).sum::<usize>(),
         largest => two.copied().fold(0.0, f64::max),
     };
-    let verdict = CriterionVerdict::all(all.iter().map(|l| l.stays(GROWN)));
-    (verdict, values)
+    (all(long.iter().map(|l| l.stays(GROWN))), values)
 }

@@ -1,4 +1,4 @@
-//! The predicates of the statements: the verdict, and the values of the templates in statements.toml.
+//! The predicates of the statements: the verdict, and the values that only this statement's templates in statements.toml use.
 
 mod contact;
 mod introduction;
@@ -6,7 +6,7 @@ mod model;
 mod motion;
 
 use crate::evidence::Evidence;
-use crate::verdict::{CriterionVerdict, above, below, within};
+use crate::verdict::CriterionVerdict;
 use minijinja::Value;
 
 /// A verdict with the values of its templates.
@@ -23,20 +23,4 @@ pub fn all() -> impl Iterator<Item = Decide> {
         &contact::DECISIONS,
     ];
     lists.into_iter().flatten().copied()
-}
-
-/// The predicate of a statement.
-pub fn find(key: &str) -> Option<fn(&Evidence) -> Decision> {
-    all()
-        .find(|(known, _)| *known == key)
-        .map(|(_, decide)| decide)
-}
-
-fn holds(condition: bool) -> CriterionVerdict {
-    CriterionVerdict::of(condition)
-}
-
-/// A number between two others.
-fn between(x: f64, low: f64, high: f64) -> CriterionVerdict {
-    holds((low..=high).contains(&x))
 }

@@ -1,25 +1,18 @@
 //! Fig. 5: displacement error of the platform along x. a) case 2, b) case 3, c) case 4.
 
-use super::{CLAIMED, of_cases};
+use super::of_cases;
 use crate::figures::FigureRuns;
 use crate::measures::bound;
 use crate::runs::{CaseRecording, DURATION, FROM};
-use crate::signal::peak;
-use numbers::{digits, si};
 use plot::{Axis, Figure, Mark, palette};
 
 /// Draws the figure.
 pub fn figure(runs: &FigureRuns) -> Figure {
-    let note = |run: &CaseRecording| {
-        let largest = peak(run.between("error.x", FROM, DURATION).1);
-        let (written, times) = (si(largest, "m"), digits(CLAIMED / largest));
-        format!("Largest |eₓ| {written}; the ±0.2\u{a0}mm of the paper is {times} times that.")
-    };
     let beside = |run: &CaseRecording, mut marks: Vec<Mark>| {
         if run.plan.case >= 3 {
             let above = bound(&runs.geometry, run);
             let below: Vec<f64> = above.iter().map(|b| -b).collect();
-            let t = &run.t[run.rows(FROM, DURATION)];
+            let (t, _) = run.between("t", FROM, DURATION);
             for (label, bound) in [("kinematic bound", &above), ("", &below)] {
                 marks.push(Mark::series(label, palette::BLACK, t, bound).width(2));
             }
@@ -30,5 +23,5 @@ pub fn figure(runs: &FigureRuns) -> Figure {
     let text = "Displacement error of the platform along x. The ±0.2 mm of the paper is not drawn: it would flatten the \
                 curves. Kinematic bound: sum over the legs of |J⁻¹|ₓᵢ (2 c + penetrations), in case 4 plus the \
                 stretch of the links.";
-    of_cases(runs, ("error.x", axis), note, beside, text)
+    of_cases(runs, ("error.x", axis), beside, text)
 }

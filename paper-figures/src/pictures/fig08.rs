@@ -4,8 +4,6 @@
 use super::{caption, curve, over_time};
 use crate::figures::FigureRuns;
 use crate::runs::{CaseRecording, DURATION, FROM};
-use crate::signal::fraction;
-use numbers::{percent, si};
 use plot::{Axis, Figure, Mark, Panel, palette};
 
 const CHANNEL: &str = "B1.penetration";
@@ -19,15 +17,12 @@ pub fn figure(runs: &FigureRuns) -> Figure {
         penetration.copied().fold(f64::MIN, f64::max)
     };
     let whole = |title: &str, run: &CaseRecording| {
-        let contact = fraction(run.between(CHANNEL, FROM, DURATION).1, |d| d > 0.0);
-        let (contact, deepest) = (percent(contact), si(deepest(run), "m"));
         let marks = vec![
             curve((run, palette::BLUE), CHANNEL),
             Mark::level("contact begins", palette::BLACK, 0.0),
             Mark::level("centred (δ = −c)", palette::GREY, -clearance),
         ];
-        let note = format!("In contact {contact} of the time, deepest {deepest}.");
-        over_time(title, note, axis(), marks)
+        over_time(title, axis(), marks)
     };
     let close = |title: &str, run: &CaseRecording| -> Panel {
         let (low, high) = match deepest(run) {
@@ -37,7 +32,7 @@ pub fn figure(runs: &FigureRuns) -> Figure {
         let mut curve = curve((run, palette::BLUE), CHANNEL);
         curve.label.clear();
         let marks = vec![curve, Mark::level("", palette::BLACK, 0.0)];
-        over_time(title, String::new(), axis().over(low, high), marks)
+        over_time(title, axis().over(low, high), marks)
     };
     let [loose, both] = ["loose", "both"].map(|name| runs.get(name));
     let text = "Penetration δ = e − c in joint B1; negative values mean that journal and bearing are apart.";

@@ -6,7 +6,6 @@ use crate::figures::{FigureRuns, PERIODS, ROWS_A_PERIOD, SKIPPED};
 use crate::kinematics::MechanismGeometry;
 use crate::runs::{CaseRecording, DURATION, FROM};
 use crate::signal::{mean, rms};
-use numbers::si;
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 
 /// Draws the figure.
@@ -33,7 +32,6 @@ pub fn figure(runs: &FigureRuns) -> Figure {
     let many = names.map(|name| runs.get(&format!("{name}, many periods")));
     let [fine2, coarse2, loose, both] = many;
     let section = |title: &str, shown: &[(&CaseRecording, Color)]| {
-        let spread = spread(&section(&runs.geometry, shown[0].0).1);
         let points = |(run, color): &(&CaseRecording, Color)| {
             let (v, a) = section(&runs.geometry, run);
             Mark::points(&run.plan.pace.label(), *color, &v, &a, 7)
@@ -42,7 +40,7 @@ pub fn figure(runs: &FigureRuns) -> Figure {
         marks.push(Mark::cross("ideal", palette::BLACK, (0.0, 0.0)));
         Panel {
             title: title.into(),
-            note: format!("{PERIODS} points, rms spread of ẍ {}.", si(spread, "m/s²")),
+            note: String::new(),
             x: Axis::new("Velocity ẋ − ẋ ideal", "µm/s", 1e6),
             y: Axis::new("Acceleration ẍ − ẍ ideal", "m/s²", 1.0),
             marks,
@@ -62,8 +60,8 @@ pub fn figure(runs: &FigureRuns) -> Figure {
     let text = format!(
         "Top: acceleration against velocity of the platform along x over cycles 2 and 3, the curve the paper calls a \
          Poincaré map. Bottom: stroboscopic section, one point a period at t = kT over {PERIODS} periods after the first \
-         {SKIPPED}, as deviation from the ideal mechanism; a periodic motion gives one point. Its spread is that of the \
-         first step in the legend. Controlled: steps that keep the errors within 10 ms below 1 µm and 100 nJ."
+         {SKIPPED}, as deviation from the ideal mechanism; a periodic motion gives one point. Controlled: \
+         steps that keep the errors within 10 ms below 1 µm and 100 nJ."
     );
     let made_with = [names.map(|name| runs.get(name)), many].concat();
     Figure {

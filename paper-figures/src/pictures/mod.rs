@@ -10,7 +10,6 @@ pub use fig09::{section, spread};
 
 use crate::figures::FigureRuns;
 use crate::runs::{CaseRecording, DURATION, FROM};
-use numbers::si;
 use plot::{Axis, Color, Figure, Mark, Panel, palette};
 use std::collections::BTreeSet;
 
@@ -30,20 +29,11 @@ pub fn all(runs: &FigureRuns) -> Vec<(String, Figure)> {
     figures.map(thinned).into()
 }
 
-/// Color of a case where several are in one picture.
-pub fn case_color(case: u32) -> Color {
-    match case {
-        2 => palette::GREEN,
-        3 => palette::BLUE,
-        _ => palette::VERMILION,
-    }
-}
-
 /// A panel over the last two cycles.
-fn over_time(title: &str, note: String, y: Axis, marks: Vec<Mark>) -> Panel {
+fn over_time(title: &str, y: Axis, marks: Vec<Mark>) -> Panel {
     Panel {
         title: title.into(),
-        note,
+        note: String::new(),
         x: Axis::new("Time t", "s", 1.0).over(FROM, DURATION),
         y,
         marks,
@@ -62,18 +52,16 @@ fn curve((run, color): (&CaseRecording, Color), channel: &str) -> Mark {
     Mark::series(&run.plan.pace.label(), color, t, y).width(2)
 }
 
-/// A channel of case 2 with both steps, of case 3 and of case 4, with a note of the first run and with what is drawn beside it.
+/// A channel of case 2 with both steps, of case 3 and of case 4, and what is drawn beside the first run.
 fn of_cases(
     runs: &FigureRuns,
     (channel, axis): (&str, Axis),
-    note: impl Fn(&CaseRecording) -> String,
     beside: impl Fn(&CaseRecording, Vec<Mark>) -> Vec<Mark>,
     text: &str,
 ) -> Figure {
     let panel = |title: &str, shown: &[(&CaseRecording, Color)]| {
-        let first = shown[0].0;
         let curves = shown.iter().map(|run| curve(*run, channel)).collect();
-        over_time(title, note(first), axis.clone(), beside(first, curves))
+        over_time(title, axis.clone(), beside(shown[0].0, curves))
     };
     let row = vec![
         panel("a) Case 2", &flexible(runs)),
@@ -90,28 +78,15 @@ fn of_cases(
 /// A caption: what is seen, then the scenes it was made with, and what every run warns of.
 fn caption(text: &str, made_with: &[&CaseRecording]) -> String {
     let scenes: BTreeSet<String> = made_with.iter().map(|r| r.plan.scene_name()).collect();
-    let scenes: Vec<String> = scenes.into_iter().collect();
-    let warns = |r: &&&CaseRecording| !r.warnings.is_empty();
-    let warned = made_with.iter().filter(warns).map(|r| {
+    let scenes = Vec::from_iter(scenes).join(", ");
+    let warn = made_with.iter().filter(|r| !r.warnings.is_empty());
+    let warnings = warn.map(|r| {
         let (case, pace) = (r.plan.case, r.plan.pace.label());
-        format!("Case {case} ({pace}) warns: {}.", r.warnings.join("; "))
+        format!(" Case {case} ({pace}) warns: {}.", r.warnings.join("; "))
     });
-    let warned: Vec<String> = warned.collect();
-    let warned = match warned.is_empty() {
-        true => "No run warns of anything.".to_owned(),
-        false => warned.join(" "),
-    };
-    let mut intervals: Vec<f64> = made_with.iter().map(|r| r.plan.interval).collect();
-    intervals.sort_by(f64::total_cmp);
-    intervals.dedup();
-    let rows: Vec<String> = intervals.iter().map(|i| si(*i, "s")).collect();
-    let chaotic = match made_with.iter().any(|r| r.plan.case > 2) {
-        true => " Cases 3 and 4 are chaotic: each curve is one run of many, and decides nothing.",
-        false => "",
-    };
+    let warnings: String = warnings.collect();
     format!(
-        "{text} Scenes: {}. Bathe's method with the step h, unless the legend says otherwise; rows every {}.{chaotic} {warned}",
-        scenes.join(", "),
-        rows.join(" or "),
+        "{text} Scenes: {scenes}. Bathe's method with the step h, unless the legend says otherwise. Cases 3 and 4 are chaotic: \
+         each curve is one run of many, and decides nothing.{warnings}"
     )
 }

@@ -1,5 +1,6 @@
 //! The settings with which IDA is fastest in a study: a rival gets its best ones.
 
+use crate::accuracy::levels;
 use serde::{Deserialize, Serialize};
 use studies::precision::{Times, reached};
 use verify::ida_of_system::{IdaSettings, NEWTON};
@@ -14,11 +15,6 @@ pub const TOLERANCES: [f64; 9] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9
 /// After a trial that takes longer no tighter tolerance is tried \[s\].
 const LAST_TRIAL: f64 = 2.0;
 
-/// Errors at which curves are compared \[m\], four a decade.
-pub fn levels() -> impl Iterator<Item = f64> {
-    (0..=28).map(|k| 1e-5 * 10_f64.powf(-0.25 * f64::from(k)))
-}
-
 /// A run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
@@ -28,10 +24,6 @@ pub struct Trial {
     pub error: f64,
     /// Processor time \[s\], of one run.
     pub seconds: f64,
-    /// Evaluations of the residual.
-    pub residuals: u64,
-    /// Newton matrices.
-    pub jacobians: u64,
 }
 
 /// The runs with the same settings, from the loosest tolerance on.
@@ -64,7 +56,7 @@ impl SettingsSweep {
         study: &str,
         curve: &str,
         candidates: &[IdaSettings],
-        mut run: impl FnMut(IdaSettings, f64) -> Result<Trial, String>,
+        run: impl Fn(IdaSettings, f64) -> Result<Trial, String>,
     ) -> SettingsSweep {
         let mut sweep = SettingsSweep {
             study: study.to_owned(),
@@ -72,13 +64,13 @@ impl SettingsSweep {
             tried: Vec::new(),
             best: 0,
         };
-        sweep.try_all(candidates, &mut run);
+        sweep.try_all(candidates, &run);
         let best = sweep.settings();
         let others = NEWTON.into_iter().filter(|&newton| newton != best.newton);
         let others: Vec<IdaSettings> = others
             .map(|newton| IdaSettings { newton, ..best })
             .collect();
-        sweep.try_all(&others, &mut run);
+        sweep.try_all(&others, &run);
         sweep
     }
 
@@ -86,7 +78,7 @@ impl SettingsSweep {
     fn try_all(
         &mut self,
         candidates: &[IdaSettings],
-        run: &mut impl FnMut(IdaSettings, f64) -> Result<Trial, String>,
+        run: &impl Fn(IdaSettings, f64) -> Result<Trial, String>,
     ) {
         for &settings in candidates {
             let (mut trials, mut failures) = (Vec::new(), Vec::new());
@@ -193,8 +185,6 @@ mod tests {
                 tolerance,
                 error: 1e-3 * tolerance,
                 seconds: factor * tolerance.powf(-0.1),
-                residuals: 1,
-                jacobians: 1,
             })
         });
         assert_eq!(sweep.settings(), candidates[1]);

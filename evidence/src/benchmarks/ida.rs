@@ -1,0 +1,217 @@
+//! IDA as a rival, in two ways: on our equations, against our reference by the unknown coordinates; and in the second implementation,
+//! in full coordinates of stabilised index 2 with located onsets, against the reference of the study by its channels.
+
+use crate::benchmarks::rivals::{Code, RivalCurve, Rivals};
+use crate::benchmarks::settings::{ORDERS, RATIOS, SettingsSweep, TOLERANCES, Trial};
+use looselink::model::Model;
+use looselink::scene::Scene;
+use looselink::simulate::{Control, Observer, Progress, Simulation};
+use looselink::system::State;
+use miette::{IntoDiagnostic, Result, miette};
+use studies::machine::median;
+use studies::precision::{Study, StudyOutcome, WorkCounts};
+use verify::ida_of_system::{self, IdaSettings, LinearSolver, NEWTON};
+use verify::reference::LsTolerances;
+use verify::trajectory::{ComparisonPlan, linear_solver, tolerances};
+
+/// Unknowns and multipliers up to which IDA on our equations is also tried with a dense matrix: the time of its factorisation grows
+/// with the third power of their number, that of KLU about in proportion.
+const DENSE: usize = 200;
+/// A run that takes longer is not repeated: its time has no jitter that matters \[s\].
+const LONG_RUN: f64 = 5.0;
+/// After a run that takes longer no tighter tolerance is asked for \[s\].
+const LAST_RUN: f64 = 20.0;
+/// Counts that no curve shows.
+const UNCOUNTED: WorkCounts = WorkCounts {
+    steps: 0,
+    rejected_steps: 0,
+    location_trials: 0,
+    newton_iterations: 0,
+    factorisations: 0,
+    onsets: 0,
+};
+
+/// The second implementation.
+///
+/// # Errors
+/// A fault of the scene, a run that fails when it is repeated.
+pub fn second(
+    rivals: &mut Rivals,
+    name: &str,
+    study: &Study,
+    outcome: &StudyOutcome,
+    repeats: usize,
+) -> Result<()> {
+    // IDA has steps of its own; that of the scene may not divide the interval of the study
+    let step = format!("integrator.step={:e}", study.interval);
+    let set = [&study.set[..], &[step]].concat();
+    let plan = ComparisonPlan::of_file(&study.scene, &set, study.duration, study.interval);
+    let trial = |settings: IdaSettings, tolerance| {
+        let run = plan.cpp(&LsTolerances {
+            relative: settings.ratio * tolerance,
+            max_order: settings.max_order,
+            newton: settings.newton,
+            ..tolerances(tolerance)
+        });
+        // around it are the names of the study and of its files
+        let run = run.map_err(|e| e.root_cause().to_string())?;
+        let columns = |name: &str| run.columns.get(name).map(Vec::as_slice);
+        let measured = outcome.measure(study, &columns, None, UNCOUNTED);
+        Ok(Trial {
+            tolerance,
+            error: measured.map_err(|e| e.to_string())?.errors.position,
+            seconds: run.seconds,
+        })
+    };
+    let curve = RivalCurve {
+        study: name.to_owned(),
+        code: Code::Ida,
+        method: "IDA (second implementation)".to_owned(),
+        settings: None,
+        points: Vec::new(),
+        floor: outcome.reference.floor.position,
+    };
+    let solvers = [linear_solver(&plan.reference()?)];
+    add_curves(rivals, &curve, &solvers, repeats, trial)
+}
+
+/// IDA on our equations.
+///
+/// # Errors
+/// A fault of the scene, a run that fails when it is repeated.
+pub fn on_ours(rivals: &mut Rivals, name: &str, study: &Study, repeats: usize) -> Result<()> {
+    let reference = OurReference::new(study)?;
+    let size = ida_of_system::matrix_size(&reference.scene);
+    let solvers = match size.map_err(|e| miette!("{name}: {e}"))? {
+        ..=DENSE => &[LinearSolver::Klu, LinearSolver::Dense][..],
+        _ => &[LinearSolver::Klu],
+    };
+    let trial = |settings, tolerance| {
+        let run = ida_of_system::integrate(&reference.scene, settings, tolerance)?;
+        Ok(Trial {
+            tolerance,
+            error: reference.distance(&run.rows),
+            seconds: run.seconds,
+        })
+    };
+    let curve = RivalCurve {
+        study: name.to_owned(),
+        code: Code::IdaOnOurs,
+        method: "BDF".to_owned(),
+        settings: None,
+        points: Vec::new(),
+        floor: reference.distance(&reference.coarse),
+    };
+    add_curves(rivals, &curve, solvers, repeats, trial)
+}
+
+/// Adds a curve for each largest order with the settings that are the fastest, and how they were found.
+fn add_curves(
+    rivals: &mut Rivals,
+    curve: &RivalCurve,
+    solvers: &[LinearSolver],
+    repeats: usize,
+    trial: impl Fn(IdaSettings, f64) -> Result<Trial, String>,
+) -> Result<()> {
+    for max_order in ORDERS {
+        let candidates = solvers.iter().flat_map(|&linear_solver| {
+            RATIOS.map(|ratio| IdaSettings {
+                max_order,
+                ratio,
+                linear_solver,
+                newton: NEWTON[0],
+            })
+        });
+        let candidates: Vec<IdaSettings> = candidates.collect();
+        let method = format!("{}, order up to {max_order}", curve.method);
+        let sweep = SettingsSweep::new(&curve.study, &method, &candidates, &trial);
+        let settings = sweep.settings();
+        let mut points = Vec::new();
+        for tolerance in TOLERANCES {
+            // a loose tolerance may lead where no step converges: the sweep has what it says
+            let Ok(first) = trial(settings, tolerance) else {
+                continue;
+            };
+            let seconds = match first.seconds > LONG_RUN {
+                true => vec![first.seconds],
+                false => (0..repeats)
+                    .map(|_| Ok(trial(settings, tolerance)?.seconds))
+                    .collect::<Result<_, String>>()
+                    .map_err(|e| miette!("{}, {method}: {e}", curve.study))?,
+            };
+            points.push([first.error, median(&seconds)]);
+            if first.seconds > LAST_RUN {
+                break;
+            }
+        }
+        rivals.sweeps.push(sweep);
+        rivals.curves.push(RivalCurve {
+            method,
+            settings: Some(settings),
+            points,
+            ..curve.clone()
+        });
+    }
+    Ok(())
+}
+
+/// The unknown coordinates at every row.
+#[derive(Default)]
+struct CoordinateRows(Vec<Vec<f64>>);
+
+impl Observer for CoordinateRows {
+    fn row(&mut self, _: &[f64]) -> std::io::Result<()> {
+        Ok(())
+    }
+
+    fn state(&mut self, model: &Model, at: &State) -> std::io::Result<()> {
+        self.0.push(at.q[..model.shape().unknowns].to_vec());
+        Ok(())
+    }
+
+    fn step(&mut self, _: &Progress) -> std::io::Result<Control> {
+        Ok(Control::Continue)
+    }
+}
+
+/// Our two reference runs of a study, to compare other solutions of our equations with them.
+struct OurReference {
+    scene: Scene,
+    /// Indices of the studied positions among the unknowns.
+    studied: Vec<usize>,
+    coarse: Vec<Vec<f64>>,
+    fine: Vec<Vec<f64>>,
+}
+
+impl OurReference {
+    fn new(study: &Study) -> Result<OurReference> {
+        let [coarse, fine] = study.reference.paces().map(|pace| -> Result<_> {
+            let scene = study.scene(&study.reference.set, study.reference.elements, pace);
+            let scene = scene.into_diagnostic()?;
+            let mut simulation = Simulation::new(&scene)?;
+            let mut rows = CoordinateRows::default();
+            simulation.run(&mut rows).into_diagnostic()?;
+            Ok((rows.0, scene, simulation.model().unknown_names().to_vec()))
+        });
+        let ((coarse, ..), (fine, scene, names)) = (coarse?, fine?);
+        let studied = study.position.iter().map(|channel| {
+            // the path of the platform is known: its error is that of its position
+            let coordinate = channel.replace("error.", "platform.");
+            let place = names.iter().position(|name| *name == coordinate);
+            place.ok_or_else(|| miette!("{}: {channel} is no unknown coordinate", study.title))
+        });
+        Ok(OurReference {
+            studied: studied.collect::<Result<_>>()?,
+            scene,
+            coarse,
+            fine,
+        })
+    }
+
+    /// Largest difference of a studied position from the fine run \[m\].
+    fn distance(&self, rows: &[Vec<f64>]) -> f64 {
+        let pairs = rows.iter().zip(&self.fine);
+        let errors = pairs.flat_map(|(a, b)| self.studied.iter().map(|&i| (a[i] - b[i]).abs()));
+        errors.fold(0.0, f64::max)
+    }
+}
