@@ -1,4 +1,4 @@
-//! Whether accuracies are reached, in numbers: the section of ACCURACY.md and the tables of all runs.
+//! Whether accuracies are reached, in numbers: the section of ACCURACY.md, its picture and the tables of all runs.
 
 use crate::accuracy::amplification::NEIGHBOURS;
 use crate::accuracy::guarantee::{
@@ -7,6 +7,7 @@ use crate::accuracy::guarantee::{
 };
 use minijinja::{Value, context};
 use numbers::{digits, percent, si};
+use plot::{Axis, Figure, Mark, Panel, palette};
 
 /// A ratio above this is a miss.
 const MISS: f64 = 3.0;
@@ -56,6 +57,35 @@ fn judged(entries: &[GuaranteeEntry]) -> Vec<Judged<'_>> {
         Some(Judged { entry, run, ratio })
     })
     .collect()
+}
+
+/// One panel a method.
+pub fn figure(entries: &[GuaranteeEntry]) -> Figure {
+    let all = judged(entries);
+    let panels = methods().into_iter().enumerate().map(|(k, method)| {
+        let dots = |label: &str, color, amplifies: bool| {
+            let own = all.iter().filter(|j| j.entry.method == method);
+            let own = own.filter(|j| j.entry.facts.amplifies() == amplifies);
+            let (x, y): (Vec<f64>, Vec<f64>) = own.map(|j| (j.run.position, j.ratio)).unzip();
+            Mark::points(if k == 0 { label } else { "" }, color, &x, &y, 5)
+        };
+        Panel {
+            title: method.to_owned(),
+            note: String::new(),
+            x: Axis::new("Accuracy", "m", 1.0).log().over(3e-10, 3e-3),
+            y: Axis::new("Error / accuracy", "", 1.0).log().over(1e-6, 1e5),
+            marks: vec![
+                Mark::level("", palette::BLACK, 1.0),
+                dots("calm", palette::BLUE, false),
+                dots("amplifies", palette::VERMILION, true),
+            ],
+        }
+    });
+    let caption = format!(
+        "Error achieved over accuracy asked for, a dot a run of a dynamic scene. Red: the motion amplifies errors {AMPLIFIES} times and \
+         more. Dashed: as asked for. Ratios below 10⁻⁶ are not shown."
+    );
+    Figure::grid(panels.collect(), 4, caption)
 }
 
 /// How many runs there are, reach their accuracy and miss it more than threefold; the largest ratio and its scene.

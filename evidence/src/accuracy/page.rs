@@ -122,6 +122,10 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
     out.picture("accuracy/3rrr", &work_and_precision(&paper))?;
     out.picture("accuracy/others", &work_and_precision(&others))?;
     out.picture("accuracy/effects", &effects.figure)?;
+    out.picture(
+        "accuracy/guarantee",
+        &guarantee_page::figure(&guarantee.results),
+    )?;
     let guarantee_of_all = guarantee_page::context(&guarantee.results, stamp(&guarantee.origin));
     let page = context! {
         stamp => stamp(&record.origin),
