@@ -119,7 +119,11 @@ fn stiff_pendulum_at_every_listed_mesh() {
     }
     Rung::Computed
         .asks("Stiff pendulum, n = 1 ... 4, h = 2e-5 s: distance of the tip from the listed positions after 1 s [m]")
-        .within(&from_listed, 1e-8, "Bathe's scheme elongates periods by (wh)²/24 = 5e-10 at the largest rate of 5.4 rad/s: 3e-9 m in 1 s at 5.4 m/s");
+        .within(
+            &from_listed,
+            3e-6,
+            "flexibility moves the tip by 3.5e-5 m at most; the first two bending modes, 509 and 1650 rad/s, lag by w (wh)² t/24 = 0.002 and 0.075 rad",
+        );
     Rung::ClosedForms
         .asks("Stiff pendulum, n = 1 ... 4: distance of the tip from that of the rigid rod in closed form after 1 s [m]")
         .within(&from_rigid,
