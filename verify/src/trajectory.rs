@@ -193,12 +193,11 @@ impl ComparisonPlan {
                 break;
             }
         }
-        let counts = run.statistics();
         Ok(Trajectory {
             columns: scene.channels.iter().cloned().zip(columns).collect(),
             impacts: closed,
             seconds,
-            counts,
+            counts: run.statistics(),
         })
     }
 }

@@ -7,10 +7,9 @@ use miette::Result;
 
 /// The rows of one cycle.
 pub fn agreements() -> Result<Vec<Agreement>> {
-    let plan = ComparisonPlan::new("3rrr/case1", 1.0, 1e-3);
+    let (plan, scene) = (ComparisonPlan::new("3rrr/case1", 1.0, 1e-3), "case1, 1 s");
     // positions are those of the ideal mechanism at any step; the work is of order 4
     let runs = [&plan.rust(1e-4)?, &plan.cpp(&tolerances(1e-12))?];
     let reason = "relative to the largest value of its kind; a hundred times the error of IDA at a relative tolerance of 1e-12";
-    let rows = classes::agreements(NO_ROUNDING, "case1, 1 s", runs, 1e-10, reason);
-    Ok(rows)
+    Ok(classes::agreements(NO_ROUNDING, scene, runs, 1e-10, reason))
 }
