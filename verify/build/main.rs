@@ -47,30 +47,28 @@ fn compile(libraries: &Libraries) {
     }
     let compiled = precompile(&mut build, &root);
     build.compile("looselink_reference");
-    if let Some(header) = compiled {
-        // it takes 100 MB
-        std::fs::remove_file(header).expect("the compiled header can be removed");
-    }
+    // it takes 100 MB, if it was made
+    std::fs::remove_file(compiled).ok();
 }
 
 /// Reads the headers of Eigen once for all files, where the compiler can: with GCC a compiled header beside the one that is included
-/// takes its place. Other compilers include the header itself. Returns the compiled header.
-fn precompile(build: &mut cc::Build, root: &Path) -> Option<PathBuf> {
+/// takes its place. Other compilers include the header itself. Returns where the compiled header is.
+fn precompile(build: &mut cc::Build, root: &Path) -> PathBuf {
     let folder = PathBuf::from(std::env::var_os("OUT_DIR").expect("cargo names a folder"));
     let header = folder.join("eigen.hpp");
     let text = "#include <Eigen/Dense>\n#include <Eigen/Sparse>\n";
     std::fs::write(&header, text).expect("the folder can be written to");
     let compiler = build.get_compiler();
     build.flag("-include").flag(header.display().to_string());
-    compiler.is_like_gnu().then(|| {
-        let compiled = header.with_extension("hpp.gch");
+    let compiled = header.with_extension("hpp.gch");
+    if compiler.is_like_gnu() {
         let mut command = compiler.to_command();
         command.args(["-x", "c++-header", "-o"]).arg(&compiled);
         let status = command.arg(&header).current_dir(root).status();
         let status = status.expect("the compiler can be started");
         assert!(status.success(), "Eigen cannot be compiled: {status}");
-        compiled
-    })
+    }
+    compiled
 }
 
 /// All C++ files, in an order that does not depend on the file system.
@@ -90,8 +88,7 @@ fn link(libraries: &Libraries) {
         println!("cargo:rustc-link-search=native={}", folder.display());
         println!("cargo:rustc-link-arg=-Wl,-rpath,{}", folder.display());
     }
-    for name in libraries.names() {
+    for name in libraries.names {
         println!("cargo:rustc-link-lib={name}");
     }
-    println!("cargo:rustc-env=EIGEN_VERSION={}", libraries.eigen);
 }

@@ -24,23 +24,24 @@ struct Problem {
 
 Problem &problem(void *data) { return *static_cast<Problem *>(data); }
 
+li_vector all(N_Vector v) { return {N_VGetArrayPointer(v), N_VGetLength(v)}; }
+
 int residual(double t, N_Vector y, N_Vector yp, N_Vector r, void *data) {
     const li_equations &e = problem(data).equations;
-    return e.residual(e.data, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp), N_VGetArrayPointer(r));
+    return e.residual(e.data, t, all(y), all(yp), all(r));
 }
 
 int jacobian(double t, double c, N_Vector y, N_Vector yp, N_Vector, SUNMatrix matrix, void *data, N_Vector, N_Vector,
              N_Vector) {
     const li_equations &e = problem(data).equations;
-    const double *at = N_VGetArrayPointer(y), *rate = N_VGetArrayPointer(yp);
     const int64_t size = e.unknowns + e.multipliers;
     if (SUNMatGetID(matrix) == SUNMATRIX_SPARSE) {
         std::copy(e.columns, e.columns + size + 1, SM_INDEXPTRS_S(matrix));
         std::copy(e.rows, e.rows + e.columns[size], SM_INDEXVALS_S(matrix));
-        return e.jacobian(e.data, t, c, at, rate, SM_DATA_S(matrix));
+        return e.jacobian(e.data, t, c, all(y), all(yp), {SM_DATA_S(matrix), e.columns[size]});
     }
     std::vector<double> entries(e.columns[size]);
-    const int flag = e.jacobian(e.data, t, c, at, rate, entries.data());
+    const int flag = e.jacobian(e.data, t, c, all(y), all(yp), {entries.data(), e.columns[size]});
     for (int64_t column = 0; column < size; ++column)
         for (int64_t k = e.columns[column]; k < e.columns[column + 1]; ++k)
             SM_ELEMENT_D(matrix, e.rows[k], column) = entries[k];
@@ -49,7 +50,7 @@ int jacobian(double t, double c, N_Vector y, N_Vector yp, N_Vector, SUNMatrix ma
 
 int gaps(double t, N_Vector y, N_Vector, double *values, void *data) {
     const li_equations &e = problem(data).equations;
-    return e.gaps(e.data, t, N_VGetArrayPointer(y), values);
+    return e.gaps(e.data, t, all(y), {values, e.contacts});
 }
 
 // Multipliers have no weight: neither the error test nor Newton's convergence test looks at them.
@@ -75,9 +76,9 @@ int factorise(SUNLinearSolver solver, SUNMatrix matrix) {
 int solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, double tolerance) {
     const Problem &p = problem(solver->content);
     const li_equations &e = p.equations;
-    e.condense(e.data, N_VGetArrayPointer(b), N_VGetArrayPointer(p.b));
+    e.condense(e.data, all(b), all(p.b));
     const int flag = SUNLinSolSolve(p.condensed_solver, matrix, p.x, p.b, tolerance);
-    e.expand(e.data, N_VGetArrayPointer(b), N_VGetArrayPointer(p.x), N_VGetArrayPointer(x));
+    e.expand(e.data, all(b), all(p.x), all(x));
     return flag;
 }
 
@@ -117,7 +118,7 @@ void integrate(const li_equations &e, const li_run &run, double *start, double *
         check(IDARootInit(integrator, e.contacts, gaps), "IDARootInit");
         check(IDASetNoInactiveRootWarn(integrator), "IDASetNoInactiveRootWarn");
     }
-    e.row(e.data, 0.0, start);
+    e.row(e.data, all(y.get()));
     const auto count = [&] {
         long steps = 0, residuals = 0, jacobians = 0;
         IDAGetNumSteps(integrator, &steps);
@@ -134,11 +135,11 @@ void integrate(const li_equations &e, const li_run &run, double *start, double *
         if (flag == IDA_ROOT_RETURN) {
             count();
             ++counts.changes;
-            if (e.change(e.data, t, start, slope) != 0) throw std::runtime_error("a contact cannot change");
+            if (e.change(e.data, t, all(y.get()), all(yp.get())) != 0) throw std::runtime_error("a contact cannot change");
             check(IDAReInit(integrator, t, y.get(), yp.get()), "IDAReInit");
             continue;
         }
-        e.row(e.data, t, start);
+        e.row(e.data, all(y.get()));
         ++row;
     }
     count();

@@ -9,25 +9,30 @@
 extern "C" {
 #endif
 
-/* Every function returns 0, or 1 where a smaller step may help. */
+typedef struct {
+    double *values;
+    int64_t length;
+} li_vector;
+
+/* Every function returns 0, or 1 where a smaller step may help. It writes what it is asked for into the last vector, `change` into both. */
 typedef struct {
     void *data;
     int32_t unknowns, multipliers, contacts;
     /* the pattern of the condensed matrix, column by column */
     const int64_t *columns, *rows;
     /* F(t, y, y') */
-    int32_t (*residual)(void *data, double t, const double *y, const double *yp, double *r);
+    int32_t (*residual)(void *data, double t, li_vector y, li_vector yp, li_vector r);
     /* the entries of dF/dy + c dF/dy', condensed */
-    int32_t (*jacobian)(void *data, double t, double c, const double *y, const double *yp, double *entries);
+    int32_t (*jacobian)(void *data, double t, double c, li_vector y, li_vector yp, li_vector entries);
     /* with the last matrix: the right-hand side b condensed, and x of all unknowns from the condensed one */
-    void (*condense)(void *data, const double *b, double *condensed);
-    void (*expand)(void *data, const double *b, const double *condensed, double *x);
+    void (*condense)(void *data, li_vector b, li_vector condensed);
+    void (*expand)(void *data, li_vector b, li_vector condensed, li_vector x);
     /* the penetration of every contact */
-    int32_t (*gaps)(void *data, double t, const double *y, double *gaps);
+    int32_t (*gaps)(void *data, double t, li_vector y, li_vector gaps);
     /* a contact has changed: closes or opens it, and makes y and y' consistent */
-    int32_t (*change)(void *data, double t, double *y, double *yp);
+    int32_t (*change)(void *data, double t, li_vector y, li_vector yp);
     /* the state at a multiple of the interval */
-    void (*row)(void *data, double t, const double *y);
+    void (*row)(void *data, li_vector y);
 } li_equations;
 
 typedef struct {

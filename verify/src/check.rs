@@ -77,35 +77,18 @@ pub fn assert_all(what: &str, rows: &[Agreement]) {
 }
 
 /// The largest of many differences, with the two numbers at its place.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct LargestDifference {
     pub rust: f64,
     pub cpp: f64,
-    /// -1 before anything is compared.
     pub difference: f64,
     /// The largest magnitude of all numbers.
     pub size: f64,
-}
-
-impl Default for LargestDifference {
-    fn default() -> LargestDifference {
-        LargestDifference {
-            rust: 0.0,
-            cpp: 0.0,
-            difference: -1.0,
-            size: 0.0,
-        }
-    }
+    /// True once something was compared.
+    pub is_seen: bool,
 }
 
 impl LargestDifference {
-    /// Of two numbers alone, measured in units of `scale`.
-    pub fn of(rust: f64, cpp: f64, scale: f64) -> LargestDifference {
-        let mut one = LargestDifference::default();
-        one.see(rust, cpp, scale);
-        one
-    }
-
     /// Looks at two numbers whose difference is measured in units of `scale`. A difference that is not a number stays;
     /// among equal ones the larger numbers are kept.
     pub fn see(&mut self, rust: f64, cpp: f64, scale: f64) {
@@ -117,10 +100,10 @@ impl LargestDifference {
                 rust,
                 cpp,
                 difference,
-                size,
+                ..*self
             };
         }
-        self.size = size;
+        (self.size, self.is_seen) = (size, true);
     }
 
     /// Looks at two vectors, measured in units of `scale`.
@@ -131,17 +114,9 @@ impl LargestDifference {
         }
     }
 
-    /// True once something was compared.
-    pub fn is_seen(&self) -> bool {
-        self.difference != -1.0
-    }
-
     /// The row. It does not count if all numbers are zero.
     pub fn row(self, quantity: &str, scene: &str, tolerance: f64, reason: &str) -> Agreement {
-        assert!(
-            self.is_seen(),
-            "{quantity} of {scene}: nothing was compared"
-        );
+        assert!(self.is_seen, "{quantity} of {scene}: nothing was compared");
         Agreement {
             quantity: quantity.into(),
             scene: scene.into(),
@@ -150,10 +125,9 @@ impl LargestDifference {
             difference: self.difference,
             tolerance,
             reason: reason.into(),
-            standing: if self.size == 0.0 {
-                Standing::Zero
-            } else {
-                Standing::Counted
+            standing: match self.size {
+                0.0 => Standing::Zero,
+                _ => Standing::Counted,
             },
         }
     }

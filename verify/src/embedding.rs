@@ -11,9 +11,9 @@
 //! With W = M A + f of the full coordinates, the equations in q are r = J^T W, and dr/dq contains W dJ/dq.
 
 use crate::reference::ReferenceScene;
-use looselink::body::{CentredLink, Content};
+use looselink::body::CentredLink;
 use looselink::interaction::{SlopeClamp, Weld};
-use looselink::model::{Model, PlacedBody};
+use looselink::model::Model;
 use looselink::scene::{PointRef, Scene};
 use looselink::system::State;
 use nalgebra::{DMatrix, DVector};
@@ -49,12 +49,6 @@ pub struct FullState {
     curvature: Vec<(usize, usize, f64)>,
 }
 
-/// True of a body whose points follow from a place and an angle, where the reference may have coordinates of these points.
-pub fn is_rooted(body: &PlacedBody) -> bool {
-    let kind = &body.placed.kind;
-    kind.hold().is_some() || kind.get::<CentredLink>().is_some()
-}
-
 /// The coordinate that the reference calls `name`.
 fn placement(model: &Model, name: &str) -> Option<Placement> {
     let mut parts = name.split('.');
@@ -64,16 +58,18 @@ fn placement(model: &Model, name: &str) -> Option<Placement> {
         // an internal state of a force
         return copied(model.unknown_names().iter().position(|n| n == name)?);
     };
-    let slots = || body.placed.x.iter().zip(&body.contents);
     let coordinate = |quantity: &str, from: usize| {
-        let of = |(x, content): (&usize, &Content)| {
-            Some(x + content.names().iter().position(|n| *n == quantity)?)
-        };
-        slots().skip(from).find_map(of)
+        let mut slots = body.placed.x.iter().zip(&body.contents).skip(from);
+        slots.find_map(|(x, content)| {
+            let names = content.names();
+            Some(x + names.iter().position(|n| *n == quantity)?)
+        })
     };
     let axis = last.unwrap_or(part);
-    if is_rooted(body) && axis != "theta" {
-        let kind = &body.placed.kind;
+    let kind = &body.placed.kind;
+    let is_rooted = kind.hold().is_some() || kind.get::<CentredLink>().is_some();
+    // points follow from a place and an angle, where the reference may have coordinates of these points
+    if is_rooted && axis != "theta" {
         // in the frame of the points: a link starts at its origin, other bodies have their centre of mass there
         let length = kind.length().unwrap_or(0.0);
         let at = if part == "end" { length } else { 0.0 };
@@ -157,11 +153,6 @@ impl FullState {
     /// J^T W.
     pub fn gather(&self, w: &DVector<f64>) -> DVector<f64> {
         self.jacobian.tr_mul(w)
-    }
-
-    /// J^T M J.
-    pub fn mass(&self, m: &DMatrix<f64>) -> DMatrix<f64> {
-        self.jacobian.tr_mul(&(m * &self.jacobian))
     }
 
     /// dr/dq and dr/dv.

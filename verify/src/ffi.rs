@@ -14,17 +14,6 @@ pub struct LsError {
     pub message: [c_char; 640],
 }
 
-/// `ls_description`
-#[repr(C)]
-pub struct LsDescription {
-    pub title: *const c_char,
-    pub is_static: i32,
-    pub reserved: i32,
-    pub duration: f64,
-    pub interval: f64,
-    pub initial_energy: f64,
-}
-
 /// `ls_tolerances`
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
@@ -66,22 +55,17 @@ pub struct LsStatistics {
 
 /// `ls_scene`
 #[repr(C)]
-pub struct LsScene {
-    _opaque: [u8; 0],
-}
+pub struct LsScene([u8; 0]);
 
 /// `ls_run`
 #[repr(C)]
-pub struct LsRun {
-    _opaque: [u8; 0],
-}
+pub struct LsRun([u8; 0]);
 
 #[rustfmt::skip]
 unsafe extern "C" {
     pub fn ls_scene_read(text: *const c_char, overrides: *const *const c_char, count: usize, error: *mut LsError)
         -> *mut LsScene;
     pub fn ls_scene_free(scene: *mut LsScene);
-    pub fn ls_scene_describe(scene: *const LsScene, description: *mut LsDescription);
     pub fn ls_scene_name(scene: *const LsScene, list: i32, index: usize) -> *const c_char;
     pub fn ls_scene_start(scene: *const LsScene, q: *mut f64, v: *mut f64, error: *mut LsError) -> c_int;
     pub fn ls_scene_set_elongations(scene: *mut LsScene, elongations: *const f64, error: *mut LsError) -> c_int;

@@ -23,24 +23,48 @@ use looselink::scene::Scene;
 use looselink::simulate::Simulation;
 use looselink::system::{State, System, Weights, Work};
 use serde::{Deserialize, Serialize};
-use std::ffi::{CStr, c_char, c_void};
+use std::ffi::{CStr, c_char};
+use std::ops::{Deref, DerefMut};
+
+/// `li_vector`
+#[repr(C)]
+struct LiVector {
+    values: *mut f64,
+    length: i64,
+}
+
+impl Deref for LiVector {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        // SAFETY: IDA's vectors last longer than the call that hands them over
+        unsafe { std::slice::from_raw_parts(self.values, self.length as usize) }
+    }
+}
+
+impl DerefMut for LiVector {
+    fn deref_mut(&mut self) -> &mut [f64] {
+        // SAFETY: likewise, and no two of a call are the same
+        unsafe { std::slice::from_raw_parts_mut(self.values, self.length as usize) }
+    }
+}
 
 /// `li_equations`
 #[repr(C)]
-struct LiEquations {
-    data: *mut c_void,
+struct LiEquations<'a> {
+    data: *mut Equations<'a>,
     unknowns: i32,
     multipliers: i32,
     contacts: i32,
     columns: *const i64,
     rows: *const i64,
-    residual: extern "C" fn(*mut c_void, f64, *const f64, *const f64, *mut f64) -> i32,
-    jacobian: extern "C" fn(*mut c_void, f64, f64, *const f64, *const f64, *mut f64) -> i32,
-    condense: extern "C" fn(*mut c_void, *const f64, *mut f64),
-    expand: extern "C" fn(*mut c_void, *const f64, *const f64, *mut f64),
-    gaps: extern "C" fn(*mut c_void, f64, *const f64, *mut f64) -> i32,
-    change: extern "C" fn(*mut c_void, f64, *mut f64, *mut f64) -> i32,
-    row: extern "C" fn(*mut c_void, f64, *const f64),
+    residual: extern "C" fn(&mut Equations, f64, LiVector, LiVector, LiVector) -> i32,
+    jacobian: extern "C" fn(&mut Equations, f64, f64, LiVector, LiVector, LiVector) -> i32,
+    condense: extern "C" fn(&mut Equations, LiVector, LiVector),
+    expand: extern "C" fn(&mut Equations, LiVector, LiVector, LiVector),
+    gaps: extern "C" fn(&mut Equations, f64, LiVector, LiVector) -> i32,
+    change: extern "C" fn(&mut Equations, f64, LiVector, LiVector) -> i32,
+    row: extern "C" fn(&mut Equations, LiVector),
 }
 
 /// `li_run`
@@ -66,6 +90,7 @@ pub struct LiCounts {
     pub changes: i64,
 }
 
+#[allow(improper_ctypes, reason = "C hands the equations through")]
 unsafe extern "C" {
     fn li_integrate(
         equations: *const LiEquations,
@@ -129,16 +154,15 @@ pub fn matrix_size(scene: &Scene) -> Result<usize, String> {
 /// What the scene or IDA says.
 pub fn integrate(scene: &Scene, settings: IdaSettings, tolerance: f64) -> Result<IdaRun, String> {
     let simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
-    let mut equations = MechanismEquations::new(&simulation, scene.integrator.onset_tolerance);
+    let mut equations = Equations::new(&simulation, scene.integrator.onset_tolerance);
     let at = simulation.state();
     let n = equations.n;
     let mut y = [&at.q[..n], &at.v[..n], &at.lambda].concat();
     let mut yp = [&at.v[..n], &at.a[..n], &vec![0.0; at.lambda.len()]].concat();
-    // IDA reads the pattern while the equations are written to
-    let (columns, rows) = (equations.columns.clone(), equations.rows.clone());
+    let [columns, rows] = equations.find_pattern();
     let shape = simulation.model().shape();
     let interface = LiEquations {
-        data: (&raw mut equations).cast(),
+        data: &raw mut equations,
         unknowns: n as i32,
         multipliers: shape.multipliers as i32,
         contacts: shape.contacts as i32,
@@ -192,7 +216,7 @@ pub fn integrate(scene: &Scene, settings: IdaSettings, tolerance: f64) -> Result
 }
 
 /// The system with its memory.
-struct MechanismEquations<'a> {
+struct Equations<'a> {
     system: &'a dyn System,
     n: usize,
     work: Work,
@@ -203,16 +227,12 @@ struct MechanismEquations<'a> {
     onset_tolerance: f64,
     phi: Vec<f64>,
     r: Vec<f64>,
-    /// Pattern of the matrix, column by column, and the slots of its entries in the tangent.
-    columns: Vec<i64>,
-    rows: Vec<i64>,
+    /// Of the entries of the matrix, column by column, in the tangent.
     slots: Vec<usize>,
-    /// Row, column and slot of the entries of M + C / c, and of Phi_q.
-    inertia: Vec<[usize; 3]>,
-    gradient: Vec<[usize; 3]>,
+    /// Row, column, tangent and slot of the entries of M + C / c and of Phi_q.
+    eliminated: Vec<[usize; 4]>,
     /// M + C / c + K / c2 and M + C / c in the layout of the tangent.
-    tangent: Vec<f64>,
-    with_damping: Vec<f64>,
+    tangents: [Vec<f64>; 2],
     c: f64,
     /// True where forces depend on velocities.
     is_damped: bool,
@@ -220,12 +240,12 @@ struct MechanismEquations<'a> {
     found: Vec<Vec<f64>>,
 }
 
-impl<'a> MechanismEquations<'a> {
-    fn new(simulation: &'a Simulation, onset_tolerance: f64) -> MechanismEquations<'a> {
+impl<'a> Equations<'a> {
+    fn new(simulation: &'a Simulation, onset_tolerance: f64) -> Equations<'a> {
         let system: &dyn System = simulation.model();
         let shape = system.shape();
         let length = system.symbolic().len();
-        let mut equations = MechanismEquations {
+        Equations {
             system,
             n: shape.unknowns,
             work: system.work(),
@@ -235,36 +255,34 @@ impl<'a> MechanismEquations<'a> {
             onset_tolerance,
             phi: vec![0.0; shape.multipliers],
             r: vec![0.0; shape.coordinates],
-            columns: vec![0],
-            rows: Vec::new(),
             slots: Vec::new(),
-            inertia: Vec::new(),
-            gradient: Vec::new(),
-            tangent: vec![0.0; length],
-            with_damping: vec![0.0; length],
+            eliminated: Vec::new(),
+            tangents: [vec![0.0; length], vec![0.0; length]],
             c: 1.0,
             is_damped: true,
             gaps: vec![[0.0; 2]; shape.contacts],
             found: Vec::new(),
-        };
-        equations.find_pattern();
-        equations
+        }
     }
 
-    /// The tangent with these weights.
-    fn linearise(&mut self, q: f64, v: f64, k: &mut [f64]) {
+    /// Makes a tangent that of these weights.
+    fn linearise(&mut self, tangent: usize, q: f64, v: f64) {
         let (at, r, phi, work) = (&self.at, &mut self.r, &mut self.phi, &mut self.work);
+        let k = &mut self.tangents[tangent];
         self.system.linearise(at, Weights { q, v }, r, phi, k, work);
     }
 
-    /// The entries of the tangent that are not zero at the start or, where contacts may close, all of its pattern.
-    fn find_pattern(&mut self) {
+    /// The entries of the tangent that are not zero at the start or, where contacts may close, all of its pattern: where each column
+    /// begins, and the rows.
+    fn find_pattern(&mut self) -> [Vec<i64>; 2] {
+        let (mut columns, mut rows) = (vec![0], Vec::new());
         let (n, symbolic) = (self.n, self.system.symbolic());
         let length = symbolic.len();
-        let [mut mass, mut with_damping, mut tangent] = [(); 3].map(|()| vec![0.0; length]);
-        self.linearise(0.0, 0.0, &mut mass);
-        self.linearise(0.0, 1.0, &mut with_damping);
-        self.linearise(1.0, 0.0, &mut tangent);
+        let [with_stiffness, with_damping, mass] =
+            [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]].map(|[q, v]| {
+                self.linearise(1, q, v);
+                self.tangents[1].clone()
+            });
         let has_contacts = !self.gaps.is_empty();
         self.is_damped = has_contacts || mass != with_damping;
         // the entries of the pattern, each with its slot and one more
@@ -276,20 +294,18 @@ impl<'a> MechanismEquations<'a> {
                 let slot = numbers[(i, j)] as usize - 1;
                 let has = |values: &[f64]| has_contacts || values[slot] != 0.0;
                 let has_inertia = has(&mass) || has(&with_damping);
-                if !(has_inertia || has(&tangent)) {
+                if !(has_inertia || has(&with_stiffness)) {
                     continue;
                 }
-                self.rows.push(i as i64);
+                rows.push(i as i64);
                 self.slots.push(slot);
-                if j < n && i >= n {
-                    self.gradient.push([i, j, slot]);
-                } else if j < n && has_inertia {
-                    self.inertia.push([i, j, slot]);
+                if j < n && (i >= n || has_inertia) {
+                    self.eliminated.push([i, j, usize::from(i < n), slot]);
                 }
             }
-            self.columns.push(self.rows.len() as i64);
+            columns.push(rows.len() as i64);
         }
-        self.with_damping = mass;
+        [columns, rows]
     }
 
     /// Takes over y and y' at a time; false where the prescribed motion has no solution.
@@ -310,130 +326,60 @@ impl<'a> MechanismEquations<'a> {
     }
 }
 
-/// The system and y behind the pointers of a call.
-///
-/// # Safety
-/// The pointers are those that IDA hands through, see [`integrate`].
-unsafe fn behind<'e>(
-    data: *mut c_void,
-    y: *const f64,
-) -> (&'e mut MechanismEquations<'e>, &'e [f64]) {
-    // SAFETY: see above
-    unsafe {
-        let equations = &mut *data.cast::<MechanismEquations>();
-        let size = 2 * equations.n + equations.phi.len();
-        (equations, std::slice::from_raw_parts(y, size))
-    }
-}
-
 extern "C" fn residual(
-    data: *mut c_void,
+    e: &mut Equations,
     t: f64,
-    y: *const f64,
-    yp: *const f64,
-    r: *mut f64,
+    y: LiVector,
+    yp: LiVector,
+    mut r: LiVector,
 ) -> i32 {
-    // SAFETY: IDA's vectors have the size of y
-    let (equations, y, yp, r) = unsafe {
-        let (equations, y) = behind(data, y);
-        (
-            equations,
-            y,
-            std::slice::from_raw_parts(yp, y.len()),
-            std::slice::from_raw_parts_mut(r, y.len()),
-        )
-    };
-    if !equations.move_to(t, y, Some(yp)) {
+    if !e.move_to(t, &y, Some(&yp)) {
         return 1;
     }
-    let MechanismEquations {
-        system,
-        n,
-        work,
-        at,
-        phi,
-        r: force,
-        ..
-    } = equations;
-    system.residual(at, force, phi, work);
-    system.constraint_acceleration(at, phi);
-    for i in 0..*n {
-        r[i] = yp[i] - y[*n + i];
+    let n = e.n;
+    e.system.residual(&e.at, &mut e.r, &mut e.phi, &mut e.work);
+    e.system.constraint_acceleration(&e.at, &mut e.phi);
+    for i in 0..n {
+        r[i] = yp[i] - y[n + i];
     }
-    r[*n..2 * *n].copy_from_slice(&force[..*n]);
-    r[2 * *n..].copy_from_slice(phi);
+    r[n..2 * n].copy_from_slice(&e.r[..n]);
+    r[2 * n..].copy_from_slice(&e.phi);
     i32::from(r.iter().any(|x| !x.is_finite()))
 }
 
 extern "C" fn jacobian(
-    data: *mut c_void,
+    e: &mut Equations,
     t: f64,
     c: f64,
-    y: *const f64,
-    yp: *const f64,
-    entries: *mut f64,
+    y: LiVector,
+    yp: LiVector,
+    mut entries: LiVector,
 ) -> i32 {
-    // SAFETY: IDA's vectors have the size of y, its matrix has the pattern given
-    let (equations, y, yp) = unsafe {
-        let (equations, y) = behind(data, y);
-        (equations, y, std::slice::from_raw_parts(yp, y.len()))
-    };
-    if !equations.move_to(t, y, Some(yp)) {
+    if !e.move_to(t, &y, Some(&yp)) {
         return 1;
     }
-    equations.c = c;
-    let mut tangent = std::mem::take(&mut equations.tangent);
-    equations.linearise(c.powi(-2), c.recip(), &mut tangent);
-    equations.tangent = tangent;
-    if equations.is_damped {
-        let mut with_damping = std::mem::take(&mut equations.with_damping);
-        equations.linearise(0.0, c.recip(), &mut with_damping);
-        equations.with_damping = with_damping;
+    e.c = c;
+    e.linearise(0, c.powi(-2), c.recip());
+    if e.is_damped {
+        e.linearise(1, 0.0, c.recip());
     }
-    // SAFETY: as many as the pattern has
-    let entries = unsafe { std::slice::from_raw_parts_mut(entries, equations.slots.len()) };
-    for (entry, slot) in entries.iter_mut().zip(&equations.slots) {
-        *entry = equations.tangent[*slot];
+    for (entry, slot) in entries.iter_mut().zip(&e.slots) {
+        *entry = e.tangents[0][*slot];
     }
     0
 }
 
-extern "C" fn condense(data: *mut c_void, b: *const f64, condensed: *mut f64) {
-    // SAFETY: b has the size of y; the other has that of the matrix
-    let (equations, b, condensed) = unsafe {
-        let (equations, b) = behind(data, b);
-        let size = b.len() - equations.n;
-        (
-            equations,
-            b,
-            std::slice::from_raw_parts_mut(condensed, size),
-        )
-    };
-    let (first, others) = b.split_at(equations.n);
-    let c = equations.c;
+extern "C" fn condense(e: &mut Equations, b: LiVector, mut condensed: LiVector) {
+    let (first, others) = b.split_at(e.n);
     condensed.copy_from_slice(others);
-    for &[i, j, slot] in &equations.inertia {
-        condensed[i] += c * equations.with_damping[slot] * first[j];
+    for &[i, j, tangent, slot] in &e.eliminated {
+        condensed[i] += e.c * e.tangents[tangent][slot] * first[j];
     }
-    for &[i, j, slot] in &equations.gradient {
-        condensed[i] += c * equations.tangent[slot] * first[j];
-    }
-    condensed.iter_mut().for_each(|x| *x /= c * c);
+    condensed.iter_mut().for_each(|x| *x /= e.c * e.c);
 }
 
-extern "C" fn expand(data: *mut c_void, b: *const f64, condensed: *const f64, x: *mut f64) {
-    // SAFETY: b and x have the size of y; the other has that of the matrix
-    let (equations, b, condensed, x) = unsafe {
-        let (equations, b) = behind(data, b);
-        let (n, size) = (equations.n, b.len());
-        (
-            equations,
-            b,
-            std::slice::from_raw_parts(condensed, size - n),
-            std::slice::from_raw_parts_mut(x, size),
-        )
-    };
-    let (n, c) = (equations.n, equations.c);
+extern "C" fn expand(e: &mut Equations, b: LiVector, condensed: LiVector, mut x: LiVector) {
+    let (n, c) = (e.n, e.c);
     for i in 0..n {
         x[i] = condensed[i];
         x[n + i] = c * condensed[i] - b[i];
@@ -443,55 +389,31 @@ extern "C" fn expand(data: *mut c_void, b: *const f64, condensed: *const f64, x:
     }
 }
 
-extern "C" fn gaps(data: *mut c_void, t: f64, y: *const f64, gaps: *mut f64) -> i32 {
-    // SAFETY: IDA's vectors have the size of y
-    let (equations, y) = unsafe { behind(data, y) };
-    if !equations.move_to(t, y, None) {
+extern "C" fn gaps(e: &mut Equations, t: f64, y: LiVector, mut gaps: LiVector) -> i32 {
+    if !e.move_to(t, &y, None) {
         return 1;
     }
-    equations.system.gaps(&equations.at, &mut equations.gaps);
-    // SAFETY: one for every contact
-    let gaps = unsafe { std::slice::from_raw_parts_mut(gaps, equations.gaps.len()) };
-    for (out, [delta, _]) in gaps.iter_mut().zip(&equations.gaps) {
+    e.system.gaps(&e.at, &mut e.gaps);
+    for (out, [delta, _]) in gaps.iter_mut().zip(&e.gaps) {
         *out = *delta;
     }
     0
 }
 
-extern "C" fn change(data: *mut c_void, t: f64, y: *mut f64, yp: *mut f64) -> i32 {
-    // SAFETY: y and y' are the vectors of `integrate`
-    let (equations, y, yp) = unsafe {
-        let (equations, _) = behind(data, y);
-        let size = 2 * equations.n + equations.phi.len();
-        (
-            equations,
-            std::slice::from_raw_parts_mut(y, size),
-            std::slice::from_raw_parts_mut(yp, size),
-        )
-    };
-    if !equations.move_to(t, y, Some(yp)) {
+extern "C" fn change(e: &mut Equations, t: f64, mut y: LiVector, mut yp: LiVector) -> i32 {
+    if !e.move_to(t, &y, Some(&yp)) {
         return 1;
     }
-    let MechanismEquations {
-        system,
-        n,
-        work,
-        newton,
-        at,
-        gaps,
-        onset_tolerance,
-        nearby,
-        ..
-    } = equations;
-    let n = *n;
-    system.gaps(at, gaps);
+    let n = e.n;
+    e.system.gaps(&e.at, &mut e.gaps);
     // a root is found to the rounding of its time
-    let tolerance = onset_tolerance.max(1e-12);
-    system.commit(at, gaps, tolerance, &mut |_, _, _| {});
-    if newton.make_consistent(*system, at, work).is_err() {
+    let tolerance = e.onset_tolerance.max(1e-12);
+    let (at, gaps) = (&mut e.at, &e.gaps);
+    e.system.commit(at, gaps, tolerance, &mut |_, _, _| {});
+    if e.newton.make_consistent(e.system, at, &mut e.work).is_err() {
         return 1;
     }
-    nearby.copy_from(at);
+    e.nearby.copy_from(at);
     y[n..2 * n].copy_from_slice(&at.v[..n]);
     y[2 * n..].copy_from_slice(&at.lambda);
     yp[..n].copy_from_slice(&at.v[..n]);
@@ -500,8 +422,6 @@ extern "C" fn change(data: *mut c_void, t: f64, y: *mut f64, yp: *mut f64) -> i3
     0
 }
 
-extern "C" fn row(data: *mut c_void, _: f64, y: *const f64) {
-    // SAFETY: IDA's vectors have the size of y
-    let (equations, y) = unsafe { behind(data, y) };
-    equations.found.push(y[..equations.n].to_vec());
+extern "C" fn row(e: &mut Equations, y: LiVector) {
+    e.found.push(y[..e.n].to_vec());
 }

@@ -11,7 +11,6 @@
 
 pub mod check;
 pub mod compare;
-pub mod crossing;
 pub mod embedding;
 #[allow(unsafe_code, reason = "declarations of the library")]
 mod ffi;

@@ -7,9 +7,7 @@ use miette::{Result, WrapErr};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use verify::check::{Agreement, Standing};
-use verify::compare::scenes::ROWS;
 use verify::compare::{equations, machines, scenes};
-use verify::trajectory::ComparisonPlan;
 
 /// Prints how both programs agree on a scene. Exit codes: 0 all agree, 1 some differ, 2 not compared.
 #[derive(Parser)]
@@ -29,11 +27,7 @@ fn main() -> ExitCode {
 fn own(path: &Path) -> Result<ExitCode> {
     let scene = Scene::load(path, &[])?;
     Simulation::new(&scene)?;
-    let (duration, interval) = (scene.simulation.duration, scene.output.interval);
-    let is_static = scene.simulation.analysis == Analysis::Static;
-    let most = if is_static { f64::INFINITY } else { ROWS };
-    let end = duration.min(most * interval);
-    let plan = ComparisonPlan::of_file(path, &[], end, interval);
+    let plan = scenes::as_written(path.display().to_string(), &scene);
     plan.reference()
         .wrap_err("Looselink accepts this scene, but the reference refuses it")?;
     let mut rows = show("Start", scenes::start(&plan)?);
@@ -42,7 +36,7 @@ fn own(path: &Path) -> Result<ExitCode> {
             "\nThe starts differ, and the remaining comparisons are skipped. A sketch that leaves the mechanism free to move \
              determines the start only roughly: give an angle or a state."
         );
-    } else if is_static {
+    } else if scene.simulation.analysis == Analysis::Static {
         rows.extend(show("Equilibria at all loads", scenes::equilibrium(&plan)?));
     } else {
         let equations = equations::agreements(&plan)?;
@@ -51,11 +45,11 @@ fn own(path: &Path) -> Result<ExitCode> {
             equations,
         ));
         let motion = format!(
-            "Motion up to {end} s of {duration} s ({} output intervals)",
-            (end / interval).round()
+            "Motion up to {} s of {} s",
+            plan.duration, scene.simulation.duration
         );
         match scene.smallest_clearance() {
-            None => rows.extend(show(&motion, machines::first_rows(&plan)?)),
+            None => rows.extend(show(&motion, machines::motion(&plan)?)),
             Some(_) => println!("\nMotion and impacts: not compared, since a joint has clearance"),
         }
     }
@@ -71,20 +65,18 @@ fn own(path: &Path) -> Result<ExitCode> {
 /// Prints rows below a title.
 fn show(title: &str, rows: Vec<Agreement>) -> Vec<Agreement> {
     println!("\n{title}\n  difference  allowed");
-    for row in rows
-        .iter()
-        .filter(|row| row.standing != Standing::Zero || !row.holds())
-    {
+    let shown = |row: &&Agreement| row.standing != Standing::Zero || !row.holds();
+    for row in rows.iter().filter(shown) {
         let [difference, allowed] = [row.difference, row.tolerance].map(|x| numbers::number(x, 2));
         let (mark, values) = match (row.holds(), row.counts()) {
             (true, true) => (' ', String::new()),
             (true, false) => ('~', String::new()),
             (false, _) => ('!', format!(": {:e} and {:e}", row.rust, row.cpp)),
         };
-        println!(
-            "{mark} {difference:>10} {allowed:>8}  {}{values} ({})",
-            row.quantity, row.reason
-        );
+        let Agreement {
+            quantity, reason, ..
+        } = row;
+        println!("{mark} {difference:>10} {allowed:>8}  {quantity}{values} ({reason})");
     }
     rows
 }

@@ -5,7 +5,10 @@ pub use crate::ffi::{LsEvent, LsStatistics, LsTolerances};
 use crate::trajectory::tolerances;
 use nalgebra::{DMatrix, DVector};
 use std::ffi::{CStr, CString, c_char, c_int};
-use std::ptr::{NonNull, null_mut};
+use std::ptr::NonNull;
+
+/// Of a call of the reference.
+type Result<T> = std::result::Result<T, ReferenceError>;
 
 /// What the reference implementation reports when it cannot go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -38,73 +41,55 @@ impl ReferenceError {
     }
 }
 
-fn text(bytes: &[c_char]) -> String {
-    let bytes = bytes.iter().take_while(|&&c| c != 0).map(|&c| c as u8);
-    String::from_utf8_lossy(&bytes.collect::<Vec<u8>>()).into_owned()
+/// A text of the library.
+///
+/// # Safety
+/// `text` is zero-terminated.
+unsafe fn owned(text: *const c_char) -> String {
+    // SAFETY: see above
+    let text = unsafe { CStr::from_ptr(text) };
+    text.to_string_lossy().into_owned()
 }
 
-impl From<&LsError> for ReferenceError {
-    fn from(error: &LsError) -> ReferenceError {
-        ReferenceError {
-            code: error.code,
-            field: text(&error.field),
-            line: error.line,
-            flag: error.flag,
-            t: error.time,
-            message: text(&error.message),
-        }
-    }
-}
-
-/// Calls a function that fills an error record.
-fn call<T>(
-    work: impl FnOnce(*mut LsError) -> T,
-    good: impl FnOnce(&T) -> bool,
-) -> Result<T, ReferenceError> {
-    let mut error = LsError {
-        code: 0,
-        flag: 0,
-        line: 0,
-        column: 0,
-        time: 0.0,
-        field: [0; 128],
-        message: [0; 640],
-    };
+/// What a function of the library returns, and the error record that it fills.
+fn call<T>(work: impl FnOnce(*mut LsError) -> T) -> (T, impl FnOnce() -> ReferenceError) {
+    // SAFETY: numbers and empty texts
+    let mut error: LsError = unsafe { std::mem::zeroed() };
     let result = work(&mut error);
-    good(&result)
-        .then_some(result)
-        .ok_or_else(|| (&error).into())
+    let error = move || ReferenceError {
+        code: error.code,
+        // SAFETY: the library ends its texts with zero
+        field: unsafe { owned(error.field.as_ptr()) },
+        line: error.line,
+        flag: error.flag,
+        t: error.time,
+        // SAFETY: likewise
+        message: unsafe { owned(error.message.as_ptr()) },
+    };
+    (result, error)
+}
+
+/// Calls a function that returns a new object, or null.
+fn made<T>(work: impl FnOnce(*mut LsError) -> *mut T) -> Result<NonNull<T>> {
+    let (object, error) = call(work);
+    NonNull::new(object).ok_or_else(error)
 }
 
 /// Calls a function that fills vectors of these lengths.
 fn filled<const N: usize>(
     lengths: [usize; N],
     work: impl FnOnce([*mut f64; N], *mut LsError) -> c_int,
-) -> Result<[Vec<f64>; N], ReferenceError> {
+) -> Result<[Vec<f64>; N]> {
     let mut vectors = lengths.map(|length| vec![0.0; length]);
     let pointers = vectors.each_mut().map(Vec::as_mut_ptr);
-    call(|error| work(pointers, error), |code| *code == 0)?;
-    Ok(vectors)
+    let (code, error) = call(|e| work(pointers, e));
+    if code == 0 { Ok(vectors) } else { Err(error()) }
 }
 
-/// A text of the library.
-///
-/// # Safety
-/// `text` is null or zero-terminated.
-unsafe fn owned(text: *const c_char) -> Option<String> {
-    // SAFETY: see above
-    (!text.is_null()).then(|| {
-        unsafe { CStr::from_ptr(text) }
-            .to_string_lossy()
-            .into_owned()
-    })
-}
-
-/// Versions of the libraries the reference stands on.
+/// Version of the library that integrates.
 pub fn versions() -> String {
     // SAFETY: the text is a constant of the library
-    let sundials = unsafe { owned(ls_sundials_version()) }.unwrap_or_default();
-    format!("Eigen {}, SUNDIALS {sundials}", env!("EIGEN_VERSION"))
+    format!("SUNDIALS {}", unsafe { owned(ls_sundials_version()) })
 }
 
 /// A scene as the reference reads and assembles it.
@@ -124,8 +109,6 @@ pub struct ReferenceScene {
     pub joints: Vec<String>,
     /// Names of the channels, `t` first.
     pub channels: Vec<String>,
-    /// True for a static analysis.
-    pub is_static: bool,
 }
 
 // SAFETY: the library has no globals, and what changes a scene borrows it alone
@@ -156,30 +139,21 @@ pub struct ReferenceState<'a> {
 
 impl ReferenceScene {
     /// Reads the text of a scene with overrides `path=value`, and assembles its start.
-    pub fn read(text: &str, overrides: &[String]) -> Result<ReferenceScene, ReferenceError> {
+    pub fn read(text: &str, overrides: &[String]) -> Result<ReferenceScene> {
         let c_text = |s: &str| CString::new(s).expect("scenes have no zero bytes");
         let (text, overrides) = (c_text(text), overrides.iter().map(|o| c_text(o)));
         let overrides: Vec<CString> = overrides.collect();
         let pointers: Vec<*const c_char> = overrides.iter().map(|o| o.as_ptr()).collect();
-        let handle = call(
-            // SAFETY: texts are zero-terminated and live through the call
-            |e| unsafe { ls_scene_read(text.as_ptr(), pointers.as_ptr(), pointers.len(), e) },
-            |handle| !handle.is_null(),
-        )?;
-        let mut description = LsDescription {
-            title: null_mut(),
-            is_static: 0,
-            reserved: 0,
-            duration: 0.0,
-            interval: 0.0,
-            initial_energy: 0.0,
-        };
-        // SAFETY: the handle is of a scene; the description is filled
-        unsafe { ls_scene_describe(handle, &mut description) }
+        // SAFETY: texts are zero-terminated and live through the call
+        let handle = made(|e| unsafe {
+            ls_scene_read(text.as_ptr(), pointers.as_ptr(), pointers.len(), e)
+        })?;
         let names = |list: i32| -> Vec<String> {
             // SAFETY: the handle is of a scene; a name is null only beyond the end
-            let name = |i| unsafe { owned(ls_scene_name(handle, list, i)) };
-            (0..).map_while(name).collect()
+            let names = (0..).map(|i| unsafe { ls_scene_name(handle.as_ptr(), list, i) });
+            let names = names.take_while(|name| !name.is_null());
+            // SAFETY: names are zero-terminated
+            names.map(|name| unsafe { owned(name) }).collect()
         };
         let mut scene = ReferenceScene {
             coordinates: names(0),
@@ -187,8 +161,7 @@ impl ReferenceScene {
             rows: names(1),
             joints: names(2),
             channels: names(3),
-            is_static: description.is_static != 0,
-            handle: NonNull::new(handle).expect("checked above"),
+            handle,
         };
         let names = names(6).into_iter().map(|force| force + ".elongation");
         let names: Vec<String> = names.collect();
@@ -207,22 +180,20 @@ impl ReferenceScene {
         self.coordinates.len() - self.elongations.len()
     }
 
-    /// Sets the elongations, after a check that a state has the right lengths. Returns the number of the coordinates of bodies.
-    fn go_to(&mut self, at: ReferenceState) -> Result<usize, ReferenceError> {
+    /// Sets the elongations, after a check that a state has the right lengths. Returns q, v and z.
+    fn go_to(&mut self, at: ReferenceState) -> Result<[*const f64; 3]> {
         let (n, lengths) = (self.coordinates.len(), [at.q.len(), at.v.len(), at.z.len()]);
         assert_eq!(lengths, [n, n, self.joints.len()], "a state of this scene");
         let n = self.of_bodies();
-        let (scene, elongations) = (self.handle.as_ptr(), at.v[n..].as_ptr());
-        call(
-            // SAFETY: a number for every elongation
-            |e| unsafe { ls_scene_set_elongations(scene, elongations, e) },
-            |code| *code == 0,
-        )?;
-        Ok(n)
+        // SAFETY: a number for every elongation
+        filled([], |[], e| unsafe {
+            ls_scene_set_elongations(self.handle.as_ptr(), at.v[n..].as_ptr(), e)
+        })?;
+        Ok([at.q, at.v, at.z].map(<[f64]>::as_ptr))
     }
 
     /// q and v at t = 0.
-    pub fn start(&self) -> Result<[Vec<f64>; 2], ReferenceError> {
+    pub fn start(&self) -> Result<[Vec<f64>; 2]> {
         // SAFETY: a number for every coordinate
         let [mut q, mut v] = filled([self.of_bodies(); 2], |[q, v], e| unsafe {
             ls_scene_start(self.handle.as_ptr(), q, v, e)
@@ -233,7 +204,7 @@ impl ReferenceScene {
     }
 
     /// M.
-    pub fn mass(&self) -> Result<DMatrix<f64>, ReferenceError> {
+    pub fn mass(&self) -> Result<DMatrix<f64>> {
         let (n, all) = (self.of_bodies(), self.coordinates.len());
         // SAFETY: the matrix is n x n
         let [mass] = filled([n * n], |[mass], e| unsafe {
@@ -245,7 +216,7 @@ impl ReferenceScene {
     }
 
     /// f, df/dq and df/dv.
-    pub fn force(&mut self, at: ReferenceState) -> Result<ForceAndTangents, ReferenceError> {
+    pub fn force(&mut self, at: ReferenceState) -> Result<ForceAndTangents> {
         let (f, by_q, mut by_v) = self.force_at(at)?;
         // f is a linear function of the elongations
         for i in self.of_bodies()..self.coordinates.len() {
@@ -258,13 +229,9 @@ impl ReferenceScene {
     }
 
     /// The same without the derivatives by elongations.
-    fn force_at(&mut self, at: ReferenceState) -> Result<ForceAndTangents, ReferenceError> {
-        let (n, scene, all) = (
-            self.go_to(at)?,
-            self.handle.as_ptr(),
-            self.coordinates.len(),
-        );
-        let (q, v, z) = (at.q.as_ptr(), at.v.as_ptr(), at.z.as_ptr());
+    fn force_at(&mut self, at: ReferenceState) -> Result<ForceAndTangents> {
+        let ([q, v, z], scene) = (self.go_to(at)?, self.handle.as_ptr());
+        let (n, all) = (self.of_bodies(), self.coordinates.len());
         // SAFETY: the state fits the scene; a vector and two matrices of n
         let [mut f, mut by_q, by_v] = filled([n, n * n, n * n], |[f, by_q, by_v], e| unsafe {
             ls_scene_force(scene, at.t, q, v, z, f, by_q, by_v, e)
@@ -278,19 +245,17 @@ impl ReferenceScene {
     }
 
     /// dz/dt of all elongations, and its derivatives by the coordinates of bodies, row by row.
-    fn elongation_rates(&self, q: &[f64]) -> Result<[Vec<f64>; 2], ReferenceError> {
+    fn elongation_rates(&self, q: &[f64]) -> Result<[Vec<f64>; 2]> {
         let (states, scene) = (self.elongations.len(), self.handle.as_ptr());
+        let lengths = [states, states * self.of_bodies()];
         // SAFETY: q fits the scene; a vector and a matrix with a row for every elongation
-        filled(
-            [states, states * self.of_bodies()],
-            |[rates, by_q], e| unsafe {
-                ls_scene_elongation_rates(scene, q.as_ptr(), rates, by_q, e)
-            },
-        )
+        filled(lengths, |[rates, by_q], e| unsafe {
+            ls_scene_elongation_rates(scene, q.as_ptr(), rates, by_q, e)
+        })
     }
 
     /// Phi, Phi_q and Phi_t.
-    pub fn constraint_rows(&self, t: f64, q: &[f64]) -> Result<ConstraintRows, ReferenceError> {
+    pub fn constraint_rows(&self, t: f64, q: &[f64]) -> Result<ConstraintRows> {
         let (n, m, all) = (self.of_bodies(), self.rows.len(), self.coordinates.len());
         assert_eq!(q.len(), all, "a state of this scene");
         // SAFETY: q fits the scene; vectors of m, a matrix of m x n
@@ -302,14 +267,11 @@ impl ReferenceScene {
     }
 
     /// a and lambda of the equations of motion.
-    pub fn acceleration(
-        &mut self,
-        at: ReferenceState,
-    ) -> Result<[DVector<f64>; 2], ReferenceError> {
-        let (n, scene) = (self.go_to(at)?, self.handle.as_ptr());
-        let (q, v, z) = (at.q.as_ptr(), at.v.as_ptr(), at.z.as_ptr());
+    pub fn acceleration(&mut self, at: ReferenceState) -> Result<[DVector<f64>; 2]> {
+        let ([q, v, z], scene) = (self.go_to(at)?, self.handle.as_ptr());
+        let lengths = [self.of_bodies(), self.rows.len()];
         // SAFETY: the state fits the scene; n and m numbers
-        let [mut a, lambda] = filled([n, self.rows.len()], |[a, lambda], e| unsafe {
+        let [mut a, lambda] = filled(lengths, |[a, lambda], e| unsafe {
             ls_scene_acceleration(scene, at.t, q, v, z, a, lambda, e)
         })?;
         let [rates, _] = self.elongation_rates(at.q)?;
@@ -318,26 +280,22 @@ impl ReferenceScene {
     }
 
     /// All channels, in the order of their names.
-    pub fn values(&mut self, at: ReferenceState) -> Result<Vec<f64>, ReferenceError> {
-        self.go_to(at)?;
-        let (scene, z) = (self.handle.as_ptr(), at.z.as_ptr());
+    pub fn values(&mut self, at: ReferenceState) -> Result<Vec<f64>> {
+        let ([q, v, z], scene) = (self.go_to(at)?, self.handle.as_ptr());
         // SAFETY: the state fits the scene; a number for every channel
         let [values] = filled([self.channels.len()], |[values], e| unsafe {
-            ls_scene_channels(scene, at.t, at.q.as_ptr(), at.v.as_ptr(), z, values, e)
+            ls_scene_channels(scene, at.t, q, v, z, values, e)
         })?;
         Ok(values)
     }
 
     /// Begins a run at the start of the scene.
-    pub fn run(&self, tolerances: &LsTolerances) -> Result<ReferenceRun<'_>, ReferenceError> {
-        let handle = call(
-            // SAFETY: the run keeps its own copy of the scene
-            |e| unsafe { ls_run_new(self.handle.as_ptr(), tolerances, e) },
-            |handle| !handle.is_null(),
-        )?;
+    pub fn run(&self, tolerances: &LsTolerances) -> Result<ReferenceRun<'_>> {
+        // SAFETY: the run keeps its own copy of the scene
+        let handle = made(|e| unsafe { ls_run_new(self.handle.as_ptr(), tolerances, e) })?;
         Ok(ReferenceRun {
             scene: self,
-            handle: NonNull::new(handle).expect("checked above"),
+            handle,
         })
     }
 }
@@ -358,7 +316,7 @@ impl Drop for ReferenceRun<'_> {
 
 impl ReferenceRun<'_> {
     /// Goes on to `t`; all channels there.
-    pub fn advance(&mut self, t: f64) -> Result<Vec<f64>, ReferenceError> {
+    pub fn advance(&mut self, t: f64) -> Result<Vec<f64>> {
         // SAFETY: a number for every channel
         let [values] = filled([self.scene.channels.len()], |[values], e| unsafe {
             ls_run_advance(self.handle.as_ptr(), t, values, e)

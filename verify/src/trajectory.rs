@@ -6,6 +6,8 @@ use cpu_time::ThreadTime;
 use looselink::scene::Scene;
 use looselink::simulate::{Recording, RunError, Simulation};
 use miette::{IntoDiagnostic, Result, WrapErr};
+use records::root;
+use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -13,20 +15,21 @@ use std::path::{Path, PathBuf};
 const DENSE: usize = 100;
 
 /// What to run: a scene of the project, rows every `interval` up to `duration`.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ComparisonPlan {
-    /// Path below `scenes/` without the extension, or of a file.
+    /// Path below `scenes/` without the extension, or of a file with it.
     pub scene: String,
-    /// The file.
-    pub path: PathBuf,
-    /// Overrides `path=value` that change the mechanism.
-    pub overrides: Vec<String>,
-    /// What the overrides make of it, for reports.
-    pub variant: &'static str,
     /// Simulated time \[s\].
     pub duration: f64,
     /// Time between rows \[s\].
     pub interval: f64,
+    /// Overrides `path=value` that change the mechanism.
+    #[serde(default)]
+    pub overrides: Vec<String>,
+    /// What the overrides make of it, for reports.
+    #[serde(default)]
+    pub variant: String,
 }
 
 /// A contact that closes.
@@ -38,9 +41,6 @@ pub struct ComparedImpact {
     pub joint: String,
     /// Impact velocity \[m/s\].
     pub velocity: f64,
-    /// Direction of the eccentricity \[rad\] and the largest penetration of a contact that has been lost again \[m\], where
-    /// they were kept.
-    pub course: Option<[f64; 2]>,
 }
 
 /// What one side computed.
@@ -67,74 +67,61 @@ impl Trajectory {
 impl ComparisonPlan {
     /// A plan without overrides.
     pub fn new(scene: impl Into<String>, duration: f64, interval: f64) -> ComparisonPlan {
-        let scene = scene.into();
-        let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../scenes");
         ComparisonPlan {
-            path: root.join(format!("{scene}.toml")),
-            scene,
-            overrides: Vec::new(),
-            variant: "",
+            scene: scene.into(),
             duration,
             interval,
+            overrides: Vec::new(),
+            variant: String::new(),
         }
     }
 
     /// A scene anywhere, with overrides that change the mechanism.
-    pub fn of_file(
-        scene: &Path,
-        overrides: &[String],
-        duration: f64,
-        interval: f64,
-    ) -> ComparisonPlan {
-        ComparisonPlan {
-            path: scene.to_owned(),
-            overrides: overrides.to_vec(),
-            ..ComparisonPlan::new(scene.display().to_string(), duration, interval)
-        }
+    pub fn of_file(scene: &Path, set: &[String], duration: f64, interval: f64) -> ComparisonPlan {
+        ComparisonPlan::new(scene.to_string_lossy(), duration, interval).with(set)
     }
 
-    /// The same with overrides, called `variant` in reports.
-    pub fn with(mut self, variant: &'static str, overrides: &[&str]) -> ComparisonPlan {
-        self.variant = variant;
-        self.overrides
-            .extend(overrides.iter().map(|o| (*o).to_owned()));
+    /// The same with more overrides.
+    pub fn with(mut self, overrides: &[String]) -> ComparisonPlan {
+        self.overrides.extend_from_slice(overrides);
         self
     }
 
-    /// The same with friction that acts against the slip of the material, in every loose joint.
-    pub fn with_friction(self) -> ComparisonPlan {
-        let friction = "contacts.pin.friction={law=\"ambrosio\",coefficient=0.1,v0=1e-4,v1=1e-3}";
-        self.with(", friction against material slip", &[friction])
+    /// The file.
+    pub fn path(&self) -> PathBuf {
+        match self.scene.ends_with(".toml") {
+            true => PathBuf::from(&self.scene),
+            false => root().join(format!("scenes/{}.toml", self.scene)),
+        }
     }
 
     /// How reports name it.
     pub fn name(&self) -> String {
         let name = self.scene.trim_start_matches("3rrr/");
-        name.trim_start_matches("../verify/scenes/").to_owned() + self.variant
+        name.trim_start_matches("../verify/scenes/").to_owned() + &self.variant
     }
 
     /// Overrides of both sides.
     fn overrides(&self) -> Vec<String> {
-        let mut overrides = self.overrides.clone();
-        overrides.extend([
+        let output = [
             format!("output.interval={:e}", self.interval),
             format!("simulation.duration={:?}", self.duration),
             "output.channels=[\"*\"]".to_owned(),
-        ]);
-        overrides
+        ];
+        [&self.overrides[..], &output].concat()
     }
 
     /// The scene as Looselink reads it, with a step in seconds or its own.
     pub fn scene(&self, step: Option<f64>) -> Result<Scene> {
         let mut overrides = self.overrides();
         overrides.extend(step.map(|step| format!("integrator.step={step:e}")));
-        Ok(Scene::load(&self.path, &overrides)?)
+        Ok(Scene::load(&self.path(), &overrides)?)
     }
 
     /// The scene as the reference reads it.
     pub fn reference(&self) -> Result<ReferenceScene> {
-        let text = std::fs::read_to_string(&self.path).into_diagnostic();
-        let text = text.wrap_err_with(|| format!("cannot read {}", self.path.display()))?;
+        let text = std::fs::read_to_string(self.path()).into_diagnostic();
+        let text = text.wrap_err_with(|| format!("cannot read {}", self.path().display()))?;
         let scene = ReferenceScene::read(&text, &self.overrides()).into_diagnostic();
         scene.wrap_err_with(|| self.name())
     }
@@ -158,7 +145,6 @@ impl ComparisonPlan {
             t: onset.t,
             joint: onset.joint.clone(),
             velocity: onset.impact_velocity,
-            course: onset.end.map(|_| [onset.angle, onset.deepest_penetration]),
         });
         Ok(Trajectory {
             impacts: closed.collect(),
@@ -181,9 +167,7 @@ impl ComparisonPlan {
             ..*tolerances
         };
         let mut columns = vec![Vec::new(); scene.channels.len()];
-        // impacts so far; for every joint in contact the index of its impact and the direction of its eccentricity
-        let mut closed: Vec<ComparedImpact> = Vec::new();
-        let mut angles = BTreeMap::new();
+        let mut closed = Vec::new();
         let clock = ThreadTime::now();
         let mut run = scene.run(&tolerances).into_diagnostic()?;
         let mut seconds = clock.elapsed().as_secs_f64();
@@ -198,29 +182,19 @@ impl ComparisonPlan {
             }
             let events = run.events(seen);
             seen += events.len();
-            for e in events {
-                if e.onset != 0 {
-                    let [x, y] = e.eccentricity;
-                    angles.insert(e.joint, (closed.len(), y.atan2(x)));
-                    let joint = usize::try_from(e.joint).into_diagnostic()?;
-                    closed.push(ComparedImpact {
-                        t: e.time,
-                        joint: scene.joints[joint].clone(),
-                        velocity: e.velocity,
-                        course: None,
-                    });
-                } else if let Some((impact, angle)) = angles.remove(&e.joint) {
-                    closed[impact].course = Some([angle, e.deepest]);
-                }
-            }
+            let onsets = events.iter().filter(|event| event.onset != 0);
+            closed.extend(onsets.map(|event| ComparedImpact {
+                t: event.time,
+                joint: scene.joints[event.joint as usize].clone(),
+                velocity: event.velocity,
+            }));
             if closed.len() >= impacts {
                 closed.truncate(impacts);
                 break;
             }
         }
-        let names = scene.channels.iter().cloned();
         Ok(Trajectory {
-            columns: names.zip(columns).collect(),
+            columns: scene.channels.iter().cloned().zip(columns).collect(),
             impacts: closed,
             seconds,
             counts: run.statistics(),

@@ -2,5 +2,6 @@
 
 mod ida;
 mod interface;
+mod means;
 mod parts;
 mod trajectories;

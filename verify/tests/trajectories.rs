@@ -3,6 +3,7 @@
 use verify::check::{Agreement, assert_all};
 use verify::compare::impacts::ImpactSeries;
 use verify::compare::{flexible, impacts, machines, rigid};
+use verify::trajectory::ComparisonPlan;
 
 #[test]
 fn motion_of_case_1_agrees() {
@@ -10,16 +11,20 @@ fn motion_of_case_1_agrees() {
     assert_all("Case 1 in motion", &rows);
 }
 
+fn flexible_links_agree(name: &str) {
+    let plan = flexible::all().into_iter().find(|plan| plan.name == name);
+    let rows = plan.unwrap().run().unwrap().agreements();
+    assert_all(&format!("Case 2 in motion, {name}"), &rows);
+}
+
 #[test]
 fn flexible_links_of_one_element_agree() {
-    let rows = flexible::convergence(1).unwrap().agreements();
-    assert_all("Case 2 in motion", &rows);
+    flexible_links_agree("1 element per link");
 }
 
 #[test]
 fn flexible_links_of_four_elements_agree() {
-    let rows = flexible::convergence(4).unwrap().agreements();
-    assert_all("Case 2 with four elements a link in motion", &rows);
+    flexible_links_agree("4 elements per link");
 }
 
 fn impacts_agree(what: &str, choose: impl Fn(&ImpactSeries) -> bool) {
@@ -50,27 +55,24 @@ fn first_impacts_of_other_mechanisms_agree() {
     impacts_agree(what, |s| !s.plan.scene.contains("case"));
 }
 
+fn motions_agree(plans: &[ComparisonPlan]) {
+    for plan in plans {
+        let what = format!("Motion of {}", plan.name());
+        assert_all(&what, &machines::motion(plan).unwrap());
+    }
+}
+
 #[test]
 fn motion_of_scene_everything_agrees() {
-    let rows = machines::smooth().unwrap();
-    assert_all(
-        "Every element but clearance and inverse kinematics in motion",
-        &rows,
-    );
+    motions_agree(&machines::others()[..1]);
 }
 
 #[test]
 fn first_rows_without_clearance_agree() {
-    for plan in machines::plans().unwrap() {
-        let what = format!("First rows of {}", plan.name());
-        assert_all(&what, &machines::first_rows(&plan).unwrap());
-    }
+    motions_agree(&machines::smooth().unwrap());
 }
 
 #[test]
 fn fine_meshes_agree() {
-    for plan in machines::fine_meshes() {
-        let what = format!("First rows of {}", plan.name());
-        assert_all(&what, &machines::first_rows(&plan).unwrap());
-    }
+    motions_agree(&machines::others()[1..]);
 }

@@ -6,13 +6,14 @@ use crate::verification::faults::FaultOutcome;
 use looselink::scene::Analysis;
 use miette::Result;
 use minijinja::{Value, context};
-use numbers::number;
 use plot::Figure;
 use records::{Journal, threads};
 use serde::{Deserialize, Serialize};
 use verify::check::{Agreement, Standing};
-use verify::compare::statistics::ChaoticRun;
-use verify::compare::{equations, flexible, impacts, machines, rigid, scenes, statistics};
+use verify::compare::flexible::{self, Convergence, ConvergencePlan};
+use verify::compare::impacts::{self, ImpactSeries};
+use verify::compare::statistics::{self, ChaoticRun};
+use verify::compare::{equations, machines, rigid, scenes};
 use verify::figures::{self, overlay};
 use verify::reference;
 use verify::trajectory::ComparisonPlan;
@@ -59,48 +60,37 @@ const OVERLAYS: [(&str, f64, f64, [f64; 2], &str); 3] = [
 
 type Rows = Result<Vec<Agreement>>;
 
-fn starts() -> Rows {
-    all(scenes::all()?, scenes::start)
-}
-
-fn terms() -> Rows {
-    all(equations::plans()?, equations::agreements)
-}
-
-fn ideal() -> Rows {
-    let mut rows = rigid::agreements()?;
-    for run in convergence()? {
-        rows.extend(run.agreements());
-    }
-    Ok(rows)
-}
-
-fn first_impacts() -> Rows {
-    all(impacts::all(), impacts::ImpactSeries::agreements)
-}
-
 fn others() -> Rows {
-    let mut rows = machines::smooth()?;
-    rows.extend(all(scenes::of(Analysis::Static)?, scenes::equilibrium)?);
-    rows.extend(all(machines::plans()?, machines::first_rows)?);
-    rows.extend(all(machines::fine_meshes(), machines::first_rows)?);
-    Ok(rows)
+    let static_scenes = scenes::of(Analysis::Static)?;
+    let motions = [machines::others(), machines::smooth()?].concat();
+    let rows = [
+        all(static_scenes, scenes::equilibrium)?,
+        all(motions, machines::motion)?,
+    ];
+    Ok(rows.concat())
 }
 
-/// Title of a section, and its rows.
-type Part = (&'static str, fn() -> Rows);
-
-const SECTIONS: [Part; 5] = [
-    ("Every scene: its start", starts),
-    ("Equations", terms),
-    ("Cases 1 and 2: ideal joints", ideal),
-    ("The first impacts", first_impacts),
+/// Titles of the sections but that of cases 1 and 2, and their rows.
+const SECTIONS: [(&str, fn() -> Rows); 4] = [
+    ("Every scene: its start", || {
+        all(scenes::all()?, scenes::start)
+    }),
+    ("Equations", || {
+        all(equations::plans()?, equations::agreements)
+    }),
+    ("The first impacts", || {
+        all(impacts::all(), ImpactSeries::agreements)
+    }),
     ("Other mechanisms", others),
 ];
 
-/// Case 2 with one and with four elements a link.
-fn convergence() -> Result<Vec<flexible::Convergence>> {
-    [1, 4].into_iter().map(flexible::convergence).collect()
+/// Case 1, case 2 with one and with four elements a link, and its picture.
+fn ideal() -> Result<(Vec<Agreement>, Figure)> {
+    let runs = flexible::all().into_iter().map(ConvergencePlan::run);
+    let runs = runs.collect::<Result<Vec<_>>>()?;
+    let flexible = runs.iter().flat_map(Convergence::agreements);
+    let rows = rigid::agreements()?.into_iter().chain(flexible).collect();
+    Ok((rows, figures::convergence(&runs).thinned()))
 }
 
 /// The rows of all things to compare.
@@ -110,34 +100,30 @@ fn all<T>(things: Vec<T>, rows: impl Fn(&T) -> Rows) -> Rows {
 }
 
 fn measure(journal: &Journal) -> Result<serde_json::Value> {
-    let section = |(title, rows): Part| {
-        let rows = journal.item(title, rows)?;
-        let title = title.to_owned();
-        Ok(Section { title, rows })
+    let section = |title: &str, rows| Section {
+        title: title.to_owned(),
+        rows,
     };
-    let picture = |name: &str, figure: &dyn Fn() -> Result<Figure>| {
-        let figure = journal.item(&format!("picture {name}"), || Ok(figure()?.thinned()))?;
-        Ok::<_, miette::Report>((name.to_owned(), figure))
-    };
-    let mut pictures = vec![picture("convergence", &|| {
-        Ok(figures::convergence(&convergence()?))
-    })?];
+    let title = "Cases 1 and 2: ideal joints";
+    let (rows, figure) = journal.item(title, ideal)?;
+    let ideal = section(title, rows);
+    let mut pictures = vec![("convergence".to_owned(), figure)];
     for (name, duration, interval, steps, remark) in OVERLAYS {
-        pictures.push(picture(name, &|| {
-            let plan = ComparisonPlan::new(format!("3rrr/{name}"), duration, interval);
-            Ok(overlay(plan, steps, 1e-12)?.figure(remark))
-        })?);
+        let plan = ComparisonPlan::new(format!("3rrr/{name}"), duration, interval);
+        let figure = || Ok(overlay(&plan, steps, 1e-12, remark)?.thinned());
+        let figure = journal.item(&format!("picture {name}"), figure)?;
+        pictures.push((name.to_owned(), figure));
     }
-    let mut sections = SECTIONS
-        .into_iter()
-        .map(section)
-        .collect::<Result<Vec<_>>>()?;
+    let mut sections = Vec::new();
+    for (title, rows) in SECTIONS {
+        sections.push(section(title, journal.item(title, rows)?));
+    }
+    // after the equations
+    sections.insert(2, ideal);
     let runs = statistics::runs();
     let measured = journal.items(&runs, threads(), ChaoticRun::name, ChaoticRun::measure)?;
-    sections.push(Section {
-        title: "Cases 3 and 4: means of many runs".into(),
-        rows: statistics::agreements(&runs, &measured),
-    });
+    let rows = statistics::agreements(&runs, &measured);
+    sections.push(section("Cases 3 and 4: means of many runs", rows));
     results(Comparison {
         versions: reference::versions(),
         sections,
@@ -166,22 +152,13 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
         versions => found.versions,
         count => counted().count(),
         held => counted().filter(|row| row.holds()).count(),
-        apart => of(Standing::Apart).map(row).collect::<Vec<_>>(),
+        apart => of(Standing::Apart).collect::<Vec<_>>(),
         zeros => of(Standing::Zero).count(),
         sections => found.sections.iter().map(section).collect::<Vec<_>>(),
         faults => context! { stamp => stamp(&faults.origin), mistakes, variants },
     };
     out.page("verify/REPORT.md", "comparison.md", &page)?;
     out.site_page("comparison.md", "site/comparison.md", &page)
-}
-
-/// A row as it is printed, with enough digits to see the agreement.
-fn row(row: &Agreement) -> Value {
-    let [rust, cpp] = [row.rust, row.cpp].map(|x| number(x, 10));
-    context! {
-        holds => row.holds(), quantity => row.quantity, scene => row.scene, rust, cpp, reason => row.reason,
-        difference => number(row.difference, 2), tolerance => number(row.tolerance, 1),
-    }
 }
 
 /// A section with the rows that count and the row that comes nearest to its tolerance.
@@ -194,7 +171,7 @@ fn section(section: &Section) -> Value {
     context! {
         title => section.title,
         held => counted().filter(|row| row.holds()).count(),
-        nearest => nearest.map(row),
-        rows => counted().map(row).collect::<Vec<_>>(),
+        nearest,
+        rows => counted().collect::<Vec<_>>(),
     }
 }

@@ -104,8 +104,6 @@ fn quantile(p: f64, nu: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{Rng, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
 
     /// Additional hours of sleep with two drugs (Student, Biometrika 6, 1908, 1).
     const SLEEP: [[f64; 10]; 2] = [
@@ -168,50 +166,5 @@ mod tests {
     fn groups_without_scatter_are_the_same_or_differ() {
         assert_eq!(Welch::of(&[1.0, 1.0], &[1.0, 1.0]).p, 1.0);
         assert_eq!(Welch::of(&[1.0, 1.0], &[2.0, 2.0]).p, 0.0);
-    }
-
-    /// Sixteen runs of six quantities that depend on each other, the fourth shifted by `shift` standard deviations.
-    fn runs(random: &mut ChaCha8Rng, shift: f64) -> Vec<Vec<f64>> {
-        let common: Vec<f64> = (0..16).map(|_| random.random()).collect();
-        let own = |i: usize, random: &mut ChaCha8Rng| {
-            // variance of the sum of two uniform numbers: 1/6
-            let shift = f64::from(u8::from(i == 3)) * shift / 6.0_f64.sqrt();
-            let values = common.iter();
-            values.map(|c| c + random.random::<f64>() + shift).collect()
-        };
-        (0..6).map(|i| own(i, random)).collect()
-    }
-
-    fn least(one: &[Vec<f64>], other: &[Vec<f64>]) -> Vec<f64> {
-        let p: Vec<f64> = one
-            .iter()
-            .zip(other)
-            .map(|(a, b)| Welch::of(a, b).p)
-            .collect();
-        holm(&p)
-    }
-
-    #[test]
-    fn a_seeded_difference_is_found_and_no_other() {
-        let mut random = ChaCha8Rng::seed_from_u64(1);
-        // t is 2 sqrt(16/2) = 5.7 on average; the level needs 3.4
-        let (one, other) = (runs(&mut random, 0.0), runs(&mut random, 2.0));
-        let p = least(&one, &other);
-        for (i, p) in p.iter().enumerate() {
-            assert_eq!(*p < FAMILY_WISE, i == 3, "quantity {i}: {p}");
-        }
-    }
-
-    #[test]
-    fn groups_that_do_not_differ_are_said_to_with_the_stated_probability() {
-        const SAMPLES: usize = 4000;
-        let mut random = ChaCha8Rng::seed_from_u64(2);
-        let mut found = 0;
-        for _ in 0..SAMPLES {
-            let (one, other) = (runs(&mut random, 0.0), runs(&mut random, 0.0));
-            found += usize::from(least(&one, &other).iter().any(|p| *p < 5.0 * FAMILY_WISE));
-        }
-        // at 5 %: quantities that depend on each other are found less often; three standard errors of 13.8 above 200
-        assert!((40..=241).contains(&found), "{found}");
     }
 }

@@ -6,6 +6,8 @@ use std::f64::consts::TAU;
 
 /// Number of kinds.
 pub const KINDS: usize = 16;
+/// Where differences are large against rounding.
+pub const NO_ROUNDING: [f64; KINDS] = [0.0; KINDS];
 /// Kinds: name and the quantities of it. Every channel is of one kind, but for those that [`class`] names.
 #[rustfmt::skip]
 pub const CLASSES: [(&str, &[&str]); KINDS] = [
@@ -59,38 +61,22 @@ const CONVERGED: &str = "of the range of the channel that comes nearest; five ti
 const APART: &str =
     "likewise; with more than 1e-4 of the range the runs are not accurate enough to count";
 
-/// Two runs of one scene.
-struct Pair<'a> {
-    rust: &'a Trajectory,
-    cpp: &'a Trajectory,
-    /// Rows that both have.
-    rows: usize,
+/// The channels of a kind.
+fn members(run: &Trajectory, kind: usize) -> Vec<&str> {
+    let names = run.columns.keys().map(String::as_str);
+    names.filter(|name| class(name) == Some(kind)).collect()
 }
 
-impl<'a> Pair<'a> {
-    fn new(scene: &str, rust: &'a Trajectory, cpp: &'a Trajectory) -> Pair<'a> {
-        let names = |run: &'a Trajectory| run.columns.keys();
-        assert!(names(rust).eq(names(cpp)), "channels of {scene}");
-        let rows = rust.get("t").len().min(cpp.get("t").len());
-        let [own, other] = [rust, cpp].map(|run| &run.get("t")[..rows]);
-        assert_eq!(own, other, "rows of one instant");
-        Pair { rust, cpp, rows }
-    }
-
-    /// The channels of a kind.
-    fn members(&self, kind: usize) -> Vec<&'a str> {
-        let names = self.rust.columns.keys().map(String::as_str);
-        names.filter(|name| class(name) == Some(kind)).collect()
-    }
-
-    /// Both columns of a channel.
-    fn columns(&self, name: &str) -> [&'a [f64]; 2] {
-        [self.rust, self.cpp].map(|run| &run.get(name)[..self.rows])
-    }
-
-    /// Looks at a channel, in units of `scale`.
-    fn see(&self, worst: &mut LargestDifference, kind: usize, name: &str, scale: f64) {
-        let [rust, cpp] = self.columns(name);
+/// Channels of a kind at all rows that two runs have, in units of `scale`.
+fn compare(
+    runs: [&Trajectory; 2],
+    kind: usize,
+    channels: &[&str],
+    scale: f64,
+) -> LargestDifference {
+    let mut worst = LargestDifference::default();
+    for name in channels {
+        let [rust, cpp] = runs.map(|run| run.get(name));
         for (&r, &c) in rust.iter().zip(cpp) {
             let r = match CLASSES[kind].0 {
                 ANGLES => c + (r - c + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU,
@@ -99,6 +85,14 @@ impl<'a> Pair<'a> {
             worst.see(r, c, scale);
         }
     }
+    worst
+}
+
+fn assert_alike(scene: &str, [rust, cpp]: [&Trajectory; 2]) {
+    let names = rust.columns.keys().eq(cpp.columns.keys());
+    assert!(names, "channels of {scene}");
+    let mut instants = rust.get("t").iter().zip(cpp.get("t"));
+    assert!(instants.all(|(r, c)| r == c), "rows of one instant");
 }
 
 /// One row a kind, all its channels at all rows that both have, measured in units of the largest value, or of what `rounding` of the
@@ -106,36 +100,35 @@ impl<'a> Pair<'a> {
 pub fn agreements(
     rounding: [f64; KINDS],
     scene: &str,
-    rust: &Trajectory,
-    cpp: &Trajectory,
+    runs: [&Trajectory; 2],
     tolerance: f64,
     reason: &str,
 ) -> Vec<Agreement> {
-    let pair = Pair::new(scene, rust, cpp);
+    assert_alike(scene, runs);
     let mut rows = Vec::new();
-    for (index, (kind, _)) in CLASSES.iter().enumerate() {
-        let members = pair.members(index);
-        let columns = members.iter().map(|name| pair.columns(name));
-        let [rust, cpp] = columns.fold([0.0_f64; 2], |sizes, columns| {
-            [0, 1].map(|side| sizes[side].max(largest(columns[side])))
-        });
-        // a kind that is zero on one side alone differs by all that the other side has
-        let size = if cpp > 0.0 { cpp } else { rust };
-        let scale = size.max(rounding[index] / tolerance).max(FLOOR);
-        let mut worst = LargestDifference::default();
-        for name in &members {
-            pair.see(&mut worst, index, name, scale);
-        }
-        if worst.is_seen() {
-            let quantity = format!("{kind}, channels: {}", members.len());
+    for (kind, (title, _)) in CLASSES.iter().enumerate() {
+        let members = members(runs[0], kind);
+        let mut worst = compare(runs, kind, &members, 1.0);
+        worst.difference /= worst.size.max(rounding[kind] / tolerance).max(FLOOR);
+        if worst.is_seen {
+            let quantity = format!("{title}, channels: {}", members.len());
             let mut row = worst.row(&quantity, scene, tolerance, reason);
-            if worst.size <= rounding[index] {
+            if worst.size <= rounding[kind] {
                 row.standing = Standing::Zero;
             }
             rows.push(row);
         }
     }
     rows
+}
+
+/// The range of a channel, its largest value if it is constant.
+fn range(column: &[f64], least: f64) -> f64 {
+    let [low, high] = [f64::min, f64::max].map(|f| column.iter().copied().fold(column[0], f));
+    match high - low > least {
+        true => high - low,
+        false => largest(column),
+    }
 }
 
 /// The channels of each kind, measured in units of their own ranges, in a fine run of each program. Each may differ by `SAFETY` times
@@ -147,44 +140,24 @@ pub fn converged(
     coarse: &[Trajectory; 2],
     fine: &[Trajectory; 2],
 ) -> Vec<Agreement> {
-    let pair = Pair::new(scene, &fine[0], &fine[1]);
-    let own = [0, 1].map(|side| Pair::new(scene, &coarse[side], &fine[side]));
+    assert_alike(scene, fine.each_ref());
     let mut rows = Vec::new();
-    for (index, (kind, _)) in CLASSES.iter().enumerate() {
-        // the range of a channel, its value if it is constant; below `least` it rests, and is measured by the others
-        let least = rounding[index] / LARGEST;
-        let range = |name: &str| {
-            let [_, column] = pair.columns(name);
-            let [low, high] =
-                [f64::min, f64::max].map(|f| column.iter().copied().fold(column[0], f));
-            let range = high - low;
-            if range > least {
-                range
-            } else {
-                largest(column)
-            }
-        };
-        let ranges = pair
-            .members(index)
-            .into_iter()
-            .map(|name| (name, range(name)));
-        let ranges: Vec<_> = ranges.collect();
-        let widest = ranges
-            .iter()
-            .fold(least, |widest, (_, range)| range.max(widest));
-        let channels = ranges.into_iter().map(|(name, range)| {
+    for (kind, (title, _)) in CLASSES.iter().enumerate() {
+        // below `least` a channel rests, and is measured by the others
+        let least = rounding[kind] / LARGEST;
+        let members = members(&fine[1], kind);
+        let ranges = members.iter().map(|name| range(fine[1].get(name), least));
+        let ranges: Vec<f64> = ranges.collect();
+        let widest = ranges.iter().copied().fold(least, f64::max);
+        let channels = members.iter().zip(&ranges).map(|(name, &range)| {
             let scale = match range > least {
                 true => range,
                 false => widest.max(f64::MIN_POSITIVE),
             };
-            let see = |pair: &Pair| {
-                let mut worst = LargestDifference::default();
-                pair.see(&mut worst, index, name, scale);
-                worst
-            };
-            let [rust, cpp] = own.each_ref().map(|own| see(own).difference);
-            let allowed = SAFETY * (rust + cpp) + rounding[index] / scale + ROUNDING;
-            (see(&pair), allowed)
+            let see = |runs| compare(runs, kind, &[*name], scale);
+            let own = [0, 1].map(|side| see([&coarse[side], &fine[side]]).difference);
+            let allowed = SAFETY * (own[0] + own[1]) + rounding[kind] / scale + ROUNDING;
+            (see(fine.each_ref()), allowed)
         });
         let (sharp, blunt): (Vec<_>, Vec<_>) =
             channels.partition(|(_, allowed)| *allowed <= LARGEST);
@@ -194,12 +167,9 @@ pub fn converged(
             let Some((worst, allowed)) = nearest else {
                 continue;
             };
-            let quantity = format!("{kind}, channels: {}", group.len());
+            let quantity = format!("{title}, channels: {}", group.len());
             let mut row = worst.row(&quantity, scene, *allowed, reason);
-            let size = group
-                .iter()
-                .fold(0.0, |size, (worst, _)| worst.size.max(size));
-            if size <= least {
+            if group.iter().all(|(worst, _)| worst.size <= least) {
                 row.standing = Standing::Zero;
             } else if *allowed > LARGEST {
                 row.standing = Standing::Apart;

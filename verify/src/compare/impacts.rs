@@ -1,16 +1,17 @@
 //! The first impacts one by one: of cases 3 and 4 up to the chaos horizon, and of mechanisms with one loose joint.
 
-use super::classes::{self, KINDS};
+use super::classes::{self, NO_ROUNDING};
+use super::plans;
 use crate::check::{Agreement, LargestDifference};
 use crate::reference::LsTolerances;
-use crate::trajectory::{ComparedImpact, ComparisonPlan, Trajectory, tolerances};
+use crate::trajectory::{ComparisonPlan, tolerances};
 use miette::Result;
-
-/// Time between rows \[s\].
-const INTERVAL: f64 = 1e-4;
+use numbers::number;
+use serde::Deserialize;
 
 /// A scene with the number of impacts that are compared, and Looselink's step.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ImpactSeries {
     pub plan: ComparisonPlan,
     pub impacts: usize,
@@ -26,34 +27,7 @@ pub struct ImpactSeries {
 
 /// Everything that is compared impact by impact.
 pub fn all() -> Vec<ImpactSeries> {
-    // every impact amplifies differences: some thousandfold over all those of the six joints
-    let joints = |plan: ComparisonPlan, impacts, step| ImpactSeries {
-        plan,
-        impacts,
-        step,
-        relative: 1e-12,
-        velocity: 0.1,
-        allowed: [1e-6, 1e-4],
-    };
-    let one = |plan: ComparisonPlan, impacts, step, relative| ImpactSeries {
-        plan,
-        impacts,
-        step,
-        relative,
-        velocity: 1.0,
-        allowed: [1e-7, 1e-6],
-    };
-    let plan = |scene| ComparisonPlan::new(scene, 0.02, INTERVAL);
-    let hanging = ComparisonPlan::new("frame-with-hanging-body", 0.02, 1e-3);
-    vec![
-        joints(plan("3rrr/case3"), 15, 5e-8),
-        // the seventh impact follows the sixth after 60 µs at 3 mm/s and needs the small step
-        joints(plan("3rrr/case4"), 8, 1.25e-8),
-        joints(plan("3rrr/case4-friction"), 8, 1.25e-8),
-        joints(plan("3rrr/case3").with_friction(), 15, 5e-8),
-        one(plan("slider-crank/loose"), 4, 1e-8, 1e-12),
-        one(hanging, 3, 2.5e-8, 1e-11),
-    ]
+    plans().impacts
 }
 
 impl ImpactSeries {
@@ -68,77 +42,36 @@ impl ImpactSeries {
             || self.plan.run(Some(self.step), self.impacts),
             || self.plan.cpp_until(&tolerances, self.impacts),
         );
-        Ok(self.rows(&rust?, &cpp?))
-    }
-
-    /// The rows of two runs.
-    fn rows(&self, rust: &Trajectory, cpp: &Trajectory) -> Vec<Agreement> {
-        let scene = format!("{}, first {} impacts", self.plan.name(), self.impacts);
-        let [mut instant, mut velocity, mut first, mut angle, mut depth] =
-            [LargestDifference::default(); 5];
-        let mut mismatches = 0_u32;
-        for i in 0..self.impacts {
-            let (Some(r), Some(c)) = (rust.impacts.get(i), cpp.impacts.get(i)) else {
-                mismatches += 1;
-                continue;
-            };
-            mismatches += u32::from(r.joint != c.joint);
+        let (rust, cpp) = (&rust?, &cpp?);
+        let pairs = rust.impacts.iter().zip(&cpp.impacts).take(self.impacts);
+        let matching = pairs.clone().filter(|(r, c)| r.joint == c.joint).count();
+        let [mut joints, mut instant, mut velocity, mut first] = [LargestDifference::default(); 4];
+        for (i, (r, c)) in pairs.enumerate() {
             instant.see(r.t, c.t, c.t);
             velocity.see(r.velocity, c.velocity, c.velocity);
             if i == 0 {
                 first = velocity;
             }
-            if let Some((r, c)) = r.course.zip(c.course) {
-                angle.see(r[0], c[0], 1.0);
-                depth.see(r[1], c[1], c[1]);
-            }
         }
-        let how = format!(
-            "h = {} s, IDA relative {}",
-            numbers::number(self.step, 3),
-            numbers::number(self.relative, 1)
-        );
+        joints.see(matching as f64, self.impacts as f64, 1.0);
+
+        let (step, tolerance) = (number(self.step, 3), number(self.relative, 1));
+        let how = format!("h = {step} s, IDA relative {tolerance}");
         let relative = format!("relative; {how}");
+        let early = format!("relative; no impact has amplified the difference yet; {how}");
+        let missing = "number of impacts that are missing or occur in another joint";
         let [instants, others] = self.allowed;
-        let last = |impacts: &[ComparedImpact]| impacts.len().min(self.impacts) as f64;
-        let mut rows = vec![
-            LargestDifference {
-                rust: last(&rust.impacts),
-                cpp: last(&cpp.impacts),
-                difference: f64::from(mismatches),
-                size: self.impacts as f64,
-            }
-            .row(
-                "joints in the order of their impacts",
-                &scene,
-                0.0,
-                "number of impacts that are missing or occur in another joint",
-            ),
-            instant.row("instants of the impacts [s]", &scene, instants, &relative),
-            velocity.row("impact velocities [m/s]", &scene, others, &relative),
-            angle.row(
-                "directions of the eccentricity at the impacts [rad]",
-                &scene,
-                others,
-                &format!("rad; {how}"),
-            ),
-            depth.row("deepest penetrations [m]", &scene, others, &relative),
-            first.row(
-                "velocity of the first impact [m/s]",
-                &scene,
-                1e-8,
-                &format!("relative; no impact has amplified the difference yet; {how}"),
-            ),
+        let quantities = [
+            (joints, "joints in the order of their impacts", 0.0, missing),
+            (instant, "instants of the impacts [s]", instants, &relative),
+            (velocity, "impact velocities [m/s]", others, &relative),
+            (first, "velocity of the first impact [m/s]", 1e-8, &early),
         ];
+        let scene = format!("{}, first {} impacts", self.plan.name(), self.impacts);
+        let rows = quantities
+            .map(|(worst, quantity, allowed, reason)| worst.row(quantity, &scene, allowed, reason));
         let reason = format!("relative to the largest value of its kind; {how}");
-        rows.extend(classes::agreements(
-            [0.0; KINDS],
-            &scene,
-            rust,
-            cpp,
-            others,
-            &reason,
-        ));
-        rows
+        let kinds = classes::agreements(NO_ROUNDING, &scene, [rust, cpp], others, &reason);
+        Ok([rows.to_vec(), kinds].concat())
     }
 }

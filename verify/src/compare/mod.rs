@@ -8,3 +8,20 @@ pub mod machines;
 pub mod rigid;
 pub mod scenes;
 pub mod statistics;
+
+use crate::trajectory::ComparisonPlan;
+use serde::Deserialize;
+
+/// `verify/plans.toml`
+#[derive(Deserialize)]
+struct Plans {
+    equations: Vec<ComparisonPlan>,
+    motions: Vec<ComparisonPlan>,
+    convergence: Vec<flexible::ConvergencePlan>,
+    impacts: Vec<impacts::ImpactSeries>,
+}
+
+/// What is compared besides the scenes of the project.
+fn plans() -> Plans {
+    toml::from_str(include_str!("../../plans.toml")).expect("a list of plans")
+}
