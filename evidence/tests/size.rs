@@ -15,8 +15,8 @@ const LARGEST: u64 = 6_000_000;
 const LONGEST: (usize, usize) = (200, 25_000);
 /// Of the programs that measure and render.
 const PROGRAMS: [&str; 3] = ["evidence/", "paper-figures/", "verify/"];
-/// Less than three quarters of the lines of the solver.
-const LINES: usize = 18_500;
+/// Little more than half of those of `src`.
+const LINES: usize = 16_500;
 
 /// Files under version control whose paths begin and end so.
 fn tracked(begins: &[&str], ends: &str) -> Vec<String> {

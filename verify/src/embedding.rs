@@ -13,7 +13,7 @@
 use crate::reference::ReferenceScene;
 use looselink::body::CentredLink;
 use looselink::interaction::{SlopeClamp, Weld};
-use looselink::model::Model;
+use looselink::model::{Model, PlacedBody};
 use looselink::scene::{PointRef, Scene};
 use looselink::system::State;
 use nalgebra::{DMatrix, DVector};
@@ -49,6 +49,12 @@ pub struct FullState {
     curvature: Vec<(usize, usize, f64)>,
 }
 
+/// True of a body whose points follow from a place and an angle, where the reference may have coordinates of these points.
+pub fn is_rooted(body: &PlacedBody) -> bool {
+    let kind = &body.placed.kind;
+    kind.hold().is_some() || kind.get::<CentredLink>().is_some()
+}
+
 /// The coordinate that the reference calls `name`.
 fn placement(model: &Model, name: &str) -> Option<Placement> {
     let mut parts = name.split('.');
@@ -67,9 +73,7 @@ fn placement(model: &Model, name: &str) -> Option<Placement> {
     };
     let axis = last.unwrap_or(part);
     let kind = &body.placed.kind;
-    let is_rooted = kind.hold().is_some() || kind.get::<CentredLink>().is_some();
-    // points follow from a place and an angle, where the reference may have coordinates of these points
-    if is_rooted && axis != "theta" {
+    if is_rooted(body) && axis != "theta" {
         // in the frame of the points: a link starts at its origin, other bodies have their centre of mass there
         let length = kind.length().unwrap_or(0.0);
         let at = if part == "end" { length } else { 0.0 };

@@ -5,6 +5,7 @@ use crate::check::{Agreement, LargestDifference};
 use crate::embedding::{self, Embedding};
 use crate::reference::{ConstraintRows, ReferenceScene, ReferenceState};
 use crate::trajectory::ComparisonPlan;
+use looselink::body::{RigidBody, RigidLink};
 use looselink::model::Model;
 use looselink::scene::{Analysis, Scene};
 use looselink::simulate::{Recording, Simulation};
@@ -103,15 +104,40 @@ impl EquationDifferences {
     }
 }
 
-/// The rows of a scene.
+/// The rows of a scene in the coordinates that it has, and in those of the reference if these are others.
 pub fn agreements(plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
-    ScenePair::new(plan)?.agreements(plan)
+    let mut pair = ScenePair::new(plan, plan)?;
+    let bodies = pair.simulation.model().bodies();
+    let others = bodies.iter().any(embedding::is_rooted);
+    let mut rows = pair.agreements(plan, plan.name())?;
+    if others {
+        let name = plan.name() + ", natural coordinates";
+        rows.extend(ScenePair::new(plan, &natural(plan)?)?.agreements(plan, name)?);
+    }
+    Ok(rows)
+}
+
+/// The plan with natural coordinates for all rigid links, and those of their centres for other rigid bodies: the full coordinates of
+/// the reference are copies of them.
+fn natural(plan: &ComparisonPlan) -> Result<ComparisonPlan> {
+    let mut natural = plan.clone();
+    for body in &plan.scene(None)?.bodies {
+        let coordinates = match &body.kind {
+            kind if kind.get::<RigidLink>().is_some() => "natural",
+            kind if kind.get::<RigidBody>().is_some() => "center",
+            _ => continue,
+        };
+        let set = format!("bodies.{}.coordinates={coordinates:?}", body.name);
+        natural.overrides.push(set);
+    }
+    Ok(natural)
 }
 
 impl ScenePair {
-    fn new(plan: &ComparisonPlan) -> Result<ScenePair> {
+    /// The scene in the coordinates of a variant.
+    fn new(plan: &ComparisonPlan, variant: &ComparisonPlan) -> Result<ScenePair> {
         let reference = plan.reference()?;
-        let scene = plan.scene(None)?;
+        let scene = variant.scene(None)?;
         let simulation = Simulation::new(&scene)?;
         let model = simulation.model();
         Ok(ScenePair {
@@ -125,7 +151,7 @@ impl ScenePair {
         })
     }
 
-    fn agreements(&mut self, plan: &ComparisonPlan) -> Result<Vec<Agreement>> {
+    fn agreements(&mut self, plan: &ComparisonPlan, name: String) -> Result<Vec<Agreement>> {
         let mut random = ChaCha8Rng::seed_from_u64(4);
         let mut differences = EquationDifferences::default();
         let mut recording = Recording::new(&self.simulation);
@@ -144,7 +170,7 @@ impl ScenePair {
                 CURVATURE => DIFFERENCING,
                 _ => TOLERANCE,
             };
-            worst.row(part.0, &plan.name(), allowed, part.1)
+            worst.row(part.0, &name, allowed, part.1)
         });
         Ok(rows.collect())
     }

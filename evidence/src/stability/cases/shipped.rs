@@ -29,16 +29,16 @@ pub(super) fn long_steps() -> Vec<f64> {
     let (mut silent, mut runs) = (0.0, 0.0);
     // without those of `verify`
     for plan in plans.iter().filter(|plan| !plan.scene.starts_with("..")) {
-        let path = &plan.path;
-        let scene = Scene::load(path, &[]).expect("a scene of the project");
+        let path = plan.path();
+        let scene = Scene::load(&path, &[]).expect("a scene of the project");
         let Some(step) = scene.integrator.step() else {
             continue;
         };
         for long in [10.0 * step, 100.0 * step] {
-            let Ok((exact, _)) = rows(path, step, long) else {
+            let Ok((exact, _)) = rows(&path, step, long) else {
                 continue;
             };
-            let outcome = match rows(path, long, long) {
+            let outcome = match rows(&path, long, long) {
                 Ok((recording, report)) => {
                     let columns = exact.names()[1..].iter().filter_map(|name| exact.get(name));
                     let range = largest(columns.flat_map(|x| x.iter().map(|v| v - x[0])));
