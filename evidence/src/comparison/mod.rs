@@ -59,6 +59,8 @@ const OVERLAYS: [(&str, f64, f64, [f64; 2], &str); 3] = [
 ];
 
 type Rows = Result<Vec<Agreement>>;
+/// Its title, and what compares.
+type Compared = (&'static str, fn() -> Rows);
 
 fn others() -> Rows {
     let static_scenes = scenes::of(Analysis::Static)?;
@@ -71,7 +73,7 @@ fn others() -> Rows {
 }
 
 /// Titles of the sections but that of cases 1 and 2, and their rows.
-const SECTIONS: [(&str, fn() -> Rows); 4] = [
+const SECTIONS: [Compared; 4] = [
     ("Every scene: its start", || {
         all(scenes::all()?, scenes::start)
     }),
