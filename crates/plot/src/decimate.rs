@@ -11,7 +11,9 @@ const TOLERANCE: f64 = 0.1 * 300.0 / 96.0;
 pub fn envelope(points: &[PixelPoint]) -> Vec<usize> {
     let mut kept = Vec::new();
     let mut first = 0;
-    for column in points.chunk_by(|a, b| a.0.floor() == b.0.floor()) {
+    let is_one =
+        |a: &PixelPoint, b: &PixelPoint| a.0.floor() == b.0.floor() && is_drawn(a) == is_drawn(b);
+    for column in points.chunk_by(is_one) {
         let by = |a: &usize, b: &usize| column[*a].1.total_cmp(&column[*b].1);
         let low = (0..column.len()).min_by(by).unwrap_or(0);
         let high = (0..column.len()).max_by(by).unwrap_or(0);
@@ -36,8 +38,25 @@ pub fn portrait(points: &[PixelPoint], budget: usize) -> Vec<usize> {
     kept
 }
 
-/// Douglas & Peucker (1973) on the points with these indices, in pieces of a thousand, which bounds its cost.
+/// False of a point without a place, such as zero on a logarithmic axis.
+fn is_drawn(point: &PixelPoint) -> bool {
+    point.0.is_finite() && point.1.is_finite()
+}
+
+/// Indices of the points that are not on the chord of their neighbours. Points that are not drawn interrupt the line: of each
+/// interruption the first is kept.
 fn chords(points: &[PixelPoint], indices: Vec<usize>, tolerance: f64) -> Vec<usize> {
+    let drawn = |i: &usize| is_drawn(&points[*i]);
+    let runs = indices.chunk_by(|a, b| drawn(a) == drawn(b));
+    let kept = runs.map(|run| match drawn(&run[0]) {
+        true => simplified(points, run, tolerance),
+        false => vec![run[0]],
+    });
+    kept.flatten().collect()
+}
+
+/// Douglas & Peucker (1973) on the points with these indices, in pieces of a thousand, which bounds its cost.
+fn simplified(points: &[PixelPoint], indices: &[usize], tolerance: f64) -> Vec<usize> {
     const PIECE: usize = 1000;
     let last = indices.len().saturating_sub(1);
     let mut keep = vec![indices.len() == 1; indices.len()];
@@ -58,8 +77,8 @@ fn chords(points: &[PixelPoint], indices: Vec<usize>, tolerance: f64) -> Vec<usi
             open.extend([(a, i), (i, b)]);
         }
     }
-    let kept = indices.into_iter().zip(keep).filter(|(_, keep)| *keep);
-    kept.map(|(index, _)| index).collect()
+    let kept = indices.iter().zip(keep).filter(|(_, keep)| *keep);
+    kept.map(|(index, _)| *index).collect()
 }
 
 /// Distance of a point from the segment a-b.
@@ -106,6 +125,29 @@ mod tests {
         assert!(kept.contains(&123_456) && kept.contains(&7));
         assert_eq!((kept[0], kept[kept.len() - 1]), (0, points.len() - 1));
         assert!(kept.is_sorted());
+    }
+
+    #[test]
+    fn points_without_a_place_interrupt_a_line_and_hide_nothing() {
+        // a difference that is zero every third row, on a logarithmic axis
+        let points: Vec<PixelPoint> = (0..300)
+            .map(|i| {
+                let y = 100.0 + 40.0 * f64::from(i).sin();
+                let y = if i % 3 == 0 { f64::INFINITY } else { y };
+                (0.5 * f64::from(i), y)
+            })
+            .collect();
+        for kept in [envelope(&points), portrait(&points, 1000)] {
+            let drawn = |i: &&usize| points[**i].1.is_finite();
+            let highest = |indices: &[usize]| {
+                let heights = indices.iter().filter(drawn).map(|i| points[*i].1);
+                heights.fold(0.0, f64::max)
+            };
+            let all: Vec<usize> = (0..points.len()).collect();
+            assert_eq!(highest(&kept), highest(&all));
+            assert!(kept.iter().filter(drawn).count() >= 100);
+            assert!(kept.iter().any(|i| !points[*i].1.is_finite()));
+        }
     }
 
     #[test]
