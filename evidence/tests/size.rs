@@ -6,7 +6,12 @@ use std::path::Path;
 use std::process::Command;
 
 /// Pages that a person reads, as far as they are rendered.
-const PAGES: [&str; 2] = ["README.md", "scenes/README.md"];
+const PAGES: [&str; 4] = [
+    "README.md",
+    "STABILITY.md",
+    "paper-figures/REPRODUCTION.md",
+    "scenes/README.md",
+];
 /// Folders of what is measured and rendered.
 const FOLDERS: [&str; 2] = ["evidence/data/", "evidence/pictures/"];
 /// Of the pages and folders together \[bytes\].
