@@ -106,7 +106,7 @@ export class Charts {
         height: HEIGHT,
         scales: { x: { time: false }, y: least === undefined ? {} : { range: (_, min, max) => [Math.min(least, min), 1.05 * max] } },
         axes: [
-          { ...axis, label: this.run.is_static ? "t" : "t [s]", labelSize: 16, size: 32 },
+          { ...axis, label: "t", labelSize: 16, size: 32, values: (_, ticks) => tickLabels(ticks, this.run.is_static ? "1" : "s") },
           { ...axis, size: 82, space: 26, values: (_, ticks) => tickLabels(ticks, unit) },
         ],
         series: [
