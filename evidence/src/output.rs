@@ -134,7 +134,7 @@ impl Output {
         keep(&mut self.site, name, text)
     }
 
-    /// The picture `<name>.svg` below [`PICTURES`].
+    /// The picture `<name>.svg` below `evidence/pictures`.
     ///
     /// # Errors
     /// A name that another picture has.
