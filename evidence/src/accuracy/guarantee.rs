@@ -54,6 +54,7 @@ pub struct GuaranteeEntry {
     /// What holds for every method.
     pub facts: Facts,
     /// Why the method does not take the scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refused: Option<String>,
     /// One for each accuracy, the loosest first.
     pub runs: Vec<Asked>,
@@ -81,6 +82,7 @@ pub struct Asked {
     /// Steps taken.
     pub steps: u64,
     /// What it warns of.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// True where the summary says for which motions the accuracy holds.
     pub says_when_it_holds: bool,
