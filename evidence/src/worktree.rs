@@ -5,7 +5,7 @@ use crate::output;
 use miette::{IntoDiagnostic, Result, WrapErr, ensure, miette};
 use records::{Journal, Origin, Record, root};
 use serde_json::Value;
-use std::fs;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -33,6 +33,11 @@ pub fn record(campaigns: &[&Campaign], at: Option<&str>, resume: bool) -> Result
             hash("HEAD")?
         }
     };
+    fs::create_dir_all(&folder).into_diagnostic()?;
+    // the worktree is one
+    let lock = File::create(folder.join("lock")).into_diagnostic()?;
+    let free = lock.try_lock();
+    free.map_err(|_| miette!("another `record` is at work in target/evidence"))?;
     // what another commit has finished is nothing of this one
     let journals = folder.join(&commit);
     fs::create_dir_all(&journals).into_diagnostic()?;

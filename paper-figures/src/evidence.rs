@@ -7,7 +7,9 @@ use crate::methods::HORIZON;
 use crate::pictures::CLAIMED;
 use crate::runs::{DURATION, FROM};
 use minijinja::{Value, context};
+use serde::Serialize;
 use statistics::Interval;
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 /// Young's modulus of aluminium \[Pa\].
@@ -16,10 +18,20 @@ pub const ALUMINIUM: f64 = 70e9;
 /// The results of `figures` and `ensembles`.
 pub struct Evidence<'a> {
     figures: &'a FigureRecord,
-    /// The results of `ensembles`.
-    pub ensembles: &'a EnsembleRecord,
+    ensembles: &'a EnsembleRecord,
     /// Cases 3 and 4, each from all starts together.
     chaotic: [Ensemble; 2],
+    /// Which of the records have been asked since they were last taken.
+    asked: Cell<Asked>,
+}
+
+/// Which records a verdict rests on.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Asked {
+    /// That of `figures`.
+    pub figures: bool,
+    /// That of `ensembles`.
+    pub ensembles: bool,
 }
 
 impl<'a> Evidence<'a> {
@@ -29,6 +41,7 @@ impl<'a> Evidence<'a> {
             figures,
             ensembles,
             chaotic: [3, 4].map(|case| Ensemble::together(&ensembles.sizes(case))),
+            asked: Cell::default(),
         }
     }
 
@@ -45,9 +58,30 @@ impl<'a> Evidence<'a> {
         }
     }
 
+    /// Which records have been asked since the last call.
+    pub fn asked(&self) -> Asked {
+        self.asked.take()
+    }
+
+    /// The results of `figures`.
+    fn figures(&self) -> &FigureRecord {
+        let figures = true;
+        let asked = self.asked.get();
+        self.asked.set(Asked { figures, ..asked });
+        self.figures
+    }
+
+    /// The results of `ensembles`.
+    pub fn ensembles(&self) -> &EnsembleRecord {
+        let ensembles = true;
+        let asked = self.asked.get();
+        self.asked.set(Asked { ensembles, ..asked });
+        self.ensembles
+    }
+
     /// A number of the scenes or of several runs.
     pub fn number(&self, name: &str) -> f64 {
-        self.figures.numbers.get(name)
+        self.figures().numbers.get(name)
     }
 
     /// A measure of a run of the figures.
@@ -55,7 +89,7 @@ impl<'a> Evidence<'a> {
     /// # Panics
     /// When there is no such run.
     pub fn run(&self, name: &str, measure: &str) -> f64 {
-        let run = self.figures.runs.iter().find(|r| r.name == name);
+        let run = self.figures().runs.iter().find(|r| r.name == name);
         let run = run.unwrap_or_else(|| panic!("no run {name}"));
         run.measures.get(measure)
     }
@@ -67,12 +101,13 @@ impl<'a> Evidence<'a> {
 
     /// The runs of case 3 or 4.
     pub fn chaotic(&self, case: u32) -> &Ensemble {
+        self.ensembles();
         &self.chaotic[usize::from(case == 4)]
     }
 
     /// A measure of all runs of cases 3 and 4.
     pub fn both(&self, measure: &str) -> Vec<f64> {
-        let [loose, both] = self.chaotic.each_ref().map(|all| all.values(measure));
+        let [loose, both] = [3, 4].map(|case| self.chaotic(case).values(measure));
         [loose, both].concat()
     }
 
@@ -83,19 +118,19 @@ impl<'a> Evidence<'a> {
 
     /// Means of a function of a measure in cases 3 and 4.
     pub fn means_of(&self, measure: &str, of: impl Fn(f64) -> f64) -> [Interval; 2] {
-        self.chaotic.each_ref().map(|all| {
-            let values = all.values(measure).iter().map(|x| of(*x));
+        [3, 4].map(|case| {
+            let values = self.chaotic(case).values(measure).iter().map(|x| of(*x));
             Interval::of(&values.collect::<Vec<f64>>())
         })
     }
 
     /// Mean of a function of a measure of case 4 and the same of case 3, run by run; they are independent, so any pairing will do.
     pub fn pairs(&self, measure: &str, of: impl Fn(f64, f64) -> f64) -> Interval {
-        self.chaotic[1].pairs(&self.chaotic[0], measure, of)
+        self.chaotic(4).pairs(self.chaotic(3), measure, of)
     }
 
     /// A measure of a further run of case 2.
     pub fn single(&self, name: &str, measure: &str) -> f64 {
-        self.ensembles.ensemble(name).values(measure)[0]
+        self.ensembles().ensemble(name).values(measure)[0]
     }
 }

@@ -25,7 +25,7 @@ fn main() -> Result<()> {
     let page = context! {
         stamp => format!("The runs of the figures were made with the present sources in {seconds} s."),
         stamp_ensembles => format!("The ensembles were made at commit {commit}."),
-        pictures => ".",
+        commit => "the present sources", commit_ensembles => commit, pictures => ".",
         ..statement::values(&figures, &ensembles.results)?
     };
     let page = environment().render_str(TEMPLATE, page).into_diagnostic()?;

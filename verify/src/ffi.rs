@@ -40,19 +40,6 @@ pub struct LsEvent {
     pub onset: i32,
 }
 
-/// `ls_statistics`
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Default)]
-pub struct LsStatistics {
-    pub steps: i64,
-    pub residuals: i64,
-    pub jacobians: i64,
-    pub error_failures: i64,
-    pub convergence_failures: i64,
-    pub restarts: i64,
-    pub clamps: i64,
-}
-
 /// `ls_scene`
 #[repr(C)]
 pub struct LsScene([u8; 0]);
@@ -85,6 +72,5 @@ unsafe extern "C" {
     pub fn ls_run_advance(run: *mut LsRun, t: f64, values: *mut f64, error: *mut LsError) -> c_int;
     pub fn ls_run_event_count(run: *const LsRun) -> usize;
     pub fn ls_run_event(run: *const LsRun, index: usize, event: *mut LsEvent) -> c_int;
-    pub fn ls_run_statistics(run: *const LsRun, statistics: *mut LsStatistics);
     pub fn ls_sundials_version() -> *const c_char;
 }

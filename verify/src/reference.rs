@@ -1,7 +1,7 @@
 //! The reference implementation as a Rust library: owned values, typed errors. The only file that calls C.
 
 use crate::ffi::*;
-pub use crate::ffi::{LsEvent, LsStatistics, LsTolerances};
+pub use crate::ffi::{LsEvent, LsTolerances};
 use crate::trajectory::tolerances;
 use nalgebra::{DMatrix, DVector};
 use std::ffi::{CStr, CString, c_char, c_int};
@@ -335,13 +335,5 @@ impl ReferenceRun<'_> {
             event
         };
         (first..count).map(event).collect()
-    }
-
-    /// Counts so far.
-    pub fn statistics(&self) -> LsStatistics {
-        let mut statistics = LsStatistics::default();
-        // SAFETY: the handle is of a run
-        unsafe { ls_run_statistics(self.handle.as_ptr(), &mut statistics) };
-        statistics
     }
 }

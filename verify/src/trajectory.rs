@@ -1,8 +1,7 @@
 //! The same scene on both sides, as columns with the same names.
 
 use crate::ida_of_system::{LinearSolver, NEWTON};
-use crate::reference::{LsStatistics, LsTolerances, ReferenceScene};
-use cpu_time::ThreadTime;
+use crate::reference::{LsTolerances, ReferenceScene};
 use looselink::scene::Scene;
 use looselink::simulate::{Recording, RunError, Simulation};
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -50,10 +49,6 @@ pub struct Trajectory {
     pub columns: BTreeMap<String, Vec<f64>>,
     /// Contacts that closed, in order.
     pub impacts: Vec<ComparedImpact>,
-    /// Processor time of IDA \[s\], the start and what reads the scene left out.
-    pub seconds: f64,
-    /// Counts of IDA.
-    pub counts: LsStatistics,
 }
 
 impl Trajectory {
@@ -149,8 +144,6 @@ impl ComparisonPlan {
         Ok(Trajectory {
             impacts: closed.collect(),
             columns: recording.into_columns().collect(),
-            seconds: 0.0,
-            counts: LsStatistics::default(),
         })
     }
 
@@ -168,15 +161,11 @@ impl ComparisonPlan {
         };
         let mut columns = vec![Vec::new(); scene.channels.len()];
         let mut closed = Vec::new();
-        let clock = ThreadTime::now();
         let mut run = scene.run(&tolerances).into_diagnostic()?;
-        let mut seconds = clock.elapsed().as_secs_f64();
         let (mut seen, last) = (0, (self.duration / self.interval).round() as usize);
         for k in 0..=last {
-            let clock = ThreadTime::now();
             let row = run.advance((k as f64 * self.interval).min(self.duration));
             let row = row.into_diagnostic().wrap_err_with(|| self.name())?;
-            seconds += clock.elapsed().as_secs_f64();
             for (column, value) in columns.iter_mut().zip(row) {
                 column.push(value);
             }
@@ -196,8 +185,6 @@ impl ComparisonPlan {
         Ok(Trajectory {
             columns: scene.channels.iter().cloned().zip(columns).collect(),
             impacts: closed,
-            seconds,
-            counts: run.statistics(),
         })
     }
 }

@@ -84,8 +84,6 @@ pub struct Asked {
     /// What it warns of.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
-    /// True where the summary says for which motions the accuracy holds.
-    pub says_when_it_holds: bool,
 }
 
 /// How a run ended.
@@ -252,7 +250,6 @@ impl MeasuredScene {
             },
             steps: report.steps,
             warnings: report.warnings(),
-            says_when_it_holds: results(&report.accuracy)?["holds_for"].is_string(),
         })
     }
 
@@ -302,7 +299,6 @@ fn not_made(position: f64, end: RunEnd) -> Asked {
         end,
         steps: 0,
         warnings: Vec::new(),
-        says_when_it_holds: false,
     }
 }
 

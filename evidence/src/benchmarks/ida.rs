@@ -1,80 +1,22 @@
-//! IDA as a rival, in two ways: on our equations, against our reference by the unknown coordinates; and in the second implementation,
-//! in full coordinates of stabilised index 2 with located onsets, against the reference of the study by its channels.
+//! IDA as a rival on our equations, against our reference by the unknown coordinates. The second implementation is none: after every
+//! step it integrates all powers with more evaluations than the step has.
 
 use crate::benchmarks::rivals::{Code, RivalCurve, Rivals};
-use crate::benchmarks::settings::{ORDERS, RATIOS, SettingsSweep, TOLERANCES, Trial};
+use crate::benchmarks::settings::{LONGEST, ORDERS, RATIOS, SettingsSweep, TOLERANCES, Trial};
 use looselink::model::Model;
 use looselink::scene::Scene;
 use looselink::simulate::{Control, Observer, Progress, Simulation};
 use looselink::system::State;
 use miette::{IntoDiagnostic, Result, miette};
 use studies::machine::median;
-use studies::precision::{Study, StudyOutcome, WorkCounts};
+use studies::precision::Study;
 use verify::ida_of_system::{self, IdaSettings, LinearSolver, NEWTON};
-use verify::reference::LsTolerances;
-use verify::trajectory::{ComparisonPlan, linear_solver, tolerances};
 
 /// Unknowns and multipliers up to which IDA on our equations is also tried with a dense matrix: the time of its factorisation grows
 /// with the third power of their number, that of KLU about in proportion.
 const DENSE: usize = 200;
 /// A run that takes longer is not repeated: its time has no jitter that matters \[s\].
 const LONG_RUN: f64 = 5.0;
-/// After a run that takes longer no tighter tolerance is asked for \[s\].
-const LAST_RUN: f64 = 20.0;
-/// Counts that no curve shows.
-const UNCOUNTED: WorkCounts = WorkCounts {
-    steps: 0,
-    rejected_steps: 0,
-    location_trials: 0,
-    newton_iterations: 0,
-    factorisations: 0,
-    onsets: 0,
-};
-
-/// The second implementation.
-///
-/// # Errors
-/// A fault of the scene, a run that fails when it is repeated.
-pub fn second(
-    rivals: &mut Rivals,
-    name: &str,
-    study: &Study,
-    outcome: &StudyOutcome,
-    repeats: usize,
-) -> Result<()> {
-    // IDA has steps of its own; that of the scene may not divide the interval of the study
-    let step = format!("integrator.step={:e}", study.interval);
-    let set = [&study.set[..], &[step]].concat();
-    let plan = ComparisonPlan::of_file(&study.scene, &set, study.duration, study.interval);
-    let trial = |settings: IdaSettings, tolerance| {
-        let run = plan.cpp(&LsTolerances {
-            relative: settings.ratio * tolerance,
-            max_order: settings.max_order,
-            newton: settings.newton,
-            ..tolerances(tolerance)
-        });
-        // around it are the names of the study and of its files
-        let run = run.map_err(|e| e.root_cause().to_string())?;
-        let columns = |name: &str| run.columns.get(name).map(Vec::as_slice);
-        let measured = outcome.measure(study, &columns, None, UNCOUNTED);
-        Ok(Trial {
-            tolerance,
-            error: measured.map_err(|e| e.to_string())?.errors.position,
-            seconds: run.seconds,
-        })
-    };
-    let curve = RivalCurve {
-        study: name.to_owned(),
-        code: Code::Ida,
-        method: "IDA (second implementation)".to_owned(),
-        settings: None,
-        points: Vec::new(),
-        floor: outcome.reference.floor.position,
-    };
-    let solvers = [linear_solver(&plan.reference()?)];
-    add_curves(rivals, &curve, &solvers, repeats, trial)
-}
-
 /// IDA on our equations.
 ///
 /// # Errors
@@ -140,7 +82,7 @@ fn add_curves(
                     .map_err(|e| miette!("{}, {method}: {e}", curve.study))?,
             };
             points.push([first.error, median(&seconds)]);
-            if first.seconds > LAST_RUN {
+            if first.seconds > LONGEST {
                 break;
             }
         }

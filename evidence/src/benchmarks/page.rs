@@ -6,8 +6,8 @@ use crate::benchmarks::Measured;
 use crate::benchmarks::family::Family;
 use crate::benchmarks::figures::{self, sizes};
 use crate::benchmarks::growth::{self, SizeCost, SizeOf, exponent};
-use crate::benchmarks::rivals::{Code, Rivals, STUDIES, best};
-use crate::benchmarks::settings::{ORDERS, RATIOS, SettingsSweep, TOLERANCES};
+use crate::benchmarks::rivals::{Code, Rivals, STUDIES, best, is_known};
+use crate::benchmarks::settings::{LONGEST, ORDERS, RATIOS, SettingsSweep, TOLERANCES};
 use crate::benchmarks::standings::{LEVELS, Standing};
 use crate::output::{Data, Output, stamp};
 use miette::Result;
@@ -15,6 +15,7 @@ use minijinja::{Value, context};
 use numbers::{digits, si};
 use std::path::Path;
 use studies::precision::Times;
+use verify::ida_of_system::NEWTON;
 
 /// BENCHMARKS.md, its pictures, and the tables of all times.
 ///
@@ -121,7 +122,7 @@ fn rivals(root: &Path, rivals: &Rivals) -> Result<Value> {
     });
     Ok(context! {
         exudyn => Code::Exudyn.name(), durations => durations.collect::<Result<Vec<_>>>()?.join(", "),
-        loosest => TOLERANCES[0], ratios => RATIOS, orders => ORDERS,
+        loosest => TOLERANCES[0], longest => si(LONGEST, "s"), newton => NEWTON, ratios => RATIOS, orders => ORDERS,
         errors => LEVELS.map(|error| si(error, "m")),
         methods => methods.collect::<Vec<_>>(),
         solutions => solutions.collect::<Vec<_>>(),
@@ -156,9 +157,12 @@ fn times(rivals: &Rivals) -> Vec<Value> {
         let of = |code| best(&rivals.curves, study, code, error, Times::Measured);
         let (_, own) = of(Code::Looselink)?;
         let cells = Code::ALL.map(|code| {
-            let (method, seconds) = of(code)?;
+            let Some((method, seconds)) = of(code) else {
+                let known = is_known(&rivals.curves, study, code, error);
+                return if known { "–" } else { "not known" }.to_owned();
+            };
             let (time, ratio) = (si(seconds, "s"), digits(seconds / own));
-            Some(format!("{time} ({ratio}): {method}"))
+            format!("{time} ({ratio}): {method}")
         });
         Some(context! { study, error => si(error, "m"), cells })
     });
@@ -175,7 +179,7 @@ fn settings(sweep: &SettingsSweep) -> Value {
         .map(|tried| tried.failures.len())
         .sum::<usize>();
     context! {
-        study => sweep.study, curve => sweep.curve, ratio => settings.ratio, solver,
+        study => sweep.study, curve => sweep.curve, ratio => settings.ratio, newton => settings.newton, solver,
         tried => sweep.tried.len(), failures,
     }
 }

@@ -30,8 +30,6 @@ const EXUDYN: &str = "exudyn==1.13.6";
 pub enum Code {
     /// This program.
     Looselink,
-    /// The second implementation: IDA on full coordinates.
-    Ida,
     /// IDA on our residual and tangent.
     IdaOnOurs,
     /// Exudyn.
@@ -40,14 +38,13 @@ pub enum Code {
 
 impl Code {
     /// All, in the order of legends.
-    pub const ALL: [Code; 4] = [Code::Looselink, Code::Exudyn, Code::IdaOnOurs, Code::Ida];
+    pub const ALL: [Code; 3] = [Code::Looselink, Code::Exudyn, Code::IdaOnOurs];
 
     /// In a legend.
     pub fn name(self) -> &'static str {
         match self {
             Code::Looselink => "Looselink",
-            Code::Ida => "IDA (second implementation)",
-            Code::IdaOnOurs => "IDA on Looselink's residual and tangent",
+            Code::IdaOnOurs => "IDA on Looselink's equations",
             Code::Exudyn => "Exudyn 1.13.6",
         }
     }
@@ -93,6 +90,12 @@ pub struct Rivals {
     pub sweeps: Vec<SettingsSweep>,
 }
 
+/// Whether a code has a converged solution that can tell this error.
+pub fn is_known(curves: &[RivalCurve], study: &str, code: Code, error: f64) -> bool {
+    let mut own = curves.iter().filter(|c| c.study == study && c.code == code);
+    own.any(|curve| curve.floor <= error)
+}
+
 /// The method of a code that comes below an error first, to stay there, and its time \[s\]; never where the error is below the floor.
 pub fn best<'a>(
     curves: &'a [RivalCurve],
@@ -124,7 +127,6 @@ pub fn measure(root: &Path, program: &Path, repeats: usize, journal: &Journal) -
             };
             let outcome = StudyOutcome::run(&study, effort, &mut |_| ()).into_diagnostic()?;
             rivals.own(name, &outcome);
-            ida::second(&mut rivals, name, &study, &outcome, repeats)?;
             ida::on_ours(&mut rivals, name, &study, repeats)?;
             rivals.exudyn(root, &python, program, name, repeats)?;
             Ok(rivals)

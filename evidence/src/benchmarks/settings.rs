@@ -12,8 +12,8 @@ pub const ORDERS: [i32; 3] = [2, 3, 5];
 pub const RATIOS: [f64; 4] = [0.0, 0.1, 1.0, 10.0];
 /// Tolerances; positions are held to a thousandth of a metre of that, velocities to 0.1 m/s, and both to the relative tolerance.
 pub const TOLERANCES: [f64; 9] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
-/// After a trial that takes longer no tighter tolerance is tried \[s\].
-const LAST_TRIAL: f64 = 2.0;
+/// After a run that takes longer no tighter tolerance is asked for, neither in trials nor in curves \[s\].
+pub const LONGEST: f64 = 5.0;
 
 /// A run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -87,10 +87,7 @@ impl SettingsSweep {
                     Ok(trial) => trials.push(trial),
                     Err(error) => failures.push(format!("tolerance {tolerance:e}: {error}")),
                 }
-                if trials
-                    .last()
-                    .is_some_and(|t: &Trial| t.seconds > LAST_TRIAL)
-                {
+                if trials.last().is_some_and(|t: &Trial| t.seconds > LONGEST) {
                     break;
                 }
             }
@@ -138,7 +135,7 @@ fn fastest(curves: &[Vec<[f64; 2]>]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{RATIOS, SettingsSweep, Trial, fastest};
+    use super::{LONGEST, RATIOS, SettingsSweep, Trial, fastest};
     use verify::ida_of_system::{IdaSettings, LinearSolver, NEWTON};
 
     #[test]
@@ -184,15 +181,15 @@ mod tests {
             Ok(Trial {
                 tolerance,
                 error: 1e-3 * tolerance,
-                seconds: factor * tolerance.powf(-0.1),
+                seconds: 0.4 * LONGEST * factor * tolerance.powf(-0.1),
             })
         });
         assert_eq!(sweep.settings(), candidates[1]);
         assert_eq!(sweep.tried[2].failures.len(), 3);
         assert!(sweep.tried[2].failures[0].contains("1e-2"));
-        // the tolerance at which a run takes longer than 2 s is the last one
+        // the tolerance at which a run takes too long is the last one
         let last = |k: usize| sweep.tried[k].trials.last().unwrap();
-        assert!(last(0).seconds > 2.0 && last(0).tolerance > last(1).tolerance);
+        assert!(last(0).seconds > LONGEST && last(0).tolerance > last(1).tolerance);
         let text = serde_json::to_string(&sweep).unwrap();
         assert_eq!(serde_json::from_str::<SettingsSweep>(&text).unwrap(), sweep);
     }

@@ -51,6 +51,7 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
     let stamp_ensembles = format!("Ensembles: {}", stamp(&ensembles.origin));
     let values = statement::values(&figures.results, &ensembles.results)?;
     let page = context! {
+        commit => figures.origin.commit, commit_ensembles => ensembles.origin.commit,
         stamp => stamp(&figures.origin), stamp_ensembles, pictures => "../evidence/pictures/paper", ..values
     };
     out.page("paper-figures/REPRODUCTION.md", "reproduction.md", &page)?;

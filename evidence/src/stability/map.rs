@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// The reference must be this much better than the tolerance.
 const REFERENCE_SHARE: f64 = 0.25;
-/// Accuracies that are asked of `auto`, in tolerances of the map.
+/// Accuracies that are asked of `auto`, over the loosest.
 const ACCURACIES: [f64; 4] = [1e-3, 1e-2, 1e-1, 1.0];
 
 /// Methods: their names and the overrides that choose them, one after the other.
@@ -64,6 +64,8 @@ pub struct Map {
     pub channels: Vec<String>,
     /// Largest error of a run that is called accurate, in the unit of the channels.
     pub tolerance: f64,
+    /// The loosest accuracy that is asked of `auto` \[m\]: the tolerance, unless the channels are no positions.
+    pub loosest: Option<f64>,
     /// An error beyond this part of the range of the channels needs a warning.
     #[serde(default = "unsaid")]
     pub unsaid: f64,
@@ -209,6 +211,14 @@ impl Map {
             steps == 1 || steps == values,
             "{name}: {steps} steps of the reference for {values} values"
         );
+        let positions = map
+            .channels
+            .iter()
+            .all(|c| c.ends_with(".x") || c.ends_with(".y"));
+        ensure!(
+            positions != map.loosest.is_some(),
+            "{name}: `loosest` is for maps of other channels than positions"
+        );
         for method in &map.without {
             let known = METHODS.iter().any(|(known, _)| known == method);
             ensure!(known, "{name}: no method is called {method:?}");
@@ -216,10 +226,12 @@ impl Map {
         Ok(map)
     }
 
-    /// What the columns of a panel are: steps \[s\], or accuracies in the unit of the channels.
+    /// What the columns of a panel are: steps \[s\] or accuracies \[m\].
     pub fn columns(&self, method: &str) -> Vec<f64> {
         match method {
-            AUTO => ACCURACIES.map(|part| part * self.tolerance).to_vec(),
+            AUTO => ACCURACIES
+                .map(|part| part * self.loosest.unwrap_or(self.tolerance))
+                .to_vec(),
             _ => self.steps.clone(),
         }
     }

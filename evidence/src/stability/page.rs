@@ -71,7 +71,7 @@ fn silent(one: &MadeMap, known: &[KnownSilent]) -> Vec<Value> {
         context! {
             because => listed.map_or("**not known**", |listed| &listed.because),
             map => &one.name, method, value => value(one, parameter),
-            column => si(column, unit(one, method)),
+            column => si(column, unit(method)),
             error => cell.1.map(|error| si(error, channel_unit(one))),
         }
     };
@@ -79,9 +79,9 @@ fn silent(one: &MadeMap, known: &[KnownSilent]) -> Vec<Value> {
 }
 
 /// The unit of the columns of a panel.
-fn unit(one: &MadeMap, method: &str) -> &'static str {
+fn unit(method: &str) -> &'static str {
     match method {
-        AUTO => channel_unit(one),
+        AUTO => "m",
         _ => "s",
     }
 }
@@ -133,7 +133,7 @@ fn figure(one: &MadeMap) -> Figure {
         Panel {
             title: panel.method.clone(),
             note: String::new(),
-            x: Axis::new(label, unit(one, &panel.method), 1.0).log(),
+            x: Axis::new(label, unit(&panel.method), 1.0).log(),
             y,
             marks: classes.map(dots).collect(),
         }

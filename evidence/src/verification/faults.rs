@@ -7,6 +7,7 @@ use miette::{IntoDiagnostic, Result, WrapErr, ensure, miette};
 use records::{Journal, root};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -109,13 +110,22 @@ impl FaultOutcome {
 /// Tests that fail without a fault; a fault that is not caught; a variant that changes results.
 pub fn measure(journal: &Journal) -> Result<Value> {
     let tree = worktree::copy("faults")?;
-    let sound = failing(&tree, STAGES[0])?.join(", ");
-    ensure!(
-        sound.is_empty(),
-        "without a fault these tests fail: {sound}"
-    );
+    let faults = list()?;
+    let of_variants = faults.iter().flat_map(|fault| &fault.tests);
+    let filters = STAGES.concat().into_iter();
+    for filter in filters
+        .chain(of_variants.map(String::as_str))
+        .collect::<BTreeSet<&str>>()
+    {
+        let sound = || Ok(failing(&tree, &[filter])?.join(", "));
+        let failed = journal.item(&format!("{filter}, without a fault"), sound)?;
+        ensure!(
+            failed.is_empty(),
+            "without a fault these tests fail: {failed}"
+        );
+    }
     let seed = |fault: Fault| journal.item(&fault.name.clone(), || seed(&tree, fault));
-    let outcomes = list()?.into_iter().map(seed).collect::<Result<Vec<_>>>()?;
+    let outcomes = faults.into_iter().map(seed).collect::<Result<Vec<_>>>()?;
     let wrong = outcomes.iter().filter(|o| !o.is_right());
     let wrong: Vec<&str> = wrong.map(|o| o.fault.name.as_str()).collect();
     ensure!(
@@ -148,7 +158,7 @@ fn seed(tree: &Path, fault: Fault) -> Result<FaultOutcome> {
 /// Names of the tests of the comparison that fail, of those whose names have one of the filters.
 ///
 /// # Errors
-/// Tests that do not compile or do not run.
+/// Tests that do not compile or do not run; filters that none has.
 fn failing(tree: &Path, filters: &[&str]) -> Result<Vec<String>> {
     // many builds, short tests: little optimisation
     let output = Command::new(env!("CARGO"))
@@ -158,6 +168,8 @@ fn failing(tree: &Path, filters: &[&str]) -> Result<Vec<String>> {
         .args(filters)
         .env("CARGO_TARGET_DIR", tree.with_file_name("build"))
         .env("RUST_BACKTRACE", "0")
+        // where answers of tests are kept, if there is such a folder
+        .env_remove("LOOSELINK_LADDER")
         .current_dir(tree)
         .output()
         .into_diagnostic()?;
@@ -167,6 +179,11 @@ fn failing(tree: &Path, filters: &[&str]) -> Result<Vec<String>> {
         Some(name.rsplit("::").next().unwrap_or(name).to_owned())
     });
     let failed: Vec<String> = failed.collect();
+    ensure!(
+        !text.contains("\nrunning 0 tests"),
+        "no test is called {}",
+        filters.join(" or ")
+    );
     if failed.is_empty() && !output.status.success() {
         let errors = String::from_utf8_lossy(&output.stderr);
         return Err(miette!("the tests did not run:\n{errors}"));

@@ -76,7 +76,7 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
         let of_rung = || answers.results.iter().filter(|a| a.rung == *rung);
         let nearest = of_rung().max_by(|a, b| a.used().total_cmp(&b.used()));
         context! {
-            title => words.title, asks => words.asks, nearest => nearest.map(row),
+            rung, title => words.title, asks => words.asks, nearest => nearest.map(row),
             held => of_rung().filter(|a| a.holds()).count(),
             rows => of_rung().map(row).collect::<Vec<_>>(),
         }

@@ -47,9 +47,9 @@ pub const KERNELS: Scope = Scope {
 pub const SOLVER: Scope = Scope {
     name: "mutation-solver",
     count: 250,
-    files: "--package=looselink --package=looselink-cli --package=studies \
+    files: "--package=looselink --package=looselink-cli --package=looselink-studies \
             --file=src/** --file=crates/cli/src/** --file=crates/studies/src/**",
-    tests: "--test-package=looselink,looselink-cli,studies,evidence",
+    tests: "--test-package=looselink,looselink-cli,looselink-studies,evidence",
 };
 
 /// A mutation run.

@@ -54,7 +54,7 @@ pub const DECISIONS: [Decide; 11] = [
         above(&e.means("repetition"), REPEATS).alone()
     }),
     ("chaotic", |e| {
-        let of = |case: u32| e.ensembles.exponents(case);
+        let of = |case: u32| e.ensembles().exponents(case);
         let rows = |case: u32| {
             let rows = of(case).map(|x| context! { distance => x.distance, rate => x.mean() });
             (case, rows.collect())

@@ -59,7 +59,7 @@ fn cheapest<'a>(
     is_explicit: bool,
     level: f64,
 ) -> Option<&'a MethodWork> {
-    let runs = || e.ensembles.work.iter().filter(|w| w.case == case);
+    let runs = || e.ensembles().work.iter().filter(|w| w.case == case);
     let good = |w: &MethodWork| w.error.is_some_and(|error| error <= level * w.size);
     let reached = |w: &&MethodWork| {
         let mut same = runs().filter(|f| f.method == w.method);
@@ -95,7 +95,7 @@ fn work(e: &Evidence) -> (Vec<f64>, String) {
 }
 
 fn explicit_fails(e: &Evidence) -> Decision {
-    let all = &e.ensembles.work;
+    let all = &e.ensembles().work;
     let useless = |w: &&&MethodWork| w.error.is_none_or(|error| error > w.size);
     let bathe_works = |w: &&&MethodWork| {
         let same = |b: &&MethodWork| b.method == "bathe" && b.case == w.case && b.step == w.step;
@@ -111,7 +111,7 @@ fn explicit_fails(e: &Evidence) -> Decision {
 
 /// Whether no vibration of long runs with some methods grows.
 fn growth(e: &Evidence, wanted: fn(&str) -> bool) -> Decision {
-    let long = e.ensembles.long.iter().filter(|l| wanted(&l.method));
+    let long = e.ensembles().long.iter().filter(|l| wanted(&l.method));
     let long: Vec<&Long> = long.collect();
     let two = long.iter().filter(|l| l.case == 2).flat_map(|l| &l.growth);
     let values = context! {

@@ -19,11 +19,11 @@ pub const DECISIONS: [Decide; 20] = [
         holds(e.number("invariants_worst") < 1e-14).alone()
     }),
     ("efficiency", |e| {
-        let times = &e.ensembles.timings;
+        let times = &e.ensembles().timings;
         holds(times.literal < times.gauss).alone()
     }),
     ("most time", |e| {
-        let t = &e.ensembles.timings;
+        let t = &e.ensembles().timings;
         let part = |one: f64| {
             let elastic = t.evaluations * one;
             elastic / (t.step - t.evaluations * t.reduced + elastic)

@@ -23,7 +23,7 @@ pub const DECISIONS: [Decide; 14] = [
         within(&error, NEAR.0, NEAR.1).alone()
     }),
     ("clearance", |e| {
-        let (whole, half) = (e.chaotic(3), e.ensembles.ensemble(TIGHTER));
+        let (whole, half) = (e.chaotic(3), e.ensembles().ensemble(TIGHTER));
         let ratio = whole.pairs(half, "error_peak", |whole, half| whole / half);
         let [whole, half] = [whole, half].map(|ensemble| ensemble.mean("error_peak"));
         (within(&ratio, 1.5, 2.5), context! { whole, half, ratio })
@@ -35,7 +35,7 @@ pub const DECISIONS: [Decide; 14] = [
     }),
     ("composition", |e| {
         let two = e.run("flexible", "error_peak");
-        let rest = e.ensembles.ensemble(BOTH).mean("not_composed");
+        let rest = e.ensembles().ensemble(BOTH).mean("not_composed");
         let sum = e.pairs("error_peak", |both, loose| both / (loose + two));
         let verdict = below(&[rest], 0.2);
         (verdict.min(within(&sum, 0.8, 1.2)), context! { rest, sum })
