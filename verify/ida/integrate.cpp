@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <stdexcept>
 #include <vector>
 
@@ -86,7 +87,9 @@ void check(int flag, const char *call) {
     if (flag < 0) throw std::runtime_error(std::string(call) + ": flag " + std::to_string(flag));
 }
 
-void integrate(const li_equations &e, const li_run &run, double *start, double *slope, li_counts &counts) {
+// False where it takes too long.
+bool integrate(const li_equations &e, const li_run &run, double *start, double *slope, li_counts &counts) {
+    const std::clock_t began = std::clock();
     const int condensed = e.unknowns + e.multipliers, size = e.unknowns + condensed;
     ida::ErrorText errors;
     ida::Context context(&errors);
@@ -128,6 +131,7 @@ void integrate(const li_equations &e, const li_run &run, double *start, double *
     };
     const long rows = static_cast<long>(run.duration / run.interval + 0.5);
     for (long row = 1; row <= rows;) {
+        if (static_cast<double>(std::clock() - began) > run.longest * CLOCKS_PER_SEC) return false;
         double t = 0.0;
         const int flag = IDASolve(integrator, row * run.interval, &t, y.get(), yp.get(), IDA_NORMAL);
         if (flag < 0 && !errors.text.empty()) throw std::runtime_error(errors.text);
@@ -143,6 +147,7 @@ void integrate(const li_equations &e, const li_run &run, double *start, double *
         ++row;
     }
     count();
+    return true;
 }
 
 } // namespace
@@ -151,8 +156,7 @@ int32_t li_integrate(const li_equations *equations, const li_run *run, double *y
                      char *message, int32_t length) {
     try {
         *counts = li_counts{};
-        integrate(*equations, *run, y, yp, *counts);
-        return 0;
+        return integrate(*equations, *run, y, yp, *counts) ? 0 : 1;
     } catch (const std::exception &e) {
         std::snprintf(message, static_cast<std::size_t>(length), "%s", e.what());
         return -1;

@@ -39,6 +39,8 @@ typedef struct {
     /* largest local error: relative, and added to that of a position [m] and of a velocity [m/s] */
     double relative, position, velocity;
     double duration, interval;
+    /* processor time after which it is given up [s] */
+    double longest;
     /* share of an error test up to which Newton's method iterates */
     double newton;
     /* of BDF, 1 to 5 */
@@ -51,7 +53,7 @@ typedef struct {
     int64_t steps, residuals, jacobians, changes;
 } li_counts;
 
-/* From y and y' at t = 0. Returns 0, or a flag of IDA with its text. */
+/* From y and y' at t = 0. Returns 0, 1 where it is given up, or -1 with the text of IDA. */
 int32_t li_integrate(const li_equations *equations, const li_run *run, double *y, double *yp, li_counts *counts,
                      char *message, int32_t length);
 

@@ -75,6 +75,7 @@ struct LiRun {
     velocity: f64,
     duration: f64,
     interval: f64,
+    longest: f64,
     newton: f64,
     max_order: i32,
     dense: i32,
@@ -138,6 +139,17 @@ pub struct IdaSettings {
     pub newton: f64,
 }
 
+/// Why there is no run.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum IdaError {
+    /// It was given up.
+    #[error("it takes longer than {0} s")]
+    TooLong(f64),
+    /// What the scene or IDA says.
+    #[error("{0}")]
+    Said(String),
+}
+
 /// Unknowns and multipliers: the size of Newton's matrix.
 ///
 /// # Errors
@@ -148,12 +160,18 @@ pub fn matrix_size(scene: &Scene) -> Result<usize, String> {
     Ok(shape.unknowns + shape.multipliers)
 }
 
-/// Integrates a scene; `tolerance` is that of positions over a millimetre and of velocities over 0.1 m/s.
+/// Integrates a scene, giving up in the row after `longest` \[s\] of processor time; `tolerance` is that of positions over a
+/// millimetre and of velocities over 0.1 m/s.
 ///
 /// # Errors
-/// What the scene or IDA says.
-pub fn integrate(scene: &Scene, settings: IdaSettings, tolerance: f64) -> Result<IdaRun, String> {
-    let simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
+/// See [`IdaError`].
+pub fn integrate(
+    scene: &Scene,
+    settings: IdaSettings,
+    tolerance: f64,
+    longest: f64,
+) -> Result<IdaRun, IdaError> {
+    let simulation = Simulation::new(scene).map_err(|e| IdaError::Said(e.to_string()))?;
     let mut equations = Equations::new(&simulation, scene.integrator.onset_tolerance);
     let at = simulation.state();
     let n = equations.n;
@@ -182,6 +200,7 @@ pub fn integrate(scene: &Scene, settings: IdaSettings, tolerance: f64) -> Result
         velocity: 0.1 * tolerance,
         duration: scene.simulation.duration,
         interval: scene.output.interval,
+        longest,
         newton: settings.newton,
         max_order: settings.max_order,
         dense: i32::from(settings.linear_solver == LinearSolver::Dense),
@@ -203,10 +222,13 @@ pub fn integrate(scene: &Scene, settings: IdaSettings, tolerance: f64) -> Result
         )
     };
     let seconds = clock.elapsed().as_secs_f64();
-    if flag != 0 {
+    if flag > 0 {
+        return Err(IdaError::TooLong(longest));
+    }
+    if flag < 0 {
         // SAFETY: the library ends its text with zero
         let text = unsafe { CStr::from_ptr(message.as_ptr()) };
-        return Err(text.to_string_lossy().into_owned());
+        return Err(IdaError::Said(text.to_string_lossy().into_owned()));
     }
     Ok(IdaRun {
         rows: equations.found,

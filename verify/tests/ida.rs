@@ -3,13 +3,24 @@
 use ladder::Rung;
 use looselink::scene::Scene;
 use std::path::Path;
-use verify::ida_of_system::{IdaRun, IdaSettings, LinearSolver, NEWTON, integrate};
+use verify::ida_of_system::{IdaError, IdaRun, IdaSettings, LinearSolver, NEWTON, integrate};
 
 /// Simulated time \[s\].
 const DURATION: f64 = 5e-3;
 
 /// Case 2, undamped vibration, with a number of elements a link.
 fn run(elements: usize, max_order: i32, linear_solver: LinearSolver, tolerance: f64) -> IdaRun {
+    within(f64::INFINITY, elements, max_order, linear_solver, tolerance).unwrap()
+}
+
+/// The same, given up after a processor time \[s\].
+fn within(
+    longest: f64,
+    elements: usize,
+    max_order: i32,
+    linear_solver: LinearSolver,
+    tolerance: f64,
+) -> Result<IdaRun, IdaError> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/3rrr/case2.toml");
     let links = (1..=3).map(|link| format!("bodies.link{link}.elements={elements}"));
     let run = [
@@ -24,7 +35,7 @@ fn run(elements: usize, max_order: i32, linear_solver: LinearSolver, tolerance: 
         linear_solver,
         newton: NEWTON[0],
     };
-    integrate(&scene, settings, tolerance).unwrap()
+    integrate(&scene, settings, tolerance, longest)
 }
 
 /// Largest difference of an unknown at any row.
@@ -32,6 +43,15 @@ fn difference(a: &IdaRun, b: &IdaRun) -> f64 {
     assert_eq!(a.rows.len(), b.rows.len());
     let pairs = a.rows.iter().flatten().zip(b.rows.iter().flatten());
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_run_that_takes_too_long_is_given_up() {
+    let given_up = within(0.0, 1, 2, LinearSolver::Klu, 1e-3);
+    assert!(
+        matches!(given_up, Err(IdaError::TooLong(0.0))),
+        "{given_up:?}"
+    );
 }
 
 #[test]

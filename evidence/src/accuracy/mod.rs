@@ -26,7 +26,7 @@ use studies::precision::{
 pub const CAMPAIGNS: [Campaign; 2] = [
     Campaign {
         name: "accuracy",
-        minutes: 40,
+        minutes: 15,
         seeds: "none",
         measure,
     },

@@ -2,7 +2,7 @@
 //! step it integrates all powers with more evaluations than the step has.
 
 use crate::benchmarks::rivals::{Code, RivalCurve, Rivals};
-use crate::benchmarks::settings::{LONGEST, ORDERS, RATIOS, SettingsSweep, TOLERANCES, Trial};
+use crate::benchmarks::settings::{LONGEST, ORDERS, RATIOS, SettingsSweep, Trial};
 use looselink::model::Model;
 use looselink::scene::Scene;
 use looselink::simulate::{Control, Observer, Progress, Simulation};
@@ -10,7 +10,7 @@ use looselink::system::State;
 use miette::{IntoDiagnostic, Result, miette};
 use studies::machine::median;
 use studies::precision::Study;
-use verify::ida_of_system::{self, IdaSettings, LinearSolver, NEWTON};
+use verify::ida_of_system::{self, IdaError, IdaSettings, LinearSolver, NEWTON};
 
 /// Unknowns and multipliers up to which IDA on our equations is also tried with a dense matrix: the time of its factorisation grows
 /// with the third power of their number, that of KLU about in proportion.
@@ -29,7 +29,7 @@ pub fn on_ours(rivals: &mut Rivals, name: &str, study: &Study, repeats: usize) -
         _ => &[LinearSolver::Klu],
     };
     let trial = |settings, tolerance| {
-        let run = ida_of_system::integrate(&reference.scene, settings, tolerance)?;
+        let run = ida_of_system::integrate(&reference.scene, settings, tolerance, LONGEST)?;
         Ok(Trial {
             tolerance,
             error: reference.distance(&run.rows),
@@ -53,7 +53,7 @@ fn add_curves(
     curve: &RivalCurve,
     solvers: &[LinearSolver],
     repeats: usize,
-    trial: impl Fn(IdaSettings, f64) -> Result<Trial, String>,
+    trial: impl Fn(IdaSettings, f64) -> Result<Trial, IdaError>,
 ) -> Result<()> {
     for max_order in ORDERS {
         let candidates = solvers.iter().flat_map(|&linear_solver| {
@@ -68,24 +68,22 @@ fn add_curves(
         let method = format!("{}, order up to {max_order}", curve.method);
         let sweep = SettingsSweep::new(&curve.study, &method, &candidates, &trial);
         let settings = sweep.settings();
-        let mut points = Vec::new();
-        for tolerance in TOLERANCES {
-            // a loose tolerance may lead where no step converges: the sweep has what it says
-            let Ok(first) = trial(settings, tolerance) else {
-                continue;
-            };
+        let again = |first: &Trial| -> Result<[f64; 2]> {
             let seconds = match first.seconds > LONG_RUN {
                 true => vec![first.seconds],
                 false => (0..repeats)
-                    .map(|_| Ok(trial(settings, tolerance)?.seconds))
-                    .collect::<Result<_, String>>()
+                    .map(|_| Ok(trial(settings, first.tolerance)?.seconds))
+                    .collect::<Result<_, IdaError>>()
                     .map_err(|e| miette!("{}, {method}: {e}", curve.study))?,
             };
-            points.push([first.error, median(&seconds)]);
-            if first.seconds > LONGEST {
-                break;
-            }
-        }
+            Ok([first.error, median(&seconds)])
+        };
+        let points = sweep
+            .best()
+            .trials
+            .iter()
+            .map(again)
+            .collect::<Result<_>>()?;
         rivals.sweeps.push(sweep);
         rivals.curves.push(RivalCurve {
             method,

@@ -24,7 +24,7 @@ use std::process::Command;
 /// The campaign.
 pub const CAMPAIGN: Campaign = Campaign {
     name: "benchmarks",
-    minutes: 30,
+    minutes: 60,
     seeds: "none",
     measure,
 };

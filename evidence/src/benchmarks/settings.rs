@@ -3,7 +3,7 @@
 use crate::accuracy::levels;
 use serde::{Deserialize, Serialize};
 use studies::precision::{Times, reached};
-use verify::ida_of_system::{IdaSettings, NEWTON};
+use verify::ida_of_system::{IdaError, IdaSettings, NEWTON};
 
 /// Largest orders of BDF, a curve each. Orders above 2 are unstable on a part of the imaginary axis, where undamped vibrations
 /// are.
@@ -12,8 +12,8 @@ pub const ORDERS: [i32; 3] = [2, 3, 5];
 pub const RATIOS: [f64; 4] = [0.0, 0.1, 1.0, 10.0];
 /// Tolerances; positions are held to a thousandth of a metre of that, velocities to 0.1 m/s, and both to the relative tolerance.
 pub const TOLERANCES: [f64; 9] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
-/// After a run that takes longer no tighter tolerance is asked for, neither in trials nor in curves \[s\].
-pub const LONGEST: f64 = 5.0;
+/// A run that takes longer is given up, and no tighter tolerance is tried with its settings \[s\].
+pub const LONGEST: f64 = 10.0;
 
 /// A run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -56,7 +56,7 @@ impl SettingsSweep {
         study: &str,
         curve: &str,
         candidates: &[IdaSettings],
-        run: impl Fn(IdaSettings, f64) -> Result<Trial, String>,
+        run: impl Fn(IdaSettings, f64) -> Result<Trial, IdaError>,
     ) -> SettingsSweep {
         let mut sweep = SettingsSweep {
             study: study.to_owned(),
@@ -78,17 +78,19 @@ impl SettingsSweep {
     fn try_all(
         &mut self,
         candidates: &[IdaSettings],
-        run: &impl Fn(IdaSettings, f64) -> Result<Trial, String>,
+        run: &impl Fn(IdaSettings, f64) -> Result<Trial, IdaError>,
     ) {
         for &settings in candidates {
             let (mut trials, mut failures) = (Vec::new(), Vec::new());
             for tolerance in TOLERANCES {
                 match run(settings, tolerance) {
                     Ok(trial) => trials.push(trial),
-                    Err(error) => failures.push(format!("tolerance {tolerance:e}: {error}")),
-                }
-                if trials.last().is_some_and(|t: &Trial| t.seconds > LONGEST) {
-                    break;
+                    Err(error) => {
+                        failures.push(format!("tolerance {tolerance:e}: {error}"));
+                        if matches!(error, IdaError::TooLong(_)) {
+                            break;
+                        }
+                    }
                 }
             }
             self.tried.push(TriedSettings {
@@ -106,7 +108,12 @@ impl SettingsSweep {
 
     /// The best settings.
     pub fn settings(&self) -> IdaSettings {
-        self.tried[self.best].settings
+        self.best().settings
+    }
+
+    /// The best settings and their runs.
+    pub fn best(&self) -> &TriedSettings {
+        &self.tried[self.best]
     }
 }
 
@@ -136,7 +143,7 @@ fn fastest(curves: &[Vec<[f64; 2]>]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::{LONGEST, RATIOS, SettingsSweep, Trial, fastest};
-    use verify::ida_of_system::{IdaSettings, LinearSolver, NEWTON};
+    use verify::ida_of_system::{IdaError, IdaSettings, LinearSolver, NEWTON};
 
     #[test]
     fn the_curve_that_is_faster_at_most_errors_is_the_fastest() {
@@ -171,25 +178,31 @@ mod tests {
         // the second is the fastest, the third fails with loose tolerances, all others take the same
         let sweep = SettingsSweep::new("study", "curve", &candidates, |settings, tolerance| {
             if settings.ratio == RATIOS[2] && tolerance > 1e-5 {
-                return Err("no step converges".to_owned());
+                return Err(IdaError::Said("no step converges".to_owned()));
             }
             let factor = if settings.ratio == RATIOS[1] {
                 0.5
             } else {
                 1.0
             };
+            let seconds = 0.4 * LONGEST * factor * tolerance.powf(-0.1);
+            if seconds > LONGEST {
+                return Err(IdaError::TooLong(LONGEST));
+            }
             Ok(Trial {
                 tolerance,
                 error: 1e-3 * tolerance,
-                seconds: 0.4 * LONGEST * factor * tolerance.powf(-0.1),
+                seconds,
             })
         });
         assert_eq!(sweep.settings(), candidates[1]);
-        assert_eq!(sweep.tried[2].failures.len(), 3);
+        // three loose tolerances, and one that takes too long
+        assert_eq!(sweep.tried[2].failures.len(), 4);
         assert!(sweep.tried[2].failures[0].contains("1e-2"));
-        // the tolerance at which a run takes too long is the last one
+        // none is tighter than the first at which a run takes too long
         let last = |k: usize| sweep.tried[k].trials.last().unwrap();
-        assert!(last(0).seconds > LONGEST && last(0).tolerance > last(1).tolerance);
+        assert!(last(0).tolerance > last(1).tolerance);
+        assert_eq!(sweep.tried[0].failures.len(), 1);
         let text = serde_json::to_string(&sweep).unwrap();
         assert_eq!(serde_json::from_str::<SettingsSweep>(&text).unwrap(), sweep);
     }
