@@ -191,7 +191,7 @@ fn all_channels_are_those_of_other_coordinates() {
         .within(&worst, 2e-8, "1e-10 m, the accuracy of both, over 1 cm, the size of the smallest");
 }
 
-/// Each run may be wrong by the accuracy times the amplification of the motion: 876 over 10 ms in case 3 (GUARANTEE.md), 1
+/// Each run may be wrong by the accuracy times the amplification of the motion: 876 over 10 ms in case 3 (ACCURACY.md), 1
 /// in the ideal mechanism, where the drives determine the motion.
 #[test]
 fn the_motion_does_not_depend_on_the_coordinates() {
