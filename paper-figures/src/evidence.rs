@@ -7,7 +7,6 @@ use crate::methods::HORIZON;
 use crate::pictures::CLAIMED;
 use crate::runs::{DURATION, FROM};
 use minijinja::{Value, context};
-use serde::Serialize;
 use statistics::Interval;
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -21,17 +20,8 @@ pub struct Evidence<'a> {
     ensembles: &'a EnsembleRecord,
     /// Cases 3 and 4, each from all starts together.
     chaotic: [Ensemble; 2],
-    /// Which of the records have been asked since they were last taken.
-    asked: Cell<Asked>,
-}
-
-/// Which records a verdict rests on.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub struct Asked {
-    /// That of `figures`.
-    pub figures: bool,
-    /// That of `ensembles`.
-    pub ensembles: bool,
+    /// True once the ensembles have been asked.
+    asked: Cell<bool>,
 }
 
 impl<'a> Evidence<'a> {
@@ -58,30 +48,20 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// Which records have been asked since the last call.
-    pub fn asked(&self) -> Asked {
+    /// Whether the ensembles have been asked since the last call.
+    pub fn asked(&self) -> bool {
         self.asked.take()
-    }
-
-    /// The results of `figures`.
-    fn figures(&self) -> &FigureRecord {
-        let figures = true;
-        let asked = self.asked.get();
-        self.asked.set(Asked { figures, ..asked });
-        self.figures
     }
 
     /// The results of `ensembles`.
     pub fn ensembles(&self) -> &EnsembleRecord {
-        let ensembles = true;
-        let asked = self.asked.get();
-        self.asked.set(Asked { ensembles, ..asked });
+        self.asked.set(true);
         self.ensembles
     }
 
     /// A number of the scenes or of several runs.
     pub fn number(&self, name: &str) -> f64 {
-        self.figures().numbers.get(name)
+        self.figures.numbers.get(name)
     }
 
     /// A measure of a run of the figures.
@@ -89,7 +69,7 @@ impl<'a> Evidence<'a> {
     /// # Panics
     /// When there is no such run.
     pub fn run(&self, name: &str, measure: &str) -> f64 {
-        let run = self.figures().runs.iter().find(|r| r.name == name);
+        let run = self.figures.runs.iter().find(|r| r.name == name);
         let run = run.unwrap_or_else(|| panic!("no run {name}"));
         run.measures.get(measure)
     }

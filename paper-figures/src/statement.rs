@@ -2,7 +2,7 @@
 
 use crate::decisions;
 use crate::ensembles::{EnsembleRecord, STARTS};
-use crate::evidence::{Asked, Evidence};
+use crate::evidence::Evidence;
 use crate::figures::FigureRecord;
 use crate::shown::environment;
 use crate::timings::LINK;
@@ -53,9 +53,9 @@ pub struct Statement {
     /// How its criterion comes out; none before it is decided.
     #[serde(skip_deserializing)]
     pub verdict: Option<CriterionVerdict>,
-    /// The records that it rests on.
+    /// Whether it rests on the ensembles.
     #[serde(skip_deserializing)]
-    pub asked: Asked,
+    pub of_ensembles: bool,
 }
 
 /// The statements as listed.
@@ -76,7 +76,7 @@ pub fn values(figures: &FigureRecord, ensembles: &EnsembleRecord) -> Result<Valu
         let decide = decisions::all().find(|(known, _)| *known == key);
         let (_, decide) = decide.ok_or_else(|| miette!("nothing decides \"{key}\""))?;
         let (verdict, own) = decide(&evidence);
-        statement.asked = evidence.asked();
+        statement.of_ensembles = evidence.asked();
         let values = context! { ..own, ..of_all.clone() };
         let Statement {
             measured,

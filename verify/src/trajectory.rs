@@ -8,7 +8,7 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use records::root;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Coordinates up to which IDA's Newton matrix is factorised as a dense one; KLU takes the larger ones.
 const DENSE: usize = 100;
@@ -69,11 +69,6 @@ impl ComparisonPlan {
             overrides: Vec::new(),
             variant: String::new(),
         }
-    }
-
-    /// A scene anywhere, with overrides that change the mechanism.
-    pub fn of_file(scene: &Path, set: &[String], duration: f64, interval: f64) -> ComparisonPlan {
-        ComparisonPlan::new(scene.to_string_lossy(), duration, interval).with(set)
     }
 
     /// The same with more overrides.
@@ -190,7 +185,7 @@ impl ComparisonPlan {
 }
 
 /// What factorises IDA's Newton matrix.
-pub fn linear_solver(scene: &ReferenceScene) -> LinearSolver {
+fn linear_solver(scene: &ReferenceScene) -> LinearSolver {
     match scene.coordinates.len() > DENSE {
         true => LinearSolver::Klu,
         false => LinearSolver::Dense,

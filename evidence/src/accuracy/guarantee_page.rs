@@ -8,7 +8,6 @@ use crate::accuracy::guarantee::{
 use minijinja::{Value, context};
 use numbers::{digits, percent, si};
 use plot::{Axis, Figure, Mark, Panel, palette};
-use std::collections::HashSet;
 
 /// A ratio above this is a miss.
 const MISS: f64 = 3.0;
@@ -161,22 +160,23 @@ pub fn context(entries: &[GuaranteeEntry], stamp: String) -> Value {
     }
 }
 
-/// Scenes and methods of the misses whose motions do not amplify errors, the worst first.
+/// Scenes and methods of the misses whose motions do not amplify errors; of misses in falling order the first of each is its worst.
 fn unexcused(misses: &[&Judged]) -> Vec<String> {
-    let calm = || misses.iter().filter(|j| !j.entry.facts.amplifies());
-    let mut pairs: Vec<_> = calm().map(|j| (&j.entry.scene, &j.entry.method)).collect();
-    let mut seen = HashSet::new();
-    pairs.retain(|pair| seen.insert(*pair));
-    let said = pairs.into_iter().map(|pair| {
-        let own = || calm().filter(|j| (&j.entry.scene, &j.entry.method) == pair);
-        let (count, most) = (own().count(), own().next().map_or(0.0, |j| j.ratio));
-        let runs = if count == 1 { "run" } else { "runs" };
-        let (scene, method) = pair;
-        format!(
-            "{scene} by {method} ({count} {runs}, up to {} times)",
-            digits(most)
-        )
-    });
+    let mut worst: Vec<(&Judged, usize)> = Vec::new();
+    for miss in misses.iter().filter(|j| !j.entry.facts.amplifies()) {
+        let mut known = worst.iter_mut();
+        match known.find(|(other, _)| std::ptr::eq(other.entry, miss.entry)) {
+            Some((_, count)) => *count += 1,
+            None => worst.push((miss, 1)),
+        }
+    }
+    let said = worst
+        .into_iter()
+        .map(|(Judged { entry, ratio, .. }, count)| {
+            let runs = if count == 1 { "run" } else { "runs" };
+            let (scene, method, most) = (&entry.scene, &entry.method, digits(*ratio));
+            format!("{scene} by {method} ({count} {runs}, up to {most} times)")
+        });
     said.collect()
 }
 

@@ -41,11 +41,11 @@ impl Standing {
         };
         let studies = STUDIES.into_iter();
         for study in studies.filter(|study| own.iter().any(|c| c.study == *study)) {
-            let both = [Code::Looselink, rival];
-            for error in LEVELS.into_iter().filter(|&error| {
-                both.iter()
-                    .all(|&code| is_known(curves, study, code, error))
-            }) {
+            let known = |&error: &f64| {
+                let mut both = [Code::Looselink, rival].into_iter();
+                both.all(|code| is_known(curves, study, code, error))
+            };
+            for error in LEVELS.into_iter().filter(known) {
                 let of = |curves: &[RivalCurve], code| {
                     Some(best(curves, study, code, error, Times::Measured)?.1)
                 };

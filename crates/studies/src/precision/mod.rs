@@ -222,7 +222,8 @@ impl<C: Compared> Found<C> {
     ) -> Result<(), StudyError> {
         let (result, warnings, timing) = match made {
             Ok(made) => {
-                let measured = self.measure(study, made.columns, made.motion, made.work)?;
+                let kept = C::keep(study, made.columns, made.motion)?;
+                let measured = self.reference.measure(kept, made.work);
                 (Ok(measured), made.warnings, Some(made.timing))
             }
             Err(error) => (Err(error), Vec::new(), None),
@@ -235,21 +236,6 @@ impl<C: Compared> Found<C> {
         });
         self.timings.push(timing);
         Ok(())
-    }
-
-    /// A run, recorded at the instants of the study, against the reference.
-    ///
-    /// # Errors
-    /// A channel that it did not record.
-    pub fn measure(
-        &self,
-        study: &Study,
-        columns: ColumnLookup,
-        motion: Option<Vec<f64>>,
-        work: WorkCounts,
-    ) -> Result<C::Measured, StudyError> {
-        let kept = C::keep(study, columns, motion)?;
-        Ok(self.reference.measure(kept, work))
     }
 
     /// Names of the curves in the order of their first points.
