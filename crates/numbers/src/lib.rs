@@ -2,13 +2,13 @@
 
 /// A value with three significant digits and an SI prefix, such as `23.1 µm`, and a no-break space.
 pub fn si(value: f64, unit: &str) -> String {
-    const PREFIXES: [&str; 8] = ["p", "n", "µ", "m", "", "k", "M", "G"];
-    const FACTORS: [f64; 8] = [1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9];
+    const PREFIXES: [&str; 10] = ["p", "n", "µ", "m", "", "k", "M", "G", "T", "P"];
+    const FACTORS: [f64; 10] = [1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9, 1e12, 1e15];
     if value == 0.0 || !value.is_finite() {
         return format!("{}\u{a0}{unit}", plain(value));
     }
     let thousands = magnitude(value, 3).div_euclid(3);
-    let place = (thousands + 4).clamp(0, 7) as usize;
+    let place = (thousands + 4).clamp(0, 9) as usize;
     let (factor, prefix) = (FACTORS[place], PREFIXES[place]);
     format!("{}\u{a0}{prefix}{unit}", digits(value / factor))
 }

@@ -30,11 +30,18 @@ impl Canvas {
 
     /// A line through points.
     pub fn line(&mut self, points: &[(i32, i32)], color: Color, width: u32) {
+        self.lines(&[points], color, width);
+    }
+
+    /// Lines of one kind, each through its points.
+    pub fn lines<L: AsRef<[(i32, i32)]>>(&mut self, lines: &[L], color: Color, width: u32) {
+        let path: String = lines.iter().map(|line| path(line.as_ref())).collect();
+        if path.is_empty() {
+            return;
+        }
         let color = code(color);
-        let points = points.iter().map(|(x, y)| format!("{x},{y} "));
         self.0 += &format!(
-            "<polyline fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" points=\"{}\"/>\n",
-            points.collect::<String>()
+            "<path fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" d=\"{path}\"/>\n"
         );
     }
 
@@ -51,21 +58,29 @@ impl Canvas {
 
     /// A dashed horizontal line.
     pub fn dashes(&mut self, from: i32, to: i32, y: i32, color: Color) {
-        for x in (from..to).step_by(24) {
-            self.line(&[(x, y), ((x + 14).min(to), y)], color, 3);
+        let dashes = (from..to).step_by(24);
+        let dashes = dashes.map(|x| [(x, y), ((x + 14).min(to), y)]);
+        self.lines(&dashes.collect::<Vec<_>>(), color, 3);
+    }
+
+    /// Crosses, each of two short lines.
+    pub fn crosses(&mut self, places: &[(i32, i32)], color: Color) {
+        let arms = places
+            .iter()
+            .flat_map(|&(x, y)| [12, -12].map(|slope| [(x - 12, y - slope), (x + 12, y + slope)]));
+        self.lines(&arms.collect::<Vec<_>>(), color, 4);
+    }
+
+    /// Dots of one size.
+    pub fn dots(&mut self, places: &[(i32, i32)], radius: u32, color: Color) {
+        if places.is_empty() {
+            return;
         }
-    }
-
-    /// Two short lines across each other.
-    pub fn cross(&mut self, (x, y): (i32, i32), color: Color) {
-        self.line(&[(x - 12, y - 12), (x + 12, y + 12)], color, 4);
-        self.line(&[(x - 12, y + 12), (x + 12, y - 12)], color, 4);
-    }
-
-    /// A dot.
-    pub fn dot(&mut self, (x, y): (i32, i32), radius: u32, color: Color) {
+        let dots = places
+            .iter()
+            .map(|(x, y)| format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>\n"));
         let color = code(color);
-        self.0 += &format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"{color}\"/>\n");
+        self.0 += &format!("<g fill=\"{color}\">\n{}</g>\n", dots.collect::<String>());
     }
 
     /// A line of text around its vertical centre; `anchor` is what stands at x: `start`, `middle` or `end`.
@@ -122,6 +137,18 @@ impl Canvas {
             "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"{color}\"{attributes}>\n{text}\n</text>\n"
         );
     }
+}
+
+/// Path data of a line: its first place, then the way from each place to the next, which takes fewer characters.
+fn path(points: &[(i32, i32)]) -> String {
+    let [(x, y), _, ..] = points else {
+        return String::new();
+    };
+    let ways = points.windows(2).map(|pair| {
+        let ((x, y), (to_x, to_y)) = (pair[0], pair[1]);
+        format!("{},{}", to_x - x, to_y - y)
+    });
+    format!("M{x},{y}l{}", ways.collect::<Vec<_>>().join(" "))
 }
 
 fn code((r, g, b): Color) -> String {

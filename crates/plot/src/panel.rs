@@ -49,14 +49,15 @@ impl PlacedPanel<'_> {
 
     fn grid(&self, canvas: &mut Canvas) {
         let [left, top, right, bottom] = self.frame;
-        for (value, _) in &self.x.major {
+        let across = self.x.major.iter().map(|(value, _)| {
             let x = self.across(*value).round() as i32;
-            canvas.line(&[(x, top), (x, bottom)], GRID, 2);
-        }
-        for (value, _) in &self.y.major {
+            [(x, top), (x, bottom)]
+        });
+        let up = self.y.major.iter().map(|(value, _)| {
             let y = self.up(*value).round() as i32;
-            canvas.line(&[(left, y), (right, y)], GRID, 2);
-        }
+            [(left, y), (right, y)]
+        });
+        canvas.lines(&across.chain(up).collect::<Vec<_>>(), GRID, 2);
     }
 
     fn pixels(&self, mark: &Mark) -> Vec<PixelPoint> {
@@ -80,22 +81,24 @@ impl PlacedPanel<'_> {
         let points = self.pixels(mark);
         let pixel = |p: &PixelPoint| (p.0.round() as i32, p.1.round() as i32);
         let mut polyline = |points: &[PixelPoint], width| {
-            for part in frame.clip(points) {
+            let parts = frame.clip(points).into_iter().map(|part| {
                 let mut pixels: Vec<(i32, i32)> = part.iter().map(pixel).collect();
                 pixels.dedup();
-                canvas.line(&pixels, mark.color, width);
-            }
+                pixels
+            });
+            canvas.lines(&parts.collect::<Vec<_>>(), mark.color, width);
         };
-        let inside = points.iter().filter(|p| frame.contains(**p)).map(pixel);
+        let inside = || {
+            let inside = points.iter().filter(|p| frame.contains(**p));
+            inside.map(pixel).collect::<Vec<_>>()
+        };
         match mark.shape {
             MarkShape::Series { width } | MarkShape::Curve { width } => {
                 let kept = thinned(mark, &points).into_iter().map(|i| points[i]);
                 polyline(&kept.collect::<Vec<_>>(), width);
             }
-            MarkShape::Points { radius } => {
-                inside.for_each(|at| canvas.dot(at, radius, mark.color))
-            }
-            MarkShape::Cross => inside.for_each(|at| canvas.cross(at, mark.color)),
+            MarkShape::Points { radius } => canvas.dots(&inside(), radius, mark.color),
+            MarkShape::Cross => canvas.crosses(&inside(), mark.color),
             MarkShape::Name => {}
             MarkShape::Area { opacity } => {
                 let within = |(x, y): (i32, i32)| (x.clamp(left, right), y.clamp(top, bottom));
@@ -144,23 +147,22 @@ impl PlacedPanel<'_> {
         let ink = palette::BLACK;
         let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
         canvas.line(&[&corners[..], &corners[..1]].concat(), ink, 2);
+        let across = |value: f64| self.across(value).round() as i32;
+        let up = |value: f64| self.up(value).round() as i32;
+        let upright =
+            |value: f64, length| [(across(value), bottom), (across(value), bottom - length)];
+        let level = |value: f64, length| [(left, up(value)), (left + length, up(value))];
+        let major = self.x.major.iter().map(|(value, _)| upright(*value, 11));
+        let major = major.chain(self.y.major.iter().map(|(value, _)| level(*value, 11)));
+        canvas.lines(&major.collect::<Vec<_>>(), ink, 2);
+        let minor = self.x.minor.iter().map(|value| upright(*value, 6));
+        let minor = minor.chain(self.y.minor.iter().map(|value| level(*value, 6)));
+        canvas.lines(&minor.collect::<Vec<_>>(), ink, 1);
         for (value, label) in &self.x.major {
-            let x = self.across(*value).round() as i32;
-            canvas.line(&[(x, bottom), (x, bottom - 11)], ink, 2);
-            canvas.text(label, (x, bottom + 28), SMALL, "middle");
+            canvas.text(label, (across(*value), bottom + 28), SMALL, "middle");
         }
         for (value, label) in &self.y.major {
-            let y = self.up(*value).round() as i32;
-            canvas.line(&[(left, y), (left + 11, y)], ink, 2);
-            canvas.text(label, (left - 12, y), SMALL, "end");
-        }
-        for value in &self.x.minor {
-            let x = self.across(*value).round() as i32;
-            canvas.line(&[(x, bottom), (x, bottom - 6)], ink, 1);
-        }
-        for value in &self.y.minor {
-            let y = self.up(*value).round() as i32;
-            canvas.line(&[(left, y), (left + 6, y)], ink, 1);
+            canvas.text(label, (left - 12, up(*value)), SMALL, "end");
         }
         let middle = ((left + right) / 2, (top + bottom) / 2);
         canvas.text(&self.x.label, (middle.0, bottom + 76), LABEL, "middle");
@@ -191,13 +193,13 @@ impl PlacedPanel<'_> {
                 canvas.line(&[(x, y), (x + SAMPLE, y)], mark.color, 6);
             }
             MarkShape::Level => canvas.dashes(x, x + SAMPLE, y, mark.color),
-            MarkShape::Cross => canvas.cross(middle, mark.color),
+            MarkShape::Cross => canvas.crosses(&[middle], mark.color),
             MarkShape::Area { opacity } => {
                 let (low, high) = (y - 12, y + 12);
                 let corners = [(x, low), (x + SAMPLE, low), (x + SAMPLE, high), (x, high)];
                 canvas.area(&corners, mark.color, opacity);
             }
-            MarkShape::Points { radius } => canvas.dot(middle, radius.max(6), mark.color),
+            MarkShape::Points { radius } => canvas.dots(&[middle], radius.max(6), mark.color),
             MarkShape::Name => {}
         }
         canvas.text(&mark.label, (x + SAMPLE + 12, y), SMALL, "start");
