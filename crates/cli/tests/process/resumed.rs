@@ -70,7 +70,8 @@ fn check(folder: &Path, changes: [&str; 3], scene: &str, random: &mut Random) ->
     for k in 0..INTERRUPTIONS {
         let arguments = next();
         resumed += usize::from(arguments[0] == "resume");
-        let after = time.mul_f64(random.uniform() * 1.2 / INTERRUPTIONS as f64);
+        // together less than the run takes, also where the processor is slower for a while
+        let after = time.mul_f64(random.uniform() * 0.8 / INTERRUPTIONS as f64);
         if stop(start(&arguments), after, k % 2 == 1) {
             break;
         }
@@ -109,7 +110,9 @@ fn runs_that_are_stopped_at_random_instants_end_with_the_bytes_of_whole_ones() {
         }
     });
     let [stops, resumed] = counts.into_inner().unwrap();
-    assert!(stops >= 50 && resumed >= 40, "{stops} {resumed}");
+    // a run whose processor was free meanwhile may end before its interruptions; most do not
+    let half = METHODS.len() * SCENES.len() * INTERRUPTIONS / 2;
+    assert!(stops.min(resumed) >= half, "{stops} {resumed}");
 }
 
 /// A run that is interrupted when it has recorded some rows.
