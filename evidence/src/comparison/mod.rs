@@ -154,7 +154,9 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
         versions => found.versions,
         count => counted().count(),
         held => counted().filter(|row| row.holds()).count(),
+        apart_held => of(Standing::Apart).filter(|row| row.holds()).count(),
         apart => of(Standing::Apart).collect::<Vec<_>>(),
+        means => nearest(of(Standing::Apart).filter(|row| row.scene.ends_with(statistics::MEANS))),
         zeros => of(Standing::Zero).count(),
         sections => found.sections.iter().map(section).collect::<Vec<_>>(),
         faults => context! { stamp => stamp(&faults.origin), mistakes, variants },
@@ -165,15 +167,18 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
 
 /// A section with the rows that count and the row that comes nearest to its tolerance.
 fn section(section: &Section) -> Value {
-    let counted = || section.rows.iter().filter(|row| row.counts());
-    let used = |row: &&Agreement| row.difference / row.tolerance;
-    // rows that agree to the last bit use nothing of their tolerance
-    let differing = counted().filter(|row| row.difference > 0.0);
-    let nearest = differing.max_by(|a, b| used(a).total_cmp(&used(b)));
+    let counted: Vec<&Agreement> = section.rows.iter().filter(|row| row.counts()).collect();
     context! {
         title => section.title,
-        held => counted().filter(|row| row.holds()).count(),
-        nearest,
-        rows => counted().collect::<Vec<_>>(),
+        held => counted.iter().filter(|row| row.holds()).count(),
+        nearest => nearest(counted.iter().copied()),
+        rows => counted,
     }
+}
+
+/// The row that uses most of its tolerance; rows that agree to the last bit use nothing of it.
+fn nearest<'a>(rows: impl Iterator<Item = &'a Agreement>) -> Option<&'a Agreement> {
+    let used = |row: &&Agreement| row.difference / row.tolerance;
+    let differing = rows.filter(|row| row.difference > 0.0);
+    differing.max_by(|a, b| used(a).total_cmp(&used(b)))
 }

@@ -37,6 +37,8 @@ pub const QUANTITIES: [(&str, &str); 6] = [
     ("share of time in contact, mean of B and C", "1"),
     ("energy dissipated in contact", "J"),
 ];
+/// What the scenes of the compared means end with.
+pub const MEANS: &str = ", mean of one cycle";
 /// Place of the share of time in contact.
 pub const CONTACT: usize = 4;
 
@@ -132,7 +134,7 @@ pub fn agreements(runs: &[ChaoticRun], measured: &[Vec<f64>]) -> Vec<Agreement> 
             let p = numbers::number(found.p, 2);
             rows.push(Agreement {
                 quantity: format!("{name} [{unit}]"),
-                scene: format!("case{case}, mean of one cycle"),
+                scene: format!("case{case}{MEANS}"),
                 rust: mean(&rust),
                 cpp: mean(&cpp),
                 difference: found.difference.abs(),
