@@ -150,7 +150,8 @@ web() {
     npm test
 }
 
-# The site: the pages, and the long tables of the evidence, as HTML in target/site, and the links of all pages and of the site. Addresses on the network are not asked.
+# The site: the pages, and the long tables of the evidence, as HTML in target/site, and the links of all pages and of the site.
+# Addresses on the network are not asked.
 site() {
     export PATH="$PATH:$PWD/target/tools/python/bin"
     if ! command -v mdbook > /dev/null || ! command -v lychee > /dev/null; then
