@@ -353,7 +353,8 @@ impl Stepper for DormandPrince {
         sum(h, weights(), all(), |s| &s.a, &mut self.increment);
         add(&from.v, &self.increment, &mut to.v);
         sum(h, weights(), all(), |s| &s.v, &mut self.increment);
-        accumulate(from, &self.increment, 0.0, to);
+        let increments = self.increment.iter().copied();
+        accumulate(from, increments, &mut to.q, &mut to.q_low);
         if shape.multipliers > 0 {
             newton.return_to_constraints(system, to, work)?;
         } else {

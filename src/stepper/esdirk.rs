@@ -21,7 +21,7 @@
 
 use super::{
     Estimate, EstimatedSolution, LocalError, Scheme, Stage, StepError, Stepper, Vibration,
-    accumulate, integrate, sum,
+    accumulate_stage, integrate, sum,
 };
 use crate::checkpoint::carried;
 use crate::newton::{Level, Newton};
@@ -219,7 +219,7 @@ impl Stepper for Esdirk {
             let is_constrained = shape.multipliers > 0;
             let mut solved = newton.solve_stage(system, equations, now, work);
             if solved.is_ok() {
-                accumulate(from, &self.stage.increment, w.q, now);
+                accumulate_stage(from, &self.stage.increment, w.q, now);
                 if is_last && is_constrained {
                     solved = newton.return_to_constraints(system, now, work);
                 }

@@ -80,7 +80,8 @@ impl Stepper for VelocityVerlet {
             self.increment[i] = h * (v + 0.5 * h * a);
             to.v[i] = v + h * a + reach * (a - earliest[i]);
         }
-        accumulate(from, &self.increment, 0.0, to);
+        let increments = self.increment.iter().copied();
+        accumulate(from, increments, &mut to.q, &mut to.q_low);
         let evaluations = if self.history.leads_to(from) { 1 } else { 2 };
         for _ in 0..evaluations {
             newton.accelerate(system, to, work)?;

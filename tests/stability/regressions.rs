@@ -1,6 +1,6 @@
 //! What random mechanisms have found, one test each.
 
-use crate::support::{load, run_scene};
+use crate::support::{TestRecording, load, run, run_scene};
 use looselink::scene::Scene;
 use looselink::simulate::{self, RunError, Simulation};
 
@@ -30,6 +30,27 @@ fn a_weld_reports_the_couple_on_its_second_side() {
 
 fn parse(text: &str) -> Scene {
     Scene::parse("regression", text, &[]).unwrap_or_else(|e| panic!("{e} at {:?}", e.place()))
+}
+
+/// Steps of DOP853 that are far too long end in numbers that are not finite; shorter ones have nothing of them.
+#[test]
+fn a_run_recovers_from_steps_that_overflow() {
+    let run = |method: &str| {
+        let integrator = format!("integrator={{method={method},accuracy={{position=1e-6}}}}");
+        let changes = [
+            &integrator,
+            "assumptions={}",
+            "simulation.duration=0.4",
+            "output.interval=0.4",
+        ];
+        run("cantilever-dynamic.toml", &changes)
+    };
+    let (kept, report) = run("\"dop853\"");
+    assert!(report.rejected_steps > 3);
+    let tip = |kept: &TestRecording| kept.get("points.beam.end.y")[1];
+    let difference = tip(&kept) - tip(&run("\"esdirk5\",newton_tolerance=1e-10").0);
+    // each has its accuracy
+    assert!(difference.abs() < 2e-6, "{difference:e} m");
 }
 
 /// Runs a scene that cannot come to its end.
