@@ -3,7 +3,7 @@
 
 mod amplification;
 mod diagram;
-mod guarantee;
+pub mod guarantee;
 mod guarantee_page;
 pub mod page;
 

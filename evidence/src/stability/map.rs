@@ -128,6 +128,9 @@ pub struct MadeMap {
     pub map: Map,
     /// What came of it.
     pub panels: Vec<MapPanel>,
+    /// Widest range of the channels of the reference, for each value of the parameter.
+    #[serde(default)]
+    pub ranges: Vec<f64>,
     /// First warnings of errors and causes of stops, without their numbers.
     pub said: IndexSet<String>,
 }
@@ -150,6 +153,13 @@ impl KnownSilent {
         let mut runs = self.runs.iter();
         runs.any(|(m, by, v, c)| m == map && by == method && near(*v, value) && near(*c, column))
     }
+}
+
+/// The values of the parameter and the steps, or accuracies, of the silent runs of a map that are known.
+pub fn listed(known: &[KnownSilent], map: &str) -> (Vec<f64>, Vec<f64>) {
+    let runs = known.iter().flat_map(|kind| &kind.runs);
+    let of_map = runs.filter(|(name, ..)| name == map);
+    of_map.map(|(.., value, column)| (value, column)).unzip()
 }
 
 /// The silent runs that are known, and why they are.
@@ -290,8 +300,8 @@ impl Map {
         match self.scene(value, &set).and_then(|scene| record(&scene)) {
             Ok((recording, report)) => {
                 let error = difference(&recording, reference);
-                let unsaid = self.unsaid * range(reference);
-                let outcome = judge(error, self.tolerance, unsaid, &report);
+                let range = (range(reference), self.unsaid);
+                let outcome = judge(error, self.tolerance, range, &report);
                 let shown = error.is_finite().then(|| numbers::rounded(error, 3));
                 (outcome, shown, report.error_warnings().into_iter().next())
             }
@@ -335,6 +345,10 @@ impl Map {
         Ok(MadeMap {
             name: name.to_owned(),
             panels,
+            ranges: references
+                .iter()
+                .map(|r| numbers::rounded(range(r), 3))
+                .collect(),
             said,
             map: self,
         })

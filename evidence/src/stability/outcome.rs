@@ -19,7 +19,7 @@ pub enum OutcomeClass {
     /// Within the tolerance of the map.
     #[serde(rename = "A")]
     Accurate,
-    /// Bounded, off by more, and said so where that is much; the energy is kept.
+    /// Off by more, by less than the range of the channels, and said so where that is much; the energy is kept.
     #[serde(rename = "C")]
     Coarse,
     /// As coarse, but energy is lost.
@@ -28,7 +28,7 @@ pub enum OutcomeClass {
     /// Refused, or stopped with an error that names what and when.
     #[serde(rename = "R")]
     Refused,
-    /// The scheme puts energy into the motion, and the report says so.
+    /// Off by more than the range of the channels, or the scheme puts energy into the motion; the report says so.
     #[serde(rename = "F")]
     Failed,
     /// Far off without a warning of an error, or a run that does not end: a fault of the program.
@@ -83,20 +83,31 @@ pub fn record(scene: &Scene) -> Result<(Recording, Report), Stopped> {
     }
 }
 
-/// What a run that reached its end is called by its largest error; one beyond `unsaid` needs a warning of an error.
-pub fn judge(error: f64, tolerance: f64, unsaid: f64, report: &Report) -> OutcomeClass {
+/// What a run that reached its end is called by its largest error; one beyond this part of the range of the channels needs a
+/// warning of an error.
+pub fn judge(
+    error: f64,
+    tolerance: f64,
+    (range, unsaid): (f64, f64),
+    report: &Report,
+) -> OutcomeClass {
     if error <= tolerance {
         return OutcomeClass::Accurate;
     }
-    // an error that is not a number is beyond every bound
-    if report.error_warnings().is_empty() && (error.is_nan() || error > unsaid) {
+    if report.error_warnings().is_empty() && is_beyond(error, unsaid * range) {
         return OutcomeClass::Silent;
     }
     match changes(report) {
+        _ if is_beyond(error, range) => OutcomeClass::Failed,
         [gained, lost] if gained > FAILED && gained >= lost => OutcomeClass::Failed,
         [_, lost] if lost > NOTABLE => OutcomeClass::Damped,
         _ => OutcomeClass::Coarse,
     }
+}
+
+/// An error that is not a number is beyond every bound.
+pub fn is_beyond(error: f64, bound: f64) -> bool {
+    error.is_nan() || error > bound
 }
 
 /// What a run that stopped is called.

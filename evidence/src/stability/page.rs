@@ -1,10 +1,11 @@
 //! STABILITY.md, its pictures, and the tables of all runs.
 
+use crate::accuracy::guarantee;
 use crate::output::{Data, Output, stamp};
 use crate::stability::Maps;
 use crate::stability::cases::{Check, cases};
 use crate::stability::map::{AUTO, KnownSilent, METHODS, MadeMap, MapCell, MapPanel, known_silent};
-use crate::stability::outcome::OutcomeClass;
+use crate::stability::outcome::{OutcomeClass, is_beyond};
 use miette::Result;
 use minijinja::{Value, context};
 use numbers::{number, si};
@@ -52,14 +53,29 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
         names => BTreeMap::from(OutcomeClass::ALL.map(|class| (class, class.name()))),
         runs => runs.len(),
         methods => METHODS.iter().map(method).collect::<Vec<_>>(),
+        large => made.iter().map(large).sum::<usize>(),
         silent => made.iter().flat_map(|one| silent(one, &known)).collect::<Vec<_>>(),
         checks => checks.map(check).collect::<Vec<_>>(),
         maps => made.iter().map(map).collect::<Vec<_>>(),
         titles => cases()?.into_iter().map(|case| case.title).collect::<Vec<_>>(),
+        soak_methods => guarantee::methods().into_iter().filter(|name| !soak.results["tallies"][name].is_null()).collect::<Vec<_>>(),
         soak => &soak.results, fuzz => &fuzz.results,
     };
     out.page("STABILITY.md", "stability.md", &page)?;
     out.site_page("stability.md", "site/stability.md", &page)
+}
+
+/// Runs of a map that reached their end with an error that needs a warning.
+fn large(one: &MadeMap) -> usize {
+    let ranges = one.map.parameter.values.iter().zip(&one.ranges);
+    let beyond = |value: f64, error: f64| {
+        let mut ranges = ranges.clone();
+        ranges.any(|(at, range)| *at == value && is_beyond(error, one.map.unsaid * range))
+    };
+    let runs = one
+        .runs()
+        .filter(|run| run.3.1.is_some_and(|error| beyond(run.1, error)));
+    runs.count()
 }
 
 /// Runs of a map that are wrong in silence.
