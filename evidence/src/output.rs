@@ -70,6 +70,8 @@ impl Output {
     /// Nothing rendered yet; templates are those below this root of a workspace.
     pub fn new(root: &Path) -> Output {
         let mut templates = environment();
+        // an error names its line; with all names and values it has thousands
+        templates.set_debug(false);
         templates.set_loader(path_loader(root.join("evidence/templates")));
         templates.add_filter("number", |x: f64, digits: usize| number(x, digits));
         templates.add_filter("cell", |text: String| text.replace('|', "\\|"));

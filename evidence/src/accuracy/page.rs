@@ -3,6 +3,7 @@
 use crate::accuracy::diagram::work_and_precision;
 use crate::accuracy::guarantee::GuaranteeEntry;
 use crate::accuracy::{Accuracy, MadeStudy, guarantee_page, study};
+use crate::gallery::caption_of;
 use crate::output::{Data, Output, stamp};
 use miette::Result;
 use minijinja::{Value, context};
@@ -121,7 +122,9 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
         methods.iter().partition(|one| one.name.starts_with("case"));
     out.picture("accuracy/3rrr", &work_and_precision(&paper))?;
     out.picture("accuracy/others", &work_and_precision(&others))?;
-    out.picture("accuracy/effects", &effects.figure)?;
+    let mut figure = effects.figure;
+    figure.caption += &format!(" {}", caption_of(data.root(), "3rrr/case4")?);
+    out.picture("accuracy/effects", &figure)?;
     out.picture(
         "accuracy/guarantee",
         &guarantee_page::figure(&guarantee.results),
@@ -132,7 +135,7 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
         levels => LEVELS.map(|e| si(e, "m")),
         level => si(LEVEL, "m"),
         lost => percent(LOST),
-        runs => studies.iter().map(|one| one.found.runs.len()).sum::<usize>(),
+        runs => methods.iter().map(|one| one.found.runs.len()).sum::<usize>(),
         studies => methods.len(),
         wins => winners(&methods).iter().map(|(curve, count)| context! { curve, count }).collect::<Vec<_>>(),
         pairs => cells(&methods).filter(|(one, e)| winner(one, *e, Times::Measured, |_| true).is_some()).count(),
@@ -145,7 +148,7 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
         long => surveyed.iter().map(|(one, duration)| long_run(one, *duration)).collect::<Vec<_>>(),
         fastest => methods.iter().map(|one| fastest(one)).collect::<Vec<_>>(),
         failed => studies.iter().flat_map(failures).collect::<Vec<_>>(),
-        guarantee => guarantee_of_all,
+        guarantee => guarantee_of_all, effect_warnings => &effects.warnings,
     };
     out.page("ACCURACY.md", "accuracy.md", &page)?;
     let tables = context! {
@@ -153,6 +156,40 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
     };
     out.site_page("studies.md", "site/studies.md", tables)?;
     out.site_page("guarantee.md", "site/guarantee.md", &page)
+}
+
+/// A run of a study and its processor time \[s\].
+pub struct Timed {
+    /// Study.
+    pub study: String,
+    /// Curve.
+    pub curve: String,
+    /// Error of position \[m\].
+    pub error: f64,
+    /// Median.
+    pub seconds: f64,
+}
+
+/// All runs of the studies of motions.
+///
+/// # Errors
+/// A record that is missing.
+pub fn timed(data: &Data) -> Result<Vec<Timed>> {
+    let studies = data.read::<Accuracy>("accuracy")?.results.studies;
+    let studies = studies.into_iter().map(MadeStudy::restored);
+    let runs = studies.flat_map(|one: Motion| {
+        let runs = one.found.runs.iter().zip(&one.found.timings);
+        let timed = runs.filter_map(|(run, timing)| {
+            Some(Timed {
+                study: one.name.clone(),
+                curve: run.curve.to_string(),
+                error: run.result.as_ref().ok()?.errors.position,
+                seconds: timing.as_ref()?.median,
+            })
+        });
+        timed.collect::<Vec<_>>()
+    });
+    Ok(runs.collect())
 }
 
 fn table<C: Compared>(one: &MadeStudy<C>, table: String) -> Value {

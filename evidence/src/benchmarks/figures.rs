@@ -74,7 +74,7 @@ pub fn sizes(measured: &Measured, family: Family, cost: &SizeOf) -> (Vec<f64>, V
 
 /// Errors against processor time, a panel a study.
 pub fn rivals(measured: &Measured) -> Figure {
-    let curves = &measured.rivals.curves;
+    let curves = &measured.rivals.all_curves();
     let panels = STUDIES.iter().enumerate().map(|(k, study)| {
         let mut marks = Vec::new();
         for (code, color) in Code::ALL.into_iter().zip(COLORS) {
@@ -102,7 +102,7 @@ pub fn rivals(measured: &Measured) -> Figure {
             marks,
         }
     });
-    let caption = "The first 3 to 20 ms of six mechanisms. Dots: runs of all methods of a code. Lines: the fastest method that comes below an \
-                   error and stays there with finer steps, interpolated between its runs.";
+    let caption = "The first milliseconds of the studies, as long as the page says. Dots: runs of all methods of a code. Lines: the fastest \
+                   method that comes below an error and stays there with finer steps, interpolated between its runs.";
     Figure::grid(panels.collect(), 2, caption.to_owned())
 }

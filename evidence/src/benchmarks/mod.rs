@@ -31,7 +31,7 @@ pub const CAMPAIGN: Campaign = Campaign {
 
 /// The page and its pictures.
 pub const RENDERER: Renderer = Renderer {
-    records: &["benchmarks"],
+    records: &["benchmarks", "accuracy"],
     render: page::render,
 };
 

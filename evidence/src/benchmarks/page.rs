@@ -1,18 +1,18 @@
 //! BENCHMARKS.md. Only times of runs that were made count.
 
-use crate::accuracy::page::AUTOMATIC;
+use crate::accuracy::page::{AUTOMATIC, Timed, timed};
 use crate::accuracy::study;
 use crate::benchmarks::Measured;
 use crate::benchmarks::family::Family;
 use crate::benchmarks::figures::{self, sizes};
 use crate::benchmarks::growth::{self, SizeCost, SizeOf, exponent};
-use crate::benchmarks::rivals::{Code, Rivals, STUDIES, best, is_known};
+use crate::benchmarks::rivals::{Code, RivalCurve, Rivals, STUDIES, best, is_known};
 use crate::benchmarks::settings::{LONGEST, ORDERS, RATIOS, SettingsSweep, TOLERANCES};
 use crate::benchmarks::standings::{LEVELS, Standing};
 use crate::output::{Data, Output, stamp};
 use miette::Result;
 use minijinja::{Value, context};
-use numbers::{digits, si};
+use numbers::{digits, rounded, si};
 use std::path::Path;
 use studies::precision::Times;
 use verify::ida_of_system::NEWTON;
@@ -40,6 +40,7 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
         largest => Family::ALL.iter().filter_map(|family| largest(measured, *family)).collect::<Vec<_>>(),
         exponents => exponents(measured),
         rivals => rivals(data.root(), &measured.rivals)?,
+        repeated => repeated(&measured.rivals, &timed(data)?),
     };
     out.page("BENCHMARKS.md", "benchmarks.md", &page)?;
     out.site_page("rivals.md", "site/rivals.md", &page)
@@ -96,13 +97,14 @@ fn largest(measured: &Measured, family: Family) -> Option<Value> {
 
 /// Other codes.
 fn rivals(root: &Path, rivals: &Rivals) -> Result<Value> {
+    let curves = &rivals.all_curves();
     let durations = STUDIES.iter().map(|name| {
         let duration = si(study(root, name)?.duration, "s");
         Ok(format!("{name} {duration}"))
     });
     // `auto` stands below the fastest of all methods
     let mut methods: Vec<Option<&str>> = vec![None, Some(AUTOMATIC)];
-    for curve in &rivals.curves {
+    for curve in curves {
         let method = Some(curve.method.as_str());
         if curve.code == Code::Looselink && !methods.contains(&method) {
             methods.push(method);
@@ -110,7 +112,7 @@ fn rivals(root: &Path, rivals: &Rivals) -> Result<Value> {
     }
     let methods = methods.iter().map(|method| {
         let cells = Code::ALL[1..].iter().map(|rival| {
-            let found = Standing::new(&rivals.curves, *rival, *method);
+            let found = Standing::new(curves, *rival, *method);
             context! { rival => rival.name(), ..standing(&found) }
         });
         let name = method.unwrap_or("the fastest of all methods");
@@ -126,39 +128,68 @@ fn rivals(root: &Path, rivals: &Rivals) -> Result<Value> {
         errors => LEVELS.map(|error| si(error, "m")),
         methods => methods.collect::<Vec<_>>(),
         solutions => solutions.collect::<Vec<_>>(),
-        times => times(rivals),
+        times => times(curves),
         settings => rivals.sweeps.iter().map(settings).collect::<Vec<_>>(),
     })
+}
+
+/// A ratio of times, of which a third digit does not repeat.
+fn two_digits(ratio: f64) -> String {
+    digits(rounded(ratio, 2))
+}
+
+/// How times repeat: runs of Looselink that the studies of accuracy have too, and the ratios between which four fifths of their
+/// times lie.
+fn repeated(rivals: &Rivals, others: &[Timed]) -> Value {
+    let own = rivals.curves.iter().filter(|c| c.code == Code::Looselink);
+    let points = own.flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
+    let ratios = points.filter_map(|(curve, [error, seconds])| {
+        let is_same = |other: &&Timed| {
+            // records keep five digits
+            let errors = (other.error - error).abs() <= 1e-4 * error;
+            other.study == curve.study && other.curve == curve.method && errors
+        };
+        Some(seconds / others.iter().find(is_same)?.seconds)
+    });
+    let mut ratios: Vec<f64> = ratios.collect();
+    ratios.sort_by(f64::total_cmp);
+    let of = |tenth: usize| {
+        ratios
+            .get(tenth * ratios.len() / 10)
+            .copied()
+            .map(two_digits)
+    };
+    context! { runs => ratios.len(), least => of(1), most => of(9) }
 }
 
 /// How one of our methods stands against another code.
 fn standing(standing: &Standing) -> Value {
     let [ours, other] = standing.reached_alone;
-    let summary = standing.summary().map(|summary| summary.map(digits));
+    let summary = standing.summary().map(|summary| summary.map(two_digits));
     let most = range(standing.ratios.iter().map(|r| r.ratio))[1];
     let faster = standing.ratios.iter().filter(|r| r.ratio < 1.0);
     let faster = faster.map(|r| {
-        let (error, ratio) = (si(r.error, "m"), digits(r.ratio));
+        let (error, ratio) = (si(r.error, "m"), two_digits(r.ratio));
         format!("{} at {error} ({ratio} times)", r.study)
     });
     context! {
         pairs => standing.ratios.len(), ours, other,
         median => summary.as_ref().map(|s| &s[0]), least => summary.as_ref().map(|s| &s[1]),
-        most => digits(most), faster => faster.collect::<Vec<_>>(),
+        most => two_digits(most), faster => faster.collect::<Vec<_>>(),
     }
 }
 
 /// The fastest run of every code for every study and error.
-fn times(rivals: &Rivals) -> Vec<Value> {
+fn times(curves: &[RivalCurve]) -> Vec<Value> {
     let pairs = STUDIES
         .iter()
         .flat_map(|study| LEVELS.map(|error| (study, error)));
     let rows = pairs.filter_map(|(study, error)| {
-        let of = |code| best(&rivals.curves, study, code, error, Times::Measured);
+        let of = |code| best(curves, study, code, error, Times::Measured);
         let (_, own) = of(Code::Looselink)?;
         let cells = Code::ALL.map(|code| {
             let Some((method, seconds)) = of(code) else {
-                let known = is_known(&rivals.curves, study, code, error);
+                let known = is_known(curves, study, code, error);
                 return if known { "–" } else { "not known" }.to_owned();
             };
             let (time, ratio) = (si(seconds, "s"), digits(seconds / own));

@@ -139,6 +139,23 @@ pub fn measure(root: &Path, program: &Path, repeats: usize, journal: &Journal) -
 }
 
 impl Rivals {
+    /// All curves, IDA with every setting that was tried: each error has the fastest.
+    pub fn all_curves(&self) -> Vec<RivalCurve> {
+        let tried = self.sweeps.iter().flat_map(|sweep| {
+            let mut curves = self.curves.iter();
+            let best = curves.find(|c| c.study == sweep.study && c.method == sweep.curve);
+            sweep.tried.iter().filter_map(move |tried| {
+                let points = tried.trials.iter().map(|run| [run.error, run.seconds]);
+                Some(RivalCurve {
+                    settings: Some(tried.settings),
+                    points: points.collect(),
+                    ..best?.clone()
+                })
+            })
+        });
+        self.curves.iter().cloned().chain(tried).collect()
+    }
+
     /// Our curves.
     fn own(&mut self, name: &str, outcome: &StudyOutcome) {
         for curve in outcome.curves() {
@@ -185,6 +202,7 @@ impl Rivals {
         let text = std::fs::read_to_string(&out).into_diagnostic()?;
         let result: PeerResult = serde_json::from_str(&text).into_diagnostic()?;
         for model in result.models {
+            let distance = model.difference_from_looselink.unwrap_or(0.0);
             self.solutions.push(ConvergedSolution {
                 study: name.to_owned(),
                 method: model.reference.name(),
@@ -199,7 +217,8 @@ impl Rivals {
                     method: solver,
                     settings: None,
                     points: points.collect(),
-                    floor: model.reference.floor,
+                    // below the distance of its solution from ours the two are not of one problem
+                    floor: distance.max(model.reference.floor),
                 });
             }
         }

@@ -1,6 +1,7 @@
 //! The steps that are counted and timed, as `evidence/steps.toml` lists them.
 
-use crate::benchmarks::{REPEATS, count};
+use crate::benchmarks::REPEATS;
+use crate::benchmarks::count::{self, ENDS};
 use cpu_time::ThreadTime;
 use looselink::scene::Scene;
 use looselink::simulate::Simulation;
@@ -11,8 +12,8 @@ use studies::machine::median;
 
 /// Step of all rows \[s\].
 pub const STEP: f64 = 1e-5;
-/// Ends of the two runs whose difference is timed \[s\].
-const ENDS: [f64; 2] = [0.002, 0.052];
+/// Differences that are timed: each is of some milliseconds.
+const TIMED: usize = 5 * REPEATS;
 
 /// The list.
 #[derive(Deserialize)]
@@ -74,7 +75,7 @@ impl StepRow {
     /// When Valgrind is missing or a run fails.
     pub fn cost(&self, root: &Path, program: &Path) -> Result<StepCost> {
         let difference = || Ok((self.run(root, ENDS[1])? - self.run(root, ENDS[0])?) * STEP);
-        let seconds = (0..REPEATS)
+        let seconds = (0..TIMED)
             .map(|_| difference())
             .collect::<Result<Vec<f64>>>()?;
         Ok(StepCost {

@@ -5,8 +5,10 @@ mod runs;
 
 use crate::campaign::{Campaign, Renderer, results};
 use crate::output::{Data, Output, stamp};
+use looselink::scene::{Analysis, Pace, Scene};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use minijinja::{Value, context};
+use numbers::si;
 use plot::Figure;
 use records::Journal;
 use serde::{Deserialize, Serialize};
@@ -121,9 +123,11 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
             let card = record.results.iter().find(|card| card.name == entry.name);
             let slug = entry.name.replace('/', "-");
             if let Some(card) = card {
-                out.picture(&format!("gallery/{slug}"), &card.figure)?;
+                let mut figure = card.figure.clone();
+                figure.caption = caption_of(data.root(), &entry.name)?;
+                out.picture(&format!("gallery/{slug}"), &figure)?;
             }
-            entries.push(context! { ..context! { slug, name => entry.name, says => entry.says, title => title(data.root(), &entry.name)? },
+            entries.push(context! { ..context! { slug, name => entry.name, says => entry.says, title => scene(data.root(), &entry.name)?.title },
                 ..card.map_or(Value::UNDEFINED, |c| context! { unknowns => c.unknowns, contacts => c.contacts, onsets => c.onsets, multipliers => c.multipliers }) });
         }
         sections.push(context! { title => section.title, pictures => section.pictures, entries });
@@ -132,10 +136,30 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
     out.page("scenes/README.md", "gallery.md", page)
 }
 
-/// The title of a scene.
-fn title(root: &Path, name: &str) -> Result<String> {
+fn scene(root: &Path, name: &str) -> Result<Scene> {
     let path = root.join("scenes").join(name).with_extension("toml");
-    Ok(looselink::scene::Scene::load(&path, &[])?.title)
+    Ok(Scene::load(&path, &[])?)
+}
+
+/// How a run of a scene was made that changed nothing of it.
+///
+/// # Errors
+/// A scene that cannot be read.
+pub fn caption_of(root: &Path, name: &str) -> Result<String> {
+    let scene = scene(root, name)?;
+    let integrator = &scene.integrator;
+    let method = match integrator.automatic {
+        true => "auto",
+        false => integrator.method.name(),
+    };
+    let how = match (scene.simulation.analysis, integrator.pace) {
+        (Analysis::Static, _) => "equilibria".to_owned(),
+        (_, Pace::Step(step)) => format!("method {method}, step {}", si(step, "s")),
+        (_, Pace::Accuracy(accuracy)) => {
+            format!("method {method}, accuracy {}", si(accuracy.position, "m"))
+        }
+    };
+    Ok(format!("Scene {name}: {how}."))
 }
 
 #[cfg(test)]
