@@ -88,7 +88,7 @@ pub fn convergence(runs: &[Convergence]) -> Figure {
         marks.push(Mark::curve("slope 2", palette::BLACK, h, &slope));
         Panel {
             title: run.plan.name.clone(),
-            note: String::new(),
+            note: format!("the first {}", si(run.plan.plan.duration, "s")),
             x: Axis::new("Step h", "µs", 1e6).log(),
             y: Axis::new("Difference from IDA over the largest value", "", 1.0).log(),
             marks,
@@ -96,7 +96,7 @@ pub fn convergence(runs: &[Convergence]) -> Figure {
     };
     Figure {
         rows: vec![runs.iter().map(panel).collect()],
-        caption: "Case 2 over 0.1 s: largest difference between Looselink (Bathe's scheme) and IDA at its tightest tolerance, \
+        caption: "Case 2: largest difference between Looselink (Bathe's scheme) and IDA at its tightest tolerance, \
                   over the largest value of the quantity (of the platform's position: over its largest deviation from the \
                   ideal path)."
             .into(),

@@ -72,7 +72,9 @@ fn others() -> Rows {
     Ok(rows.concat())
 }
 
-/// Titles of the sections but that of cases 1 and 2, and their rows.
+/// Title of the section with the means of chaotic motions.
+const MEANS: &str = "Cases 3 and 4: means of many runs";
+/// Titles of the other sections but that of cases 1 and 2, and their rows.
 const SECTIONS: [Compared; 4] = [
     ("Every scene: its start", || {
         all(scenes::all()?, scenes::start)
@@ -125,7 +127,7 @@ fn measure(journal: &Journal) -> Result<serde_json::Value> {
     let runs = statistics::runs();
     let measured = journal.items(&runs, threads(), ChaoticRun::name, ChaoticRun::measure)?;
     let rows = statistics::agreements(&runs, &measured);
-    sections.push(section("Cases 3 and 4: means of many runs", rows));
+    sections.push(section(MEANS, rows));
     results(Comparison {
         versions: reference::versions(),
         sections,
@@ -144,7 +146,16 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
     for (name, figure) in &found.pictures {
         out.picture(&format!("comparison/{name}"), figure)?;
     }
-    let rows = || found.sections.iter().flat_map(|section| &section.rows);
+    // means that scatter agree more easily: they have a table of their own
+    let (means, sections): (Vec<&Section>, Vec<_>) = found
+        .sections
+        .iter()
+        .partition(|section| section.title == MEANS);
+    let rows = || sections.iter().flat_map(|section| &section.rows);
+    let (compared, told_apart): (Vec<_>, Vec<_>) = means
+        .iter()
+        .flat_map(|section| &section.rows)
+        .partition(|row| row.standing == Standing::Apart);
     let counted = || rows().filter(|row| row.counts());
     let of = |standing| rows().filter(move |row| row.standing == standing);
     let (variants, mistakes): (Vec<_>, Vec<_>) =
@@ -154,11 +165,11 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
         versions => found.versions,
         count => counted().count(),
         held => counted().filter(|row| row.holds()).count(),
-        apart_held => of(Standing::Apart).filter(|row| row.holds()).count(),
         apart => of(Standing::Apart).collect::<Vec<_>>(),
-        means => nearest(of(Standing::Apart).filter(|row| row.scene.ends_with(statistics::MEANS))),
+        differing => compared.iter().filter(|row| !row.holds()).count(),
+        means => compared, told_apart,
         zeros => of(Standing::Zero).count(),
-        sections => found.sections.iter().map(section).collect::<Vec<_>>(),
+        sections => sections.iter().map(|one| section(one)).collect::<Vec<_>>(),
         faults => context! { stamp => stamp(&faults.origin), mistakes, variants },
     };
     out.page("verify/REPORT.md", "comparison.md", &page)?;
@@ -167,18 +178,15 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
 
 /// A section with the rows that count and the row that comes nearest to its tolerance.
 fn section(section: &Section) -> Value {
-    let counted: Vec<&Agreement> = section.rows.iter().filter(|row| row.counts()).collect();
+    let counted = || section.rows.iter().filter(|row| row.counts());
+    let used = |row: &&Agreement| row.difference / row.tolerance;
+    // rows that agree to the last bit use nothing of their tolerance
+    let differing = counted().filter(|row| row.difference > 0.0);
+    let nearest = differing.max_by(|a, b| used(a).total_cmp(&used(b)));
     context! {
         title => section.title,
-        held => counted.iter().filter(|row| row.holds()).count(),
-        nearest => nearest(counted.iter().copied()),
-        rows => counted,
+        held => counted().filter(|row| row.holds()).count(),
+        nearest,
+        rows => counted().collect::<Vec<_>>(),
     }
-}
-
-/// The row that uses most of its tolerance; rows that agree to the last bit use nothing of it.
-fn nearest<'a>(rows: impl Iterator<Item = &'a Agreement>) -> Option<&'a Agreement> {
-    let used = |row: &&Agreement| row.difference / row.tolerance;
-    let differing = rows.filter(|row| row.difference > 0.0);
-    differing.max_by(|a, b| used(a).total_cmp(&used(b)))
 }

@@ -39,7 +39,8 @@ pub const QUANTITIES: [(&str, &[&str], f64, &str); 4] = [
 pub struct ConvergencePlan {
     /// How reports name it.
     pub name: String,
-    plan: ComparisonPlan,
+    /// What both programs compute.
+    pub plan: ComparisonPlan,
     /// Relative tolerances of IDA, the tightest last; positions are held to 1e-3 m of that, velocities to 0.1 m/s.
     relative: [f64; 2],
     /// Steps \[s\], each half of the one before.

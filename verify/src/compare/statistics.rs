@@ -37,8 +37,6 @@ pub const QUANTITIES: [(&str, &str); 6] = [
     ("share of time in contact, mean of B and C", "1"),
     ("energy dissipated in contact", "J"),
 ];
-/// What the scenes of the compared means end with.
-pub const MEANS: &str = ", mean of one cycle";
 /// Place of the share of time in contact.
 pub const CONTACT: usize = 4;
 
@@ -134,7 +132,7 @@ pub fn agreements(runs: &[ChaoticRun], measured: &[Vec<f64>]) -> Vec<Agreement> 
             let p = numbers::number(found.p, 2);
             rows.push(Agreement {
                 quantity: format!("{name} [{unit}]"),
-                scene: format!("case{case}{MEANS}"),
+                scene: format!("case{case}, mean of one cycle"),
                 rust: mean(&rust),
                 cpp: mean(&cpp),
                 difference: found.difference.abs(),
@@ -162,7 +160,7 @@ pub fn agreements(runs: &[ChaoticRun], measured: &[Vec<f64>]) -> Vec<Agreement> 
             cpp: four,
             difference: holm(&p.collect::<Vec<f64>>())[CONTACT],
             tolerance: FAMILY_WISE,
-            reason: "p by the same test, which has to see what flexible links change; the means are of cases 3 and 4".into(),
+            reason: "p by the same test, which has to see what flexible links change; the two means are of cases 3 and 4".into(),
             standing: Standing::Counted,
         });
     }
