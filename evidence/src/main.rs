@@ -5,7 +5,7 @@ use evidence::benchmarks::{Family, gate, growth};
 use evidence::campaign::{self, Campaign, RENDERERS, find};
 use evidence::output::{Data, Output};
 use evidence::worktree;
-use miette::{Result, miette};
+use miette::{Result, ensure, miette};
 use records::root;
 use std::path::PathBuf;
 
@@ -99,6 +99,7 @@ fn render(check: bool) -> Result<()> {
     for renderer in RENDERERS {
         match renderer.records.iter().find(|name| !data.has(name)) {
             Some(missing) => {
+                ensure!(!check, "the record of {missing} is missing");
                 eprintln!("not rendered, since {missing} is not recorded");
                 complete = false;
             }

@@ -5,10 +5,15 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// Pages that a person reads, as far as they are rendered.
-const PAGES: [&str; 4] = [
+/// Pages that a person reads.
+const PAGES: [&str; 9] = [
     "README.md",
+    "EVIDENCE.md",
+    "ACCURACY.md",
+    "BENCHMARKS.md",
     "STABILITY.md",
+    "VERIFICATION.md",
+    "verify/REPORT.md",
     "paper-figures/REPRODUCTION.md",
     "scenes/README.md",
 ];
@@ -18,6 +23,8 @@ const FOLDERS: [&str; 2] = ["evidence/data/", "evidence/pictures/"];
 const LARGEST: u64 = 6_000_000;
 /// Of a page: lines and bytes. Two screens of tables are read, more are not.
 const LONGEST: (usize, usize) = (200, 25_000);
+/// Screenshots; drawings are SVG.
+const SCREENSHOTS: usize = 10;
 /// Of the programs that measure and render.
 const PROGRAMS: [&str; 3] = ["evidence/", "paper-figures/", "verify/"];
 /// Little more than half of those of `src`.
@@ -44,6 +51,12 @@ fn data_pictures_and_pages_are_small() {
     let files = tracked(&[&PAGES[..], &FOLDERS].concat(), "");
     let sum: u64 = files.iter().map(bytes).sum();
     assert!(sum <= LARGEST, "{sum} bytes in {} files", files.len());
+}
+
+#[test]
+fn few_pictures_are_made_of_pixels() {
+    let files = tracked(&[""], ".png");
+    assert!(files.len() <= SCREENSHOTS, "{files:?}");
 }
 
 #[test]
