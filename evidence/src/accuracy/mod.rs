@@ -32,7 +32,7 @@ pub const CAMPAIGNS: [Campaign; 2] = [
     },
     Campaign {
         name: "guarantee",
-        minutes: 40,
+        minutes: 20,
         seeds: "none",
         measure: guarantee::measure,
     },

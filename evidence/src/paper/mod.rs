@@ -19,13 +19,13 @@ pub const CAMPAIGNS: [Campaign; 3] = [
     },
     Campaign {
         name: "scans",
-        minutes: 15,
+        minutes: 10,
         seeds: "none",
         measure: scans::measure,
     },
     Campaign {
         name: "ensembles",
-        minutes: 50,
+        minutes: 40,
         seeds: "none; the directions of the starts are equally spaced",
         measure: ensembles::measure,
     },

@@ -19,7 +19,7 @@ use std::path::Path;
 pub const CAMPAIGNS: [Campaign; 3] = [
     Campaign {
         name: "maps",
-        minutes: 15,
+        minutes: 10,
         seeds: "none",
         measure: measure_maps,
     },

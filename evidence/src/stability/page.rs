@@ -52,6 +52,7 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
         classes => OutcomeClass::ALL.map(OutcomeClass::name),
         names => BTreeMap::from(OutcomeClass::ALL.map(|class| (class, class.name()))),
         runs => runs.len(),
+        totals => OutcomeClass::ALL.map(|class| runs.iter().filter(|run| run.3.0 == class).count()),
         methods => METHODS.iter().map(method).collect::<Vec<_>>(),
         large => made.iter().map(large).sum::<usize>(),
         silent => made.iter().flat_map(|one| silent(one, &known)).collect::<Vec<_>>(),

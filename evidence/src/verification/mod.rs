@@ -26,7 +26,7 @@ pub const CAMPAIGNS: [Campaign; 4] = [
     },
     Campaign {
         name: "faults",
-        minutes: 30,
+        minutes: 60,
         seeds: "none",
         measure: faults::measure,
     },
@@ -57,21 +57,18 @@ struct RungWords {
     asks: String,
 }
 
-/// VERIFICATION.md, its pictures, and the tables of all questions and survivors.
+/// VERIFICATION.md, its picture, and the tables of all questions and survivors.
 ///
 /// # Errors
 /// A record that is missing, a surviving mutant without a reason.
 fn render(data: &Data, out: &mut Output) -> Result<()> {
     let answers = data.read::<Vec<Answer>>("tests")?;
     let rungs: BTreeMap<Rung, RungWords> = table(data, "rungs")?;
-    for (rung, picture) in [
-        (Rung::OrderInTime, "order-in-time"),
-        (Rung::OrderInElements, "order-in-elements"),
-    ] {
+    let ordered = [Rung::OrderInTime, Rung::OrderInElements].map(|rung| {
         let of_rung = answers.results.iter().filter(|a| a.rung == rung);
-        let figure = figures::convergence(&rungs[&rung].title, of_rung);
-        out.picture(&format!("verification/{picture}"), &figure)?;
-    }
+        (rungs[&rung].title.as_str(), of_rung.collect())
+    });
+    out.picture("verification/orders", &figures::orders(ordered.into_iter()))?;
     let rung = |(rung, words): (&Rung, &RungWords)| {
         let of_rung = || answers.results.iter().filter(|a| a.rung == *rung);
         let nearest = of_rung().max_by(|a, b| a.used().total_cmp(&b.used()));
