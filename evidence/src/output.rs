@@ -2,7 +2,6 @@
 
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use minijinja::{Environment, Value, path_loader};
-use numbers::number;
 use paper_figures::environment;
 use plot::Figure;
 use records::{Origin, Record};
@@ -70,11 +69,7 @@ impl Output {
     /// Nothing rendered yet; templates are those below this root of a workspace.
     pub fn new(root: &Path) -> Output {
         let mut templates = environment();
-        // an error names its line; with all names and values it has thousands
-        templates.set_debug(false);
         templates.set_loader(path_loader(root.join("evidence/templates")));
-        templates.add_filter("number", |x: f64, digits: usize| number(x, digits));
-        templates.add_filter("cell", |text: String| text.replace('|', "\\|"));
         Output {
             templates,
             contexts: BTreeMap::new(),

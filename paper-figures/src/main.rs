@@ -21,14 +21,7 @@ fn main() -> Result<()> {
     let figures = figures::measure(&journal)?;
     let figures: FigureRecord = serde_json::from_value(figures).into_diagnostic()?;
     let seconds = journal.seconds().round();
-    let commit = &ensembles.origin.commit;
-    let page = context! {
-        stamp => format!("The runs of the figures were made with the present sources in {seconds} s."),
-        stamp_ensembles => format!("The ensembles were made at commit {commit}."),
-        commit => "the present sources", commit_ensembles => commit, pictures => ".",
-        ..statement::values(&figures, &ensembles.results)?
-    };
-    let page = environment().render_str(TEMPLATE, page).into_diagnostic()?;
+    let page = page(&figures, &ensembles, seconds)?;
     let folder = root.join("out/paper");
     fs::create_dir_all(&folder).into_diagnostic()?;
     let pictures = figures.pictures.iter();
@@ -39,4 +32,35 @@ fn main() -> Result<()> {
     }
     println!("{}", folder.join("REPRODUCTION.md").display());
     Ok(())
+}
+
+/// REPRODUCTION.md of runs that took so many seconds.
+fn page(
+    figures: &FigureRecord,
+    ensembles: &Record<EnsembleRecord>,
+    seconds: f64,
+) -> Result<String> {
+    let commit = &ensembles.origin.commit;
+    let page = context! {
+        stamp => format!("The runs of the figures were made with the present sources in {seconds} s."),
+        stamp_ensembles => format!("The ensembles were made at commit {commit}."),
+        commit => "the present sources", commit_ensembles => commit, pictures => ".",
+        ..statement::values(figures, &ensembles.results)?
+    };
+    environment().render_str(TEMPLATE, page).into_diagnostic()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_of_new_runs_has_the_statements_and_the_commit_of_the_ensembles() {
+        let data = root().join("evidence/data");
+        let figures: Record<FigureRecord> = Record::read(&data.join("figures.json")).unwrap();
+        let ensembles = Record::read(&data.join("ensembles.json")).unwrap();
+        let page = page(&figures.results, &ensembles, 60.0).unwrap();
+        assert!(page.contains("| 54 | Sect. 7 |"), "{page}");
+        assert!(page.contains(&format!("(ensembles of {})", ensembles.origin.commit)));
+    }
 }

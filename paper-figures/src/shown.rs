@@ -2,16 +2,18 @@
 
 use minijinja::value::Value;
 use minijinja::{AutoEscape, Environment, Error, ErrorKind, UndefinedBehavior};
-use numbers::{digits, percent, si};
+use numbers::{digits, number, percent, si};
 use statistics::Interval;
 
 /// Templates of Markdown. A name that a template gets wrong is an error, no empty text.
 ///
 /// There are the filters `si(unit)`, `digits` and `percent` of a number, or of a mean with its interval as "a ± b", and `exact`, which
-/// writes all digits, as in a file. Units may be % and none.
+/// writes all digits, as in a file. Units may be % and none. `number(digits)` is one as in a file, and `cell` a text in a table.
 pub fn environment() -> Environment<'static> {
     let mut templates = Environment::new();
     templates.set_undefined_behavior(UndefinedBehavior::Strict);
+    // an error names its line; with all names and values it has thousands
+    templates.set_debug(false);
     templates.set_trim_blocks(true);
     templates.set_keep_trailing_newline(true);
     templates.set_auto_escape_callback(|_| AutoEscape::None);
@@ -23,6 +25,8 @@ pub fn environment() -> Environment<'static> {
     templates.add_filter("exact", numbers::exact);
     templates.add_filter("digits", |x: Value| written(&x, digits));
     templates.add_filter("percent", |x: Value| written(&x, percent));
+    templates.add_filter("number", |x: f64, digits: usize| number(x, digits));
+    templates.add_filter("cell", |text: String| text.replace('|', "\\|"));
     templates
 }
 
