@@ -39,6 +39,8 @@ const REFERENCES: [f64; 7] = [1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14];
 pub const GOOD: f64 = 1e-10;
 /// Accuracy of neighbouring motions where joints are loose \[m\].
 const CLOSE: f64 = 1e-12;
+/// A run misses its accuracy that errs by more than this many times.
+pub const MISS: f64 = 3.0;
 /// From this amplification on a motion counts as one that amplifies errors.
 pub const AMPLIFIES: f64 = 10.0;
 /// Newton's tolerance for scenes of an explicit method, which have none \[m/s\].
@@ -81,7 +83,7 @@ pub struct Asked {
     pub end: RunEnd,
     /// Steps taken.
     pub steps: u64,
-    /// What it warns of.
+    /// What it warns of; kept of runs that miss their accuracy.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
 }
@@ -101,6 +103,15 @@ pub enum RunEnd {
 }
 
 impl GuaranteeEntry {
+    /// Leaves out the warnings that no page has.
+    fn shorten(&mut self) {
+        let mut runs = std::mem::take(&mut self.runs);
+        let misses = |run: &Asked| self.ratio(run).is_some_and(|ratio| ratio > MISS);
+        let hits = runs.iter_mut().filter(|run| !misses(run));
+        hits.for_each(|run| run.warnings.clear());
+        self.runs = runs;
+    }
+
     /// Error achieved over accuracy asked for, of a complete run whose reference is good enough.
     pub fn ratio(&self, run: &Asked) -> Option<f64> {
         let (RunEnd::Complete(Some(error)), Some([_, floor])) = (&run.end, self.facts.reference)
@@ -143,7 +154,9 @@ fn parameters(method: &str) -> impl Iterator<Item = String> {
 pub fn measure(journal: &Journal) -> Result<serde_json::Value> {
     let name = |scene: &MeasuredScene| scene.name.clone();
     let entries = journal.items(&dynamic_scenes()?, THREADS, name, MeasuredScene::entries)?;
-    results(entries.concat())
+    let mut entries = entries.concat();
+    entries.iter_mut().for_each(GuaranteeEntry::shorten);
+    results(entries)
 }
 
 /// Dynamic scenes of the project, in the order of their names.

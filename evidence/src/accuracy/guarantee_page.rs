@@ -2,15 +2,12 @@
 
 use crate::accuracy::amplification::NEIGHBOURS;
 use crate::accuracy::guarantee::{
-    ACCURACIES, AMPLIFIES, Asked, GOOD, GuaranteeEntry, LOOSE_HORIZON, REFERENCE_STEPS, ROWS,
+    ACCURACIES, AMPLIFIES, Asked, GOOD, GuaranteeEntry, LOOSE_HORIZON, MISS, REFERENCE_STEPS, ROWS,
     RunEnd, SPECTRAL_RADIUS, STEPS, methods,
 };
 use minijinja::{Value, context};
 use numbers::{digits, percent, si};
 use plot::{Axis, Figure, Mark, Panel, palette};
-
-/// A ratio above this is a miss.
-const MISS: f64 = 3.0;
 
 /// A run that is judged.
 struct Judged<'a> {

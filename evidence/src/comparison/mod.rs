@@ -46,6 +46,21 @@ struct Comparison {
 struct Section {
     title: String,
     rows: Vec<Agreement>,
+    /// Comparisons of nothing but zeros, which have no row.
+    zeros: usize,
+}
+
+impl Section {
+    fn new(title: &str, rows: Vec<Agreement>) -> Section {
+        let (zeros, rows): (Vec<_>, Vec<_>) = rows
+            .into_iter()
+            .partition(|row| row.standing == Standing::Zero);
+        Section {
+            title: title.to_owned(),
+            rows,
+            zeros: zeros.len(),
+        }
+    }
 }
 
 const HORIZON: &str = "The difference starts at rounding level, grows with every impact and reaches the size of the motion; a \
@@ -104,13 +119,9 @@ fn all<T>(things: Vec<T>, rows: impl Fn(&T) -> Rows) -> Rows {
 }
 
 fn measure(journal: &Journal) -> Result<serde_json::Value> {
-    let section = |title: &str, rows| Section {
-        title: title.to_owned(),
-        rows,
-    };
     let title = "Cases 1 and 2: ideal joints";
     let (rows, figure) = journal.item(title, ideal)?;
-    let ideal = section(title, rows);
+    let ideal = Section::new(title, rows);
     let mut pictures = vec![("convergence".to_owned(), figure)];
     for (name, duration, interval, steps, remark) in OVERLAYS {
         let plan = ComparisonPlan::new(format!("3rrr/{name}"), duration, interval);
@@ -120,14 +131,14 @@ fn measure(journal: &Journal) -> Result<serde_json::Value> {
     }
     let mut sections = Vec::new();
     for (title, rows) in SECTIONS {
-        sections.push(section(title, journal.item(title, rows)?));
+        sections.push(Section::new(title, journal.item(title, rows)?));
     }
     // after the equations
     sections.insert(2, ideal);
     let runs = statistics::runs();
     let measured = journal.items(&runs, threads(), ChaoticRun::name, ChaoticRun::measure)?;
     let rows = statistics::agreements(&runs, &measured);
-    sections.push(section(MEANS, rows));
+    sections.push(Section::new(MEANS, rows));
     results(Comparison {
         versions: reference::versions(),
         sections,
@@ -157,7 +168,6 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
         .flat_map(|section| &section.rows)
         .partition(|row| row.standing == Standing::Apart);
     let counted = || rows().filter(|row| row.counts());
-    let of = |standing| rows().filter(move |row| row.standing == standing);
     let (variants, mistakes): (Vec<_>, Vec<_>) =
         faults.results.iter().partition(|f| f.fault.is_variant());
     let page = context! {
@@ -165,10 +175,10 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
         versions => found.versions,
         count => counted().count(),
         held => counted().filter(|row| row.holds()).count(),
-        apart => of(Standing::Apart).collect::<Vec<_>>(),
+        apart => rows().filter(|row| !row.counts()).collect::<Vec<_>>(),
         differing => compared.iter().filter(|row| !row.holds()).count(),
         means => compared, told_apart,
-        zeros => of(Standing::Zero).count(),
+        zeros => sections.iter().map(|one| one.zeros).sum::<usize>(),
         sections => sections.iter().map(|one| section(one)).collect::<Vec<_>>(),
         faults => context! { stamp => stamp(&faults.origin), mistakes, variants },
     };
