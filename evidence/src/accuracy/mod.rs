@@ -3,7 +3,7 @@
 
 mod amplification;
 mod diagram;
-pub mod guarantee;
+mod guarantee;
 mod guarantee_page;
 pub mod page;
 
@@ -57,10 +57,10 @@ struct Accuracy {
 /// A study and what came of it.
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
-struct MadeStudy<C: Compared> {
+pub(crate) struct MadeStudy<C: Compared> {
     /// Name of its file without the extension.
-    name: String,
-    found: Found<C>,
+    pub name: String,
+    pub found: Found<C>,
     /// Times of the runs, which `found` leaves out.
     timings: Vec<Option<RunTiming>>,
 }

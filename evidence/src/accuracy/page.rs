@@ -14,7 +14,7 @@ use studies::precision::{
 };
 
 /// A study of errors of motion.
-pub(super) type Motion = MadeStudy<MotionReference>;
+pub(crate) type Motion = MadeStudy<MotionReference>;
 
 /// Errors of position at which methods are compared \[m\].
 const LEVELS: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
@@ -158,38 +158,13 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
     out.site_page("guarantee.md", "site/guarantee.md", &page)
 }
 
-/// A run of a study and its processor time \[s\].
-pub struct Timed {
-    /// Study.
-    pub study: String,
-    /// Curve.
-    pub curve: String,
-    /// Error of position \[m\].
-    pub error: f64,
-    /// Median.
-    pub seconds: f64,
-}
-
-/// All runs of the studies of motions.
+/// The studies of motions.
 ///
 /// # Errors
 /// A record that is missing.
-pub fn timed(data: &Data) -> Result<Vec<Timed>> {
+pub(crate) fn motions(data: &Data) -> Result<Vec<Motion>> {
     let studies = data.read::<Accuracy>("accuracy")?.results.studies;
-    let studies = studies.into_iter().map(MadeStudy::restored);
-    let runs = studies.flat_map(|one: Motion| {
-        let runs = one.found.runs.iter().zip(&one.found.timings);
-        let timed = runs.filter_map(|(run, timing)| {
-            Some(Timed {
-                study: one.name.clone(),
-                curve: run.curve.to_string(),
-                error: run.result.as_ref().ok()?.errors.position,
-                seconds: timing.as_ref()?.median,
-            })
-        });
-        timed.collect::<Vec<_>>()
-    });
-    Ok(runs.collect())
+    Ok(studies.into_iter().map(MadeStudy::restored).collect())
 }
 
 fn table<C: Compared>(one: &MadeStudy<C>, table: String) -> Value {

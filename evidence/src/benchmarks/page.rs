@@ -1,6 +1,6 @@
 //! BENCHMARKS.md. Only times of runs that were made count.
 
-use crate::accuracy::page::{AUTOMATIC, Timed, timed};
+use crate::accuracy::page::{AUTOMATIC, Motion, motions};
 use crate::accuracy::study;
 use crate::benchmarks::Measured;
 use crate::benchmarks::family::Family;
@@ -40,7 +40,7 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
         largest => Family::ALL.iter().filter_map(|family| largest(measured, *family)).collect::<Vec<_>>(),
         exponents => exponents(measured),
         rivals => rivals(data.root(), &measured.rivals)?,
-        repeated => repeated(&measured.rivals, &timed(data)?),
+        repeated => repeated(&measured.rivals, &motions(data)?),
     };
     out.page("BENCHMARKS.md", "benchmarks.md", &page)?;
     out.site_page("rivals.md", "site/rivals.md", &page)
@@ -140,24 +140,33 @@ fn two_digits(ratio: f64) -> String {
 
 /// How times repeat: runs of Looselink that the studies of accuracy have too, and the ratios between which four fifths of their
 /// times lie.
-fn repeated(rivals: &Rivals, others: &[Timed]) -> Value {
+fn repeated(rivals: &Rivals, studies: &[Motion]) -> Value {
     let own = rivals.curves.iter().filter(|c| c.code == Code::Looselink);
     let points = own.flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
     let ratios = points.filter_map(|(curve, [error, seconds])| {
-        let is_same = |other: &&Timed| {
-            // records keep five digits
-            let errors = (other.error - error).abs() <= 1e-4 * error;
-            other.study == curve.study && other.curve == curve.method && errors
-        };
-        Some(seconds / others.iter().find(is_same)?.seconds)
+        let one = studies.iter().find(|one| one.name == curve.study)?;
+        let other = one
+            .found
+            .runs
+            .iter()
+            .zip(&one.found.timings)
+            .find(|(run, _)| {
+                // records keep five digits
+                let is_same = |other: f64| (other - error).abs() <= 1e-4 * error;
+                run.curve == curve.method
+                    && run
+                        .result
+                        .as_ref()
+                        .is_ok_and(|r| is_same(r.errors.position))
+            });
+        Some(seconds / other?.1.as_ref()?.median)
     });
     let mut ratios: Vec<f64> = ratios.collect();
     ratios.sort_by(f64::total_cmp);
     let of = |tenth: usize| {
         ratios
             .get(tenth * ratios.len() / 10)
-            .copied()
-            .map(two_digits)
+            .map(|ratio| two_digits(*ratio))
     };
     context! { runs => ratios.len(), least => of(1), most => of(9) }
 }

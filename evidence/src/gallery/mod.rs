@@ -5,15 +5,15 @@ mod runs;
 
 use crate::campaign::{Campaign, Renderer, results};
 use crate::output::{Data, Output, stamp};
-use looselink::scene::{Analysis, Pace, Scene};
+use looselink::scene::{Accuracy, Analysis, Pace, Scene};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use minijinja::{Value, context};
-use numbers::si;
 use plot::Figure;
 use records::Journal;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
+use studies::precision::StudyPace;
 
 /// The campaign.
 pub const CAMPAIGN: Campaign = Campaign {
@@ -122,12 +122,13 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
         for entry in &section.scenes {
             let card = record.results.iter().find(|card| card.name == entry.name);
             let slug = entry.name.replace('/', "-");
+            let scene = scene(data.root(), &entry.name)?;
             if let Some(card) = card {
                 let mut figure = card.figure.clone();
-                figure.caption = caption_of(data.root(), &entry.name)?;
+                figure.caption = caption(&entry.name, &scene);
                 out.picture(&format!("gallery/{slug}"), &figure)?;
             }
-            entries.push(context! { ..context! { slug, name => entry.name, says => entry.says, title => scene(data.root(), &entry.name)?.title },
+            entries.push(context! { ..context! { slug, name => entry.name, says => entry.says, title => scene.title },
                 ..card.map_or(Value::UNDEFINED, |c| context! { unknowns => c.unknowns, contacts => c.contacts, onsets => c.onsets, multipliers => c.multipliers }) });
         }
         sections.push(context! { title => section.title, pictures => section.pictures, entries });
@@ -146,7 +147,10 @@ fn scene(root: &Path, name: &str) -> Result<Scene> {
 /// # Errors
 /// A scene that cannot be read.
 pub fn caption_of(root: &Path, name: &str) -> Result<String> {
-    let scene = scene(root, name)?;
+    Ok(caption(name, &scene(root, name)?))
+}
+
+fn caption(name: &str, scene: &Scene) -> String {
     let integrator = &scene.integrator;
     let method = match integrator.automatic {
         true => "auto",
@@ -154,12 +158,24 @@ pub fn caption_of(root: &Path, name: &str) -> Result<String> {
     };
     let how = match (scene.simulation.analysis, integrator.pace) {
         (Analysis::Static, _) => "equilibria".to_owned(),
-        (_, Pace::Step(step)) => format!("method {method}, step {}", si(step, "s")),
-        (_, Pace::Accuracy(accuracy)) => {
-            format!("method {method}, accuracy {}", si(accuracy.position, "m"))
+        (_, Pace::Step(step)) => format!("method {method}, {}", StudyPace::Step(step)),
+        (
+            _,
+            Pace::Accuracy(Accuracy {
+                position,
+                energy,
+                horizon,
+            }),
+        ) => {
+            let pace = StudyPace::Accuracy {
+                position,
+                energy,
+                horizon,
+            };
+            format!("method {method}, {pace}")
         }
     };
-    Ok(format!("Scene {name}: {how}."))
+    format!("Scene {name}: {how}.")
 }
 
 #[cfg(test)]

@@ -129,7 +129,6 @@ pub struct MadeMap {
     /// What came of it.
     pub panels: Vec<MapPanel>,
     /// Widest range of the channels of the reference, for each value of the parameter.
-    #[serde(default)]
     pub ranges: Vec<f64>,
     /// First warnings of errors and causes of stops, without their numbers.
     pub said: IndexSet<String>,
@@ -300,8 +299,13 @@ impl Map {
         match self.scene(value, &set).and_then(|scene| record(&scene)) {
             Ok((recording, report)) => {
                 let error = difference(&recording, reference);
-                let range = (range(reference), self.unsaid);
-                let outcome = judge(error, self.tolerance, range, &report);
+                let outcome = judge(
+                    error,
+                    self.tolerance,
+                    range(reference),
+                    self.unsaid,
+                    &report,
+                );
                 let shown = error.is_finite().then(|| numbers::rounded(error, 3));
                 (outcome, shown, report.error_warnings().into_iter().next())
             }

@@ -83,14 +83,9 @@ pub fn record(scene: &Scene) -> Result<(Recording, Report), Stopped> {
     }
 }
 
-/// What a run that reached its end is called by its largest error; one beyond this part of the range of the channels needs a
-/// warning of an error.
-pub fn judge(
-    error: f64,
-    tolerance: f64,
-    (range, unsaid): (f64, f64),
-    report: &Report,
-) -> OutcomeClass {
+/// What a run that reached its end is called by its largest error; one beyond the part `unsaid` of the range of the channels
+/// needs a warning of an error.
+pub fn judge(error: f64, tolerance: f64, range: f64, unsaid: f64, report: &Report) -> OutcomeClass {
     if error <= tolerance {
         return OutcomeClass::Accurate;
     }

@@ -1,11 +1,11 @@
 //! STABILITY.md, its pictures, and the tables of all runs.
 
-use crate::accuracy::guarantee;
 use crate::output::{Data, Output, stamp};
 use crate::stability::Maps;
 use crate::stability::cases::{Check, cases};
 use crate::stability::map::{AUTO, KnownSilent, METHODS, MadeMap, MapCell, MapPanel, known_silent};
 use crate::stability::outcome::{OutcomeClass, is_beyond};
+use looselink::stepper::SCHEMES;
 use miette::Result;
 use minijinja::{Value, context};
 use numbers::{number, si};
@@ -59,7 +59,7 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
         checks => checks.map(check).collect::<Vec<_>>(),
         maps => made.iter().map(map).collect::<Vec<_>>(),
         titles => cases()?.into_iter().map(|case| case.title).collect::<Vec<_>>(),
-        soak_methods => guarantee::methods().into_iter().filter(|name| !soak.results["tallies"][name].is_null()).collect::<Vec<_>>(),
+        soak_methods => SCHEMES.iter().map(|scheme| scheme.name).filter(|name| !soak.results["tallies"][name].is_null()).collect::<Vec<_>>(),
         soak => &soak.results, fuzz => &fuzz.results,
     };
     out.page("STABILITY.md", "stability.md", &page)?;
@@ -68,15 +68,14 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
 
 /// Runs of a map that reached their end with an error that needs a warning.
 fn large(one: &MadeMap) -> usize {
-    let ranges = one.map.parameter.values.iter().zip(&one.ranges);
-    let beyond = |value: f64, error: f64| {
-        let mut ranges = ranges.clone();
-        ranges.any(|(at, range)| *at == value && is_beyond(error, one.map.unsaid * range))
-    };
-    let runs = one
-        .runs()
-        .filter(|run| run.3.1.is_some_and(|error| beyond(run.1, error)));
-    runs.count()
+    let panels = one.panels.iter();
+    let rows = panels.flat_map(|panel| panel.cells.iter().zip(&one.ranges));
+    let large = rows.flat_map(|(row, range)| {
+        let bound = one.map.unsaid * range;
+        row.iter()
+            .filter(move |cell| cell.1.is_some_and(|error| is_beyond(error, bound)))
+    });
+    large.count()
 }
 
 /// Runs of a map that are wrong in silence.

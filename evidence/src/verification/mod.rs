@@ -94,7 +94,7 @@ fn render(data: &Data, out: &mut Output) -> Result<()> {
 fn row(answer: &Answer) -> Value {
     context! {
         holds => answer.holds(), question => answer.question, number => short(answer.number),
-        allowed => answer.allowed.to_string(), reason => answer.reason, source => answer.source, path => answer.file,
+        allowed => answer.allowed.to_string(), reason => answer.reason, source => answer.source, path => answer.file, curve => answer.curve,
     }
 }
 

@@ -43,7 +43,7 @@ pub(super) fn long_steps() -> Vec<f64> {
                     let columns = exact.names()[1..].iter().filter_map(|name| exact.get(name));
                     let range = largest(columns.flat_map(|x| x.iter().map(|v| v - x[0])));
                     let error = difference(&exact, &recording);
-                    judge(error, 0.01 * range, (range, UNSAID), &report)
+                    judge(error, 0.01 * range, range, UNSAID, &report)
                 }
                 Err(stopped) => judge_stop(&stopped),
             };
