@@ -249,7 +249,8 @@ fn compose(done: &mut [Kept], [loose, both, flexible]: [usize; 3]) {
     }
 }
 
-fn mesh(elements: usize) -> Vec<String> {
+/// Overrides for so many elements a link.
+pub fn mesh(elements: usize) -> Vec<String> {
     let of = |i| format!("bodies.link{i}.elements={elements}");
     (1..=3).map(of).collect()
 }

@@ -1,6 +1,6 @@
 //! Explicit and implicit methods in counted work, and what they do over many cycles.
 
-use crate::ensembles::{MOVED, STARTS, moved};
+use crate::ensembles::{MOVED, STARTS, mesh, mesh_name, moved};
 use crate::kinematics::MechanismGeometry;
 use crate::measures::deviation;
 use crate::runs::{CaseRecording, RunPace, RunPlan, words};
@@ -31,6 +31,8 @@ const METHODS: [&str; 9] = [
 const OF_LONG_RUNS: [&str; 4] = ["bathe", "trapezoidal", "generalized_alpha", "hht"];
 /// Spectral radius at infinite frequency of generalised-alpha and HHT.
 const RADIUS: f64 = 0.8;
+/// Cases and elements a link in which methods are compared: the paper's meshes, and a finer one, which is stiffer.
+pub const MODELS: [(u32, usize); 3] = [(2, 1), (2, 16), (4, 1)];
 /// Compared over this time \[s\], which the first impacts of case 4 fall into.
 pub const HORIZON: f64 = 6e-3;
 /// Time between compared rows \[s\]; no step is longer.
@@ -53,6 +55,8 @@ const LONG: [(u32, f64, f64, usize); 3] = [
 pub struct MethodWork {
     /// Case of Table 2.
     pub case: u32,
+    /// Elements a link.
+    pub elements: usize,
     /// Method as in the scene.
     pub method: String,
     /// Step \[s\].
@@ -89,20 +93,43 @@ pub struct Long {
 }
 
 impl MethodWork {
+    /// With what a run gave.
+    fn of(mut self, run: Result<CaseRecording>, reference: &[f64]) -> MethodWork {
+        match run {
+            Err(error) => self.warnings.push(format!("stopped: {error:#}")),
+            Ok(done) => {
+                let pairs = done.column("error.x").iter().zip(reference);
+                let apart: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
+                self.error = Some(rounded(peak(&apart), 6));
+                self.evaluations = evaluations(&done);
+                self.warnings = done.warnings;
+            }
+        }
+        self
+    }
+
     /// The run in words.
     pub fn name(&self) -> String {
-        named(self.case, &self.method, self.step)
+        named(&model(self.case, self.elements), &self.method, self.step)
     }
 }
 
-fn named(case: u32, method: &str, step: f64) -> String {
-    format!("case {case}, {} with h = {}", words(method), si(step, "s"))
+/// A case and its mesh in words.
+pub fn model(case: u32, elements: usize) -> String {
+    match elements {
+        1 => format!("case {case}"),
+        _ => format!("case {case} with {}", mesh_name(elements)),
+    }
+}
+
+fn named(model: &str, method: &str, step: f64) -> String {
+    format!("{model}, {} with h = {}", words(method), si(step, "s"))
 }
 
 impl Long {
     /// The runs in words.
     pub fn name(&self) -> String {
-        let name = named(self.case, &self.method, self.step);
+        let name = named(&model(self.case, 1), &self.method, self.step);
         format!("{name} over {} cycles", self.cycles)
     }
 
@@ -135,15 +162,20 @@ fn plan(case: u32, method: &'static str, step: f64, interval: f64, duration: f64
     }
 }
 
-/// Error and counted work of every method over a ladder of steps, in cases 2 and 4.
+/// Error and counted work of every method over a ladder of steps, in every model.
 ///
 /// # Errors
 /// When the reference fails; a run that stops is a result.
 pub fn work(journal: &Journal) -> Result<Vec<MethodWork>> {
     let mut all = Vec::new();
-    for case in [2, 4] {
-        let reference: Vec<f64> = journal.item(&format!("reference {case}"), || {
-            let run = plan(case, "dormand_prince", REFERENCE, ROWS, HORIZON).run()?;
+    for (case, elements) in MODELS {
+        let meshed = |method, step| {
+            let plan = plan(case, method, step, ROWS, HORIZON);
+            mesh(elements).into_iter().fold(plan, RunPlan::with)
+        };
+        let model = format!("{case} {elements}");
+        let reference: Vec<f64> = journal.item(&format!("reference {model}"), || {
+            let run = meshed("dormand_prince", REFERENCE).run()?;
             Ok(run.column("error.x").to_vec())
         })?;
         // velocity Verlet keeps no constraints, and case 2 has those of its ideal joints
@@ -153,37 +185,24 @@ pub fn work(journal: &Journal) -> Result<Vec<MethodWork>> {
         let keys: Vec<(&'static str, u32)> = methods
             .flat_map(|m| PARTS.map(|parts| (*m, parts)))
             .collect();
-        let name = |(method, parts): &(&str, u32)| format!("work {case} {method} {parts}");
+        let name = |(method, parts): &(&str, u32)| format!("work {model} {method} {parts}");
         let run = |(method, parts): &(&'static str, u32)| {
             let step = ROWS / f64::from(*parts);
-            Ok(work_of(case, method, step, &reference))
+            let work = MethodWork {
+                case,
+                elements,
+                method: (*method).into(),
+                step: rounded(step, 9),
+                evaluations: 0,
+                error: None,
+                size: rounded(peak(&reference), 6),
+                warnings: Vec::new(),
+            };
+            Ok(work.of(meshed(method, step).run(), &reference))
         };
         all.extend(journal.items(&keys, threads(), name, run)?);
     }
     Ok(all)
-}
-
-fn work_of(case: u32, method: &'static str, step: f64, reference: &[f64]) -> MethodWork {
-    let mut work = MethodWork {
-        case,
-        method: method.into(),
-        step: rounded(step, 9),
-        evaluations: 0,
-        error: None,
-        size: rounded(peak(reference), 6),
-        warnings: Vec::new(),
-    };
-    match plan(case, method, step, ROWS, HORIZON).run() {
-        Err(error) => work.warnings.push(format!("stopped: {error:#}")),
-        Ok(done) => {
-            let pairs = done.column("error.x").iter().zip(reference);
-            let apart: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
-            work.error = Some(rounded(peak(&apart), 6));
-            work.evaluations = evaluations(&done);
-            work.warnings = done.warnings;
-        }
-    }
-    work
 }
 
 /// How often the elastic force of an element was evaluated; implicit methods evaluate its tangent with it.

@@ -2,7 +2,7 @@
 
 use super::{Decide, Decision};
 use crate::evidence::Evidence;
-use crate::methods::{Long, MethodWork, explicit};
+use crate::methods::{Long, MODELS, MethodWork, explicit, model};
 use crate::verdict::{above, all, below, holds, within};
 use minijinja::context;
 use numbers::{digits, percent};
@@ -41,7 +41,7 @@ pub const DECISIONS: [Decide; 9] = [
     ("explicit fails", explicit_fails),
     ("implicit", |e| {
         let (ratios, _) = work(e);
-        let met = ratios.len() == 4 && ratios.iter().all(|r| *r > MUCH);
+        let met = ratios.len() == MODELS.len() * LEVELS.len() && ratios.iter().all(|r| *r > MUCH);
         (holds(met), context! { ratios })
     }),
     ("others unstable", |e| {
@@ -55,11 +55,15 @@ pub const DECISIONS: [Decide; 9] = [
 /// all shorter ones of the same method: a coarse step can be right by accident.
 fn cheapest<'a>(
     e: &'a Evidence,
-    case: u32,
+    (case, elements): (u32, usize),
     is_explicit: bool,
     level: f64,
 ) -> Option<&'a MethodWork> {
-    let runs = || e.ensembles().work.iter().filter(|w| w.case == case);
+    let work = &e.ensembles().work;
+    let runs = || {
+        work.iter()
+            .filter(|w| (w.case, w.elements) == (case, elements))
+    };
     let good = |w: &MethodWork| w.error.is_some_and(|error| error <= level * w.size);
     let reached = |w: &&MethodWork| {
         let mut same = runs().filter(|f| f.method == w.method);
@@ -68,18 +72,19 @@ fn cheapest<'a>(
     runs().filter(reached).min_by_key(|w| w.evaluations)
 }
 
-/// Explicit over implicit work at every level of both cases, and in words.
+/// Explicit over implicit work at every level of every model, and in words.
 fn work(e: &Evidence) -> (Vec<f64>, String) {
     let (mut ratios, mut text) = (Vec::new(), Vec::new());
-    for (case, level) in [2, 4]
-        .map(|case| LEVELS.map(|level| (case, level)))
+    for ((case, elements), level) in MODELS
+        .map(|model| LEVELS.map(|level| (model, level)))
         .concat()
     {
         let at = percent(level);
-        let pair = [true, false].map(|explicit| cheapest(e, case, explicit, level));
+        let pair = [true, false].map(|explicit| cheapest(e, (case, elements), explicit, level));
         let [Some(one), Some(other)] = pair else {
+            let model = model(case, elements);
             text.push(format!(
-                "case {case} at {at}: not reached by both kinds of method"
+                "{model} at {at}: not reached by both kinds of method"
             ));
             continue;
         };
@@ -98,7 +103,9 @@ fn explicit_fails(e: &Evidence) -> Decision {
     let all = &e.ensembles().work;
     let useless = |w: &&&MethodWork| w.error.is_none_or(|error| error > w.size);
     let bathe_works = |w: &&&MethodWork| {
-        let same = |b: &&MethodWork| b.method == "bathe" && b.case == w.case && b.step == w.step;
+        let same = |b: &&MethodWork| {
+            b.method == "bathe" && (b.case, b.elements, b.step) == (w.case, w.elements, w.step)
+        };
         let error = all.iter().find(same).and_then(|b| b.error);
         error.is_some_and(|error| error < 0.1 * w.size)
     };
