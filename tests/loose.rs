@@ -207,7 +207,7 @@ fn numerical_dissipation_is_small_against_that_of_the_contacts() {
         worst.see(numerical / contact);
     }
     Rung::Balance
-        .asks("3-RRR with loose joints (cases 3 and 4), last two cycles: numerical loss of energy over the contact dissipation")
+        .asks("3-RRR with loose joints (cases 3 and 4), last two cycles: energy lost or gained by the integrator over the contact dissipation")
         .within(&worst,
             0.05,
             "the share above which a run warns"

@@ -807,7 +807,7 @@ fn the_estimate_of_a_vibration_stands_for_what_its_steps_add_up_to() {
         }
     }
     Rung::Routes
-        .asks("Vibration of 0.1 to 3.5 rad a step in 1e3 to 1e6 steps, four embedded methods: error over the one that the control counts")
+        .asks("Undamped oscillator, 0.1 to 3.5 rad a step, 1e3 to 1e6 steps, four embedded methods: error over the estimate of the control")
         .within(&least, 2.5, "counted is at least 0.4 of the error, see `stepper::Estimate::response`");
     Rung::Routes
         .asks("The same while its error is below a tenth of the amplitude: error that the control counts over the error")
