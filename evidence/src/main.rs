@@ -107,7 +107,9 @@ fn render(check: bool) -> Result<()> {
         }
     }
     if complete {
-        output.page_of_pages("EVIDENCE.md", "evidence.md")?;
+        let records = RENDERERS.iter().flat_map(|renderer| renderer.records);
+        let recorded = data.recorded(records.copied())?;
+        output.page_of_pages("EVIDENCE.md", "evidence.md", &recorded)?;
         output.find_stale(&root)?;
     }
     output.write_site(&root.join("target/tables"))?;

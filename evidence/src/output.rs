@@ -1,13 +1,13 @@
 //! Pages and pictures on their way from records to files.
 
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use minijinja::{Environment, Value, path_loader};
+use minijinja::{Environment, Value, context, path_loader};
 use paper_figures::environment;
 use plot::Figure;
 use records::{Origin, Record};
 use serde::Serialize;
-use serde::de::DeserializeOwned;
-use std::collections::BTreeMap;
+use serde::de::{DeserializeOwned, IgnoredAny};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -34,6 +34,20 @@ impl Data {
     /// True once the campaign has been recorded.
     pub fn has(&self, campaign: &str) -> bool {
         path(&self.root, campaign).exists()
+    }
+
+    /// When and at which commit these campaigns were recorded, the latest first.
+    ///
+    /// # Errors
+    /// As [`Data::read`].
+    pub fn recorded<'a>(&self, campaigns: impl Iterator<Item = &'a str>) -> Result<Vec<Value>> {
+        let mut recorded: BTreeMap<_, BTreeSet<&str>> = BTreeMap::new();
+        for name in campaigns {
+            let Origin { date, commit, .. } = self.read::<IgnoredAny>(name)?.origin;
+            recorded.entry((date, commit)).or_default().insert(name);
+        }
+        let one = |((date, commit), campaigns)| context! { date, commit, campaigns };
+        Ok(recorded.into_iter().rev().map(one).collect())
     }
 
     /// The record of a campaign.
@@ -92,12 +106,15 @@ impl Output {
         keep(&mut self.tracked, path, text)
     }
 
-    /// A tracked page about other pages: its names are those of the templates rendered so far.
+    /// A tracked page about other pages: its names are those of the templates rendered so far, and `recorded`.
     ///
     /// # Errors
     /// As [`Output::page`].
-    pub fn page_of_pages(&mut self, path: &str, template: &str) -> Result<()> {
-        let text = self.rendered(template, &self.contexts)?;
+    pub fn page_of_pages(&mut self, path: &str, template: &str, recorded: &[Value]) -> Result<()> {
+        let text = self.rendered(
+            template,
+            context! { recorded, ..Value::from_serialize(&self.contexts) },
+        )?;
         keep(&mut self.tracked, path, text)
     }
 

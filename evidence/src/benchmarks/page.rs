@@ -8,8 +8,9 @@ use crate::benchmarks::figures::{self, sizes};
 use crate::benchmarks::growth::{self, SizeCost, SizeOf, exponent};
 use crate::benchmarks::rivals::{Code, RivalCurve, Rivals, STUDIES, best, is_known};
 use crate::benchmarks::settings::{LONGEST, ORDERS, RATIOS, SettingsSweep, TOLERANCES};
-use crate::benchmarks::standings::{LEVELS, Standing};
+use crate::benchmarks::standings::{LEVELS, Standing, TimeRatio};
 use crate::output::{Data, Output, stamp};
+use indexmap::IndexSet;
 use miette::Result;
 use minijinja::{Value, context};
 use numbers::{digits, rounded, si};
@@ -33,14 +34,20 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
     let seconds = measured.steps.iter().map(|step| step.seconds);
     let [shortest, longest] = range(seconds).map(|t| si(t, "s"));
     let most = measured.sizes.iter().map(|cost| cost.bodies).max();
+    let repeated = repeated(&measured.rivals, &motions(data)?);
+    let scatter = [1, 9].map(|tenth| {
+        let ratio = repeated.get(tenth * repeated.len() / 10);
+        ratio.copied().unwrap_or(f64::NAN)
+    });
+    let [shorter, longer] = scatter.map(two_digits);
     let page = context! {
         stamp => stamp(&record.origin),
         steps => steps.collect::<Vec<_>>(), shortest, longest,
         most_bodies => most, decade => most.unwrap_or(0) / 10, growth_steps => growth::STEPS,
         largest => Family::ALL.iter().filter_map(|family| largest(measured, *family)).collect::<Vec<_>>(),
         exponents => exponents(measured),
-        rivals => rivals(data.root(), &measured.rivals)?,
-        repeated => repeated(&measured.rivals, &motions(data)?),
+        rivals => rivals(data.root(), &measured.rivals, scatter[1])?,
+        repeated => context! { runs => repeated.len(), least => shorter, most => longer, inverse => two_digits(1.0 / scatter[1]) },
     };
     out.page("BENCHMARKS.md", "benchmarks.md", &page)?;
     out.site_page("rivals.md", "site/rivals.md", &page)
@@ -95,8 +102,8 @@ fn largest(measured: &Measured, family: Family) -> Option<Value> {
     Some(context! { name => family.name(), bodies => largest.bodies, cells })
 }
 
-/// Other codes.
-fn rivals(root: &Path, rivals: &Rivals) -> Result<Value> {
+/// Other codes; times that differ by less than the factor `scatter` do not tell which is faster.
+fn rivals(root: &Path, rivals: &Rivals, scatter: f64) -> Result<Value> {
     let curves = &rivals.all_curves();
     let durations = STUDIES.iter().map(|name| {
         let duration = si(study(root, name)?.duration, "s");
@@ -113,7 +120,7 @@ fn rivals(root: &Path, rivals: &Rivals) -> Result<Value> {
     let methods = methods.iter().map(|method| {
         let cells = Code::ALL[1..].iter().map(|rival| {
             let found = Standing::new(curves, *rival, *method);
-            context! { rival => rival.name(), ..standing(&found) }
+            context! { rival => rival.name(), ..standing(&found, scatter) }
         });
         let name = method.unwrap_or("the fastest of all methods");
         context! { name, cells => cells.collect::<Vec<_>>() }
@@ -122,8 +129,10 @@ fn rivals(root: &Path, rivals: &Rivals) -> Result<Value> {
         let difference = si(solution.difference_from_looselink?, "m");
         Some(context! { study => solution.study, method => solution.method, difference })
     });
+    let exudyn_methods = curves.iter().filter(|c| c.code == Code::Exudyn);
+    let exudyn_methods: IndexSet<&str> = exudyn_methods.map(|c| c.method.as_str()).collect();
     Ok(context! {
-        exudyn => Code::Exudyn.name(), durations => durations.collect::<Result<Vec<_>>>()?.join(", "),
+        exudyn => Code::Exudyn.name(), exudyn_methods, durations => durations.collect::<Result<Vec<_>>>()?.join(", "),
         loosest => TOLERANCES[0], longest => si(LONGEST, "s"), newton => NEWTON, ratios => RATIOS, orders => ORDERS,
         errors => LEVELS.map(|error| si(error, "m")),
         methods => methods.collect::<Vec<_>>(),
@@ -138,9 +147,8 @@ fn two_digits(ratio: f64) -> String {
     digits(rounded(ratio, 2))
 }
 
-/// How times repeat: runs of Looselink that the studies of accuracy have too, and the ratios between which four fifths of their
-/// times lie.
-fn repeated(rivals: &Rivals, studies: &[Motion]) -> Value {
+/// How times repeat: of every run of Looselink that the studies of accuracy have too its time over theirs, the least first.
+fn repeated(rivals: &Rivals, studies: &[Motion]) -> Vec<f64> {
     let own = rivals.curves.iter().filter(|c| c.code == Code::Looselink);
     let points = own.flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
     let ratios = points.filter_map(|(curve, [error, seconds])| {
@@ -163,16 +171,11 @@ fn repeated(rivals: &Rivals, studies: &[Motion]) -> Value {
     });
     let mut ratios: Vec<f64> = ratios.collect();
     ratios.sort_by(f64::total_cmp);
-    let of = |tenth: usize| {
-        ratios
-            .get(tenth * ratios.len() / 10)
-            .map(|ratio| two_digits(*ratio))
-    };
-    context! { runs => ratios.len(), least => of(1), most => of(9) }
+    ratios
 }
 
 /// How one of our methods stands against another code.
-fn standing(standing: &Standing) -> Value {
+fn standing(standing: &Standing, scatter: f64) -> Value {
     let [ours, other] = standing.reached_alone;
     let summary = standing.summary().map(|summary| summary.map(two_digits));
     let most = range(standing.ratios.iter().map(|r| r.ratio))[1];
@@ -181,7 +184,9 @@ fn standing(standing: &Standing) -> Value {
         let (error, ratio) = (si(r.error, "m"), two_digits(r.ratio));
         format!("{} at {error} ({ratio} times)", r.study)
     });
+    let near = |r: &&TimeRatio| (1.0 / scatter..scatter).contains(&r.ratio);
     context! {
+        near => standing.ratios.iter().filter(near).count(),
         pairs => standing.ratios.len(), ours, other,
         median => summary.as_ref().map(|s| &s[0]), least => summary.as_ref().map(|s| &s[1]),
         most => two_digits(most), faster => faster.collect::<Vec<_>>(),

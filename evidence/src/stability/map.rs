@@ -145,12 +145,15 @@ pub struct KnownSilent {
 }
 
 impl KnownSilent {
-    /// Whether this run is one of them.
-    pub fn is(&self, map: &str, method: &str, value: f64, column: f64) -> bool {
+    /// Whether this run of a map is one of them.
+    pub fn has(&self, map: &str, run: &MapRun) -> bool {
         // accuracies are products
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * b.abs();
-        let mut runs = self.runs.iter();
-        runs.any(|(m, by, v, c)| m == map && by == method && near(*v, value) && near(*c, column))
+        self.runs.iter().any(|(of, method, value, column)| {
+            (&of[..], &method[..]) == (map, run.method)
+                && near(*value, run.value)
+                && near(*column, run.column)
+        })
     }
 }
 
@@ -364,15 +367,44 @@ fn step_of(step: f64) -> String {
 }
 
 impl MadeMap {
-    /// All runs: method, value of the parameter, step or accuracy, and what came of it.
-    pub fn runs(&self) -> impl Iterator<Item = (&str, f64, f64, &MapCell)> {
+    /// All runs.
+    pub fn runs(&self) -> impl Iterator<Item = MapRun<'_>> {
         self.panels.iter().flat_map(|panel| {
             let columns = self.map.columns(&panel.method);
-            let rows = self.map.parameter.values.iter().zip(&panel.cells);
-            rows.flat_map(move |(value, row)| {
+            let values = self.map.parameter.values.iter().zip(&self.ranges);
+            let rows = values.zip(&panel.cells);
+            rows.flat_map(move |((&value, &range), row)| {
                 let cells = columns.clone().into_iter().zip(row);
-                cells.map(|(column, cell)| (&panel.method[..], *value, column, cell))
+                cells.map(move |(column, cell)| MapRun {
+                    method: &panel.method,
+                    value,
+                    column,
+                    range,
+                    cell,
+                })
             })
         })
+    }
+}
+
+/// A run with its place in the map.
+#[derive(Debug)]
+pub struct MapRun<'a> {
+    /// Its method.
+    pub method: &'a str,
+    /// Value of the parameter.
+    pub value: f64,
+    /// Its step \[s\], or the accuracy of `auto` \[m\].
+    pub column: f64,
+    /// Range of the compared channels, in their unit.
+    pub range: f64,
+    /// What came of it.
+    pub cell: &'a MapCell,
+}
+
+impl MapRun<'_> {
+    /// Whether this is how it ended.
+    pub fn is(&self, class: OutcomeClass) -> bool {
+        self.cell.0 == class
     }
 }

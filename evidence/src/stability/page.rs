@@ -3,7 +3,7 @@
 use crate::output::{Data, Output, stamp};
 use crate::stability::Maps;
 use crate::stability::cases::{Check, cases};
-use crate::stability::map::{AUTO, KnownSilent, METHODS, MadeMap, MapCell, MapPanel, known_silent};
+use crate::stability::map::{AUTO, KnownSilent, METHODS, MadeMap, MapPanel, MapRun, known_silent};
 use crate::stability::outcome::{OutcomeClass, is_beyond};
 use looselink::stepper::SCHEMES;
 use miette::Result;
@@ -33,8 +33,8 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
     }
     let runs: Vec<_> = made.iter().flat_map(MadeMap::runs).collect();
     let method = |(method, _): &(&str, &str)| {
-        let own = || runs.iter().filter(|run| run.0 == *method);
-        let count = |class| own().filter(|run| run.3.0 == class).count();
+        let own = || runs.iter().filter(|run| run.method == *method);
+        let count = |class| own().filter(|run| run.is(class)).count();
         context! { method, counts => OutcomeClass::ALL.map(count) }
     };
     let map = |one: &MadeMap| {
@@ -44,6 +44,9 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
     let check = |check: &Check| context! { holds => check.holds(), ..Value::from_serialize(check) };
     let checks = maps.results.checks.iter().chain(&long.results);
     let known = known_silent()?;
+    let names = SCHEMES.iter().map(|scheme| scheme.name);
+    let (soak_methods, soak_missing): (Vec<_>, Vec<_>) =
+        names.partition(|name| !soak.results["tallies"][name].is_null());
     let page = context! {
         stamps => context! {
             maps => stamp(&maps.origin), long => stamp(&long.origin), soak => stamp(&soak.origin),
@@ -52,14 +55,14 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
         classes => OutcomeClass::ALL.map(OutcomeClass::name),
         names => BTreeMap::from(OutcomeClass::ALL.map(|class| (class, class.name()))),
         runs => runs.len(),
-        totals => OutcomeClass::ALL.map(|class| runs.iter().filter(|run| run.3.0 == class).count()),
+        totals => OutcomeClass::ALL.map(|class| runs.iter().filter(|run| run.is(class)).count()),
         methods => METHODS.iter().map(method).collect::<Vec<_>>(),
         large => made.iter().map(large).sum::<usize>(),
         silent => made.iter().flat_map(|one| silent(one, &known)).collect::<Vec<_>>(),
         checks => checks.map(check).collect::<Vec<_>>(),
         maps => made.iter().map(map).collect::<Vec<_>>(),
         titles => cases()?.into_iter().map(|case| case.title).collect::<Vec<_>>(),
-        soak_methods => SCHEMES.iter().map(|scheme| scheme.name).filter(|name| !soak.results["tallies"][name].is_null()).collect::<Vec<_>>(),
+        soak_methods, soak_missing,
         soak => &soak.results, fuzz => &fuzz.results,
     };
     out.page("STABILITY.md", "stability.md", &page)?;
@@ -68,27 +71,25 @@ pub fn render(data: &Data, out: &mut Output) -> Result<()> {
 
 /// Runs of a map that reached their end with an error that needs a warning.
 fn large(one: &MadeMap) -> usize {
-    let panels = one.panels.iter();
-    let rows = panels.flat_map(|panel| panel.cells.iter().zip(&one.ranges));
-    let large = rows.flat_map(|(row, range)| {
-        let bound = one.map.unsaid * range;
-        row.iter()
-            .filter(move |cell| cell.1.is_some_and(|error| is_beyond(error, bound)))
-    });
-    large.count()
+    let is_large = |run: &MapRun| {
+        let bound = one.map.unsaid * run.range;
+        run.cell.1.is_some_and(|error| is_beyond(error, bound))
+    };
+    one.runs().filter(is_large).count()
 }
 
 /// Runs of a map that are wrong in silence.
 fn silent(one: &MadeMap, known: &[KnownSilent]) -> Vec<Value> {
-    let runs = one.runs().filter(|run| run.3.0 == OutcomeClass::Silent);
-    let run = |(method, parameter, column, cell): (&str, f64, f64, &MapCell)| {
-        let mut known = known.iter();
-        let listed = known.find(|k| k.is(&one.name, method, parameter, column));
+    let runs = one.runs().filter(|run| run.is(OutcomeClass::Silent));
+    let run = |run: MapRun| {
+        let listed = known.iter().find(|known| known.has(&one.name, &run));
+        let unit_of_errors = channel_unit(one);
         context! {
             because => listed.map_or("**not known**", |listed| &listed.because),
-            map => &one.name, method, value => value(one, parameter),
-            column => si(column, unit(method)),
-            error => cell.1.map(|error| si(error, channel_unit(one))),
+            map => &one.name, method => run.method, value => value(one, run.value),
+            column => si(run.column, unit(run.method)),
+            error => run.cell.1.map(|error| si(error, unit_of_errors)),
+            range => si(run.range, unit_of_errors),
         }
     };
     runs.map(run).collect()
