@@ -173,7 +173,7 @@ pub fn work(journal: &Journal) -> Result<Vec<MethodWork>> {
             let plan = plan(case, method, step, ROWS, HORIZON);
             mesh(elements).into_iter().fold(plan, RunPlan::with)
         };
-        let model = format!("{case} {elements}");
+        let model = model(case, elements);
         let reference: Vec<f64> = journal.item(&format!("reference {model}"), || {
             let run = meshed("dormand_prince", REFERENCE).run()?;
             Ok(run.column("error.x").to_vec())

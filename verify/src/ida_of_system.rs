@@ -126,6 +126,9 @@ pub enum LinearSolver {
 /// Shares of an error test up to which Newton's method may iterate: that of the comparisons, IDA's own, a loose one.
 pub const NEWTON: [f64; 3] = [0.05, 0.33, 1.0];
 
+/// To how much positions are held for a tolerance of one \[m\].
+pub const POSITION: f64 = 1e-3;
+
 /// How IDA integrates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct IdaSettings {
@@ -196,7 +199,7 @@ pub fn integrate(
     };
     let run = LiRun {
         relative: settings.ratio * tolerance,
-        position: 1e-3 * tolerance,
+        position: POSITION * tolerance,
         velocity: 0.1 * tolerance,
         duration: scene.simulation.duration,
         interval: scene.output.interval,

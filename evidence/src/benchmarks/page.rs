@@ -16,7 +16,7 @@ use minijinja::{Value, context};
 use numbers::{digits, rounded, si};
 use std::path::Path;
 use studies::precision::Times;
-use verify::ida_of_system::NEWTON;
+use verify::ida_of_system::{NEWTON, POSITION};
 
 /// BENCHMARKS.md, its pictures, and the tables of all times.
 ///
@@ -133,7 +133,7 @@ fn rivals(root: &Path, rivals: &Rivals, scatter: f64) -> Result<Value> {
     let exudyn_methods: IndexSet<&str> = exudyn_methods.map(|c| c.method.as_str()).collect();
     Ok(context! {
         exudyn => Code::Exudyn.name(), exudyn_methods, durations => durations.collect::<Result<Vec<_>>>()?.join(", "),
-        loosest => si(1e-3 * TOLERANCES[0], "m"), longest => si(LONGEST, "s"), newton => NEWTON, ratios => RATIOS, orders => ORDERS,
+        loosest => si(POSITION * TOLERANCES[0], "m"), longest => si(LONGEST, "s"), newton => NEWTON, ratios => RATIOS, orders => ORDERS,
         errors => LEVELS.map(|error| si(error, "m")),
         methods => methods.collect::<Vec<_>>(),
         solutions => solutions.collect::<Vec<_>>(),
