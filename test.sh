@@ -13,7 +13,7 @@ export CARGO_INCREMENTAL=0
 fewest_tests=611
 
 # Comparisons that take a minute or more.
-slow=(flexible_links impacts_of statistics_of first_rows_without_clearance)
+slow=(flexible_links fine_meshes impacts_of statistics_of first_rows_without_clearance)
 
 # What is skipped, one line each, by this script and by tests; the gate has begun a list of its own.
 if [ -z "${LOOSELINK_SKIPPED:-}" ]; then
