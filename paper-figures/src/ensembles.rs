@@ -8,6 +8,7 @@ use crate::runs::{CaseRecording, DURATION, FROM, RunPlan};
 use crate::shown::mean;
 use crate::signal::{rms, smooth};
 use crate::timings::{self, KernelTimings};
+use crate::variants::{MOVED, STARTS, mesh, mesh_name, moved};
 use crate::warned::merged;
 use miette::{IntoDiagnostic, Result};
 use minijinja::Value;
@@ -15,15 +16,10 @@ use records::{Journal, threads};
 use serde::{Deserialize, Serialize};
 use statistics::Interval;
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 
-/// Starts of every ensemble.
-pub const STARTS: usize = 16;
 /// Time between recorded rows \[s\].
 const INTERVAL: f64 = 1e-5;
-/// Displacement of the platform between the starts of an ensemble \[m\].
-pub const MOVED: f64 = 1e-12;
-/// Others, which must make no difference \[m\].
+/// Displacements of the platform that must make no other difference than [`MOVED`] \[m\].
 const MOVED_OTHERWISE: [f64; 2] = [1e-10, 1e-14];
 /// Meshes: elements a link.
 pub const MESHES: [usize; 4] = [1, 2, 4, 8];
@@ -249,34 +245,9 @@ fn compose(done: &mut [Kept], [loose, both, flexible]: [usize; 3]) {
     }
 }
 
-/// Overrides for so many elements a link.
-pub fn mesh(elements: usize) -> Vec<String> {
-    let of = |i| format!("bodies.link{i}.elements={elements}");
-    (1..=3).map(of).collect()
-}
-
-/// The name of the run of case 2 with so many elements a link.
-pub fn mesh_name(elements: usize) -> String {
-    format!("{elements} elements a link")
-}
-
 /// The name of the run of case 2 with structural damping.
 pub fn damped_name(time: f64) -> String {
     format!("retardation time {}", numbers::si(time, "s"))
-}
-
-/// The start of case 3 or 4 with the platform moved by `moved` \[m\], in one of [`STARTS`] directions.
-///
-/// The velocity is that of the ideal mechanism, which the scene has without this override.
-pub fn moved(g: &MechanismGeometry, moved: f64, start: usize) -> String {
-    let (sin, cos) = (TAU * start as f64 / STARTS as f64).sin_cos();
-    let [x, y, theta] = g.pose(0.0);
-    let speed = TAU * g.frequency * g.radius;
-    format!(
-        "initial.bodies={{ platform = {{ x = {:?}, y = {:?}, theta = {theta:?}, vx = 0.0, vy = {speed:?}, omega = 0.0 }} }}",
-        x + moved * cos,
-        y + moved * sin
-    )
 }
 
 /// Means of the error over [`AVERAGED`], one a millisecond.

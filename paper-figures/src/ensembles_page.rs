@@ -1,11 +1,10 @@
 //! What the page of the ensembles shows.
 
-use crate::ensembles::{
-    BOTH, Ensemble, EnsembleRecord, MESHES, RETARDATIONS, STARTS, damped_name, mesh_name,
-};
+use crate::ensembles::{BOTH, Ensemble, EnsembleRecord, MESHES, RETARDATIONS, damped_name};
 use crate::exponents::{DURATION, LEFT_OUT};
 use crate::methods::{HORIZON, Long};
 use crate::runs::words;
+use crate::variants::{STARTS, mesh_name};
 use minijinja::{Value, context};
 use statistics::{FAMILY_WISE, Interval, Welch, holm};
 

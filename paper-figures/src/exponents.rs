@@ -11,9 +11,9 @@
 //! limit does not depend on the norm. Both motions take equal steps: steps that follow an error would differ between the
 //! two.
 
-use crate::ensembles::{MOVED, STARTS, moved};
 use crate::kinematics::MechanismGeometry;
 use crate::runs::{RunPace, RunPlan};
+use crate::variants::{MOVED, STARTS, moved};
 use crate::warned::merged;
 use looselink::simulate::Simulation;
 use looselink::system::State;

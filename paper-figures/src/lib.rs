@@ -21,6 +21,7 @@ mod shown;
 mod signal;
 pub mod statement;
 mod timings;
+mod variants;
 mod verdict;
 mod warned;
 

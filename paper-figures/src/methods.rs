@@ -1,11 +1,11 @@
 //! Explicit and implicit methods in counted work, and what they do over many cycles.
 
-use crate::ensembles::{MOVED, STARTS, mesh, mesh_name, moved};
 use crate::kinematics::MechanismGeometry;
 use crate::measures::deviation;
 use crate::runs::{CaseRecording, RunPace, RunPlan, words};
 use crate::shown::mean;
 use crate::signal::{peak, rms};
+use crate::variants::{MOVED, STARTS, mesh, mesh_name, moved};
 use crate::verdict::{CriterionVerdict, below, holds};
 use crate::warned::merged;
 use miette::Result;
@@ -93,19 +93,36 @@ pub struct Long {
 }
 
 impl MethodWork {
-    /// With what a run gave.
-    fn of(mut self, run: Result<CaseRecording>, reference: &[f64]) -> MethodWork {
-        match run {
-            Err(error) => self.warnings.push(format!("stopped: {error:#}")),
+    /// What a run of a model gave, compared with e_x of the reference.
+    fn of(
+        (case, elements): (u32, usize),
+        method: &str,
+        step: f64,
+        run: Result<CaseRecording>,
+        reference: &[f64],
+    ) -> MethodWork {
+        let (evaluations, error, warnings) = match run {
+            Err(error) => (0, None, vec![format!("stopped: {error:#}")]),
             Ok(done) => {
                 let pairs = done.column("error.x").iter().zip(reference);
                 let apart: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
-                self.error = Some(rounded(peak(&apart), 6));
-                self.evaluations = evaluations(&done);
-                self.warnings = done.warnings;
+                (
+                    evaluations(&done),
+                    Some(rounded(peak(&apart), 6)),
+                    done.warnings,
+                )
             }
+        };
+        MethodWork {
+            case,
+            elements,
+            method: method.into(),
+            step: rounded(step, 9),
+            evaluations,
+            error,
+            size: rounded(peak(reference), 6),
+            warnings,
         }
-        self
     }
 
     /// The run in words.
@@ -188,17 +205,14 @@ pub fn work(journal: &Journal) -> Result<Vec<MethodWork>> {
         let name = |(method, parts): &(&str, u32)| format!("work {model} {method} {parts}");
         let run = |(method, parts): &(&'static str, u32)| {
             let step = ROWS / f64::from(*parts);
-            let work = MethodWork {
-                case,
-                elements,
-                method: (*method).into(),
-                step: rounded(step, 9),
-                evaluations: 0,
-                error: None,
-                size: rounded(peak(&reference), 6),
-                warnings: Vec::new(),
-            };
-            Ok(work.of(meshed(method, step).run(), &reference))
+            let done = meshed(method, step).run();
+            Ok(MethodWork::of(
+                (case, elements),
+                method,
+                step,
+                done,
+                &reference,
+            ))
         };
         all.extend(journal.items(&keys, threads(), name, run)?);
     }

@@ -1,11 +1,12 @@
 //! The statements of the paper and what decides them: the values of REPRODUCTION.md and its page of the site.
 
 use crate::decisions;
-use crate::ensembles::{EnsembleRecord, STARTS};
+use crate::ensembles::EnsembleRecord;
 use crate::evidence::Evidence;
 use crate::figures::FigureRecord;
 use crate::shown::environment;
 use crate::timings::LINK;
+use crate::variants::STARTS;
 use crate::verdict::CriterionVerdict;
 use miette::{IntoDiagnostic, Result, miette};
 use minijinja::{Value, context};

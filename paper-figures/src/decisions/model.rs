@@ -1,10 +1,11 @@
 //! Sections 2 to 6: elements, coordinates, contact, integration, and the set-up.
 
 use super::Decide;
-use crate::ensembles::{MESHES, mesh_name};
+use crate::ensembles::MESHES;
 use crate::evidence::ALUMINIUM;
 use crate::runs::DURATION;
 use crate::signal::peak;
+use crate::variants::mesh_name;
 use crate::verdict::{CriterionVerdict, above, between, holds};
 use minijinja::context;
 
