@@ -89,7 +89,8 @@ fn largest(
     Ok(largest)
 }
 
-/// Unknowns that are coordinates x or y, each with the part of a velocity along it; points of one body have the same.
+/// Unknowns that are coordinates x or y, each with the part of a velocity along it; points of one body have the same. A mechanism
+/// without them, such as a pendulum, is displaced by its angles, in radians: their distances are only compared with each other.
 fn directions(motion: &Simulation, k: usize) -> Vec<(usize, f64)> {
     let names = &motion.model().unknown_names()[..motion.model().shape().unknowns];
     let body = |name: &str| name.split('.').next().map(str::to_owned);
@@ -107,7 +108,11 @@ fn directions(motion: &Simulation, k: usize) -> Vec<(usize, f64)> {
             .find(|(axis, _)| name.ends_with(axis))?;
         Some((i, part.1))
     });
-    parts.collect()
+    let parts: Vec<(usize, f64)> = parts.collect();
+    if parts.is_empty() {
+        return (0..names.len()).map(|i| (i, 1.0)).collect();
+    }
+    parts
 }
 
 struct Neighbour {
@@ -165,5 +170,29 @@ impl Neighbour {
         let unknowns = motion.model().shape().unknowns;
         bring_back(&mut self.next, one, other, unknowns, factors);
         self.simulation.continue_from(&self.next)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::amplification;
+    use looselink::scene::Scene;
+    use records::root;
+
+    /// It has no coordinate but an angle. A displacement first stays as it is: the torque of its weight hardly changes with the
+    /// angle near the horizontal.
+    #[test]
+    fn a_pendulum_is_displaced_by_its_angle() -> miette::Result<()> {
+        let short = [
+            "simulation.duration=0.1",
+            "output.interval=0.002",
+            "integrator.method=dormand_prince",
+            "integrator.accuracy={ position = 1e-8, horizon = 0.1 }",
+        ]
+        .map(str::to_owned);
+        let scene = Scene::load(&root().join("scenes/pendulum.toml"), &short)?;
+        let found = amplification(&scene, 1e-8, 1000)?;
+        assert!(found.is_some_and(|a| (a - 1.0).abs() < 0.1), "{found:?}");
+        Ok(())
     }
 }

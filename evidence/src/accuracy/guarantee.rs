@@ -83,7 +83,7 @@ pub struct Asked {
     pub end: RunEnd,
     /// Steps taken.
     pub steps: u64,
-    /// What it warns of; kept of runs that miss their accuracy.
+    /// Its warnings of an error; kept of runs that miss their accuracy.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
 }
@@ -262,7 +262,7 @@ impl MeasuredScene {
                 Err(error) => RunEnd::Stopped(error.to_string()),
             },
             steps: report.steps,
-            warnings: report.warnings(),
+            warnings: report.error_warnings(),
         })
     }
 

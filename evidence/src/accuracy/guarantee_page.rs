@@ -77,14 +77,23 @@ pub fn figure(entries: &[GuaranteeEntry]) -> Figure {
     Figure::grid(panels.collect(), 4, caption.to_owned())
 }
 
-/// How many runs there are, reach their accuracy and miss it more than threefold; the largest ratio and its scene.
+/// How many runs there are, reach their accuracy, miss it more than threefold, and miss it without a warning of an error; the largest
+/// ratio and its scene.
 fn tally<'a>(runs: impl Iterator<Item = &'a Judged<'a>>) -> Value {
-    let ratios: Vec<(f64, &str)> = runs.map(|j| (j.ratio, j.entry.scene.as_str())).collect();
+    let runs: Vec<&Judged> = runs.collect();
+    let ratios: Vec<(f64, &str)> = runs
+        .iter()
+        .map(|j| (j.ratio, j.entry.scene.as_str()))
+        .collect();
     let within = ratios.iter().filter(|(ratio, _)| *ratio <= 1.0).count();
     let missed = ratios.iter().filter(|(ratio, _)| *ratio > MISS).count();
+    let silent = runs
+        .iter()
+        .filter(|j| j.ratio > MISS && j.run.warnings.is_empty())
+        .count();
     let largest = ratios.iter().max_by(|a, b| a.0.total_cmp(&b.0));
     context! {
-        runs => ratios.len(), within, missed,
+        runs => ratios.len(), within, missed, silent,
         share => percent(within as f64 / ratios.len().max(1) as f64),
         largest => largest.map(|(ratio, _)| digits(*ratio)), scene => largest.map(|(_, scene)| scene),
     }
