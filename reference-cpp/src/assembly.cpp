@@ -2,30 +2,13 @@
 
 #include <cmath>
 
+#include "decomposition.hpp"
 #include "placing.hpp"
 
 namespace {
 
 constexpr double closure = 1e-12;         // allowed gap of a joint, m
 constexpr double velocity_rounding = 1e-9; // allowed contradiction of velocities, m/s and rad/s
-constexpr double rank_rounding = 1e-10;
-
-using Decomposition = Eigen::CompleteOrthogonalDecomposition<MatrixXd>;
-
-// The solution of a x = b of least norm, a possibly rank-deficient.
-VectorXd least_norm(const MatrixXd &a, const VectorXd &b) {
-    Decomposition d;
-    d.setThreshold(rank_rounding);
-    d.compute(a);
-    return d.solve(b);
-}
-
-Eigen::Index rank(const MatrixXd &a) {
-    Decomposition d;
-    d.setThreshold(rank_rounding);
-    return d.compute(a).rank();
-}
-
 // Newton's method of least norm: lengths count as they are, angles times the radius of gyration.
 void close_joints(const System &system, const VectorXd &freedom, VectorXd &q) {
     const Inputs inputs = system.inputs(0.0);
@@ -37,7 +20,7 @@ void close_joints(const System &system, const VectorXd &freedom, VectorXd &q) {
     constexpr int most_passes = 100;
     double best = phi.cwiseAbs().maxCoeff();
     for (int pass = 0; pass < most_passes; ++pass) {
-        const VectorXd next = q - scale.cwiseProduct(least_norm(phi_q * scale.asDiagonal(), phi));
+        const VectorXd next = q - scale.cwiseProduct(Decomposition(phi_q * scale.asDiagonal()).solve(phi));
         VectorXd rest;
         system.constraint_rows(inputs, next, rest, phi_q, phi_t);
         const double size = rest.cwiseAbs().maxCoeff();
@@ -92,7 +75,7 @@ VectorXd least_velocities(const Scene &ideal, const System &system, const Vector
         return m > 0.0 ? 1.0 / std::sqrt(m) : 1.0;
     });
     auto solved = [&](const Source *source) -> VectorXd {
-        const VectorXd v = scale.cwiseProduct(least_norm(rows * scale.asDiagonal(), right));
+        const VectorXd v = scale.cwiseProduct(Decomposition(rows * scale.asDiagonal()).solve(right));
         Eigen::Index worst = 0;
         if (rows.rows() == 0 || (rows * v - right).cwiseAbs().maxCoeff(&worst) <= velocity_rounding) return v;
         const std::string text = "the velocity contradicts the joints, the drives or other velocities";
@@ -103,9 +86,9 @@ VectorXd least_velocities(const Scene &ideal, const System &system, const Vector
     for (const GivenRate &rate : given) add(rate);
     VectorXd v = solved(nullptr);
     for (const SingleVelocity &single : ideal.initial.velocities) {
-        const Eigen::Index before = rank(rows * scale.asDiagonal());
+        const Eigen::Index before = Decomposition(rows * scale.asDiagonal()).rank();
         add({system.bodies()[single.body].offset + single.component, single.value, single.source});
-        const bool repeats = rank(rows * scale.asDiagonal()) == before;
+        const bool repeats = Decomposition(rows * scale.asDiagonal()).rank() == before;
         v = solved(&single.source);
         require(!repeats, single.source, "the joints, the drives or other velocities determine this velocity already");
     }

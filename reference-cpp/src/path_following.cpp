@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "decomposition.hpp"
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double rank_rounding = 1e-10;
-
-Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposed(const MatrixXd &matrix) {
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> d;
-    d.setThreshold(rank_rounding);
-    d.compute(matrix);
-    return d;
-}
 
 } // namespace
 
@@ -47,7 +41,7 @@ void PathFollowing::check_determined(const Source &source) const {
     VectorXd phi, phi_t;
     MatrixXd phi_q;
     system_.constraint_rows(system_.inputs(0.0), stations_.front().q, phi, phi_q, phi_t);
-    const auto combination = decomposed(phi_q.transpose());
+    const Decomposition combination(phi_q.transpose());
     for (std::size_t j = 0; j < angles_.size(); ++j) {
         const VectorXd row = relative_angle(static_cast<int>(j));
         const double rest = (phi_q.transpose() * combination.solve(row) - row).norm();
@@ -69,7 +63,7 @@ bool PathFollowing::close(double t, double reach, VectorXd &q) const {
         const double size = phi.cwiseAbs().maxCoeff();
         if (size <= closure && !(size < 0.5 * last)) return true;
         last = size;
-        q -= decomposed(phi_q).solve(phi);
+        q -= Decomposition(phi_q).solve(phi);
         if (!((q - from).cwiseAbs().maxCoeff() <= reach)) return false;
     }
     return false;
@@ -98,7 +92,7 @@ std::vector<Prescribed> PathFollowing::at_time(double t) const {
     const Inputs inputs = system_.inputs(t);
     MatrixXd phi_q;
     system_.constraint_rows(inputs, q, phi, phi_q, phi_t);
-    const auto inverse = decomposed(phi_q);
+    const Decomposition inverse(phi_q);
     const VectorXd v = -inverse.solve(phi_t);
     system_.convective(inputs, q, v, gamma);
     const VectorXd a = -inverse.solve(gamma);
