@@ -15,9 +15,6 @@ fewest_tests=611
 # Comparisons that take a minute or more.
 slow=(flexible_links fine_meshes impacts_of statistics_of first_rows_without_clearance)
 
-# What crates.io and docs.rs have: the solver, the command line, and what they are made of.
-published=(looselink looselink-cli looselink-messages looselink-numbers looselink-plot looselink-studies looselink-view)
-
 # What is skipped, one line each, by this script and by tests; the gate has begun a list of its own.
 if [ -z "${LOOSELINK_SKIPPED:-}" ]; then
     export LOOSELINK_SKIPPED="$PWD/target/skipped"
@@ -73,7 +70,7 @@ everything() {
     cargo clippy --workspace --all-targets -- -D warnings
     # the fuzz targets, a workspace of their own
     cargo check --quiet --locked --manifest-path fuzz/Cargo.toml --target-dir target
-    RUSTDOCFLAGS="-D warnings" cargo doc "${published[@]/#/-p}" --no-deps --quiet
+    RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
     same_features
     oldest_rust
     packages
@@ -114,10 +111,11 @@ same_features() {
     diff <(features) <(features -p paper-figures)
 }
 
-# The sources for crates.io.
+# The sources for crates.io: the solver, the command line, and what they are made of.
 packages() {
+    local names=(looselink looselink-cli looselink-messages looselink-numbers looselink-plot looselink-studies looselink-view)
     local said
-    said=$(cargo package "${published[@]/#/-p}" --no-verify --exclude-lockfile --allow-dirty --color never 2>&1) || {
+    said=$(cargo package "${names[@]/#/-p}" --no-verify --exclude-lockfile --allow-dirty --color never 2>&1) || {
         echo "$said" >&2
         exit 1
     }
