@@ -9,6 +9,7 @@ namespace {
 
 constexpr double closure = 1e-12;         // allowed gap of a joint, m
 constexpr double velocity_rounding = 1e-9; // allowed contradiction of velocities, m/s and rad/s
+
 // Newton's method of least norm: lengths count as they are, angles times the radius of gyration.
 void close_joints(const System &system, const VectorXd &freedom, VectorXd &q) {
     const Inputs inputs = system.inputs(0.0);

@@ -81,21 +81,14 @@ pub fn figure(entries: &[GuaranteeEntry]) -> Figure {
 /// ratio and its scene.
 fn tally<'a>(runs: impl Iterator<Item = &'a Judged<'a>>) -> Value {
     let runs: Vec<&Judged> = runs.collect();
-    let ratios: Vec<(f64, &str)> = runs
-        .iter()
-        .map(|j| (j.ratio, j.entry.scene.as_str()))
-        .collect();
-    let within = ratios.iter().filter(|(ratio, _)| *ratio <= 1.0).count();
-    let missed = ratios.iter().filter(|(ratio, _)| *ratio > MISS).count();
-    let silent = runs
-        .iter()
-        .filter(|j| j.ratio > MISS && j.run.warnings.is_empty())
-        .count();
-    let largest = ratios.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+    let within = runs.iter().filter(|j| j.ratio <= 1.0).count();
+    let missed: Vec<_> = runs.iter().filter(|j| j.ratio > MISS).collect();
+    let silent = missed.iter().filter(|j| j.run.warnings.is_empty());
+    let largest = runs.iter().max_by(|a, b| a.ratio.total_cmp(&b.ratio));
     context! {
-        runs => ratios.len(), within, missed, silent,
-        share => percent(within as f64 / ratios.len().max(1) as f64),
-        largest => largest.map(|(ratio, _)| digits(*ratio)), scene => largest.map(|(_, scene)| scene),
+        runs => runs.len(), within, missed => missed.len(), silent => silent.count(),
+        share => percent(within as f64 / runs.len().max(1) as f64),
+        largest => largest.map(|j| digits(j.ratio)), scene => largest.map(|j| &j.entry.scene),
     }
 }
 
@@ -268,6 +261,16 @@ mod tests {
         let said = said(entry(50.0, 1e-12, runs.to_vec()));
         assert_eq!(said["misses"].as_array().map(Vec::len), Some(1));
         assert_eq!(said["unexcused"].as_array().map(Vec::len), Some(0));
+    }
+
+    #[test]
+    fn misses_without_a_warning_are_counted() {
+        let runs = [4e-6, 5e-6].map(|error| (1e-6, RunEnd::Complete(Some(error)), 1));
+        let mut one = entry(1.0, 1e-12, runs.to_vec());
+        one.runs[1].position = 1e-7;
+        one.runs[0].warnings.push("the integrator lost".to_owned());
+        let calm = &said(one)["calm"];
+        assert_eq!((&calm["missed"], &calm["silent"]), (&2.into(), &1.into()));
     }
 
     #[test]
