@@ -68,8 +68,6 @@ quick() {
 
 everything() {
     cargo clippy --workspace --all-targets -- -D warnings
-    # the fuzz targets, a workspace of their own
-    cargo check --quiet --locked --manifest-path fuzz/Cargo.toml --target-dir target
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
     same_features
     oldest_rust

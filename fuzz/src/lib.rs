@@ -18,35 +18,53 @@
 
 mod mutate;
 mod seeds;
+mod targets;
 
 pub use mutate::mutate;
 pub use seeds::{Pool, scenes, studies};
-
-use looselink::scene::{Scene, SceneError};
+pub use targets::{mechanism, scene, study};
 
 /// Overrides are comments of this form, so that a seed with overrides stays a scene.
 const OVERRIDE: &str = "#set ";
 
-/// Reads a scene whose overrides stand in its comments.
-pub fn scene(text: &str) -> Result<Scene, SceneError> {
-    let overrides = text.lines().filter_map(|line| line.strip_prefix(OVERRIDE));
-    let overrides: Vec<String> = overrides.map(str::to_owned).collect();
-    Scene::parse("scene.toml", text, &overrides)
+/// The entry points of a target that libFuzzer calls: its name, what it goes on from, what it does with an input, and one in
+/// how many changes is one of bytes.
+#[cfg(fuzzing)]
+#[macro_export]
+macro_rules! target {
+    ($name:literal, $pool:path, $check:path, $bytes_in:literal) => {
+        use libfuzzer_sys::Corpus;
+
+        static POOL: std::sync::LazyLock<$crate::Pool> = std::sync::LazyLock::new($pool);
+
+        libfuzzer_sys::fuzz_target!(
+            init: { POOL.write($name) },
+            |data: &[u8]| -> Corpus {
+                match std::str::from_utf8(data).is_ok_and($check) {
+                    true => Corpus::Keep,
+                    false => Corpus::Reject,
+                }
+            }
+        );
+
+        libfuzzer_sys::fuzz_mutator!(|data: &mut [u8], size: usize, most: usize, seed: u32| {
+            let bytes = libfuzzer_sys::fuzzer_mutate;
+            $crate::mutate(data, size, most, seed, $bytes_in, &POOL, bytes)
+        });
+    };
 }
 
-/// Shows a fault as the command line does; it has a place and something to say.
-pub fn show(error: SceneError) {
-    assert!(!error.to_string().is_empty());
-    assert!(
-        error
-            .place()
-            .is_some_and(|(_, line, column)| line > 0 && column > 0)
-    );
-    assert!(!format!("{:?}", miette::Report::new(error)).is_empty());
-}
-
-/// True of a text that a changed seed may go on from: faults of the syntax are mostly ends, and far more of them than of
-/// anything else are found, each new to the parser.
-pub fn is_toml(text: &str) -> bool {
-    text.parse::<toml::Table>().is_ok()
+/// Without the instrumentation of cargo-fuzz a target is a program that says how to run it.
+#[cfg(not(fuzzing))]
+#[macro_export]
+macro_rules! target {
+    ($name:literal, $pool:path, $check:path, $bytes_in:literal) => {
+        fn main() {
+            println!(
+                "cargo fuzz run {} checks {} seeds",
+                $name,
+                $pool().seeds.len()
+            );
+        }
+    };
 }

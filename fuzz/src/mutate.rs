@@ -2,7 +2,6 @@
 //! checks behind the syntax and the compiler behind the checks.
 
 use crate::{OVERRIDE, Pool};
-use libfuzzer_sys::fuzzer_mutate;
 
 /// Values on the edges of what numbers and types allow.
 const VALUES: [&str; 42] = [
@@ -73,7 +72,7 @@ impl Random {
 }
 
 /// Changes the input in `data`, of which `size` bytes count, and returns its new size: by line, but for one case in `bytes_in`
-/// and for what has no lines to change, where the fuzzer changes bytes.
+/// and for what has no lines to change, where `by_bytes` of the fuzzer changes it.
 pub fn mutate(
     data: &mut [u8],
     size: usize,
@@ -81,12 +80,12 @@ pub fn mutate(
     seed: u32,
     bytes_in: u32,
     pool: &Pool,
+    by_bytes: impl FnOnce(&mut [u8], usize, usize) -> usize,
 ) -> usize {
     let by_line = !seed.is_multiple_of(bytes_in);
     let changed = by_line.then(|| change_text(data, size, most, seed, pool));
-    changed
-        .flatten()
-        .unwrap_or_else(|| fuzzer_mutate(data, size, most))
+    let changed = changed.flatten();
+    changed.unwrap_or_else(|| by_bytes(data, size, most))
 }
 
 /// Changes the text in `data`, of which `size` bytes count, in one to four places; returns the new size, or nothing for
