@@ -98,15 +98,16 @@ everything() {
 }
 
 # The libraries under the solver have the same features in the command line and in the figures of the paper; with others, the
-# second command of the README would compile them and the solver again.
+# second command of the README would compile them and the solver again. So would the Python package after the tests.
 same_features() {
     local solver
     solver=$(cargo tree --locked -p looselink -e normal,no-proc-macro --prefix none --format '{p}' | sed 's/ (\*)$//')
     features() {
-        cargo tree --locked -e normal,no-proc-macro --prefix none --format '{p} {f}' "$@" |
+        cargo tree --locked -e "$1,no-proc-macro" --prefix none --format '{p} {f}' "${@:2}" |
             sed 's/ (\*)$//' | grep -F -f <(echo "$solver") | sort -u
     }
-    diff <(features) <(features -p paper-figures)
+    diff <(features normal) <(features normal -p paper-figures)
+    diff <(features normal -p looselink-python --all-features) <(features all --workspace --all-features)
 }
 
 # The sources for crates.io: the solver, the command line, and what they are made of.
