@@ -12,6 +12,7 @@ mod foresight;
 mod impacts;
 mod meter;
 mod modes;
+mod notes;
 mod observer;
 mod pace;
 mod position_error;
@@ -38,6 +39,7 @@ pub use observer::{ContactEnd, ContactEvent, Control, Notice, Observer, Onset, P
 pub use recording::Recording;
 pub use report::{Extreme, Inspection, Report, Status};
 
+use crate::body::Strain;
 use crate::checkpoint::carried;
 use crate::model::Model;
 use crate::newton::Newton;
@@ -110,8 +112,8 @@ pub struct Simulation {
     /// What was measured of it.
     measured: Record,
     extremes: Vec<Extreme>,
-    /// Axial strain of largest magnitude over the recorded rows, by body; 0 for bodies that do not deform.
-    strains: Vec<f64>,
+    /// Largest strains over the recorded rows, by body; 0 for bodies that do not deform.
+    strains: Vec<Strain>,
     impacts: Impacts,
     closures: Closures,
     meter: Meter,
@@ -443,9 +445,7 @@ impl Simulation {
             return Err(self.overflown(&channel));
         }
         for (largest, strain) in strains.iter_mut().zip(&measured.strains) {
-            if strain.abs() > largest.abs() {
-                *largest = *strain;
-            }
+            largest.see(strain);
         }
         for (extreme, value) in extremes.iter_mut().zip(row) {
             extreme.see(*value, output.t);

@@ -519,17 +519,18 @@ fn published_element() {
         .within(&worst, 1e-12, "the listed digits; the least entry is a difference of numbers 500 times its size");
 }
 
-/// The strain that runs report, against Hermite's polynomials differentiated at eleven points.
+/// The strain and the curvature that runs report, against Hermite's polynomials differentiated at eleven points.
 #[test]
-fn strain_is_that_of_the_centre_line() {
+fn strain_and_curvature_are_those_of_the_centre_line() {
     let worst = Worst::new();
     straight_and_generated(|element, q| {
         for k in 0..=10 {
             let xi = f64::from(k) / 10.0;
-            let [_, first, _] = hermite(xi, element.length);
-            let slope = |of: fn(f64) -> f64| {
-                [0, 1].map(|i| (0..4).map(|a| of(first[a] * q[2 * a + i])).sum::<f64>())
+            let [_, first, second] = hermite(xi, element.length);
+            let sum = |x: [f64; 4], of: fn(f64) -> f64| {
+                [0, 1].map(|i| (0..4).map(|a| of(x[a] * q[2 * a + i])).sum::<f64>())
             };
+            let slope = |of| sum(first, of);
             let square = |s: [f64; 2]| s[0] * s[0] + s[1] * s[1];
             let strain = 0.5 * (square(slope(|x| x)) - 1.0);
             let allowed = ROUNDINGS * 0.5 * (square(slope(f64::abs)) + 1.0);
@@ -538,6 +539,14 @@ fn strain_is_that_of_the_centre_line() {
                 element.cable().strain(q, xi) - strain,
                 allowed,
                 "strain",
+            )?;
+            let [x, y] = sum(second, |x| x);
+            let [most_x, most_y] = sum(second, f64::abs);
+            see(
+                &worst,
+                element.cable().curvature(q, xi) - x.hypot(y),
+                ROUNDINGS * (most_x + most_y),
+                "curvature",
             )?;
         }
         Ok(())

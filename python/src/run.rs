@@ -133,6 +133,7 @@ pub struct PyRun {
     onsets: Py<PyDict>,
     summary: Py<PyAny>,
     warnings: Vec<String>,
+    notes: Vec<String>,
     report: Report,
     /// Numbers in a row of the motion, and the rows one after the other.
     motion: Option<(usize, Vec<f64>)>,
@@ -155,6 +156,7 @@ impl PyRun {
             onsets: onsets(py, &memory.contacts)?.unbind(),
             summary: from_json(py, &bytes)?.unbind(),
             warnings: report.warnings(),
+            notes: report.notes(),
             motion: memory
                 .motion
                 .map(|(layout, numbers)| (layout.names().len(), numbers)),
@@ -288,16 +290,22 @@ impl PyRun {
         self.onsets.clone_ref(py)
     }
 
-    /// What summary.json says: title, overrides, status, counts of the work done, energy ledger, extremes, warnings.
+    /// What summary.json says: title, overrides, status, counts of the work done, energy ledger, extremes, warnings, notes.
     #[getter]
     fn summary(&self, py: Python) -> Py<PyAny> {
         self.summary.clone_ref(py)
     }
 
-    /// Why the results may be less accurate than they look, one line each.
+    /// Which results are in doubt, why, and what to do, one line each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.warnings.clone()
+    }
+
+    /// Facts about the run that put no result in doubt, one line each: redundant constraints, large strains, counts of the solver.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
     }
 
     /// "complete", "incomplete" (stopped) or "failed".

@@ -1,7 +1,7 @@
 //! A flexible link: planar cubic ANCF elements (eqs. 6-15) between nodes with positions and slopes.
 
 use super::{
-    Body, Content, Deformation, Frame, Levels, Link, Point, Pose, RigidLink, Slot, carried,
+    Body, Content, Deformation, Frame, Levels, Link, Point, Pose, RigidLink, Slot, Strain, carried,
     rigid_link,
 };
 use crate::force::{ElementDamping, MassDamping};
@@ -225,16 +225,19 @@ impl Body for FlexibleLink {
         Some(Arc::new(self.rigid_link()))
     }
 
-    fn strain(&self, x: &[usize], q: &[f64]) -> Option<f64> {
+    fn strain(&self, x: &[usize], q: &[f64]) -> Option<Strain> {
         let kernel = self.kernel();
-        let mut largest: f64 = 0.0;
+        // of a rectangular section
+        let height = (12.0 * self.link.second_moment / self.link.area).sqrt();
+        let mut largest = Strain::default();
         for k in 0..self.elements {
             let local = std::array::from_fn(|i| q[x[2 * k + i / 2] + i % 2]);
             for sample in 0..=10 {
-                let strain = kernel.strain(&local, f64::from(sample) / 10.0);
-                if strain.abs() > largest.abs() {
-                    largest = strain;
-                }
+                let xi = f64::from(sample) / 10.0;
+                largest.see(&Strain {
+                    axial: kernel.strain(&local, xi),
+                    bending: kernel.curvature(&local, xi) * height,
+                });
             }
         }
         Some(largest)

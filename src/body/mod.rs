@@ -12,6 +12,7 @@ mod point_mass;
 mod points;
 mod rigid_body;
 mod rigid_link;
+mod strain;
 
 pub use centred_link::CentredLink;
 pub use flexible_link::{Damping, FlexibleLink};
@@ -24,6 +25,7 @@ pub use point_mass::PointMass;
 pub use points::{POLAR, Point};
 pub use rigid_body::{PLATES, RigidBody};
 pub use rigid_link::{LinkCoordinates, RigidLink};
+pub use strain::Strain;
 
 use crate::document::{Fields, Kind, SceneError};
 use crate::marker::{Marker, Spin};
@@ -297,8 +299,8 @@ pub trait Body: Any + Debug + Send + Sync {
     fn hold(&self) -> Option<Hold> {
         None
     }
-    /// The axial strain of largest magnitude of a body that deforms, sampled at eleven points of every element.
-    fn strain(&self, _x: &[usize], _q: &[f64]) -> Option<f64> {
+    /// The largest strains of a body that deforms, sampled at eleven points of every element.
+    fn strain(&self, _x: &[usize], _q: &[f64]) -> Option<Strain> {
         None
     }
     /// The slot of the slope at a point, of a body that has slopes.

@@ -164,6 +164,12 @@ impl AncfCable {
         eps
     }
 
+    /// |r''| \[1/m\] at xi in \[0, 1\], the curvature of the bending energy.
+    pub fn curvature(&self, q: &[f64; 8], xi: f64) -> f64 {
+        let [i, j] = Self::bends(&self.slopes(q));
+        ((6.0 * xi - 4.0) * i + (6.0 * xi - 2.0) * j).norm() / self.length
+    }
+
     /// Constant mass matrix of eq. 10 for a mass per length rho A, in the scalar form m_ab that stands before I_2.
     pub fn mass(length: f64, mass_per_length: f64) -> [[f64; 4]; 4] {
         let unit = mass_per_length * length / 420.0;

@@ -1,7 +1,7 @@
 //! Measured quantities of a model: poses, strains, energies, joint forces, drive torques.
 
 use super::{Actuator, Model, PlacedEccentric, PlacedJoint, Reaction};
-use crate::body::{Content, Pose};
+use crate::body::{Content, Pose, Strain};
 use crate::contact;
 use crate::contact::geometry::Gap;
 use crate::force::Force;
@@ -91,8 +91,8 @@ impl Model {
         Some(Pose::of([x, x + 1, x + 2], [&at.q, &at.v, &at.a]))
     }
 
-    /// The axial strain of largest magnitude along a flexible link, sampled at eleven points of every element.
-    pub fn strain(&self, index: usize, at: &State) -> Option<f64> {
+    /// The largest strains along a flexible link.
+    pub fn strain(&self, index: usize, at: &State) -> Option<Strain> {
         let placed = &self.bodies[index].placed;
         placed.kind.strain(&placed.x, &at.q)
     }

@@ -165,6 +165,7 @@ struct Ended<'a> {
     #[serde(flatten)]
     report: &'a Report,
     warnings: Vec<String>,
+    notes: Vec<String>,
 }
 
 impl Ended<'_> {
@@ -172,6 +173,7 @@ impl Ended<'_> {
         Ended {
             report,
             warnings: report.warnings(),
+            notes: report.notes(),
         }
     }
 }

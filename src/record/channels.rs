@@ -1,6 +1,7 @@
 //! The names of all channels of a mechanism, and the parts of it that they are measured from.
 
 use super::Ledger;
+use crate::body::Strain;
 use crate::model::Model;
 use crate::scene::Analysis;
 use crate::system::{State, Work};
@@ -201,7 +202,7 @@ impl Part {
         model: &Model,
         at: &State,
         ledger: &Ledger,
-        strains: &[f64],
+        strains: &[Strain],
         work: &mut Work,
         values: &mut Vec<f64>,
     ) {
@@ -213,7 +214,7 @@ impl Part {
                 let levels = [pose.position, pose.velocity, pose.acceleration];
                 values.extend(levels.as_flattened());
             }
-            Part::Strain(b) => values.push(strains[b]),
+            Part::Strain(b) => values.push(strains[b].axial),
             Part::Error(b) => {
                 let prescribed = model.prescribed(b, at).unwrap_or_default().position;
                 let position = model.pose(b, at).position.into_iter();

@@ -3,6 +3,7 @@
 mod channels;
 mod motion;
 
+use crate::body::Strain;
 use crate::checkpoint::carried;
 use crate::math::plane::full_turns;
 use crate::model::{Energies, Model};
@@ -66,8 +67,8 @@ carried!(Recorder { turning } but { channels, parts, places, values, row, initia
 pub struct Record {
     /// Stored energies.
     pub energies: Energies,
-    /// Axial strain of largest magnitude by body; 0 for bodies that do not deform.
-    pub strains: Vec<f64>,
+    /// Largest strains by body; 0 for bodies that do not deform.
+    pub strains: Vec<Strain>,
 }
 
 impl Record {

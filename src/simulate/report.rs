@@ -2,7 +2,7 @@
 
 use super::pace::Pacer;
 use super::{AccuracyReport, Chatter, Choice, Impact, Integration, Overrun, Simulation};
-use crate::body::{Body, CentredLink, RigidLink};
+use crate::body::{Body, CentredLink, RigidLink, Strain};
 use crate::checkpoint::carried;
 use crate::initial::is_assembled;
 use crate::model::{Model, PlacedBody};
@@ -151,8 +151,8 @@ pub struct Report {
     /// unique.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub redundant: Vec<String>,
-    /// Axial strain of largest magnitude over the recorded rows, of every flexible link.
-    pub strain: BTreeMap<String, f64>,
+    /// Largest strains over the recorded rows, of every flexible link.
+    pub strain: BTreeMap<String, Strain>,
     /// Extremes of the recorded channels, over the recorded rows.
     pub extremes: BTreeMap<String, Extreme>,
 }

@@ -9,6 +9,7 @@ use super::pace::Pacer;
 use super::report::{Extreme, Status};
 use super::stall::Stall;
 use super::{LoopCounters, Simulation, equilibrium};
+use crate::body::Strain;
 use crate::compile::compile;
 use crate::initial::{self, redundancy};
 use crate::model::Model;
@@ -97,7 +98,7 @@ impl Simulation {
             recorder,
             measured: Record::default(),
             extremes,
-            strains: vec![0.0; scene.bodies.len()],
+            strains: vec![Strain::default(); scene.bodies.len()],
             impacts,
             closures: Closures::new(shape.contacts),
             local_error: LocalError::new(shape.unknowns),

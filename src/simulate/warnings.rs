@@ -9,25 +9,23 @@ const OF_DISSIPATED: f64 = 0.05;
 const OF_TURNOVER: f64 = 0.01;
 /// Relative change of accelerations from step to step of a vibration with six steps a period.
 const UNRESOLVED: f64 = 1.0;
-/// At a Green strain of -1/2 the centre line has no length; nothing in the theory prevents further compression.
-const CRUSHED: f64 = -0.4;
+/// Beyond this strain, or curvature times height, a material is linear in no textbook, and a section neither stays plane nor keeps
+/// its size: at -1/2 the centre line has no length. A tenth of it is where steel has long yielded and rubber is linear.
+const NOT_SMALL: f64 = 0.2;
 /// Warn of an estimated error beyond this part of the largest range of motion.
 const OF_TRAVEL: f64 = 0.01;
 
 impl Report {
-    /// One line for every reason why the results may be less accurate than they look: [`Report::error_warnings`] first, then what
-    /// is unusual about the scene and how its equations were solved.
+    /// One line for every reason why results are in doubt: [`Report::error_warnings`] first, then what no theory in use covers.
+    /// Facts about a run are [`Report::notes`].
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.error_warnings();
-        self.remark(&mut warnings);
+        warnings.extend(self.validity_warnings());
         warnings
     }
 
     /// Warnings that the motion itself may be off: by the energy that the integrator lost or gained, by its estimated error, by
     /// accelerations or contacts that the steps do not resolve.
-    ///
-    /// No other warning says so: a force that was clamped, a step that was halved or a pose that was nearly singular is consistent
-    /// with a motion of any accuracy.
     pub fn error_warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         warnings.extend(self.energy_warning());
@@ -51,56 +49,28 @@ impl Report {
         warnings
     }
 
-    fn remark(&self, warnings: &mut Vec<String>) {
-        warnings.extend(self.redundant.iter().map(|name| {
-            format!("{name} is redundant: the constraint forces in its loop are not unique")
-        }));
-        warnings.extend(self.overrun.iter().map(|(joint, overrun)| {
+    /// Where a law or a theory does not hold.
+    fn validity_warnings(&self) -> Vec<String> {
+        let overrun = self.overrun.iter().map(|(joint, overrun)| {
             format!(
                 "the journal of {joint} goes {} m deep into a bearing of radius {} m, where no contact law holds: check the \
                  units of its stiffness and of Young's modulus",
                 number(overrun.penetration, 2),
                 number(overrun.bearing_radius, 2)
             )
-        }));
-        let crushed = self.strain.iter().filter(|(_, strain)| **strain < CRUSHED);
-        warnings.extend(crushed.map(|(name, strain)| {
+        });
+        let strained = self
+            .strain
+            .iter()
+            .filter(|(_, strain)| strain.largest() > NOT_SMALL);
+        let strained = strained.map(|(name, strain)| {
             format!(
-                "{name} is compressed to a Green strain of {strain:.2}: at -0.5 the length of its centre line is zero"
+                "{name} has {}, where the theory of slender elastic links does not hold: check Young's modulus (that of steel is \
+                 2.1e11 Pa), its section and the loads",
+                strain.description()
             )
-        }));
-        if self.rejected_steps > 0 {
-            let most = self.rejected_by.iter().max_by_key(|(_, times)| **times);
-            let most = most.map_or(String::new(), |(name, times)| {
-                format!(" ({times} of them for {name})")
-            });
-            warnings.push(format!(
-                "steps that failed and were halved: {}{most}",
-                self.rejected_steps
-            ));
-        }
-        let counts = [
-            (self.clamps, "stages with a contact force clamped at zero"),
-            (
-                self.stagnations,
-                "stages in which rounding kept Newton's method above newton_tolerance",
-            ),
-            (
-                self.position_level_stages,
-                "stages without a solution on the acceleration level, solved on the position level with a lower order",
-            ),
-            (
-                self.singular_poses,
-                "stages in a nearly singular pose, solved without the singular direction",
-            ),
-            (self.fallbacks, "factorisations that needed row exchanges"),
-            (
-                self.unlocated_changes,
-                "contact changes not located to within onset_tolerance",
-            ),
-        ];
-        let counted = counts.iter().filter(|(count, _)| *count > 0);
-        warnings.extend(counted.map(|(count, what)| format!("{what}: {count}")));
+        });
+        overrun.chain(strained).collect()
     }
 
     fn energy_warning(&self) -> Option<String> {

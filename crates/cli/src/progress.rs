@@ -143,6 +143,11 @@ pub fn warn(warning: &str) {
     say(&format!("warning: {warning}"));
 }
 
+/// A fact about a run.
+pub fn remark(note: &str) {
+    say(&format!("note: {note}"));
+}
+
 /// Shows what is reported of many runs; with `quiet` the warnings alone.
 pub fn show(notice: Notice, quiet: bool) {
     match notice {

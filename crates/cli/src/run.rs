@@ -3,7 +3,7 @@
 use super::SceneArguments;
 use super::closing;
 use super::failure::{CommandFailure, INTERRUPTED};
-use super::progress::{Display, warn};
+use super::progress::{Display, remark, warn};
 use super::view;
 use clap::Args;
 use looselink::model::Model;
@@ -168,7 +168,12 @@ pub fn to_the_end(
     let ended = simulation.run(&mut observer);
     let report = simulation.report();
     let stored = observer.results.finish(&report);
-    let warn_of_all = || report.warnings().iter().for_each(|warning| warn(warning));
+    let warn_of_all = || {
+        report.warnings().iter().for_each(|warning| warn(warning));
+        if !options.quiet {
+            report.notes().iter().for_each(|note| remark(note));
+        }
+    };
     observer.display.finish("");
     let folder = out.display();
     if let Err(error) = ended {

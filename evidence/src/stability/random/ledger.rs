@@ -87,7 +87,7 @@ pub fn closes(text: &str, first: &RandomRun) -> Result<(), Breach> {
     let scene = &first.scene;
     let fixed = matches!(scene.integrator.pace, Pace::Step(_));
     let mut strains = first.report.strain.values();
-    if strains.any(|s| s.abs() > NO_DIRECTION)
+    if strains.any(|s| s.axial.abs() > NO_DIRECTION)
         || !first.outcome.is_complete()
         || first.rows.rows() == 0
         || (scene.integrator.method.scheme.is_explicit && fixed)

@@ -122,8 +122,10 @@ fn unguarded(text: &str, overrides: &[String]) -> Result<Result<RandomRun, Strin
         }
     }
     let outcome = match ended {
-        Ok(()) if report.warnings().is_empty() => RunOutcome::Finished,
-        Ok(()) => RunOutcome::Remarked(report.warnings()),
+        Ok(()) => match [report.warnings(), report.notes()].concat() {
+            remarks if remarks.is_empty() => RunOutcome::Finished,
+            remarks => RunOutcome::Remarked(remarks),
+        },
         Err(RunError::Interrupted { .. }) => RunOutcome::CutShort,
         Err(error) => stopped(&scene, &error)?,
     };

@@ -1,0 +1,57 @@
+//! Facts about a run that a user may want to know; none of them puts a result in doubt.
+
+use super::Report;
+
+/// Strains, and curvatures times height, are mentioned from here on: steel yields at a fifth of it.
+const NOTABLE: f64 = 0.01;
+
+impl Report {
+    /// One line for every fact: redundant constraints, large strains, and how the equations were solved.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        notes.extend(self.redundant.iter().map(|name| {
+            format!("{name} is redundant: the constraint forces in its loop are not unique")
+        }));
+        let strained = self.strain.iter();
+        let most = strained.max_by(|a, b| a.1.largest().total_cmp(&b.1.largest()));
+        if let Some((name, strain)) = most.filter(|(_, strain)| strain.largest() > NOTABLE) {
+            notes.push(format!(
+                "the most deformed link, {name}, has {}",
+                strain.description()
+            ));
+        }
+        if self.rejected_steps > 0 {
+            let most = self.rejected_by.iter().max_by_key(|(_, times)| **times);
+            let most = most.map_or(String::new(), |(name, times)| {
+                format!(" ({times} of them for {name})")
+            });
+            notes.push(format!(
+                "steps that failed and were halved: {}{most}",
+                self.rejected_steps
+            ));
+        }
+        let counts = [
+            (self.clamps, "stages with a contact force clamped at zero"),
+            (
+                self.stagnations,
+                "stages in which rounding kept Newton's method above newton_tolerance",
+            ),
+            (
+                self.position_level_stages,
+                "stages without a solution on the acceleration level, solved on the position level with a lower order",
+            ),
+            (
+                self.singular_poses,
+                "stages in a nearly singular pose, solved without the singular direction",
+            ),
+            (self.fallbacks, "factorisations that needed row exchanges"),
+            (
+                self.unlocated_changes,
+                "contact changes not located to within onset_tolerance",
+            ),
+        ];
+        let counted = counts.iter().filter(|(count, _)| *count > 0);
+        notes.extend(counted.map(|(count, what)| format!("{what}: {count}")));
+        notes
+    }
+}
