@@ -19,6 +19,7 @@ mod position_error;
 mod recording;
 mod replay;
 mod report;
+mod scale;
 mod stall;
 mod start;
 mod stepwise;
@@ -29,6 +30,7 @@ pub use choice::{Choice, TrialRun};
 pub use closures::Chatter;
 use closures::Closures;
 pub use control::AccuracyReport;
+pub use equilibrium::{FoundRest, Stability};
 pub use failure::RunError;
 use failure::short;
 use impacts::Impacts;
@@ -133,6 +135,8 @@ pub struct Simulation {
     last_gaps: Vec<[f64; 2]>,
     inner_gaps: Vec<[f64; 2]>,
     started: Vec<(usize, f64, f64)>,
+    /// The equilibrium that the motion starts from, where the scene asks for one.
+    rest: Option<FoundRest>,
     status: Status,
     error: Option<String>,
 }

@@ -256,11 +256,15 @@ pub trait System {
 
 /// A system whose equilibria can be found.
 pub trait Equilibrium: System {
-    /// The residual at rest, and its tangent without inertia: with K = d(f + Phi_q^T lambda)/dq and the largest s of its
-    /// diagonal, r = f + Phi_q^T (lambda + s Phi) and \[\[K + s Phi_q^T Phi_q, s Phi_q^T\], \[s Phi_q, 0\]\]. Returns s.
+    /// The tangent of the residual alone, without inertia and constraints: d(f + Phi_q^T lambda)/dq.
+    fn plain_stiffness(&self, at: &State, work: &mut Work) -> Vec<f64>;
+    /// The residual at rest and its tangent with a part of the inertia: with S = w M + d(f + Phi_q^T lambda)/dq and the largest s of
+    /// its diagonal, r = M a + f + Phi_q^T (lambda + s Phi) and \[\[S + s Phi_q^T Phi_q, s Phi_q^T\], \[s Phi_q, 0\]\]. w \[1/s2\] is
+    /// `inertia`. Returns s, which is 1 where S has no diagonal.
     fn stiffness(
         &self,
         at: &State,
+        inertia: f64,
         r: &mut [f64],
         phi: &mut [f64],
         k: &mut [f64],

@@ -13,6 +13,7 @@ mod deformed;
 mod disc;
 mod documents;
 mod drift;
+mod equilibria;
 mod examples;
 mod expressions;
 mod good_input;

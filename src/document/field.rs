@@ -110,6 +110,22 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// `true`, `false` or one of the words of its key, whose place is returned.
+    pub(crate) fn boolean_or_word(&self) -> Result<Result<bool, usize>, SceneError> {
+        let Some(Takes::BooleanOr(words)) = self.declared.map(|key| key.takes) else {
+            panic!("`{}` takes no word beside true and false", self.name);
+        };
+        match self.node.value {
+            Value::Boolean(x) => Ok(Ok(x)),
+            Value::Text(_) => {
+                let places = words.iter().enumerate();
+                let places: Vec<_> = places.map(|(i, word)| (*word, i)).collect();
+                Ok(Err(self.choice(&places)?))
+            }
+            _ => Err(self.wrong_type(&format!("true, false or {}", quoted(words.iter().copied())))),
+        }
+    }
+
     /// Text that is not empty.
     pub fn text(&self) -> Result<&'a str, SceneError> {
         match &self.node.value {

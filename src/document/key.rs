@@ -58,6 +58,8 @@ pub enum Takes {
     Text,
     /// true or false.
     Boolean,
+    /// true, false or one of some words.
+    BooleanOr(&'static [&'static str]),
     /// A path.
     Path,
     /// A table; of points, of keys of its own.

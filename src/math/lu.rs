@@ -325,18 +325,29 @@ impl Symbolic {
     /// The matrix in full, before it is factorised.
     pub fn to_dense(&self, values: &[f64]) -> faer::Mat<f64> {
         let mut dense = faer::Mat::zeros(self.n(), self.n());
+        self.for_each_entry(values, |i, j, value| dense[(i, j)] = value);
+        dense
+    }
+
+    /// Visits every entry of the pattern before it is factorised: row, column, value.
+    pub fn for_each_entry(&self, values: &[f64], mut see: impl FnMut(usize, usize, f64)) {
         for (f, node) in self.supernodes.iter().enumerate() {
             let own = node.first..node.first + node.size;
             for i in own.clone() {
                 for j in own.clone().chain(self.structure(f).iter().copied()) {
-                    for (i, j) in [(i, j), (j, i)] {
+                    // a diagonal entry, and one of two pivots of the supernode, come once
+                    let pairs = [(i, j), (j, i)];
+                    let once = match own.contains(&j) {
+                        true => 1,
+                        false => 2,
+                    };
+                    for &(i, j) in &pairs[..once] {
                         let value = self.entry(i, j).map_or(0.0, |entry| values[entry]);
-                        dense[(self.order[i], self.order[j])] = value;
+                        see(self.order[i], self.order[j], value);
                     }
                 }
             }
         }
-        dense
     }
 }
 

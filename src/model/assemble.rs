@@ -154,9 +154,9 @@ impl Model {
     }
 
     /// Subtracts the masses from a tangent; the entries of dropped rows remain.
-    fn remove_mass(&self, k: &mut [f64]) {
+    fn scale_mass(&self, factor: f64, k: &mut [f64]) {
         for (k, m) in k.iter_mut().zip(&self.mass.tangent) {
-            *k -= m;
+            *k -= (1.0 - factor) * m;
         }
         for p in &self.constraints {
             for d in (0..p.rows).filter(|&d| p.kept[d] == 0.0) {
@@ -170,7 +170,10 @@ impl Model {
     /// tangent, and multiplies the constraint rows and columns by s. Returns s.
     fn augment(&self, at: &State, r: &mut [f64], k: &mut [f64]) -> f64 {
         let diagonal = (0..self.shape.unknowns).map(|i| k[self.symbolic.slot(i, i) as usize].abs());
-        let s = diagonal.fold(f64::MIN_POSITIVE, f64::max);
+        let s = match diagonal.fold(0.0, f64::max) {
+            0.0 => 1.0,
+            largest => largest,
+        };
         for p in &self.constraints {
             let (value, gradient) = (p.term.value(at), p.term.gradient(at));
             let columns = p.block.coordinates.len();
@@ -426,16 +429,32 @@ impl System for Model {
 }
 
 impl Equilibrium for Model {
+    fn plain_stiffness(&self, at: &State, work: &mut Work) -> Vec<f64> {
+        let (mut r, mut phi) = (vec![0.0; at.q.len()], vec![0.0; at.lambda.len()]);
+        let mut k = vec![0.0; self.symbolic.len()];
+        self.linearise(
+            at,
+            Weights { q: 1.0, v: 0.0 },
+            &mut r,
+            &mut phi,
+            &mut k,
+            work,
+        );
+        self.scale_mass(0.0, &mut k);
+        k
+    }
+
     fn stiffness(
         &self,
         at: &State,
+        inertia: f64,
         r: &mut [f64],
         phi: &mut [f64],
         k: &mut [f64],
         work: &mut Work,
     ) -> f64 {
         self.linearise(at, Weights { q: 1.0, v: 0.0 }, r, phi, k, work);
-        self.remove_mass(k);
+        self.scale_mass(inertia, k);
         self.augment(at, r, k)
     }
 }

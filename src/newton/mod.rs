@@ -1,16 +1,20 @@
 //! Newton's method: stages, projections and equilibria, and the linear solves of the acceleration level.
 
+mod descent;
 mod factors;
 mod iteration;
 mod prediction;
 mod response;
 mod singular;
+mod softest;
 mod stage;
 mod statics;
 mod tangent;
 
+pub use descent::Extent;
 pub(crate) use iteration::{Update, iterate};
 pub use response::{Response, ResponseTerm};
+pub use softest::Softest;
 pub use stage::{Level, StageEquations};
 
 use crate::checkpoint::{Carried, Checkpoint, carried};

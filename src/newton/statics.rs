@@ -14,8 +14,15 @@ const MAX_ITERATIONS: usize = 40;
 const LAST_UPDATE: f64 = 1e-8;
 /// An update below this part of the largest coordinate that no longer decreases is rounding.
 const ROUNDING: f64 = 1e-12;
-/// The load path from the undeformed start to the equilibrium is halved at most this many times.
-const HALVINGS: i32 = 20;
+
+/// What a step of a descent is pulled back to: M (q - q_0) w is added to the forces.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Anchor<'a> {
+    /// q_0.
+    pub q: &'a [f64],
+    /// w \[1/s2\].
+    pub inertia: f64,
+}
 
 impl Newton {
     /// Equilibrium at the known coordinates and loads of `s`, from the q and lambda in it.
@@ -28,14 +35,15 @@ impl Newton {
         s: &mut State,
         work: &mut Work,
     ) -> Result<(), Failure> {
-        self.balance_against(system, &[], s, work)
+        self.balance_with(system, None, MAX_ITERATIONS, s, work)
     }
 
-    /// As [`Newton::balance`], but the residual of the unknown coordinates becomes `left`; an empty `left` is zero.
-    fn balance_against(
+    /// As [`Newton::balance`], with the pull of an anchor.
+    pub(super) fn balance_with(
         &mut self,
         system: &dyn Equilibrium,
-        left: &[f64],
+        anchor: Option<Anchor>,
+        iterations: usize,
         s: &mut State,
         work: &mut Work,
     ) -> Result<(), Failure> {
@@ -43,15 +51,18 @@ impl Newton {
         s.v.fill(0.0);
         s.a.fill(0.0);
         self.counters.stages += 1;
+        let inertia = anchor.map_or(0.0, |anchor| anchor.inertia);
         let mut finishing = false;
-        iterate(MAX_ITERATIONS, |iteration| {
+        iterate(iterations, |iteration| {
             self.counters.newton_iterations += 1;
-            let scale = self.renew_stiffness(system, s, work)?;
+            if let Some(Anchor { q, inertia }) = anchor {
+                for (a, (q, from)) in s.a[..n].iter_mut().zip(s.q.iter().zip(q)) {
+                    *a = inertia * (q - from);
+                }
+            }
+            let scale = self.renew_stiffness(system, s, inertia, work)?;
             for i in 0..n {
                 self.b[i] = -self.r[i];
-            }
-            for (b, left) in self.b.iter_mut().zip(left) {
-                *b += left;
             }
             for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
                 *b = -scale * phi;
@@ -72,15 +83,17 @@ impl Newton {
             finishing = update.size <= LAST_UPDATE * size;
             Ok((update, converged))
         })?;
+        s.a.fill(0.0);
         s.q_low.fill(0.0);
         Ok(())
     }
 
-    /// The residual and the factors of the stiffness; returns the scale of the multipliers.
-    fn renew_stiffness(
+    /// The residual and the factors of the stiffness with a part of the inertia; returns the scale of the multipliers.
+    pub(super) fn renew_stiffness(
         &mut self,
         system: &dyn Equilibrium,
         s: &State,
+        inertia: f64,
         work: &mut Work,
     ) -> Result<f64, Failure> {
         let (r, phi) = (&mut self.r, &mut self.phi);
@@ -89,45 +102,8 @@ impl Newton {
         tangent.discard();
         let factors = &mut tangent.factors;
         factors.renew(system.symbolic(), &mut self.counters, |k| {
-            scale = system.stiffness(s, r, phi, k, work);
+            scale = system.stiffness(s, inertia, r, phi, k, work);
         })?;
         Ok(scale)
-    }
-
-    /// Equilibrium under the loads of `s` as they are, from an undeformed start: the residual of the start is taken off
-    /// in parts, r(q) = (1 - p) r(q_0) with p from 0 to 1, in steps that halve where they fail.
-    ///
-    /// # Errors
-    /// The failure of the smallest step.
-    pub fn settle(
-        &mut self,
-        system: &dyn Equilibrium,
-        s: &mut State,
-        work: &mut Work,
-    ) -> Result<(), Failure> {
-        s.v.fill(0.0);
-        s.a.fill(0.0);
-        s.lambda.fill(0.0);
-        system.residual(s, &mut self.r, &mut self.phi, work);
-        let first = self.r[..system.shape().unknowns].to_vec();
-        let (mut part, mut step) = (0.0_f64, 1.0_f64);
-        let mut reached = s.clone();
-        while part < 1.0 {
-            let next = (part + step).min(1.0);
-            let left: Vec<f64> = first.iter().map(|r| (1.0 - next) * r).collect();
-            match self.balance_against(system, &left, s, work) {
-                Ok(()) => {
-                    part = next;
-                    step *= 2.0;
-                    reached.copy_from(s);
-                }
-                Err(failure) if step < 2.0_f64.powi(-HALVINGS) => return Err(failure),
-                Err(_) => {
-                    step *= 0.5;
-                    s.copy_from(&reached);
-                }
-            }
-        }
-        Ok(())
     }
 }

@@ -245,8 +245,8 @@ pub struct Initial {
     pub bodies: IndexMap<usize, BodyState>,
     /// Single velocities; the others follow with the least kinetic energy.
     pub velocities: Vec<GivenVelocity>,
-    /// The start is the equilibrium under the loads at t = 0.
-    pub equilibrium: bool,
+    /// The start is an equilibrium under the loads at t = 0.
+    pub equilibrium: Option<Rest>,
     /// Where the table stands.
     pub span: Span,
 }
@@ -256,6 +256,15 @@ impl Initial {
     pub(crate) fn state_of(&self, body: usize) -> Option<&BodyState> {
         self.bodies.get(&body)
     }
+}
+
+/// Which equilibrium a motion starts from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rest {
+    /// The one that is reached downhill.
+    Stable,
+    /// The nearest, stable or not.
+    Nearest,
 }
 
 /// The approximate position of a joint or a point at t = 0.

@@ -1,7 +1,8 @@
 //! `[drives]` and `[initial]`.
 
 use super::{
-    BodyState, Drive, GivenVelocity, Initial, MotionKind, PrescribedMotion, SketchPoint, Sketched,
+    BodyState, Drive, GivenVelocity, Initial, MotionKind, PrescribedMotion, Rest, SketchPoint,
+    Sketched,
 };
 use crate::body::{Body, Deformation, Known, PointRef, RigidBody};
 use crate::document::{Field, Fields, Key, Kind, NumberRange, SceneError, Takes, named};
@@ -178,8 +179,8 @@ pub(super) static INITIAL: [Key; 4] = [
     Key::table("velocities", "single velocities, `BODY = { ... }`").or("none"),
     Key::new(
         "equilibrium",
-        Takes::Boolean,
-        "true: the motion starts in the equilibrium under the loads at t = 0",
+        Takes::BooleanOr(&["nearest"]),
+        "true: the motion starts at rest in the equilibrium that is reached downhill, under the loads at t = 0; `\"nearest\"`: in the nearest one, stable or not",
     )
     .or("false"),
 ];
@@ -257,7 +258,7 @@ pub(super) fn initial(root: &Fields, names: &Names) -> Result<Initial, SceneErro
             sketch: Vec::new(),
             bodies: IndexMap::new(),
             velocities: Vec::new(),
-            equilibrium: false,
+            equilibrium: None,
             span: root.whole.span(),
         });
     };
@@ -275,7 +276,14 @@ pub(super) fn initial(root: &Fields, names: &Names) -> Result<Initial, SceneErro
             .map(|state| (state.body, state))
             .collect(),
         velocities: velocities.into_values().flatten().collect(),
-        equilibrium: table.optional_boolean("equilibrium")?.unwrap_or(false),
+        equilibrium: match table.optional("equilibrium") {
+            None => None,
+            Some(field) => match field.boolean_or_word()? {
+                Ok(true) => Some(Rest::Stable),
+                Ok(false) => None,
+                Err(_) => Some(Rest::Nearest),
+            },
+        },
         span: field.span(),
     })
 }

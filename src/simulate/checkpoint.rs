@@ -62,6 +62,8 @@ impl Simulation {
             last_gaps: _,
             inner_gaps: _,
             started: _,
+            // that of the start, which a fresh simulation has found
+            rest: _,
             status: _,
             error: _,
         } = self;

@@ -1,14 +1,22 @@
 //! Static runs: a load path, and the equilibrium that a motion starts from.
 
 use super::failure::describe;
+use super::scale;
 use super::{
     Control, GRID_ROUNDING, HALVINGS, Observer, Progress, RunError, Simulation, check_turns,
 };
 use crate::model::Model;
-use crate::newton::{Failure, Newton};
-use crate::scene::{Analysis, Scene, SceneError};
+use crate::newton::{Extent, Failure, Newton, Softest};
+use crate::scene::{Analysis, Rest, Scene, SceneError};
 use crate::stepper::StepError;
 use crate::system::{State, System, Work};
+use serde::Serialize;
+
+/// A descent leaves at most so many saddles; each lies lower than the one before.
+const SADDLES: usize = 10;
+/// A saddle is left by this part of the size of the mechanism: a hundredth of the longest step of a descent, so that the descent
+/// itself decides where to go.
+const PUSH: f64 = 1e-3;
 
 /// Refuses what has no equilibrium in a scene that needs one; moves the start to its equilibrium where the scene asks for it.
 pub(super) fn prepare(
@@ -17,11 +25,14 @@ pub(super) fn prepare(
     newton: &mut Newton,
     state: &mut State,
     work: &mut Work,
-) -> Result<(), SceneError> {
-    let start = scene.initial.equilibrium;
-    let path = scene.simulation.analysis == Analysis::Static;
+) -> Result<Option<FoundRest>, SceneError> {
+    let rest = scene.initial.equilibrium;
+    let (start, path) = (
+        rest.is_some(),
+        scene.simulation.analysis == Analysis::Static,
+    );
     if !start && !path {
-        return Ok(());
+        return Ok(None);
     }
     for joint in &scene.joints {
         if joint.contact().is_some() {
@@ -73,7 +84,17 @@ pub(super) fn prepare(
             state.v[known.clone()].to_vec(),
             state.a[known.clone()].to_vec(),
         );
-        newton.settle(model, state, work).map_err(|failure| {
+        let lengths = model.lengths();
+        let extent = Extent {
+            lengths: &lengths,
+            size: scale::size(scene, model, state),
+        };
+        let found = match rest {
+            Some(Rest::Nearest) => newton.balance(model, state, work),
+            _ => come_to_rest(model, newton, extent, state, work),
+        };
+        let softest = found.and_then(|()| newton.softest(model, state, work));
+        let softest = softest.map_err(|failure| {
             let (name, cause) = explain(model, &failure);
             let message = format!("no equilibrium was found to start from: {name}: {cause}");
             scene.error(scene.initial.span, message, "this start")
@@ -81,6 +102,94 @@ pub(super) fn prepare(
         state.v[known.clone()].copy_from_slice(&rates.0);
         state.a[known].copy_from_slice(&rates.1);
         model.remember_angles(state);
+        return Ok(Some(FoundRest::new(model, extent, softest)));
+    }
+    Ok(None)
+}
+
+/// An equilibrium, and whether it is stable.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FoundRest {
+    /// Smallest eigenvalue of the stiffness relative to the masses, on the null space of the constraints \[1/s2\]: the square of the
+    /// lowest angular frequency; zero where the mechanism can move without force, negative where it would fall. Absent where it
+    /// cannot move.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smallest_eigenvalue: Option<f64>,
+    /// The unknown that moves most in that direction; empty where nothing can move.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub moves_most: String,
+}
+
+/// What becomes of a small push.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stability {
+    /// The mechanism returns, or cannot move.
+    Stable,
+    /// It can move without force.
+    Neutral,
+    /// It falls.
+    Unstable,
+}
+
+impl FoundRest {
+    pub(super) fn new(model: &Model, extent: Extent, softest: Option<Softest>) -> FoundRest {
+        let Some(softest) = softest else {
+            return FoundRest {
+                smallest_eigenvalue: None,
+                moves_most: String::new(),
+            };
+        };
+        let moved = softest.direction.iter().zip(extent.lengths);
+        let moved = moved.map(|(x, length)| (x * length).abs()).enumerate();
+        let most = moved.max_by(|a, b| a.1.total_cmp(&b.1));
+        FoundRest {
+            smallest_eigenvalue: Some(softest.eigenvalue),
+            moves_most: model.unknown_name(most.map_or(0, |(i, _)| i)),
+        }
+    }
+
+    /// What a user should know of an equilibrium that is not stable.
+    pub(super) fn note(&self) -> Option<String> {
+        let moves = &self.moves_most;
+        match self.stability() {
+            Stability::Stable => None,
+            Stability::Neutral => Some(format!(
+                "the start is in neutral equilibrium: {moves} can move without force"
+            )),
+            Stability::Unstable => Some(format!(
+                "the start is in unstable equilibrium: a small push of {moves} grows"
+            )),
+        }
+    }
+
+    /// What becomes of a small push.
+    pub fn stability(&self) -> Stability {
+        match self.smallest_eigenvalue {
+            Some(x) if x < 0.0 => Stability::Unstable,
+            Some(0.0) => Stability::Neutral,
+            _ => Stability::Stable,
+        }
+    }
+}
+
+/// Brings a mechanism downhill to rest, and on from the saddles of its potential that it meets.
+fn come_to_rest(
+    model: &Model,
+    newton: &mut Newton,
+    extent: Extent,
+    state: &mut State,
+    work: &mut Work,
+) -> Result<(), Failure> {
+    for _ in 0..=SADDLES {
+        newton.descend(model, extent, state, work, &mut |_| {})?;
+        let Some(softest) = newton.softest(model, state, work)? else {
+            return Ok(());
+        };
+        if softest.eigenvalue >= 0.0 {
+            return Ok(());
+        }
+        let way = (&*softest.direction, -softest.eigenvalue, PUSH);
+        newton.leave(model, extent, way, state, work)?;
     }
     Ok(())
 }

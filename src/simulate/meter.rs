@@ -20,6 +20,7 @@
 //! is 2 pi/n for a vibration of n steps a period. The largest rho_i is reported, over the coordinates with at least a tenth of
 //! the largest acceleration whose changes move points by more than rounding.
 
+use super::scale;
 use crate::checkpoint::carried;
 use crate::model::{Energies, Model};
 use crate::scene::{Pace, Scene};
@@ -158,18 +159,8 @@ impl Extent {
 /// A gain of energy is measured against it at a start from rest, where the energy supplied is zero and the errors of the first
 /// steps are as large as the motion.
 fn plain_motion(scene: &Scene, model: &Model, start: &State) -> f64 {
-    let lengths = model.lengths();
-    let places = start.q.iter().enumerate();
-    let places = places.filter(|(i, _)| lengths.get(*i).is_none_or(|length| *length == 1.0));
-    let mut extent = Extent::EMPTY;
-    places.for_each(|(_, q)| extent.see(*q, 0.0));
-    // a body that swings about a point
-    let levers = model.angles.iter().map(|angle| lengths[*angle]);
-    let (mut mass, mut size) = (0.0, levers.fold(extent.width(), f64::max));
-    for body in &scene.bodies {
-        mass += body.kind.mass().unwrap_or(0.0);
-        size = size.max(body.kind.size());
-    }
+    let masses = scene.bodies.iter().filter_map(|body| body.kind.mass());
+    let (mass, size) = (masses.sum::<f64>(), scale::size(scene, model, start));
     0.5 * mass * (size / scene.simulation.duration).powi(2)
 }
 

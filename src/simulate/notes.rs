@@ -1,6 +1,6 @@
 //! Facts about a run that a user may want to know; none of them puts a result in doubt.
 
-use super::Report;
+use super::{FoundRest, Report};
 
 /// Strains, and curvatures times height, are mentioned from here on: steel yields at a fifth of it.
 const NOTABLE: f64 = 0.01;
@@ -12,6 +12,7 @@ impl Report {
         notes.extend(self.redundant.iter().map(|name| {
             format!("{name} is redundant: the constraint forces in its loop are not unique")
         }));
+        notes.extend(self.rest.as_ref().and_then(FoundRest::note));
         let strained = self.strain.iter();
         let most = strained.max_by(|a, b| a.1.largest().total_cmp(&b.1.largest()));
         if let Some((name, strain)) = most.filter(|(_, strain)| strain.largest() > NOTABLE) {

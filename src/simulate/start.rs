@@ -56,7 +56,7 @@ impl Simulation {
             scene.integrator.onset_tolerance,
             &mut |c, v, d| started.push((c, v, d)),
         );
-        equilibrium::prepare(scene, &model, &mut newton, &mut state, &mut work)?;
+        let rest = equilibrium::prepare(scene, &model, &mut newton, &mut state, &mut work)?;
         if scene.simulation.analysis == Analysis::Dynamic {
             newton
                 .make_consistent(&*model, &mut state, &mut work)
@@ -117,6 +117,7 @@ impl Simulation {
             inner_gaps: gaps.clone(),
             gaps,
             started,
+            rest,
             status: Status::Incomplete,
             error: None,
             model,

@@ -112,6 +112,14 @@ impl Language {
             Takes::Rows { .. } => json!({ "type": "array" }),
             Takes::List => json!({ "type": "array", "items": { "type": "string" } }),
             Takes::Word(words) => json!({ "enum": words }),
+            Takes::BooleanOr(words) => {
+                let words = words.iter().map(|word| json!(word));
+                let all: Vec<_> = [json!(true), json!(false)]
+                    .into_iter()
+                    .chain(words)
+                    .collect();
+                json!({ "enum": all })
+            }
             Takes::Name("normal laws") => json!({ "enum": self.laws }),
             Takes::Name("schemes") => json!({ "enum": self.schemes }),
             Takes::Name("formats") => json!({ "enum": self.formats }),

@@ -1,0 +1,169 @@
+//! Descent to a stable equilibrium.
+//!
+//! Steepest descent in the metric of the masses, on the constraints, is q' = -M^-1 (f + Phi_q^T lambda), Phi = 0: the potential
+//! falls at the largest rate that a speed of given kinetic energy allows. Its implicit steps,
+//!
+//! ```text
+//! M (q - q_0)/tau + f(q) + Phi_q^T lambda = 0        Phi(q) = 0
+//! ```
+//!
+//! are stationary points of the potential plus |q - q_0|_M^2/(2 tau) (pseudo-transient continuation: Kelley & Keyes 1998, SIAM J.
+//! Numer. Anal. 35:508). A step is kept where the forces have done work along it and nothing moves farther than a tenth of the size of
+//! the mechanism, so that it stays on its slope; otherwise tau is reduced. As the forces vanish tau grows, and the steps become those of
+//! Newton's method for the equilibrium. A force that has no potential, such as one that follows a body, is judged by its work as well.
+
+use super::statics::Anchor;
+use super::{Failure, Newton};
+use crate::math::quadrature::GAUSS5;
+use crate::system::{Equilibrium, State, Work};
+
+/// tau of a step that inertia no longer holds back \[s2\]: (1e5 s)^2, beyond the period of any mechanism.
+const LARGEST_TAU: f64 = 1e10;
+/// tau shrinks by this factor where a step is refused, and grows by its square root where one is kept.
+const REDUCTION: f64 = 16.0;
+/// Below this tau \[s2\], (1e-15 s)^2, no mechanism moves.
+const LEAST_TAU: f64 = 1e-30;
+/// Nothing moves farther in a step than this part of the size of the mechanism: about a twentieth of a turn of its largest body.
+const RADIUS: f64 = 0.1;
+/// A descent ends where nothing moves farther than this part of the size: the root of rounding, from which Newton's method
+/// reaches rounding in one iteration.
+const AT_REST: f64 = 1e-8;
+/// A step that needs more iterations is too long.
+const ITERATIONS: usize = 12;
+/// More steps than this fall a hundred times the size of the mechanism: nothing ends the fall.
+const STEPS: usize = 2000;
+/// The work of the forces is rounded by so many roundings of the forces times the coordinates.
+const ROUNDINGS: f64 = 64.0;
+
+/// How far changes of coordinates move a mechanism.
+#[derive(Debug, Clone, Copy)]
+pub struct Extent<'a> {
+    /// The largest distance \[m\] by which a unit of each unknown moves a point of its body.
+    pub lengths: &'a [f64],
+    /// The size of the mechanism \[m\].
+    pub size: f64,
+}
+
+impl Extent<'_> {
+    /// The largest distance between two states, as part of the size.
+    pub fn distance(&self, from: &State, to: &State) -> f64 {
+        let changes = from.q.iter().zip(&to.q).zip(self.lengths);
+        let distances = changes.map(|((a, b), length)| length * (b - a).abs());
+        distances.fold(0.0, crate::math::larger) / self.size
+    }
+}
+
+impl Newton {
+    /// Brings a state that satisfies the constraints downhill to rest, at its known coordinates and loads, and shows every state on
+    /// the way. The end may be a saddle of the potential where the descent met one exactly.
+    ///
+    /// # Errors
+    /// [`Failure::NoConvergence`] of a fall without end, with the unknown that moves most; that of the shortest step.
+    pub fn descend(
+        &mut self,
+        system: &dyn Equilibrium,
+        extent: Extent,
+        s: &mut State,
+        work: &mut Work,
+        see: &mut dyn FnMut(&State),
+    ) -> Result<(), Failure> {
+        s.v.fill(0.0);
+        s.a.fill(0.0);
+        let mut next = s.clone();
+        let mut tau = LARGEST_TAU;
+        for _ in 0..STEPS {
+            let distance = loop {
+                next.copy_from(s);
+                let anchor = Anchor {
+                    q: &s.q,
+                    inertia: 1.0 / tau,
+                };
+                let made = self.balance_with(system, Some(anchor), ITERATIONS, &mut next, work);
+                let distance = extent.distance(s, &next);
+                if made.is_ok() && distance <= RADIUS && self.falls(system, s, &next, work) {
+                    break distance;
+                }
+                tau /= REDUCTION;
+                if tau < LEAST_TAU {
+                    made?;
+                    return Err(self.farthest(extent, s, &next));
+                }
+            };
+            s.copy_from(&next);
+            see(s);
+            if distance <= AT_REST && tau == LARGEST_TAU {
+                // a mechanism that can move without any force rests where it is
+                if self.balance(system, &mut next, work).is_ok()
+                    && extent.distance(s, &next) <= AT_REST
+                {
+                    s.copy_from(&next);
+                }
+                return Ok(());
+            }
+            tau = LARGEST_TAU.min(tau * REDUCTION.sqrt());
+        }
+        Err(self.farthest(extent, s, &next))
+    }
+
+    /// The failure of a descent; names the unknown that moves most in a last step without a bound.
+    fn farthest(&self, extent: Extent, from: &State, to: &State) -> Failure {
+        let changes = from.q.iter().zip(&to.q).zip(extent.lengths);
+        let moved = changes.map(|((a, b), length)| length * (b - a).abs());
+        let most = moved.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        let (index, update) = most.unwrap_or((0, 0.0));
+        Failure::NoConvergence { index, update }
+    }
+
+    /// True where the forces do work, or none to rounding, on the chord from one state to another.
+    fn falls(
+        &mut self,
+        system: &dyn Equilibrium,
+        from: &State,
+        to: &State,
+        work: &mut Work,
+    ) -> bool {
+        let n = system.shape().unknowns;
+        let mut at = from.clone();
+        let (mut rise, mut magnitude) = (0.0, 0.0);
+        for (x, weight) in GAUSS5 {
+            for i in 0..n {
+                at.q[i] = from.q[i] + x * (to.q[i] - from.q[i]);
+            }
+            system.free_residual(&at, &mut self.r, work);
+            for i in 0..n {
+                let (force, way) = (weight * self.r[i], to.q[i] - from.q[i]);
+                rise += force * way;
+                magnitude += force.abs() * (way.abs() + from.q[i].abs());
+            }
+        }
+        rise <= ROUNDINGS * f64::EPSILON * magnitude
+    }
+
+    /// A state of equilibrium moved along a direction by which it falls, to a state on the constraints nearby. `growth` \[1/s2\] is
+    /// the magnitude of the negative eigenvalue of the direction, whose largest displacement is `part` of the size.
+    ///
+    /// # Errors
+    /// See [`Failure`].
+    pub fn leave(
+        &mut self,
+        system: &dyn Equilibrium,
+        extent: Extent,
+        (direction, growth, part): (&[f64], f64, f64),
+        s: &mut State,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
+        let displacements = direction.iter().zip(extent.lengths);
+        let largest = displacements.fold(0.0, |m, (x, length)| crate::math::larger(m, x * length));
+        let amplitude = part * extent.size / largest;
+        for (q, x) in s.q.iter_mut().zip(direction) {
+            *q += amplitude * x;
+        }
+        let origin = s.q.clone();
+        // twice the growth makes the step a minimum, so that it stays near its origin
+        let anchor = Anchor {
+            q: &origin,
+            inertia: 2.0 * growth,
+        };
+        self.balance_with(system, Some(anchor), ITERATIONS, s, work)
+    }
+}

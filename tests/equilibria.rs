@@ -1,0 +1,245 @@
+//! Equilibria that a mechanism reaches from its sketch.
+
+use ladder::{Rung, Worst};
+use looselink::newton::{Extent, Newton};
+use looselink::scene::Scene;
+use looselink::simulate::{Simulation, Stability};
+use looselink::system::System;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// A pendulum of length 1 m whose end is sketched somewhere.
+fn pendulum(end: [f64; 2], equilibrium: &str) -> Scene {
+    let [x, y] = end;
+    parse(&format!(
+        r#"
+format = 1
+title = "a bar hangs on a pin"
+simulation = {{ duration = 0.1, gravity = [0.0, -9.81] }}
+integrator = {{ method = "bathe", step = 1e-3, newton_tolerance = 1e-9 }}
+output = {{ interval = 0.1, channels = ["bar.theta"] }}
+materials.steel = {{ density = 7850.0 }}
+sections.bar = {{ width = 0.01, height = 0.02 }}
+bodies.ground = {{ type = "ground", points.O = [0.0, 0.0] }}
+bodies.bar = {{ type = "link", model = "rigid", length = 1.0, section = "bar", material = "steel" }}
+joints.O = {{ type = "revolute", bearing = "ground.O", journal = "bar.start", model = "ideal" }}
+initial.sketch.bar = {{ end = [{x:?}, {y:?}] }}
+initial.equilibrium = {equilibrium}
+"#
+    ))
+}
+
+/// It hangs, from any sketch, with mu = 3 g/(2 l); also from exactly upright.
+#[test]
+fn a_pendulum_hangs_from_any_sketch() {
+    let worst = Worst::new();
+    for degrees in (-170..=180).step_by(10) {
+        let angle = f64::from(degrees).to_radians();
+        let scene = pendulum([angle.cos(), angle.sin()], "true");
+        let simulation = Simulation::new(&scene).unwrap();
+        let theta = simulation.model().pose(1, simulation.state()).position[2];
+        let rest = simulation.report().rest.unwrap();
+        assert_eq!(rest.stability(), Stability::Stable, "{degrees}");
+        worst.at(format!("{degrees} degrees"));
+        worst.see((theta + FRAC_PI_2).sin().abs());
+        worst.see(rest.smallest_eigenvalue.unwrap() / (1.5 * 9.81) - 1.0);
+        assert!((theta + FRAC_PI_2).cos() > 0.0, "{degrees}: {theta}");
+    }
+    Rung::ClosedForms
+        .asks("Does a pendulum hang straight down from any sketch, with the eigenvalue 3g/(2l)?")
+        .within(&worst, 1e-12, "rounding of an angle and of a quotient");
+}
+
+/// The nearest equilibrium of a pendulum sketched almost upright is upright, and is called unstable.
+#[test]
+fn the_nearest_equilibrium_may_be_unstable() {
+    let scene = pendulum([0.01, 1.0], "\"nearest\"");
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let rest = simulation.report().rest.unwrap();
+    assert_eq!(rest.stability(), Stability::Unstable);
+    assert!((rest.smallest_eigenvalue.unwrap() / (-1.5 * 9.81) - 1.0).abs() < 1e-12);
+    assert_eq!(rest.moves_most, "bar.theta");
+    simulation.run(&mut ()).unwrap();
+    let notes = simulation.report().notes();
+    assert!(
+        notes
+            .iter()
+            .any(|n| n.contains("unstable") && n.contains("bar.theta")),
+        "{notes:?}"
+    );
+}
+
+/// A dyad: a bar from a joint of the last loop and a bar to the ground, by random numbers in [0, 1].
+#[derive(Debug, Clone)]
+struct Dyad {
+    lengths: [f64; 2],
+    pivot: [f64; 2],
+    side: f64,
+}
+
+/// Four-bars, and six-bars with a second dyad at the joint of coupler and rocker, all of whose bars hang on their joints.
+fn hanging(crank: f64, angle: f64, dyads: &[Dyad]) -> Option<Scene> {
+    let mut joints = String::new();
+    let (mut bodies, mut sketch) = (String::new(), String::new());
+    let mut ground = "points.G0 = [0.0, 0.0]".to_owned();
+    let mut last = [crank * angle.cos(), crank * angle.sin()];
+    let mut carrier = "b0.end".to_owned();
+    let link = |name: &str, length: f64| {
+        format!(
+            "bodies.{name} = {{ type = \"link\", model = \"rigid\", length = {length:?}, section = \"bar\", material = \"steel\" }}\n"
+        )
+    };
+    bodies += &link("b0", crank);
+    joints += "joints.J0 = { type = \"revolute\", bearing = \"ground.G0\", journal = \"b0.start\", model = \"ideal\" }\n";
+    for (k, dyad) in dyads.iter().enumerate() {
+        let [a, b] = dyad.lengths;
+        let [px, py] = dyad.pivot;
+        let [dx, dy] = [px - last[0], py - last[1]];
+        let d = dx.hypot(dy);
+        // the knee, with a triangle that is not flat
+        if d > 0.95 * (a + b) || d < 1.05 * (a - b).abs() {
+            return None;
+        }
+        let along = (a * a - b * b + d * d) / (2.0 * d);
+        let off = (a * a - along * along).sqrt() * dyad.side.signum();
+        let knee = [
+            last[0] + (along * dx - off * dy) / d,
+            last[1] + (along * dy + off * dx) / d,
+        ];
+        let [first, second] = [2 * k + 1, 2 * k + 2];
+        bodies += &link(&format!("b{first}"), a);
+        bodies += &link(&format!("b{second}"), b);
+        joints += &format!(
+            "joints.J{first} = {{ type = \"revolute\", bearing = \"{carrier}\", journal = \"b{first}.start\", model = \"ideal\" }}\n"
+        );
+        joints += &format!(
+            "joints.K{first} = {{ type = \"revolute\", bearing = \"b{first}.end\", journal = \"b{second}.start\", model = \"ideal\" }}\n"
+        );
+        joints += &format!(
+            "joints.J{second} = {{ type = \"revolute\", bearing = \"ground.G{second}\", journal = \"b{second}.end\", model = \"ideal\" }}\n"
+        );
+        ground += &format!(", points.G{second} = [{px:?}, {py:?}]");
+        sketch += &format!(
+            "J{first} = [{:?}, {:?}], K{first} = [{:?}, {:?}], ",
+            last[0], last[1], knee[0], knee[1]
+        );
+        carrier = format!("b{first}.end");
+        last = knee;
+    }
+    let text = format!(
+        r#"
+format = 1
+title = "bars hang on their joints"
+simulation = {{ duration = 0.1, gravity = [0.0, -9.81] }}
+integrator = {{ method = "bathe", step = 1e-3, newton_tolerance = 1e-9 }}
+output = {{ interval = 0.1, channels = ["b0.theta"] }}
+materials.steel = {{ density = 7850.0 }}
+sections.bar = {{ width = 0.02, height = 0.02 }}
+bodies.ground = {{ type = "ground", {ground} }}
+{bodies}{joints}initial.sketch = {{ {} }}
+"#,
+        sketch.trim_end_matches(", ")
+    );
+    Some(parse(&text))
+}
+
+/// A hundred four-bars and a hundred six-bars: on the way of the descent no potential is higher than the one before and no point
+/// moves farther than a tenth of the size; the rest has a positive eigenvalue, that of the slowest mode.
+#[test]
+fn hanging_mechanisms_come_downhill_to_rest() {
+    let [heights, eigenvalues, found] = [Worst::new(), Worst::new(), Worst::new()];
+    for dyads in [1, 2] {
+        let dyad = (
+            [0.3..1.5_f64, 0.3..1.5_f64],
+            [-1.5..1.5_f64, -0.5..0.5_f64],
+            prop_oneof![Just(-1.0), Just(1.0)],
+        );
+        let dyad = dyad.prop_map(|(lengths, pivot, side)| Dyad {
+            lengths,
+            pivot,
+            side,
+        });
+        let mechanisms = (0.2..1.0_f64, 0.0..TAU, prop::collection::vec(dyad, dyads));
+        let mechanisms = mechanisms
+            .prop_filter_map("it does not close", |(crank, angle, dyads)| {
+                hanging(crank, angle, &dyads)
+            });
+        let config = Config {
+            cases: 100,
+            max_local_rejects: 1_000_000,
+            ..Config::default()
+        };
+        let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[dyads as u8; 32]);
+        let run = TestRunner::new_with_rng(config, rng).run(&mechanisms, |scene| {
+            let start = Simulation::new(&scene).unwrap();
+            let (model, mut work) = (start.model(), start.model().work());
+            let lengths = model.lengths();
+            let extent = Extent {
+                lengths: &lengths,
+                size: 3.0,
+            };
+            let mut state = start.state().clone();
+            let masses = scene.bodies.iter().filter_map(|body| body.kind.mass());
+            let weight = 9.81 * 3.0 * masses.sum::<f64>();
+            let potential = |state: &looselink::system::State| {
+                let energies = model.energies(state);
+                energies.total() - energies.kinetic
+            };
+            let (mut before, mut at) = (potential(&state), state.clone());
+            let mut newton = Newton::new(model, 1e-9);
+            newton
+                .descend(model, extent, &mut state, &mut work, &mut |next| {
+                    let after = potential(next);
+                    heights.see((after - before).max(0.0) / weight);
+                    assert!(extent.distance(&at, next) <= 0.1);
+                    (before, at) = (after, next.clone());
+                })
+                .unwrap();
+            let mut resting = Simulation::new(&scene_with_rest(&scene)).unwrap();
+            let rest = resting.report().rest.unwrap();
+            prop_assert_eq!(rest.stability(), Stability::Stable);
+            let modes = resting.modes(false).unwrap();
+            let slowest = (TAU * modes.modes[0].frequency).powi(2);
+            prop_assert_eq!(modes.modes[0].growth, 0.0);
+            eigenvalues.see(rest.smallest_eigenvalue.unwrap() / slowest - 1.0);
+            // nothing pushes it
+            found.see(
+                resting
+                    .state()
+                    .a
+                    .iter()
+                    .fold(0.0, |m: f64, a| m.max(a.abs()))
+                    / 9.81,
+            );
+            Ok(())
+        });
+        run.unwrap();
+    }
+    Rung::Balance
+        .asks("200 hanging four- and six-bars: largest rise of the potential on the way to rest, over the weight times 3 m")
+        .within(&heights, 1e-14, "64 roundings: a step is kept where the forces do work");
+    Rung::Routes
+        .asks("200 hanging four- and six-bars: smallest eigenvalue against the square of the slowest frequency of `modes`")
+        .within(&eigenvalues, 1e-9, "1e-13 of the largest eigenvalue of the inverse, by another route than that of the modes");
+    Rung::Balance
+        .asks("200 hanging four- and six-bars: acceleration of the start, over gravity")
+        .within(
+            &found,
+            1e-9,
+            "rounding of forces over the inertia of the slowest direction",
+        );
+}
+
+fn scene_with_rest(scene: &Scene) -> Scene {
+    Scene::parse(
+        "hanging",
+        scene.text(),
+        &["initial.equilibrium=true".to_owned()],
+    )
+    .unwrap()
+}
+
+fn parse(text: &str) -> Scene {
+    Scene::parse("equilibrium", text, &[]).unwrap_or_else(|e| panic!("{e:?}"))
+}
