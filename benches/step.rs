@@ -28,7 +28,7 @@ fn steps(criterion: &mut Criterion) {
         // the same mechanism with time left, as it has in the middle of a run
         let (scene, simulation) = simulation("simulation.duration=0.5");
         let model = simulation.model();
-        let mut newton = Newton::new(model, scene.integrator.newton_tolerance);
+        let mut newton = Newton::new(model, scene.integrator.newton_tolerance_for(1.0));
         let mut work = model.work();
         let mut stepper = scene.integrator.method.stepper(model.shape());
         group.bench_function(format!("case{case}"), |b| {

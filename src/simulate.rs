@@ -10,6 +10,7 @@ mod equilibrium;
 mod failure;
 mod foresight;
 mod impacts;
+mod load_path;
 mod meter;
 mod modes;
 mod notes;
@@ -35,6 +36,7 @@ pub use failure::RunError;
 use failure::short;
 use impacts::Impacts;
 pub use impacts::{Impact, Overrun};
+pub use load_path::{CriticalKind, CriticalPoint};
 pub use meter::Integration;
 use meter::Meter;
 pub use observer::{ContactEnd, ContactEvent, Control, Notice, Observer, Onset, Progress};
@@ -135,8 +137,10 @@ pub struct Simulation {
     last_gaps: Vec<[f64; 2]>,
     inner_gaps: Vec<[f64; 2]>,
     started: Vec<(usize, f64, f64)>,
-    /// The equilibrium that the motion starts from, where the scene asks for one.
+    /// The equilibrium that the motion starts from, where the scene asks for one; in a static analysis the last one.
     rest: Option<FoundRest>,
+    /// Where the load path could not go on or branched.
+    critical_points: Vec<CriticalPoint>,
     status: Status,
     error: Option<String>,
 }

@@ -6,6 +6,7 @@ mod bad_input;
 mod bad_mechanism;
 mod balance;
 mod bits;
+mod buckling;
 mod choice;
 mod coordinates;
 mod couples;

@@ -145,7 +145,7 @@ fn steps_do_not_allocate() {
         let (simulation, from) = state(&scene);
         let model = simulation.model();
         let mut to = from.clone();
-        let mut newton = Newton::new(model, scene.integrator.newton_tolerance);
+        let mut newton = Newton::new(model, scene.integrator.newton_tolerance_for(1.0));
         let mut work = model.work();
         let mut stepper = scene.integrator.method.stepper(model.shape());
         let info = allocation_counter::measure(|| {

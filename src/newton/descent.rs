@@ -28,8 +28,8 @@ const RADIUS: f64 = 0.1;
 /// A descent ends where nothing moves farther than this part of the size: the root of rounding, from which Newton's method
 /// reaches rounding in one iteration.
 const AT_REST: f64 = 1e-8;
-/// A step that needs more iterations is too long.
-const ITERATIONS: usize = 12;
+/// A step that needs more iterations is too long; whether it fell decides on the rest.
+const LIMITS: (usize, f64) = (12, f64::INFINITY);
 /// More steps than this fall a hundred times the size of the mechanism: nothing ends the fall.
 const STEPS: usize = 2000;
 /// The work of the forces is rounded by so many roundings of the forces times the coordinates.
@@ -78,7 +78,7 @@ impl Newton {
                     q: &s.q,
                     inertia: 1.0 / tau,
                 };
-                let made = self.balance_with(system, Some(anchor), ITERATIONS, &mut next, work);
+                let made = self.balance_with(system, Some(anchor), LIMITS, &mut next, work);
                 let distance = extent.distance(s, &next);
                 if made.is_ok() && distance <= RADIUS && self.falls(system, s, &next, work) {
                     break distance;
@@ -164,6 +164,6 @@ impl Newton {
             q: &origin,
             inertia: 2.0 * growth,
         };
-        self.balance_with(system, Some(anchor), ITERATIONS, s, work)
+        self.balance_with(system, Some(anchor), LIMITS, s, work)
     }
 }

@@ -3,6 +3,7 @@
 mod descent;
 mod factors;
 mod iteration;
+mod load_path;
 mod prediction;
 mod response;
 mod singular;
@@ -13,6 +14,7 @@ mod tangent;
 
 pub use descent::Extent;
 pub(crate) use iteration::{Update, iterate};
+pub use load_path::{ArcMetric, PathTangent};
 pub use response::{Response, ResponseTerm};
 pub use softest::Softest;
 pub use stage::{Level, StageEquations};

@@ -15,6 +15,11 @@ const LAST_UPDATE: f64 = 1e-8;
 /// An update below this part of the largest coordinate that no longer decreases is rounding.
 const ROUNDING: f64 = 1e-12;
 
+/// By the theorem of Newton and Kantorovich a solution is near, and Newton's method finds it, where the second update is at most half
+/// the first; half of that is left for what updates in two norms differ by (Deuflhard 2011, Newton Methods for Nonlinear Problems,
+/// 2.1).
+pub(super) const CONTRACTION: f64 = 0.25;
+
 /// What a step of a descent is pulled back to: M (q - q_0) w is added to the forces.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Anchor<'a> {
@@ -35,15 +40,30 @@ impl Newton {
         s: &mut State,
         work: &mut Work,
     ) -> Result<(), Failure> {
-        self.balance_with(system, None, MAX_ITERATIONS, s, work)
+        self.balance_with(system, None, (MAX_ITERATIONS, f64::INFINITY), s, work)
     }
 
-    /// As [`Newton::balance`], with the pull of an anchor.
+    /// As [`Newton::balance`] from a state nearby on a path of equilibria: fails where the second update is not much smaller than
+    /// the first, so that Newton's method may end on another path.
+    ///
+    /// # Errors
+    /// As [`Newton::balance`].
+    pub fn balance_on_path(
+        &mut self,
+        system: &dyn Equilibrium,
+        s: &mut State,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
+        self.balance_with(system, None, (MAX_ITERATIONS, CONTRACTION), s, work)
+    }
+
+    /// As [`Newton::balance`], with the pull of an anchor, at most so many iterations, and the largest ratio of the second update to the
+    /// first.
     pub(super) fn balance_with(
         &mut self,
         system: &dyn Equilibrium,
         anchor: Option<Anchor>,
-        iterations: usize,
+        (iterations, contraction): (usize, f64),
         s: &mut State,
         work: &mut Work,
     ) -> Result<(), Failure> {
@@ -78,6 +98,13 @@ impl Newton {
             }
             let update = Update::largest(self.b[..n].iter().copied());
             let size = s.q.iter().fold(f64::MIN_POSITIVE, |m, q| m.max(q.abs()));
+            let is_far = iteration.number == 1 && update.size > contraction * iteration.last;
+            if is_far && update.size > LAST_UPDATE * size {
+                return Err(Failure::NoConvergence {
+                    index: update.index,
+                    update: update.size,
+                });
+            }
             let smaller = update.size < iteration.last || update.size <= ROUNDING * size;
             let converged = finishing && smaller;
             finishing = update.size <= LAST_UPDATE * size;

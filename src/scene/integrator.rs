@@ -11,9 +11,14 @@ use std::cmp::Ordering;
 /// More steps than this are a slip of the pen: a week of computing at 20 microseconds a step.
 const MOST_STEPS: f64 = 1e10;
 
+/// Contacts begin and end to this part of the smallest clearance: the velocity of an impact from the speed of a free fall through the
+/// clearance has half this relative error.
+const OF_CLEARANCE: f64 = 1e-7;
+
 /// The keys of `[integrator]` besides the parameters of schemes.
 pub(super) static INTEGRATOR: [Key; 6] = [
-    Key::name_in("method", "schemes", "the scheme, see below; auto chooses one for an accuracy; a static analysis does not use it"),
+    Key::name_in("method", "schemes", "the scheme, see below; auto chooses one for an accuracy")
+        .or("required, except in a static analysis, which has none"),
     Key::positive(
         "step",
         "s",
@@ -30,13 +35,13 @@ pub(super) static INTEGRATOR: [Key; 6] = [
         "m/s",
         "the largest error that Newton's method leaves in a velocity (rad/s for angles, 1/s for slopes)",
     )
-    .or("required, except for explicit methods"),
+    .or("1e-13 of the size of the mechanism over `step`; with `accuracy` 1e-4 of its position over its horizon"),
     Key::positive(
         "onset_tolerance",
         "m",
         "the largest penetration or gap at a located onset or loss of contact; below the clearance of every joint",
     )
-    .or("required with clearance"),
+    .or("1e-7 of the smallest clearance"),
     Key::new(
         "locate_onsets",
         Takes::Boolean,
@@ -95,22 +100,30 @@ pub(super) fn read(
     let before: Vec<_> = parameters.keys().copied().collect();
     table.declare(&before, &INTEGRATOR)?;
     let names = quoted(schemes.iter().map(|s| s.name));
-    let named = table.required(
-        "method",
-        &format!("the integration scheme: {names}, or {AUTO:?} with an accuracy"),
-    )?;
+    let is_dynamic = simulation.analysis == Analysis::Dynamic;
+    let named = match table.optional("method") {
+        None if is_dynamic => Some(table.required(
+            "method",
+            &format!("the integration scheme: {names}, or {AUTO:?} with an accuracy"),
+        )?),
+        named => named,
+    };
     let automatic = [(AUTO, None)];
     let choices = schemes.iter().map(|s| (s.name, Some(*s))).chain(automatic);
-    let scheme = named.choice(&choices.collect::<Vec<_>>())?;
+    let scheme = match &named {
+        Some(named) => named.choice(&choices.collect::<Vec<_>>())?,
+        None => None,
+    };
     let method = method(&table, scheme.unwrap_or(CANDIDATES[0]), &parameters)?;
-    let is_dynamic = simulation.analysis == Analysis::Dynamic;
     let (pace, pace_span) = pace(
         &table,
         simulation,
         clearance.is_some(),
         scheme.is_none() && is_dynamic,
     )?;
-    if scheme.is_none() && is_dynamic && matches!(pace, Pace::Step(_)) {
+    if let Some(named) = named.as_ref().filter(|_| scheme.is_none() && is_dynamic)
+        && matches!(pace, Pace::Step(_))
+    {
         let message = format!(
             "`{}` = {AUTO:?} chooses the scheme for an accuracy",
             named.path
@@ -127,15 +140,12 @@ pub(super) fn read(
     }
     Ok(Integrator {
         method,
-        automatic: scheme.is_none(),
+        automatic: scheme.is_none() && named.is_some(),
         pace,
-        newton_tolerance: match method.scheme.is_explicit {
-            true => table.optional_number("newton_tolerance")?.unwrap_or(0.0),
-            false => table.number("newton_tolerance")?,
-        },
+        newton_tolerance: table.optional_number("newton_tolerance")?,
         onset_tolerance: onset_tolerance(&table, clearance)?,
         locate_onsets: table.optional_boolean("locate_onsets")?.unwrap_or(true),
-        method_span: named.node.span,
+        method_span: named.map_or(table.whole.span(), |named| named.node.span),
         pace_span,
     })
 }
@@ -258,7 +268,8 @@ fn onset_tolerance(table: &Fields, clearance: Option<f64>) -> Result<f64, SceneE
     let Some(clearance) = clearance else {
         return Ok(table.optional_number("onset_tolerance")?.unwrap_or(0.0));
     };
-    let tolerance = table.number("onset_tolerance")?;
+    let given = table.optional_number("onset_tolerance")?;
+    let tolerance = given.unwrap_or(OF_CLEARANCE * clearance);
     if tolerance >= clearance {
         return Err(table
             .field("onset_tolerance")?

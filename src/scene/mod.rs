@@ -72,6 +72,8 @@ pub struct SimulationTable {
     pub duration: f64,
     /// Gravity vector \[m/s2\], absent when the scene names none.
     pub gravity: Option<[f64; 2]>,
+    /// True where a static analysis goes on along its path where the load cannot grow.
+    pub follows_limits: bool,
 }
 
 /// What `integrator.method` says where a run chooses the scheme.
@@ -86,8 +88,9 @@ pub struct Integrator {
     pub automatic: bool,
     /// What the length of a step follows.
     pub pace: Pace,
-    /// Largest error that Newton's method may leave in a velocity \[m/s\] (slope rates 1/s, angular velocities rad/s).
-    pub newton_tolerance: f64,
+    /// Largest error that Newton's method may leave in a velocity \[m/s\] (slope rates 1/s, angular velocities rad/s), where the
+    /// scene gives it; [`Integrator::newton_tolerance_for`] has the default.
+    pub newton_tolerance: Option<f64>,
     /// Largest |delta| of a located contact onset \[m\].
     pub onset_tolerance: f64,
     /// True where a step is cut at a contact onset or loss; false to see what it costs not to.
@@ -136,6 +139,19 @@ impl Integrator {
             Pace::Step(step) => Some(step),
             Pace::Accuracy(_) => None,
         }
+    }
+
+    /// Largest error that Newton's method may leave in a velocity \[m/s\] of a mechanism of this size \[m\]. Unless the scene gives
+    /// it, a step moves a point by 1e-13 of the size with it, some hundred roundings of a position; with an accuracy, the errors of a
+    /// horizon add up to a ten-thousandth of it at most.
+    pub fn newton_tolerance_for(&self, size: f64) -> f64 {
+        self.newton_tolerance.unwrap_or(match self.pace {
+            _ if self.method.scheme.is_explicit => 0.0,
+            Pace::Step(step) => 1e-13 * size / step,
+            Pace::Accuracy(Accuracy {
+                position, horizon, ..
+            }) => 1e-4 * position / horizon,
+        })
     }
 
     /// Method, and step or accuracy, as captions of pictures say it.

@@ -49,7 +49,7 @@ pub(super) static SCENE: [Key; 14] = [
 ];
 
 /// The keys of `[simulation]`.
-pub(super) static SIMULATION: [Key; 3] = [
+pub(super) static SIMULATION: [Key; 4] = [
     Key::word(
         "analysis",
         &["dynamic", "static"],
@@ -62,6 +62,12 @@ pub(super) static SIMULATION: [Key; 3] = [
         "the simulated time from t = 0; of a static analysis the t of the full load",
     ),
     Key::vector("gravity", "m/s2", "[gx, gy]", "the gravity vector").or("no weight"),
+    Key::word(
+        "at_limit",
+        &["stop", "follow"],
+        "what a static analysis does where the load cannot grow or its equilibrium branches: end there, or follow the path by its arc length",
+    )
+    .or("`\"stop\"`"),
 ];
 
 /// The keys of `[output]`.
@@ -214,6 +220,7 @@ fn simulation(root: &Fields) -> Result<SimulationTable, SceneError> {
         },
         duration: table.number("duration")?,
         gravity: table.optional_vector("gravity")?,
+        follows_limits: table.optional_word("at_limit")? == Some(1),
     })
 }
 

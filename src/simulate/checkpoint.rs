@@ -64,6 +64,8 @@ impl Simulation {
             started: _,
             // that of the start, which a fresh simulation has found
             rest: _,
+            // a static analysis has no checkpoints
+            critical_points: _,
             status: _,
             error: _,
         } = self;

@@ -1,15 +1,12 @@
-//! Static runs: a load path, and the equilibrium that a motion starts from.
+//! Equilibria: the one that a motion starts from, and what becomes of a small push.
 
 use super::failure::describe;
 use super::scale;
-use super::{
-    Control, GRID_ROUNDING, HALVINGS, Observer, Progress, RunError, Simulation, check_turns,
-};
 use crate::model::Model;
-use crate::newton::{Extent, Failure, Newton, Softest};
+use crate::newton::{Extent, Failure, Newton};
 use crate::scene::{Analysis, Rest, Scene, SceneError};
-use crate::stepper::StepError;
 use crate::system::{State, System, Work};
+use numbers::number;
 use serde::Serialize;
 
 /// A descent leaves at most so many saddles; each lies lower than the one before.
@@ -93,8 +90,8 @@ pub(super) fn prepare(
             Some(Rest::Nearest) => newton.balance(model, state, work),
             _ => come_to_rest(model, newton, extent, state, work),
         };
-        let softest = found.and_then(|()| newton.softest(model, state, work));
-        let softest = softest.map_err(|failure| {
+        let found = found.and_then(|()| FoundRest::of(model, newton, extent, state, work));
+        let found = found.map_err(|failure| {
             let (name, cause) = explain(model, &failure);
             let message = format!("no equilibrium was found to start from: {name}: {cause}");
             scene.error(scene.initial.span, message, "this start")
@@ -102,7 +99,7 @@ pub(super) fn prepare(
         state.v[known.clone()].copy_from_slice(&rates.0);
         state.a[known].copy_from_slice(&rates.1);
         model.remember_angles(state);
-        return Ok(Some(FoundRest::new(model, extent, softest)));
+        return Ok(Some(found));
     }
     Ok(None)
 }
@@ -110,6 +107,8 @@ pub(super) fn prepare(
 /// An equilibrium, and whether it is stable.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FoundRest {
+    /// When \[s\], or at which t of a static analysis.
+    pub t: f64,
     /// Smallest eigenvalue of the stiffness relative to the masses, on the null space of the constraints \[1/s2\]: the square of the
     /// lowest angular frequency; zero where the mechanism can move without force, negative where it would fall. Absent where it
     /// cannot move.
@@ -132,32 +131,41 @@ pub enum Stability {
 }
 
 impl FoundRest {
-    pub(super) fn new(model: &Model, extent: Extent, softest: Option<Softest>) -> FoundRest {
-        let Some(softest) = softest else {
-            return FoundRest {
-                smallest_eigenvalue: None,
-                moves_most: String::new(),
-            };
-        };
-        let moved = softest.direction.iter().zip(extent.lengths);
-        let moved = moved.map(|(x, length)| (x * length).abs()).enumerate();
-        let most = moved.max_by(|a, b| a.1.total_cmp(&b.1));
-        FoundRest {
-            smallest_eigenvalue: Some(softest.eigenvalue),
-            moves_most: model.unknown_name(most.map_or(0, |(i, _)| i)),
-        }
+    /// Of a state in equilibrium.
+    ///
+    /// # Errors
+    /// Constraints that lose rank.
+    pub(super) fn of(
+        model: &Model,
+        newton: &mut Newton,
+        extent: Extent,
+        state: &State,
+        work: &mut Work,
+    ) -> Result<FoundRest, Failure> {
+        let softest = newton.softest(model, state, work)?;
+        let moves_most = softest.as_ref().map(|softest| {
+            let moved = softest.direction.iter().zip(extent.lengths);
+            let moved = moved.map(|(x, length)| (x * length).abs()).enumerate();
+            let most = moved.max_by(|a, b| a.1.total_cmp(&b.1));
+            model.unknown_name(most.map_or(0, |(i, _)| i))
+        });
+        Ok(FoundRest {
+            t: state.t,
+            smallest_eigenvalue: softest.map(|softest| softest.eigenvalue),
+            moves_most: moves_most.unwrap_or_default(),
+        })
     }
 
     /// What a user should know of an equilibrium that is not stable.
     pub(super) fn note(&self) -> Option<String> {
-        let moves = &self.moves_most;
+        let (moves, t) = (&self.moves_most, number(self.t, 7));
         match self.stability() {
             Stability::Stable => None,
             Stability::Neutral => Some(format!(
-                "the start is in neutral equilibrium: {moves} can move without force"
+                "the equilibrium at t = {t} is neutral: {moves} can move without force"
             )),
             Stability::Unstable => Some(format!(
-                "the start is in unstable equilibrium: a small push of {moves} grows"
+                "the equilibrium at t = {t} is unstable: a small push of {moves} grows"
             )),
         }
     }
@@ -173,7 +181,7 @@ impl FoundRest {
 }
 
 /// Brings a mechanism downhill to rest, and on from the saddles of its potential that it meets.
-fn come_to_rest(
+pub(super) fn come_to_rest(
     model: &Model,
     newton: &mut Newton,
     extent: Extent,
@@ -195,7 +203,7 @@ fn come_to_rest(
 }
 
 /// The unknown and the cause of a failure of a static solve, for the message.
-fn explain(model: &Model, failure: &Failure) -> (String, String) {
+pub(super) fn explain(model: &Model, failure: &Failure) -> (String, String) {
     match failure {
         Failure::Singular { index } => (
             model.unknown_name(*index),
@@ -207,100 +215,5 @@ fn explain(model: &Model, failure: &Failure) -> (String, String) {
             "Newton's method does not converge; try a smaller step".to_owned(),
         ),
         Failure::NotFinite { .. } => describe(model, failure),
-    }
-}
-
-impl Simulation {
-    /// Equilibria under loads that grow with t, a row at every interval.
-    pub(super) fn run_loads(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
-        let (interval, duration) = (self.scene.output.interval, self.scene.simulation.duration);
-        let rows = (duration / interval + GRID_ROUNDING).floor() as u64;
-        self.load_to(0.0, observer)?;
-        self.record(observer)?;
-        for k in 1..=rows {
-            self.load_to((k as f64 * interval).min(duration), observer)?;
-            self.record(observer)?;
-        }
-        self.load_to(duration, observer)
-    }
-
-    /// Equilibria up to the loads at `target`, in steps that are halved where they fail.
-    pub(super) fn load_to(
-        &mut self,
-        target: f64,
-        observer: &mut dyn Observer,
-    ) -> Result<(), RunError> {
-        let whole = self.pacer.scale();
-        let mut step = whole;
-        let smallest = step * 2.0_f64.powi(-HALVINGS);
-        loop {
-            let left = target - self.state.t;
-            // a remainder of the load factor below this is rounding
-            let next = if left <= (1.0 + GRID_ROUNDING) * step {
-                target
-            } else {
-                self.state.t + step
-            };
-            match self.equilibrium_at(next) {
-                Ok(()) => {
-                    std::mem::swap(&mut self.state, &mut self.trial);
-                    self.model.remember_angles(&mut self.state);
-                    self.counters.steps += 1;
-                    let progress = Progress {
-                        t: self.state.t,
-                        duration: self.scene.simulation.duration,
-                        contacts: None,
-                    };
-                    if observer.step(&progress)? == Control::Stop {
-                        return Err(RunError::Interrupted { t: self.state.t });
-                    }
-                    if self.state.t == target {
-                        return Ok(());
-                    }
-                    step = (2.0 * step).min(whole);
-                }
-                Err(error) => {
-                    self.counters.rejected += 1;
-                    step = 0.5 * step.min(left);
-                    if step < smallest {
-                        return Err(self.no_equilibrium(error, next));
-                    }
-                }
-            }
-        }
-    }
-
-    fn no_equilibrium(&self, error: StepError, t: f64) -> RunError {
-        match error {
-            StepError::Prescribe(error) => RunError::Drive(error),
-            StepError::Turn { index, cause } => RunError::Equilibrium {
-                name: self.model.unknown_name(index),
-                cause: cause.to_owned(),
-                t,
-            },
-            StepError::Stage(failure) => {
-                let (name, cause) = explain(&self.model, &failure);
-                RunError::Equilibrium { name, cause, t }
-            }
-        }
-    }
-
-    /// The equilibrium at t, in `trial`.
-    fn equilibrium_at(&mut self, t: f64) -> Result<(), StepError> {
-        let Simulation {
-            model,
-            state,
-            trial,
-            newton,
-            work,
-            scene,
-            ..
-        } = self;
-        trial.copy_from(state);
-        trial.t = t;
-        trial.weight = t / scene.simulation.duration;
-        model.prescribe(state, trial, work)?;
-        newton.balance(&**model, trial, work)?;
-        check_turns(model, state, trial)
     }
 }

@@ -1,8 +1,8 @@
 //! Why a run ends early, in words.
 
-use super::Simulation;
 use super::meter::Gain;
 use super::stall::Stalled;
+use super::{CriticalPoint, Simulation};
 use crate::model::Model;
 use crate::newton::Failure;
 use crate::scene::{Accuracy, Pace};
@@ -109,6 +109,9 @@ pub enum RunError {
         /// The load factor.
         t: f64,
     },
+    /// The load of a static analysis cannot grow, or its equilibrium branches.
+    #[error("{0}; `simulation.at_limit = \"follow\"` goes on along the path")]
+    Limit(CriticalPoint),
     /// The prescribed motion cannot be followed.
     #[error(transparent)]
     Drive(#[from] PrescribeError),

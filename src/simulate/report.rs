@@ -1,7 +1,10 @@
 //! The report of a run, and the inspection of a scene before it runs.
 
 use super::pace::Pacer;
-use super::{AccuracyReport, Chatter, Choice, FoundRest, Impact, Integration, Overrun, Simulation};
+use super::{
+    AccuracyReport, Chatter, Choice, CriticalPoint, FoundRest, Impact, Integration, Overrun,
+    Simulation,
+};
 use crate::body::{Body, CentredLink, RigidLink, Strain};
 use crate::checkpoint::carried;
 use crate::initial::is_assembled;
@@ -141,9 +144,12 @@ pub struct Report {
     /// The first periods of chatter.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub chatter: Vec<Chatter>,
-    /// The equilibrium that the motion starts from, where the scene asks for one.
+    /// The equilibrium that the motion starts from, where the scene asks for one; of a static analysis the last one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rest: Option<FoundRest>,
+    /// Where the path of a static analysis reached a limit or branched.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub critical_points: Vec<CriticalPoint>,
     /// What was measured of the integrator; absent in a static analysis.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub integration: Option<Integration>,
@@ -329,6 +335,7 @@ impl Simulation {
             brief_contacts: self.closures.brief,
             chatter: self.closures.chatter(&self.model),
             rest: self.rest.clone(),
+            critical_points: self.critical_points.clone(),
             integration: dynamic.then(|| self.meter.report(&self.model)),
             ledger: dynamic.then(|| {
                 self.recorder

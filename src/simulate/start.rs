@@ -8,7 +8,7 @@ use super::meter::Meter;
 use super::pace::Pacer;
 use super::report::{Extreme, Status};
 use super::stall::Stall;
-use super::{LoopCounters, Simulation, equilibrium};
+use super::{LoopCounters, Simulation, equilibrium, scale};
 use crate::body::Strain;
 use crate::compile::compile;
 use crate::initial::{self, redundancy};
@@ -45,7 +45,8 @@ impl Simulation {
     fn begin(scene: &Scene, model: Arc<Model>, start: State) -> Result<Simulation, SceneError> {
         let shape = model.shape();
         let mut state = start.clone();
-        let mut newton = Newton::new(&*model, scene.integrator.newton_tolerance);
+        let size = scale::size(scene, &model, &state);
+        let mut newton = Newton::new(&*model, scene.integrator.newton_tolerance_for(size));
         let mut work = model.work();
         let mut started = Vec::with_capacity(shape.contacts);
         let mut gaps = vec![[0.0; 2]; shape.contacts];
@@ -118,6 +119,7 @@ impl Simulation {
             gaps,
             started,
             rest,
+            critical_points: Vec::new(),
             status: Status::Incomplete,
             error: None,
             model,

@@ -204,7 +204,7 @@ impl MeasuredScene {
             format!("integrator.method={method}"),
             format!("integrator.accuracy={{ position = {position:?}, horizon = {horizon:?} }}"),
         ];
-        if self.scene.integrator.newton_tolerance == 0.0 {
+        if self.scene.integrator.newton_tolerance.is_none() {
             overrides.push(format!("integrator.newton_tolerance={NEWTON_TOLERANCE:?}"));
         }
         overrides.extend(parameters(method));

@@ -22,7 +22,7 @@ fn allowed(run: &RandomRun, extent: f64) -> f64 {
         0 => 1.0,
         _ => STAGNATION,
     };
-    let newton = run.scene.integrator.newton_tolerance * step * extent.max(1.0);
+    let newton = run.scene.integrator.newton_tolerance_for(1.0) * step * extent.max(1.0);
     band * (newton + ROUNDINGS * f64::EPSILON * extent)
 }
 

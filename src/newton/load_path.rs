@@ -1,0 +1,220 @@
+//! Equilibria under a load that is an unknown itself: the path of (q, lambda, t) by its arc length.
+//!
+//! With the tangent (q', t') of the path, |q'|^2/size^2 + t'^2/duration^2 = 1, a point at the distance s from a base point is the
+//! solution of
+//!
+//! ```text
+//! f(q, t) + Phi_q^T lambda = 0    Phi(q, t) = 0    (q' . (q - q_0))/size^2 + t' (t - t_0)/duration^2 = s
+//! ```
+//!
+//! (Keller 1977; Crisfield 1981, Comput. Struct. 13:55). The products weigh coordinates by the distances by which they move points. The
+//! equations are regular at a limit point, where K is singular. They are solved by two right sides for K, which lose digits there
+//! in the update only, so that Newton's method still converges.
+
+use super::statics::CONTRACTION;
+use super::{Extent, Failure, Newton, Update, iterate};
+use crate::system::{Equilibrium, State, Work};
+
+/// Largest number of iterations of a point; one that stays on its path needs fewer.
+const MAX_ITERATIONS: usize = 20;
+/// See [`super::statics`].
+const LAST_UPDATE: f64 = 1e-8;
+const ROUNDING: f64 = 1e-12;
+/// Loads are differenced over this part of the duration; those that grow in proportion to t have no error of truncation.
+const DIFFERENCE: f64 = 1e-4;
+
+/// Sets the known coordinates and the loads of a state at its t.
+pub type SetLoad<'a, E> = &'a dyn Fn(&mut State, &mut Work) -> Result<(), E>;
+
+/// A direction of the path.
+#[derive(Debug, Clone)]
+pub struct PathTangent {
+    /// Change of the unknown coordinates, then of the multipliers, per arc length.
+    unknowns: Vec<f64>,
+    /// Change of t per arc length, as part of the duration.
+    pub load: f64,
+}
+
+/// What arcs are measured by.
+#[derive(Debug, Clone, Copy)]
+pub struct ArcMetric<'a> {
+    /// How far coordinates move points.
+    pub extent: Extent<'a>,
+    /// The t of the full load.
+    pub duration: f64,
+}
+
+impl ArcMetric<'_> {
+    /// The product of two changes of coordinates.
+    fn product(&self, a: &[f64], b: &[f64]) -> f64 {
+        let lengths = self.extent.lengths.iter();
+        let parts = lengths
+            .zip(a.iter().zip(b))
+            .map(|(l, (a, b))| l * l * a * b);
+        parts.sum::<f64>() / self.extent.size.powi(2)
+    }
+
+    /// The distance of a state from a base point along a tangent.
+    pub fn distance(&self, tangent: &PathTangent, base: &State, at: &State) -> f64 {
+        let from_base: Vec<f64> = at.q.iter().zip(&base.q).map(|(a, b)| a - b).collect();
+        let load = (at.t - base.t) / self.duration;
+        self.product(&tangent.unknowns, &from_base) + tangent.load * load
+    }
+
+    /// The cosine of the angle between two tangents.
+    pub fn cosine(&self, a: &PathTangent, b: &PathTangent) -> f64 {
+        self.product(&a.unknowns, &b.unknowns) + a.load * b.load
+    }
+}
+
+impl PathTangent {
+    /// The other way.
+    pub fn reverse(&mut self) {
+        self.unknowns.iter_mut().for_each(|x| *x = -*x);
+        self.load = -self.load;
+    }
+}
+
+impl Newton {
+    /// The tangent of the path at an equilibrium, towards growing loads.
+    ///
+    /// # Errors
+    /// [`Failure::Singular`] at a limit point to the last digit.
+    pub fn path_tangent<E: From<Failure>>(
+        &mut self,
+        system: &dyn Equilibrium,
+        metric: ArcMetric,
+        set_load: SetLoad<E>,
+        s: &State,
+        work: &mut Work,
+    ) -> Result<PathTangent, E> {
+        let scale = self.renew_stiffness(system, s, 0.0, work)?;
+        let slope = self.follow_load(system, metric, set_load, s, scale, work)?;
+        let n = system.shape().unknowns;
+        let length = (metric.product(&slope[..n], &slope[..n]) + 1.0).sqrt();
+        Ok(PathTangent {
+            unknowns: slope.iter().map(|x| x / length).collect(),
+            load: 1.0 / length,
+        })
+    }
+
+    /// The point of the path at the distance `arc` from `base` along its tangent, in `to`. Where the first correction
+    /// is more than a quarter of the step along the tangent, the point may be on another path.
+    ///
+    /// # Errors
+    /// See [`Failure`].
+    pub fn path_point<E: From<Failure>>(
+        &mut self,
+        system: &dyn Equilibrium,
+        metric: ArcMetric,
+        set_load: SetLoad<E>,
+        (base, tangent, arc): (&State, &PathTangent, f64),
+        to: &mut State,
+        work: &mut Work,
+    ) -> Result<(), E> {
+        let n = system.shape().unknowns;
+        to.copy_from(base);
+        to.v.fill(0.0);
+        to.a.fill(0.0);
+        let (way, pull) = tangent.unknowns.split_at(n);
+        for (q, d) in to.q.iter_mut().zip(way) {
+            *q += arc * d;
+        }
+        for (lambda, d) in to.lambda.iter_mut().zip(pull) {
+            *lambda += arc * d;
+        }
+        to.t += arc * tangent.load * metric.duration;
+        set_load(to, work)?;
+        self.counters.stages += 1;
+        let mut finishing = false;
+        // why the load could not be set, within an iteration that fails for it
+        let mut refused = None;
+        let mut refuse = |error: E| {
+            refused = Some(error);
+            Failure::NotFinite { index: 0 }
+        };
+        let step: Vec<f64> = way.iter().map(|x| arc * x).collect();
+        let predicted = Update::largest(step.iter().copied()).size;
+        let ended = iterate(MAX_ITERATIONS, |iteration| {
+            self.counters.newton_iterations += 1;
+            let scale = self.renew_stiffness(system, to, 0.0, work)?;
+            for i in 0..n {
+                self.b[i] = -self.r[i];
+            }
+            for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
+                *b = -scale * phi;
+            }
+            let factors = &self.tangents[0].factors;
+            factors.solve(system.symbolic(), &mut self.b);
+            let mut change = self.b.clone();
+            change[n..].iter_mut().for_each(|x| *x *= scale);
+            let slope = self.follow_load(system, metric, set_load, to, scale, work);
+            let slope = slope.map_err(&mut refuse)?;
+            let missing = arc - metric.distance(tangent, base, to) - metric.product(way, &change);
+            let growth = missing / (metric.product(way, &slope) + tangent.load);
+            for (x, d) in change.iter_mut().zip(&slope) {
+                *x += growth * d;
+            }
+            for (q, d) in to.q.iter_mut().zip(&change[..n]) {
+                *q += d;
+            }
+            for (lambda, d) in to.lambda.iter_mut().zip(&change[n..]) {
+                *lambda += d;
+            }
+            to.t += growth * metric.duration;
+            set_load(to, work).map_err(&mut refuse)?;
+            let update = Update::largest(change[..n].iter().copied());
+            let size = to.q.iter().fold(f64::MIN_POSITIVE, |m, q| m.max(q.abs()));
+            if iteration.number == 0 && update.size > CONTRACTION * predicted.max(ROUNDING * size) {
+                return Err(Failure::NoConvergence {
+                    index: update.index,
+                    update: update.size,
+                });
+            }
+            let smaller = update.size < iteration.last || update.size <= ROUNDING * size;
+            let converged = finishing && smaller;
+            finishing = update.size <= LAST_UPDATE * size;
+            Ok((update, converged))
+        });
+        if let Some(error) = refused {
+            return Err(error);
+        }
+        ended?;
+        to.q_low.fill(0.0);
+        Ok(())
+    }
+
+    /// Change of unknowns and multipliers with t, over the duration, with the factors of the stiffness at hand.
+    fn follow_load<E: From<Failure>>(
+        &mut self,
+        system: &dyn Equilibrium,
+        metric: ArcMetric,
+        set_load: SetLoad<E>,
+        s: &State,
+        scale: f64,
+        work: &mut Work,
+    ) -> Result<Vec<f64>, E> {
+        let n = system.shape().unknowns;
+        let mut k = vec![0.0; system.symbolic().len()];
+        let mut sides = [1.0, -1.0].map(|sign| (sign, self.r.clone(), self.phi.clone()));
+        for (sign, r, phi) in &mut sides {
+            let mut near = s.clone();
+            near.t += *sign * DIFFERENCE * metric.duration;
+            set_load(&mut near, work)?;
+            system.stiffness(&near, 0.0, r, phi, &mut k, work);
+        }
+        let [(_, r, phi), (_, r_before, phi_before)] = &sides;
+        let over = 0.5 / DIFFERENCE;
+        for i in 0..n {
+            self.b[i] = -over * (r[i] - r_before[i]);
+        }
+        for (b, (after, before)) in self.b[n..].iter_mut().zip(phi.iter().zip(phi_before)) {
+            *b = -over * scale * (after - before);
+        }
+        let factors = &self.tangents[0].factors;
+        factors.solve(system.symbolic(), &mut self.b);
+        let mut slope = self.b.clone();
+        slope[n..].iter_mut().for_each(|x| *x *= scale);
+        Ok(slope)
+    }
+}
