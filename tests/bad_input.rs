@@ -90,8 +90,6 @@ fn missing_keys_point_at_the_table() {
         ("duration = 3.0", "", "missing key `duration` in simulation", "[simulation]"),
         ("method = \"bathe\"", "", "missing key `method` in integrator", "[integrator]"),
         ("step = 1.25e-6 ", "", "missing key `step` in integrator", "[integrator]"),
-        ("newton_tolerance = 1e-11", "", "missing key `newton_tolerance`", "[integrator]"),
-        ("onset_tolerance = 1e-13", "", "missing key `onset_tolerance`", "[integrator]"),
         ("interval = 1e-4", "", "missing key `interval` in output", "[output]"),
         ("width = 0.015", "", "missing key `width` in sections.driving", "[sections.driving]"),
         ("clearance = 2e-5", "", "missing key `clearance` in contacts.pin", "[contacts.pin]"),

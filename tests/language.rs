@@ -197,7 +197,7 @@ fn choices() -> BTreeSet<&'static str> {
     let kinds = sheets.iter().filter_map(|sheet| Some(sheet.kind?[1]));
     let keys = sheets.iter().flat_map(|sheet| &sheet.keys);
     let words = keys.flat_map(|key| match key.takes {
-        Takes::Word(words) => words,
+        Takes::Word(words) | Takes::BooleanOr(words) => words,
         _ => &[],
     });
     let laws = registry.laws.iter().map(|law| law.name);
@@ -256,8 +256,9 @@ fn every_choice_has_an_example() {
     let examples: String = examples(&document).into_iter().map(|e| e.1).collect();
     let schemes = Registry::standard().schemes;
     for word in choices() {
-        // the default of `analysis` needs no example, and schemes differ in their name alone
-        let is_example = examples.contains(&format!("\"{word}\"")) || word == "dynamic";
+        // defaults need no example, and schemes differ in their name alone
+        let is_default = ["dynamic", "stop"].contains(&word);
+        let is_example = examples.contains(&format!("\"{word}\"")) || is_default;
         assert!(
             is_example || schemes.iter().any(|s| s.name == word),
             "docs/scene.md has no example with {word:?}"

@@ -421,7 +421,7 @@ fn force_terms(c: &Compiler, numbering: &Numbering, terms: &mut Terms) -> Vec<(S
             values: vec![1.0],
             field: vec![0.0],
         }));
-        terms.angles += usize::from(force.kind.counts_turns());
+        terms.angles += usize::from(force.kind.turning_joint().is_some());
     }
     names
 }

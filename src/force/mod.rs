@@ -50,6 +50,8 @@ pub trait Force: std::fmt::Debug + Send + Sync {
     }
     /// Sets memory before the start.
     fn begin(&self, _at: &mut State) {}
+    /// Sets the memory of an angle to one with the full turns of the start \[rad\].
+    fn wind(&self, _at: &mut State, _angle: f64) {}
     /// Updates memory at an accepted state.
     fn remember(&self, _at: &mut State) {}
     /// Names and units of what [`Force::measure`] gives, three at most.

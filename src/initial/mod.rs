@@ -1,6 +1,7 @@
 //! Where the motion starts: poses of the ideal mechanism or of the scene, then consistent rates.
 
 pub(crate) mod redundancy;
+pub(crate) mod turns;
 
 use crate::body::{Content, Deformation, Frame};
 use crate::compile::Compiled;
@@ -85,6 +86,12 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         let name = &model.unknown_names()[index];
         let message = format!("{name} starts half a turn away from the angle it holds");
         return Err(scene.error(scene.initial.span, message, "this start"));
+    }
+    for (f, force) in scene.forces.iter().enumerate() {
+        let joint = force.kind.turning_joint();
+        if let Some(angle) = joint.and_then(|joint| turns::given_angle(scene, joint)) {
+            model.named_force(f).1.wind(&mut state, angle);
+        }
     }
     model.remember_angles(&mut state);
     Ok(state)

@@ -74,9 +74,9 @@ pub struct NamedForce {
 pub trait ForceModel: Any + Debug + Send + Sync {
     /// The points that it names.
     fn points(&self) -> Vec<PointRef>;
-    /// True where it counts the full turns of an angle.
-    fn counts_turns(&self) -> bool {
-        false
+    /// The joint whose angle it takes with its full turns, of a force that counts them.
+    fn turning_joint(&self) -> Option<usize> {
+        None
     }
     /// Names of its internal states z, each with an equation of first order dz/dt = g(q, v, z). A state is the velocity of an
     /// unknown of unit mass, on which the term exerts the force f = -g: every method integrates it as it integrates velocities.

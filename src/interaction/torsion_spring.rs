@@ -57,8 +57,8 @@ impl ForceModel for TorsionSpringModel {
         vec![]
     }
 
-    fn counts_turns(&self) -> bool {
-        true
+    fn turning_joint(&self) -> Option<usize> {
+        Some(self.joint)
     }
 
     fn term(&self, ends: &Ends) -> (Box<dyn Force>, [usize; 2]) {
@@ -77,7 +77,7 @@ impl ForceModel for TorsionSpringModel {
 }
 
 /// Torque M = k (phi - phi_0) + c phi_dot that turns the second body back to the first; phi is the angle from the first
-/// direction to the second, full turns counted from the start, where it lies within half a turn of phi_0.
+/// direction to the second, full turns counted from the start: as the start says them, or else within half a turn of phi_0.
 #[derive(Debug, Clone, Copy)]
 pub struct TorsionSpring {
     /// The first direction.
@@ -183,6 +183,10 @@ impl Force for TorsionSpring {
 
     fn begin(&self, at: &mut State) {
         at.angles[self.memory] = self.rest_angle;
+    }
+
+    fn wind(&self, at: &mut State, angle: f64) {
+        at.angles[self.memory] = angle;
     }
 
     fn remember(&self, at: &mut State) {

@@ -61,7 +61,8 @@ impl Newton {
             }
             let (theta, direction) = greatest;
             let mu = 1.0 / theta - shift;
-            let eigenvalue = match mu.abs() > self.rounding(system, s, &direction, work) {
+            let rounding = self.rounding(system, s, &direction, work) + ROUNDED * shift;
+            let eigenvalue = match mu.abs() > rounding {
                 true => mu,
                 false => 0.0,
             };
