@@ -1,7 +1,9 @@
 //! Equilibria that a mechanism reaches from its sketch.
 
+use crate::support::{all_scenes, load};
 use ladder::{Rung, Worst};
 use looselink::newton::{Extent, Newton};
+use looselink::registry::Registry;
 use looselink::scene::Scene;
 use looselink::simulate::{Simulation, Stability};
 use looselink::system::System;
@@ -242,4 +244,99 @@ fn scene_with_rest(scene: &Scene) -> Scene {
 
 fn parse(text: &str) -> Scene {
     Scene::parse("equilibrium", text, &[]).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+/// A scene with ideal joints that starts in equilibrium, by a method; none where the scene has no such start or the method does not
+/// take it.
+fn at_rest(scene: &Scene, method: &str, step: Option<f64>, steps: usize) -> Option<Simulation> {
+    let mut overrides: Vec<String> = scene.overrides().map(ToOwned::to_owned).collect();
+    for joint in &scene.joints {
+        if joint.contact().is_some() {
+            overrides.push(format!("joints.{}.model=ideal", joint.name));
+        }
+    }
+    let step = step.or(scene.integrator.step())?;
+    let parameters = match method {
+        "generalized_alpha" | "hht" => ", spectral_radius = 0.8",
+        _ => "",
+    };
+    overrides.push("initial.equilibrium=true".to_owned());
+    overrides.push(format!(
+        "integrator={{ method = \"{method}\", step = {step:e}{parameters} }}"
+    ));
+    overrides.push(format!("output.interval={step:e}"));
+    overrides.push("output.channels=[\"*\"]".to_owned());
+    overrides.push(format!("simulation.duration={:e}", steps as f64 * step));
+    let scene = Scene::parse("rest", scene.text(), &overrides).ok()?;
+    Simulation::new(&scene).ok()
+}
+
+/// A step that explicit methods can take: a tenth of the shortest time in which a mode vibrates or decays, over 2 pi.
+fn stable_step(scene: &Scene) -> Option<f64> {
+    let mut still = at_rest(scene, "bathe", None, 1)?;
+    let modes = still.modes(false).ok()?.modes;
+    let rates = modes
+        .iter()
+        .map(|mode| mode.frequency * (2.0 * mode.damping).max(1.0));
+    let fastest = rates.fold(0.0, f64::max);
+    let step = scene.integrator.step()?;
+    Some(step.min(0.1 / (TAU * fastest)))
+}
+
+/// Whatever rests says nothing, by any method: every scene of the project that has an equilibrium with ideal joints, and fifty hanging
+/// mechanisms.
+#[test]
+fn what_rests_warns_of_nothing() {
+    let mut scenes: Vec<(String, Scene)> = all_scenes()
+        .into_iter()
+        .map(|name| (name.clone(), load(&name, &[])))
+        .filter(|(_, scene)| scene.motions.is_empty() && scene.drives.is_empty())
+        .collect();
+    let shipped = scenes.len();
+    let random = |k: usize| {
+        let x = |i: usize| (0.5 + 0.5 * ((k * 7 + i) as f64 * 12.9898).sin()).fract();
+        let dyad = |i: usize| Dyad {
+            lengths: [0.3 + 1.2 * x(i), 0.3 + 1.2 * x(i + 1)],
+            pivot: [-1.5 + 3.0 * x(i + 2), x(i + 3) - 0.5],
+            side: x(i + 4) - 0.5,
+        };
+        let dyads: Vec<Dyad> = (0..=k % 2).map(|d| dyad(2 + 5 * d)).collect();
+        hanging(0.2 + 0.8 * x(0), TAU * x(1), &dyads)
+    };
+    let hanging = (0..).filter_map(random).take(50);
+    scenes.extend(hanging.map(|scene| ("hanging".to_owned(), scene)));
+    let (mut tried, mut told) = (0, Vec::new());
+    for (name, scene) in &scenes {
+        // loads and frames may move by themselves
+        let rests = at_rest(scene, "bathe", None, 50).is_some_and(|mut simulation| {
+            simulation.run(&mut ()).unwrap();
+            simulation.report().integration.unwrap().rests()
+        });
+        if !rests {
+            continue;
+        }
+        for scheme in Registry::standard().schemes {
+            let step = match scheme.is_explicit {
+                true => stable_step(scene),
+                false => None,
+            };
+            if scheme.is_explicit && step.is_none() {
+                continue;
+            }
+            let Some(mut simulation) = at_rest(scene, scheme.name, step, 50) else {
+                continue;
+            };
+            let ended = simulation.run(&mut ());
+            let warnings = simulation.report().warnings();
+            tried += 1;
+            if ended.is_err() || !warnings.is_empty() {
+                told.push(format!("{name} by {}: {ended:?} {warnings:?}", scheme.name));
+            }
+        }
+    }
+    assert!(told.is_empty(), "{} of {tried}: {told:#?}", told.len());
+    assert!(
+        tried > 500,
+        "{tried} runs of {shipped} scenes and 50 mechanisms"
+    );
 }

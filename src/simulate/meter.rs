@@ -32,6 +32,8 @@ use serde::Serialize;
 const LEAST_SHARE: f64 = 0.1;
 /// nor do those whose changes h^2 da are below this part of the largest range of motion, which are rounding.
 const SHAKEN: f64 = 1e-9;
+/// A mechanism rests whose points stay within this part of its size: below the tolerance of any part.
+const AT_REST: f64 = 1e-9;
 /// A run with equal steps is stopped when the integrator has gained this many times the larger of the energy supplied and [`plain_motion`].
 const UNSTABLE: f64 = 10.0;
 
@@ -51,6 +53,8 @@ pub struct Integration {
     pub travel: f64,
     /// Least and greatest energy lost by the integrator over the recorded rows \[J\]; a negative loss is a gain.
     pub lost: [f64; 2],
+    /// Size of the mechanism \[m\].
+    pub size: f64,
     /// Energy in play \[J\]: the largest sum of kinetic and elastic energy over the recorded rows, plus the energy dissipated.
     pub turnover: f64,
 }
@@ -73,10 +77,11 @@ pub(super) struct Meter {
     supplied: f64,
     /// See [`plain_motion`].
     plain: f64,
+    size: f64,
     elapsed: f64,
 }
 
-carried!(Meter { sums, extents, lost, turnover, dissipated, first, work, supplied, elapsed } but { lengths, unstable, plain });
+carried!(Meter { sums, extents, lost, turnover, dissipated, first, work, supplied, elapsed } but { lengths, unstable, plain, size });
 
 /// Energies at the first row.
 #[derive(Debug, Clone, Copy, Default)]
@@ -128,6 +133,13 @@ struct Extent {
 
 carried!(Extent { least, greatest, fastest } but {});
 
+impl Integration {
+    /// True of a mechanism whose points stay within a billionth of its size: what changes there is rounding, of which nothing is said.
+    pub fn rests(&self) -> bool {
+        self.travel <= AT_REST * self.size
+    }
+}
+
 impl Extent {
     const EMPTY: Extent = Extent {
         least: f64::INFINITY,
@@ -158,9 +170,9 @@ impl Extent {
 ///
 /// A gain of energy is measured against it at a start from rest, where the energy supplied is zero and the errors of the first
 /// steps are as large as the motion.
-fn plain_motion(scene: &Scene, model: &Model, start: &State) -> f64 {
+fn plain_motion(scene: &Scene, size: f64) -> f64 {
     let masses = scene.bodies.iter().filter_map(|body| body.kind.mass());
-    let (mass, size) = (masses.sum::<f64>(), scale::size(scene, model, start));
+    let mass: f64 = masses.sum();
     0.5 * mass * (size / scene.simulation.duration).powi(2)
 }
 
@@ -178,6 +190,7 @@ impl Meter {
     /// For a run from a start.
     pub fn new(scene: &Scene, model: &Model, start: &State) -> Meter {
         let unknowns = model.shape().unknowns;
+        let size = scale::size(scene, model, start);
         Meter {
             lengths: model.lengths(),
             sums: vec![IntegrationSums::default(); unknowns],
@@ -192,7 +205,8 @@ impl Meter {
                 Pace::Accuracy(_) => f64::INFINITY,
             },
             supplied: 0.0,
-            plain: plain_motion(scene, model, start),
+            plain: plain_motion(scene, size),
+            size,
             elapsed: 0.0,
         }
     }
@@ -289,6 +303,7 @@ impl Meter {
             acceleration_change: roughest.map_or(0.0, |r| r.1),
             acceleration_change_of: name(model, roughest).to_owned(),
             travel,
+            size: self.size,
             lost: self.lost,
             // a mechanism at rest moves by rounding
             turnover: (self.turnover + self.dissipated.max(0.0)).max(f64::EPSILON * self.plain),

@@ -1,6 +1,6 @@
 //! What a user should know of a run before the numbers are used.
 
-use super::Report;
+use super::{Integration, Report};
 use numbers::{number, share};
 
 /// Warn of energy lost or gained by the integrator beyond this part of the energy dissipated ...
@@ -28,9 +28,11 @@ impl Report {
     /// accelerations or contacts that the steps do not resolve.
     pub fn error_warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
-        warnings.extend(self.energy_warning());
-        warnings.extend(self.error_warning());
-        warnings.extend(self.acceleration_warning());
+        if !self.integration.as_ref().is_some_and(Integration::rests) {
+            warnings.extend(self.energy_warning());
+            warnings.extend(self.error_warning());
+            warnings.extend(self.acceleration_warning());
+        }
         warnings.extend(self.chatter.iter().map(|chatter| {
             format!(
                 "{} chatters from t = {} s to {} s: {} contacts, each shorter than four steps",
