@@ -20,6 +20,7 @@ mod position_error;
 mod recording;
 mod replay;
 mod report;
+mod restitution;
 mod scale;
 mod stall;
 mod start;
@@ -42,6 +43,7 @@ use meter::Meter;
 pub use observer::{ContactEnd, ContactEvent, Control, Notice, Observer, Onset, Progress};
 pub use recording::Recording;
 pub use report::{Extreme, Inspection, Report, Status};
+pub use restitution::DeliveredRestitution;
 
 use crate::body::Strain;
 use crate::checkpoint::carried;

@@ -12,6 +12,7 @@ impl Report {
         notes.extend(self.redundant.iter().map(|name| {
             format!("{name} is redundant: the constraint forces in its loop are not unique")
         }));
+        notes.extend(self.restitution.iter().map(ToString::to_string));
         notes.extend(self.critical_points.iter().map(ToString::to_string));
         notes.extend(self.rest.as_ref().and_then(FoundRest::note));
         let strained = self.strain.iter();

@@ -1,6 +1,7 @@
 //! The report of a run, and the inspection of a scene before it runs.
 
 use super::pace::Pacer;
+use super::restitution::{self, DeliveredRestitution};
 use super::{
     AccuracyReport, Chatter, Choice, CriticalPoint, FoundRest, Impact, Integration, Overrun,
     Simulation,
@@ -150,6 +151,9 @@ pub struct Report {
     /// Where the path of a static analysis reached a limit or branched.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub critical_points: Vec<CriticalPoint>,
+    /// Laws that deliver another restitution in a free impact than their contacts ask for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub restitution: Vec<DeliveredRestitution>,
     /// What was measured of the integrator; absent in a static analysis.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub integration: Option<Integration>,
@@ -334,6 +338,7 @@ impl Simulation {
             ended_contacts: self.closures.ended,
             brief_contacts: self.closures.brief,
             chatter: self.closures.chatter(&self.model),
+            restitution: restitution::delivered(&self.scene),
             rest: self.rest.clone(),
             critical_points: self.critical_points.clone(),
             integration: dynamic.then(|| self.meter.report(&self.model)),
