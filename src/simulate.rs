@@ -5,6 +5,7 @@ mod checkpoint;
 mod choice;
 mod closures;
 mod control;
+mod creep;
 mod cubic;
 mod equilibrium;
 mod failure;
@@ -32,6 +33,8 @@ pub use choice::{Choice, TrialRun};
 pub use closures::Chatter;
 use closures::Closures;
 pub use control::AccuracyReport;
+pub use creep::Creep;
+use creep::CreepWatch;
 pub use equilibrium::{FoundRest, Stability};
 pub use failure::RunError;
 use failure::short;
@@ -122,6 +125,7 @@ pub struct Simulation {
     strains: Vec<Strain>,
     impacts: Impacts,
     closures: Closures,
+    creep: CreepWatch,
     meter: Meter,
     /// True of the trial runs that foresee how many steps a run takes or compare schemes.
     is_trial_run: bool,
@@ -443,6 +447,7 @@ impl Simulation {
             return Err(self.failed(failure.into(), 0.0));
         }
         measured.take(model, output);
+        self.creep.row(model, output);
         if self.scene.simulation.analysis == Analysis::Dynamic
             && let Err(gain) = meter.row(&measured.energies, output)
         {

@@ -63,6 +63,10 @@ pub trait ContactPair: std::fmt::Debug + Send + Sync {
     fn reaction(&self, at: At) -> Vec2;
     /// Stored energy of a closed contact \[J\].
     fn energy(&self, at: At) -> f64;
+    /// The slip \[m/s\] of a touching contact that creeps: see [`friction::FrictionLaw::creeps`].
+    fn creep(&self, _at: At) -> Option<f64> {
+        None
+    }
     /// Adds what it dissipates to the integrands of the ledger \[W\]; true where the normal force is clamped at zero.
     fn powers(&self, at: At, powers: &mut [f64; INTEGRALS]) -> bool;
 }

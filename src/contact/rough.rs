@@ -225,6 +225,11 @@ impl<G: Geometry> ContactPair for Rough<G> {
         self.surface.energy(at)
     }
 
+    fn creep(&self, at: At) -> Option<f64> {
+        let slip = self.sliding(at)?.slip.value;
+        self.law.creeps(slip).then_some(slip)
+    }
+
     fn powers(&self, at: At, powers: &mut [f64; INTEGRALS]) -> bool {
         powers[Integral::FrictionDissipated as usize] += self.dissipation(at);
         self.surface.powers(at, powers)

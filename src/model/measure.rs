@@ -154,6 +154,13 @@ impl Model {
         self.contacts[index].pair.reaction(contact_state(at, index))
     }
 
+    /// The slip \[m/s\] of a contact whose friction law lets it creep.
+    pub fn creep(&self, contact: usize, at: &State) -> Option<f64> {
+        let is_closed = at.z[contact] > 0.0;
+        let state = is_closed.then(|| contact_state(at, contact))?;
+        self.contacts[contact].pair.creep(state)
+    }
+
     /// Couple of the first side on the second of a joint that holds an angle \[N m\].
     pub fn joint_couple(&self, index: usize, at: &State, work: &mut Work) -> f64 {
         let joint = &self.joints[index];

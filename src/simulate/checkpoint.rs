@@ -50,6 +50,7 @@ impl Simulation {
             strains,
             impacts,
             closures,
+            creep,
             meter,
             is_trial_run: _,
             choice: _,
@@ -72,7 +73,7 @@ impl Simulation {
         let model: &Model = model;
         pacer.carry(model, checkpoint);
         newton.carry(model, checkpoint);
-        let parts: [&mut dyn Carried; 13] = [
+        let parts: [&mut dyn Carried; 14] = [
             stepper,
             is_between_rows,
             stays_in_singular_pose,
@@ -83,6 +84,7 @@ impl Simulation {
             strains,
             impacts,
             closures,
+            creep,
             meter,
             stall,
             counters,

@@ -1,5 +1,6 @@
 //! The report of a run, and the inspection of a scene before it runs.
 
+use super::creep::Creep;
 use super::pace::Pacer;
 use super::restitution::{self, DeliveredRestitution};
 use super::{
@@ -151,6 +152,9 @@ pub struct Report {
     /// Where the path of a static analysis reached a limit or branched.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub critical_points: Vec<CriticalPoint>,
+    /// Joints that slid for long more slowly than their friction law needs for its full force.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub creep: BTreeMap<String, Creep>,
     /// Laws that deliver another restitution in a free impact than their contacts ask for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub restitution: Vec<DeliveredRestitution>,
@@ -338,6 +342,9 @@ impl Simulation {
             ended_contacts: self.closures.ended,
             brief_contacts: self.closures.brief,
             chatter: self.closures.chatter(&self.model),
+            creep: self
+                .creep
+                .report(&self.model, self.scene.simulation.duration),
             restitution: restitution::delivered(&self.scene),
             rest: self.rest.clone(),
             critical_points: self.critical_points.clone(),

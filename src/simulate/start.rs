@@ -2,6 +2,7 @@
 
 use super::closures::Closures;
 use super::control::Controller;
+use super::creep::CreepWatch;
 use super::failure::describe;
 use super::impacts::Impacts;
 use super::meter::Meter;
@@ -102,6 +103,7 @@ impl Simulation {
             strains: vec![Strain::default(); scene.bodies.len()],
             impacts,
             closures: Closures::new(shape.contacts),
+            creep: CreepWatch::new(shape.contacts),
             local_error: LocalError::new(shape.unknowns),
             stall: Stall::new(
                 shape.contacts,

@@ -51,7 +51,7 @@ impl Report {
         warnings
     }
 
-    /// Where a law or a theory does not hold.
+    /// Where a law or a theory does not hold, or does not do what its name says.
     fn validity_warnings(&self) -> Vec<String> {
         let overrun = self.overrun.iter().map(|(joint, overrun)| {
             format!(
@@ -72,7 +72,16 @@ impl Report {
                 strain.description()
             )
         });
-        overrun.chain(strained).collect()
+        let creep = self.creep.iter().map(|(joint, creep)| {
+            format!(
+                "{joint} creeps: from t = {} s to {} s it slides by {} m, more slowly than v1 of its friction law, which cannot hold a \
+                 body that should stick; the creep is in proportion to v1",
+                number(creep.from, 4),
+                number(creep.to, 4),
+                number(creep.distance, 2)
+            )
+        });
+        overrun.chain(strained).chain(creep).collect()
     }
 
     fn energy_warning(&self) -> Option<String> {

@@ -31,4 +31,8 @@ impl FrictionLaw for Ambrosio {
             by_normal,
         }
     }
+
+    fn creeps(&self, slip: f64) -> bool {
+        slip != 0.0 && slip.abs() < self.v1
+    }
 }

@@ -19,4 +19,6 @@ pub struct TangentialForce {
 pub trait FrictionLaw: std::fmt::Debug + Send + Sync {
     /// The force with its slopes, for a slip \[m/s\] and a normal force \[N\].
     fn force(&self, slip: f64, normal: f64) -> TangentialForce;
+    /// True for a slip at which a body that should stick slides, because the law has no other way to hold it.
+    fn creeps(&self, slip: f64) -> bool;
 }
