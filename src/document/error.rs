@@ -9,9 +9,6 @@ use std::sync::Arc;
 /// Name of the text of an override.
 const CHANGE: &str = "--set";
 
-/// Letters of a name that may be taken for another.
-const LONGEST: usize = 64;
-
 /// A piece of the scene text or of an override.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Span {
@@ -190,28 +187,6 @@ fn shown(message: String) -> String {
         short if short.len() < message.len() => format!("{short} ..."),
         _ => message,
     }
-}
-
-/// The known name nearest to `name`, when it is near enough to be meant.
-pub fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
-    let letters = name.chars().count();
-    // Nobody mistypes a name as long as this, and the comparison of two takes the product of their lengths.
-    if letters > LONGEST {
-        return None;
-    }
-    // A third of the letters may differ: `lenght` finds `length`, `mass` does not find `model`.
-    let limit = ((letters + 1) / 3).max(1);
-    let name = name.to_lowercase();
-    let distance = |k: &&str| strsim::damerau_levenshtein(&name, &k.to_lowercase());
-    let known = known.into_iter();
-    let nearest = known.filter(|k| k.chars().count() <= LONGEST);
-    let nearest = nearest.min_by_key(distance);
-    nearest.filter(|k| distance(k) <= limit)
-}
-
-/// The end of a message about an unknown name: a suggestion, or nothing.
-pub fn did_you_mean<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> String {
-    nearest(name, known).map_or(String::new(), |k| format!("; did you mean `{k}`?"))
 }
 
 /// Words in double quotes, with commas between them.

@@ -1,8 +1,10 @@
 //! Typed access to a value: every getter names the field and its place when something is wrong.
 
-use super::error::{SceneError, Sources, Span, did_you_mean, quoted};
+use super::error::{SceneError, Sources, Span, quoted};
 use super::key::{Key, NumberRange, Takes};
+use super::likeness::{did_you_mean, listed};
 use super::tree::{Node, Value};
+use super::written::{decimal_comma, meant};
 use indexmap::IndexMap;
 
 /// A value being read.
@@ -73,7 +75,7 @@ impl<'a> Field<'a> {
         let x = match self.node.value {
             Value::Float(x) => x,
             Value::Integer(n) => n as f64,
-            _ => return Err(self.wrong_type("a number")),
+            _ => return Err(self.no_number()),
         };
         let range = match self.declared.map(|key| key.takes) {
             Some(Takes::Number { range, .. }) => range,
@@ -83,6 +85,21 @@ impl<'a> Field<'a> {
             _ if !x.is_finite() => Err(self.must("be finite")),
             Some(requirement) => Err(self.must(&requirement)),
             None => Ok(x),
+        }
+    }
+
+    /// A fault of a value that is no number: of a text that might be one, with what is meant.
+    fn no_number(&self) -> SceneError {
+        let error = self.wrong_type("a number");
+        let Value::Text(text) = &self.node.value else {
+            return error;
+        };
+        match (text.parse::<f64>(), meant(text, false)) {
+            (Ok(_), _) => error.with_help(format!("write it without quotes: {text}")),
+            (Err(_), Some((_, said))) if text.starts_with(|c: char| !c.is_alphabetic()) => {
+                error.with_help(said)
+            }
+            _ => error,
         }
     }
 
@@ -206,9 +223,10 @@ impl<'a> Field<'a> {
         let message = format!("there is no {kind} `{name}`{hint}");
         let label = format!("no such {}", kind.split_whitespace().next().unwrap_or(kind));
         let error = SceneError::new(self.sources, span, message, label);
-        error.with_help(match known.is_empty() {
-            true => format!("the scene has no {kind} at all"),
-            false => format!("known: {}", known.join(", ")),
+        error.with_help(match (known.is_empty(), kind.contains(' ')) {
+            (true, true) => "it has none".to_owned(),
+            (true, false) => format!("the scene has no {kind}s: add `[{kind}s.{name}]`"),
+            (false, _) => listed(name, &known),
         })
     }
 
@@ -233,7 +251,19 @@ impl<'a> Field<'a> {
                 n => format!("{n} values"),
             };
             let message = format!("`{}` must be {shape}, not {count}", self.path);
-            return Err(self.fault(message, count));
+            let error = self.fault(message, count);
+            // [0,35, 0] has three numbers
+            let whole = |node: &Node| matches!(node.value, Value::Integer(_)).then_some(node.span);
+            let pair = items
+                .windows(2)
+                .find_map(|p| whole(&p[0]).zip(whole(&p[1])));
+            let pair = pair.filter(|_| items.len() > N);
+            let said = pair
+                .and_then(|(a, b)| decimal_comma(self.sources.written(a), self.sources.written(b)));
+            return Err(match said {
+                Some(said) => error.with_help(said),
+                None => error,
+            });
         }
         let mut result = [0.0; N];
         for (x, item) in result.iter_mut().zip(self.items()?) {

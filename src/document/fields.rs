@@ -1,8 +1,9 @@
 //! Access to a table: keys that must or may be there, and no others.
 
-use super::error::{SceneError, Sources, did_you_mean, nearest};
+use super::error::{SceneError, Sources};
 use super::field::Field;
 use super::key::Key;
+use super::likeness::{did_you_mean, nearest};
 use super::tree::{Node, Table, Value};
 
 /// A table being read.
@@ -41,11 +42,16 @@ impl<'a> Fields<'a> {
         self.keys = keys.into_iter().collect();
         let own = self.keys.iter().map(|key| key.name);
         self.known = before.iter().copied().chain(own).collect();
-        let mut written = self.table.keys();
-        match written.find(|key| !self.known.contains(&key.as_str())) {
+        match self.stranger() {
             Some(key) => Err(self.unknown(key, &self.known)),
             None => Ok(()),
         }
+    }
+
+    /// The first key that is not declared.
+    pub(super) fn stranger(&self) -> Option<&str> {
+        let mut written = self.table.keys().map(String::as_str);
+        written.find(|key| !self.known.contains(key))
     }
 
     /// The dotted path of the table.

@@ -38,7 +38,26 @@ impl<F> Kind<F> {
         let names = quoted(kinds.iter().map(|kind| kind.name));
         let purpose = format!("{what}: {names}");
         let kind = table.required(key, &purpose)?.choice(&choices)?;
-        table.declare(&[key], kind.keys)?;
+        let declared = table.declare(&[key], kind.keys);
+        declared.map_err(|error| match table.stranger() {
+            Some(stranger) => of_others(error, key, stranger, kinds),
+            None => error,
+        })?;
         Ok((kind, table))
+    }
+}
+
+/// The fault of a key that a kind does not have, with the kinds that have it: perhaps one of them was meant.
+fn of_others<F>(
+    error: SceneError,
+    key: &str,
+    stranger: &str,
+    kinds: &[&'static Kind<F>],
+) -> SceneError {
+    let has = |kind: &&&'static Kind<F>| kind.keys.iter().any(|own| own.name == stranger);
+    let others = kinds.iter().filter(has).map(|kind| kind.name);
+    match quoted(others) {
+        none if none.is_empty() => error,
+        others => error.with_help(format!("`{stranger}` is a key of {key} {others}")),
     }
 }

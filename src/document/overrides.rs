@@ -1,6 +1,7 @@
 //! `path=value` overrides, applied to the tree before anything is read from it.
 
 use super::error::{SceneError, Sources, Span};
+use super::likeness::listed;
 use super::tree::{Node, Value, value};
 
 /// Applies every override in order; a later one wins.
@@ -41,7 +42,7 @@ fn apply_one(sources: &Sources, source: usize, root: &mut Node) -> Result<(), Sc
             return Err(match node.keys() {
                 known if known.is_empty() => error,
                 known => {
-                    let known = format!("known here: {}", known.join(", "));
+                    let known = listed(name, &known);
                     let whole = format!("a new table is set as a whole: `{above}{name}={{...}}`");
                     error.with_help(known).with_help(whole)
                 }

@@ -1,6 +1,8 @@
 //! TOML text as a small tree in which every key and every value knows where it stands.
 
-use super::error::{SceneError, Sources, Span, nearest};
+use super::error::{SceneError, Sources, Span};
+use super::likeness::nearest;
+use super::written;
 use indexmap::IndexMap;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -148,6 +150,9 @@ impl TextPlace<'_> {
     fn syntax(&self, error: &Error) -> SceneError {
         let range = self.visible(error.span().unwrap_or(0..0));
         let written = self.sources.written(self.span(range.clone()));
+        if let Some((place, message)) = self.meant(range.start) {
+            return self.error(place, &message, "here");
+        }
         let (message, label) = match error.message() {
             "duplicate key" => (
                 format!("the key `{written}` is given twice"),
@@ -156,6 +161,15 @@ impl TextPlace<'_> {
             message => (format!("not valid TOML: {message}"), "here"),
         };
         self.error(range, &message, label)
+    }
+
+    /// What is meant by a value in the line of this byte that is no TOML, and where it stands.
+    fn meant(&self, byte: usize) -> Option<(Range<usize>, String)> {
+        let text = &self.sources.text(self.source)[self.offset..];
+        let start = text.get(..byte)?.rfind('\n').map_or(0, |n| n + 1);
+        let line = text[start..].lines().next()?;
+        let (place, message) = written::meant(line, self.offset == 0)?;
+        Some((start + place.start..start + place.end, message))
     }
 
     /// An error where brackets and dotted keys nest too deeply. They are counted before the text is parsed, because even dropping what

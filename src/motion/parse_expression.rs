@@ -5,7 +5,7 @@ use super::expression::{
     BIVARIATE, Bivariate, DIFFERENCE, Expression, Formula, KINKED, PRODUCT, QUOTIENT, SUM,
     UNIVARIATE,
 };
-use crate::document::did_you_mean;
+use crate::document::{decimal_comma, did_you_mean, quantity};
 use winnow::ascii::{digit0, digit1, multispace0};
 use winnow::combinator::{
     Infix, Prefix, alt, cut_err, delimited, dispatch, empty, expression, fail, opt, peek, preceded,
@@ -50,18 +50,48 @@ fn misplaced(read: &str, rest: &str) -> String {
         Some((end, _)) => format!("{} ...", &rest[..end]),
         None => rest.to_owned(),
     };
+    if let Some(said) = comma(read, &rest) {
+        return said;
+    }
     match rest.chars().next() {
         None if is_open => "a `(` is not closed".to_owned(),
         None => "an operand is missing at its end".to_owned(),
         Some(')') if !is_open => format!("no `(` is open before `{rest}`"),
-        Some(c) if c == '(' || c.is_ascii_alphanumeric() => {
-            format!("an operator is missing before `{rest}`; a product needs its `*`")
-        }
+        Some(c) if c == '(' || c == '°' || c.is_alphanumeric() => product(read, &rest),
         Some(')' | '+' | '-' | '*' | '/' | '^') => {
             format!("an operand is missing before `{rest}`")
         }
         Some(_) => format!("`{rest}` means nothing there"),
     }
+}
+
+/// What is meant where a comma follows a number.
+fn comma(read: &str, rest: &str) -> Option<String> {
+    decimal_comma(last_operand(read), rest.strip_prefix(',')?)
+}
+
+/// What is meant by two operands without an operator between them: a number with a unit, or a product.
+fn product(read: &str, rest: &str) -> String {
+    let left = last_operand(read);
+    let end = rest.find(|c: char| !(c == '°' || c.is_alphanumeric() || c == '_'));
+    let right = &rest[..end.unwrap_or(rest.len())];
+    let is_number = left.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    let is_name = names().any(|name| name == right);
+    let unit = quantity(left, right).filter(|_| is_number && !is_name);
+    unit.unwrap_or_else(|| {
+        let missing = format!("an operator is missing before `{rest}`; a product needs its `*`");
+        match (left, right) {
+            ("", _) | (_, "") => missing,
+            _ => format!("{missing}: write {left}*{right}"),
+        }
+    })
+}
+
+/// The number or name at the end of a part of a formula; nothing behind a parenthesis.
+fn last_operand(read: &str) -> &str {
+    let read = read.trim_end();
+    let start = read.rfind(|c: char| !(c.is_alphanumeric() || c == '.' || c == '_'));
+    &read[start.map_or(0, |start| start + 1)..]
 }
 
 /// A formula that is read but makes no sense.
@@ -222,11 +252,24 @@ mod tests {
             ("(2 *", "a `(` is not closed"),
             (
                 "2 t",
-                "an operator is missing before `t`; a product needs its `*`",
+                "an operator is missing before `t`; a product needs its `*`: write 2*t",
+            ),
+            (
+                "2pi*t",
+                "an operator is missing before `pi*t`; a product needs its `*`: write 2*pi",
+            ),
+            ("1 + 0,5*t", "a number has a decimal point: 0.5"),
+            (
+                "30° + t",
+                "numbers have no unit; angles are in radians: 30 degrees are 0.523598775598299",
+            ),
+            (
+                "5mm*sin(t)",
+                "numbers have no unit; 5 mm is 0.005 m in SI units",
             ),
             (
                 "2exp(t)",
-                "an operator is missing before `exp(t)`; a product needs its `*`",
+                "an operator is missing before `exp(t)`; a product needs its `*`: write 2*exp",
             ),
             (
                 "(2)(t)",
@@ -241,7 +284,8 @@ mod tests {
             (". + t", "`. + t` means nothing there"),
             (
                 "t 34567890123456789012345",
-                "an operator is missing before `34567890123456789012 ...`; a product needs its `*`",
+                "an operator is missing before `34567890123456789012 ...`; a product needs its `*`: write \
+                 t*34567890123456789012",
             ),
             ("1e999", "`1e999` is too large"),
             ("sine(t)", "`sine` is not known; did you mean `sin`?"),

@@ -16,7 +16,7 @@ pub struct Channel {
 }
 
 /// Names and units of quantities.
-type Quantities = [(&'static str, &'static str)];
+pub(super) type Quantities = [(&'static str, &'static str)];
 
 const POSE: [(&str, &str); 9] = [
     ("x", "m"),
@@ -48,7 +48,7 @@ const TURNED: &Quantities = &[
     ("acceleration", "rad/s2"),
 ];
 const TRAVEL: &Quantities = &[("travel", "m"), ("travel_rate", "m/s")];
-const ACTUATOR: &Quantities = &[
+pub(super) const ACTUATOR: &Quantities = &[
     ("angle", "rad"),
     ("speed", "rad/s"),
     ("acceleration", "rad/s2"),

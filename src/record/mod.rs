@@ -2,6 +2,7 @@
 
 mod channels;
 mod motion;
+mod unknown_channel;
 
 use crate::body::Strain;
 use crate::checkpoint::carried;
@@ -229,15 +230,8 @@ fn choose<'a>(scene: &Scene, available: &'a [Available]) -> Result<Vec<&'a Avail
             }
         }
         if fitting.is_empty() {
-            let likeness = |name: &str| strsim::jaro_winkler(name, &wanted.pattern);
-            let names = available.iter().map(|entry| entry.channel.name.as_str());
-            let nearest = names.max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
-            let message = format!(
-                "no channel of this scene is named {:?}; the nearest is {:?}",
-                wanted.pattern,
-                nearest.unwrap_or_default()
-            );
-            return Err(scene.error(wanted.span, message, "unknown channel"));
+            let names: Vec<&str> = available.iter().map(|e| &*e.channel.name).collect();
+            return Err(unknown_channel::fault(scene, wanted, &names));
         }
     }
     Ok(chosen)

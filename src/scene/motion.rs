@@ -10,7 +10,7 @@ use crate::interaction::Names;
 use crate::math::plane::{Vec2, pair, quarter_turn, unit};
 use crate::motion::{Use, read_path};
 use indexmap::IndexMap;
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 /// What drives prescribe.
 #[derive(Default)]
@@ -19,8 +19,8 @@ pub(super) struct Drives {
     pub kinematics: Vec<Drive>,
     /// Directly.
     pub motions: Vec<PrescribedMotion>,
-    /// The joints that are driven already.
-    joints: HashSet<usize>,
+    /// The joints that are driven already, and the keys that say so.
+    joints: HashMap<usize, String>,
 }
 
 /// A kind of drive. `read` adds the drive to those read before.
@@ -126,12 +126,16 @@ impl Drives {
 fn actuated(
     field: &Field,
     names: &Names,
-    driven: &mut HashSet<usize>,
+    driven: &mut HashMap<usize, String>,
 ) -> Result<usize, SceneError> {
     let index = names.revolute(field, ", so a drive cannot turn it")?;
-    if !driven.insert(index) {
-        let message = format!("the joint `{}` is driven twice", names.joints[index].name);
-        return Err(field.fault(message, "a second time"));
+    if let Some(first) = driven.insert(index, field.path.clone()) {
+        let message = format!(
+            "the joint `{}` is driven twice, by `{first}` and `{}`",
+            names.joints[index].name, field.path
+        );
+        let error = field.fault(message, "a second time");
+        return Err(error.with_help("remove one of the two drives"));
     }
     Ok(index)
 }

@@ -42,7 +42,7 @@ fn cases() -> Vec<LongInput> {
                 "",
                 1,
             ),
-            "not valid TOML",
+            "a number does not begin with zeros",
         ),
         (
             "a value at fault of several lines",
