@@ -96,7 +96,7 @@ fn missing_keys_point_at_the_table() {
         ("journal_material = \"aluminium\"", "", "missing key `journal_material`", "[contacts.pin]"),
         ("restitution = 0.9 ", "", "missing key `restitution` in contacts.pin", "[contacts.pin]"),
         ("impact_velocity_floor = 1e-6", "", "missing key `impact_velocity_floor`", "[contacts.pin]"),
-        ("v1 = 1e-3 ", "", "missing key `v1` in contacts.pin.friction", "[contacts.pin.friction]"),
+        ("coefficient = 0.1 ", "", "missing key `coefficient` in contacts.pin.friction", "[contacts.pin.friction]"),
         ("elements = 1", "", "missing key `elements` in bodies.link1", "[bodies.link1]"),
         ("length = 0.242", "", "missing key `length` in bodies.link1", "[bodies.link1]"),
         ("contact = \"pin\"", "", "missing key `contact` in joints.B1", "[joints.B1]"),

@@ -149,6 +149,8 @@ fn delivered_restitution_follows_the_exact_map() {
 #[test]
 fn laws_are_built_from_contacts() {
     let contact = |law: &'static NormalLawKind| Contact {
+        name: "pin".to_owned(),
+        from_materials: false,
         bearing_radius: Some(0.01),
         clearance: 2e-5,
         law,

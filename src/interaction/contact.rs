@@ -59,22 +59,32 @@ pub static KEYS: [Key; 10] = [
     Key::new("friction", Takes::Table, "the table of the friction law").or("none"),
 ];
 
+/// Slip below which there is no friction, where the scene says nothing \[m/s\]: the transition velocity that Adams has by default,
+/// 0.1 mm/s.
+pub const V0: f64 = 1e-4;
+/// Slip above which friction is full, where the scene says nothing \[m/s\]: the characteristic slip velocity that COMSOL has by default,
+/// 1e-3/s times the diagonal of the geometry, of a mechanism of a metre.
+pub const V1: f64 = 1e-3;
+
 /// The keys of a friction law.
 pub static FRICTION: [Key; 5] = [
     Key::word("law", &["ambrosio"], "the friction law"),
     Key::non_negative("coefficient", "", "the coefficient of friction c_f"),
-    Key::non_negative("v0", "m/s", "the slip below which there is no friction"),
+    Key::non_negative("v0", "m/s", "the slip below which there is no friction").or("1e-4"),
     Key::positive(
         "v1",
         "m/s",
         "the slip above which friction is full, greater than `v0`",
-    ),
+    )
+    .or("1e-3"),
     Key::word("slip", &["paper", "material"], "which slip velocity enters").or("`\"material\"`"),
 ];
 
 /// Geometry and laws of a loose joint.
 #[derive(Debug, Clone)]
 pub struct Contact {
+    /// The name the user wrote.
+    pub name: String,
     /// Bearing radius R_i \[m\]; none of a straight slot.
     pub bearing_radius: Option<f64>,
     /// Radial clearance c = R_i - R_j \[m\].
@@ -83,6 +93,8 @@ pub struct Contact {
     pub law: &'static NormalLawKind,
     /// Contact stiffness K \[N/m^exponent\], typed or from eq. 25.
     pub stiffness: f64,
+    /// True of a stiffness from eq. 25.
+    pub from_materials: bool,
     /// Exponent n.
     pub exponent: f64,
     /// Restitution coefficient c_e as typed; 1 for Hertz.
@@ -159,11 +171,13 @@ impl Contact {
         let friction = table.optional("friction");
         let own = law.keys.iter().map(|key| table.number(key.name));
         let contact = Contact {
+            name: field.name.clone(),
             own: own.collect::<Result<_, _>>()?,
             bearing_radius,
             clearance,
             law,
             stiffness: stiffness(field, &table, materials, bearing_radius, clearance)?,
+            from_materials: table.optional("stiffness").is_none(),
             exponent: table.number("exponent")?,
             restitution: restitution(&table, law)?,
             impact_velocity_floor: floor(&table, law)?,
@@ -180,7 +194,7 @@ impl Contact {
     }
 }
 
-/// Typed, or K = 4 / (3 (h_i + h_j)) sqrt(R_i R_j / (R_i - R_j)) with h = (1 - nu^2) / E (eq. 25).
+/// Typed, or that of a sphere in a spherical cup, whatever the length of the pin: K = 4 / (3 (h_i + h_j)) sqrt(R_i R_j / (R_i - R_j)) with h = (1 - nu^2) / E (eq. 25).
 fn stiffness(
     contact: &Field,
     table: &Fields,
@@ -264,9 +278,15 @@ fn read_friction(field: &Field) -> Result<Option<Friction>, SceneError> {
     table.declare(&[], &FRICTION)?;
     table.word("law")?;
     let coefficient = table.number("coefficient")?;
-    let (v0, v1) = (table.number("v0")?, table.number("v1")?);
+    let v0 = table.optional_number("v0")?.unwrap_or(V0);
+    let v1 = table.optional_number("v1")?.unwrap_or(V1);
     if v1 <= v0 {
-        return Err(table.field("v1")?.must("be greater than `v0`"));
+        return Err(match (table.optional("v1"), table.optional("v0")) {
+            (Some(v1), _) => v1.must(&format!("be greater than `v0` = {v0:?}")),
+            (None, v0) => v0
+                .unwrap_or_else(|| field.clone())
+                .must(&format!("be less than `v1` = {v1:?}")),
+        });
     }
     let slip = match table.optional_word("slip")? {
         Some(0) => Slip::Paper,

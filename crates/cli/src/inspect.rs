@@ -3,6 +3,7 @@
 use super::failure::CommandFailure;
 use super::{SceneArguments, print};
 use clap::Args;
+use looselink::interaction::contact::{V0, V1};
 use looselink::output::json;
 use looselink::scene::{Analysis, MotionKind, Pace, Scene};
 use looselink::simulate::{Inspection, Simulation};
@@ -148,7 +149,7 @@ fn drives(scene: &Scene) -> Vec<String> {
     lines
 }
 
-/// Stiffness and clearance of every contact.
+/// Clearance, stiffness and friction of every contact.
 fn clearances(scene: &Scene) -> Vec<String> {
     let mut lines = Vec::new();
     for joint in &scene.joints {
@@ -157,8 +158,20 @@ fn clearances(scene: &Scene) -> Vec<String> {
             let radius = radius.map_or(String::new(), |r| {
                 format!("bearing radius {} m, ", exact(r))
             });
+            let source = match contact.from_materials {
+                true => " (that of a sphere in a spherical cup, without the length of the pin)",
+                false => "",
+            };
+            let friction = contact.friction.map_or(String::new(), |f| {
+                let [v0, v1] = [(f.v0, V0), (f.v1, V1)].map(|(v, default)| match v == default {
+                    true => format!("{} m/s, the default", exact(v)),
+                    false => format!("{} m/s", exact(v)),
+                });
+                let coefficient = exact(f.coefficient);
+                format!(", friction {coefficient} with v0 = {v0}, and v1 = {v1}")
+            });
             lines.push(format!(
-                "{:<20}clearance {} m, {radius}stiffness K = {} N/m^{}",
+                "{:<20}clearance {} m, {radius}stiffness K = {} N/m^{}{source}{friction}",
                 joint.name,
                 exact(contact.clearance),
                 number(contact.stiffness, 4),
