@@ -12,6 +12,9 @@ use crate::system::State;
 /// Largest distance of two prescribed points in one joint \[m\]: the digits of typed positions.
 const HELD_TOLERANCE: f64 = 1e-9;
 
+/// Coordinates that a path prescribes: x, y and theta.
+const PATH: isize = 3;
+
 /// Compiles the ideal mechanism of a drive and checks that it can follow the path for the whole duration.
 pub(super) fn ideal_mechanism(
     scene: &Scene,
@@ -25,17 +28,8 @@ pub(super) fn ideal_mechanism(
     let mechanism = build::build(&compiler, numbering, None)?;
     let shape = mechanism.shape();
     if shape.unknowns != shape.multipliers {
-        let body = &scene.bodies[drive.body].name;
-        let free = shape.unknowns as isize - shape.multipliers as isize;
-        let message = format!(
-            "drive {}: the path of {body} does not determine the pose of the ideal mechanism, which has {} unknown coordinates and {} constraints",
-            drive.name, shape.unknowns, shape.multipliers
-        );
-        let label = match free > 0 {
-            true => "some bodies stay free to move",
-            false => "the mechanism is overdetermined",
-        };
-        return Err(scene.error(drive.span, message, label));
+        let surplus = shape.unknowns as isize - shape.multipliers as isize;
+        return Err(undetermined(scene, drive, &mechanism, surplus));
     }
     let dyads = find_dyads(&compiler, &mechanism);
     let moves = |i: &usize| mechanism.fixed.iter().all(|(j, _)| i != j);
@@ -52,6 +46,47 @@ pub(super) fn ideal_mechanism(
     sweep(&compiler, drive, &kinematics, &start)?;
     kinematics.start = start.q;
     Ok(kinematics)
+}
+
+/// The error of a path that leaves so many coordinates free, or prescribes so many too many where the number is negative.
+fn undetermined(scene: &Scene, drive: &Drive, mechanism: &Model, surplus: isize) -> SceneError {
+    let shape = mechanism.shape();
+    let body = &scene.bodies[drive.body].name;
+    let counts = format!(
+        "the ideal mechanism, which has {} unknown coordinates and {} constraints",
+        shape.unknowns, shape.multipliers
+    );
+    let (does, label, advice) = match (surplus > 0, PATH + surplus) {
+        (true, _) => (
+            "does not determine the pose of",
+            "some bodies stay free to move",
+            "add the joint that holds them, or a spring and no inverse kinematics".to_owned(),
+        ),
+        (false, left @ 1..) => (
+            "overdetermines",
+            "prescribes too much",
+            format!(
+                "without this drive it has {left} of the {PATH} freedoms x, y and theta that a path prescribes: prescribe x and y alone \
+                 with a drive of type \"point\", or add a joint in which {body} turns freely"
+            ),
+        ),
+        (false, _) => {
+            let joints = scene.joints.iter();
+            let own = joints.filter(|j| j.points().iter().any(|p| p.body == drive.body));
+            let own: Vec<&str> = own.map(|joint| &*joint.name).collect();
+            (
+                "overdetermines",
+                "it cannot move",
+                format!(
+                    "its joints hold it without this drive: remove one, perhaps of {}",
+                    own.join(", ")
+                ),
+            )
+        }
+    };
+    let message = format!("drive {}: the path of {body} {does} {counts}", drive.name);
+    let error = scene.error(drive.span, message, label);
+    error.with_help(advice)
 }
 
 /// Follows the path over the whole duration, pose by pose, and checks that joints between known points stay closed.

@@ -1,7 +1,10 @@
 //! Where the motion starts: poses of the ideal mechanism or of the scene, then consistent rates.
 
+mod freedoms;
 pub(crate) mod redundancy;
 pub(crate) mod turns;
+
+pub use freedoms::Freedoms;
 
 use crate::body::{Content, Deformation, Frame};
 use crate::compile::Compiled;

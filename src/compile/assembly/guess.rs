@@ -228,7 +228,15 @@ pub(super) fn guess(
         Some(b) => {
             let body = &c.scene.bodies[b];
             let message = format!("the scene does not say where {} starts", body.name);
-            let error = c.scene.error(body.span, message, "this body");
+            let mut error = c.scene.error(body.span, message, "this body");
+            let joints = c.scene.joints.iter();
+            let held = joints.filter(|j| j.points().iter().any(|p| p.body == b));
+            if let [joint] = held.collect::<Vec<_>>()[..] {
+                error = error.with_help(format!(
+                    "only joint {} holds {}, which keeps degrees of freedom: is another joint missing?",
+                    joint.name, body.name
+                ));
+            }
             Err(error.with_help(
                 "give its pose in `[initial.bodies]`, or the approximate positions of two of its joints or points in \
                  `[initial.sketch]`",

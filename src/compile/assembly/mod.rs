@@ -44,22 +44,35 @@ const AGREEING: f64 = 1e-9;
 /// A body without a place, a mechanism that cannot close, velocities that contradict or repeat each other.
 pub(crate) fn assemble(scene: &Scene) -> Result<(Model, State), SceneError> {
     let c = Compiler::new(scene, Mode::Ideal, known_roles(scene));
-    let numbering = numbering::number(&c, None)?;
-    let mechanism = build::build(&c, numbering, None)?;
+    let (mechanism, mut state) = closed_mechanism(&c)?;
+    velocities(&c, &mechanism, &mut state)?;
+    Ok((mechanism, state))
+}
+
+/// The ideal mechanism of a scene, closed at t = 0, and its pose.
+///
+/// # Errors
+/// A body without a place, a mechanism that cannot close.
+pub(crate) fn closed(scene: &Scene) -> Result<(Model, State), SceneError> {
+    closed_mechanism(&Compiler::new(scene, Mode::Ideal, known_roles(scene)))
+}
+
+fn closed_mechanism(c: &Compiler) -> Result<(Model, State), SceneError> {
+    let numbering = numbering::number(c, None)?;
+    let mechanism = build::build(c, numbering, None)?;
     let mut state = mechanism.blank_state();
     mechanism.follow_rules(&mut state);
     mechanism.move_driven_nodes(&mut state);
-    let held = guess(&c, &mechanism, &mut state)?;
-    check_given(&c, &mechanism, &state, &held)?;
+    let held = guess(c, &mechanism, &mut state)?;
+    check_given(c, &mechanism, &state, &held)?;
     let guessed = state.clone();
     if let Some(open) = close(&mechanism, &mut state, &held) {
-        let blamed = blame(&c, &mechanism, &guessed, &held, open);
+        let blamed = blame(c, &mechanism, &guessed, &held, open);
         let holds = held.contains(&true);
-        return Err(blamed.unwrap_or_else(|| cannot_close(&c, &mechanism, open, holds)));
+        return Err(blamed.unwrap_or_else(|| cannot_close(c, &mechanism, open, holds)));
     }
-    check_turns(&c, &mechanism, &state)?;
-    check_sketch(&c, &mechanism, &state)?;
-    velocities(&c, &mechanism, &mut state)?;
+    check_turns(c, &mechanism, &state)?;
+    check_sketch(c, &mechanism, &state)?;
     Ok((mechanism, state))
 }
 

@@ -1,0 +1,59 @@
+//! Degrees of freedom of the ideal mechanism, and how many of them are driven.
+
+use super::redundancy::{self, Redundancy};
+use crate::compile::assembly::closed;
+use crate::scene::{MotionKind, Scene};
+use std::fmt::{Display, Formatter};
+
+/// Degrees of freedom with rigid links and ideal joints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Freedoms {
+    /// Those that drives prescribe.
+    pub driven: usize,
+    /// Those that they leave.
+    pub left: usize,
+}
+
+impl Freedoms {
+    /// Those of a scene; none where the start is a singular pose, in which they cannot be counted, or where no ideal mechanism fits
+    /// the given states.
+    pub fn of(scene: &Scene) -> Option<Freedoms> {
+        let prescribed = scene.motions.iter().map(|motion| match &motion.kind {
+            MotionKind::Angle { .. } => 1,
+            MotionKind::Point { coordinates, .. } => coordinates.iter().flatten().count(),
+        });
+        let driven = prescribed.sum::<usize>();
+        if let Some(drive) = scene.drives.first() {
+            // a path that does not determine the mechanism is refused
+            let driven = driven + drive.joints.len();
+            return Some(Freedoms { driven, left: 0 });
+        }
+        let (model, state) = closed(scene).ok()?;
+        let Redundancy::Rows(dependent) = redundancy::find(&model, &state) else {
+            return None;
+        };
+        let shape = model.shape();
+        let independent = shape.multipliers - dependent.len();
+        let left = shape.unknowns.checked_sub(independent)?;
+        Some(Freedoms { driven, left })
+    }
+}
+
+impl Display for Freedoms {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        let Freedoms { driven, left } = *self;
+        let count = match driven + left {
+            1 => "1 degree of freedom".to_owned(),
+            all => format!("{all} degrees of freedom"),
+        };
+        match (driven, left) {
+            (0, 0) => write!(f, "{count}"),
+            (0, 1) => write!(f, "{count}, not driven"),
+            (0, _) => write!(f, "{count}, none of them driven"),
+            (1, 0) => write!(f, "{count}, driven"),
+            (_, 0) => write!(f, "{count}, all of them driven"),
+            (1, _) => write!(f, "1 of {count} is driven"),
+            (_, _) => write!(f, "{driven} of {count} are driven"),
+        }
+    }
+}
