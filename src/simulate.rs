@@ -17,6 +17,7 @@ mod modes;
 mod notes;
 mod observer;
 mod pace;
+mod plausibility;
 mod position_error;
 mod recording;
 mod replay;
@@ -58,6 +59,7 @@ use crate::stepper::{LocalError, StepError, Stepper, midpoint};
 use crate::system::{State, System, Work};
 use control::{Candidate, Verdict};
 use pace::Pacer;
+use plausibility::Plausibility;
 use stall::Stall;
 use std::sync::Arc;
 
@@ -123,6 +125,7 @@ pub struct Simulation {
     extremes: Vec<Extreme>,
     /// Largest strains over the recorded rows, by body; 0 for bodies that do not deform.
     strains: Vec<Strain>,
+    plausibility: Plausibility,
     impacts: Impacts,
     closures: Closures,
     creep: CreepWatch,
@@ -434,21 +437,25 @@ impl Simulation {
             measured,
             extremes,
             strains,
+            plausibility,
             meter,
+            scene,
+            creep,
             ..
         } = self;
         output.copy_from(state);
         let shape = model.shape();
         let is_consistent = shape.multipliers > 0 && shape.contacts == 0;
-        if self.scene.simulation.analysis == Analysis::Dynamic
+        if scene.simulation.analysis == Analysis::Dynamic
             && !is_consistent
             && let Err(failure) = newton.make_consistent(&**model, output, work)
         {
             return Err(self.failed(failure.into(), 0.0));
         }
         measured.take(model, output);
-        self.creep.row(model, output);
-        if self.scene.simulation.analysis == Analysis::Dynamic
+        creep.row(model, output);
+        plausibility.row(scene, model, output);
+        if scene.simulation.analysis == Analysis::Dynamic
             && let Err(gain) = meter.row(&measured.energies, output)
         {
             return Err(self.unstable(gain));

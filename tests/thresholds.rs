@@ -331,15 +331,20 @@ fn ten_brief_contacts_are_chatter() {
     assert!(in_succession.count() >= 10, "{lasted:?}");
 }
 
-/// A journal is beyond its bearing from the radius of the bearing on. A mass m with the speed v is stopped by a contact of K delta^1.5 at
+/// A journal is too deep in its bearing from a tenth of its radius on, or from the clearance on where that is more. A mass m with the speed v is stopped by a contact of K delta^1.5 at
 /// delta = (5 m v^2/(4 K))^(2/5).
 #[test]
-fn a_journal_is_beyond_its_bearing_from_the_radius_on() {
+fn a_journal_is_too_deep_from_a_tenth_of_the_radius_and_the_clearance_on() {
     const RADIUS: f64 = 0.01;
-    for (part, beyond) in [(0.98, false), (1.02, true)] {
+    for (clearance, part, beyond) in [
+        (2e-5, 0.098, false),
+        (2e-5, 0.102, true),
+        (2e-3, 0.198, false),
+        (2e-3, 0.202, true),
+    ] {
         let stiffness = 1.25 * 0.05 / (part * RADIUS).powf(2.5);
         let changes = [
-            format!("contacts.aluminium={{ law = \"lankarani_nikravesh\", bearing_radius = {RADIUS}, clearance = 2e-5, stiffness = {stiffness:e}, exponent = 1.5, restitution = 1.0, impact_velocity_floor = 1e-6 }}"),
+            format!("contacts.aluminium={{ law = \"lankarani_nikravesh\", bearing_radius = {RADIUS}, clearance = {clearance:e}, stiffness = {stiffness:e}, exponent = 1.5, restitution = 1.0, impact_velocity_floor = 1e-6 }}"),
             "initial.bodies.journal={ x = 0.0, y = 0.0, theta = 0.0, vx = 1.0, vy = 0.0, omega = 0.0 }".to_owned(),
             "integrator.step=1e-4".to_owned(),
             "output.interval=1e-4".to_owned(),

@@ -27,7 +27,8 @@ pub struct Section {
 /// What bodies and contacts are made of, and what reads the functions of time by which bodies move.
 #[derive(Debug)]
 pub struct Materials {
-    materials: IndexMap<String, Material>,
+    /// Materials by name.
+    pub(crate) materials: IndexMap<String, Material>,
     sections: IndexMap<String, Section>,
     /// What reads functions of time.
     pub functions: FunctionReader,

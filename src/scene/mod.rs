@@ -8,6 +8,7 @@ mod integrator;
 mod kinds;
 pub mod language;
 mod motion;
+mod plausibility;
 mod reader;
 
 pub use crate::body::PointRef;
@@ -19,7 +20,7 @@ pub use crate::stepper::Method;
 pub use file::read_file;
 use indexmap::IndexMap;
 
-use crate::body::{Body, Deformation};
+use crate::body::{Body, Deformation, Material};
 use crate::document::Sources;
 use crate::table::Format;
 use serde::Serialize;
@@ -37,6 +38,8 @@ pub struct Scene {
     pub integrator: Integrator,
     /// What is recorded.
     pub output: Output,
+    /// Materials by name.
+    pub materials: IndexMap<String, Material>,
     /// Bodies in the order of the file; `ground` is one of them.
     pub bodies: Vec<NamedBody>,
     /// Joints in the order of the file.

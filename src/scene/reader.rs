@@ -185,6 +185,7 @@ impl Scene {
             simulation,
             integrator,
             output,
+            materials: materials.materials,
             joints: joints.into_values().collect(),
             bodies,
             drives: drives.kinematics,

@@ -98,7 +98,12 @@ pub(super) struct Impacts {
 
 carried!(Impacts { closed, depths } and up to LISTED of { listed } but {});
 
-/// A journal that has gone deeper into its bearing than the radius of the bearing: no contact law holds there.
+/// Penetration over the radius of a bearing beyond which no contact law holds, if it also exceeds the clearance. The half width of the
+/// contact by Hertz, for radii R and R - c, is R sqrt(delta/c) and reaches the radius at delta = c; a tenth of the radius is far beyond
+/// small strains, however large the clearance.
+const DEEP: f64 = 0.1;
+
+/// A journal that has gone so deep into its bearing that no contact law holds: see [`DEEP`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Overrun {
     /// Largest penetration \[m\].
@@ -245,12 +250,14 @@ impl Impacts {
     }
 
     /// Joints that were overrun.
-    pub fn overrun(&self, model: &Model) -> BTreeMap<String, Overrun> {
+    pub fn overrun(&self, scene: &Scene, model: &Model) -> BTreeMap<String, Overrun> {
         let depths = self.depths.iter().enumerate();
-        let beyond =
-            depths.filter(|(_, [bearing_radius, penetration])| penetration > bearing_radius);
-        let named = beyond.filter_map(|(contact, &[bearing_radius, penetration])| {
+        let named = depths.filter_map(|(contact, &[bearing_radius, penetration])| {
             let joint = model.contact_joint(contact)?;
+            let clearance = scene.joints[joint].contact()?.clearance;
+            if penetration <= clearance.max(DEEP * bearing_radius) {
+                return None;
+            }
             let overrun = Overrun {
                 penetration,
                 bearing_radius,

@@ -6,13 +6,14 @@ use super::{FoundRest, Report};
 const NOTABLE: f64 = 0.01;
 
 impl Report {
-    /// One line for every fact: redundant constraints, large strains, and how the equations were solved.
+    /// One line for every fact: redundant constraints, freedoms that drives leave, large strains, and how the equations were solved.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         notes.extend(self.redundant.iter().map(|name| {
             format!("{name} is redundant: the constraint forces in its loop are not unique")
         }));
         notes.extend(self.restitution.iter().map(ToString::to_string));
+        notes.extend(self.freedoms.iter().cloned());
         notes.extend(self.critical_points.iter().map(ToString::to_string));
         notes.extend(self.rest.as_ref().and_then(FoundRest::note));
         let strained = self.strain.iter();

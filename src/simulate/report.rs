@@ -9,7 +9,7 @@ use super::{
 };
 use crate::body::{Body, CentredLink, RigidLink, Strain};
 use crate::checkpoint::carried;
-use crate::initial::is_assembled;
+use crate::initial::{Freedoms, is_assembled};
 use crate::model::{Model, PlacedBody};
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, Scene};
@@ -164,6 +164,12 @@ pub struct Report {
     /// Energy ledger at the end; a static analysis keeps none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ledger: Option<Ledger>,
+    /// Values of the scene, and what the run does, that no machine has.
+    #[serde(skip)]
+    pub implausible: Vec<String>,
+    /// How many degrees of freedom are driven, where drives leave some.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub freedoms: Option<String>,
     /// Redundant constraints that were left out: their multipliers are zero, and the forces of the joints of that loop are not
     /// unique.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -229,6 +235,20 @@ fn notes(scene: &Scene, model: &Model) -> Vec<String> {
 }
 
 impl Simulation {
+    /// What no machine has, in the scene and in the run so far, each with its value and a question.
+    pub fn implausible(&self) -> Vec<String> {
+        let mut told = self.scene.implausible();
+        told.extend(self.plausibility.told(&self.scene));
+        told
+    }
+
+    /// Its degrees of freedom, where drives prescribe some of them and leave others.
+    fn partly_driven(&self) -> Option<Freedoms> {
+        let is_driven = !self.scene.motions.is_empty();
+        let freedoms = is_driven.then(|| Freedoms::of(&self.scene)).flatten();
+        freedoms.filter(|freedoms| freedoms.left > 0)
+    }
+
     /// What will be simulated.
     pub fn inspect(&self) -> Inspection {
         let shape = self.model.shape();
@@ -337,7 +357,7 @@ impl Simulation {
             onsets: self.counters.onsets,
             impacts: self.impacts.listed(&self.model),
             unlocated_changes: self.counters.unlocated,
-            overrun: self.impacts.overrun(&self.model),
+            overrun: self.impacts.overrun(&self.scene, &self.model),
             clamps: self.counters.clamps,
             ended_contacts: self.closures.ended,
             brief_contacts: self.closures.brief,
@@ -353,6 +373,8 @@ impl Simulation {
                 self.recorder
                     .ledger(&self.model.energies(&self.state), &self.state)
             }),
+            implausible: self.implausible(),
+            freedoms: self.partly_driven().map(|freedoms| freedoms.to_string()),
             redundant: self.model.redundant(),
             strain: bodies
                 .filter(|(_, p)| !p.placed.kind.is_rigid())

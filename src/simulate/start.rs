@@ -7,6 +7,7 @@ use super::failure::describe;
 use super::impacts::Impacts;
 use super::meter::Meter;
 use super::pace::Pacer;
+use super::plausibility::Plausibility;
 use super::report::{Extreme, Status};
 use super::stall::Stall;
 use super::{LoopCounters, Simulation, equilibrium, scale};
@@ -27,6 +28,17 @@ impl Simulation {
     /// # Errors
     /// A mechanism that cannot close, be driven or start as the scene says.
     pub fn new(scene: &Scene) -> Result<Simulation, SceneError> {
+        // a number in a wrong unit may be what keeps a mechanism from closing
+        let explained = |error| {
+            scene
+                .implausible()
+                .into_iter()
+                .fold(error, SceneError::with_help)
+        };
+        Simulation::assembled(scene).map_err(explained)
+    }
+
+    fn assembled(scene: &Scene) -> Result<Simulation, SceneError> {
         let compiled = compile(scene)?;
         let state = initial::start(scene, &compiled)?;
         let mut model = compiled.model;
@@ -101,6 +113,7 @@ impl Simulation {
             measured: Record::default(),
             extremes,
             strains: vec![Strain::default(); scene.bodies.len()],
+            plausibility: Plausibility::default(),
             impacts,
             closures: Closures::new(shape.contacts),
             creep: CreepWatch::new(shape.contacts),

@@ -55,8 +55,8 @@ impl Report {
     fn validity_warnings(&self) -> Vec<String> {
         let overrun = self.overrun.iter().map(|(joint, overrun)| {
             format!(
-                "the journal of {joint} goes {} m deep into a bearing of radius {} m, where no contact law holds: check the \
-                 units of its stiffness and of Young's modulus",
+                "the penetration in {joint} is too large: its journal goes {} m deep into a bearing of radius {} m, where no contact law \
+                 holds: check the units of its stiffness and of Young's modulus",
                 number(overrun.penetration, 2),
                 number(overrun.bearing_radius, 2)
             )
@@ -81,7 +81,8 @@ impl Report {
                 number(creep.distance, 2)
             )
         });
-        overrun.chain(strained).chain(creep).collect()
+        let implausible = self.implausible.iter().cloned();
+        implausible.chain(overrun).chain(strained).chain(creep).collect()
     }
 
     fn energy_warning(&self) -> Option<String> {

@@ -21,6 +21,7 @@ mod view;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use failure::CommandFailure;
 use looselink::document::did_you_mean;
+use looselink::initial::Freedoms;
 use looselink::scene::{Scene, SceneError};
 use looselink::simulate::Simulation;
 use std::io::Write;
@@ -184,8 +185,11 @@ fn main() -> ExitCode {
 }
 
 fn check(arguments: &SceneArguments) -> Result<(), CommandFailure> {
-    let (scene, _) = arguments.load()?;
-    print(format!("{}: no error found\n", scene.title))
+    let (scene, simulation) = arguments.load()?;
+    let implausible = simulation.implausible();
+    implausible.iter().for_each(|told| progress::warn(told));
+    let freedoms = Freedoms::of(&scene).map_or(String::new(), |found| format!("; {found}"));
+    print(format!("{}: no error found{freedoms}\n", scene.title))
 }
 
 /// Writes to standard output; a reader that has gone away is no fault.

@@ -8,6 +8,7 @@ mod plot;
 mod precision;
 mod process;
 mod schema;
+mod slips;
 mod suggestions;
 mod tutorial;
 mod view;
