@@ -334,3 +334,35 @@ fn the_interval_is_a_whole_number_of_steps() {
         rendered(&error)
     );
 }
+
+/// What a message about an unknown name or a number offers.
+#[test]
+fn advice_says_what_to_write() {
+    for (change, advice) in [
+        ("drives.input.body=plat", "nearest of 8: platform, "),
+        ("bodies.link1.material=titan", "known: aluminium, passive"),
+        (
+            "bodies.link1={ type = \"rigid_body\", length = 1 }",
+            "`length` is a key of type \"link\"",
+        ),
+        (
+            "simulation.gravity=[0, 9,81]",
+            "a number has a decimal point: 9.81",
+        ),
+        (
+            "bodies.link1.length=\"0.25\"",
+            "write it without quotes: 0.25",
+        ),
+        (
+            "bodies.link1.length=\"25 cm\"",
+            "25 cm is 0.25 m in SI units",
+        ),
+    ] {
+        let error = fault(CASE4, &[change]);
+        let given = error.advice().unwrap_or_default();
+        assert!(given.contains(advice), "{change}: {error}: {given}");
+    }
+    let other = CASE4.replace("[contacts.pin", "[contacts.other");
+    let error = fault(&other.replace("contacts.pin", "contacts.other"), &[]);
+    assert_eq!(error.advice(), Some("known: other"), "{error}");
+}

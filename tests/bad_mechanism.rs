@@ -281,3 +281,84 @@ fn starts_that_do_not_fit_the_joint_that_holds_a_body() {
     let scene = Scene::parse("turned", text, &[turned]).unwrap();
     assert!(Simulation::new(&scene).is_ok());
 }
+
+/// A robot with arms from A and B that meet in a pin, or with a third arm from C, whose hand follows a path.
+fn robot(third_arm: bool) -> String {
+    // the ends of a rigid link that are both known are refused before
+    let arm = |name: &str, length: f64| {
+        format!(
+            "bodies.{name} = {{ type = \"rigid_body\", mass = 0.1, inertia = 1e-3, points = {{ start = [0.0, 0.0], end = [{length}, 0.0] }} }}\n"
+        )
+    };
+    let joint = |name: &str, bearing: &str, journal: &str| {
+        format!(
+            "joints.{name} = {{ type = \"revolute\", bearing = \"{bearing}\", journal = \"{journal}\", model = \"ideal\" }}\n"
+        )
+    };
+    let mut text = r#"
+format = 1
+title = "a robot"
+simulation = { duration = 1.0 }
+integrator = { method = "bathe", step = 1e-3, newton_tolerance = 1e-9 }
+output = { interval = 1e-2, channels = ["hand.*"] }
+bodies.ground = { type = "ground", points = { A = [0.0, 0.0], B = [0.4, 0.0], C = [0.2, 0.5] } }
+bodies.hand = { type = "rigid_body", mass = 0.5, inertia = 4e-3, points = { near = [-0.15, 0.0], tip = [0.15, 0.0] } }
+drives.lead = { type = "inverse_kinematics", joints = ["A"], body = "hand", path = { type = "circle", center = [0.2, 0.3], radius = 0.01, frequency = 1.0, phase = 0.0, theta = 0.5 } }
+initial.sketch = { A2 = [0.05, 0.2], B2 = [0.5, 0.25] }
+"#
+    .to_owned();
+    text += &(arm("left", 0.2) + &joint("A", "ground.A", "left.start"));
+    text += &joint("A2", "left.end", "hand.near");
+    text += &(arm("right", 0.3) + &joint("B", "ground.B", "right.start"));
+    match third_arm {
+        true => {
+            text += &joint("B2", "right.end", "hand.tip");
+            text += &(arm("upper", 0.25) + &joint("C", "ground.C", "upper.start"));
+            text + &joint("C2", "upper.end", "hand.near")
+        }
+        false => {
+            text += &(arm("fore", 0.3) + &joint("B2", "right.end", "fore.start"));
+            text + &joint("tip", "fore.end", "hand.tip")
+        }
+    }
+}
+
+/// The message says one thing, and what to do about it.
+#[test]
+fn a_path_that_prescribes_too_much() {
+    for (third_arm, advice) in [
+        (false, "it has 2 of the 3 freedoms x, y and theta"),
+        (true, "remove one, perhaps of A2, B2, C2"),
+    ] {
+        let error = fault(&robot(third_arm), &[]);
+        let message = error.to_string();
+        assert!(
+            message.contains("overdetermines the ideal mechanism"),
+            "{message}"
+        );
+        assert!(!message.contains("does not determine"), "{message}");
+        let given = error.advice().unwrap_or_default();
+        assert!(given.contains(advice), "{given}");
+    }
+}
+
+/// A channel that does not exist is answered with those that do.
+#[test]
+fn unknown_channels_are_answered() {
+    for (channel, advice) in [
+        (
+            "platform.angle",
+            "known of platform: platform.x, platform.y, platform.theta, ",
+        ),
+        (
+            "B1.torque",
+            "joint B1 has `torque` where a drive turns it, and none does",
+        ),
+        ("platfrom.x", "nearest of "),
+        ("x", "lists all"),
+    ] {
+        let error = fault(CASE4, &[&format!("output.channels=[\"{channel}\"]")]);
+        let given = error.advice().unwrap_or_default();
+        assert!(given.contains(advice), "{channel}: {error}: {given}");
+    }
+}

@@ -4,7 +4,7 @@ use super::error::{SceneError, Sources, Span, quoted};
 use super::key::{Key, NumberRange, Takes};
 use super::likeness::{did_you_mean, listed};
 use super::tree::{Node, Value};
-use super::written::{decimal_comma, meant};
+use super::written::{comma_in_number, meant};
 use indexmap::IndexMap;
 
 /// A value being read.
@@ -253,13 +253,10 @@ impl<'a> Field<'a> {
             let message = format!("`{}` must be {shape}, not {count}", self.path);
             let error = self.fault(message, count);
             // [0,35, 0] has three numbers
-            let whole = |node: &Node| matches!(node.value, Value::Integer(_)).then_some(node.span);
-            let pair = items
-                .windows(2)
-                .find_map(|p| whole(&p[0]).zip(whole(&p[1])));
-            let pair = pair.filter(|_| items.len() > N);
-            let said = pair
-                .and_then(|(a, b)| decimal_comma(self.sources.written(a), self.sources.written(b)));
+            let written = self.written();
+            let said = (items.len() > N)
+                .then(|| comma_in_number(&written))
+                .flatten();
             return Err(match said {
                 Some(said) => error.with_help(said),
                 None => error,

@@ -129,6 +129,16 @@ pub(crate) fn decimal_comma(whole: &str, rest: &str) -> Option<String> {
         .then(|| format!("a number has a decimal point: {whole}.{}", &rest[..digits]))
 }
 
+/// What is meant by a comma between two digits, with no space beside it.
+pub(super) fn comma_in_number(list: &str) -> Option<String> {
+    let commas = list.match_indices(',').map(|(at, _)| list.split_at(at));
+    let mut numbers = commas.filter_map(|(before, after)| {
+        let digits = before.trim_end_matches(|c: char| c.is_ascii_digit());
+        decimal_comma(&before[digits.len()..], &after[1..])
+    });
+    numbers.next()
+}
+
 /// What is meant by a text that is no value.
 fn sentence(text: &str, is_value: bool) -> Option<String> {
     if let Some(rest) = text.strip_prefix(['\u{2212}', '\u{2013}']) {
