@@ -245,3 +245,22 @@ fn channels_are_chosen_by_patterns() {
     let scene = load(CASE4, &[r#"output.channels=["B1.f"]"#]);
     assert!(Simulation::new(&scene).is_err());
 }
+
+/// The velocities belong to the method and have defaults, the coefficient is a property of the materials.
+#[test]
+fn velocities_of_friction_have_defaults() {
+    let changes = [r#"contacts.aluminium.friction={ law = "ambrosio", coefficient = 0.2 }"#];
+    let text = include_str!("../scenes/bouncing-journal.toml");
+    let friction = contact(&load(text, &changes), "pin")
+        .unwrap()
+        .friction
+        .unwrap();
+    assert_eq!([friction.v0, friction.v1], [1e-4, 1e-3]);
+    assert_eq!(friction.coefficient, 0.2);
+    let typed = [
+        r#"contacts.aluminium={ law = "hertz", bearing_radius = 0.01, clearance = 2e-5, stiffness = 1e10, exponent = 1.5 }"#,
+    ];
+    let from_materials =
+        |changes: &[&str]| contact(&load(text, changes), "pin").unwrap().from_materials;
+    assert!(from_materials(&[]) && !from_materials(&typed));
+}

@@ -503,13 +503,29 @@ fn every_field_of_a_summary_is_documented() {
 fn check_and_inspect() {
     let output = looselink(&["check", SCENE]);
     expect(&output, 0, "");
-    assert!(String::from_utf8_lossy(&output.stdout).contains("no error found"));
-    let output = looselink(&["inspect", SCENE]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        said.ends_with(": no error found; 1 degree of freedom, not driven\n"),
+        "{said}"
+    );
+    assert!(output.stderr.is_empty());
+    let output = looselink(&["check", SCENE, "--set", "materials.aluminium.density=2.7"]);
+    expect(
+        &output,
+        0,
+        "warning: materials.aluminium.density is 2.7 kg/m3",
+    );
+    let friction =
+        "contacts.aluminium.friction={ law = \"ambrosio\", coefficient = 0.1, v1 = 2e-3 }";
+    let output = looselink(&["inspect", SCENE, "--set", friction]);
     expect(&output, 0, "");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(text.contains("unknown coordinates   3\n"), "{text}");
     assert!(text.contains("0.9132"), "{text}");
     assert!(text.contains("stiffness K = "), "{text}");
+    let contact = "/m^1.5 (that of a sphere in a spherical cup, without the length of the pin), friction 0.1 with v0 = 0.0001 m/s, \
+                   the default, and v1 = 0.002 m/s\n";
+    assert!(text.contains(contact), "{text}");
     let output = looselink(&["inspect", "scenes/slider-crank/both.toml"]);
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     // density times area times length: 7800 kg/m^3, 5 mm by 44.87 mm, 120 mm
