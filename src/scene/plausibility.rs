@@ -94,15 +94,22 @@ impl Scene {
         }
     }
 
+    /// The sizes of the two largest bodies \[m\].
+    fn two_largest(&self) -> [f64; 2] {
+        let extents = self.bodies.iter().map(|body| extent(&*body.kind));
+        extents.fold([0.0; 2], |[first, second], extent| match () {
+            () if extent > first => [extent, first],
+            () => [first, second.max(extent)],
+        })
+    }
+
     fn judge_bodies(&self, told: &mut Vec<String>) {
-        let extents: Vec<f64> = self.bodies.iter().map(|b| extent(&*b.kind)).collect();
-        let largest = extents.iter().copied().fold(0.0, f64::max);
-        for (b, body) in self.bodies.iter().enumerate() {
+        let [largest, second] = self.two_largest();
+        for body in &self.bodies {
             let name = &body.name;
-            let own = extents[b];
+            let own = extent(&*body.kind);
             let moves = body.kind.known().is_none();
-            let others = extents.iter().enumerate().filter(|(other, _)| *other != b);
-            let others = others.map(|(_, extent)| *extent).fold(0.0, f64::max);
+            let others = if own < largest { largest } else { second };
             if own > SIZE[1] || own > 0.0 && largest < SIZE[0] {
                 told.push(format!("body {name} is {} m large: {ASK}", number(own, 4)));
             } else if moves && others > 0.0 && own > ALONE * others {
@@ -148,8 +155,7 @@ impl Scene {
     }
 
     fn judge_contacts(&self, told: &mut Vec<String>) {
-        let extents = self.bodies.iter().map(|b| extent(&*b.kind));
-        let largest = extents.fold(0.0, f64::max);
+        let [largest, _] = self.two_largest();
         let mut seen = BTreeSet::new();
         let contacts = self.joints.iter().filter_map(|joint| joint.contact());
         for contact in contacts.filter(|contact| seen.insert(&contact.name)) {
@@ -224,13 +230,15 @@ impl Scene {
     }
 }
 
-/// The largest distance of two points of a body, or its diameter \[m\].
+/// The diagonal of a box around the points of a body, or its diameter \[m\].
 fn extent(body: &dyn Body) -> f64 {
-    let points = body.points();
-    let pairs = points
-        .iter()
-        .flat_map(|p| points.iter().map(move |q| (p.at - q.at).norm()));
-    pairs.fold(2.0 * body.radius().unwrap_or(0.0), f64::max)
+    let points = || body.points().iter().map(|point| point.at);
+    let box_of_points = points().next().map_or(0.0, |first| {
+        let least = points().fold(first, |a, b| a.inf(&b));
+        let most = points().fold(first, |a, b| a.sup(&b));
+        (most - least).norm()
+    });
+    box_of_points.max(2.0 * body.radius().unwrap_or(0.0))
 }
 
 /// The width of a rectangular section w h, whose second moment is h w^3/12 \[m\].

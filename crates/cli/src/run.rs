@@ -154,6 +154,9 @@ pub fn to_the_end(
     options: &RunOptions,
     stop: Arc<AtomicBool>,
 ) -> Result<(), CommandFailure> {
+    // a unit is best mended before the run has taken its time
+    let told = simulation.implausible();
+    told.iter().for_each(|warning| warn(warning));
     let started = Instant::now();
     let before = simulation.report().steps;
     let mut observer = RunObserver {
@@ -169,7 +172,9 @@ pub fn to_the_end(
     let report = simulation.report();
     let stored = observer.results.finish(&report);
     let warn_of_all = || {
-        report.warnings().iter().for_each(|warning| warn(warning));
+        let warnings = report.warnings().into_iter();
+        let new = warnings.filter(|warning| !told.contains(warning));
+        new.for_each(|warning| warn(&warning));
         if !options.quiet {
             report.notes().iter().for_each(|note| remark(note));
         }

@@ -499,6 +499,31 @@ fn every_field_of_a_summary_is_documented() {
     }
 }
 
+const UNIT: &str = "warning: materials.aluminium.density is 2.7 kg/m3";
+
+/// Before the run has taken its time, once, and in the summary.
+#[test]
+fn a_run_begins_with_questions_about_units() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let changes = [
+        "--set",
+        "materials.aluminium.density=2.7",
+        "--set",
+        "simulation.duration=2e-3",
+    ];
+    let output = run(&out, &changes);
+    expect(&output, 0, UNIT);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        said.starts_with(UNIT) && said.matches(UNIT).count() == 1,
+        "{said}"
+    );
+    let kept = warnings(&summary(&out));
+    assert_eq!(kept.len(), 1, "{kept:?}");
+    assert!(format!("warning: {}", kept[0]).starts_with(UNIT));
+}
+
 #[test]
 fn check_and_inspect() {
     let output = looselink(&["check", SCENE]);
@@ -510,11 +535,7 @@ fn check_and_inspect() {
     );
     assert!(output.stderr.is_empty());
     let output = looselink(&["check", SCENE, "--set", "materials.aluminium.density=2.7"]);
-    expect(
-        &output,
-        0,
-        "warning: materials.aluminium.density is 2.7 kg/m3",
-    );
+    expect(&output, 0, UNIT);
     let friction =
         "contacts.aluminium.friction={ law = \"ambrosio\", coefficient = 0.1, v1 = 2e-3 }";
     let output = looselink(&["inspect", SCENE, "--set", friction]);
