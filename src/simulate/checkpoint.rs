@@ -74,7 +74,7 @@ impl Simulation {
         let model: &Model = model;
         pacer.carry(model, checkpoint);
         newton.carry(model, checkpoint);
-        let parts: [&mut dyn Carried; 14] = [
+        let parts: [&mut dyn Carried; 15] = [
             stepper,
             is_between_rows,
             stays_in_singular_pose,
