@@ -34,6 +34,7 @@ mod methods;
 mod modes;
 mod overrides;
 mod plausibility;
+mod pressed;
 mod published;
 mod registry;
 mod resume;

@@ -47,12 +47,13 @@ fn collect(c: &Compiler, numbering: &Numbering) -> Result<Collected, SceneError>
     let mut joints: Vec<JointTerms> = joints.collect::<Result<_, _>>()?;
     motion_terms(c, numbering, &mut joints, &mut terms);
     let forces = match c.mode {
-        Mode::Real => force_terms(c, numbering, &mut terms),
+        Mode::Real | Mode::Pressed => force_terms(c, numbering, &mut terms),
         Mode::Ideal => Vec::new(),
     };
+    // rigid links may overdetermine the mechanism that presses journals: such rows are redundant there
     let known = |row: &&ConstraintRows| {
         let coordinates = row.term.coordinates();
-        coordinates.iter().all(|&i| i >= numbering.unknowns)
+        c.mode != Mode::Pressed && coordinates.iter().all(|&i| i >= numbering.unknowns)
     };
     if let Some(row) = terms.constraints.iter().find(known) {
         let message = format!(
@@ -87,7 +88,7 @@ pub(super) fn build(
     let rows = terms.constraints.iter().flat_map(|row| &row.names);
     let names = numbering.names.iter().chain(rows).cloned().collect();
 
-    let weight = if c.mode == Mode::Real {
+    let weight = if c.mode != Mode::Ideal {
         weight(&terms.inertia, numbering.coordinates)
     } else {
         Vec::new()
@@ -141,7 +142,7 @@ pub(super) fn build(
     let bodies = numbering.bodies.into_iter().zip(parts).enumerate();
     let bodies = bodies.map(|(b, (placed, parts))| placed_body(c, b, placed, parts, kinematics));
     model.bodies = bodies.collect();
-    if c.mode == Mode::Real {
+    if c.mode != Mode::Ideal {
         let reactions = Reactions::new(c, &model, &own);
         let grips = reactions.driven(kinematics.map(|k| &**k));
         let joints = (0..own.len()).map(|j| reactions.joint(j));
@@ -354,7 +355,7 @@ fn body_terms(
     }
     let n = numbering.unknowns;
     for row in &terms.constraints[before..] {
-        if row.term.coordinates().iter().all(|&i| i >= n) {
+        if c.mode != Mode::Pressed && row.term.coordinates().iter().all(|&i| i >= n) {
             let message = format!(
                 "the {} is redundant: the joints at its two ends fix it already",
                 row.names[0]

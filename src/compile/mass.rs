@@ -28,7 +28,7 @@ pub(super) fn weight(parts: &[Inertia], coordinates: usize) -> Vec<(usize, f64)>
 pub(super) fn mass(parts: Vec<Inertia>, numbering: &Numbering, mode: Mode) -> Mass {
     let mut rows: Vec<std::collections::BTreeMap<usize, f64>> =
         vec![Default::default(); numbering.coordinates];
-    let summed = if mode == Mode::Real { &parts[..] } else { &[] };
+    let summed = if mode != Mode::Ideal { &parts[..] } else { &[] };
     for part in summed {
         let n = part.coordinates.len();
         for (r, &i) in part.coordinates.iter().enumerate() {
@@ -79,7 +79,7 @@ impl Mass {
     pub(super) fn entries(&self, unknowns: usize, mode: Mode) -> Vec<(usize, usize, f64)> {
         match mode {
             Mode::Ideal => (0..unknowns).map(|i| (i, i, 1.0)).collect(),
-            Mode::Real => {
+            Mode::Real | Mode::Pressed => {
                 let rows = (0..unknowns).flat_map(|i| self.row(i).map(move |(j, m)| (i, j, m)));
                 rows.filter(|(_, j, _)| *j < unknowns).collect()
             }

@@ -6,6 +6,7 @@ mod drive;
 mod mass;
 mod motions;
 mod numbering;
+mod pin;
 mod reactions;
 mod rules;
 mod sketch;
@@ -17,6 +18,7 @@ use crate::kinematics::Kinematics;
 use crate::math::plane::Vec2;
 use crate::model::Model;
 use crate::scene::{MotionKind, NamedBody, Scene, SceneError, SketchPoint, Sketched};
+use pin::Pin;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -45,13 +47,15 @@ impl Role {
     }
 }
 
-/// Which of the two mechanisms of a scene is compiled.
+/// Which of the mechanisms of a scene is compiled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Mode {
     /// The scene as written.
     Real,
     /// Rigid links, ideal joints, the driven body on its path.
     Ideal,
+    /// The scene with rigid links, and multipliers in place of its contacts: their forces press the journals at the start.
+    Pressed,
 }
 
 /// A scene under compilation: its bodies and joints as they are in this mechanism.
@@ -73,14 +77,17 @@ pub(crate) struct Compiler<'a> {
 
 impl<'a> Compiler<'a> {
     fn new(scene: &'a Scene, mode: Mode, roles: Vec<Role>) -> Compiler<'a> {
-        let ideal = mode == Mode::Ideal;
         let body = |b: &NamedBody| {
-            let rigid = b.kind.rigid().filter(|_| ideal);
+            let rigid = b.kind.rigid().filter(|_| mode != Mode::Real);
             rigid.unwrap_or_else(|| b.kind.clone())
         };
-        let joint = |model: &Arc<dyn JointModel>| match model.contact() {
-            Some(_) if ideal => model.with_contact(None),
-            _ => None,
+        let joint = |model: &Arc<dyn JointModel>| {
+            model.contact()?;
+            match mode {
+                Mode::Real => None,
+                Mode::Ideal => model.with_contact(None),
+                Mode::Pressed => Some(Pin::of(model.with_contact(None)?)),
+            }
         };
         let bodies: Vec<_> = scene.bodies.iter().map(body).collect();
         let mut joints_at: HashMap<PointRef, Vec<(usize, PointRef)>> = HashMap::new();
@@ -258,6 +265,18 @@ pub struct Compiled {
 /// # Errors
 /// A mechanism that cannot close or follow its drives, or whose constraints depend on each other.
 pub fn compile(scene: &Scene) -> Result<Compiled, SceneError> {
+    compile_as(scene, Mode::Real)
+}
+
+/// Compiles the mechanism whose multipliers stand for the contacts of a scene.
+///
+/// # Errors
+/// As [`compile`].
+pub(crate) fn compile_pressed(scene: &Scene) -> Result<Compiled, SceneError> {
+    compile_as(scene, Mode::Pressed)
+}
+
+fn compile_as(scene: &Scene, mode: Mode) -> Result<Compiled, SceneError> {
     let mut roles = known_roles(scene);
     let kinematics = match scene.drives.as_slice() {
         [] => None,
@@ -271,7 +290,7 @@ pub fn compile(scene: &Scene) -> Result<Compiled, SceneError> {
             return Err(scene.error(second.span, message, "the second one"));
         }
     };
-    let mut compiler = Compiler::new(scene, Mode::Real, roles);
+    let mut compiler = Compiler::new(scene, mode, roles);
     let ties = ties::of_bodies(&compiler)?;
     compiler.choose_coordinates(&ties);
     let numbering = numbering::number(&compiler, kinematics.as_ref().map(|k| &*k.mechanism))?;

@@ -192,7 +192,7 @@ fn number_unknowns(c: &Compiler, nodes: &mut Nodes, eliminated: Vec<bool>) -> Nu
             };
         }
     }
-    let real = c.scene.forces.iter().filter(|_| c.mode == Mode::Real);
+    let real = c.scene.forces.iter().filter(|_| c.mode != Mode::Ideal);
     let states = real.map(|force| {
         let states = force.kind.states().iter();
         let states = states.map(|state| take(&[format!("{}.{state}", force.name)]));

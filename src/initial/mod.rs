@@ -1,6 +1,7 @@
 //! Where the motion starts: poses of the ideal mechanism or of the scene, then consistent rates.
 
 mod freedoms;
+mod pressed;
 pub(crate) mod redundancy;
 pub(crate) mod turns;
 
@@ -11,7 +12,7 @@ use crate::compile::Compiled;
 use crate::compile::assembly::{CENTRE, assemble, name, opening, whole_name};
 use crate::math::plane::Vec2;
 use crate::model::{Model, PlacedBody, PlacedConstraint};
-use crate::scene::{Analysis, BodyState, NamedBody, Scene, SceneError};
+use crate::scene::{Analysis, BodyState, Journals, NamedBody, Scene, SceneError};
 use crate::system::State;
 
 /// Largest violation of a constraint \[m\] or of its rate \[m/s\] at the start: the digits of a typed position.
@@ -22,18 +23,12 @@ const START_TOLERANCE: f64 = 1e-9;
 /// # Errors
 /// A body without a start, or a start that violates a constraint.
 pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
-    let Compiled { model, kinematics } = compiled;
-    let mut state = model.blank_state();
-    model.follow_rules(&mut state);
-    if let Some(kinematics) = kinematics {
-        let mut inner = kinematics.work();
-        inner.state.q.copy_from_slice(&kinematics.start);
-        let solved = kinematics.solve(&mut inner, 20);
-        solved.map_err(|e| scene.error(scene.initial.span, e.to_string(), "the start"))?;
-        kinematics.hand_over(&inner, &mut state);
+    let model = &compiled.model;
+    let mut state = known(scene, compiled)?;
+    let mut starts = starts(scene, compiled, &state)?;
+    if scene.initial.journals == Journals::Pressed {
+        pressed::press(scene, &mut starts)?;
     }
-    model.move_driven_nodes(&mut state);
-    let starts = starts(scene, compiled, &state)?;
 
     let mut written = vec![false; state.q.len()];
     written[model.shape().unknowns..].fill(true);
@@ -97,6 +92,21 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         }
     }
     model.remember_angles(&mut state);
+    Ok(state)
+}
+
+/// A state with what is known at t = 0: the ground, paths, driven bodies.
+fn known(scene: &Scene, Compiled { model, kinematics }: &Compiled) -> Result<State, SceneError> {
+    let mut state = model.blank_state();
+    model.follow_rules(&mut state);
+    if let Some(kinematics) = kinematics {
+        let mut inner = kinematics.work();
+        inner.state.q.copy_from_slice(&kinematics.start);
+        let solved = kinematics.solve(&mut inner, 20);
+        solved.map_err(|e| scene.error(scene.initial.span, e.to_string(), "the start"))?;
+        kinematics.hand_over(&inner, &mut state);
+    }
+    model.move_driven_nodes(&mut state);
     Ok(state)
 }
 

@@ -266,8 +266,20 @@ pub struct Initial {
     pub velocities: Vec<GivenVelocity>,
     /// The start is an equilibrium under the loads at t = 0.
     pub equilibrium: Option<Rest>,
+    /// Where journals start in their bearings.
+    pub journals: Journals,
     /// Where the table stands.
     pub span: Span,
+}
+
+/// Where journals start in their bearings.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Journals {
+    /// Where the assembly or the given poses put them, in an assembled mechanism in the middle.
+    #[default]
+    Centred,
+    /// Pressed against the bearings by the forces of the ideal joints.
+    Pressed,
 }
 
 impl Initial {

@@ -1,8 +1,8 @@
 //! `[drives]` and `[initial]`.
 
 use super::{
-    BodyState, Drive, GivenVelocity, Initial, MotionKind, PrescribedMotion, Rest, SketchPoint,
-    Sketched,
+    BodyState, Drive, GivenVelocity, Initial, Journals, MotionKind, PrescribedMotion, Rest,
+    SketchPoint, Sketched,
 };
 use crate::body::{Body, Deformation, Known, PointRef, RigidBody};
 use crate::document::{Field, Fields, Key, Kind, NumberRange, SceneError, Takes, named};
@@ -173,7 +173,7 @@ fn inverse_kinematics(
 }
 
 /// The keys of `[initial]`.
-pub(super) static INITIAL: [Key; 4] = [
+pub(super) static INITIAL: [Key; 5] = [
     Key::table(
         "sketch",
         "approximate positions of joints, `JOINT = [x, y]`, and of points, `BODY = { POINT = [x, y] }`: they choose the branch [m]",
@@ -187,6 +187,12 @@ pub(super) static INITIAL: [Key; 4] = [
         "true: the motion starts at rest in the equilibrium that is reached downhill, under the loads at t = 0; `\"nearest\"`: in the nearest one, stable or not",
     )
     .or("false"),
+    Key::word(
+        "journals",
+        &["centred", "pressed"],
+        "where the assembly puts the journals of joints with clearance: in the middle of their bearings, or against them",
+    )
+    .or("`\"centred\"`"),
 ];
 
 const POSE: [&str; 3] = ["x", "y", "theta"];
@@ -263,6 +269,7 @@ pub(super) fn initial(root: &Fields, names: &Names) -> Result<Initial, SceneErro
             bodies: IndexMap::new(),
             velocities: Vec::new(),
             equilibrium: None,
+            journals: Journals::default(),
             span: root.whole.span(),
         });
     };
@@ -287,6 +294,10 @@ pub(super) fn initial(root: &Fields, names: &Names) -> Result<Initial, SceneErro
                 Ok(false) => None,
                 Err(_) => Some(Rest::Nearest),
             },
+        },
+        journals: match table.optional_word("journals")? {
+            Some(1) => Journals::Pressed,
+            _ => Journals::Centred,
         },
         span: field.span(),
     })

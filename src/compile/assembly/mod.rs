@@ -92,13 +92,18 @@ pub(crate) fn constraint_rows(model: &Model, state: &State) -> Vec<SparseRow> {
 
 /// One step of Newton's method of least norm on Phi = 0 over the coordinates that are not held; returns the largest move.
 pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> Update {
+    step_to(model, state, held, &vec![0.0; model.shape.multipliers])
+}
+
+/// The same on Phi = goal.
+fn step_to(model: &Model, state: &mut State, held: &[bool], goal: &[f64]) -> Update {
     let mut rows = constraint_rows(model, state);
     for row in &mut rows {
         row.retain(|(i, _)| !held[*i]);
     }
     let values = model.constraints.iter().flat_map(|placed| {
         let value = placed.term.value(state);
-        (0..placed.rows).map(move |d| -value[d])
+        (0..placed.rows).map(move |d| goal[placed.row + d] - value[d])
     });
     let values: Vec<f64> = values.collect();
     let step = IndependentRows::new(held.len(), &rows, &values).least_norm();
@@ -108,10 +113,18 @@ pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> U
     Update::largest(step.iter().copied())
 }
 
-/// The largest violation of a constraint, and the constraint.
-fn widest<'m>(model: &'m Model, state: &State) -> Option<(f64, &'m PlacedConstraint)> {
+/// The largest violation of a constraint Phi = goal, and the constraint.
+fn widest<'m>(
+    model: &'m Model,
+    state: &State,
+    goal: &[f64],
+) -> Option<(f64, &'m PlacedConstraint)> {
     let constraints = model.constraints.iter();
-    let opening = constraints.map(|p| (Vec2::from(p.term.value(state)).norm(), p));
+    let opening = constraints.map(|p| {
+        let value = p.term.value(state);
+        let rows = (0..p.rows).map(|d| goal[p.row + d] - value[d]);
+        (rows.fold(0.0, f64::hypot), p)
+    });
     opening.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
@@ -122,11 +135,22 @@ fn close<'m>(
     state: &mut State,
     held: &[bool],
 ) -> Option<(f64, &'m PlacedConstraint)> {
-    let open = |state: &State| widest(model, state).filter(|(x, _)| x.is_nan() || *x > CLOSED);
+    close_to(model, state, held, &vec![0.0; model.shape.multipliers])
+}
+
+/// The same with given values of the constraints.
+pub(crate) fn close_to<'m>(
+    model: &'m Model,
+    state: &mut State,
+    held: &[bool],
+    goal: &[f64],
+) -> Option<(f64, &'m PlacedConstraint)> {
+    let widest = |state: &State| widest(model, state, goal);
+    let open = |state: &State| widest(state).filter(|(x, _)| x.is_nan() || *x > CLOSED);
     if open(state).is_some() {
         // how it fails does not matter: what stays open says more
         let _ = iterate(ITERATIONS, |_| {
-            let update = closing_step(model, state, held);
+            let update = step_to(model, state, held, goal);
             Ok((update, open(state).is_none()))
         });
     }
