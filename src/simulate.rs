@@ -3,12 +3,15 @@
 mod change;
 mod checkpoint;
 mod choice;
+mod closing;
 mod closures;
 mod control;
 mod creep;
 mod cubic;
+mod energy;
 mod equilibrium;
 mod failure;
+mod first_impact;
 mod foresight;
 mod impacts;
 mod load_path;
@@ -31,11 +34,14 @@ mod warnings;
 
 pub use crate::record::Channel;
 pub use choice::{Choice, TrialRun};
+use closing::ClosingSums;
+pub use closing::{Closing, ContactTime, DriveLoad, Peak, PoseError};
 pub use closures::Chatter;
 use closures::Closures;
 pub use control::AccuracyReport;
 pub use creep::Creep;
 use creep::CreepWatch;
+pub use energy::EnergyError;
 pub use equilibrium::{FoundRest, Stability};
 pub use failure::RunError;
 use failure::short;
@@ -123,6 +129,7 @@ pub struct Simulation {
     /// What was measured of it.
     measured: Record,
     extremes: Vec<Extreme>,
+    closing: ClosingSums,
     /// Largest strains over the recorded rows, by body; 0 for bodies that do not deform.
     strains: Vec<Strain>,
     plausibility: Plausibility,
@@ -436,6 +443,8 @@ impl Simulation {
             recorder,
             measured,
             extremes,
+            closing,
+            impacts,
             strains,
             plausibility,
             meter,
@@ -469,8 +478,11 @@ impl Simulation {
         for (largest, strain) in strains.iter_mut().zip(&measured.strains) {
             largest.see(strain);
         }
-        for (extreme, value) in extremes.iter_mut().zip(row) {
-            extreme.see(*value, output.t);
+        if closing.counts(output.t) {
+            for (extreme, value) in extremes.iter_mut().zip(row) {
+                extreme.see(*value, output.t);
+            }
+            closing.row(model, output, impacts);
         }
         self.counters.rows += 1;
         observer.state(model, output)?;

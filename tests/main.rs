@@ -8,6 +8,7 @@ mod balance;
 mod bits;
 mod buckling;
 mod choice;
+mod closing;
 mod coordinates;
 mod couples;
 mod deformed;

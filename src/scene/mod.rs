@@ -186,6 +186,8 @@ pub struct Output {
     pub format: &'static Format,
     /// True where the motion is stored for a viewer.
     pub motion: bool,
+    /// The time from which extremes count \[s\].
+    pub extremes_from: f64,
 }
 
 /// One entry of `output.channels`.

@@ -71,7 +71,7 @@ pub(super) static SIMULATION: [Key; 4] = [
 ];
 
 /// The keys of `[output]`.
-pub(super) static OUTPUT: [Key; 4] = [
+pub(super) static OUTPUT: [Key; 5] = [
     Key::positive(
         "interval",
         "s",
@@ -89,6 +89,12 @@ pub(super) static OUTPUT: [Key; 4] = [
         "whether `motion.bin` is written, which `looselink view` shows",
     )
     .or("`true`"),
+    Key::non_negative(
+        "extremes_from",
+        "s",
+        "the time from which extremes and the closing table count, at most `duration`; it leaves the start out",
+    )
+    .or("0"),
 ];
 
 impl Scene {
@@ -250,6 +256,9 @@ fn output(
     if channels.is_empty() {
         return Err(field.fault("`output.channels` names no channel", "empty"));
     }
+    if let Some(field) = table.optional("extremes_from") {
+        simulation.check_time(&field)?;
+    }
     let formats: Vec<_> = registry.formats.iter().map(|f| (f.name, *f)).collect();
     let format = table.optional("format").map(|f| f.choice(&formats));
     Ok(Output {
@@ -257,6 +266,7 @@ fn output(
         channels,
         format: format.transpose()?.unwrap_or(registry.formats[0]),
         motion: table.optional_boolean("motion")?.unwrap_or(true),
+        extremes_from: table.optional_number("extremes_from")?.unwrap_or(0.0),
     })
 }
 

@@ -47,6 +47,7 @@ impl Simulation {
             recorder,
             measured: _,
             extremes,
+            closing,
             strains,
             plausibility,
             impacts,
@@ -74,7 +75,7 @@ impl Simulation {
         let model: &Model = model;
         pacer.carry(model, checkpoint);
         newton.carry(model, checkpoint);
-        let parts: [&mut dyn Carried; 15] = [
+        let parts: [&mut dyn Carried; 16] = [
             stepper,
             is_between_rows,
             stays_in_singular_pose,
@@ -82,6 +83,7 @@ impl Simulation {
             state,
             recorder,
             extremes,
+            closing,
             strains,
             plausibility,
             impacts,

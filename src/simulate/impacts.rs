@@ -1,4 +1,4 @@
-//! Records every contact from its onset to its end, and keeps the first ones for the summary.
+//! Records every contact from its onset to its end, keeps the first ones for the summary, and counts those of every joint.
 
 use super::cubic::top;
 use super::observer::{ContactEnd, ContactEvent, Observer, Onset};
@@ -94,9 +94,49 @@ pub(super) struct Impacts {
     listed: Vec<Course>,
     /// Radius of the bearing of each contact, and the largest penetration so far \[m\].
     depths: Vec<[f64; 2]>,
+    /// What was counted of each contact that has opened again.
+    counts: Vec<ContactCount>,
+    /// From when on contacts count \[s\].
+    from: f64,
 }
 
-carried!(Impacts { closed, depths } and up to LISTED of { listed } but {});
+carried!(Impacts { closed, depths, counts } and up to LISTED of { listed } but { from });
+
+/// The contacts of a joint.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct ContactCount {
+    /// Contacts that began after the start.
+    pub impacts: u64,
+    /// Time in contact \[s\].
+    pub closed: f64,
+    /// The largest force of a contact \[N\], and its onset \[s\].
+    pub largest: [f64; 2],
+    /// The same over all contacts but the first.
+    pub later: [f64; 2],
+    /// True once the first contact is over, if the joint began without one.
+    pub has_settled: bool,
+    /// True from the first onset on.
+    has_begun: bool,
+}
+
+carried!(ContactCount { impacts, closed, largest, later, has_settled, has_begun } but {});
+
+impl ContactCount {
+    /// Adds a contact up to its end or to now.
+    fn add(&mut self, course: &Course, to: f64, from: f64) {
+        self.closed += (to - course.t.max(from)).max(0.0);
+        if course.t < from {
+            return;
+        }
+        let force = [course.largest_force, course.t];
+        if force[0] > self.largest[0] {
+            self.largest = force;
+        }
+        if self.has_settled && force[0] > self.later[0] {
+            self.later = force;
+        }
+    }
+}
 
 /// Penetration over the radius of a bearing beyond which no contact law holds, if it also exceeds the clearance. The half width of the
 /// contact by Hertz, for radii R and R - c, is R sqrt(delta/c) and reaches the radius at delta = c; a tenth of the radius is far beyond
@@ -166,7 +206,9 @@ impl Impacts {
         Impacts {
             closed: vec![None; contacts.len()],
             listed: Vec::with_capacity(LISTED),
+            counts: vec![ContactCount::default(); contacts.len()],
             depths: contacts.map(|contact| [radius(contact), 0.0]).collect(),
+            from: scene.output.extremes_from,
         }
     }
 
@@ -193,6 +235,36 @@ impl Impacts {
             self.listed.push(course);
         }
         self.closed[contact] = Some(course);
+        let count = &mut self.counts[contact];
+        // a contact that is closed at the start is no impact, and no impact of the start precedes others
+        let starts_closed = at.t == 0.0;
+        count.impacts += u64::from(!starts_closed && at.t >= self.from);
+        count.has_settled |= starts_closed;
+        count.has_begun = true;
+    }
+
+    /// What was counted of a contact up to time t.
+    pub fn count(&self, contact: usize, t: f64) -> ContactCount {
+        let mut count = self.counts[contact];
+        if let Some(course) = &self.closed[contact] {
+            count.add(course, t, self.from);
+        }
+        count
+    }
+
+    /// True once the first impact of a joint is over, of one that starts without contact.
+    pub fn has_settled(&self, contact: usize) -> bool {
+        self.counts[contact].has_settled
+    }
+
+    /// True where the first impacts are over, of all joints that have had any.
+    pub fn have_settled(&self) -> bool {
+        let mut begun = self
+            .counts
+            .iter()
+            .filter(|count| count.has_begun)
+            .peekable();
+        begun.peek().is_some() && begun.all(|count| count.has_settled)
     }
 
     /// The onset of a contact that is closed.
@@ -234,6 +306,9 @@ impl Impacts {
             }
             if !closed {
                 observer.contact(&course.contact(model))?;
+                let count = &mut self.counts[contact];
+                count.add(course, at.t, self.from);
+                count.has_settled = true;
                 *slot = None;
             }
         }

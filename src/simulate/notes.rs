@@ -6,9 +6,10 @@ use super::{FoundRest, Report};
 const NOTABLE: f64 = 0.01;
 
 impl Report {
-    /// One line for every fact: redundant constraints, freedoms that drives leave, large strains, and how the equations were solved.
+    /// One line for every fact: what the start decides, redundant constraints, freedoms that drives leave, large strains, and how the
+    /// equations were solved.
     pub fn notes(&self) -> Vec<String> {
-        let mut notes = Vec::new();
+        let mut notes = self.start_notes();
         notes.extend(self.redundant.iter().map(|name| {
             format!("{name} is redundant: the constraint forces in its loop are not unique")
         }));

@@ -4,8 +4,8 @@ use super::creep::Creep;
 use super::pace::Pacer;
 use super::restitution::{self, DeliveredRestitution};
 use super::{
-    AccuracyReport, Chatter, Choice, CriticalPoint, FoundRest, Impact, Integration, Overrun,
-    Simulation,
+    AccuracyReport, Chatter, Choice, Closing, CriticalPoint, FoundRest, Impact, Integration,
+    Overrun, Simulation,
 };
 use crate::body::{Body, CentredLink, RigidLink, Strain};
 use crate::checkpoint::carried;
@@ -176,8 +176,10 @@ pub struct Report {
     pub redundant: Vec<String>,
     /// Largest strains over the recorded rows, of every flexible link.
     pub strain: BTreeMap<String, Strain>,
-    /// Extremes of the recorded channels, over the recorded rows.
+    /// Extremes of the recorded channels, over the recorded rows from `output.extremes_from` on.
     pub extremes: BTreeMap<String, Extreme>,
+    /// Errors of driven bodies, forces of joints, loads of drives, contacts.
+    pub closing: Closing,
 }
 
 /// What will be simulated.
@@ -382,8 +384,12 @@ impl Simulation {
                 .collect(),
             extremes: names
                 .zip(&self.extremes)
+                .filter(|(_, extreme)| extreme.min <= extreme.max)
                 .map(|(name, e)| (name, *e))
                 .collect(),
+            closing: self
+                .closing
+                .report(&self.model, &self.impacts, self.state.t),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! A simulation before its first step.
 
+use super::closing::ClosingSums;
 use super::closures::Closures;
 use super::control::Controller;
 use super::creep::CreepWatch;
@@ -103,6 +104,7 @@ impl Simulation {
             passes_singular_pose: false,
             work,
             meter: Meter::new(scene, &model, &state),
+            closing: ClosingSums::new(scene, &model),
             is_trial_run: false,
             choice: None,
             start,

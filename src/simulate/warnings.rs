@@ -3,7 +3,7 @@
 use super::{Integration, Report};
 use numbers::{number, share};
 
-/// Warn of energy lost or gained by the integrator beyond this part of the energy dissipated ...
+/// Warn of energy lost or gained by the integrator beyond this part of what contacts or dampers dissipate ...
 const OF_DISSIPATED: f64 = 0.05;
 /// ... or beyond this part of the energy in play.
 const OF_TURNOVER: f64 = 0.01;
@@ -86,36 +86,16 @@ impl Report {
     }
 
     fn energy_warning(&self) -> Option<String> {
-        let ledger = self.ledger.as_ref()?;
-        let integration = self.integration.as_ref()?;
-        let verb = |lost: f64| match lost < 0.0 {
-            true => "gained",
-            false => "lost",
-        };
-        let [least, greatest] = integration.lost;
-        let most = if -least > greatest { least } else { greatest };
-        let changed = most.abs();
+        let (error, integration) = (self.energy_error()?, self.integration.as_ref()?);
         let key = match self.accuracy {
             Some(_) => "integrator.accuracy",
             None => "integrator.step",
         };
-        if changed > OF_TURNOVER * integration.turnover {
-            return Some(format!(
-                "the integrator {} up to {} J, {}: reduce {key}",
-                verb(most),
-                number(changed, 2),
-                share(changed / integration.turnover, "the energy of the motion")
-            ));
-        }
-        let (dissipated, numerical) = (ledger.dissipated(), ledger.numerical.abs());
-        (dissipated > 0.0 && numerical > OF_DISSIPATED * dissipated).then(|| {
-            format!(
-                "the integrator {} {} J, {}: reduce {key}",
-                verb(ledger.numerical),
-                number(numerical, 2),
-                share(numerical / dissipated, "the dissipated energy")
-            )
-        })
+        let changes_motion = error.lost.abs() > OF_TURNOVER * integration.turnover;
+        // where nothing is dissipated the part is that of the motion
+        let changes_losses = error.part > OF_DISSIPATED;
+        (changes_motion || changes_losses)
+            .then(|| format!("the integrator {}: reduce {key}", error.text()))
     }
 
     fn acceleration_warning(&self) -> Option<String> {

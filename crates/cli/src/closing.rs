@@ -1,37 +1,17 @@
-//! The last lines of a run: what was counted, and what the integrator did to the energy.
+//! The last lines of a run: what it came to, and how its steps were chosen.
 
-use looselink::record::Ledger;
 use looselink::simulate::{AccuracyReport, Choice, Report};
-use numbers::{number, share};
-
-/// Impacts that are shown; summary.json lists more.
-const SHOWN: usize = 3;
+use messages::closing_table;
+use numbers::number;
 
 /// Lines about a finished run, most of them absent when there is nothing to say; warnings are not among them.
 pub fn lines(report: &Report) -> Vec<String> {
-    let mut lines = Vec::new();
-    lines.extend(report.ledger.iter().map(energy));
+    let mut lines = closing_table(report);
     lines.extend(report.choice.iter().map(choice));
     lines.extend(report.accuracy.iter().map(accuracy));
     let impacts = report.ended_contacts > 0;
-    lines.extend(
-        report
-            .accuracy
-            .iter()
-            .map(|control| holds(control, impacts)),
-    );
-    let first = report.impacts.iter().take(SHOWN).enumerate();
-    lines.extend(first.map(|(k, impact)| {
-        format!(
-            "impact {}: {} at t = {:.9} s, velocity {} m/s, direction {:.4} degrees, penetration {} m",
-            k + 1,
-            impact.joint,
-            impact.t,
-            number(impact.impact_velocity, 7),
-            impact.angle.to_degrees(),
-            number(impact.deepest_penetration, 7)
-        )
-    }));
+    let holds = |control| holds(control, impacts);
+    lines.extend(report.accuracy.iter().map(holds));
     lines
 }
 
@@ -87,22 +67,4 @@ fn holds(control: &AccuracyReport, impacts: bool) -> String {
         false => format!("; a run at position={finer} shows whether this one does"),
     };
     format!("the accuracy holds for {}{how}", control.holds_for)
-}
-
-/// What the integrator did to the energy.
-fn energy(ledger: &Ledger) -> String {
-    let (dissipated, numerical) = (ledger.dissipated(), ledger.numerical.abs());
-    let changed = number(numerical, 2);
-    let verb = match ledger.numerical < 0.0 {
-        true => "gained",
-        false => "lost",
-    };
-    if dissipated <= 0.0 {
-        return format!("energy: {changed} J {verb} by the integrator");
-    }
-    format!(
-        "energy: {} J dissipated, {changed} J {verb} by the integrator ({})",
-        number(dissipated, 4),
-        share(numerical / dissipated, "the dissipated energy")
-    )
 }

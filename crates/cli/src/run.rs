@@ -206,7 +206,8 @@ pub fn to_the_end(
     }
     stored.map_err(|error| not_stored(error, out, replaces))?;
     let (steps, wall) = (report.steps - before, started.elapsed().as_secs_f64());
-    let done = format!("{steps} steps in {wall:.2} s, results in `{folder}`");
+    let reached = numbers::exact(report.t);
+    let done = format!("t = {reached} s after {steps} steps in {wall:.2} s, results in `{folder}`");
     observer.display.finish(&done);
     for line in closing::lines(&report) {
         observer.display.finish(&line);
