@@ -36,11 +36,12 @@ fn links_that_share_no_node_have_the_coordinates_of_their_centres() {
     // the cranks are driven
     let simulation = Simulation::new(&load("3rrr/case3.toml", &NATURAL[2..])).unwrap();
     let notes = simulation.inspect().assumptions;
-    let expected = [
+    for expected in [
         "rigid links with x, y of their centres of mass and theta: link1, link2",
         "rigid links with natural coordinates, x, y of their ends: link3",
-    ];
-    assert!(notes.ends_with(&expected.map(str::to_owned)), "{notes:?}");
+    ] {
+        assert!(notes.iter().any(|note| note == expected), "{notes:?}");
+    }
 }
 
 #[test]

@@ -14,6 +14,7 @@ use crate::model::{Model, PlacedBody};
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, Scene};
 use crate::system::System;
+use indexmap::IndexMap;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 
@@ -189,6 +190,8 @@ pub struct Inspection {
     pub unknowns: usize,
     /// Multipliers.
     pub multipliers: usize,
+    /// Degrees of freedom: unknown coordinates that are positions, less the constraints that are kept.
+    pub freedoms: usize,
     /// Contact terms.
     pub contacts: usize,
     /// Effects present.
@@ -203,23 +206,22 @@ pub struct Inspection {
 
 /// Notes on values that the program derives from a scene.
 fn notes(scene: &Scene, model: &Model) -> Vec<String> {
-    let mut notes: Vec<String> = scene
-        .assumptions
-        .iter()
-        .map(|a| format!("{} = {}: {}", a.path, a.value, a.reason))
-        .collect();
+    let mut delivered: IndexMap<String, Vec<&str>> = IndexMap::new();
     for joint in &scene.joints {
         if let Some(contact) = joint.contact() {
             let law = contact.normal_law();
-            notes.push(format!(
-                "joint {}: {} with a restitution of {} gives {:.4} in a free impact",
-                joint.name,
+            let note = format!(
+                "{} with a restitution of {} gives {:.4} in a free impact",
                 contact.law.name,
                 contact.restitution,
                 law.delivered_restitution()
-            ));
+            );
+            delivered.entry(note).or_default().push(&joint.name);
         }
     }
+    let delivered = delivered.into_iter();
+    let delivered = delivered.map(|(note, joints)| format!("{}: {note}", joints.join(", ")));
+    let mut notes: Vec<String> = delivered.collect();
     let assembled = is_assembled(scene, model);
     if assembled && scene.simulation.analysis == Analysis::Dynamic {
         notes.push("velocities missing in the scene are those of least kinetic energy".to_owned());
@@ -255,9 +257,12 @@ impl Simulation {
     pub fn inspect(&self) -> Inspection {
         let shape = self.model.shape();
         let (coordinates, constraints) = self.model.unknown_names().split_at(shape.unknowns);
+        let redundant = self.model.redundant();
         Inspection {
             unknowns: shape.unknowns,
             multipliers: shape.multipliers,
+            freedoms: (shape.unknowns + redundant.len())
+                .saturating_sub(self.model.states.len() + shape.multipliers),
             contacts: shape.contacts,
             effects: self
                 .model
@@ -267,9 +272,12 @@ impl Simulation {
                 .collect(),
             assumptions: notes(&self.scene, &self.model)
                 .into_iter()
-                .chain(self.coordinates_of_bodies())
-                .chain(self.model.redundant().iter().map(|name| {
+                .chain(redundant.iter().map(|name| {
                     format!("{name} is redundant and left out: the constraint forces in its loop are not unique")
+                }))
+                .chain(self.coordinates_of_bodies())
+                .chain(self.scene.assumptions.iter().map(|given| {
+                    format!("{} = {}: {}", given.path, given.value, given.reason)
                 }))
                 .collect(),
             coordinates: coordinates.to_vec(),

@@ -13,9 +13,42 @@ use numbers::{exact, number};
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    /// Show all bodies, joints, notes, coordinates, constraints and channels, not only what fits on a screen.
+    #[arg(long, conflicts_with = "json")]
+    all: bool,
     /// Machine-readable output.
     #[arg(long)]
     json: bool,
+}
+
+/// A part of what is shown.
+struct Section {
+    title: &'static str,
+    lines: Vec<String>,
+    /// Lines that are shown without `--all`: with the head of 13 lines, and two lines a section, forty at most.
+    most: usize,
+}
+
+impl Section {
+    /// Its text; a section that is cut says how many lines it leaves out.
+    fn text(&self, all: bool) -> String {
+        let count = self.lines.len();
+        let cut = !all && count > self.most;
+        let shown = match cut {
+            true => self.most.saturating_sub(1),
+            false => count,
+        };
+        if shown == 0 {
+            return String::new();
+        }
+        let mut text = format!("\n{}\n", self.title);
+        let lines = self.lines.iter().take(shown);
+        lines.for_each(|line| text += &format!("  {line}\n"));
+        if cut {
+            text += &format!("  and {} more: --all\n", count - shown);
+        }
+        text
+    }
 }
 
 /// Shows the compiled scene on standard output.
@@ -24,11 +57,11 @@ pub fn inspect(arguments: &Arguments) -> Result<(), CommandFailure> {
     let inspection = simulation.inspect();
     match arguments.json {
         true => print(json(&inspection)?),
-        false => print(text(&scene, &simulation, &inspection)),
+        false => print(text(&scene, &simulation, &inspection, arguments.all)),
     }
 }
 
-fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> String {
+fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection, all: bool) -> String {
     let mut out = format!("{}\n\n", scene.title);
     let duration = scene.simulation.duration;
     for (name, value) in [
@@ -36,6 +69,7 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
         ("joints", scene.joints.len().to_string()),
         ("unknown coordinates", inspection.unknowns.to_string()),
         ("multipliers", inspection.multipliers.to_string()),
+        ("degrees of freedom", inspection.freedoms.to_string()),
         ("contacts", inspection.contacts.to_string()),
         ("effects", inspection.effects.join(", ")),
         (
@@ -72,29 +106,28 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection) -> Stri
     }
     let channels = simulation.channels().iter();
     let channels = channels.map(|c| format!("{} [{}]", c.name, c.unit));
-    for (title, entries) in [
-        ("Masses and poses at the start", &bodies(scene, simulation)),
-        ("Drives at the start", &drives(scene)),
-        ("Joints with clearance", &clearances(scene)),
-        ("Assumptions and notes", &inspection.assumptions),
-        ("Unknown coordinates", &inspection.coordinates),
-        ("Constraints", &inspection.constraints),
-        ("Channels", &channels.collect()),
+    for (title, lines, most) in [
+        (
+            "Masses and poses at the start",
+            bodies(scene, simulation),
+            7,
+        ),
+        ("Drives at the start", drives(scene), 3),
+        ("Joints with clearance", clearances(scene), 5),
+        ("Notes and assumptions", inspection.assumptions.clone(), 4),
+        ("Unknown coordinates", inspection.coordinates.clone(), 0),
+        ("Constraints", inspection.constraints.clone(), 0),
+        ("Channels", channels.collect(), 0),
     ] {
-        if !entries.is_empty() {
-            out += &format!("\n{title}\n");
-        }
-        for entry in entries {
-            out += &format!("  {entry}\n");
-        }
+        out += &Section { title, lines, most }.text(all);
     }
     out
 }
 
-/// Mass and pose of every body that has a mass, and the total mass.
+/// The total mass, then mass and pose of every body that has a mass.
 fn bodies(scene: &Scene, simulation: &Simulation) -> Vec<String> {
     let mut total = 0.0;
-    let mut lines = Vec::new();
+    let mut lines = vec![String::new()];
     for (index, body) in scene.bodies.iter().enumerate() {
         let Some(mass) = body.kind.mass() else {
             continue;
@@ -107,7 +140,7 @@ fn bodies(scene: &Scene, simulation: &Simulation) -> Vec<String> {
             body.name
         ));
     }
-    lines.push(format!("{:<20}{} kg", "all bodies", number(total, 4)));
+    lines[0] = format!("{:<20}{} kg", "all bodies", number(total, 4));
     lines
 }
 
@@ -149,9 +182,9 @@ fn drives(scene: &Scene) -> Vec<String> {
     lines
 }
 
-/// Clearance, stiffness and friction of every contact.
+/// Clearance, stiffness and friction of every contact, of joints that share them together.
 fn clearances(scene: &Scene) -> Vec<String> {
-    let mut lines = Vec::new();
+    let mut alike: Vec<(String, Vec<&str>)> = Vec::new();
     for joint in &scene.joints {
         if let Some(contact) = joint.contact() {
             let radius = contact.bearing_radius;
@@ -170,14 +203,19 @@ fn clearances(scene: &Scene) -> Vec<String> {
                 let coefficient = exact(f.coefficient);
                 format!(", friction {coefficient} with v0 = {v0}, and v1 = {v1}")
             });
-            lines.push(format!(
-                "{:<20}clearance {} m, {radius}stiffness K = {} N/m^{}{source}{friction}",
-                joint.name,
+            let line = format!(
+                "clearance {} m, {radius}stiffness K = {} N/m^{}{source}{friction}",
                 exact(contact.clearance),
                 number(contact.stiffness, 4),
                 exact(contact.exponent)
-            ));
+            );
+            match alike.iter_mut().find(|(known, _)| *known == line) {
+                Some((_, joints)) => joints.push(&joint.name),
+                None => alike.push((line, vec![&joint.name])),
+            }
         }
     }
-    lines
+    let named = alike.into_iter();
+    let named = named.map(|(line, joints)| format!("{:<19} {line}", joints.join(", ")));
+    named.collect()
 }

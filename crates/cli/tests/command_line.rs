@@ -571,6 +571,86 @@ fn check_and_inspect() {
     );
 }
 
+/// Every scene of the project on one screen, and all of it with `--all`.
+#[test]
+fn an_inspection_fits_on_a_screen() {
+    let shown = |scene: &str, more: &[&str]| {
+        let output = looselink(&[&["inspect", scene], more].concat());
+        expect(&output, 0, "");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let folders = ["", "3rrr", "ablation", "hard", "slider-crank"].iter();
+    let entries = folders.flat_map(|name| fs::read_dir(format!("{TOP}/scenes/{name}")).unwrap());
+    let files = entries.map(|entry| entry.unwrap().path());
+    let scenes: Vec<_> = files.filter(|path| path.extension().is_some()).collect();
+    assert!(scenes.len() >= 40, "{} scenes", scenes.len());
+    for scene in scenes.iter().filter_map(|path| path.to_str()) {
+        if scene.ends_with(".md") {
+            continue;
+        }
+        let text = shown(scene, &[]);
+        assert!(text.lines().count() <= 40, "{scene}\n{text}");
+        assert!(!text.contains("Channels\n"), "{scene}\n{text}");
+        assert!(shown(scene, &["--all"]).contains("\nChannels\n  t [s]\n"));
+    }
+    let text = shown("scenes/3rrr/case4.toml", &[]);
+    for line in [
+        "  degrees of freedom    27\n",
+        "  B1, B2, B3, C1, C2, C3 clearance 2e-5 m",
+        "  B1, B2, B3, C1, C2, C3: lankarani_nikravesh with a restitution of 0.9 gives 0.9132",
+        " more: --all\n",
+    ] {
+        assert!(text.contains(line), "{line}\n{text}");
+    }
+    let all = shown("scenes/3rrr/case4.toml", &["--all"]);
+    assert!(
+        all.contains("  contacts.pin.restitution = 0.9: not given"),
+        "{all}"
+    );
+    assert!(!all.contains("more: --all"), "{all}");
+}
+
+/// The closing table has only what the scene has, in readable units, and `summary.json` has its numbers.
+#[test]
+fn a_run_closes_with_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let table = |scene: &str, duration: &str| {
+        let folder = out.to_str().unwrap();
+        let duration = format!("simulation.duration={duration}");
+        let arguments = ["run", scene, "--force", "--out", folder, "--set", &duration];
+        let output = looselink(&arguments);
+        expect(&output, 0, " s after ");
+        (String::from_utf8(output.stderr).unwrap(), summary(&out))
+    };
+    let (text, found) = table("scenes/3rrr/case4.toml", "0.004");
+    let error = found["closing"]["errors"]["platform"]["position"]["largest"].as_f64();
+    let error = format!(
+        "error of platform        {}",
+        numbers::si(error.unwrap(), "m")
+    );
+    for line in [
+        &error,
+        "angle error of platform",
+        "force of B1 ",
+        "torque in A1 ",
+        "power in A1 ",
+        "contact of C1: ",
+        "% of the time in contact\n",
+        "energy: ",
+        ", the integrator ",
+    ] {
+        assert!(text.contains(line), "{line}\n{text}");
+    }
+    let (text, _) = table("scenes/pendulum.toml", "0.5");
+    for line in ["error of", "torque in", "power in", "contact of", "note: "] {
+        assert!(!text.contains(line), "{line}\n{text}");
+    }
+    assert!(text.contains("of the energy of the motion\n"), "{text}");
+    let (text, _) = table("scenes/slider-crank/loose.toml", "0.002");
+    assert!(text.contains("note: the largest force of "), "{text}");
+}
+
 const ABLATION: &[&str] = &[
     "ablation.json",
     "ablation.md",
