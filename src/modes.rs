@@ -32,6 +32,9 @@ const SINGULAR: f64 = 1e-9;
 /// A square of a frequency, or a damping, below so many roundings is zero.
 const ROUNDING: f64 = 8.0;
 
+/// Stiffness that is not symmetric above this part of the largest is no rounding.
+const ASYMMETRIC: f64 = 1e-9;
+
 /// A mode.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NaturalMode {
@@ -56,6 +59,18 @@ pub struct Modes {
     pub modes: Vec<NaturalMode>,
     /// Largest part of the stiffness that is not symmetric, relative to its largest entry; the modes leave it out.
     pub asymmetry: f64,
+}
+
+impl Modes {
+    /// What the modes leave out, where it is more than rounding.
+    pub fn asymmetry_note(&self) -> Option<String> {
+        (self.asymmetry > ASYMMETRIC).then(|| {
+            format!(
+                "{} of the stiffness is not symmetric, because of forces that have no energy; the modes leave it out",
+                numbers::percent(self.asymmetry)
+            )
+        })
+    }
 }
 
 /// Why there are no modes.

@@ -11,7 +11,7 @@ use looselink::output::{Folder, Results, files, summary};
 use looselink::registry::Registry;
 use looselink::scene::Scene;
 use looselink::simulate::{Channel, Impact, Report, RunError, Simulation};
-use messages::run_failure;
+use messages::{closing_table, run_failure};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -76,11 +76,17 @@ pub fn run(
         Some(error) => return Err(with_rows(raised::RunError::new_err(run_failure(&error)))),
         None => {}
     }
+    warn(py, warnings)?;
+    Ok(kept)
+}
+
+/// Gives warnings of a run to Python.
+pub fn warn(py: Python, warnings: Vec<String>) -> PyResult<()> {
     let category = py.get_type::<raised::RunWarning>();
     for warning in warnings {
         PyErr::warn(py, &category, &CString::new(warning)?, 1)?;
     }
-    Ok(kept)
+    Ok(())
 }
 
 /// Runs without Python, up to callables, signals and progress.
@@ -254,6 +260,14 @@ impl PyRun {
         )
     }
 
+    /// What `repr` says, and below it the closing table of `looselink run`: errors of driven bodies, forces, drives, contacts, energy.
+    fn __str__(&self, py: Python) -> String {
+        let mut lines = vec![self.__repr__(py)];
+        lines.extend(closing_table(&self.report));
+        lines.extend(self.notes.iter().map(|note| format!("note: {note}")));
+        lines.join("\n")
+    }
+
     /// The names of the channels, the time "t" first.
     #[getter]
     fn channels(&self) -> Vec<&str> {
@@ -290,7 +304,8 @@ impl PyRun {
         self.onsets.clone_ref(py)
     }
 
-    /// What summary.json says: title, overrides, status, counts of the work done, energy ledger, extremes, warnings, notes.
+    /// What summary.json says: title, overrides, status, counts of the work done, energy ledger, extremes, what the run came to
+    /// (`closing`), warnings, notes.
     #[getter]
     fn summary(&self, py: Python) -> Py<PyAny> {
         self.summary.clone_ref(py)

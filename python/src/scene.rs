@@ -4,7 +4,7 @@ use super::callable::{FUNCTION, Given, take_raised, with_given};
 use super::errors::scene_error;
 use super::load::LOAD;
 use super::progress::ProgressDisplay;
-use super::run::{PyRun, run};
+use super::run::{PyRun, run, warn};
 use super::value::{document, named_callable, override_value, quoted, written_key};
 use looselink::output::json;
 use looselink::registry::Registry;
@@ -15,6 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 use std::sync::Arc;
+use studies::ablation::SceneEffect;
 
 /// load(source)
 /// --
@@ -269,31 +270,59 @@ impl PyScene {
     /// Natural frequencies of small vibrations at t = `at` [s], the slowest first; the scene is simulated up to `at`. In a static
     /// analysis `at` measures the load.
     ///
-    /// Contacts that are closed there act as springs; with `opens` none acts. Returns a list of dicts with frequency [Hz], damping
-    /// (ratio), growth [1/s] and moves_most, as `looselink modes --json` has them, and shape: the displacement of every unknown
-    /// coordinate by its name.
+    /// `contacts` says what loose joints do: with "as-is" those that are closed there act as springs, the others not at all; with
+    /// "open" none acts; with "ideal" ideal joints take their place, also on the way to `at`. `count` is the largest number of
+    /// modes. Returns a list of dicts as `looselink modes --json` has them: frequency [Hz], growth [1/s] of an unstable mode,
+    /// damping (ratio), moves_most, and shape, the displacement of every unknown coordinate by its name.
     ///
-    /// Raises ValueError for a time outside the duration, SceneError as `inspect`, RuntimeError where there are no modes.
-    #[pyo3(signature = (at=0.0, opens=false))]
-    fn modes<'py>(&self, py: Python<'py>, at: f64, opens: bool) -> PyResult<Bound<'py, PyAny>> {
+    /// Warnings of the run up to `at`, and of a stiffness that is not symmetric, are given with the category RunWarning.
+    ///
+    /// Raises ValueError for a time outside the duration or other contacts, SceneError as `inspect`, RuntimeError where there are no
+    /// modes.
+    #[pyo3(signature = (at=0.0, contacts="as-is", count=None))]
+    fn modes<'py>(
+        &self,
+        py: Python<'py>,
+        at: f64,
+        contacts: &str,
+        count: Option<usize>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let scene = match contacts {
+            "as-is" | "open" => Scene::clone(&self.scene),
+            "ideal" => {
+                let removed = SceneEffect::Clearance.removed_from(&self.scene);
+                removed.map_err(|error| scene_error(py, &error))?
+            }
+            other => {
+                let message =
+                    format!("contacts = {other:?}: it is \"as-is\", \"open\" or \"ideal\"");
+                return Err(PyValueError::new_err(message));
+            }
+        };
         let duration = self.scene.simulation.duration;
         if !(0.0..=duration).contains(&at) {
             let message = format!("at = {at} lies outside the duration, 0 to {duration} s");
             return Err(PyValueError::new_err(message));
         }
-        let mut simulation = compiled(py, &self.scene)?;
-        if at > 0.0 || self.scene.simulation.analysis == Analysis::Static {
-            let reached = simulation.advance_to(at, &mut ());
+        let mut simulation = compiled(py, &scene)?;
+        let mut warnings = Vec::new();
+        if at > 0.0 || scene.simulation.analysis == Analysis::Static {
+            let reached = simulation.approach(at, &mut ());
             let raised = take_raised();
             let failed = |error: looselink::simulate::RunError| {
                 PyRuntimeError::new_err(messages::run_failure(&error))
             };
             raised.map_or_else(|| reached.map_err(failed), Err)?;
+            warnings = simulation.report().warnings();
         }
-        let found = simulation.modes(opens);
+        let found = simulation.modes(contacts == "open");
         let found = found.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-        let names = simulation.model().unknown_names();
-        let modes = found.modes.iter().map(|mode| {
+        warnings.extend(found.asymmetry_note());
+        warn(py, warnings)?;
+        let model = simulation.model();
+        let names = &model.unknown_names()[..model.shape().unknowns];
+        let modes = found.modes.iter().take(count.unwrap_or(usize::MAX));
+        let modes = modes.map(|mode| {
             let entry = json(mode).map_err(|e| PyRuntimeError::new_err(e.to_string()))?;
             let entry = from_json(py, &entry)?;
             let shape = PyDict::new(py);

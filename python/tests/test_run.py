@@ -116,6 +116,15 @@ def test_a_run_is_a_mapping(case3):
     assert "complete" in repr(run)
 
 
+def test_a_printed_run_has_the_closing_table(case3):
+    run = case3.run()
+    shown = str(run)
+    assert shown.startswith(repr(run) + "\n")
+    assert {"errors", "forces", "drives", "contacts"} <= set(run.summary["closing"])
+    for words in ["error of platform", "force of A1", "torque in A1", "contact of B1: ", "energy: "]:
+        assert f"\n{words}" in shown
+
+
 def test_frames_are_those_of_the_file(case3, tmp_path):
     run = case3.run(out=tmp_path / "out")
     stored = pandas.read_csv(tmp_path / "out/channels.csv", dtype=str).astype(float)

@@ -166,8 +166,20 @@ def test_modes_of_a_mass_on_two_springs():
     # springs at their rest length act along their lines alone: rounding of a 2x2 eigenvalue problem
     assert np.allclose([mode["frequency"] for mode in modes], expected, rtol=1e-9, atol=0)
     assert set(modes[0]["shape"]) == set(scene.inspect()["coordinates"])
+    assert [mode["frequency"] for mode in scene.modes(count=1)] == [modes[0]["frequency"]]
     with pytest.raises(ValueError, match="outside the duration"):
         scene.modes(at=1.0)
+    with pytest.raises(ValueError, match='"as-is", "open" or "ideal"'):
+        scene.modes(contacts="shut")
+
+
+def test_modes_are_those_of_the_command_line(program):
+    path = TOP / "scenes/3rrr/case4.toml"
+    scene = looselink.load(path)
+    for contacts in ["as-is", "open", "ideal"]:
+        arguments = ["--contacts", contacts, "--at", "0.001", "--count", "5", "--json"]
+        shown = json.loads(program("modes", path, *arguments, stream="stdout"))
+        assert scene.modes(at=0.001, contacts=contacts, count=5) == shown["modes"]
 
 
 def test_the_package_is_imported_without_its_extras():

@@ -18,6 +18,17 @@ impl Simulation {
         self.record(observer)
     }
 
+    /// Steps to time `t` with the rows on the way that the run of the scene has: warnings are relative to the motion that they show.
+    ///
+    /// # Errors
+    /// See [`RunError`].
+    pub fn approach(&mut self, t: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
+        let interval = self.scene.output.interval;
+        let rows = (0..).map(|k| f64::from(k) * interval);
+        let mut times = rows.take_while(|row| *row < t).chain([t]);
+        times.try_for_each(|row| self.advance_to(row, observer))
+    }
+
     /// Goes on, at the time reached, from the coordinates, velocities and contact memory of `other`.
     ///
     /// Velocities are projected on the constraints, and accelerations and multipliers follow from the equations of

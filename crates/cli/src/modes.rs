@@ -52,9 +52,6 @@ enum Contacts {
     Ideal,
 }
 
-/// Stiffness that is not symmetric above this part of the largest is no rounding.
-const ASYMMETRIC: f64 = 1e-9;
-
 /// What is printed.
 #[derive(Serialize)]
 struct ModesOutput<'a> {
@@ -102,10 +99,7 @@ pub fn modes(arguments: &Arguments) -> Result<(), CommandFailure> {
     let mut simulation = Simulation::new(&scene)?;
     if at > 0.0 || scene.simulation.analysis == Analysis::Static {
         let mut approach = Approach(Display::new(arguments.json, 0.0), Ticker::new());
-        // rows on the way, as the run of the scene has them: warnings are relative to the motion that they show
-        let rows = (0..).map(|k| f64::from(k) * scene.output.interval);
-        let mut times = rows.take_while(|t| *t < at).chain([at]);
-        let reached = times.try_for_each(|t| simulation.advance_to(t, &mut approach));
+        let reached = simulation.approach(at, &mut approach);
         approach.0.finish("");
         let warnings = simulation.report().warnings();
         warnings.iter().for_each(|warning| warn(warning));
@@ -193,11 +187,8 @@ fn text(
     if all > found.modes.len() {
         out += &format!("and {} more: --count {all}\n", all - found.modes.len());
     }
-    if found.asymmetry > ASYMMETRIC {
-        out += &format!(
-            "note: {} of the stiffness is not symmetric, because of forces that have no energy; the modes leave it out\n",
-            numbers::percent(found.asymmetry)
-        );
+    if let Some(note) = found.asymmetry_note() {
+        out += &format!("note: {note}\n");
     }
     out
 }
