@@ -165,12 +165,12 @@ fn ten_malformed_mechanisms_name_the_culprit() {
             &["cannot be assembled"],
         ),
         (
-            "clamp on a rigid link's middle",
+            "a point beyond the end of a link",
             changed(
                 "length = 0.25\nsection = \"bar\"",
-                "length = 0.25\npoints.middle = 0.125\nsection = \"bar\"",
+                "length = 0.25\npoints.tip = 0.3\nsection = \"bar\"",
             ),
-            &["bodies.rocker.points", "rigid link"],
+            &["bodies.rocker.points.tip", "between the ends"],
         ),
         (
             "friction without contact",

@@ -40,8 +40,8 @@ pub struct Ties {
     pub holds: Vec<Hold>,
     /// Whether a joint makes a node of it one with that of another free body.
     pub shares: bool,
-    /// Whether a joint makes a node of it known.
-    pub anchored: bool,
+    /// The number of joints that make a node of it known.
+    pub anchored: usize,
 }
 
 /// A rigid body in the coordinate that its joint leaves.

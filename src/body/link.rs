@@ -31,19 +31,19 @@ pub(super) static KIND: BodyKind = BodyKind {
         Key::new(
             "points",
             Takes::Table,
-            "of a flexible link: named points by their distance from `start`, each at a node between elements [m]",
+            "named points by their distance from `start`, between the ends; of a flexible link each at a node between elements [m]",
         )
         .or("none"),
         Key::non_negative(
             "kelvin_voigt",
             "s",
-            "of a flexible link: the retardation time tau; the stress is E tau times the strain rate",
+            "of a flexible link, a rigid one ignores it: the retardation time tau; the stress is E tau times the strain rate",
         )
         .or("0"),
         Key::new(
             "rayleigh",
             Takes::Table,
-            "of a flexible link: Rayleigh damping",
+            "Rayleigh damping; a rigid link ignores it",
         )
         .or("none"),
     ],
@@ -60,11 +60,11 @@ pub(super) static KIND: BodyKind = BodyKind {
             0 => LinkCoordinates::Natural,
             _ => LinkCoordinates::Centre,
         });
-        let inner = inner_points(table, length, elements, flexible)?;
-        let damping = damping(table, flexible)?;
+        let inner = inner_points(table, length, flexible.then_some(elements))?;
+        let damping = damping(table)?;
         let shares: Vec<f64> = [0.0, 1.0]
             .into_iter()
-            .chain(inner.iter().map(|(_, node)| *node as f64 / elements as f64))
+            .chain(inner.iter().map(|(_, share)| *share))
             .collect();
         let names = ["start", "end"].map(str::to_owned).into_iter();
         let names = names.chain(inner.iter().map(|(name, _)| name.clone()));
@@ -82,9 +82,10 @@ pub(super) static KIND: BodyKind = BodyKind {
         Ok(match modulus {
             None => Arc::new(RigidLink { link, coordinates }),
             Some(youngs_modulus) => Arc::new(FlexibleLink {
-                nodes: [0, elements]
-                    .into_iter()
-                    .chain(inner.iter().map(|p| p.1))
+                nodes: link
+                    .shares
+                    .iter()
+                    .map(|share| (share * elements as f64).round() as usize)
                     .collect(),
                 link,
                 elements,
@@ -133,38 +134,39 @@ fn elements(table: &Fields, flexible: bool) -> Result<usize, SceneError> {
     }
 }
 
-/// Names and nodes of the inner points of a flexible link.
+/// Names of the inner points of a link and their shares of its length; of a flexible link they lie at nodes of its elements.
 fn inner_points(
     table: &Fields,
     length: f64,
-    elements: usize,
-    flexible: bool,
-) -> Result<Vec<(String, usize)>, SceneError> {
-    let points = table.optional("points");
-    if let Some(field) = points.as_ref().filter(|_| !flexible) {
-        let message = format!(
-            "`{}`: a rigid link has only the points `start` and `end`",
-            field.path
-        );
-        let error = field.key_fault(message, "not on a rigid link");
-        return Err(error.with_help("a body of type \"rigid_body\" has points anywhere"));
-    }
-    let points = named(points, |field| {
+    elements: Option<usize>,
+) -> Result<Vec<(String, f64)>, SceneError> {
+    let points = named(table.optional("points"), |field| {
         if ["start", "end"].contains(&field.name.as_str()) {
             let message = format!("`{}` is already the name of an end of the link", field.name);
             return Err(field.key_fault(message, "taken"));
         }
-        let place = field.number()? / length * elements as f64;
+        let share = field.number()? / length;
+        let Some(elements) = elements else {
+            return match share > 0.0 && share < 1.0 {
+                true => Ok(share),
+                false => Err(field.must(&format!(
+                    "lie between the ends: more than 0 m, less than {} m",
+                    numbers::exact(length)
+                ))),
+            };
+        };
+        let elements = elements as f64;
+        let place = share * elements;
         let node = place.round();
-        if !(node > 0.0 && node < elements as f64 && (place - node).abs() <= 1e-9 * node) {
+        if !(node > 0.0 && node < elements && (place - node).abs() <= 1e-9 * node) {
             let requirement = format!(
                 "lie at a node between the ends: a multiple of {} m, less than {} m",
-                numbers::exact(length / elements as f64),
+                numbers::exact(length / elements),
                 numbers::exact(length)
             );
             return Err(field.must(&requirement));
         }
-        Ok(node as usize)
+        Ok(node / elements)
     })?;
     Ok(points.into_iter().collect())
 }
@@ -180,17 +182,12 @@ pub static RAYLEIGH: [Key; 2] = [
 ];
 
 /// `kelvin_voigt` and `rayleigh = { mass, stiffness }`; none where all of them are zero.
-fn damping(table: &Fields, flexible: bool) -> Result<Option<Damping>, SceneError> {
-    let fields = ["kelvin_voigt", "rayleigh"].map(|key| table.optional(key));
-    if let Some(field) = fields.iter().flatten().next().filter(|_| !flexible) {
-        let message = format!("`{}`: a rigid link has no structural damping", field.path);
-        return Err(field.key_fault(message, "not on a rigid link"));
-    }
+fn damping(table: &Fields) -> Result<Option<Damping>, SceneError> {
     let mut damping = Damping {
         strain: table.optional_number("kelvin_voigt")?.unwrap_or(0.0),
         mass: 0.0,
     };
-    if let [_, Some(rayleigh)] = fields {
+    if let Some(rayleigh) = table.optional("rayleigh") {
         let mut table = rayleigh.fields()?;
         table.declare(&[], &RAYLEIGH)?;
         damping.mass = table.number("mass")?;

@@ -124,7 +124,8 @@ impl Body for RigidLink {
                 let body = Arc::new(self.clone());
                 Some(Arc::new(HeldBody::new(body, mass, inertia, center, *hold)))
             }
-            (None, _) if ties.shares || ties.anchored => None,
+            // with both ends known its length would be a constraint on nothing
+            (None, _) if ties.anchored < 2 && (ties.shares || ties.anchored > 0) => None,
             (Some(LinkCoordinates::Natural), _) => None,
             _ => Some(Arc::new(CentredLink { link })),
         }

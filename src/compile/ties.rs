@@ -16,7 +16,7 @@ pub(super) fn of_bodies(c: &Compiler) -> Result<Vec<Ties>, SceneError> {
             let ties = &mut all[own.body];
             if shared && c.node(own).is_some() {
                 match c.is_known(other) {
-                    true => ties.anchored = true,
+                    true => ties.anchored += 1,
                     false => ties.shares = true,
                 }
             }

@@ -10,7 +10,7 @@ pub use freedoms::Freedoms;
 use crate::body::{Content, Deformation, Frame};
 use crate::compile::Compiled;
 use crate::compile::assembly::{CENTRE, assemble, name, opening, whole_name};
-use crate::math::plane::Vec2;
+use crate::math::plane::{Vec2, full_turns};
 use crate::model::{Model, PlacedBody, PlacedConstraint};
 use crate::scene::{Analysis, BodyState, Journals, NamedBody, Scene, SceneError};
 use crate::system::State;
@@ -178,9 +178,10 @@ fn starts(
     let free: Vec<bool> = bodies.map(|body| model.is_free(body)).collect();
     let given = |b: usize| scene.initial.state_of(b);
     for (b, NamedBody { name, .. }) in scene.bodies.iter().enumerate() {
-        if let Some(given) = given(b).filter(|_| !free[b]) {
+        let differs = |given: &&BodyState| !free[b] && !is_prescribed(given, model, state);
+        if let Some(given) = given(b).filter(differs) {
             let message = format!(
-                "the motion of {name} is prescribed, so it cannot be given an initial state"
+                "the motion of {name} is prescribed, so it cannot be given an initial state that differs from it"
             );
             return Err(scene.error(given.span, message, "remove this"));
         }
@@ -215,6 +216,18 @@ fn starts(
         (None, None) => exact(b),
     };
     Ok((0..free.len()).map(start).collect())
+}
+
+/// True of a given state that is the one of a prescribed motion; a velocity that is not given may have any value.
+fn is_prescribed(given: &BodyState, model: &Model, known: &State) -> bool {
+    let pose = model.pose(given.body, known);
+    let differences = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| a[i] - b[i]);
+    let [x, y, theta]: [f64; 3] = differences(given.position, pose.position);
+    let rates: [f64; 3] = differences(given.velocity, pose.velocity);
+    let position = [x, y, theta - full_turns(theta)];
+    let rates = rates.iter().filter(|_| given.velocity_given);
+    let mut all = position.iter().chain(rates);
+    all.all(|difference| difference.abs() <= START_TOLERANCE)
 }
 
 /// True of a scene that gives a sketch or single velocities, or not the state of every body that moves freely; the ideal mechanism of a

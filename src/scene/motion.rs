@@ -226,18 +226,18 @@ pub(super) static STATE: [Key; 7] = [
     .or(WITH_ONE),
 ];
 
-/// The keys that a state of a flexible link has beside those.
+/// The keys that a state of a link has beside those.
 pub(super) static DEFORMED: [Key; 2] = [
     Key::within(
         "strain",
         NumberRange::Within(-0.5, 1.0),
-        "the axial strain (r'.r' - 1)/2 along the whole link",
+        "the axial strain (r'.r' - 1)/2 along the whole link; a rigid link ignores it",
     )
     .or("0"),
     Key::number(
         "bending_rate",
         "1/(m s)",
-        "the rate of r'' across the link, equal along it",
+        "the rate of r'' across the link, equal along it; a rigid link ignores it",
     )
     .or("0"),
 ];
@@ -394,7 +394,11 @@ fn state(field: &Field, names: &Names) -> Result<BodyState, SceneError> {
     let turns = kind.turns();
     let mut table = field.fields()?;
     let keys: &[Key] = if turns { &STATE } else { &POINT_STATE };
-    let deformed: &[Key] = if kind.is_rigid() { &[] } else { &DEFORMED };
+    let deformed: &[Key] = if kind.link().is_some() {
+        &DEFORMED
+    } else {
+        &[]
+    };
     table.declare(&[], keys.iter().chain(deformed))?;
     let components = if turns { 3 } else { 2 };
     let velocity_given = RATES[..components]

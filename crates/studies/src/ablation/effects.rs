@@ -88,10 +88,8 @@ impl SceneEffect {
     /// Something is fastened to an inner node of a link that would lose its inner nodes.
     pub fn removed_from(self, scene: &Scene) -> Result<Scene, SceneError> {
         let mut scene = scene.clone();
-        match self {
-            SceneEffect::Flexibility => drop_inner_points(&mut scene, "a rigid link has none")?,
-            SceneEffect::Elements => drop_inner_points(&mut scene, "one element has none")?,
-            _ => {}
+        if self == SceneEffect::Elements {
+            drop_inner_points(&mut scene)?;
         }
         for body in &mut scene.bodies {
             let Some(link) = body.kind.get::<FlexibleLink>() else {
@@ -153,13 +151,13 @@ fn links(scene: &Scene) -> impl Iterator<Item = (usize, &FlexibleLink)> {
 }
 
 /// Takes the inner points from all links, unless one of them carries something.
-fn drop_inner_points(scene: &mut Scene, why: &str) -> Result<(), SceneError> {
+fn drop_inner_points(scene: &mut Scene) -> Result<(), SceneError> {
     for (b, link) in links(scene) {
         let inner = |point: &PointRef| point.body == b && point.point > 1;
         let mut users = fastenings(scene).into_iter();
         if let Some((name, span, point)) = users.find(|(.., point)| inner(point)) {
             let message = format!(
-                "{name} uses the inner node {}.{}, but {why}",
+                "{name} uses the inner node {}.{}, but one element has none",
                 scene.bodies[b].name, link.link.points[point.point].name
             );
             return Err(scene.error(span, message, "uses an inner node"));
