@@ -222,10 +222,17 @@ fn functions_of_time() {
     text("sine(t)", "`sine` is not known; did you mean `sin`?");
     text("", "`drives.input.path.x` must not be empty");
     text(
-        "0.1 * abs(t)",
-        "`drives.input.path.x` cannot contain `abs`: its speed would jump",
+        "0.1 * abs(t - 0.25)",
+        "`drives.input.path.x` has a kink where `abs(...)` switches: at t = 0.25 s its velocity jumps by 0.2 m/s",
     );
-    text("t^max(2, 3)", "cannot contain `max`");
+    text(
+        "0.5 * max(0, t - 1)^2",
+        "where `max(...)` switches: at t = 1 s its acceleration jumps by 1 m/s2",
+    );
+    text(
+        "abs(t - 0.2501) / (t - 0.2501)",
+        "where `abs(...)` switches: at t = 0.2501 s its value is not a number",
+    );
     text(
         "sqrt(t)",
         "the rate of `drives.input.path.x` is inf at t = 0 s",
@@ -243,7 +250,7 @@ fn functions_of_time() {
     let ramp = "{ type = \"ramp\", from = 0, to = 1, start = 0, duration = 1 }";
     motion(
         ramp,
-        "`drives.input.path.x` cannot follow a ramp: its speed would jump",
+        "`drives.input.path.x` cannot follow a ramp: its velocity would jump",
         "\"ramp\"",
     );
     let lines = "{ type = \"piecewise\", rows = [[0, 0], [3, 1]] }";

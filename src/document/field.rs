@@ -65,6 +65,11 @@ impl<'a> Field<'a> {
         )
     }
 
+    /// The unit of its key; empty where it has none.
+    pub fn unit(&self) -> &'static str {
+        self.declared.map_or("", Key::unit)
+    }
+
     /// The value as the user wrote it.
     pub fn written(&self) -> String {
         self.sources.written(self.node.span).to_owned()

@@ -1,17 +1,15 @@
 //! Formulas in the time t, such as `asin(0.1 * sin(10 * t))`, with exact derivatives: every operation maps values and first two
 //! derivatives of its operands to those of its result.
 
-use std::cmp::Ordering::{Equal, Greater, Less};
+use super::line::quintic;
 
 /// A value with its first and second derivative.
-type Jet = [f64; 3];
+pub(super) type Jet = [f64; 3];
 
 /// A formula in t.
 #[derive(Debug, Clone)]
 pub struct Expression {
     pub(super) formula: Formula,
-    /// The name of a function in it whose rate can jump.
-    pub(super) kink: Option<&'static str>,
 }
 
 /// A node of the tree that a formula is. What does not depend on t is a number.
@@ -32,29 +30,38 @@ pub(super) enum Formula {
 #[derive(Debug)]
 pub(super) struct Univariate {
     pub name: &'static str,
-    /// Value, first and second derivative by the argument.
-    at: fn(f64) -> Jet,
+    /// Value, first and second derivative by the argument; none of a function that switches between its argument and its negative.
+    at: Option<fn(f64) -> Jet>,
 }
 
 /// An operator, or a function of two arguments.
 #[derive(Debug)]
 pub(super) struct Bivariate {
     pub name: &'static str,
-    at: fn(Jet, Jet) -> Jet,
+    rule: Rule,
 }
 
-/// Functions whose rate can jump.
-pub(super) static KINKED: [&str; 3] = ["abs", "min", "max"];
+/// How a function of two arguments comes from them.
+#[derive(Debug)]
+enum Rule {
+    Smooth(fn(Jet, Jet) -> Jet),
+    /// It switches to the larger of its arguments
+    Larger,
+    /// or to the smaller one.
+    Smaller,
+}
 
 const fn of_one(name: &'static str, at: fn(f64) -> Jet) -> Univariate {
+    let at = Some(at);
     Univariate { name, at }
 }
 
 const fn of_two(name: &'static str, at: fn(Jet, Jet) -> Jet) -> Bivariate {
-    Bivariate { name, at }
+    let rule = Rule::Smooth(at);
+    Bivariate { name, rule }
 }
 
-pub(super) static UNIVARIATE: [Univariate; 13] = [
+pub(super) static UNIVARIATE: [Univariate; 14] = [
     of_one("sin", |u| [u.sin(), u.cos(), -u.sin()]),
     of_one("cos", |u| [u.cos(), -u.sin(), -u.cos()]),
     of_one("tan", |u| {
@@ -82,7 +89,14 @@ pub(super) static UNIVARIATE: [Univariate; 13] = [
     of_one("exp", exponential),
     of_one("log", logarithm),
     of_one("sqrt", |u| power(u, 0.5)),
-    of_one("abs", |u| [u.abs(), u.signum(), 0.0]),
+    of_one("smooth_step", |u| match u.is_nan() {
+        true => [f64::NAN; 3],
+        false => quintic(u),
+    }),
+    Univariate {
+        name: "abs",
+        at: None,
+    },
 ];
 
 pub(super) static BIVARIATE: [Bivariate; 3] = [
@@ -97,17 +111,14 @@ pub(super) static BIVARIATE: [Bivariate; 3] = [
             (turning - 2.0 * stretching * rate) / square,
         ]
     }),
-    // neither hides what is not a number
-    of_two("min", |a, b| match a[0].partial_cmp(&b[0]) {
-        Some(Less | Equal) => a,
-        Some(Greater) => b,
-        None => [f64::NAN; 3],
-    }),
-    of_two("max", |a, b| match a[0].partial_cmp(&b[0]) {
-        Some(Greater | Equal) => a,
-        Some(Less) => b,
-        None => [f64::NAN; 3],
-    }),
+    Bivariate {
+        name: "min",
+        rule: Rule::Smaller,
+    },
+    Bivariate {
+        name: "max",
+        rule: Rule::Larger,
+    },
 ];
 
 pub(super) static SUM: Bivariate = of_two("+", |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
@@ -158,34 +169,81 @@ fn power(u: f64, n: f64) -> Jet {
     ]
 }
 
+impl Univariate {
+    fn of(&self, u: Jet, switches: &mut impl Switches) -> Jet {
+        match self.at {
+            Some(at) => chain(at, u),
+            None if switches.first(self.name, u) => u,
+            None => u.map(|x| -x),
+        }
+    }
+}
+
+impl Bivariate {
+    fn of(&self, a: Jet, b: Jet, switches: &mut impl Switches) -> Jet {
+        let (higher, lower) = match self.rule {
+            Rule::Smooth(at) => return at(a, b),
+            Rule::Larger => (a, b),
+            Rule::Smaller => (b, a),
+        };
+        let margin = std::array::from_fn(|level| higher[level] - lower[level]);
+        match switches.first(self.name, margin) {
+            // a comparison must not hide what is not a number
+            _ if a[0].is_nan() || b[0].is_nan() => [f64::NAN; 3],
+            true => a,
+            false => b,
+        }
+    }
+}
+
 /// f(u(t)).
 fn chain(f: impl Fn(f64) -> Jet, u: Jet) -> Jet {
     let [value, slope, curvature] = f(u[0]);
     [value, slope * u[1], curvature * u[1] * u[1] + slope * u[2]]
 }
 
+/// Which branch a function takes that switches, of its name and the margin by which the first branch leads. A formula asks for
+/// its switches in the same order at every time.
+pub(super) trait Switches {
+    /// True for the first branch.
+    fn first(&mut self, name: &'static str, margin: Jet) -> bool;
+}
+
+/// The branches that the values call for.
+struct ByValue;
+
+impl Switches for ByValue {
+    fn first(&mut self, _: &'static str, margin: Jet) -> bool {
+        margin[0] >= 0.0
+    }
+}
+
 impl Expression {
     /// Value, first and second derivative at time t \[s\].
     pub fn at(&self, t: f64) -> [f64; 3] {
-        self.formula.at(t)
+        self.formula.at(t, &mut ByValue)
     }
 }
 
 impl Formula {
-    fn at(&self, t: f64) -> Jet {
+    /// Value and derivatives on the branches that `switches` says.
+    pub fn at(&self, t: f64, switches: &mut impl Switches) -> Jet {
         match self {
             Formula::Number(value) => [*value, 0.0, 0.0],
             Formula::Time => [t, 1.0, 0.0],
-            Formula::Applied(f, u) => chain(f.at, u.at(t)),
-            Formula::Power(u, n) => chain(|u| power(u, *n), u.at(t)),
-            Formula::Joined(f, pair) => (f.at)(pair[0].at(t), pair[1].at(t)),
+            Formula::Applied(f, u) => f.of(u.at(t, switches), switches),
+            Formula::Power(u, n) => chain(|u| power(u, *n), u.at(t, switches)),
+            Formula::Joined(f, pair) => {
+                let a = pair[0].at(t, switches);
+                f.of(a, pair[1].at(t, switches), switches)
+            }
         }
     }
 
     /// f(u).
     pub fn applied(f: &'static Univariate, u: Formula) -> Formula {
         match u {
-            Formula::Number(u) => Formula::Number((f.at)(u)[0]),
+            Formula::Number(u) => Formula::Number(f.of([u, 0.0, 0.0], &mut ByValue)[0]),
             u => Formula::Applied(f, Box::new(u)),
         }
     }
@@ -194,7 +252,7 @@ impl Formula {
     pub fn joined(f: &'static Bivariate, a: Formula, b: Formula) -> Formula {
         match (a, b) {
             (Formula::Number(a), Formula::Number(b)) => {
-                Formula::Number((f.at)([a, 0.0, 0.0], [b, 0.0, 0.0])[0])
+                Formula::Number(f.of([a, 0.0, 0.0], [b, 0.0, 0.0], &mut ByValue)[0])
             }
             (a, b) => Formula::Joined(f, Box::new([a, b])),
         }
@@ -229,6 +287,7 @@ pub(super) mod tests {
             "atan2(t^2, cos(3 * t))",
             "min(t, 10) * max(t^3, -4) + min(9, t) * max(-1, t^2)",
             "-(exp(-t) / sqrt(1 + t))^-2.5",
+            "smooth_step((t - 0.1) / 2) - 2 * smooth_step(t - 0.75)",
         ];
         for text in formulas.chain(others.map(str::to_owned)) {
             let f = read(&text);

@@ -1,6 +1,6 @@
 //! Scalar functions of time with exact first and second derivatives: prescribed coordinates, angles, loads.
 
-use super::{CubicSpline, Expression, line::quintic};
+use super::{CubicSpline, Expression, MonotoneQuintic, line::quintic};
 use std::f64::consts::TAU;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -45,6 +45,8 @@ pub enum Function {
     },
     /// A natural cubic spline through (t, value).
     Table(CubicSpline<1>),
+    /// A monotone interpolant of (t, value), see [`MonotoneQuintic`].
+    MonotoneTable(MonotoneQuintic<1>),
     /// A formula in t.
     Expression(Expression),
     /// Straight lines between rows (t, value), two at least, constant before and after; its second derivative is left at zero.
@@ -72,6 +74,12 @@ impl Function {
         Function::Table(CubicSpline::new(
             rows.iter().map(|&[t, value]| (t, [value])),
         ))
+    }
+
+    /// A monotone interpolant of rows (t, value) with increasing times, two rows at least.
+    pub fn monotone_table(rows: &[[f64; 2]]) -> Function {
+        let rows = rows.iter().map(|&[t, value]| (t, [value]));
+        Function::MonotoneTable(MonotoneQuintic::new(rows))
     }
 
     /// Value, first and second derivative at time t \[s\].
@@ -138,6 +146,7 @@ impl Function {
                 ]
             }
             Function::Table(table) => table.derivatives(t).map(|[x]| x),
+            Function::MonotoneTable(table) => table.derivatives(t).map(|[x]| x),
             Function::Expression(expression) => expression.at(t),
             Function::Own(function) => function.at(t),
             Function::Piecewise(rows) => {
@@ -181,6 +190,7 @@ mod tests {
                 duration: 1.0,
             },
             Function::table(&[[0.0, 0.1], [0.4, 0.9], [1.1, -0.3], [2.0, 0.5]]),
+            Function::monotone_table(&[[0.0, 0.1], [0.4, 0.9], [1.1, -0.3], [2.0, 0.5]]),
         ];
         for f in &functions {
             for t in [0.15, 0.61, 1.3, 1.73] {

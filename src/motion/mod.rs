@@ -4,7 +4,9 @@ mod circle;
 mod coordinates;
 mod expression;
 mod function;
+mod kinks;
 mod line;
+mod monotone;
 mod parse_expression;
 mod read_function;
 mod read_path;
@@ -14,10 +16,11 @@ pub use circle::Circle;
 pub use expression::Expression;
 pub use function::{Function, FunctionOfTime, Step};
 pub use line::Line;
+pub use monotone::MonotoneQuintic;
 pub use read_function::{FUNCTIONS, FunctionKind, FunctionReader, Use};
 pub(crate) use read_path::read_path;
 pub use read_path::{PATHS, PathKind};
-pub use table::CubicSpline;
+pub use table::{CubicSpline, Overshoot};
 
 /// Position, velocity and acceleration of a body: of its centre of mass or reference point, and its angle (of a link: of its
 /// chord).
@@ -29,6 +32,17 @@ pub struct Pose {
     pub velocity: [f64; 3],
     /// ax, ay, alpha.
     pub acceleration: [f64; 3],
+}
+
+impl Pose {
+    /// From (x, y, theta) and its first two derivatives.
+    fn of_derivatives([position, velocity, acceleration]: [[f64; 3]; 3]) -> Pose {
+        Pose {
+            position,
+            velocity,
+            acceleration,
+        }
+    }
 }
 
 /// A path as a function of time. It can be downcast to its kind.
@@ -58,9 +72,13 @@ mod tests {
         CubicSpline::new(rows.iter().map(|&[t, x, y, theta]| (t, [x, y, theta])))
     }
 
+    fn monotone(rows: &[[f64; 4]]) -> MonotoneQuintic<3> {
+        MonotoneQuintic::new(rows.iter().map(|&[t, x, y, theta]| (t, [x, y, theta])))
+    }
+
     #[test]
     fn rates_are_the_derivatives() {
-        let paths: [Box<dyn Path>; 4] = [
+        let paths: [Box<dyn Path>; 5] = [
             Box::new(Circle {
                 center: [0.1, -0.2],
                 radius: 0.3,
@@ -79,6 +97,7 @@ mod tests {
                 Function::Constant(0.4),
             ]),
             Box::new(spline(&ROWS)),
+            Box::new(monotone(&ROWS)),
         ];
         for path in &paths {
             for t in [0.1, 0.61, 1.3, 1.83] {
@@ -97,8 +116,11 @@ mod tests {
 
     #[test]
     fn a_table_passes_through_its_rows() {
-        let path = spline(&ROWS);
-        for row in ROWS {
+        let paths: [Box<dyn Path>; 2] = [Box::new(spline(&ROWS)), Box::new(monotone(&ROWS))];
+        for (row, path) in ROWS
+            .iter()
+            .flat_map(|row| paths.iter().map(move |path| (row, path)))
+        {
             for i in 0..3 {
                 // interpolation is exact but for rounding
                 assert!((path.at(row[0]).position[i] - row[i + 1]).abs() < 1e-15);

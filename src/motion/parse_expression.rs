@@ -2,8 +2,7 @@
 //! than sums and differences.
 
 use super::expression::{
-    BIVARIATE, Bivariate, DIFFERENCE, Expression, Formula, KINKED, PRODUCT, QUOTIENT, SUM,
-    UNIVARIATE,
+    BIVARIATE, Bivariate, DIFFERENCE, Expression, Formula, PRODUCT, QUOTIENT, SUM, UNIVARIATE,
 };
 use crate::document::{decimal_comma, did_you_mean, quantity};
 use winnow::ascii::{digit0, digit1, multispace0};
@@ -34,9 +33,7 @@ impl Expression {
                 None => misplaced(read, rest.trim_start()),
             }
         })?;
-        let mut words = text.split(|c: char| !c.is_ascii_alphanumeric());
-        let kink = words.find_map(|word| KINKED.into_iter().find(|name| *name == word));
-        Ok(Expression { formula, kink })
+        Ok(Expression { formula })
     }
 }
 

@@ -1,10 +1,12 @@
 //! Functions of time: a number, an expression, or an inline table with a `type`.
 
-use super::{Expression, Function, Step, parse_expression};
+use super::kinks::Kink;
+use super::{CubicSpline, Expression, Function, Step, parse_expression};
 use crate::document::{Field, Fields, Key, Kind, SceneError, Takes};
 use numbers::number;
+use std::cell::RefCell;
 
-/// What the function is for: motions must have an acceleration, loads need not.
+/// What the function is for: motions must have a continuous acceleration, loads need not even be continuous.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Use {
     /// A prescribed motion.
@@ -87,23 +89,20 @@ static RAMP: FunctionKind = FunctionKind {
     keys: &STEP,
     read: |table, purpose, _| {
         if purpose == Use::Motion {
-            return Err(kinked(table, "a ramp", "use \"smooth_step\""));
+            return Err(kinked(table, "a ramp", "use type \"smooth_step\""));
         }
         Ok(Function::Ramp(step(table)?))
     },
 };
 
-/// The fault of a motion whose kind has kinks.
+/// The fault of a motion whose kind has kinks: it needs an acceleration.
 fn kinked(table: &Fields, shape: &str, instead: &str) -> SceneError {
     let kind = table.optional("type").expect("a kind is named");
-    jumps(&kind, table.path(), &format!("follow {shape}"), instead)
-}
-
-/// The fault of a motion whose rate jumps: it needs an acceleration. `place` says that it is such a motion.
-fn jumps(place: &Field, path: &str, what: &str, instead: &str) -> SceneError {
-    let message = format!("`{path}` cannot {what}: its speed would jump");
-    let error = place.fault(message, "no acceleration");
-    error.with_help(instead)
+    let message = format!(
+        "`{}` cannot follow {shape}: its velocity would jump",
+        table.path()
+    );
+    kind.fault(message, "no acceleration").with_help(instead)
 }
 
 static SMOOTH_STEP: FunctionKind = FunctionKind {
@@ -135,18 +134,40 @@ pub(super) const fn rows_key(unit: &'static str, shape: &'static str) -> Key {
     Key::new("rows", Takes::Rows { unit, shape }, purpose)
 }
 
+/// How a table is interpolated.
+pub(super) const SHAPE: Key = Key::word(
+    "shape",
+    &["natural", "monotone"],
+    "the natural cubic spline, or quintic pieces that keep flats flat and do not overshoot",
+)
+.or("`\"natural\"`");
+
+/// True of a table that asks for the monotone interpolant.
+pub(super) fn is_monotone(table: &Fields) -> Result<bool, SceneError> {
+    Ok(table.optional_word("shape")? == Some(1))
+}
+
 static TABLE: FunctionKind = FunctionKind {
     name: "table",
-    keys: &[rows_key("s, value", "[t, value]")],
-    read: |table, _, duration| Ok(Function::table(&rows(&table.field("rows")?, duration)?)),
+    keys: &[rows_key("s, value", "[t, value]"), SHAPE],
+    read: |table, _, duration| {
+        let rows = rows(&table.field("rows")?, duration)?;
+        Ok(match is_monotone(table)? {
+            true => Function::monotone_table(&rows),
+            false => Function::table(&rows),
+        })
+    },
 };
+
+/// What a motion through given values uses.
+const MONOTONE: &str = "use type \"table\" with `shape = \"monotone\"`, which keeps flats flat";
 
 static PIECEWISE: FunctionKind = FunctionKind {
     name: "piecewise",
     keys: &[rows_key("s, value", "[t, value]")],
     read: |table, purpose, duration| {
         if purpose == Use::Motion {
-            return Err(kinked(table, "straight lines", "use \"table\""));
+            return Err(kinked(table, "straight lines", MONOTONE));
         }
         let rows = rows(&table.field("rows")?, duration)?;
         Ok(Function::Piecewise(rows))
@@ -160,9 +181,43 @@ pub struct FunctionReader {
     pub kinds: Vec<&'static FunctionKind>,
     /// Duration of the run \[s\]: tables over time must cover it.
     pub duration: f64,
+    /// What is remarkable about the functions read so far.
+    notes: RefCell<Vec<String>>,
 }
 
 impl FunctionReader {
+    /// Reads functions of some kinds, of a run of this duration \[s\].
+    pub(crate) fn new(kinds: Vec<&'static FunctionKind>, duration: f64) -> FunctionReader {
+        FunctionReader {
+            kinds,
+            duration,
+            notes: RefCell::default(),
+        }
+    }
+
+    /// What is remarkable about the functions that were read.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        self.notes.borrow().clone()
+    }
+
+    /// Notes the overshoot of one of the values of a spline; `path` says which.
+    pub(super) fn note_overshoot<const N: usize>(
+        &self,
+        path: &str,
+        unit: &str,
+        spline: &CubicSpline<N>,
+        i: usize,
+    ) {
+        if let Some(overshoot) = spline.overshoot(i) {
+            let [from, to] = overshoot.rows.map(|x| quantity(x, unit));
+            let (t, value) = (number(overshoot.t, 4), quantity(overshoot.value, unit));
+            self.notes.borrow_mut().push(format!(
+                "the table of `{path}` overshoots: between its rows of {from} and {to} it reaches {value} at t = {t} s; \
+                 `shape = \"monotone\"` stays between them and keeps flats flat"
+            ));
+        }
+    }
+
     /// The function that a field describes.
     ///
     /// # Errors
@@ -175,8 +230,17 @@ impl FunctionReader {
             return Ok(Function::Constant(field.number()?));
         }
         let (kind, table) = Kind::of(field, "function of time", &self.kinds)?;
-        (kind.read)(&table, purpose, self.duration)
+        let function = (kind.read)(&table, purpose, self.duration)?;
+        if let Function::Table(spline) = &function {
+            self.note_overshoot(&field.path, field.unit(), spline, 0);
+        }
+        Ok(function)
     }
+}
+
+/// A value of a table with its unit.
+fn quantity(value: f64, unit: &str) -> String {
+    format!("{} {unit}", number(value, 4)).trim_end().to_owned()
 }
 
 /// Number of equal intervals at whose ends an expression is tried.
@@ -191,10 +255,6 @@ fn read_expression(field: &Field, purpose: Use, duration: f64) -> Result<Express
         let error = field.fault(message, "not an expression");
         error.with_help(format!("known: {known}"))
     })?;
-    if let (Use::Motion, Some(name)) = (purpose, expression.kink) {
-        let instead = "a motion needs an acceleration at all times: use functions without kinks, or \"smooth_step\"";
-        return Err(jumps(field, path, &format!("contain `{name}`"), instead));
-    }
     let levels = match purpose {
         Use::Motion => ["value", "rate", "acceleration"].as_slice(),
         Use::Load => &["value"],
@@ -211,7 +271,38 @@ fn read_expression(field: &Field, purpose: Use, duration: f64) -> Result<Express
             return Err(field.fault(message, "not finite"));
         }
     }
+    match purpose {
+        Use::Motion => refuse_kink(field, &expression, duration)?,
+        Use::Load => {}
+    }
     Ok(expression)
+}
+
+/// Refuses a motion whose value, velocity or acceleration jumps where `abs`, `min` or `max` switches.
+fn refuse_kink(field: &Field, expression: &Expression, duration: f64) -> Result<(), SceneError> {
+    let Some(Kink {
+        name,
+        t,
+        level,
+        jump,
+    }) = expression.kink(duration)
+    else {
+        return Ok(());
+    };
+    let (quantity, per) = [("value", ""), ("velocity", "/s"), ("acceleration", "/s2")][level];
+    let jump = match jump.is_nan() {
+        true => "is not a number".to_owned(),
+        false => format!("jumps by {} {}{per}", number(jump, 4), field.unit()),
+    };
+    let message = format!(
+        "`{}` has a kink where `{name}(...)` switches: at t = {} s its {quantity} {jump}",
+        field.path,
+        number(t, 6),
+    );
+    let error = field.fault(message, "no continuous acceleration");
+    Err(error.with_help(format!(
+        "a motion needs a continuous acceleration: `smooth_step(u)` rises from 0 to 1 while u does; or {MONOTONE}"
+    )))
 }
 
 /// Rows of a table over time: times increase and cover the duration.

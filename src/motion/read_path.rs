@@ -1,7 +1,7 @@
 //! Paths of bodies: `type` and its keys.
 
-use super::read_function::{FunctionReader, Use, rows, rows_key};
-use super::{Circle, CubicSpline, Line, Path};
+use super::read_function::{FunctionReader, SHAPE, Use, is_monotone, rows, rows_key};
+use super::{Circle, CubicSpline, Line, MonotoneQuintic, Path};
 use crate::document::{Field, Fields, Key, Kind, SceneError};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -57,12 +57,23 @@ static LINE: PathKind = PathKind {
 
 static TABLE: PathKind = PathKind {
     name: "table",
-    keys: &[rows_key("s, m, m, rad", "[t, x, y, theta]")],
+    keys: &[rows_key("s, m, m, rad", "[t, x, y, theta]"), SHAPE],
     read: |fields, functions| {
         let rows: Vec<[f64; 4]> = rows(&fields.field("rows")?, functions.duration)?;
         let rows = rows.iter();
         let rows = rows.map(|&[t, x, y, theta]| (t, [x, y, theta]));
-        Ok(Arc::new(CubicSpline::new(rows)))
+        if is_monotone(fields)? {
+            return Ok(Arc::new(MonotoneQuintic::new(rows)));
+        }
+        let spline = CubicSpline::new(rows);
+        for (i, (name, unit)) in [("x", "m"), ("y", "m"), ("theta", "rad")]
+            .iter()
+            .enumerate()
+        {
+            let path = format!("{}.{name}", fields.path());
+            functions.note_overshoot(&path, unit, &spline, i);
+        }
+        Ok(Arc::new(spline))
     },
 };
 

@@ -63,23 +63,69 @@ impl<const N: usize> CubicSpline<N> {
     }
 }
 
+/// Where a spline leaves the range of the two rows between which it lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overshoot {
+    /// When it is farthest outside \[s\].
+    pub t: f64,
+    /// Its value there.
+    pub value: f64,
+    /// The values of the two rows.
+    pub rows: [f64; 2],
+}
+
+/// An overshoot is reported beyond this part of the range of the values. Of runs the same part of a range of motion is warned of.
+const REPORTED: f64 = 0.01;
+
+impl<const N: usize> CubicSpline<N> {
+    /// The largest overshoot of one of the values, if it is more than a hundredth of their range.
+    pub fn overshoot(&self, i: usize) -> Option<Overshoot> {
+        let values = || self.values.iter().map(|row| row[i]);
+        let range =
+            values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+        let beyond = |x: &Overshoot| {
+            let [least, most] = [x.rows[0].min(x.rows[1]), x.rows[0].max(x.rows[1])];
+            (x.value - most).max(least - x.value)
+        };
+        let turns = (1..self.times.len()).flat_map(|k| self.turns(k, i));
+        let largest = turns.max_by(|a, b| beyond(a).total_cmp(&beyond(b)));
+        largest.filter(|x| beyond(x) > REPORTED * range)
+    }
+
+    /// The extremes inside the interval that ends with a row: the roots of the slope
+    /// S + h/6 ((3 b^2 - 1) m_1 - (3 a^2 - 1) m_0) with b between 0 and 1 and a = 1 - b.
+    fn turns(&self, k: usize, i: usize) -> impl Iterator<Item = Overshoot> + '_ {
+        let rows = [self.values[k - 1][i], self.values[k][i]];
+        let (from, h) = (self.times[k - 1], self.times[k] - self.times[k - 1]);
+        let (m0, m1) = (self.curvatures[k - 1][i], self.curvatures[k][i]);
+        let square = 3.0 * (m1 - m0);
+        let constant = 6.0 * (rows[1] - rows[0]) / (h * h) - m1 - 2.0 * m0;
+        // half of the linear coefficient is 3 m_0; of the two forms of a root each is used where it does not cancel
+        let root = (9.0 * m0 * m0 - square * constant).sqrt();
+        let sum = -(3.0 * m0 + root.copysign(m0));
+        let roots = [sum / square, constant / sum].into_iter();
+        let inside = roots.filter(|b| (0.0..=1.0).contains(b));
+        inside.map(move |b| {
+            let t = from + b * h;
+            let value = self.derivatives(t)[0][i];
+            Overshoot { t, value, rows }
+        })
+    }
+}
+
+/// A number of poses on a table: 20 between neighbouring rows, wherever they are closest.
+pub(super) fn poses_between(times: &[f64], duration: f64) -> usize {
+    let shortest = times.windows(2).map(|w| w[1] - w[0]);
+    let shortest = shortest.fold(f64::INFINITY, f64::min);
+    POSES.max((20.0 * duration / shortest).ceil() as usize)
+}
+
 impl Path for CubicSpline<3> {
     fn at(&self, t: f64) -> Pose {
-        let [position, velocity, acceleration] = self.derivatives(t);
-        Pose {
-            position,
-            velocity,
-            acceleration,
-        }
+        Pose::of_derivatives(self.derivatives(t))
     }
 
     fn sweep(&self, duration: f64) -> (f64, usize) {
-        let shortest = self.times.windows(2).map(|w| w[1] - w[0]);
-        let shortest = shortest.fold(f64::INFINITY, f64::min);
-        // 20 poses between neighbouring rows, wherever they are closest
-        (
-            duration,
-            POSES.max((20.0 * duration / shortest).ceil() as usize),
-        )
+        (duration, poses_between(&self.times, duration))
     }
 }

@@ -54,6 +54,8 @@ pub struct Scene {
     pub initial: Initial,
     /// Values that the source of the scene does not give.
     pub assumptions: Vec<Assumption>,
+    /// What is remarkable about its numbers.
+    pub notes: Vec<String>,
     sources: Sources,
 }
 

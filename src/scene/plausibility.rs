@@ -262,6 +262,9 @@ fn typed(function: &Function) -> Vec<f64> {
         Function::Ramp(step) | Function::SmoothStep(step) => vec![step.from, step.to],
         Function::SpinUp { start, .. } => vec![*start],
         Function::Piecewise(rows) => rows.iter().map(|[_, value]| *value).collect(),
-        Function::Table(_) | Function::Expression(_) | Function::Own(_) => Vec::new(),
+        Function::Table(_)
+        | Function::MonotoneTable(_)
+        | Function::Expression(_)
+        | Function::Own(_) => Vec::new(),
     }
 }

@@ -167,10 +167,7 @@ impl Scene {
         root.declare(&[], &SCENE)?;
         let title = root.field("title")?.text()?.to_owned();
         let simulation = simulation(&root)?;
-        let functions = FunctionReader {
-            kinds: registry.functions.clone(),
-            duration: simulation.duration,
-        };
+        let functions = FunctionReader::new(registry.functions.clone(), simulation.duration);
         let materials = Materials::read(&root, functions)?;
         let bodies = kinds::bodies(&root, &materials, registry)?;
         let by_name = bodies.iter().map(|b| (b.name.clone(), b.kind.clone()));
@@ -198,6 +195,7 @@ impl Scene {
             motions: drives.motions,
             forces,
             initial,
+            notes: materials.functions.notes(),
             sources,
         })
     }

@@ -91,6 +91,13 @@ fn objects(schema: &Value, found: &mut BTreeSet<(Option<String>, BTreeSet<String
     }
 }
 
+/// The examples of the reference, which tests/language.rs runs.
+fn examples(reference: &str) -> impl Iterator<Item = Value> {
+    let blocks = reference.split("```toml\n").skip(1);
+    let texts = blocks.map(|block| block.split("```").next().unwrap_or_default());
+    texts.map(|text| toml::from_str(text).unwrap())
+}
+
 #[test]
 fn every_key_is_in_the_schema_in_the_reference_and_in_a_scene() {
     let sheets = language(&Registry::standard());
@@ -102,6 +109,9 @@ fn every_key_is_in_the_schema_in_the_reference_and_in_a_scene() {
         for scene in scenes_below(&Path::new(TOP).join(folder)) {
             use_keys(&sheets, "", &scene, &mut used);
         }
+    }
+    for example in examples(&reference) {
+        use_keys(&sheets, "", &example, &mut used);
     }
     let mut unused = Vec::new();
     for sheet in &sheets {
