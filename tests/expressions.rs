@@ -146,3 +146,68 @@ fn formulas_of_a_static_analysis_are_used_as_they_are_written() {
         .asks("Cantilever under a growing load: relative difference of all channels between a number and the formula of the same load")
         .within(&worst, 1e-10, "the tolerance of the equilibrium, 1e-12 of the forces, times the number of elements");
 }
+
+/// A follower that rises, dwells and returns.
+const DWELL: &str = r#"
+format = 1
+title = "a follower with dwells"
+simulation = { duration = 1.0 }
+integrator = { method = "bathe", step = 1e-3, newton_tolerance = 1e-9 }
+output = { interval = 1e-3, channels = ["follower.*"] }
+bodies.ground = { type = "ground", points.O = [0.0, 0.0] }
+bodies.follower = { type = "point_mass", mass = 0.4 }
+joints.rail = { type = "prismatic", guide = "ground.O", slider = "follower.center", direction = [0.0, 1.0], rotation = "free" }
+drives.cam = { type = "point", point = "follower.center", y = { type = "table", rows = [[0.0, 0.0], [0.2, 0.0], [0.4, 0.03], [0.6, 0.03], [0.8, 0.0], [1.0, 0.0]] } }
+initial.sketch = { rail = [0.0, 0.0] }
+"#;
+
+fn dwell(overrides: &[&str]) -> (TestRecording, Vec<String>) {
+    let overrides: Vec<String> = overrides.iter().map(|s| (*s).to_owned()).collect();
+    let scene = Scene::parse("dwell", DWELL, &overrides).unwrap_or_else(|e| panic!("{e}"));
+    let (recording, report) = run_scene(&scene);
+    (recording, report.notes())
+}
+
+/// The six corners of a rise, a dwell and a return: a monotone table and a sum of smooth steps keep the dwells, a natural spline swings
+/// through them and says so.
+#[test]
+fn dwells_are_kept_or_their_overshoot_is_told() {
+    let (_, notes) = dwell(&[]);
+    assert_eq!(
+        notes,
+        [
+            "the table of `drives.cam.y` overshoots: between its rows of 0.03 m and 0.03 m it reaches 0.03592 m at t = 0.5 s; \
+             `shape = \"monotone\"` stays between them and keeps flats flat"
+        ]
+    );
+    let sum =
+        "drives.cam.y=\"0.03 * (smooth_step((t - 0.2) / 0.2) - smooth_step((t - 0.6) / 0.2))\"";
+    let max = "drives.cam.y=\"0.03 * smooth_step(max(0, 1 - abs(t - 0.5) / 0.2) + 0.5)\"";
+    let monotone = "drives.cam.y.shape=monotone";
+    for change in [monotone, sum] {
+        let (recording, notes) = dwell(&[change]);
+        assert!(notes.is_empty(), "{change}: {notes:?}");
+        let worst = Worst::new();
+        for (t, y) in recording.get("t").iter().zip(recording.get("follower.y")) {
+            match t {
+                0.4..=0.6 => worst.see(y - 0.03),
+                t if *t <= 0.2 || *t >= 0.8 => worst.see(y),
+                _ => assert!((0.0..=0.03).contains(&y)),
+            }
+        }
+        Rung::ClosedForms
+            .asks(format!(
+                "Follower with dwells, {change}: distance from 0 and 30 mm in its dwells [m]"
+            ))
+            .within(
+                &worst,
+                1e-15,
+                "rounding of a prescribed coordinate of 0.03 m",
+            );
+    }
+    let overrides = [max.to_owned()];
+    let error = Scene::parse("dwell", DWELL, &overrides)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("its velocity jumps by"), "{error}");
+}

@@ -44,5 +44,6 @@ mod rrr;
 mod stability;
 mod start;
 mod support;
+mod switches;
 mod system;
 mod thresholds;

@@ -42,6 +42,8 @@ const GAP: &Quantities = &[
     ("eccentricity_rate", "m/s"),
     ("contact", "1"),
 ];
+const STRAIN: &Quantities = &[("strain", "1")];
+const SLOPE: &Quantities = &[("slope_x", "1"), ("slope_y", "1")];
 const TURNED: &Quantities = &[
     ("angle", "rad"),
     ("speed", "rad/s"),
@@ -133,6 +135,30 @@ pub(super) fn parts(model: &Model, analysis: Analysis) -> Vec<Part> {
     parts
 }
 
+/// Why a mechanism does not have a channel that it would have if a rigid body of it were flexible, or an ideal joint loose: another
+/// model of these must not ask for other channels.
+pub(super) fn removed(name: &str, model: &Model) -> Option<String> {
+    let (owner, quantity) = name.rsplit_once('.')?;
+    let is_one_of = |quantities: &Quantities| quantities.iter().any(|(name, _)| *name == quantity);
+    let moves = |body: &str| model.bodies().iter().any(|b| b.name == body && b.moves);
+    let body = match owner
+        .strip_prefix("points.")
+        .and_then(|point| point.split_once('.'))
+    {
+        Some((body, point)) => {
+            let mut bodies = model.bodies().iter().filter(|b| b.name == body);
+            let is_there = bodies.any(|b| b.points.iter().any(|p| p.name == point));
+            (is_there && is_one_of(SLOPE)).then_some(body)
+        }
+        None => is_one_of(STRAIN).then_some(owner),
+    };
+    if let Some(body) = body.filter(|body| moves(body)) {
+        return Some(format!("{body} is rigid"));
+    }
+    let is_joint = model.joints().iter().any(|joint| joint.name == owner);
+    (is_joint && is_one_of(GAP)).then(|| format!("the joint {owner} has no clearance"))
+}
+
 /// Energies that a mechanism stores.
 fn stored(model: &Model) -> &'static [(&'static str, Term)] {
     match model.has_springs() {
@@ -168,7 +194,7 @@ impl Part {
                 unit: "s",
             }],
             Part::Pose(b) => body(b, &POSE),
-            Part::Strain(b) => body(b, &[("strain", "1")]),
+            Part::Strain(b) => body(b, STRAIN),
             Part::Error(_) => named("error", &POSE[..3]),
             Part::Force(j) => joint(j, FORCE),
             Part::Gap(j) => joint(j, GAP),
@@ -177,7 +203,7 @@ impl Part {
             Part::Travel(j) => joint(j, TRAVEL),
             Part::Actuator(j) => joint(j, ACTUATOR),
             Part::Point(b, p) => point(b, p, &POINT.map(|i| POSE[i])),
-            Part::Slope(b, p) => point(b, p, &[("slope_x", "1"), ("slope_y", "1")]),
+            Part::Slope(b, p) => point(b, p, SLOPE),
             Part::Applied(f) => {
                 let (name, force) = model.named_force(f);
                 named(name, force.quantities())

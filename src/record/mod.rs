@@ -11,7 +11,7 @@ use crate::model::{Energies, Model};
 use crate::motion::Function;
 use crate::scene::{Scene, SceneError};
 use crate::system::{State, Work};
-use channels::{Part, parts};
+use channels::{Part, parts, removed};
 use std::collections::HashMap;
 use wildmatch::WildMatchPattern;
 
@@ -33,6 +33,8 @@ pub struct Recorder {
     row: Vec<f64>,
     /// Energy at t = 0 \[J\].
     initial_energy: f64,
+    /// What the scene asks for and the mechanism does not have.
+    absent: Vec<String>,
 }
 
 /// An angle that is followed over full turns.
@@ -61,7 +63,7 @@ impl Turning {
     }
 }
 
-carried!(Recorder { turning } but { channels, parts, places, values, row, initial_energy });
+carried!(Recorder { turning } but { channels, parts, places, values, row, initial_energy, absent });
 
 /// What is measured at every row, whether a channel shows it or not.
 #[derive(Debug, Clone, Default)]
@@ -108,7 +110,7 @@ impl Recorder {
     /// The channels that the scene asks for, time first, each once, in the order of the scene.
     ///
     /// # Errors
-    /// A pattern that no channel has.
+    /// A name that no channel has.
     pub fn new(scene: &Scene, model: &Model, initial_energy: f64) -> Result<Recorder, SceneError> {
         let all = parts(model, scene.simulation.analysis);
         let mut available = Vec::new();
@@ -120,7 +122,7 @@ impl Recorder {
                 place,
             }));
         }
-        let chosen = choose(scene, &available)?;
+        let (chosen, absent) = choose(scene, model, &available)?;
         // where the values of each part begin that has a chosen channel
         let mut firsts = vec![None; all.len()];
         let (mut parts, mut count) = (Vec::new(), 0);
@@ -148,12 +150,18 @@ impl Recorder {
             parts,
             values: Vec::with_capacity(count),
             initial_energy,
+            absent,
         })
     }
 
     /// Names and units, in the order of a row.
     pub fn channels(&self) -> &[Channel] {
         &self.channels
+    }
+
+    /// A line for every entry of `output.channels` that nothing is recorded of.
+    pub fn absent(&self) -> &[String] {
+        &self.absent
     }
 
     /// The ledger at a consistent state with these energies.
@@ -208,33 +216,50 @@ struct Available {
     place: usize,
 }
 
-/// The time, and the channels that fit a pattern of the scene, each once.
-fn choose<'a>(scene: &Scene, available: &'a [Available]) -> Result<Vec<&'a Available>, SceneError> {
+/// The time, and the channels that fit a pattern of the scene, each once; and what the mechanism does not have: patterns without a
+/// channel, and channels of flexible links or of joints with clearance.
+fn choose<'a>(
+    scene: &Scene,
+    model: &Model,
+    available: &'a [Available],
+) -> Result<(Vec<&'a Available>, Vec<String>), SceneError> {
     let mut is_chosen = vec![false; available.len()];
     is_chosen[0] = true;
-    let mut chosen = vec![&available[0]];
+    let (mut chosen, mut absent) = (vec![&available[0]], Vec::new());
     let named = available.iter().enumerate();
     let named: HashMap<&str, usize> = named.map(|(k, entry)| (&*entry.channel.name, k)).collect();
     for wanted in &scene.output.channels {
-        let fitting: Vec<usize> = match wanted.pattern.contains('*') {
+        let name = &*wanted.pattern;
+        let fitting: Vec<usize> = match name.contains('*') {
             true => {
-                let pattern = WildMatchPattern::<'*', '\0'>::new(&wanted.pattern);
+                let pattern = WildMatchPattern::<'*', '\0'>::new(name);
                 let fits = |k: &usize| pattern.matches(&available[*k].channel.name);
                 (0..available.len()).filter(fits).collect()
             }
-            false => named.get(&*wanted.pattern).copied().into_iter().collect(),
+            false => named.get(name).copied().into_iter().collect(),
         };
         for &k in &fitting {
             if !std::mem::replace(&mut is_chosen[k], true) {
                 chosen.push(&available[k]);
             }
         }
-        if fitting.is_empty() {
-            let names: Vec<&str> = available.iter().map(|e| &*e.channel.name).collect();
-            return Err(unknown_channel::fault(scene, wanted, &names));
+        if !fitting.is_empty() {
+            continue;
         }
+        if name.contains('*') {
+            absent.push(format!(
+                "the pattern {name:?} of `output.channels` matches no channel"
+            ));
+            continue;
+        }
+        if let Some(reason) = removed(name, model) {
+            absent.push(format!("the channel {name:?} is not recorded: {reason}"));
+            continue;
+        }
+        let names: Vec<&str> = available.iter().map(|e| &*e.channel.name).collect();
+        return Err(unknown_channel::fault(scene, wanted, &names));
     }
-    Ok(chosen)
+    Ok((chosen, absent))
 }
 
 /// What an angle is nearest to at t = 0, with its rate and that time: the angle that a state of the body or the drive of the

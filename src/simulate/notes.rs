@@ -6,10 +6,11 @@ use super::{FoundRest, Report};
 const NOTABLE: f64 = 0.01;
 
 impl Report {
-    /// One line for every fact: what the start decides, redundant constraints, freedoms that drives leave, large strains, and how the
-    /// equations were solved.
+    /// One line for every fact: what is remarkable about the scene, what the start decides, redundant constraints, freedoms that drives
+    /// leave, large strains, and how the equations were solved.
     pub fn notes(&self) -> Vec<String> {
-        let mut notes = self.start_notes();
+        let mut notes = self.scene_notes.clone();
+        notes.extend(self.start_notes());
         notes.extend(self.redundant.iter().map(|name| {
             format!("{name} is redundant: the constraint forces in its loop are not unique")
         }));

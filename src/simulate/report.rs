@@ -181,6 +181,9 @@ pub struct Report {
     pub extremes: BTreeMap<String, Extreme>,
     /// Errors of driven bodies, forces of joints, loads of drives, contacts.
     pub closing: Closing,
+    /// What is remarkable about the scene, see [`Simulation::scene_notes`].
+    #[serde(skip)]
+    pub scene_notes: Vec<String>,
 }
 
 /// What will be simulated.
@@ -239,6 +242,12 @@ fn notes(scene: &Scene, model: &Model) -> Vec<String> {
 }
 
 impl Simulation {
+    /// What is remarkable about the scene: tables that overshoot, channels that its mechanism does not have.
+    pub fn scene_notes(&self) -> Vec<String> {
+        let absent = self.recorder.absent().iter();
+        self.scene.notes.iter().chain(absent).cloned().collect()
+    }
+
     /// What no machine has, in the scene and in the run so far, each with its value and a question.
     pub fn implausible(&self) -> Vec<String> {
         let mut told = self.scene.implausible();
@@ -272,6 +281,7 @@ impl Simulation {
                 .collect(),
             assumptions: notes(&self.scene, &self.model)
                 .into_iter()
+                .chain(self.scene_notes())
                 .chain(redundant.iter().map(|name| {
                     format!("{name} is redundant and left out: the constraint forces in its loop are not unique")
                 }))
@@ -398,6 +408,7 @@ impl Simulation {
             closing: self
                 .closing
                 .report(&self.model, &self.impacts, self.state.t),
+            scene_notes: self.scene_notes(),
         }
     }
 }

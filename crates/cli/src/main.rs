@@ -24,6 +24,7 @@ use looselink::document::did_you_mean;
 use looselink::initial::Freedoms;
 use looselink::scene::{Scene, SceneError};
 use looselink::simulate::Simulation;
+use progress::remark;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -186,6 +187,8 @@ fn main() -> ExitCode {
 
 fn check(arguments: &SceneArguments) -> Result<(), CommandFailure> {
     let (scene, simulation) = arguments.load()?;
+    let notes = simulation.scene_notes();
+    notes.iter().for_each(|note| remark(note));
     let implausible = simulation.implausible();
     implausible.iter().for_each(|told| progress::warn(told));
     let freedoms = Freedoms::of(&scene).map_or(String::new(), |found| format!("; {found}"));
