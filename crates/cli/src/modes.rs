@@ -1,7 +1,7 @@
 //! `looselink modes`
 
 use super::failure::CommandFailure;
-use super::progress::{Display, say, warn};
+use super::progress::{Display, remark, say, warn};
 use super::{SceneArguments, print};
 use clap::{Args, ValueEnum};
 use looselink::model::Model;
@@ -109,6 +109,9 @@ pub fn modes(arguments: &Arguments) -> Result<(), CommandFailure> {
     let mut found = found.map_err(CommandFailure::cannot_go_on)?;
     let all = found.modes.len();
     found.modes.truncate(arguments.count.into());
+    if let Some(note) = floating(arguments, &simulation) {
+        remark(&note);
+    }
     let simulation = Rc::new(simulation);
     match arguments.json {
         true => print(json(&output(&scene, simulation.model(), at, &found))?)?,
@@ -211,6 +214,27 @@ fn contacts(arguments: &Arguments, simulation: &Simulation) -> String {
         Contacts::AsIs if closed.is_empty() => ", all loose joints open".to_owned(),
         Contacts::AsIs => format!(", closed: {}", closed.join(", ")),
     }
+}
+
+/// That journals float at the start, where nobody has asked for open contacts: a scene is assembled with journals in the middle of
+/// their bearings, and no force has moved them yet.
+fn floating(arguments: &Arguments, simulation: &Simulation) -> Option<String> {
+    if arguments.at > 0.0 || arguments.contacts != Contacts::AsIs {
+        return None;
+    }
+    let (model, state) = (simulation.model(), simulation.state());
+    let joints = model.joints().iter().enumerate();
+    let open = joints.filter(|(j, _)| model.gap(*j, state).is_some_and(|(.., closed)| !closed));
+    let names: Vec<&str> = open.map(|(_, joint)| joint.name.as_str()).collect();
+    let (journals, float, them) = match names.len() {
+        0 => return None,
+        1 => ("journal", "floats at t = 0: it moves", "it"),
+        _ => ("journals", "float at t = 0: they move", "them"),
+    };
+    Some(format!(
+        "the {journals} of {} {float} freely; `--contacts ideal` holds {them}, and `--at` finds contacts that are closed later",
+        names.join(", ")
+    ))
 }
 
 /// Writes a page for every mode that vibrates.

@@ -1,7 +1,8 @@
 //! `looselink modes`: what it prints, what it refuses, and the pages of modes.
 
-use crate::command_line::{expect, files, looselink, read};
+use crate::command_line::{TOP, expect, files, looselink, read};
 use serde_json::Value;
+use std::path::Path;
 
 const CASE_4: &str = "scenes/3rrr/case4.toml";
 
@@ -49,6 +50,57 @@ fn loose_joints_are_open_or_closed_or_ideal() {
         heading(&["--contacts", "ideal"]),
         ("with ideal joints".to_owned(), false)
     );
+}
+
+/// Whatever channels a scene asks for, its joints can be ideal.
+#[test]
+fn every_loose_scene_has_modes_with_ideal_joints() {
+    let mut scenes = 0;
+    for folder in [
+        "scenes",
+        "scenes/3rrr",
+        "scenes/slider-crank",
+        "scenes/hard",
+    ] {
+        let folder = Path::new(TOP).join(folder);
+        for name in files(&folder).iter().filter(|name| name.ends_with(".toml")) {
+            if !read(&folder, name).contains("\"clearance\"") {
+                continue;
+            }
+            let scene = folder.join(name);
+            let scene = scene.to_str().unwrap();
+            let output = looselink(&["modes", scene, "--contacts", "ideal"]);
+            let told = String::from_utf8_lossy(&output.stderr).into_owned();
+            // a mechanism of rigid links has no modes, and no journal can start beside the centre of an ideal joint
+            let faults = [
+                "nothing that can move",
+                "does not fit joint pin",
+                "violate joint pin",
+            ];
+            let is_told = faults.iter().any(|fault| told.contains(fault));
+            assert!(output.status.success() || is_told, "{scene}: {told}");
+            scenes += 1;
+        }
+    }
+    assert!(scenes > 10, "{scenes} scenes");
+}
+
+#[test]
+fn journals_that_float_at_the_start_are_told() {
+    let told = |more: &[&str]| {
+        let output = looselink(&[&["modes", "scenes/slider-crank/both.toml"], more].concat());
+        expect(&output, 0, "");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let note = "note: the journal of slider_pin floats at t = 0: it moves freely; `--contacts ideal` holds it";
+    assert!(told(&[]).contains(note), "{}", told(&[]));
+    assert_eq!(told(&["--contacts", "ideal"]), "");
+    assert_eq!(told(&["--contacts", "open"]), "");
+    let several = looselink(&["modes", CASE_4, "--count", "1"]);
+    expect(&several, 0, "");
+    let several = String::from_utf8(several.stderr).unwrap();
+    let note = "note: the journals of B1, B2, B3, C1, C2, C3 float at t = 0: they move freely";
+    assert!(several.contains(note), "{several}");
 }
 
 /// The same pose of a scene with overrides and of its result.
