@@ -32,6 +32,9 @@ pub struct Arguments {
     /// Amplitude spectrum of a channel.
     #[arg(long, value_name = "NAME", group = "what")]
     spectrum: Option<String>,
+    /// With --spectrum: leave out frequencies above this one (Hz).
+    #[arg(long, value_name = "HZ", requires = "spectrum", conflicts_with_all = ["channels", "phase"])]
+    max_frequency: Option<f64>,
     /// With --phase: a point at every multiple of this period (s) instead of a curve, a Poincare section.
     #[arg(long, value_name = "PERIOD", requires = "phase", conflicts_with_all = ["channels", "spectrum"])]
     poincare: Option<f64>,
@@ -62,7 +65,14 @@ pub fn plot(arguments: &Arguments) -> Result<(), CommandFailure> {
             let [x, y] = [x, y].map(|name| find(&result, name));
             vec![phase::panel(&result, x?, y?, arguments.poincare)?]
         }
-        (_, Some(name)) => vec![spectrum::panel(&result.times, find(&result, name)?)?],
+        (_, Some(name)) => {
+            let highest = arguments.max_frequency.unwrap_or(f64::INFINITY);
+            vec![spectrum::panel(
+                &result.times,
+                find(&result, name)?,
+                highest,
+            )?]
+        }
         _ => over_time(&result, &arguments.channels)?,
     };
     let text = svg(&Figure::grid(panels, 1, caption(&result)));

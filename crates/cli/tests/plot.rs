@@ -42,7 +42,18 @@ fn figures_say_what_they_show() {
         0,
         "",
     );
-    assert!(read(out, "spectrum.svg").contains("Amplitude of journal.vx"));
+    let figure = read(out, "spectrum.svg");
+    // 0.02 s of rows
+    for text in [
+        "Amplitude of journal.vx",
+        "resolution 50 Hz",
+        "largest peak at",
+    ] {
+        assert!(figure.contains(text), "{text} is not in the figure");
+    }
+    let slow = ["--spectrum", "journal.vx", "--max-frequency", "160"];
+    expect(&plot(out, "slow.svg", &slow), 0, "");
+    assert!(read(out, "slow.svg") != figure);
 }
 
 #[test]
@@ -90,6 +101,14 @@ fn what_cannot_be_drawn_is_said() {
         (
             &["--channels", "journal.x", "--from", "7"],
             "fewer than two rows",
+        ),
+        (
+            &["--spectrum", "journal.x", "--max-frequency", "70"],
+            "fewer than two frequencies lie below --max-frequency; the spectrum has one every 50 Hz",
+        ),
+        (
+            &["--channels", "journal.x", "--max-frequency", "70"],
+            "cannot be used with",
         ),
         (&[], "required"),
     ] {

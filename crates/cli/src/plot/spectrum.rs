@@ -2,6 +2,7 @@
 
 use super::axis;
 use crate::failure::CommandFailure;
+use numbers::{number, rounded};
 use plot::palette::BLUE;
 use plot::{Axis, Mark, Panel};
 use realfft::RealFftPlanner;
@@ -11,8 +12,8 @@ use view::StoredChannel;
 /// Times are evenly spaced if their differences agree up to this part.
 const ROUNDING: f64 = 1e-6;
 
-/// The panel of a channel.
-pub fn panel(times: &[f64], channel: &StoredChannel) -> Result<Panel, CommandFailure> {
+/// The panel of a channel, up to the frequency `shown` \[Hz\].
+pub fn panel(times: &[f64], channel: &StoredChannel, shown: f64) -> Result<Panel, CommandFailure> {
     let interval = times[1] - times[0];
     let even = |pair: &[f64]| (pair[1] - pair[0] - interval).abs() <= ROUNDING * interval;
     if !times.windows(2).all(even) {
@@ -23,19 +24,26 @@ pub fn panel(times: &[f64], channel: &StoredChannel) -> Result<Panel, CommandFai
     let amplitudes = amplitudes(&channel.values);
     let step = 1.0 / (interval * count as f64);
     let frequencies: Vec<f64> = (0..amplitudes.len()).map(|k| k as f64 * step).collect();
+    // the mean is gone
+    let end = frequencies.partition_point(|f| *f <= shown);
+    if end < 3 {
+        return Err(CommandFailure::bad_input(format!(
+            "fewer than two frequencies lie below --max-frequency; the spectrum has one every {} Hz",
+            number(step, 2)
+        )));
+    }
+    let (frequencies, amplitudes) = (&frequencies[1..end], &amplitudes[1..end]);
     let label = format!("Amplitude of {}", channel.name);
     let mut panel = super::panel(
         Axis::new("Frequency", "Hz", 1.0),
         axis(&label, channel).log(),
     );
-    // the mean is gone
-    let (frequencies, amplitudes) = (&frequencies[1..], &amplitudes[1..]);
-    let highest = 0.5 / interval;
-    let peak = peak(frequencies, amplitudes);
-    let peak = peak.map_or(String::new(), |f| format!(", largest peak at {f:.4} Hz"));
     panel.note = format!(
-        "Hann window over {count} rows, mean removed, frequencies {step:.4} Hz apart{peak}; \
-         vibrations faster than {highest:.4} Hz, half the rate of the rows, appear folded below it"
+        "Hann window over {count} rows, mean removed, resolution {} Hz; {}; vibrations faster than {} Hz, half the rate of the \
+         rows, appear folded below it",
+        number(step, 2),
+        largest(frequencies, amplitudes, step),
+        number(0.5 / interval, 4)
     );
     panel
         .marks
@@ -43,13 +51,31 @@ pub fn panel(times: &[f64], channel: &StoredChannel) -> Result<Panel, CommandFai
     Ok(panel)
 }
 
-/// Frequency of the largest amplitude that is larger than its neighbours: a slow motion falls off from the lowest frequency on and
-/// has no peak.
-fn peak(frequencies: &[f64], amplitudes: &[f64]) -> Option<f64> {
-    let peaks = (1..amplitudes.len().saturating_sub(1))
+/// Where the amplitude is largest. Of a slow motion it falls off from the lowest frequency on; then also the largest amplitude that
+/// exceeds its neighbours.
+fn largest(frequencies: &[f64], amplitudes: &[f64], step: f64) -> String {
+    let highest = |among: &mut dyn Iterator<Item = usize>| {
+        among.max_by(|&a, &b| amplitudes[a].total_cmp(&amplitudes[b]))
+    };
+    let at = |k: usize| in_resolution(frequencies[k], step);
+    let first = highest(&mut (0..amplitudes.len())).unwrap_or_default();
+    if first > 0 {
+        return format!("largest peak at {} Hz", at(first));
+    }
+    let mut inner = (1..amplitudes.len() - 1)
         .filter(|&k| amplitudes[k] > amplitudes[k - 1] && amplitudes[k] > amplitudes[k + 1]);
-    let largest = peaks.max_by(|&a, &b| amplitudes[a].total_cmp(&amplitudes[b]));
-    largest.map(|k| frequencies[k])
+    let peak = highest(&mut inner).map_or(String::new(), |k| {
+        format!(", largest of the others at {} Hz", at(k))
+    });
+    format!("largest peak at {} Hz, the lowest frequency{peak}", at(0))
+}
+
+/// A frequency down to the first decimal of the resolution, but with two digits at least.
+fn in_resolution(frequency: f64, resolution: f64) -> String {
+    let magnitude = |x: f64| x.log10().floor() as i32;
+    let digits = magnitude(frequency) - magnitude(resolution) + 1;
+    let digits = digits.max(2) as usize;
+    number(rounded(frequency, digits), digits)
 }
 
 /// Amplitudes at multiples of 1/(n dt): with the window w and its sum W, 2 |sum w_k (x_k - mean) exp(-i omega t_k)|/W, which is A
@@ -82,14 +108,37 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_peak_is_larger_than_its_neighbours() {
-        let frequencies = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-        let of = |amplitudes: &[f64]| peak(&frequencies[..amplitudes.len()], amplitudes);
-        assert_eq!(of(&[9.0, 5.0, 2.0, 3.0, 1.0, 4.0, 1.0]), Some(6.0));
-        assert_eq!(of(&[9.0, 5.0, 3.0, 2.0]), None);
-        assert_eq!(of(&[1.0, 2.0, 3.0]), None);
-        assert_eq!(of(&[1.0]), None);
-        assert_eq!(of(&[]), None);
+    fn the_largest_peak_is_the_largest_of_the_picture() {
+        let of = |amplitudes: &[f64]| {
+            let frequencies: Vec<f64> = (1..=amplitudes.len())
+                .map(|k| 2.499375 * k as f64)
+                .collect();
+            largest(&frequencies, amplitudes, 2.499375)
+        };
+        assert_eq!(of(&[1.0, 5.0, 2.0, 3.0]), "largest peak at 5 Hz");
+        assert_eq!(of(&[1.0, 2.0, 3.0]), "largest peak at 7.5 Hz");
+        assert_eq!(
+            of(&[9.0, 5.0, 2.0, 3.0, 1.0, 4.0, 1.0]),
+            "largest peak at 2.5 Hz, the lowest frequency, largest of the others at 15 Hz"
+        );
+        assert_eq!(
+            of(&[9.0, 5.0, 3.0]),
+            "largest peak at 2.5 Hz, the lowest frequency"
+        );
+    }
+
+    #[test]
+    fn a_frequency_has_the_digits_of_the_resolution() {
+        for (frequency, resolution, text) in [
+            (179.955, 2.499375, "180"),
+            (2.499375, 2.499375, "2.5"),
+            (12.4969, 2.499375, "12"),
+            (179.955, 0.26, "180"),
+            (179.855, 0.26, "179.9"),
+            (1234.56, 50.0, "1230"),
+        ] {
+            assert_eq!(in_resolution(frequency, resolution), text);
+        }
     }
 
     /// Two oscillations in whole periods on a mean: their amplitudes come out, whatever their phases.
