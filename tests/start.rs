@@ -195,6 +195,12 @@ initial.bodies.rocker = { x = 0.3711875, y = 0.1216340406454953, theta = 1.80338
     let (error, shown) = refused(&text);
     let expected = "the given pose of rocker contradicts the sketch of joint B: without this pose the mechanism closes there, with it ";
     assert!(error.to_string().starts_with(expected), "{error}");
+    assert!(
+        error
+            .to_string()
+            .ends_with(" stays open by 0.02 m at least"),
+        "{error}"
+    );
     assert_eq!(
         error.underlined(),
         "{ x = 0.3711875, y = 0.1216340406454953, theta = 1.8033878148327838 }"

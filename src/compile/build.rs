@@ -22,7 +22,7 @@ use crate::model::{
 };
 use crate::scene::{Analysis, SceneError};
 use crate::system::Shape;
-use crate::terms::{ConstraintRows, ForceTerm, Inertia, JointTerms, Owner, Terms};
+use crate::terms::{ConstraintRows, ConstraintTerm, ForceTerm, Inertia, JointTerms, Owner, Terms};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -50,10 +50,12 @@ fn collect(c: &Compiler, numbering: &Numbering) -> Result<Collected, SceneError>
         Mode::Real | Mode::Pressed => force_terms(c, numbering, &mut terms),
         Mode::Ideal => Vec::new(),
     };
-    // rigid links may overdetermine the mechanism that presses journals: such rows are redundant there
+    // rigid links may overdetermine the mechanism that presses journals, and a link between known points may fit: such rows are
+    // redundant
     let known = |row: &&ConstraintRows| {
         let coordinates = row.term.coordinates();
-        c.mode != Mode::Pressed && coordinates.iter().all(|&i| i >= numbering.unknowns)
+        let may_fit = c.mode == Mode::Pressed || matches!(row.term, ConstraintTerm::Length(_));
+        !may_fit && coordinates.iter().all(|&i| i >= numbering.unknowns)
     };
     if let Some(row) = terms.constraints.iter().find(known) {
         let message = format!(
@@ -352,16 +354,6 @@ fn body_terms(
     c.bodies[b].terms(&numbering.bodies[b].x, owner, terms);
     if c.roles[b] != Role::Free {
         terms.constraints.truncate(before);
-    }
-    let n = numbering.unknowns;
-    for row in &terms.constraints[before..] {
-        if c.mode != Mode::Pressed && row.term.coordinates().iter().all(|&i| i >= n) {
-            let message = format!(
-                "the {} is redundant: the joints at its two ends fix it already",
-                row.names[0]
-            );
-            return Err(c.scene.error(body.span, message, "redundant link"));
-        }
     }
     Ok(BodyParts {
         inertia: first[0]..terms.inertia.len(),

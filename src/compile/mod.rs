@@ -3,6 +3,7 @@
 pub(crate) mod assembly;
 mod build;
 mod drive;
+pub(crate) mod extent;
 mod mass;
 mod motions;
 mod numbering;

@@ -1,10 +1,12 @@
 //! Numbers the coordinates: which link ends share a node, which are known, and the indices of every body.
 
+use super::extent::{FITS, extent};
 use super::{Compiler, Mode, Role};
 use crate::body::{Body, Content, HeldSlot, Known, PointRef, Slot};
 use crate::interaction::Placed;
 use crate::marker::Marker;
 use crate::math::groups::Groups;
+use crate::math::plane::Vec2;
 use crate::model::{DrivenNode, Model};
 use crate::scene::{MotionKind, SceneError};
 use std::sync::Arc;
@@ -84,6 +86,21 @@ fn connect_joint(c: &Compiler, nodes: &mut Nodes, j: usize) -> Result<bool, Scen
         let message = format!("joint {} is redundant: {what}", joint.name);
         Err(c.joint_error(j, message, "redundant joint"))
     };
+    // what fixes its points already may do so at one place or at two
+    let fixed = |what: &str, anchors: [Option<PointRef>; 2]| {
+        let at = anchors.map(|point| c.on_ground(point?));
+        match at {
+            [Some(a), Some(b)] if (a - b).norm() > FITS * extent(c.scene) => {
+                let apart = numbers::si((a - b).norm(), "m");
+                let message = format!(
+                    "joint {} contradicts others: {what}, {apart} apart",
+                    joint.name
+                );
+                Err(c.joint_error(j, message, "contradictory joint"))
+            }
+            _ => redundant(what),
+        }
+    };
     let points = joint.points();
     let known = points.map(|p| c.is_known(p));
     if known == [true; 2] && !c.may_stay_closed(j) {
@@ -97,7 +114,8 @@ fn connect_joint(c: &Compiler, nodes: &mut Nodes, j: usize) -> Result<bool, Scen
             return redundant("other joints already make its two points coincide");
         }
         [Some(a), Some(b)] if nodes.anchor[a].is_some() && nodes.anchor[b].is_some() => {
-            return redundant("both of its points are already fixed");
+            let anchors = [nodes.anchor[a], nodes.anchor[b]];
+            return fixed("both of its points are already fixed", anchors);
         }
         [Some(a), Some(b)] => {
             nodes.classes.unite(b, a);
@@ -105,8 +123,9 @@ fn connect_joint(c: &Compiler, nodes: &mut Nodes, j: usize) -> Result<bool, Scen
             nodes.anchor[a] = nodes.anchor[a].or(nodes.anchor[b].take());
         }
         [Some(class), None] | [None, Some(class)] if known.contains(&true) => {
-            if nodes.anchor[class].is_some() {
-                return redundant("the link end it joins is already fixed");
+            if let Some(anchor) = nodes.anchor[class] {
+                let anchors = [Some(anchor), Some(points[usize::from(known[1])])];
+                return fixed("the link end it joins is already fixed", anchors);
             }
             nodes.anchor[class] = Some(points[usize::from(known[1])]);
         }
@@ -214,6 +233,12 @@ fn number_unknowns(c: &Compiler, nodes: &mut Nodes, eliminated: Vec<bool>) -> Nu
 }
 
 impl Compiler<'_> {
+    /// Position of a point of the ground.
+    fn on_ground(&self, point: PointRef) -> Option<Vec2> {
+        let fixed = self.roles[point.body] == Role::Ground;
+        fixed.then(|| self.bodies[point.body].points()[point.point].at)
+    }
+
     /// True for a class fixed to a known point of a rigid body, whose node must be computed.
     fn needs_rider(&self, nodes: &Nodes, class: usize) -> bool {
         // all points of the ground are nodes

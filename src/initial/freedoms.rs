@@ -2,6 +2,7 @@
 
 use super::redundancy::{self, Redundancy};
 use crate::compile::assembly::closed;
+use crate::compile::extent::extent;
 use crate::scene::{MotionKind, Scene};
 use std::fmt::{Display, Formatter};
 
@@ -29,7 +30,7 @@ impl Freedoms {
             return Some(Freedoms { driven, left: 0 });
         }
         let (model, state) = closed(scene).ok()?;
-        let Redundancy::Rows(dependent) = redundancy::find(&model, &state) else {
+        let Redundancy::Rows(dependent) = redundancy::find(&model, &state, extent(scene)) else {
             return None;
         };
         let shape = model.shape();

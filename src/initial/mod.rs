@@ -10,13 +10,14 @@ pub use freedoms::Freedoms;
 use crate::body::{Content, Deformation, Frame};
 use crate::compile::Compiled;
 use crate::compile::assembly::{CENTRE, assemble, name, opening, whole_name};
+use crate::compile::extent::{FITS, extent};
 use crate::math::plane::{Vec2, full_turns};
 use crate::model::{Model, PlacedBody, PlacedConstraint};
 use crate::scene::{Analysis, BodyState, Journals, NamedBody, Scene, SceneError};
 use crate::system::State;
 
-/// Largest violation of a constraint \[m\] or of its rate \[m/s\] at the start: the digits of a typed position.
-const START_TOLERANCE: f64 = 1e-9;
+/// A start gathers the errors of a few constraints.
+const START: f64 = 10.0 * FITS;
 
 /// The state at t = 0, accelerations and multipliers still to be found.
 ///
@@ -30,6 +31,7 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         pressed::press(scene, &mut starts)?;
     }
 
+    let size = extent(scene);
     let mut written = vec![false; state.q.len()];
     written[model.shape().unknowns..].fill(true);
     for (b, start) in starts.iter().enumerate() {
@@ -39,7 +41,7 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
         let deformation = given.map_or(Deformation::default(), |given| given.deformation);
         let placed = &model.bodies()[b];
         let values = placed.placed.kind.place_deformed(start, &deformation);
-        let misfits = place(placed, values, &mut state, &mut written);
+        let misfits = place(placed, values, size, &mut state, &mut written);
         // nothing moves in a static analysis, whatever its drives prescribe
         let moves = scene.simulation.analysis == Analysis::Dynamic;
         let [position, rate] = misfits;
@@ -112,17 +114,18 @@ fn known(scene: &Scene, Compiled { model, kinematics }: &Compiled) -> Result<Sta
 
 /// Checks that a start satisfies the constraints and their rates.
 fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneError> {
-    let worst = |of: fn(&PlacedConstraint, &State) -> f64| {
+    let size = extent(scene);
+    let worst = |of: fn(&PlacedConstraint, &State) -> f64, scale: f64| {
         let all = model.constraints.iter().map(|p| (of(p, state), p));
         let worst = all.max_by(|a, b| a.0.total_cmp(&b.0));
-        worst.filter(|(x, _)| x.is_nan() || *x > START_TOLERANCE)
+        worst.filter(|(x, _)| x.is_nan() || *x > START * scale)
     };
     // the violation is measured over all rows together, so no single row can be named
     let name = |p: &PlacedConstraint| match p.rows {
         1 => name(model, p),
         _ => whole_name(model, p),
     };
-    if let Some((open, placed)) = worst(|p, at| Vec2::from(p.term.value(at)).norm()) {
+    if let Some((open, placed)) = worst(|p, at| Vec2::from(p.term.value(at)).norm(), size) {
         let message = format!(
             "the start violates {}: it is open by {}",
             name(placed),
@@ -135,7 +138,9 @@ fn satisfied(scene: &Scene, model: &Model, state: &State) -> Result<(), SceneErr
     if scene.simulation.analysis == Analysis::Static {
         return Ok(());
     }
-    let Some((off, placed)) = worst(|p, at| Vec2::from(p.term.velocity(at)).norm()) else {
+    // a mechanism at rest has no other scale than its length in a second
+    let speed = state.v.iter().fold(size, |m, v| m.max(v.abs()));
+    let Some((off, placed)) = worst(|p, at| Vec2::from(p.term.velocity(at)).norm(), speed) else {
         return Ok(());
     };
     let by = opening(&placed.term, off, "/s");
@@ -273,10 +278,11 @@ impl PlaceError {
 }
 
 /// Writes the coordinates of a body, and remembers which were written. Returns the first position and the first velocity that is
-/// known or written already and differs: bodies that share a node must agree on it.
+/// known or written already and differs in a mechanism of this length: bodies that share a node must agree on it.
 fn place(
     body: &PlacedBody,
     values: Vec<[[f64; 3]; 2]>,
+    size: f64,
     state: &mut State,
     written: &mut [bool],
 ) -> [Option<PlaceError>; 2] {
@@ -293,7 +299,13 @@ fn place(
                     Content::Angle => "rad",
                     _ => "m",
                 };
-                let fits = by <= START_TOLERANCE;
+                let rates = values.iter().map(|x| x.abs());
+                let scale = if is_rate {
+                    rates.fold(size, f64::max)
+                } else {
+                    size
+                };
+                let fits = by <= START * scale;
                 *misfit = misfit.or((!fits).then_some(PlaceError { by, unit, is_rate }));
             } else {
                 level.copy_from_slice(&values[..level.len()]);

@@ -17,6 +17,7 @@ use super::{known, place};
 use crate::body::{Deformation, Frame};
 use crate::compile::assembly::{close_to, name, opening};
 use crate::compile::compile_pressed;
+use crate::compile::extent::extent;
 use crate::interaction::{Contact, Joint};
 use crate::math::plane::Vec2;
 use crate::model::{Model, PlacedConstraint};
@@ -50,6 +51,7 @@ pub(super) fn press(scene: &Scene, starts: &mut [Option<Frame>]) -> Result<(), S
             place(
                 body,
                 body.placed.kind.place(start),
+                extent(scene),
                 &mut state,
                 &mut written,
             );
@@ -57,7 +59,7 @@ pub(super) fn press(scene: &Scene, starts: &mut [Option<Frame>]) -> Result<(), S
     }
     let mut goal = vec![0.0; shape.multipliers];
     close_at(scene, &model, &mut state, &goal)?;
-    if let Redundancy::Rows(rows) = redundancy::find(&model, &state) {
+    if let Redundancy::Rows(rows) = redundancy::find(&model, &state, extent(scene)) {
         model.drop_rows(&rows);
     }
     rest(scene, &model, &mut state)?;
@@ -89,7 +91,7 @@ fn close_at(
     goal: &[f64],
 ) -> Result<(), SceneError> {
     let held = vec![false; model.shape().unknowns];
-    let Some((open, placed)) = close_to(model, state, &held, goal) else {
+    let Some((open, placed)) = close_to(model, state, &held, goal, extent(scene)) else {
         model.move_driven_nodes(state);
         return Ok(());
     };

@@ -14,6 +14,7 @@ use super::stall::Stall;
 use super::{LoopCounters, Simulation, equilibrium, scale};
 use crate::body::Strain;
 use crate::compile::compile;
+use crate::compile::extent::extent;
 use crate::initial::{self, redundancy};
 use crate::model::Model;
 use crate::newton::Newton;
@@ -180,7 +181,7 @@ fn refuse_constraints(scene: &Scene, model: &Model) -> Result<(), SceneError> {
 
 /// Removes redundant constraints from the equations.
 fn keep_independent(scene: &Scene, model: &mut Model, start: &State) -> Result<(), SceneError> {
-    match redundancy::find(model, start) {
+    match redundancy::find(model, start, extent(scene)) {
         redundancy::Redundancy::Rows(rows) => {
             model.drop_rows(&rows);
             Ok(())
@@ -191,6 +192,19 @@ fn keep_independent(scene: &Scene, model: &mut Model, start: &State) -> Result<(
             );
             let error = scene.error(scene.initial.span, message, "this start");
             Err(error.with_help("start slightly away from the dead centre"))
+        }
+        redundancy::Redundancy::Shaky(name) => {
+            // of a point without its axis
+            let what = name.rsplit_once('.').map_or(&*name, |(what, _)| what);
+            let message = format!(
+                "the constraints lose rank at the start: {what} can move to first order but not to second, so the mechanism is rigid \
+                 but shaky, and its constraint forces have no bound"
+            );
+            let error = scene.error(scene.initial.span, message, "this start");
+            Err(error.with_help(
+                "change a length or move a joint, so that the joints there do not lie in one line; a drive may start slightly away \
+                 from a dead centre",
+            ))
         }
     }
 }

@@ -1,15 +1,16 @@
 //! Given poses that contradict the sketch, a joint, a drive or each other.
 
+use super::super::extent::{FITS, extent};
 use super::super::{Compiler, Role};
+use super::closing::{Closing, Search};
 use super::guess::coordinates;
-use super::{CENTRE, CLOSED, check_sketch, close, name, opening, strays, whole_name};
-use crate::math::groups::Groups;
+use super::{CENTRE, check_sketch, name, opening, strays, whole_name};
 use crate::math::plane::Vec2;
 use crate::model::{Model, PlacedConstraint};
 use crate::scene::{SceneError, SketchPoint};
 use crate::system::State;
 use crate::terms::ConstraintTerm;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// Checks that neither the sketch nor a joint contradicts a given pose or a prescribed motion.
 pub(super) fn check_given(
@@ -44,10 +45,11 @@ pub(super) fn check_given(
         return Err(c.scene.contradiction(message, sketch, cause));
     }
     let n = model.shape().unknowns;
+    let fits = FITS * extent(c.scene);
     for placed in &model.constraints {
         let fixed = placed.block.coordinates.iter().all(|&i| i >= n || held[i]);
         let open = Vec2::from(placed.term.value(state)).norm();
-        if fixed && open > CLOSED {
+        if fixed && open > fits {
             let error = match placed.term {
                 ConstraintTerm::Length(_) => wrong_length(c, placed, state),
                 _ => misfit(c, placed, whole_name(model, placed), open),
@@ -114,47 +116,42 @@ fn misfit(c: &Compiler, placed: &PlacedConstraint, whole: &str, open: f64) -> Op
     )
 }
 
-/// The coordinates of all constraints that free coordinates connect with one constraint: no others decide whether it closes.
-fn reached(model: &Model, held: &[bool], placed: &PlacedConstraint) -> HashSet<usize> {
-    let n = held.len();
-    let own = |constraint: usize| model.constraints[constraint].block.coordinates.iter();
-    let free = |i: &&usize| **i < n && !held[**i];
-    let mut parts = Groups::new(model.constraints.len());
-    let mut first_with = HashMap::new();
-    for constraint in 0..model.constraints.len() {
-        for i in own(constraint).filter(free) {
-            parts.unite(constraint, *first_with.entry(*i).or_insert(constraint));
-        }
-    }
-    let is_placed = |k: &usize| model.constraints[*k].row == placed.row;
-    let mut parts = parts.all().into_iter();
-    let part = parts.find(|part| part.iter().any(is_placed));
-    part.into_iter().flatten().flat_map(own).copied().collect()
-}
-
 /// An error that names a given pose and the sketch, if the mechanism closes as sketched without this pose.
 pub(super) fn blame(
     c: &Compiler,
-    model: &Model,
+    closing: &Closing,
     guessed: &State,
-    held: &[bool],
-    (open, placed): (f64, &PlacedConstraint),
+    placed: &PlacedConstraint,
 ) -> Option<SceneError> {
-    let reached = reached(model, held, placed);
+    let model = closing.model;
+    let part = closing.part(placed).into_iter();
+    let reached: HashSet<usize> = part
+        .flat_map(|k| model.constraints[k].block.coordinates.iter().copied())
+        .collect();
     let mut poses = c.scene.initial.bodies.values();
     let pose = poses.find(|pose| {
         let own = coordinates(model, pose.body);
         if !own.iter().any(|i| reached.contains(i)) {
             return false;
         }
-        let (mut free, mut state) = (held.to_vec(), guessed.clone());
+        let (mut free, mut state) = (closing.held.to_vec(), guessed.clone());
         for i in own {
             free[i] = false;
         }
-        close(model, &mut state, &free).is_none() && check_sketch(c, model, &state).is_ok()
+        let without = Closing {
+            held: &free,
+            ..*closing
+        };
+        without.close(&mut state).is_none() && check_sketch(c, model, &state).is_ok()
     })?;
-    let (body, name) = (&c.scene.bodies[pose.body].name, name(model, placed));
-    let open = opening(&placed.term, open, "");
+    let body = &c.scene.bodies[pose.body].name;
+    let open = match closing.search(guessed, placed) {
+        Search::Open(open) => {
+            let [place, gap] = open.gap(c, model);
+            format!("{place} stays open by {gap} at least")
+        }
+        _ => format!("{} stays open", name(model, placed)),
+    };
     let mut sketch = c.scene.initial.sketch.iter();
     let near = |s: &&SketchPoint| {
         let points = c.sketched_points(s);
@@ -163,13 +160,11 @@ pub(super) fn blame(
     let drawn = sketch.find(near);
     let message = match drawn {
         Some(drawn) => format!(
-            "the given pose of {body} contradicts the sketch of {}: without this pose the mechanism closes there, with it {name} \
-             stays open by {open}",
+            "the given pose of {body} contradicts the sketch of {}: without this pose the mechanism closes there, with it {open}",
             c.sketched_name(drawn)
         ),
         None => format!(
-            "the mechanism cannot be assembled with the given pose of {body}: {name} stays open by {open}; without this pose it \
-             closes"
+            "the mechanism cannot be assembled with the given pose of {body}: {open}; without this pose it closes"
         ),
     };
     let drawn = drawn.map(|drawn| (drawn.span, "this sketch"));

@@ -4,21 +4,23 @@
 //! the sketch and the given poses. Velocities: those of least kinetic energy that satisfy the constraints and the given
 //! velocities.
 
+mod closing;
 mod contradictions;
 mod guess;
 mod velocities;
 
+use super::extent::{extent, sizes};
 use super::sketch::marker;
 use super::{Compiler, Mode, build, known_roles, numbering};
 use crate::body::PointRef;
-use crate::math::independent_rows::IndependentRows;
 use crate::math::plane::Vec2;
 use crate::math::sparse_rows::SparseRow;
 use crate::model::{Model, PlacedConstraint};
-use crate::newton::{Update, iterate};
 use crate::scene::{Scene, SceneError, SketchPoint, Sketched};
 use crate::system::State;
 use crate::terms::ConstraintTerm;
+use closing::{Closing, Search};
+pub(crate) use closing::{close_to, closing_step};
 use contradictions::{blame, check_given};
 use guess::guess;
 use numbers::number;
@@ -28,10 +30,6 @@ use velocities::velocities;
 pub(crate) const CENTRE: &str = "`x` and `y` locate the point that `point` names, or the centre of mass; `theta` is the angle of the \
      body, of a link the direction from `start` to `end`";
 
-/// Largest violation of an assembled constraint \[m\]: far above rounding, far below anything measurable.
-const CLOSED: f64 = 1e-12;
-/// Steps of Newton's method.
-const ITERATIONS: usize = 80;
 /// Largest distance between a joint and its sketch, relative to the smaller body.
 const SKETCH: f64 = 0.25;
 /// Largest difference between velocities that count as equal \[m/s, rad/s\], also as a part of the largest velocity: the digits of typed
@@ -57,7 +55,8 @@ pub(crate) fn closed(scene: &Scene) -> Result<(Model, State), SceneError> {
     closed_mechanism(&Compiler::new(scene, Mode::Ideal, known_roles(scene)))
 }
 
-fn closed_mechanism(c: &Compiler) -> Result<(Model, State), SceneError> {
+/// The mechanism of a compiler, closed at t = 0, and its pose.
+pub(super) fn closed_mechanism(c: &Compiler) -> Result<(Model, State), SceneError> {
     let numbering = numbering::number(c, None)?;
     let mechanism = build::build(c, numbering, None)?;
     let mut state = mechanism.blank_state();
@@ -66,10 +65,16 @@ fn closed_mechanism(c: &Compiler) -> Result<(Model, State), SceneError> {
     let held = guess(c, &mechanism, &mut state)?;
     check_given(c, &mechanism, &state, &held)?;
     let guessed = state.clone();
-    if let Some(open) = close(&mechanism, &mut state, &held) {
-        let blamed = blame(c, &mechanism, &guessed, &held, open);
-        let holds = held.contains(&true);
-        return Err(blamed.unwrap_or_else(|| cannot_close(c, &mechanism, open, holds)));
+    let closing = Closing {
+        model: &mechanism,
+        held: &held,
+        size: extent(c.scene),
+    };
+    if let Some(placed) = closing.close(&mut state) {
+        if let Some(error) = blame(c, &closing, &guessed, placed) {
+            return Err(error);
+        }
+        state = close_or_explain(c, &closing, &guessed, placed)?;
     }
     check_turns(c, &mechanism, &state)?;
     check_sketch(c, &mechanism, &state)?;
@@ -90,73 +95,6 @@ pub(crate) fn constraint_rows(model: &Model, state: &State) -> Vec<SparseRow> {
     rows.collect()
 }
 
-/// One step of Newton's method of least norm on Phi = 0 over the coordinates that are not held; returns the largest move.
-pub(crate) fn closing_step(model: &Model, state: &mut State, held: &[bool]) -> Update {
-    step_to(model, state, held, &vec![0.0; model.shape.multipliers])
-}
-
-/// The same on Phi = goal.
-fn step_to(model: &Model, state: &mut State, held: &[bool], goal: &[f64]) -> Update {
-    let mut rows = constraint_rows(model, state);
-    for row in &mut rows {
-        row.retain(|(i, _)| !held[*i]);
-    }
-    let values = model.constraints.iter().flat_map(|placed| {
-        let value = placed.term.value(state);
-        (0..placed.rows).map(move |d| goal[placed.row + d] - value[d])
-    });
-    let values: Vec<f64> = values.collect();
-    let step = IndependentRows::new(held.len(), &rows, &values).least_norm();
-    for (q, dq) in state.q.iter_mut().zip(&step) {
-        *q += dq;
-    }
-    Update::largest(step.iter().copied())
-}
-
-/// The largest violation of a constraint Phi = goal, and the constraint.
-fn widest<'m>(
-    model: &'m Model,
-    state: &State,
-    goal: &[f64],
-) -> Option<(f64, &'m PlacedConstraint)> {
-    let constraints = model.constraints.iter();
-    let opening = constraints.map(|p| {
-        let value = p.term.value(state);
-        let rows = (0..p.rows).map(|d| goal[p.row + d] - value[d]);
-        (rows.fold(0.0, f64::hypot), p)
-    });
-    opening.max_by(|a, b| a.0.total_cmp(&b.0))
-}
-
-/// Moves all coordinates that are not fixed until every constraint is satisfied; returns the one with the largest violation if
-/// that fails.
-fn close<'m>(
-    model: &'m Model,
-    state: &mut State,
-    held: &[bool],
-) -> Option<(f64, &'m PlacedConstraint)> {
-    close_to(model, state, held, &vec![0.0; model.shape.multipliers])
-}
-
-/// The same with given values of the constraints.
-pub(crate) fn close_to<'m>(
-    model: &'m Model,
-    state: &mut State,
-    held: &[bool],
-    goal: &[f64],
-) -> Option<(f64, &'m PlacedConstraint)> {
-    let widest = |state: &State| widest(model, state, goal);
-    let open = |state: &State| widest(state).filter(|(x, _)| x.is_nan() || *x > CLOSED);
-    if open(state).is_some() {
-        // how it fails does not matter: what stays open says more
-        let _ = iterate(ITERATIONS, |_| {
-            let update = step_to(model, state, held, goal);
-            Ok((update, open(state).is_none()))
-        });
-    }
-    open(state)
-}
-
 /// Checks that no prescribed angle was closed half a turn off.
 fn check_turns(c: &Compiler, model: &Model, state: &State) -> Result<(), SceneError> {
     let turned = |placed: &&PlacedConstraint| placed.term.half_turn(state);
@@ -175,16 +113,18 @@ pub(crate) fn opening(term: &ConstraintTerm, value: f64, per: &str) -> String {
     numbers::si(value, &format!("{}{per}", term.unit()))
 }
 
-/// The error of a mechanism that does not close. It names the body that is larger than all others together, if there is one and
-/// neither a guide nor a given pose explains the violation; otherwise the constraint that is violated.
-fn cannot_close(
+/// A pose of a mechanism that Newton's method alone does not close, or an error. This names the body that is larger than all others
+/// together, if there is one and neither a guide nor a given pose explains the violation; otherwise the loop that stays open, its least
+/// gap and the lengths that would close it.
+fn close_or_explain(
     c: &Compiler,
-    model: &Model,
-    (open, placed): (f64, &PlacedConstraint),
-    holds: bool,
-) -> SceneError {
-    let sizes: Vec<f64> = (0..c.scene.bodies.len()).map(|b| size(c, b)).collect();
+    closing: &Closing,
+    guessed: &State,
+    placed: &PlacedConstraint,
+) -> Result<State, SceneError> {
+    let sizes = sizes(c.scene);
     let total: f64 = sizes.iter().sum();
+    let holds = closing.held.contains(&true);
     let pinned = !holds && c.joints.iter().all(|joint| joint.coincides());
     if let Some(b) = sizes.iter().position(|s| pinned && *s > total - s) {
         let body = &c.scene.bodies[b];
@@ -195,35 +135,23 @@ fn cannot_close(
             number(total - sizes[b], 4)
         );
         let label = "too large, or its unit is not the metre";
-        return c.scene.error(body.span, message, label);
+        return Err(c.scene.error(body.span, message, label));
     }
-    let message = format!(
-        "the mechanism cannot be assembled: {} stays open by {}",
-        name(model, placed),
-        opening(&placed.term, open, "")
-    );
+    let message = match closing.search(guessed, placed) {
+        Search::Closed(state) => return Ok(*state),
+        Search::Open(open) => open.in_words(c, closing.model),
+        Search::TooLarge => format!(
+            "{} stays open, in a part of the mechanism that is too large to search for its least gap",
+            name(closing.model, placed)
+        ),
+    };
+    let message = format!("the mechanism cannot be assembled: {message}");
     let start = c.scene.initial.span;
     let error = c.scene.error(start, message, "from this start");
-    error.with_help(format!(
+    Err(error.with_help(format!(
         "check the given poses, the lengths{}, and that the sketch draws a mechanism that is closed",
         c.longest()
-    ))
-}
-
-/// Largest distance between two points of a body that joints use.
-fn size(c: &Compiler, b: usize) -> f64 {
-    if let Some(length) = c.bodies[b].length() {
-        return length;
-    }
-    let points = c.bodies[b].points().iter().enumerate();
-    let used = |point: usize| !c.joints_at(PointRef { body: b, point }).is_empty();
-    let used: Vec<_> = points
-        .filter_map(|(i, point)| used(i).then_some(point.at))
-        .collect();
-    let pairs = used
-        .iter()
-        .flat_map(|p| used.iter().map(move |q| (p - q).norm()));
-    pairs.fold(0.0, f64::max)
+    )))
 }
 
 /// Name of a constraint: that of its first row.
