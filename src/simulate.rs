@@ -57,6 +57,7 @@ pub use restitution::DeliveredRestitution;
 
 use crate::body::Strain;
 use crate::checkpoint::carried;
+use crate::compile::drive_limit::{self, DriveCourse};
 use crate::model::Model;
 use crate::newton::Newton;
 use crate::record::{Record, Recorder};
@@ -159,12 +160,18 @@ pub struct Simulation {
     critical_points: Vec<CriticalPoint>,
     status: Status,
     error: Option<String>,
+    ended_at_limit: bool,
 }
 
 impl Simulation {
     /// What is recorded; the first channel is the time.
     pub fn channels(&self) -> &[Channel] {
         self.recorder.channels()
+    }
+
+    /// How far the drives lead the ideal rigid mechanism.
+    pub fn drive_course(&self) -> DriveCourse {
+        drive_limit::follow(&self.scene)
     }
 
     /// The compiled mechanism.
@@ -191,6 +198,8 @@ impl Simulation {
             _ => self.impacts.finish(&self.model, observer),
         };
         let result = result.and_then(|()| Ok(closed?));
+        let result = result.map_err(|error| self.at_limit(error));
+        self.ended_at_limit = matches!(result, Err(RunError::DriveLimit(_)));
         (self.status, self.error) = match &result {
             Ok(()) => (Status::Complete, None),
             Err(RunError::Interrupted { .. }) => (Status::Incomplete, None),

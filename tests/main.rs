@@ -24,6 +24,7 @@ mod hostile_input;
 mod ideal;
 mod language;
 mod library;
+mod limits;
 mod local_errors;
 mod long_chains;
 mod loose;

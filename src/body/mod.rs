@@ -51,7 +51,7 @@ pub static KINDS: [&BodyKind; 6] = [
 pub type BodyKind = Kind<fn(&Fields, &Materials) -> Result<Arc<dyn Body>, SceneError>>;
 
 /// A point of a body: indices into the bodies of a scene and into the points of that body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PointRef {
     /// Index of the body.
     pub body: usize,

@@ -3,7 +3,9 @@
 pub(crate) mod assembly;
 mod build;
 mod drive;
+pub mod drive_limit;
 pub(crate) mod extent;
+mod locked;
 mod mass;
 mod motions;
 mod numbering;

@@ -182,8 +182,9 @@ fn starts(
     let bodies = model.bodies().iter();
     let free: Vec<bool> = bodies.map(|body| model.is_free(body)).collect();
     let given = |b: usize| scene.initial.state_of(b);
+    let size = extent(scene);
     for (b, NamedBody { name, .. }) in scene.bodies.iter().enumerate() {
-        let differs = |given: &&BodyState| !free[b] && !is_prescribed(given, model, state);
+        let differs = |given: &&BodyState| !free[b] && !is_prescribed(given, model, state, size);
         if let Some(given) = given(b).filter(differs) {
             let message = format!(
                 "the motion of {name} is prescribed, so it cannot be given an initial state that differs from it"
@@ -224,15 +225,17 @@ fn starts(
 }
 
 /// True of a given state that is the one of a prescribed motion; a velocity that is not given may have any value.
-fn is_prescribed(given: &BodyState, model: &Model, known: &State) -> bool {
+fn is_prescribed(given: &BodyState, model: &Model, known: &State, tolerance: f64) -> bool {
     let pose = model.pose(given.body, known);
     let differences = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| a[i] - b[i]);
     let [x, y, theta]: [f64; 3] = differences(given.position, pose.position);
     let rates: [f64; 3] = differences(given.velocity, pose.velocity);
-    let position = [x, y, theta - full_turns(theta)];
+    let position = [x / size, y / size, theta - full_turns(theta)];
+    let fastest = given.velocity.iter().fold(size, |m, v| m.max(v.abs()));
+    let rates = rates.map(|rate| rate / fastest);
     let rates = rates.iter().filter(|_| given.velocity_given);
     let mut all = position.iter().chain(rates);
-    all.all(|difference| difference.abs() <= START_TOLERANCE)
+    all.all(|difference| difference.abs() <= START)
 }
 
 /// True of a scene that gives a sketch or single velocities, or not the state of every body that moves freely; the ideal mechanism of a

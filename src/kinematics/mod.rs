@@ -5,6 +5,7 @@
 //! The linear systems are those of the acceleration level with unit masses, \[\[I, Phi_q^T\], \[Phi_q, 0\]\], whose
 //! solution is the one of least norm.
 
+pub(crate) mod limit;
 mod series;
 
 use crate::checkpoint::carried;

@@ -369,6 +369,15 @@ impl Model {
 }
 
 impl Model {
+    /// The angles of bodies whose motion is known as a function of time.
+    pub(crate) fn known_angles(&self) -> Vec<usize> {
+        let angles = self.rules.iter().filter_map(|rule| match rule {
+            Rule::Path { x, .. } => Some(x + 2),
+            Rule::Turn { theta, .. } => *theta,
+        });
+        angles.collect()
+    }
+
     /// A state with the fixed coordinates in place and everything else zero.
     pub(crate) fn blank_state(&self) -> State {
         let mut state = State::zeros(self.shape);

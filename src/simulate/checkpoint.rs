@@ -71,6 +71,7 @@ impl Simulation {
             critical_points: _,
             status: _,
             error: _,
+            ended_at_limit: _,
         } = self;
         let model: &Model = model;
         pacer.carry(model, checkpoint);

@@ -3,6 +3,7 @@
 use super::meter::Gain;
 use super::stall::Stalled;
 use super::{CriticalPoint, Simulation};
+use crate::compile::drive_limit::{DriveCourse, DriveLimit};
 use crate::model::Model;
 use crate::newton::Failure;
 use crate::scene::{Accuracy, Pace};
@@ -112,6 +113,9 @@ pub enum RunError {
     /// The load of a static analysis cannot grow, or its equilibrium branches.
     #[error("{0}; `simulation.at_limit = \"follow\"` goes on along the path")]
     Limit(CriticalPoint),
+    /// A drive has come to its limit.
+    #[error("{0}")]
+    DriveLimit(Box<DriveLimit>),
     /// The prescribed motion cannot be followed.
     #[error(transparent)]
     Drive(#[from] PrescribeError),
@@ -125,6 +129,9 @@ pub enum RunError {
     #[error("{0}")]
     Output(#[from] std::io::Error),
 }
+
+/// A mechanism with flexible links or clearance comes to the limit of the ideal one, and fails there, up to this part of the time.
+const NEAR_LIMIT: f64 = 0.01;
 
 /// A number as messages print it.
 pub(super) fn short(value: &f64) -> String {
@@ -189,6 +196,28 @@ impl Simulation {
             t: self.state.t,
             cause,
             steps: stalled.steps,
+        }
+    }
+
+    /// The error that tells why a run ends, if it ends where a drive has come to its limit.
+    pub(super) fn at_limit(&self, error: RunError) -> RunError {
+        let is_of_the_motion = matches!(
+            error,
+            RunError::Physics { .. }
+                | RunError::Accuracy { .. }
+                | RunError::Unstable { .. }
+                | RunError::Stalled { .. }
+                | RunError::Equilibrium { .. }
+        );
+        if self.is_trial_run || !is_of_the_motion {
+            return error;
+        }
+        let t = self.state.t + self.pacer.scale();
+        match self.drive_course() {
+            DriveCourse::Limited(limit) if t >= (1.0 - NEAR_LIMIT) * limit.t => {
+                RunError::DriveLimit(limit)
+            }
+            _ => error,
         }
     }
 

@@ -26,6 +26,9 @@ impl Report {
                 strain.description()
             ));
         }
+        if self.ended_at_limit {
+            return notes;
+        }
         if self.rejected_steps > 0 {
             let most = self.rejected_by.iter().max_by_key(|(_, times)| **times);
             let most = most.map_or(String::new(), |(name, times)| {

@@ -91,6 +91,9 @@ pub struct Report {
     /// Why, for a run that could not go on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
+    /// True where this is a limit of the drives, near which velocities and forces grow without bound.
+    #[serde(skip)]
+    pub ended_at_limit: bool,
     /// Time reached \[s\].
     pub t: f64,
     /// The scheme chosen and why, where the scene leaves it open.
@@ -342,6 +345,7 @@ impl Simulation {
         Report {
             status: self.status,
             error: self.error.clone(),
+            ended_at_limit: self.ended_at_limit,
             t: self.state.t,
             choice: self.choice.clone(),
             effects: self

@@ -140,6 +140,7 @@ impl Simulation {
             critical_points: Vec::new(),
             status: Status::Incomplete,
             error: None,
+            ended_at_limit: false,
             model,
             scene: scene.clone(),
         })

@@ -28,6 +28,9 @@ impl Report {
     /// accelerations or contacts that the steps do not resolve.
     pub fn error_warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
+        if self.ended_at_limit {
+            return warnings;
+        }
         if !self.integration.as_ref().is_some_and(Integration::rests) {
             warnings.extend(self.energy_warning());
             warnings.extend(self.error_warning());
@@ -82,7 +85,11 @@ impl Report {
             )
         });
         let implausible = self.implausible.iter().cloned();
-        implausible.chain(overrun).chain(strained).chain(creep).collect()
+        implausible
+            .chain(overrun)
+            .chain(strained)
+            .chain(creep)
+            .collect()
     }
 
     fn energy_warning(&self) -> Option<String> {

@@ -20,6 +20,7 @@ mod view;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use failure::CommandFailure;
+use looselink::compile::drive_limit::DriveCourse;
 use looselink::document::did_you_mean;
 use looselink::initial::Freedoms;
 use looselink::scene::{Scene, SceneError};
@@ -189,6 +190,15 @@ fn check(arguments: &SceneArguments) -> Result<(), CommandFailure> {
     let (scene, simulation) = arguments.load()?;
     let notes = simulation.scene_notes();
     notes.iter().for_each(|note| remark(note));
+    match simulation.drive_course() {
+        DriveCourse::Limited(limit) if limit.is_exact() => return Err(limit.fault(&scene).into()),
+        DriveCourse::Limited(limit) => progress::warn(&limit.to_string()),
+        DriveCourse::Cut(t) => progress::warn(&format!(
+            "the drives are followed up to t = {} s only: whether they meet a limit later was not checked",
+            numbers::number(t, 6)
+        )),
+        DriveCourse::Undetermined | DriveCourse::Complete => {}
+    }
     let implausible = simulation.implausible();
     implausible.iter().for_each(|told| progress::warn(told));
     let freedoms = Freedoms::of(&scene).map_or(String::new(), |found| format!("; {found}"));

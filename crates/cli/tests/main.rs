@@ -2,6 +2,7 @@
 
 mod command_line;
 mod completions;
+mod limits;
 mod modes;
 mod new;
 mod plot;
