@@ -225,7 +225,7 @@ fn starts(
 }
 
 /// True of a given state that is the one of a prescribed motion; a velocity that is not given may have any value.
-fn is_prescribed(given: &BodyState, model: &Model, known: &State, tolerance: f64) -> bool {
+fn is_prescribed(given: &BodyState, model: &Model, known: &State, size: f64) -> bool {
     let pose = model.pose(given.body, known);
     let differences = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| a[i] - b[i]);
     let [x, y, theta]: [f64; 3] = differences(given.position, pose.position);
