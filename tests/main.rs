@@ -18,6 +18,7 @@ mod drift;
 mod equilibria;
 mod examples;
 mod expressions;
+mod field;
 mod freedoms;
 mod good_input;
 mod hostile_input;

@@ -117,6 +117,7 @@ pub(super) fn build(
         names,
         states: numbering.states.concat(),
         angles: angles(c, &numbering),
+        determined: vec![false; numbering.unknowns],
         kinematics_counter: 0,
         elastic_counter: 0,
         effects: Vec::new(),

@@ -20,6 +20,8 @@ const EXCURSION: f64 = 1e-2;
 const CLOSING: usize = 12;
 /// A step no larger than this part of the mechanism is the last one.
 const CLOSED: f64 = 1e-12;
+/// A displacement below this part of the largest is none.
+const STILL: f64 = 1e-9;
 /// Singular values below this part of the largest are zero: what makes rows dependent elsewhere.
 const RANK: f64 = 1e-9;
 /// Second-order terms below this part of the largest are zero: they are differences of numbers of that size.
@@ -33,7 +35,12 @@ fn dependent(model: &Model, state: &State) -> (Vec<(usize, usize)>, IndependentR
     let all = constraints.flat_map(|(i, placed)| (0..placed.rows).map(move |d| (i, d)));
     let all: Vec<_> = all.collect();
     let zero = vec![0.0; all.len()];
-    let rows = constraint_rows(model, state);
+    // of displacements, so that ranks do not depend on the size of the mechanism
+    let lengths = unit_lengths(model);
+    let mut rows = constraint_rows(model, state);
+    for (i, x) in rows.iter_mut().flatten() {
+        *x /= lengths[*i];
+    }
     let equations = IndependentRows::new(model.shape().unknowns, &rows, &zero);
     let dependent = equations.dependent.iter().map(|&k| all[k]);
     (dependent.collect(), equations)
@@ -63,25 +70,10 @@ pub(crate) fn find(model: &Model, start: &State, size_of_model: f64) -> Redundan
     if let Some(coordinate) = shaky(model, start, &here) {
         return Redundancy::Shaky(model.names[coordinate].clone());
     }
-    // any direction that the constraints permit and that shares no symmetry with a mechanism
-    let direction: Vec<f64> = (0..n).map(|i| (1.0 + 2.4 * i as f64).sin()).collect();
-    let free = independent.free_part(&direction);
-    let size = free.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if size <= 1e-9 * (n as f64).sqrt() {
+    let Some(moved) = neighbour(model, start, &independent, size_of_model) else {
         // no motion is possible: rows that depend on others here always do
         return Redundancy::Rows(here);
-    }
-    let mut moved = start.clone();
-    for (q, x) in moved.q.iter_mut().zip(&free) {
-        *q += EXCURSION * size_of_model * x / size;
-    }
-    let held = vec![false; n];
-    for _ in 0..CLOSING {
-        let Update { size, .. } = closing_step(model, &mut moved, &held);
-        if size <= CLOSED * size_of_model {
-            break;
-        }
-    }
+    };
     let (there, _) = dependent(model, &moved);
     match here.iter().find(|row| there.binary_search(row).is_err()) {
         Some(&(i, d)) if there.len() < here.len() => {
@@ -89,6 +81,67 @@ pub(crate) fn find(model: &Model, start: &State, size_of_model: f64) -> Redundan
         }
         _ => Redundancy::Rows(here),
     }
+}
+
+/// How far every unknown moves points of its body in a motion that the constraints permit, relative to the largest: of any direction
+/// that shares no symmetry with a mechanism. None where no motion is possible.
+fn free_displacements(model: &Model, equations: &IndependentRows) -> Option<Vec<f64>> {
+    let n = model.shape().unknowns;
+    let direction: Vec<f64> = (0..n).map(|i| (1.0 + 2.4 * i as f64).sin()).collect();
+    let mut free = equations.free_part(&direction);
+    let largest = free.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    free.iter_mut().for_each(|x| *x /= largest);
+    (largest > STILL).then_some(free)
+}
+
+/// A pose near the start; none where no motion is possible.
+fn neighbour(
+    model: &Model,
+    start: &State,
+    equations: &IndependentRows,
+    size_of_model: f64,
+) -> Option<State> {
+    let free = free_displacements(model, equations)?;
+    let mut moved = start.clone();
+    for ((q, x), length) in moved.q.iter_mut().zip(&free).zip(unit_lengths(model)) {
+        *q += EXCURSION * size_of_model * x / length;
+    }
+    let held = vec![false; free.len()];
+    for _ in 0..CLOSING {
+        let Update { size, .. } = closing_step(model, &mut moved, &held);
+        if size <= CLOSED * size_of_model {
+            break;
+        }
+    }
+    Some(moved)
+}
+
+/// For every unknown coordinate, whether the constraints alone give its velocity, at the start and in a pose near it: in a single pose a
+/// coordinate may be at its dead centre. The errors of such a coordinate do not add up from step to step.
+pub(crate) fn determined(model: &Model, start: &State, size_of_model: f64) -> Vec<bool> {
+    let n = model.shape().unknowns;
+    let still = |equations: &IndependentRows| match free_displacements(model, equations) {
+        None => vec![true; n],
+        Some(free) => free.iter().map(|x| x.abs() <= STILL).collect(),
+    };
+    let (_, equations) = dependent(model, start);
+    let here = still(&equations);
+    if !here.contains(&true) {
+        return here;
+    }
+    let Some(moved) = neighbour(model, start, &equations, size_of_model) else {
+        return here;
+    };
+    let there = still(&dependent(model, &moved).1);
+    here.into_iter().zip(there).map(|(a, b)| a && b).collect()
+}
+
+/// The largest distance by which a unit of each unknown moves a point of its body; one of an internal state.
+fn unit_lengths(model: &Model) -> Vec<f64> {
+    let lengths = model.lengths().into_iter();
+    lengths
+        .map(|length| if length > 0.0 { length } else { 1.0 })
+        .collect()
 }
 
 /// The unknown coordinate that moves most in a motion that is possible to first order only, where dependent rows permit one.

@@ -42,6 +42,8 @@ pub struct Model {
     pub(crate) states: Vec<usize>,
     /// Unknown angles of rigid bodies.
     pub(crate) angles: Vec<usize>,
+    /// True of unknowns that prescribed motions determine through the constraints alone.
+    pub(crate) determined: Vec<bool>,
     /// Index of the effect of inverse kinematics, if there is one, and of that of elements.
     pub(crate) kinematics_counter: usize,
     pub(crate) elastic_counter: usize,

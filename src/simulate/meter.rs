@@ -7,7 +7,8 @@
 //! E = max_i l_i (sum |e_q,i| + tau_i max_t |sum e_v,i|),   tau_i = (max q_i - min q_i)/max |v_i|
 //! ```
 //!
-//! is the error of position \[m\] of the whole run if nothing amplifies it. Impacts do amplify it, and a mechanism with
+//! is the error of position \[m\] of the whole run if nothing amplifies it. A coordinate that prescribed motions determine through
+//! the constraints has none. Impacts do amplify it, and a mechanism with
 //! clearance is chaotic. An error of velocity grows for tau_i \[s\], the time in which the coordinate crosses its range.
 //!
 //! Accelerations and forces may be wrong where positions are right: an undamped scheme keeps a vibration that the steps do not
@@ -276,9 +277,14 @@ impl Meter {
     /// What has been measured so far.
     pub fn report(&self, model: &Model) -> Integration {
         let parts = self.sums.iter().zip(&self.extents).zip(&self.lengths);
-        let errors = parts.clone().map(|((sums, extent), length)| {
-            length * (sums.position + extent.crossing(self.elapsed) * sums.peak)
-        });
+        let errors = parts.clone().zip(&model.determined);
+        let errors = errors.map(
+            |(((sums, extent), length), is_determined)| match is_determined {
+                // every step ends on the constraints
+                true => 0.0,
+                false => length * (sums.position + extent.crossing(self.elapsed) * sums.peak),
+            },
+        );
         let worst = largest(errors);
         let travels = parts
             .clone()

@@ -12,7 +12,7 @@ use super::plausibility::Plausibility;
 use super::report::{Extreme, Status};
 use super::stall::Stall;
 use super::{LoopCounters, Simulation, equilibrium, scale};
-use crate::body::Strain;
+use crate::body::{Moving, Strain};
 use crate::compile::compile;
 use crate::compile::extent::extent;
 use crate::initial::{self, redundancy};
@@ -180,10 +180,21 @@ fn refuse_constraints(scene: &Scene, model: &Model) -> Result<(), SceneError> {
     ))
 }
 
+/// True where a motion is prescribed, by a drive or by the path of a body.
+fn is_driven(scene: &Scene) -> bool {
+    let mut bodies = scene.bodies.iter();
+    let moves = bodies.any(|body| body.kind.get::<Moving>().is_some());
+    moves || !(scene.motions.is_empty() && scene.drives.is_empty())
+}
+
 /// Removes redundant constraints from the equations.
 fn keep_independent(scene: &Scene, model: &mut Model, start: &State) -> Result<(), SceneError> {
     match redundancy::find(model, start, extent(scene)) {
         redundancy::Redundancy::Rows(rows) => {
+            // without a prescribed motion no unknown that moves is determined
+            if model.shape().multipliers > 0 && is_driven(scene) {
+                model.determined = redundancy::determined(model, start, extent(scene));
+            }
             model.drop_rows(&rows);
             Ok(())
         }
