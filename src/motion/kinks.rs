@@ -76,6 +76,10 @@ impl Expression {
             let jet = self.at(*t);
             sizes = std::array::from_fn(|level| sizes[level].max(jet[level].abs()));
         }
+        // a jump also is rounding where it changes the level below by rounding within the duration
+        for level in 1..3 {
+            sizes[level] = sizes[level].max(sizes[level - 1] / duration);
+        }
         for pair in times.windows(2) {
             let after = self.margins(pair[1]);
             let between = self.extremes([pair[0], pair[1]], [&before, &after]);
@@ -231,6 +235,7 @@ mod tests {
             "smooth_step(max(0, min(1, 3 * t)))",
             // equal arguments switch at random
             "max(sin(t)^2 + cos(t)^2, 1) + min(t, t)",
+            "0.03 * max(sin(9 * t)^2 + cos(9 * t)^2, 1)",
             "abs(t)",
         ] {
             assert_eq!(read(text).kink(2.0), None, "{text}");
