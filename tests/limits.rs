@@ -535,6 +535,16 @@ fn redundant_bars_repeat_and_contradict() {
         "{error}"
     );
     assert!(error.contains("third 0.2 m"), "{error}");
+    // hardly off: a plate on three bars of nearly the same length does not turn
+    let error = refused(&parallel_bars(1.0, 0.20001));
+    assert!(
+        error.contains("contradicts the other constraints, by 1e-5 m"),
+        "{error}"
+    );
+    assert!(
+        error.contains("third 0.2 m") && !error.contains("longer"),
+        "{error}"
+    );
     // a bar between two fixed points
     let bar = |length: f64| {
         format!(

@@ -386,12 +386,22 @@ impl<'m> Closing<'m> {
                 is_fixed: self.is_fixed(k, &others, &least),
             })
         };
-        let driven = self.model.rules.iter();
-        let driven = driven.filter_map(|rule| self.driven_length(rule, open, closed, from));
-        all.filter_map(length).chain(driven).collect()
+        let mut lengths: Vec<ClosingLength> = all.filter_map(length).collect();
+        // the length of a driven link is fixed with all others
+        let is_fixed = !lengths.is_empty() && lengths.iter().all(|length| length.is_fixed);
+        let driven = self.model.rules.iter().filter_map(|rule| {
+            let (body, length) = self.driven_length(rule, open, closed, from)?;
+            Some(ClosingLength {
+                body,
+                length,
+                is_fixed,
+            })
+        });
+        lengths.extend(driven);
+        lengths
     }
 
-    /// The same of a link that a drive turns, whose length is in no constraint. A change of it changes the gap by no more, so a change
+    /// A link that a drive turns and the length with which a constraint closes: this length is in no constraint. A change of it changes the gap by no more, so a change
     /// by the gap that is left passes no length with which the loop closes (sphere tracing, Hart 1996, The Visual Computer 12:527).
     fn driven_length(
         &self,
@@ -399,7 +409,7 @@ impl<'m> Closing<'m> {
         open: usize,
         closed: &[usize],
         from: &State,
-    ) -> Option<ClosingLength> {
+    ) -> Option<(usize, f64)> {
         let Rule::Turn {
             pivot,
             point: (x, at),
@@ -429,7 +439,7 @@ impl<'m> Closing<'m> {
                 state = self.least(open, closed, &self.closes(closed, &state)?);
                 let left = self.size_of_gap(open, &state);
                 if left <= TRACED * self.size {
-                    return Some((length, state));
+                    return Some(length);
                 }
                 // a link of another loop changes nothing
                 if length == own + sign * first && (left - first).abs() <= TRACED * self.size {
@@ -440,13 +450,8 @@ impl<'m> Closing<'m> {
             None
         };
         let found = [1.0, -1.0].into_iter().filter_map(search);
-        let (length, state) =
-            found.min_by(|a, b| (a.0 - own).abs().total_cmp(&(b.0 - own).abs()))?;
-        Some(ClosingLength {
-            body,
-            length,
-            is_fixed: self.is_fixed(open, closed, &state),
-        })
+        let closest = found.min_by(|a, b| (a - own).abs().total_cmp(&(b - own).abs()))?;
+        Some((body, closest))
     }
 }
 
