@@ -226,7 +226,8 @@ fn arch(height: f64, elements: usize, load: f64) -> String {
 #[test]
 fn a_frame_sways_and_arches_snap_or_sway_at_the_loads_of_shooting() {
     let worst = Worst::new();
-    let cases: [(&str, fn(usize, f64) -> String, CriticalKind, f64); 3] = [
+    type Structure = fn(usize, f64) -> String;
+    let cases: [(&str, Structure, CriticalKind, f64); 3] = [
         (
             "frame",
             frame,

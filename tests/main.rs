@@ -43,6 +43,7 @@ mod registry;
 mod resume;
 mod rod;
 mod rrr;
+mod sizes;
 mod stability;
 mod start;
 mod support;

@@ -9,7 +9,8 @@
 //! eigenvalue; w then grows beyond it. K is made symmetric by forces that have a potential; of others, which follow a body, the method
 //! sees the stiffness in the directions that it tries.
 
-use super::{Failure, Newton};
+use super::{Extent, Failure, Newton};
+use crate::math::larger;
 use crate::system::{Equilibrium, State, Work};
 use nalgebra::DMatrix;
 
@@ -23,6 +24,8 @@ const FOUND: f64 = 1e-13;
 /// What is below this part of the largest eigenvalue of the inverse is rounding of nearly singular equations: no further direction
 /// that moves, no negative eigenvalue.
 const ROUNDED: f64 = 1e-10;
+/// A permitted direction changes the constraints by less than this part of its displacements, another one by all of it.
+const PERMITTED: f64 = 1e-3;
 /// w grows at most so often, each time beyond the most negative eigenvalue that was seen.
 const SHIFTS: usize = 40;
 /// An eigenvalue below so many roundings of its parts is zero.
@@ -45,13 +48,14 @@ impl Newton {
     pub fn softest(
         &mut self,
         system: &dyn Equilibrium,
+        extent: Extent,
         s: &State,
         work: &mut Work,
     ) -> Result<Option<Softest>, Failure> {
         let mut shift = SLOWEST;
         for _ in 0..SHIFTS {
             self.renew_stiffness(system, s, shift, work)?;
-            let Some(Ends { least, greatest }) = self.ends(system) else {
+            let Some(Ends { least, greatest }) = self.ends(system, extent, s) else {
                 return Ok(None);
             };
             if least < -ROUNDED * greatest.0.abs() {
@@ -97,8 +101,21 @@ impl Newton {
         x.copy_from_slice(&self.b[..n]);
     }
 
+    /// True of a direction that the constraints do not permit: where they permit none, rounding is all that is left of a vector.
+    fn violates(&mut self, system: &dyn Equilibrium, extent: Extent, s: &State, x: &[f64]) -> bool {
+        let mut at = s.clone();
+        at.v.fill(0.0);
+        system.constraint_velocity(&at, &mut self.phi);
+        let still = self.phi.clone();
+        at.v[..x.len()].copy_from_slice(x);
+        system.constraint_velocity(&at, &mut self.phi);
+        let changes = self.phi.iter().zip(&still).map(|(a, b)| a - b);
+        let distances = x.iter().zip(extent.lengths).map(|(x, length)| x * length);
+        changes.fold(0.0, larger) > PERMITTED * distances.fold(0.0, larger)
+    }
+
     /// The ends of the spectrum of (K + w M)^-1 M; none without a direction that moves.
-    fn ends(&mut self, system: &dyn Equilibrium) -> Option<Ends> {
+    fn ends(&mut self, system: &dyn Equilibrium, extent: Extent, s: &State) -> Option<Ends> {
         let n = system.shape().unknowns;
         let mut momentum = vec![0.0; n];
         let mut form = |x: &[f64], y: &[f64]| {
@@ -109,15 +126,13 @@ impl Newton {
         let start: Vec<f64> = (0..n).map(|i| (1.0 + 1.7 * i as f64).sin()).collect();
         let mut v = vec![0.0; n];
         self.soften(system, &start, &mut v);
-        let begun = form(&start, &start);
         let mut norm = form(&v, &v).sqrt();
-        // what constraints leave of a vector of length one; nothing, where it is rounding
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
         let mut found = None;
         let mut x = vec![0.0; n];
         let mut largest = 0.0_f64;
-        if !(norm > f64::MIN_POSITIVE) || begun == 0.0 {
+        if norm <= f64::MIN_POSITIVE || self.violates(system, extent, s, &v) {
             return None;
         }
         for j in 0..n.min(VECTORS) {

@@ -142,7 +142,7 @@ impl FoundRest {
         state: &State,
         work: &mut Work,
     ) -> Result<FoundRest, Failure> {
-        let softest = newton.softest(model, state, work)?;
+        let softest = newton.softest(model, extent, state, work)?;
         let moves_most = softest.as_ref().map(|softest| {
             let moved = softest.direction.iter().zip(extent.lengths);
             let moved = moved.map(|(x, length)| (x * length).abs()).enumerate();
@@ -190,7 +190,7 @@ pub(super) fn come_to_rest(
 ) -> Result<(), Failure> {
     for _ in 0..=SADDLES {
         newton.descend(model, extent, state, work, &mut |_| {})?;
-        let Some(softest) = newton.softest(model, state, work)? else {
+        let Some(softest) = newton.softest(model, extent, state, work)? else {
             return Ok(());
         };
         if softest.eigenvalue >= 0.0 {

@@ -447,7 +447,8 @@ fn warnings_begin_at_their_thresholds() {
             r.unlocated_changes = part as u64;
         }),
     ];
-    let kinds: [(&[(&str, &Change)], fn(&Report) -> Vec<String>); 2] =
+    type Told = fn(&Report) -> Vec<String>;
+    let kinds: [(&[(&str, &Change)], Told); 2] =
         [(&doubts, Report::warnings), (&facts, Report::notes)];
     for (cases, told) in kinds {
         for (words, change) in cases {
