@@ -23,6 +23,7 @@ use crate::model::{
 use crate::scene::{Analysis, SceneError};
 use crate::system::Shape;
 use crate::terms::{ConstraintRows, ConstraintTerm, ForceTerm, Inertia, JointTerms, Owner, Terms};
+use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -86,7 +87,7 @@ pub(super) fn build(
     } = collect(c, &numbering)?;
     let n = numbering.unknowns;
     let multipliers = terms.constraints.iter().map(|row| row.names.len()).sum();
-    let symbolic = analyse(&terms, n);
+    let mut symbolic = analyse(&terms, n);
     let rows = terms.constraints.iter().flat_map(|row| &row.names);
     let names = numbering.names.iter().chain(rows).cloned().collect();
 
@@ -99,6 +100,7 @@ pub(super) fn build(
     let mut mass = mass(std::mem::take(&mut terms.inertia), &numbering, c.mode);
     let entries = mass.entries(n, c.mode);
     mass.tangent = symbolic.filled(entries.iter().copied());
+    symbolic.expect_diagonal(typical_mass(&entries, &angles(c, &numbering)));
     let acceleration_matrix = SaddlePoint::new(n, entries, &unknown_columns(&terms, n));
     let shape = Shape {
         unknowns: n,
@@ -435,6 +437,19 @@ fn unknown_columns(terms: &Terms, unknowns: usize) -> Vec<Vec<usize>> {
         std::iter::repeat_n(coordinates, row.names.len())
     });
     rows.collect()
+}
+
+/// The geometric mean of the masses of the unknown positions \[kg\]; 1 where there are none.
+fn typical_mass(entries: &[(usize, usize, f64)], angles: &[usize]) -> f64 {
+    let angles: HashSet<usize> = angles.iter().copied().collect();
+    let own = entries
+        .iter()
+        .filter(|(i, j, m)| i == j && *m > 0.0 && !angles.contains(i));
+    let logarithms: Vec<f64> = own.map(|(_, _, m)| m.ln()).collect();
+    match logarithms.len() {
+        0 => 1.0,
+        count => (logarithms.iter().sum::<f64>() / count as f64).exp(),
+    }
 }
 
 /// Pattern and pivot order of the tangent: a multiplier after the coordinates of its constraint.

@@ -12,7 +12,7 @@ use super::minimum_degree::minimum_degree;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 
 /// A multiplier that exceeds this loses so many digits that the factorisation is not used.
-const LARGEST_MULTIPLIER: f64 = 1e9;
+pub const LARGEST_MULTIPLIER: f64 = 1e9;
 
 /// Structure of the matrix: pattern with fill, pivot order, positions of the entries in the value array.
 ///
@@ -33,6 +33,8 @@ pub struct Symbolic {
     structure: Vec<usize>,
     /// The same unknowns by their indices.
     coupled: Vec<usize>,
+    /// [`LARGEST_MULTIPLIER`], for a diagonal that is not of order one larger.
+    largest_multiplier: f64,
     /// For every (row, column) pair of a supernode's structure, row by row, where its value stands behind those of the supernode.
     targets: Vec<u32>,
 }
@@ -118,6 +120,7 @@ impl Symbolic {
             supernode_of: Vec::with_capacity(n),
             structure: Vec::new(),
             coupled: Vec::new(),
+            largest_multiplier: LARGEST_MULTIPLIER,
             targets: Vec::new(),
             position: Vec::new(),
             order: Vec::new(),
@@ -241,17 +244,31 @@ impl Symbolic {
         values
     }
 
+    /// Says how large the diagonal m is beside rows of order one, such as masses beside constraints. The multipliers of these rows are
+    /// 1/m, and those behind their pivots, -1/m, are m: neither loses digits.
+    pub fn expect_diagonal(&mut self, m: f64) {
+        self.largest_multiplier = LARGEST_MULTIPLIER * m.max(1.0 / m);
+    }
+
     /// Factorises in place: A = L U.
     ///
     /// # Errors
     /// The first pivot that is zero, not finite, or much smaller than its column.
     pub fn factor(&self, values: &mut [f64]) -> Result<(), WeakPivot> {
+        self.factor_within(values, self.largest_multiplier)
+    }
+
+    /// As [`Symbolic::factor`] of a matrix whose entries are alike in size, with a limit of multipliers of its own.
+    ///
+    /// # Errors
+    /// As [`Symbolic::factor`].
+    pub fn factor_within(&self, values: &mut [f64], limit: f64) -> Result<(), WeakPivot> {
         assert_eq!(values.len(), self.len());
         for node in &self.supernodes {
             let (here, behind) = values.split_at_mut(node.end());
             let here = &mut here[node.start..];
             let targets = &self.targets[node.targets..][..node.count * node.count];
-            let weak = of_size!(node.size, eliminate(here, behind, targets));
+            let weak = of_size!(node.size, eliminate(here, behind, targets, limit));
             if let Err(pivot) = weak {
                 let index = self.order[node.first + pivot];
                 return Err(WeakPivot { index });
@@ -410,6 +427,7 @@ fn eliminate<const S: usize>(
     here: &mut [f64],
     behind: &mut [f64],
     targets: &[u32],
+    limit: f64,
 ) -> Result<(), usize> {
     let (rows, _) = here.as_chunks_mut::<S>();
     let (pivots, rest) = rows
@@ -439,7 +457,7 @@ fn eliminate<const S: usize>(
         }
     }
     for k in 0..S {
-        if !pivots[k][k].is_finite() || largest[k].is_nan() || largest[k] > LARGEST_MULTIPLIER {
+        if !pivots[k][k].is_finite() || largest[k].is_nan() || largest[k] > limit {
             return Err(k);
         }
     }

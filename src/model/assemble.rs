@@ -178,7 +178,9 @@ impl Model {
             let (value, gradient) = (p.term.value(at), p.term.gradient(at));
             let columns = p.block.coordinates.len();
             for d in (0..p.rows).filter(|&d| p.kept[d] != 0.0) {
-                p.border[d].add(&gradient[d].map(|g| (s - 1.0) * g), k);
+                // s - 1 would lose the digits of a small s
+                p.border[d].add(&gradient[d].map(|g| -g), k);
+                p.border[d].add(&gradient[d].map(|g| s * g), k);
                 for i in 0..columns {
                     r[p.block.coordinates[i]] += s * gradient[d][i] * value[d];
                     for j in 0..columns {

@@ -128,7 +128,7 @@ impl Newton {
         let [tangent, _] = &mut self.tangents;
         tangent.discard();
         let factors = &mut tangent.factors;
-        factors.renew(system.symbolic(), &mut self.counters, |k| {
+        factors.renew_homogeneous(system.symbolic(), &mut self.counters, |k| {
             scale = system.stiffness(s, inertia, r, phi, k, work);
         })?;
         Ok(scale)
