@@ -54,8 +54,8 @@ fn a_four_bar_of_any_size_moves_alike_and_says_the_same() {
         let said = |report: &Report| {
             let all = [report.warnings(), report.notes()].concat();
             let own = all.into_iter().filter(|told| !told.contains("SI units"));
-            // counts may differ by rounding
-            own.map(|told| told.replace(|c: char| c.is_ascii_digit(), ""))
+            // whether a pivot is weak can depend on rounding
+            own.filter(|told| !told.contains("row exchanges"))
                 .collect::<Vec<_>>()
         };
         for exponent in -9..=6 {
