@@ -143,7 +143,7 @@ impl ContactCount {
 /// small strains, however large the clearance.
 const DEEP: f64 = 0.1;
 
-/// A journal that has gone so deep into its bearing that no contact law holds: see [`DEEP`].
+/// A journal that has gone so deep into its bearing that no contact law holds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Overrun {
     /// Largest penetration \[m\].
