@@ -114,9 +114,16 @@ impl Simulation {
                 false => self.state.t + self.pacer.scale(),
             };
             let is_stable = |rest: &FoundRest| rest.stability() == Stability::Stable;
-            if !self.rest.as_ref().is_some_and(is_stable) {
-                self.come_to_rest_at(next, observer)?;
-                continue;
+            match self.rest.as_ref().map(FoundRest::stability) {
+                Some(Stability::Stable) => {}
+                Some(Stability::Unstable) if self.scene.simulation.follows_limits => {
+                    self.follow_path(next, observer)?;
+                    continue;
+                }
+                _ => {
+                    self.come_to_rest_at(next, observer)?;
+                    continue;
+                }
             }
             let near = self.state.clone();
             match self.equilibrium_near(&near, next) {
@@ -274,11 +281,8 @@ impl Simulation {
             cosine = -cosine;
         }
         if cosine < LEAST_COSINE {
-            return Err(Failure::NoConvergence {
-                index: 0,
-                update: arc,
-            }
-            .into());
+            let index = next.moves_most(&lengths);
+            return Err(Failure::NoConvergence { index, update: arc }.into());
         }
         let found = self.stability_of_trial()?;
         Ok((found, next))
