@@ -258,8 +258,16 @@ fn a_frame_sways_and_arches_snap_or_sway_at_the_loads_of_shooting() {
     let load = 205.0;
     let (ended, recording, report) = run(&arch(0.03, 16, load), &["simulation.at_limit=follow"]);
     ended.unwrap();
-    assert_eq!(report.critical_points.len(), 1, "{:?}", report.critical_points);
-    assert_eq!(report.rest.as_ref().unwrap().stability(), Stability::Unstable);
+    assert_eq!(
+        report.critical_points.len(),
+        1,
+        "{:?}",
+        report.critical_points
+    );
+    assert_eq!(
+        report.rest.as_ref().unwrap().stability(),
+        Stability::Unstable
+    );
     let sideways = recording.get("points.left.end.x").unwrap();
     assert!(sideways.iter().all(|x| x.abs() < 1e-6), "{sideways:?}");
     // the whole path of the lower arch

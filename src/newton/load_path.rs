@@ -72,7 +72,9 @@ impl PathTangent {
     pub fn moves_most(&self, lengths: &[f64]) -> usize {
         let moved = self.unknowns.iter().zip(lengths);
         let moved = moved.map(|(x, length)| (x * length).abs()).enumerate();
-        moved.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i)
+        moved
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .map_or(0, |(i, _)| i)
     }
 
     /// The other way.
