@@ -361,7 +361,7 @@ impl Simulation {
             let found = match evaluated.and_then(|()| self.stability_of_trial()) {
                 Ok(found) => found,
                 // so near that rounding decides how far the mechanism moves in the direction without stiffness
-                Err(_) if (b.0 - a.0).abs() <= NEAR * arc => {
+                Err(_) if (middle - b.0).abs() <= NEAR * arc => {
                     self.trial.copy_from(&last);
                     break;
                 }
