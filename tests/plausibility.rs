@@ -50,6 +50,8 @@ fn bounds_of_scenes_have_two_sides() {
         ("simulation.gravity=[0.0, 0.0]", "simulation.gravity=[0.0, -9810]", "are these SI units?"),
         ("simulation.duration=0.99e5", "simulation.duration=1e5", "1e8 steps of 0.001 s"),
         ("materials.steel.density=10", "materials.steel.density=9.9", "materials.steel.density is 9.9 kg/m3"),
+        ("materials.steel.density=0.1", "materials.steel.density=0.11", "materials.steel.density is 0.11 kg/m3"),
+        ("materials.steel.density=1e-4", "materials.steel.density=9e-5", "out of the range of all materials"),
         ("materials.steel.density=25000", "materials.steel.density=25100", "steel is 7850 kg/m3"),
         ("materials.steel.youngs_modulus=1e5", "materials.steel.youngs_modulus=0.9e5", "youngs_modulus is 90000 Pa"),
         ("materials.steel.youngs_modulus=2e12", "materials.steel.youngs_modulus=2.1e12", "steel is 210e9 Pa"),

@@ -12,6 +12,9 @@ use std::f64::consts::TAU;
 
 /// Densities \[kg/m3\]: from light foams, about 10, to osmium, 22,590.
 const DENSITY: [f64; 2] = [10.0, 25_000.0];
+/// Between what solids have in g/cm3, 0.1 at least, and what they have in kg/mm3, 2.3e-5 at most, lie densities of parts that are meant
+/// to have no mass.
+const MASSLESS: [f64; 2] = [1e-4, 0.1];
 /// Young's moduli \[Pa\]: from soft gels and silicones, about 1e5, to diamond, 1.2e12.
 const YOUNGS_MODULUS: [f64; 2] = [1e5, 2e12];
 /// Largest width of a flexible link over its length. Shear, which a slender link does not have, adds E/(4 k G) (w/l)^2 to the
@@ -78,7 +81,7 @@ impl Scene {
     fn judge_materials(&self, told: &mut Vec<String>) {
         let out = |[least, most]: [f64; 2], x: f64| !(least..=most).contains(&x);
         for (name, material) in &self.materials {
-            if out(DENSITY, material.density) {
+            if out(DENSITY, material.density) && out(MASSLESS, material.density) {
                 told.push(format!(
                     "materials.{name}.density is {} kg/m3, out of the range of all materials: {ASK} The density of steel is 7850 kg/m3",
                     number(material.density, 4)
