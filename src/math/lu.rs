@@ -250,6 +250,11 @@ impl Symbolic {
         self.largest_multiplier = LARGEST_MULTIPLIER * m.max(1.0 / m);
     }
 
+    /// The limit of multipliers beyond which a pivot is weak.
+    pub fn largest_multiplier(&self) -> f64 {
+        self.largest_multiplier
+    }
+
     /// Factorises in place: A = L U.
     ///
     /// # Errors

@@ -51,6 +51,15 @@ impl Extent<'_> {
         let distances = changes.map(|((a, b), length)| length * (b - a).abs());
         distances.fold(0.0, crate::math::larger) / self.size
     }
+
+    /// The unknown that moves a point farthest in some changes of the unknowns, the first of them without any, and how far \[m\].
+    pub fn farthest(&self, changes: impl Iterator<Item = f64>) -> (usize, f64) {
+        let moved = changes
+            .zip(self.lengths)
+            .map(|(x, length)| (x * length).abs());
+        let most = moved.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        most.unwrap_or((0, 0.0))
+    }
 }
 
 impl Newton {
@@ -86,7 +95,7 @@ impl Newton {
                 tau /= REDUCTION;
                 if tau < LEAST_TAU {
                     made?;
-                    return Err(self.farthest(extent, s, &next));
+                    return Err(unending(extent, s, &next));
                 }
             };
             s.copy_from(&next);
@@ -104,16 +113,7 @@ impl Newton {
             }
             tau = LARGEST_TAU.min(tau * REDUCTION.sqrt());
         }
-        Err(self.farthest(extent, s, &next))
-    }
-
-    /// The failure of a descent; names the unknown that moves most in a last step without a bound.
-    fn farthest(&self, extent: Extent, from: &State, to: &State) -> Failure {
-        let changes = from.q.iter().zip(&to.q).zip(extent.lengths);
-        let moved = changes.map(|((a, b), length)| length * (b - a).abs());
-        let most = moved.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        let (index, update) = most.unwrap_or((0, 0.0));
-        Failure::NoConvergence { index, update }
+        Err(unending(extent, s, &next))
     }
 
     /// True where the forces do work, or none to rounding, on the chord from one state to another.
@@ -154,8 +154,7 @@ impl Newton {
         s: &mut State,
         work: &mut Work,
     ) -> Result<(), Failure> {
-        let displacements = direction.iter().zip(extent.lengths);
-        let largest = displacements.fold(0.0, |m, (x, length)| crate::math::larger(m, x * length));
+        let (_, largest) = extent.farthest(direction.iter().copied());
         let amplitude = part * extent.size / largest;
         for (q, x) in s.q.iter_mut().zip(direction) {
             *q += amplitude * x;
@@ -168,4 +167,11 @@ impl Newton {
         };
         self.balance_with(system, Some(anchor), LIMITS, s, work)
     }
+}
+
+/// The failure of a descent; names the unknown that moves most in a last step without a bound.
+fn unending(extent: Extent, from: &State, to: &State) -> Failure {
+    let changes = from.q.iter().zip(&to.q).map(|(a, b)| b - a);
+    let (index, update) = extent.farthest(changes);
+    Failure::NoConvergence { index, update }
 }

@@ -2,7 +2,7 @@
 
 use super::{Counters, Failure};
 use crate::checkpoint::{Carried, Checkpoint};
-use crate::math::lu::{DenseLu, LARGEST_MULTIPLIER, Symbolic, WeakPivot};
+use crate::math::lu::{DenseLu, Symbolic};
 
 /// A matrix that is filled, factorised and solved many times.
 #[derive(Debug, Clone)]
@@ -21,46 +21,22 @@ impl Factors {
         }
     }
 
-    /// Fills the matrix and factorises it in the fixed pivot order; after a weak pivot, once more as a dense matrix with row
-    /// exchanges.
+    /// Fills the matrix and factorises it in the fixed pivot order, with a limit of its multipliers; after a weak pivot, once more as a
+    /// dense matrix with row exchanges.
     ///
     /// # Errors
     /// The matrix is singular to rounding.
     pub fn renew(
         &mut self,
         symbolic: &Symbolic,
-        counters: &mut Counters,
-        fill: impl FnMut(&mut [f64]),
-    ) -> Result<(), Failure> {
-        let factor = |values: &mut [f64]| symbolic.factor(values);
-        self.renew_by(factor, symbolic, counters, fill)
-    }
-
-    /// As [`Factors::renew`] of a matrix whose entries are alike in size.
-    ///
-    /// # Errors
-    /// As [`Factors::renew`].
-    pub fn renew_homogeneous(
-        &mut self,
-        symbolic: &Symbolic,
-        counters: &mut Counters,
-        fill: impl FnMut(&mut [f64]),
-    ) -> Result<(), Failure> {
-        let factor = |values: &mut [f64]| symbolic.factor_within(values, LARGEST_MULTIPLIER);
-        self.renew_by(factor, symbolic, counters, fill)
-    }
-
-    fn renew_by(
-        &mut self,
-        factor: impl Fn(&mut [f64]) -> Result<(), WeakPivot>,
-        symbolic: &Symbolic,
+        limit: f64,
         counters: &mut Counters,
         mut fill: impl FnMut(&mut [f64]),
     ) -> Result<(), Failure> {
         counters.factorisations += 1;
         self.dense = None;
         fill(&mut self.values);
-        if let Err(weak) = factor(&mut self.values) {
+        if let Err(weak) = symbolic.factor_within(&mut self.values, limit) {
             counters.fallbacks += 1;
             fill(&mut self.values);
             self.dense = DenseLu::factor(symbolic.to_dense(&self.values));

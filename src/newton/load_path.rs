@@ -11,15 +11,12 @@
 //! equations are regular at a limit point, where K is singular. They are solved by two right sides for K, which lose digits there
 //! in the update only, so that Newton's method still converges.
 
-use super::statics::CONTRACTION;
+use super::statics::{CONTRACTION, Ending, ROUNDING, largest_coordinate, move_by};
 use super::{Extent, Failure, Newton, Update, iterate};
 use crate::system::{Equilibrium, State, Work};
 
 /// Largest number of iterations of a point; one that stays on its path needs fewer.
 const MAX_ITERATIONS: usize = 20;
-/// See [`super::statics`].
-const LAST_UPDATE: f64 = 1e-8;
-const ROUNDING: f64 = 1e-12;
 /// Loads are differenced over this part of the duration; those that grow in proportion to t have no error of truncation.
 const DIFFERENCE: f64 = 1e-4;
 
@@ -68,13 +65,9 @@ impl ArcMetric<'_> {
 }
 
 impl PathTangent {
-    /// The unknown that moves points farthest.
-    pub fn moves_most(&self, lengths: &[f64]) -> usize {
-        let moved = self.unknowns.iter().zip(lengths);
-        let moved = moved.map(|(x, length)| (x * length).abs()).enumerate();
-        moved
-            .max_by(|a, b| a.1.total_cmp(&b.1))
-            .map_or(0, |(i, _)| i)
+    /// The unknown that moves a point farthest.
+    pub fn moves_most(&self, extent: Extent) -> usize {
+        extent.farthest(self.unknowns.iter().copied()).0
     }
 
     /// The other way.
@@ -125,38 +118,25 @@ impl Newton {
         to.copy_from(base);
         to.v.fill(0.0);
         to.a.fill(0.0);
-        let (way, pull) = tangent.unknowns.split_at(n);
-        for (q, d) in to.q.iter_mut().zip(way) {
-            *q += arc * d;
-        }
-        for (lambda, d) in to.lambda.iter_mut().zip(pull) {
-            *lambda += arc * d;
-        }
+        let way = &tangent.unknowns[..n];
+        let step: Vec<f64> = tangent.unknowns.iter().map(|x| arc * x).collect();
+        move_by(to, &step);
         to.t += arc * tangent.load * metric.duration;
         set_load(to, work)?;
         self.counters.stages += 1;
-        let mut finishing = false;
+        let mut ending = Ending::default();
         // why the load could not be set, within an iteration that fails for it
         let mut refused = None;
         let mut refuse = |error: E| {
             refused = Some(error);
             Failure::NotFinite { index: 0 }
         };
-        let step: Vec<f64> = way.iter().map(|x| arc * x).collect();
-        let predicted = Update::largest(step.iter().copied()).size;
+        let predicted = Update::largest(step[..n].iter().copied()).size;
         let ended = iterate(MAX_ITERATIONS, |iteration| {
             self.counters.newton_iterations += 1;
             let scale = self.renew_stiffness(system, to, 0.0, work)?;
-            for i in 0..n {
-                self.b[i] = -self.r[i];
-            }
-            for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
-                *b = -scale * phi;
-            }
-            let factors = &self.tangents[0].factors;
-            factors.solve(system.symbolic(), &mut self.b);
+            self.solve_against_residual(system, scale);
             let mut change = self.b.clone();
-            change[n..].iter_mut().for_each(|x| *x *= scale);
             let slope = self.follow_load(system, metric, set_load, to, scale, work);
             let slope = slope.map_err(&mut refuse)?;
             let missing = arc - metric.distance(tangent, base, to) - metric.product(way, &change);
@@ -164,26 +144,18 @@ impl Newton {
             for (x, d) in change.iter_mut().zip(&slope) {
                 *x += growth * d;
             }
-            for (q, d) in to.q.iter_mut().zip(&change[..n]) {
-                *q += d;
-            }
-            for (lambda, d) in to.lambda.iter_mut().zip(&change[n..]) {
-                *lambda += d;
-            }
+            move_by(to, &change);
             to.t += growth * metric.duration;
             set_load(to, work).map_err(&mut refuse)?;
             let update = Update::largest(change[..n].iter().copied());
-            let size = to.q.iter().fold(f64::MIN_POSITIVE, |m, q| m.max(q.abs()));
+            let size = largest_coordinate(to);
             if iteration.number == 0 && update.size > CONTRACTION * predicted.max(ROUNDING * size) {
                 return Err(Failure::NoConvergence {
                     index: update.index,
                     update: update.size,
                 });
             }
-            let smaller = update.size < iteration.last || update.size <= ROUNDING * size;
-            let converged = finishing && smaller;
-            finishing = update.size <= LAST_UPDATE * size;
-            Ok((update, converged))
+            Ok((update, ending.is_reached(iteration, update, size)))
         });
         if let Some(error) = refused {
             return Err(error);
@@ -218,12 +190,9 @@ impl Newton {
             self.b[i] = -over * (r[i] - r_before[i]);
         }
         for (b, (after, before)) in self.b[n..].iter_mut().zip(phi.iter().zip(phi_before)) {
-            *b = -over * scale * (after - before);
+            *b = -over * (after - before);
         }
-        let factors = &self.tangents[0].factors;
-        factors.solve(system.symbolic(), &mut self.b);
-        let mut slope = self.b.clone();
-        slope[n..].iter_mut().for_each(|x| *x *= scale);
-        Ok(slope)
+        self.solve_for_equilibrium(system, scale);
+        Ok(self.b.clone())
     }
 }

@@ -161,7 +161,12 @@ impl Response {
         let fill = |k: &mut [f64]| system.linearise(at, w, r, phi, k, work);
         self.operations += self.costs.tangent;
         let matrix = &mut self.matrices[index];
-        let renewed = matrix.factors.renew(system.symbolic(), &mut counters, fill);
+        let renewed = matrix.factors.renew(
+            system.symbolic(),
+            system.symbolic().largest_multiplier(),
+            &mut counters,
+            fill,
+        );
         matrix.singular = renewed.is_err();
         matrix.tau = tau;
         matrix.made = self.steps;

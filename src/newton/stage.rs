@@ -141,7 +141,9 @@ impl Newton {
         match renew {
             true => {
                 let [Tangent { factors, .. }, _] = &mut self.tangents;
-                factors.renew(system.symbolic(), &mut self.counters, |k| {
+                let symbolic = system.symbolic();
+                let limit = symbolic.largest_multiplier();
+                factors.renew(symbolic, limit, &mut self.counters, |k| {
                     system.linearise(s, stage.w, r, phi, k, work);
                 })?;
                 self.tangents[0].renewed(stage.w);

@@ -5,7 +5,9 @@
 //! same solution for any s > 0; s is the largest stiffness on the diagonal. The constraints are written as s Phi = 0 and the
 //! multipliers as lambda/s, so that all entries of the matrix are of similar size.
 
+use super::iteration::Iteration;
 use super::{Failure, Newton, Update, iterate};
+use crate::math::lu::LARGEST_MULTIPLIER;
 use crate::system::{Equilibrium, State, Work};
 
 /// Largest number of Newton iterations of a load step; one that converges needs fewer.
@@ -13,7 +15,7 @@ const MAX_ITERATIONS: usize = 40;
 /// An update below this part of the largest coordinate is followed by one more, whose error is the square of it.
 const LAST_UPDATE: f64 = 1e-8;
 /// An update below this part of the largest coordinate that no longer decreases is rounding.
-const ROUNDING: f64 = 1e-12;
+pub(super) const ROUNDING: f64 = 1e-12;
 
 /// By the theorem of Newton and Kantorovich a solution is near, and Newton's method finds it, where the second update is at most half
 /// the first; half of that is left for what updates in two norms differ by (Deuflhard 2011, Newton Methods for Nonlinear Problems,
@@ -72,7 +74,7 @@ impl Newton {
         s.a.fill(0.0);
         self.counters.stages += 1;
         let inertia = anchor.map_or(0.0, |anchor| anchor.inertia);
-        let mut finishing = false;
+        let mut ending = Ending::default();
         iterate(iterations, |iteration| {
             self.counters.newton_iterations += 1;
             if let Some(Anchor { q, inertia }) = anchor {
@@ -81,23 +83,10 @@ impl Newton {
                 }
             }
             let scale = self.renew_stiffness(system, s, inertia, work)?;
-            for i in 0..n {
-                self.b[i] = -self.r[i];
-            }
-            for (b, phi) in self.b[n..].iter_mut().zip(&self.phi) {
-                *b = -scale * phi;
-            }
-            self.tangents[0]
-                .factors
-                .solve(system.symbolic(), &mut self.b);
-            for (q, d) in s.q[..n].iter_mut().zip(&self.b) {
-                *q += d;
-            }
-            for (lambda, d) in s.lambda.iter_mut().zip(&self.b[n..]) {
-                *lambda += scale * d;
-            }
+            self.solve_against_residual(system, scale);
+            move_by(s, &self.b);
             let update = Update::largest(self.b[..n].iter().copied());
-            let size = s.q.iter().fold(f64::MIN_POSITIVE, |m, q| m.max(q.abs()));
+            let size = largest_coordinate(s);
             let is_far = iteration.number == 1 && update.size > contraction * iteration.last;
             if is_far && update.size > LAST_UPDATE * size {
                 return Err(Failure::NoConvergence {
@@ -105,14 +94,30 @@ impl Newton {
                     update: update.size,
                 });
             }
-            let smaller = update.size < iteration.last || update.size <= ROUNDING * size;
-            let converged = finishing && smaller;
-            finishing = update.size <= LAST_UPDATE * size;
-            Ok((update, converged))
+            Ok((update, ending.is_reached(iteration, update, size)))
         })?;
         s.a.fill(0.0);
         s.q_low.fill(0.0);
         Ok(())
+    }
+
+    /// Changes of unknowns and multipliers, in `b`, by which the residual and the constraints would vanish, with the factors of the
+    /// stiffness and the scale of the multipliers.
+    pub(super) fn solve_against_residual(&mut self, system: &dyn Equilibrium, scale: f64) {
+        let n = system.shape().unknowns;
+        let negative = |(b, x): (&mut f64, &f64)| *b = -x;
+        self.b[..n].iter_mut().zip(&self.r).for_each(negative);
+        self.b[n..].iter_mut().zip(&self.phi).for_each(negative);
+        self.solve_for_equilibrium(system, scale);
+    }
+
+    /// The same for changes of the residual and of the constraints in `b`.
+    pub(super) fn solve_for_equilibrium(&mut self, system: &dyn Equilibrium, scale: f64) {
+        let n = system.shape().unknowns;
+        self.b[n..].iter_mut().for_each(|x| *x *= scale);
+        let factors = &self.tangents[0].factors;
+        factors.solve(system.symbolic(), &mut self.b);
+        self.b[n..].iter_mut().for_each(|x| *x *= scale);
     }
 
     /// The residual and the factors of the stiffness with a part of the inertia; returns the scale of the multipliers.
@@ -128,9 +133,45 @@ impl Newton {
         let [tangent, _] = &mut self.tangents;
         tangent.discard();
         let factors = &mut tangent.factors;
-        factors.renew_homogeneous(system.symbolic(), &mut self.counters, |k| {
-            scale = system.stiffness(s, inertia, r, phi, k, work);
-        })?;
+        // entries that are alike in size
+        factors.renew(
+            system.symbolic(),
+            LARGEST_MULTIPLIER,
+            &mut self.counters,
+            |k| {
+                scale = system.stiffness(s, inertia, r, phi, k, work);
+            },
+        )?;
         Ok(scale)
+    }
+}
+
+/// Adds changes of unknowns and multipliers to a state.
+pub(super) fn move_by(s: &mut State, changes: &[f64]) {
+    let (unknowns, multipliers) = changes.split_at(s.q_low.len());
+    let pairs = s.q.iter_mut().zip(unknowns);
+    pairs
+        .chain(s.lambda.iter_mut().zip(multipliers))
+        .for_each(|(x, d)| *x += d);
+}
+
+/// The size that updates are relative to.
+pub(super) fn largest_coordinate(s: &State) -> f64 {
+    s.q.iter().fold(f64::MIN_POSITIVE, |m, q| m.max(q.abs()))
+}
+
+/// When Newton's method for an equilibrium ends: after an update whose error is the square of a small one.
+#[derive(Debug, Default)]
+pub(super) struct Ending {
+    /// True after a small update.
+    is_last: bool,
+}
+
+impl Ending {
+    /// True where this update, of coordinates of some size, is the last.
+    pub fn is_reached(&mut self, before: &Iteration, update: Update, size: f64) -> bool {
+        let smaller = update.size < before.last || update.size <= ROUNDING * size;
+        let was_last = std::mem::replace(&mut self.is_last, update.size <= LAST_UPDATE * size);
+        was_last && smaller
     }
 }

@@ -3,7 +3,7 @@
 use super::failure::describe;
 use super::scale;
 use crate::model::Model;
-use crate::newton::{Extent, Failure, Newton};
+use crate::newton::{Extent, Failure, Newton, Softest};
 use crate::scene::{Analysis, Rest, Scene, SceneError};
 use crate::system::{State, System, Work};
 use numbers::number;
@@ -87,10 +87,11 @@ pub(super) fn prepare(
             size: scale::size(scene, model, state),
         };
         let found = match rest {
-            Some(Rest::Nearest) => newton.balance(model, state, work),
+            Some(Rest::Nearest) => newton
+                .balance(model, state, work)
+                .and_then(|()| FoundRest::of(model, newton, extent, state, work)),
             _ => come_to_rest(model, newton, extent, state, work),
         };
-        let found = found.and_then(|()| FoundRest::of(model, newton, extent, state, work));
         let found = found.map_err(|failure| {
             let (name, cause) = explain(model, &failure);
             let message = format!("no equilibrium was found to start from: {name}: {cause}");
@@ -143,17 +144,20 @@ impl FoundRest {
         work: &mut Work,
     ) -> Result<FoundRest, Failure> {
         let softest = newton.softest(model, extent, state, work)?;
-        let moves_most = softest.as_ref().map(|softest| {
-            let moved = softest.direction.iter().zip(extent.lengths);
-            let moved = moved.map(|(x, length)| (x * length).abs()).enumerate();
-            let most = moved.max_by(|a, b| a.1.total_cmp(&b.1));
-            model.unknown_name(most.map_or(0, |(i, _)| i))
+        Ok(FoundRest::new(model, extent, state.t, softest.as_ref()))
+    }
+
+    /// With the softest direction, where anything can move.
+    fn new(model: &Model, extent: Extent, t: f64, softest: Option<&Softest>) -> FoundRest {
+        let moves_most = softest.map(|softest| {
+            let (most, _) = extent.farthest(softest.direction.iter().copied());
+            model.unknown_name(most)
         });
-        Ok(FoundRest {
-            t: state.t,
+        FoundRest {
+            t,
             smallest_eigenvalue: softest.map(|softest| softest.eigenvalue),
             moves_most: moves_most.unwrap_or_default(),
-        })
+        }
     }
 
     /// What a user should know of an equilibrium that is not stable.
@@ -187,19 +191,19 @@ pub(super) fn come_to_rest(
     extent: Extent,
     state: &mut State,
     work: &mut Work,
-) -> Result<(), Failure> {
-    for _ in 0..=SADDLES {
+) -> Result<FoundRest, Failure> {
+    let mut saddles = 0;
+    loop {
         newton.descend(model, extent, state, work, &mut |_| {})?;
-        let Some(softest) = newton.softest(model, extent, state, work)? else {
-            return Ok(());
+        let softest = newton.softest(model, extent, state, work)?;
+        let falls = softest.as_ref().filter(|softest| softest.eigenvalue < 0.0);
+        let Some(way) = falls.filter(|_| saddles < SADDLES) else {
+            return Ok(FoundRest::new(model, extent, state.t, softest.as_ref()));
         };
-        if softest.eigenvalue >= 0.0 {
-            return Ok(());
-        }
-        let way = (&*softest.direction, -softest.eigenvalue, PUSH);
+        let way = (&*way.direction, -way.eigenvalue, PUSH);
         newton.leave(model, extent, way, state, work)?;
+        saddles += 1;
     }
-    Ok(())
 }
 
 /// The unknown and the cause of a failure of a static solve, for the message.

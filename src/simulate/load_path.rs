@@ -103,6 +103,8 @@ impl Simulation {
         target: f64,
         observer: &mut dyn Observer,
     ) -> Result<(), RunError> {
+        let lengths = self.model.lengths();
+        let metric = self.arc_metric(&lengths);
         if self.rest.is_none() {
             self.come_to_rest_at(self.state.t, observer)?;
         }
@@ -117,7 +119,7 @@ impl Simulation {
             match self.rest.as_ref().map(FoundRest::stability) {
                 Some(Stability::Stable) => {}
                 Some(Stability::Unstable) if self.scene.simulation.follows_limits => {
-                    self.follow_path(next, observer)?;
+                    self.follow_path(metric, next, observer)?;
                     continue;
                 }
                 _ => {
@@ -126,11 +128,11 @@ impl Simulation {
                 }
             }
             let near = self.state.clone();
-            match self.equilibrium_near(&near, next) {
+            match self.equilibrium_near(metric, &near, next) {
                 Ok(found) if is_stable(&found) => self.keep_equilibrium(found, observer)?,
                 _ => {
                     self.counters.rejected += 1;
-                    self.follow_path(next, observer)?;
+                    self.follow_path(metric, next, observer)?;
                 }
             }
         }
@@ -141,24 +143,17 @@ impl Simulation {
     fn come_to_rest_at(&mut self, t: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
         let lengths = self.model.lengths();
         let duration = self.scene.simulation.duration;
+        let (model, work) = (&*self.model, &mut self.work);
         let extent = Extent {
             lengths: &lengths,
-            size: scale::size(&self.scene, &self.model, &self.state),
+            size: scale::size(&self.scene, model, &self.state),
         };
-        let Simulation {
-            model,
-            state,
-            trial,
-            newton,
-            work,
-            ..
-        } = self;
-        trial.copy_from(state);
+        let (newton, trial) = (&mut self.newton, &mut self.trial);
+        trial.copy_from(&self.state);
         trial.t = t;
         let found = set_load(model, duration, trial, work).and_then(|()| {
-            newton.project_positions(&**model, trial)?;
-            come_to_rest(model, newton, extent, trial, work)?;
-            Ok(FoundRest::of(model, newton, extent, trial, work)?)
+            newton.project_positions(model, trial)?;
+            Ok(come_to_rest(model, newton, extent, trial, work)?)
         });
         match found {
             Ok(found) => self.keep_equilibrium(found, observer),
@@ -188,26 +183,25 @@ impl Simulation {
     }
 
     /// Follows the path of equilibria by its arc length up to `target`, through or to the points at which it loses stability.
-    fn follow_path(&mut self, target: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
-        let duration = self.scene.simulation.duration;
-        let mut tangent = self.path_tangent(&self.state.clone());
-        let mut arc = match &tangent {
-            Ok(tangent) => (target - self.state.t) / (duration * tangent.load),
-            Err(_) => 0.0,
-        };
+    fn follow_path(
+        &mut self,
+        metric: ArcMetric,
+        target: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<(), RunError> {
+        let duration = metric.duration;
+        let tangent = self.path_tangent(metric, &self.state.clone());
+        let mut along = tangent.map_err(|error| self.no_equilibrium(error, self.state.t))?;
+        let mut arc = (target - self.state.t) / (duration * along.load);
         let smallest = arc * 2.0_f64.powi(-HALVINGS);
         for _ in 0..ARCS {
-            let along = match &tangent {
-                Ok(along) => along.clone(),
-                Err(error) => return Err(self.no_equilibrium(error.clone(), self.state.t)),
-            };
             let (base, was) = (self.state.clone(), self.rest.clone());
             let was_unstable = was.is_some_and(|rest| rest.stability() == Stability::Unstable);
             if was_unstable {
                 // what is followed beyond a limit is shown
                 arc = arc.min(self.scene.output.interval / duration);
             }
-            let (found, next) = match self.path_step(&base, &along, arc) {
+            let (found, next) = match self.path_step(metric, &base, &along, arc) {
                 Ok(step) => step,
                 Err(error) => {
                     self.counters.rejected += 1;
@@ -219,8 +213,8 @@ impl Simulation {
                 }
             };
             if (found.stability() == Stability::Unstable) != was_unstable {
-                let found = self.locate_critical(&base, &along, arc)?;
-                let point = self.critical_point(&base, &along, &found);
+                let found = self.locate_critical(metric, &base, &along, arc)?;
+                let point = self.critical_point(metric, &base, &along, &found);
                 self.critical_points.push(point.clone());
                 if !self.scene.simulation.follows_limits {
                     self.keep_equilibrium(found, observer)?;
@@ -229,16 +223,16 @@ impl Simulation {
                 }
                 // beyond the point, where the stiffness is regular again
                 let (found, next) = self
-                    .path_step(&base, &along, arc)
+                    .path_step(metric, &base, &along, arc)
                     .map_err(|error| self.no_equilibrium(error, base.t))?;
                 self.keep_equilibrium(found, observer)?;
                 self.record(observer)?;
-                tangent = Ok(next);
+                along = next;
                 continue;
             }
             if self.trial.t >= target && base.t < target {
                 let near = self.trial.clone();
-                if let Ok(found) = self.equilibrium_near(&near, target) {
+                if let Ok(found) = self.equilibrium_near(metric, &near, target) {
                     return self.keep_equilibrium(found, observer);
                 }
                 arc *= 0.5;
@@ -248,7 +242,7 @@ impl Simulation {
             if was_unstable {
                 self.record(observer)?;
             }
-            tangent = Ok(next);
+            along = next;
             arc *= 2.0;
         }
         let message = "the path of equilibria has no end".to_owned();
@@ -265,29 +259,29 @@ impl Simulation {
     /// A step along the path into the trial state: what it is, and the direction there.
     fn path_step(
         &mut self,
+        metric: ArcMetric,
         base: &State,
         along: &PathTangent,
         arc: f64,
     ) -> Result<(FoundRest, PathTangent), StepError> {
-        self.path_point(base, along, arc)?;
+        self.path_point(metric, base, along, arc)?;
         check_turns(&self.model, base, &self.trial)?;
         let reached = self.trial.clone();
-        let mut next = self.path_tangent(&reached)?;
-        let lengths = self.model.lengths();
-        let metric = self.arc_metric(&lengths);
+        let mut next = self.path_tangent(metric, &reached)?;
         let mut cosine = metric.cosine(along, &next);
         if cosine < 0.0 {
             next.reverse();
             cosine = -cosine;
         }
         if cosine < LEAST_COSINE {
-            let index = next.moves_most(&lengths);
+            let index = next.moves_most(metric.extent);
             return Err(Failure::NoConvergence { index, update: arc }.into());
         }
-        let found = self.stability_of_trial()?;
+        let found = self.stability_of_trial(metric)?;
         Ok((found, next))
     }
 
+    /// What arcs are measured by; `lengths` are those of the model.
     fn arc_metric<'a>(&self, lengths: &'a [f64]) -> ArcMetric<'a> {
         ArcMetric {
             extent: Extent {
@@ -299,66 +293,56 @@ impl Simulation {
     }
 
     /// The point of the path at a distance, in the trial state.
-    fn path_point(&mut self, base: &State, along: &PathTangent, arc: f64) -> Result<(), StepError> {
-        let lengths = self.model.lengths();
-        let metric = self.arc_metric(&lengths);
-        let Simulation {
-            model,
-            trial,
-            newton,
-            work,
-            ..
-        } = self;
-        let model = &**model;
+    fn path_point(
+        &mut self,
+        metric: ArcMetric,
+        base: &State,
+        along: &PathTangent,
+        arc: f64,
+    ) -> Result<(), StepError> {
+        let (model, work) = (&*self.model, &mut self.work);
         let load = |at: &mut State, work: &mut Work| set_load(model, metric.duration, at, work);
-        newton.path_point(model, metric, &load, (base, along, arc), trial, work)
+        let (point, trial) = ((base, along, arc), &mut self.trial);
+        self.newton
+            .path_point(model, metric, &load, point, trial, work)
     }
 
-    fn path_tangent(&mut self, at: &State) -> Result<PathTangent, StepError> {
-        let lengths = self.model.lengths();
-        let metric = self.arc_metric(&lengths);
-        let Simulation {
-            model,
-            newton,
-            work,
-            ..
-        } = self;
-        let model = &**model;
+    fn path_tangent(&mut self, metric: ArcMetric, at: &State) -> Result<PathTangent, StepError> {
+        let (model, work) = (&*self.model, &mut self.work);
         let load = |at: &mut State, work: &mut Work| set_load(model, metric.duration, at, work);
-        newton.path_tangent(model, metric, &load, at, work)
+        self.newton.path_tangent(model, metric, &load, at, work)
     }
 
-    fn stability_of_trial(&mut self) -> Result<FoundRest, StepError> {
-        let lengths = self.model.lengths();
-        let extent = self.arc_metric(&lengths).extent;
-        let Simulation {
-            model,
-            trial,
+    fn stability_of_trial(&mut self, metric: ArcMetric) -> Result<FoundRest, StepError> {
+        let (newton, work) = (&mut self.newton, &mut self.work);
+        Ok(FoundRest::of(
+            &self.model,
             newton,
+            metric.extent,
+            &self.trial,
             work,
-            ..
-        } = self;
-        Ok(FoundRest::of(model, newton, extent, trial, work)?)
+        )?)
     }
 
     /// The point at which the smallest eigenvalue changes its sign within a step, in the trial state: regula falsi with the weights
     /// of the Illinois method.
     fn locate_critical(
         &mut self,
+        metric: ArcMetric,
         base: &State,
         along: &PathTangent,
         arc: f64,
     ) -> Result<FoundRest, RunError> {
         let value = |found: &FoundRest| found.smallest_eigenvalue.unwrap_or(0.0);
         let first = self.rest.as_ref().map_or(0.0, value);
-        let last = self.stability_of_trial().map(|found| value(&found));
+        let last = self.stability_of_trial(metric).map(|found| value(&found));
         let last = last.map_err(|error| self.no_equilibrium(error, base.t))?;
         let (mut a, mut b) = ((0.0, first), (arc, last));
         for _ in 0..EVALUATIONS {
             let middle = b.0 - b.1 * (b.0 - a.0) / (b.1 - a.1);
             let last = self.trial.clone();
-            let evaluated = self.path_point(base, along, middle);
-            let found = match evaluated.and_then(|()| self.stability_of_trial()) {
+            let evaluated = self.path_point(metric, base, along, middle);
+            let found = match evaluated.and_then(|()| self.stability_of_trial(metric)) {
                 Ok(found) => found,
                 // so near that rounding decides how far the mechanism moves in the direction without stiffness
                 Err(_) if (middle - b.0).abs() <= NEAR * arc => {
@@ -380,25 +364,23 @@ impl Simulation {
             }
             b = (middle, here);
         }
-        self.stability_of_trial()
+        self.stability_of_trial(metric)
             .map_err(|error| self.no_equilibrium(error, base.t))
     }
 
     /// What the critical point in the trial state is.
     fn critical_point(
         &mut self,
+        metric: ArcMetric,
         base: &State,
         along: &PathTangent,
         found: &FoundRest,
     ) -> CriticalPoint {
-        let duration = self.scene.simulation.duration;
         let reached = self.trial.clone();
-        let lengths = self.model.lengths();
-        let metric = self.arc_metric(&lengths);
         let arc = metric.distance(along, base, &reached);
-        let before = self.path_point(base, along, (1.0 - BEFORE) * arc);
+        let before = self.path_point(metric, base, along, (1.0 - BEFORE) * arc);
         let near = self.trial.clone();
-        let direction = before.and_then(|()| self.path_tangent(&near));
+        let direction = before.and_then(|()| self.path_tangent(metric, &near));
         self.trial.copy_from(&reached);
         let stands = direction.map_or(true, |direction| direction.load < STANDS);
         CriticalPoint {
@@ -407,7 +389,7 @@ impl Simulation {
                 false => CriticalKind::Bifurcation,
             },
             t: reached.t,
-            part: reached.t / duration,
+            part: reached.t / metric.duration,
             moves_most: found.moves_most.clone(),
         }
     }
@@ -428,21 +410,18 @@ impl Simulation {
     }
 
     /// The equilibrium at t near another one, in `trial`.
-    fn equilibrium_near(&mut self, near: &State, t: f64) -> Result<FoundRest, StepError> {
-        let duration = self.scene.simulation.duration;
-        let Simulation {
-            model,
-            state,
-            trial,
-            newton,
-            work,
-            ..
-        } = self;
+    fn equilibrium_near(
+        &mut self,
+        metric: ArcMetric,
+        near: &State,
+        t: f64,
+    ) -> Result<FoundRest, StepError> {
+        let (model, trial, work) = (&*self.model, &mut self.trial, &mut self.work);
         trial.copy_from(near);
         trial.t = t;
-        set_load(model, duration, trial, work)?;
-        newton.balance_on_path(&**model, trial, work)?;
-        check_turns(model, state, trial)?;
-        self.stability_of_trial()
+        set_load(model, metric.duration, trial, work)?;
+        self.newton.balance_on_path(model, trial, work)?;
+        check_turns(model, &self.state, trial)?;
+        self.stability_of_trial(metric)
     }
 }
