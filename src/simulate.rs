@@ -58,6 +58,7 @@ pub use restitution::DeliveredRestitution;
 use crate::body::Strain;
 use crate::checkpoint::carried;
 use crate::compile::drive_limit::{self, DriveCourse};
+use crate::initial::Freedoms;
 use crate::model::Model;
 use crate::newton::Newton;
 use crate::record::{Record, Recorder};
@@ -68,7 +69,7 @@ use control::{Candidate, Verdict};
 use pace::Pacer;
 use plausibility::Plausibility;
 use stall::Stall;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A step is halved this many times at most before the run gives up.
 const HALVINGS: i32 = 24;
@@ -161,6 +162,8 @@ pub struct Simulation {
     status: Status,
     error: Option<String>,
     ended_at_limit: bool,
+    /// Those of a mechanism that is driven, once a report has asked for them: to count them the ideal mechanism is closed.
+    freedoms: OnceLock<Option<Freedoms>>,
 }
 
 impl Simulation {

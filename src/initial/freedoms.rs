@@ -1,6 +1,6 @@
 //! Degrees of freedom of the ideal mechanism, and how many of them are driven.
 
-use super::redundancy::{self, Redundancy};
+use super::redundancy::{Ranks, Redundancy};
 use crate::compile::assembly::closed;
 use crate::compile::extent::extent;
 use crate::scene::{MotionKind, Scene};
@@ -30,7 +30,8 @@ impl Freedoms {
             return Some(Freedoms { driven, left: 0 });
         }
         let (model, state) = closed(scene).ok()?;
-        let Redundancy::Rows(dependent) = redundancy::find(&model, &state, extent(scene)) else {
+        let ranks = Ranks::of(&model, &state, extent(scene));
+        let Redundancy::Rows(dependent) = ranks.redundancy() else {
             return None;
         };
         let shape = model.shape();

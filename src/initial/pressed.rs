@@ -12,7 +12,7 @@
 //! rest on each other. Without a force that presses the surfaces by more than the tolerance of an onset, Phi = 0. These are as many
 //! equations as those of the ideal mechanism.
 
-use super::redundancy::{self, Redundancy};
+use super::redundancy::{Ranks, Redundancy};
 use super::{known, place};
 use crate::body::{Deformation, Frame};
 use crate::compile::assembly::{close_to, name, opening};
@@ -59,7 +59,7 @@ pub(super) fn press(scene: &Scene, starts: &mut [Option<Frame>]) -> Result<(), S
     }
     let mut goal = vec![0.0; shape.multipliers];
     close_at(scene, &model, &mut state, &goal)?;
-    if let Redundancy::Rows(rows) = redundancy::find(&model, &state, extent(scene)) {
+    if let Redundancy::Rows(rows) = Ranks::of(&model, &state, extent(scene)).redundancy() {
         model.drop_rows(&rows);
     }
     rest(scene, &model, &mut state)?;

@@ -29,6 +29,17 @@ const FLAT: f64 = 1e-6;
 /// Parts of a mechanism with more rows than this are not looked at to second order.
 const LARGE: usize = 300;
 
+/// The ranks of the constraints of a start.
+pub(crate) struct Ranks<'m> {
+    model: &'m Model,
+    start: &'m State,
+    /// Length of the mechanism \[m\].
+    size: f64,
+    /// The rows that depend on those before them, and the equations of all rows.
+    dependent: Vec<(usize, usize)>,
+    equations: IndependentRows,
+}
+
 /// The rows that depend on those before them, as (constraint, row of it), and the equations of all rows.
 fn dependent(model: &Model, state: &State) -> (Vec<(usize, usize)>, IndependentRows) {
     let constraints = model.constraints.iter().enumerate();
@@ -57,29 +68,79 @@ pub(crate) enum Redundancy {
     Shaky(String),
 }
 
-/// Finds rows that depend on others at the start and in a pose near it.
-///
-/// The row of a redundant bar of a parallelogram depends on the others in every pose; a row of a mechanism at a dead centre
-/// does so in that pose only.
-pub(crate) fn find(model: &Model, start: &State, size_of_model: f64) -> Redundancy {
-    let n = model.shape().unknowns;
-    let (here, independent) = dependent(model, start);
-    if here.is_empty() {
-        return Redundancy::Rows(here);
-    }
-    if let Some(coordinate) = shaky(model, start, &here) {
-        return Redundancy::Shaky(model.names[coordinate].clone());
-    }
-    let Some(moved) = neighbour(model, start, &independent, size_of_model) else {
-        // no motion is possible: rows that depend on others here always do
-        return Redundancy::Rows(here);
-    };
-    let (there, _) = dependent(model, &moved);
-    match here.iter().find(|row| there.binary_search(row).is_err()) {
-        Some(&(i, d)) if there.len() < here.len() => {
-            Redundancy::SingularStart(model.names[n + model.constraints[i].row + d].clone())
+impl<'m> Ranks<'m> {
+    /// Those of a start of a mechanism of this length \[m\].
+    pub fn of(model: &'m Model, start: &'m State, size: f64) -> Ranks<'m> {
+        let (dependent, equations) = dependent(model, start);
+        Ranks {
+            model,
+            start,
+            size,
+            dependent,
+            equations,
         }
-        _ => Redundancy::Rows(here),
+    }
+
+    /// Rows that depend on others at the start and in a pose near it.
+    ///
+    /// The row of a redundant bar of a parallelogram depends on the others in every pose; a row of a mechanism at a dead centre
+    /// does so in that pose only.
+    pub fn redundancy(&self) -> Redundancy {
+        let (model, here) = (self.model, &self.dependent);
+        let n = model.shape().unknowns;
+        if here.is_empty() {
+            return Redundancy::Rows(Vec::new());
+        }
+        if let Some(coordinate) = shaky(model, self.start, here) {
+            return Redundancy::Shaky(model.names[coordinate].clone());
+        }
+        let Some(moved) = self.neighbour() else {
+            // no motion is possible: rows that depend on others here always do
+            return Redundancy::Rows(here.clone());
+        };
+        let (there, _) = dependent(model, &moved);
+        match here.iter().find(|row| there.binary_search(row).is_err()) {
+            Some(&(i, d)) if there.len() < here.len() => {
+                Redundancy::SingularStart(model.names[n + model.constraints[i].row + d].clone())
+            }
+            _ => Redundancy::Rows(here.clone()),
+        }
+    }
+
+    /// A pose near the start; none where no motion is possible.
+    fn neighbour(&self) -> Option<State> {
+        let free = free_displacements(self.model, &self.equations)?;
+        let mut moved = self.start.clone();
+        for ((q, x), length) in moved.q.iter_mut().zip(&free).zip(unit_lengths(self.model)) {
+            *q += EXCURSION * self.size * x / length;
+        }
+        let held = vec![false; free.len()];
+        for _ in 0..CLOSING {
+            let Update { size, .. } = closing_step(self.model, &mut moved, &held);
+            if size <= CLOSED * self.size {
+                break;
+            }
+        }
+        Some(moved)
+    }
+
+    /// For every unknown coordinate, whether the constraints alone give its velocity, at the start and in a pose near it: in a single pose a
+    /// coordinate may be at its dead centre. The errors of such a coordinate do not add up from step to step.
+    pub fn determined(&self) -> Vec<bool> {
+        let n = self.model.shape().unknowns;
+        let still = |equations: &IndependentRows| match free_displacements(self.model, equations) {
+            None => vec![true; n],
+            Some(free) => free.iter().map(|x| x.abs() <= STILL).collect(),
+        };
+        let here = still(&self.equations);
+        if !here.contains(&true) {
+            return here;
+        }
+        let Some(moved) = self.neighbour() else {
+            return here;
+        };
+        let there = still(&dependent(self.model, &moved).1);
+        here.into_iter().zip(there).map(|(a, b)| a && b).collect()
     }
 }
 
@@ -92,48 +153,6 @@ fn free_displacements(model: &Model, equations: &IndependentRows) -> Option<Vec<
     let largest = free.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     free.iter_mut().for_each(|x| *x /= largest);
     (largest > STILL).then_some(free)
-}
-
-/// A pose near the start; none where no motion is possible.
-fn neighbour(
-    model: &Model,
-    start: &State,
-    equations: &IndependentRows,
-    size_of_model: f64,
-) -> Option<State> {
-    let free = free_displacements(model, equations)?;
-    let mut moved = start.clone();
-    for ((q, x), length) in moved.q.iter_mut().zip(&free).zip(unit_lengths(model)) {
-        *q += EXCURSION * size_of_model * x / length;
-    }
-    let held = vec![false; free.len()];
-    for _ in 0..CLOSING {
-        let Update { size, .. } = closing_step(model, &mut moved, &held);
-        if size <= CLOSED * size_of_model {
-            break;
-        }
-    }
-    Some(moved)
-}
-
-/// For every unknown coordinate, whether the constraints alone give its velocity, at the start and in a pose near it: in a single pose a
-/// coordinate may be at its dead centre. The errors of such a coordinate do not add up from step to step.
-pub(crate) fn determined(model: &Model, start: &State, size_of_model: f64) -> Vec<bool> {
-    let n = model.shape().unknowns;
-    let still = |equations: &IndependentRows| match free_displacements(model, equations) {
-        None => vec![true; n],
-        Some(free) => free.iter().map(|x| x.abs() <= STILL).collect(),
-    };
-    let (_, equations) = dependent(model, start);
-    let here = still(&equations);
-    if !here.contains(&true) {
-        return here;
-    }
-    let Some(moved) = neighbour(model, start, &equations, size_of_model) else {
-        return here;
-    };
-    let there = still(&dependent(model, &moved).1);
-    here.into_iter().zip(there).map(|(a, b)| a && b).collect()
 }
 
 /// The largest distance by which a unit of each unknown moves a point of its body; one of an internal state.

@@ -67,6 +67,7 @@ impl Simulation {
             started: _,
             // that of the start, which a fresh simulation has found
             rest: _,
+            freedoms: _,
             // a static analysis has no checkpoints
             critical_points: _,
             status: _,

@@ -14,7 +14,6 @@ use crate::model::{Model, PlacedBody};
 use crate::record::Ledger;
 use crate::scene::{Analysis, BodyState, Scene};
 use crate::system::System;
-use indexmap::IndexMap;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 
@@ -212,21 +211,15 @@ pub struct Inspection {
 
 /// Notes on values that the program derives from a scene.
 fn notes(scene: &Scene, model: &Model) -> Vec<String> {
-    let mut delivered: IndexMap<String, Vec<&str>> = IndexMap::new();
-    for joint in &scene.joints {
-        if let Some(contact) = joint.contact() {
-            let law = contact.normal_law();
-            let note = format!(
-                "{} with a restitution of {} gives {:.4} in a free impact",
-                contact.law.name,
-                contact.restitution,
-                law.delivered_restitution()
-            );
-            delivered.entry(note).or_default().push(&joint.name);
-        }
-    }
-    let delivered = delivered.into_iter();
-    let delivered = delivered.map(|(note, joints)| format!("{}: {note}", joints.join(", ")));
+    let delivered = restitution::delivered(scene).into_iter().map(|one| {
+        format!(
+            "{}: {} with a restitution of {} gives {:.4} in a free impact",
+            one.joints.join(", "),
+            one.law,
+            one.asked,
+            one.delivered
+        )
+    });
     let mut notes: Vec<String> = delivered.collect();
     let assembled = is_assembled(scene, model);
     if assembled && scene.simulation.analysis == Analysis::Dynamic {
@@ -261,7 +254,8 @@ impl Simulation {
     /// Its degrees of freedom, where drives prescribe some of them and leave others.
     fn partly_driven(&self) -> Option<Freedoms> {
         let is_driven = !self.scene.motions.is_empty();
-        let freedoms = is_driven.then(|| Freedoms::of(&self.scene)).flatten();
+        let count = || is_driven.then(|| Freedoms::of(&self.scene)).flatten();
+        let freedoms = *self.freedoms.get_or_init(count);
         freedoms.filter(|freedoms| freedoms.left > 0)
     }
 
@@ -389,7 +383,10 @@ impl Simulation {
             creep: self
                 .creep
                 .report(&self.model, self.scene.simulation.duration),
-            restitution: restitution::delivered(&self.scene),
+            restitution: restitution::delivered(&self.scene)
+                .into_iter()
+                .filter(DeliveredRestitution::differs)
+                .collect(),
             rest: self.rest.clone(),
             critical_points: self.critical_points.clone(),
             integration: dynamic.then(|| self.meter.report(&self.model)),

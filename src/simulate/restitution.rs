@@ -33,7 +33,14 @@ impl fmt::Display for DeliveredRestitution {
     }
 }
 
-/// The joints whose law delivers another restitution than asked for, those alike together.
+impl DeliveredRestitution {
+    /// True where impacts show the difference.
+    pub(super) fn differs(&self) -> bool {
+        (self.delivered - self.asked).abs() > NOTICED
+    }
+}
+
+/// What the laws of all joints with clearance deliver, those alike together.
 pub(super) fn delivered(scene: &Scene) -> Vec<DeliveredRestitution> {
     let mut all: Vec<DeliveredRestitution> = Vec::new();
     for joint in &scene.joints {
@@ -42,9 +49,6 @@ pub(super) fn delivered(scene: &Scene) -> Vec<DeliveredRestitution> {
         };
         let (law, asked) = (contact.law.name, contact.restitution);
         let delivered = contact.normal_law().delivered_restitution();
-        if (delivered - asked).abs() <= NOTICED {
-            continue;
-        }
         let alike = all.iter_mut();
         let mut alike =
             alike.filter(|d| d.law == law && d.asked == asked && d.delivered == delivered);

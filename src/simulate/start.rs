@@ -15,14 +15,15 @@ use super::{LoopCounters, Simulation, equilibrium, scale};
 use crate::body::{Moving, Strain};
 use crate::compile::compile;
 use crate::compile::extent::extent;
-use crate::initial::{self, redundancy};
+use crate::initial;
+use crate::initial::redundancy::{Ranks, Redundancy};
 use crate::model::Model;
 use crate::newton::Newton;
 use crate::record::{Record, Recorder};
 use crate::scene::{Analysis, Pace, Scene, SceneError};
 use crate::stepper::{Estimate, LocalError};
 use crate::system::{State, System};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 impl Simulation {
     /// Compiles a scene, closes its mechanism and makes its start consistent.
@@ -141,6 +142,7 @@ impl Simulation {
             status: Status::Incomplete,
             error: None,
             ended_at_limit: false,
+            freedoms: OnceLock::new(),
             model,
             scene: scene.clone(),
         })
@@ -189,23 +191,25 @@ fn is_driven(scene: &Scene) -> bool {
 
 /// Removes redundant constraints from the equations.
 fn keep_independent(scene: &Scene, model: &mut Model, start: &State) -> Result<(), SceneError> {
-    match redundancy::find(model, start, extent(scene)) {
-        redundancy::Redundancy::Rows(rows) => {
+    let ranks = Ranks::of(model, start, extent(scene));
+    match ranks.redundancy() {
+        Redundancy::Rows(rows) => {
             // without a prescribed motion no unknown that moves is determined
-            if model.shape().multipliers > 0 && is_driven(scene) {
-                model.determined = redundancy::determined(model, start, extent(scene));
+            let has_determined = model.shape().multipliers > 0 && is_driven(scene);
+            if let Some(determined) = has_determined.then(|| ranks.determined()) {
+                model.determined = determined;
             }
             model.drop_rows(&rows);
             Ok(())
         }
-        redundancy::Redundancy::SingularStart(name) => {
+        Redundancy::SingularStart(name) => {
             let message = format!(
                 "the start is a singular pose, in which {name} depends on the other constraints"
             );
             let error = scene.error(scene.initial.span, message, "this start");
             Err(error.with_help("start slightly away from the dead centre"))
         }
-        redundancy::Redundancy::Shaky(name) => {
+        Redundancy::Shaky(name) => {
             // of a point without its axis
             let what = name.rsplit_once('.').map_or(&*name, |(what, _)| what);
             let message = format!(
