@@ -14,6 +14,7 @@ mod failure;
 mod first_impact;
 mod foresight;
 mod impacts;
+mod indeterminate;
 mod load_path;
 mod meter;
 mod modes;
@@ -44,7 +45,6 @@ use creep::CreepWatch;
 pub use energy::EnergyError;
 pub use equilibrium::{FoundRest, Stability};
 pub use failure::RunError;
-use failure::short;
 use impacts::Impacts;
 pub use impacts::{Impact, Overrun};
 pub use load_path::{CriticalKind, CriticalPoint};
@@ -58,6 +58,7 @@ pub use restitution::DeliveredRestitution;
 use crate::body::Strain;
 use crate::checkpoint::carried;
 use crate::compile::drive_limit::{self, DriveCourse};
+use crate::compile::extent::extent;
 use crate::initial::Freedoms;
 use crate::model::Model;
 use crate::newton::Newton;
@@ -66,6 +67,8 @@ use crate::scene::{Analysis, Scene};
 use crate::stepper::{LocalError, StepError, Stepper, midpoint};
 use crate::system::{State, System, Work};
 use control::{Candidate, Verdict};
+use indeterminate::least_reactions;
+use numbers::si;
 use pace::Pacer;
 use plausibility::Plausibility;
 use stall::Stall;
@@ -157,6 +160,8 @@ pub struct Simulation {
     started: Vec<(usize, f64, f64)>,
     /// The equilibrium that the motion starts from, where the scene asks for one; in a static analysis the last one.
     rest: Option<FoundRest>,
+    /// The joints whose reactions in a static analysis are one of many, once a row was recorded.
+    indeterminate: Vec<usize>,
     /// Where the load path could not go on or branched.
     critical_points: Vec<CriticalPoint>,
     status: Status,
@@ -462,9 +467,14 @@ impl Simulation {
             meter,
             scene,
             creep,
+            leaves_out,
+            indeterminate,
             ..
         } = self;
         output.copy_from(state);
+        if *leaves_out && scene.simulation.analysis == Analysis::Static {
+            *indeterminate = least_reactions(model, extent(scene), output, work);
+        }
         let shape = model.shape();
         let is_consistent = shape.multipliers > 0 && shape.contacts == 0;
         if scene.simulation.analysis == Analysis::Dynamic
@@ -505,11 +515,11 @@ impl Simulation {
     fn check_left_out(&self) -> Result<(), RunError> {
         let size = self.state.q.iter().fold(0.0_f64, |m, q| m.max(q.abs()));
         match self.model.widest_left_out(&self.state) {
-            Some((index, open)) if open > LEFT_OPEN * size => Err(RunError::Physics {
+            Some((index, open, unit)) if open > LEFT_OPEN * size => Err(RunError::Physics {
                 name: self.model.unknown_name(index),
                 cause: format!(
                     "the other constraints contradict it; it is violated by {}",
-                    short(&open)
+                    si(open, unit)
                 ),
                 t: self.state.t,
                 step: self.state.t - self.trial.t,

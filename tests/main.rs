@@ -23,6 +23,7 @@ mod freedoms;
 mod good_input;
 mod hostile_input;
 mod ideal;
+mod indeterminate;
 mod language;
 mod library;
 mod limits;

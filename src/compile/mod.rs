@@ -251,6 +251,22 @@ fn known_roles(scene: &Scene) -> Vec<Role> {
             roles[turned] = Role::Turned(m);
         }
     }
+    // a body that another joint holds as well shares its load with the drive
+    for (j, joint) in scene.joints.iter().enumerate() {
+        let sides = joint.points().map(|point| point.body);
+        let turns = |b: usize| {
+            let motion = roles[b].turned().map(|m| &scene.motions[m].kind);
+            matches!(motion, Some(MotionKind::Angle { joint, .. }) if *joint == j)
+        };
+        let is_held = sides.iter().all(|b| roles[*b] != Role::Free);
+        if joint.model.coincides() && is_held && !sides.iter().any(|b| turns(*b)) {
+            for b in sides {
+                if roles[b].turned().is_some() {
+                    roles[b] = Role::Free;
+                }
+            }
+        }
+    }
     roles
 }
 

@@ -3,6 +3,7 @@
 use super::redundancy::{Ranks, Redundancy};
 use crate::compile::assembly::closed;
 use crate::compile::extent::extent;
+use crate::model::Rule;
 use crate::scene::{MotionKind, Scene};
 use std::fmt::{Display, Formatter};
 
@@ -13,6 +14,8 @@ pub struct Freedoms {
     pub driven: usize,
     /// Those that they leave.
     pub left: usize,
+    /// Prescribed coordinates that other constraints determine already.
+    pub repeated: usize,
 }
 
 impl Freedoms {
@@ -27,7 +30,11 @@ impl Freedoms {
         if let Some(drive) = scene.drives.first() {
             // a path that does not determine the mechanism is refused
             let driven = driven + drive.joints.len();
-            return Some(Freedoms { driven, left: 0 });
+            return Some(Freedoms {
+                driven,
+                left: 0,
+                repeated: 0,
+            });
         }
         let (model, state) = closed(scene).ok()?;
         let ranks = Ranks::of(&model, &state, extent(scene));
@@ -37,13 +44,29 @@ impl Freedoms {
         let shape = model.shape();
         let independent = shape.multipliers - dependent.len();
         let left = shape.unknowns.checked_sub(independent)?;
-        Some(Freedoms { driven, left })
+        // the rows of drives stand last, and a drive that turns a known body has none
+        let turns = model
+            .rules
+            .iter()
+            .filter(|r| matches!(r, Rule::Turn { .. }));
+        let first = shape.multipliers - (driven - turns.count());
+        let rows = dependent.iter().map(|(i, d)| model.constraints[*i].row + d);
+        let repeated = rows.filter(|row| *row >= first).count();
+        Some(Freedoms {
+            driven: driven - repeated,
+            left,
+            repeated,
+        })
     }
 }
 
 impl Display for Freedoms {
     fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
-        let Freedoms { driven, left } = *self;
+        let Freedoms {
+            driven,
+            left,
+            repeated,
+        } = *self;
         let count = match driven + left {
             1 => "1 degree of freedom".to_owned(),
             all => format!("{all} degrees of freedom"),
@@ -56,6 +79,14 @@ impl Display for Freedoms {
             (_, 0) => write!(f, "{count}, all of them driven"),
             (1, _) => write!(f, "1 of {count} is driven"),
             (_, _) => write!(f, "{driven} of {count} are driven"),
+        }?;
+        match repeated {
+            0 => Ok(()),
+            1 => write!(f, "; 1 prescribed coordinate repeats other constraints"),
+            _ => write!(
+                f,
+                "; {repeated} prescribed coordinates repeat other constraints"
+            ),
         }
     }
 }

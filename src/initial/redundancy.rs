@@ -156,7 +156,7 @@ fn free_displacements(model: &Model, equations: &IndependentRows) -> Option<Vec<
 }
 
 /// The largest distance by which a unit of each unknown moves a point of its body; one of an internal state.
-fn unit_lengths(model: &Model) -> Vec<f64> {
+pub(crate) fn unit_lengths(model: &Model) -> Vec<f64> {
     let lengths = model.lengths().into_iter();
     lengths
         .map(|length| if length > 0.0 { length } else { 1.0 })

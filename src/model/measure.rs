@@ -277,13 +277,14 @@ impl Model {
     }
 
     /// The redundant constraint left out with the largest violation: the index of its multiplier among the unknowns, and the
-    /// violation \[m or rad\].
-    pub fn widest_left_out(&self, at: &State) -> Option<(usize, f64)> {
+    /// violation with its unit.
+    pub fn widest_left_out(&self, at: &State) -> Option<(usize, f64, &'static str)> {
         let left_out = self.constraints.iter().filter(|c| c.kept.contains(&0.0));
         let open = left_out.flat_map(|c| {
             let value = c.term.value(at);
             let rows = (0..c.rows).filter(|&d| c.kept[d] == 0.0);
-            rows.map(move |d| (self.shape.unknowns + c.row + d, value[d].abs()))
+            let unit = c.term.unit();
+            rows.map(move |d| (self.shape.unknowns + c.row + d, value[d].abs(), unit))
         });
         open.max_by(|a, b| a.1.total_cmp(&b.1))
     }

@@ -360,13 +360,19 @@ impl Model {
         self.forces.iter().any(|f| f.term.stores_energy())
     }
 
+    /// The redundant rows that are left out, by the indices of their multipliers.
+    pub(crate) fn left_out(&self) -> impl Iterator<Item = usize> {
+        self.constraints.iter().flat_map(|p| {
+            let dropped = (0..p.rows).filter(|&d| p.kept[d] == 0.0);
+            dropped.map(|d| p.row + d)
+        })
+    }
+
     /// Names of the redundant rows that are left out.
     pub fn redundant(&self) -> Vec<String> {
-        let rows = self.constraints.iter().flat_map(|p| {
-            let dropped = (0..p.rows).filter(|&d| p.kept[d] == 0.0);
-            dropped.map(|d| self.names[self.shape.unknowns + p.row + d].clone())
-        });
-        rows.collect()
+        let rows = self.left_out();
+        rows.map(|row| self.names[self.shape.unknowns + row].clone())
+            .collect()
     }
 }
 

@@ -69,6 +69,7 @@ impl Simulation {
             rest: _,
             freedoms: _,
             // a static analysis has no checkpoints
+            indeterminate: _,
             critical_points: _,
             status: _,
             error: _,

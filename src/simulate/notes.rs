@@ -14,6 +14,12 @@ impl Report {
         notes.extend(self.redundant.iter().map(|name| {
             format!("{name} is redundant: the constraint forces in its loop are not unique")
         }));
+        if !self.one_of_many.is_empty() {
+            let joints = self.one_of_many.join(", ");
+            notes.push(format!(
+                "the reactions of {joints} are one of many that balance the forces: those of the least norm"
+            ));
+        }
         notes.extend(self.restitution.iter().map(ToString::to_string));
         notes.extend(self.freedoms.iter().cloned());
         notes.extend(self.critical_points.iter().map(ToString::to_string));

@@ -177,6 +177,10 @@ pub struct Report {
     /// unique.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub redundant: Vec<String>,
+    /// Joints of a static analysis whose reactions the balance of forces does not determine: they are one of many, those of the least
+    /// norm, torques divided by the length of the longest body between joints.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub one_of_many: Vec<String>,
     /// Largest strains over the recorded rows, of every flexible link.
     pub strain: BTreeMap<String, Strain>,
     /// Extremes of the recorded channels, over the recorded rows from `output.extremes_from` on.
@@ -397,6 +401,11 @@ impl Simulation {
             implausible: self.implausible(),
             freedoms: self.partly_driven().map(|freedoms| freedoms.to_string()),
             redundant: self.model.redundant(),
+            one_of_many: self
+                .indeterminate
+                .iter()
+                .map(|joint| self.model.joints()[*joint].name.clone())
+                .collect(),
             strain: bodies
                 .filter(|(_, p)| !p.placed.kind.is_rigid())
                 .map(|(b, p)| (p.name.clone(), self.strains[b]))

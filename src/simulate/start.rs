@@ -138,6 +138,7 @@ impl Simulation {
             gaps,
             started,
             rest,
+            indeterminate: Vec::new(),
             critical_points: Vec::new(),
             status: Status::Incomplete,
             error: None,
