@@ -4,6 +4,7 @@ use crate::good_input;
 use crate::support::{all_scenes, load, path, run, run_scene};
 use looselink::scene::Scene;
 use looselink::simulate::Simulation;
+use miette::Diagnostic;
 
 /// A bar in a loose bearing, with a disc on its end.
 const SCENE: &str = r#"
@@ -57,6 +58,8 @@ fn bounds_of_scenes_have_two_sides() {
         ("materials.steel.youngs_modulus=2e12", "materials.steel.youngs_modulus=2.1e12", "steel is 210e9 Pa"),
         ("sections.strip.width=0.499", "sections.strip.width=0.501", "link bar is 0.501 m wide"),
         ("bodies.bar={ type = \"link\", model = \"flexible\", elements = 1, length = 0.101, section = \"strip\", material = \"steel\" }", "bodies.bar={ type = \"link\", model = \"flexible\", elements = 1, length = 0.099, section = \"strip\", material = \"steel\" }", "slender beams"),
+        ("bodies.cart={ type = \"moving\", path = { type = \"circle\", center = [0.0, 0.0], radius = 0.1, frequency = 1.0, phase = 6.0, theta = 0.0 } }", "bodies.cart={ type = \"moving\", path = { type = \"circle\", center = [0.0, 0.0], radius = 0.1, frequency = 1.0, phase = 90.0, theta = 0.0 } }", "bodies.cart.path.phase is 90 rad"),
+        ("bodies.cart={ type = \"moving\", path = { type = \"line\", from = [0.0, 0.0, 6.0], to = [0.1, 0.0, 6.0], duration = 1.0 } }", "bodies.cart={ type = \"moving\", path = { type = \"line\", from = [0.0, 0.0, 45.0], to = [0.1, 0.0, 45.0], duration = 1.0 } }", "the theta of bodies.cart.path at t = 0 is 45 rad"),
         ("contacts.pin.clearance=0.999e-3", "contacts.pin.clearance=1.001e-3", "contacts.pin.clearance is 0.001001 m"),
         ("contacts.pin.bearing_radius=4.9", "contacts.pin.bearing_radius=5.1", "contacts.pin.bearing_radius is 5.1 m"),
         ("contacts.pin.friction.coefficient=5", "contacts.pin.friction.coefficient=5.1", "is it in per cent?"),
@@ -223,4 +226,33 @@ fn scenes_of_the_project_are_plausible() {
         );
     }
     assert_eq!(told, Vec::<String>::new());
+}
+
+/// A drive whose angle would fit the sketch as a number of degrees: the error says so.
+#[test]
+fn a_drive_that_contradicts_the_sketch_in_degrees_is_asked() {
+    let crank = |angle: &str| {
+        let text = format!(
+            "format = 1\n\
+             title = \"a crank\"\n\
+             simulation = {{ duration = 0.1 }}\n\
+             integrator = {{ method = \"bathe\", step = 1e-3 }}\n\
+             output = {{ interval = 1e-2, channels = [\"*\"] }}\n\
+             bodies.ground = {{ type = \"ground\", points.O = [0.1, 0.0] }}\n\
+             bodies.crank = {{ type = \"rigid_body\", mass = 1.0, inertia = 1e-3, points = {{ o = [0.0, 0.0], tip = [0.2, 0.0] }} }}\n\
+             joints.O = {{ type = \"revolute\", model = \"ideal\", bearing = \"ground.O\", journal = \"crank.o\" }}\n\
+             drives.motor = {{ type = \"angle\", joint = \"O\", angle = {angle} }}\n\
+             initial.sketch = {{ crank = {{ tip = [-0.0489, 0.1336] }} }}\n"
+        );
+        let scene = Scene::parse("scene.toml", &text, &[]).unwrap();
+        Simulation::new(&scene)
+            .map(drop)
+            .map_err(|error| Diagnostic::help(&error).map(|help| help.to_string()))
+    };
+    assert!(crank("2.41029").is_ok());
+    let asked = "are these degrees? Angles are in radians, and 138.1 degrees are 2.4103 rad";
+    for angle in ["138.1", "\"138.1 + 20*t\""] {
+        assert_eq!(crank(angle), Err(Some(asked.to_owned())));
+    }
+    assert_eq!(crank("0.7"), Err(None));
 }

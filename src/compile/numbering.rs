@@ -234,7 +234,7 @@ fn number_unknowns(c: &Compiler, nodes: &mut Nodes, eliminated: Vec<bool>) -> Nu
 
 impl Compiler<'_> {
     /// Position of a point of the ground.
-    fn on_ground(&self, point: PointRef) -> Option<Vec2> {
+    pub fn on_ground(&self, point: PointRef) -> Option<Vec2> {
         let fixed = self.roles[point.body] == Role::Ground;
         fixed.then(|| self.bodies[point.body].points()[point.point].at)
     }

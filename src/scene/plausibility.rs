@@ -3,10 +3,11 @@
 //! The bounds are those of nature and of engineering as a whole, not those of a good design: whatever lies within them is left alone.
 
 use super::{MotionKind, Scene};
-use crate::body::{Body, Link};
+use crate::body::{Body, Known, Link};
 use crate::interaction::{Contact, TorsionSpringModel};
-use crate::motion::Function;
+use crate::motion::{Circle, Function, Path};
 use numbers::{exact, number};
+use std::any::Any;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
@@ -215,6 +216,25 @@ impl Scene {
                 degrees
                     .into_iter()
                     .for_each(|angle| judge(format!("drives.{}.angle", motion.name), angle));
+            }
+        }
+        let driven = self
+            .drives
+            .iter()
+            .map(|drive| (format!("drives.{}", drive.name), &drive.path));
+        let moving = self
+            .bodies
+            .iter()
+            .filter_map(|body| match body.kind.known()? {
+                Known::Path(path) => Some((format!("bodies.{}", body.name), path)),
+                Known::Fixed => None,
+            });
+        for (owner, path) in driven.chain(moving) {
+            let path: &dyn Path = &**path;
+            let [.., theta] = path.at(0.0).position;
+            judge(format!("the theta of {owner}.path at t = 0"), theta);
+            if let Some(circle) = (path as &dyn Any).downcast_ref::<Circle>() {
+                judge(format!("{owner}.path.phase"), circle.phase);
             }
         }
         for force in &self.forces {

@@ -4,12 +4,13 @@ use super::super::extent::{FITS, extent};
 use super::super::{Compiler, Role};
 use super::closing::{Closing, Search};
 use super::guess::coordinates;
-use super::{CENTRE, check_sketch, name, opening, strays, whole_name};
-use crate::math::plane::Vec2;
+use super::{CENTRE, check_sketch, name, opening, reach, strays, whole_name};
+use crate::math::plane::{Rotation, Vec2};
 use crate::model::{Model, PlacedConstraint};
-use crate::scene::{SceneError, SketchPoint};
+use crate::scene::{MotionKind, SceneError, SketchPoint};
 use crate::system::State;
 use crate::terms::ConstraintTerm;
+use numbers::number;
 use std::collections::HashSet;
 
 /// Checks that neither the sketch nor a joint contradicts a given pose or a prescribed motion.
@@ -42,7 +43,19 @@ pub(super) fn check_given(
         );
         let cause = Some((span, "contradicts the sketch"));
         let sketch = (drawn.span, "the sketch");
-        return Err(c.scene.contradiction(message, sketch, cause));
+        let error = c.scene.contradiction(message, sketch, cause);
+        let in_degrees = turned(c, point.body).filter(|(centre, angle)| {
+            let turn = Rotation::new(angle.to_radians() - angle);
+            (centre + turn * (at - centre) - drawn.at).norm() <= reach(c, drawn)
+        });
+        return Err(match in_degrees {
+            Some((_, angle)) => error.with_help(format!(
+                "are these degrees? Angles are in radians, and {} degrees are {} rad",
+                number(angle, 6),
+                number(angle.to_radians(), 6)
+            )),
+            None => error,
+        });
     }
     let n = model.shape().unknowns;
     let fits = FITS * extent(c.scene);
@@ -60,6 +73,21 @@ pub(super) fn check_given(
         }
     }
     Ok(())
+}
+
+/// The angle that a scene gives a body, and the point about which it turns it.
+fn turned(c: &Compiler, body: usize) -> Option<(Vec2, f64)> {
+    if let Some(given) = c.scene.initial.state_of(body) {
+        let [x, y, angle] = given.position;
+        return Some((Vec2::new(x, y), angle));
+    }
+    let motion = c.roles[body].turned()?;
+    let MotionKind::Angle { joint, angle } = &c.scene.motions[motion].kind else {
+        return None;
+    };
+    let mut ends = c.scene.joints[*joint].points().into_iter();
+    let centre = ends.find_map(|point| c.on_ground(point))?;
+    Some((centre, angle.at(0.0)[0]))
 }
 
 /// An error for a link if given poses fix its ends at a distance other than its length.
