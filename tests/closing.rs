@@ -101,6 +101,37 @@ fn contacts_count_whole() {
     }
 }
 
+/// The largest force of a contact that lasts as long as the run has the time at which it acts, not that of the onset.
+#[test]
+fn the_peak_of_a_long_contact_has_its_own_time() {
+    let (run, report) = run(
+        "slider-crank/loose.toml",
+        &[
+            "initial.journals=pressed",
+            "simulation.gravity=[0.0, -9.81]",
+            "simulation.duration=0.004",
+            "output.interval=1e-5",
+            "integrator.step=1e-5",
+            "output.channels=[\"*\"]",
+        ],
+    );
+    let lasting = |joint: &str| run.onsets.iter().filter(|c| c.joint == joint).count() == 1;
+    let contacts = report.closing.contacts.iter();
+    let joints: Vec<_> = contacts
+        .filter(|(joint, c)| lasting(joint) && c.closed == report.t)
+        .collect();
+    assert!(!joints.is_empty(), "{:?}", report.closing.contacts);
+    for (joint, _) in joints {
+        let peak = &report.closing.forces[joint];
+        let forces = run.get(&format!("{joint}.force"));
+        assert!(
+            peak.t > 0.0 && peak.largest > 1.01 * forces[0],
+            "{joint} {peak:?}"
+        );
+        check(peak, &run.get("t"), &forces, 0.0);
+    }
+}
+
 /// The journal of the slider pin starts in the middle and falls on its bearing: the start decides the largest force.
 #[test]
 fn a_peak_of_the_first_impact_is_told() {

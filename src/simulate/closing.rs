@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 pub struct Peak {
     /// Largest magnitude.
     pub largest: f64,
-    /// When: the time of a row, or the onset of the contact \[s\].
+    /// When: the time of a row, or of the end of a step in a contact \[s\].
     pub t: f64,
     /// Root mean square over the rows.
     pub rms: f64,
@@ -239,7 +239,7 @@ impl ClosingSums {
                 if count.largest[0] > force.largest[0] {
                     force.largest = count.largest;
                 }
-                force.later = force.later.max(count.later[0]);
+                force.later = force.later.max(count.later);
                 closing
                     .contacts
                     .insert(name(), ContactTime { impacts, closed });

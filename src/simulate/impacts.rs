@@ -109,10 +109,10 @@ pub(super) struct ContactCount {
     pub impacts: u64,
     /// Time in contact \[s\].
     pub closed: f64,
-    /// The largest force of a contact \[N\], and its onset \[s\].
+    /// The largest force \[N\], and its time \[s\].
     pub largest: [f64; 2],
-    /// The same over all contacts but the first.
-    pub later: [f64; 2],
+    /// The largest force after the first contact \[N\].
+    pub later: f64,
     /// True once the first contact is over, if the joint began without one.
     pub has_settled: bool,
     /// True from the first onset on.
@@ -122,18 +122,18 @@ pub(super) struct ContactCount {
 carried!(ContactCount { impacts, closed, largest, later, has_settled, has_begun } but {});
 
 impl ContactCount {
-    /// Adds a contact up to its end or to now.
+    /// Adds the time of a contact up to its end or to now.
     fn add(&mut self, course: &Course, to: f64, from: f64) {
         self.closed += (to - course.t.max(from)).max(0.0);
-        if course.t < from {
-            return;
+    }
+
+    /// A force that counts.
+    fn see(&mut self, force: f64, t: f64) {
+        if force > self.largest[0] {
+            self.largest = [force, t];
         }
-        let force = [course.largest_force, course.t];
-        if force[0] > self.largest[0] {
-            self.largest = force;
-        }
-        if self.has_settled && force[0] > self.later[0] {
-            self.later = force;
+        if self.has_settled {
+            self.later = self.later.max(force);
         }
     }
 }
@@ -241,6 +241,9 @@ impl Impacts {
         count.impacts += u64::from(!starts_closed && at.t >= self.from);
         count.has_settled |= starts_closed;
         count.has_begun = true;
+        if at.t >= self.from {
+            count.see(course.largest_force, at.t);
+        }
     }
 
     /// What was counted of a contact up to time t.
@@ -296,6 +299,10 @@ impl Impacts {
             *deepest = deepest.max(course.deepest);
             let force = model.contact_force(contact, at).norm();
             course.largest_force = course.largest_force.max(force);
+            let count = &mut self.counts[contact];
+            if at.t >= self.from {
+                count.see(force, at.t);
+            }
             course.before = [delta, rate];
             course.end = (!closed).then_some(ContactEnd {
                 t: at.t,
@@ -306,7 +313,6 @@ impl Impacts {
             }
             if !closed {
                 observer.contact(&course.contact(model))?;
-                let count = &mut self.counts[contact];
                 count.add(course, at.t, self.from);
                 count.has_settled = true;
                 *slot = None;
