@@ -3,7 +3,7 @@
 use crate::bad_input::rendered;
 use crate::support::{TestRecording, all_scenes, load, run};
 use looselink::scene::Scene;
-use looselink::simulate::Simulation;
+use looselink::simulate::{Report, Simulation};
 
 const PRESSED: &str = "initial.journals=\"pressed\"";
 /// Rigid mechanisms with loose revolute joints, and steps that resolve how a contact at rest gives way.
@@ -130,10 +130,19 @@ fn every_scene_with_clearance_starts_pressed() {
     assert!(loose >= 10, "{loose} scenes");
 }
 
-/// Without a force the journal stays in the middle.
+/// Without a force the journal stays in the middle, and a note says so, only where the scene asks for journals that are pressed.
 #[test]
 fn a_journal_without_a_force_stays_centred() {
-    let (run, _) = run("bouncing-journal.toml", &[PRESSED]);
+    let centred = run("bouncing-journal.toml", &[]).1;
+    let (run, report) = run("bouncing-journal.toml", &[PRESSED]);
+    assert_eq!(report.unpressed, Some(vec!["pin".to_owned()]));
+    let said = |report: &Report| {
+        report
+            .notes()
+            .iter()
+            .any(|n| n.contains("no force presses"))
+    };
+    assert!(said(&report) && !said(&centred));
     let eccentricity = run.get("pin.eccentricity");
     assert!(eccentricity.iter().all(|e| *e == 0.0), "{eccentricity:?}");
 }

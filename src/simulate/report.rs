@@ -12,7 +12,7 @@ use crate::checkpoint::carried;
 use crate::initial::{Freedoms, is_assembled};
 use crate::model::{Model, PlacedBody};
 use crate::record::Ledger;
-use crate::scene::{Analysis, BodyState, Scene};
+use crate::scene::{Analysis, BodyState, Journals, Scene};
 use crate::system::System;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -177,6 +177,9 @@ pub struct Report {
     /// unique.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub redundant: Vec<String>,
+    /// Joints whose journals start in the middle of their bearings, because no force presses them; absent where the scene asks for that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unpressed: Option<Vec<String>>,
     /// Joints of a static analysis whose reactions the balance of forces does not determine: they are one of many, those of the least
     /// norm, torques divided by the length of the longest body between joints.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -261,6 +264,21 @@ impl Simulation {
         let count = || is_driven.then(|| Freedoms::of(&self.scene)).flatten();
         let freedoms = *self.freedoms.get_or_init(count);
         freedoms.filter(|freedoms| freedoms.left > 0)
+    }
+
+    /// Joints that are open at the start.
+    fn unpressed(&self) -> Vec<String> {
+        let mut gaps = vec![[0.0; 2]; self.model.shape().contacts];
+        self.model.gaps(&self.start, &mut gaps);
+        let tolerance = self.scene.integrator.onset_tolerance;
+        let open = gaps
+            .iter()
+            .enumerate()
+            .filter(|(_, [delta, _])| *delta < -tolerance);
+        let joints = open.filter_map(|(contact, _)| self.model.contact_joint(contact));
+        joints
+            .map(|joint| self.model.joints()[joint].name.clone())
+            .collect()
     }
 
     /// What will be simulated.
@@ -401,6 +419,7 @@ impl Simulation {
             implausible: self.implausible(),
             freedoms: self.partly_driven().map(|freedoms| freedoms.to_string()),
             redundant: self.model.redundant(),
+            unpressed: (self.scene.initial.journals == Journals::Pressed).then(|| self.unpressed()),
             one_of_many: self
                 .indeterminate
                 .iter()
