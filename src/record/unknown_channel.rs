@@ -25,7 +25,7 @@ pub(super) fn fault(scene: &Scene, wanted: &ChannelPattern, names: &[&str]) -> S
         true => listed(pattern, names),
         false => format!("known of {owner}: {}", own.join(", ")),
     });
-    error.with_help("`looselink inspect` with `--set 'output.channels=[\"*\"]'` lists all")
+    error.with_help("`looselink inspect --all` with `--set 'output.channels=[\"*\"]'` lists all")
 }
 
 /// What to say where a drive would give a joint this channel.

@@ -38,9 +38,10 @@ pub(super) fn prepare(
                 joint.name
             );
             let error = scene.error(joint.span, message, "loose");
-            return Err(
-                error.with_help("make it ideal for the static analysis, or let the motion settle")
-            );
+            return Err(error.with_help(match start {
+                true => "leave `initial.equilibrium` out and let the motion settle, or make the joint ideal",
+                false => "make it ideal for the static analysis, or let a motion settle",
+            }));
         }
     }
     let mut forces = scene.forces.iter();
@@ -53,8 +54,19 @@ pub(super) fn prepare(
         return Err(error.with_help("leave it out, or let the motion settle"));
     }
     if let Some(drive) = scene.drives.first() {
-        let message = "a static analysis cannot have inverse kinematics";
-        return Err(scene.error(drive.span, message, "remove this"));
+        let (what, other) = match start {
+            true => (
+                "`initial.equilibrium`",
+                "leave it out: the drive gives the pose",
+            ),
+            false => (
+                "a static analysis",
+                "prescribe the angles of the joints instead",
+            ),
+        };
+        let message = format!("{what} cannot have inverse kinematics");
+        let error = scene.error(drive.span, message, "this drive");
+        return Err(error.with_help(other));
     }
     let mut bending = scene.initial.bodies.values();
     if let Some(given) = bending.find(|given| given.deformation.bending_rate != 0.0) {

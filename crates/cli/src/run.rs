@@ -41,7 +41,7 @@ pub struct RunOptions {
     /// Write `view.html` into the folder, in which the mechanism moves.
     #[arg(long)]
     pub view: bool,
-    /// Show no progress; warnings are still shown.
+    /// Show warnings and errors alone, no progress, no closing table and no notes.
     #[arg(long)]
     pub quiet: bool,
     /// Time between two checkpoints, from which `looselink resume` goes on if the program is killed.

@@ -1,6 +1,7 @@
 //! How numbers are written for people.
 
-/// A value with three significant digits and an SI prefix, such as `23.1 µm`, and a no-break space.
+/// A value with three significant digits and an SI prefix, such as `23.1 µm`, and a no-break space; with a power of ten where there is
+/// no prefix.
 pub fn si(value: f64, unit: &str) -> String {
     const PREFIXES: [&str; 10] = ["p", "n", "µ", "m", "", "k", "M", "G", "T", "P"];
     const FACTORS: [f64; 10] = [1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9, 1e12, 1e15];
@@ -8,9 +9,12 @@ pub fn si(value: f64, unit: &str) -> String {
         return format!("{}\u{a0}{unit}", plain(value));
     }
     let thousands = magnitude(value, 3).div_euclid(3);
-    let place = (thousands + 4).clamp(0, 9) as usize;
-    let (factor, prefix) = (FACTORS[place], PREFIXES[place]);
-    format!("{}\u{a0}{prefix}{unit}", digits(value / factor))
+    let place = usize::try_from(thousands + 4).ok();
+    let prefix = place.and_then(|place| Some((FACTORS.get(place)?, PREFIXES[place])));
+    match prefix {
+        Some((factor, prefix)) => format!("{}\u{a0}{prefix}{unit}", digits(value / factor)),
+        None => format!("{}\u{a0}{unit}", digits(value)),
+    }
 }
 
 /// A value with three significant digits; powers of ten as in print.
@@ -117,6 +121,8 @@ mod tests {
         assert_eq!(si(7e9, "Pa"), "7\u{a0}GPa");
         assert_eq!(si(-3.9478, "m/s²"), "-3.95\u{a0}m/s²");
         assert_eq!(si(10.0 * 1e-6, "s"), "10\u{a0}µs");
+        assert_eq!(si(2.4712e-32, "N"), "2.47·10⁻³²\u{a0}N");
+        assert_eq!(si(1.1e-16, "J"), "1.10·10⁻¹⁶\u{a0}J");
         assert_eq!(digits(1234.6), "1235");
         assert_eq!(digits(-4.123e-8), "-4.12·10⁻⁸");
         assert_eq!(percent(0.98765), "98.8\u{a0}%");

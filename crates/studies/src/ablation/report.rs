@@ -169,7 +169,7 @@ impl Ablation {
                 "Errors are distances of {body} from {from}; accelerations are those of its centre."
             ),
             format!(
-                "All values are taken from {} rows, one every {interval}, over {duration}.",
+                "All values are taken from {} rows, one every {interval}, over {duration}, and the forces of joints with clearance from all steps.",
                 header.rows
             ),
         ]
