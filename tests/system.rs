@@ -235,9 +235,14 @@ fn the_widest_open_constraint_is_named() {
                 .or_default();
             *distance = distance.hypot(*value);
         }
-        let widest = open.iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
+        let (widest, open) = open.iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
         let (distance, _, name) = model.worst_constraint(&at).unwrap();
-        assert_eq!((&constraint(&name), &distance), widest, "{i}");
+        assert_eq!(constraint(&name), *widest, "{i}");
+        // two roundings of a square root
+        assert!(
+            (distance - open).abs() <= 2.0 * f64::EPSILON * open,
+            "{i}: {distance} {open}"
+        );
     }
 }
 

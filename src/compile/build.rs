@@ -98,7 +98,10 @@ pub(super) fn build(
     };
     let eccentric = std::mem::take(&mut terms.eccentric);
     let mut mass = mass(std::mem::take(&mut terms.inertia), &numbering, c.mode);
-    let entries = mass.entries(n, c.mode);
+    let entries = match c.mode {
+        Mode::Ideal => displacements(c, &numbering),
+        Mode::Real | Mode::Pressed => mass.entries(n),
+    };
     mass.tangent = symbolic.filled(entries.iter().copied());
     symbolic.expect_diagonal(typical_mass(&entries, &angles(c, &numbering)));
     let acceleration_matrix = SaddlePoint::new(n, entries, &unknown_columns(&terms, n));
@@ -306,6 +309,20 @@ fn angles(c: &Compiler, numbering: &Numbering) -> Vec<usize> {
     let slots = bodies.flat_map(|(slots, placed)| slots.iter().zip(&placed.x));
     let angles = slots.filter_map(|(slot, x)| Some(x + slot.content.angle()?));
     angles.filter(|angle| *angle < numbering.unknowns).collect()
+}
+
+/// The matrix whose form is the sum of the squared displacements that the unknowns make: the squares of their lengths, as
+/// (row, column, value).
+fn displacements(c: &Compiler, numbering: &Numbering) -> Vec<(usize, usize, f64)> {
+    let n = numbering.unknowns;
+    let mut entries: Vec<_> = (0..n).map(|i| (i, i, 1.0)).collect();
+    for (slots, placed) in c.slots.iter().zip(&numbering.bodies) {
+        let levers = placed.levers(slots.iter().map(|slot| slot.content));
+        for (x, lever) in levers.filter(|(x, lever)| *x < n && *lever > 0.0) {
+            entries[x].2 = lever * lever;
+        }
+    }
+    entries
 }
 
 /// Named points of a body that moves.

@@ -1,6 +1,7 @@
 //! The drive: compiles the ideal rigid mechanism, closes it at the start, and follows its path to the end.
 
 use super::assembly::position;
+use super::extent::{FITS, extent};
 use super::sketch::close;
 use super::{Compiler, Mode, Role, build, numbering};
 use crate::body::{PointRef, RigidLink};
@@ -8,9 +9,6 @@ use crate::kinematics::{Dyad, Kinematics};
 use crate::model::Model;
 use crate::scene::{Drive, Scene, SceneError};
 use crate::system::State;
-
-/// Largest distance of two prescribed points in one joint \[m\]: the digits of typed positions.
-const HELD_TOLERANCE: f64 = 1e-9;
 
 /// Coordinates that a path prescribes: x, y and theta.
 const PATH: isize = 3;
@@ -34,6 +32,8 @@ pub(super) fn ideal_mechanism(
     let dyads = find_dyads(&compiler, &mechanism);
     let moves = |i: &usize| mechanism.fixed.iter().all(|(j, _)| i != j);
     let mut kinematics = Kinematics {
+        size: extent(scene),
+        lengths: mechanism.lengths(),
         moving: (0..shape.coordinates).filter(moves).collect(),
         mechanism: Box::new(mechanism),
         offset: 0,
@@ -112,7 +112,7 @@ fn sweep(
                 let at = |p| position(&kinematics.mechanism, &to, p);
                 let [a, b] = joint.points().map(at);
                 let distance = (a - b).norm();
-                if distance > HELD_TOLERANCE {
+                if distance > FITS * extent(c.scene) {
                     let message = format!(
                         "drive {}: the path pulls joint {} apart, by {} at t = {} s",
                         drive.name,

@@ -24,7 +24,7 @@ pub(super) fn weight(parts: &[Inertia], coordinates: usize) -> Vec<(usize, f64)>
         .collect()
 }
 
-/// Sums the parts. In the ideal mechanism the parts are kept, but every unknown has unit mass in the sum.
+/// Sums the parts. In the ideal mechanism the parts are kept, but their sum is empty.
 pub(super) fn mass(parts: Vec<Inertia>, numbering: &Numbering, mode: Mode) -> Mass {
     let mut rows: Vec<std::collections::BTreeMap<usize, f64>> =
         vec![Default::default(); numbering.coordinates];
@@ -75,14 +75,9 @@ pub(super) fn mass(parts: Vec<Inertia>, numbering: &Numbering, mode: Mode) -> Ma
 }
 
 impl Mass {
-    /// The sum over unknowns as (row, column, mass); the unit matrix in the ideal mechanism.
-    pub(super) fn entries(&self, unknowns: usize, mode: Mode) -> Vec<(usize, usize, f64)> {
-        match mode {
-            Mode::Ideal => (0..unknowns).map(|i| (i, i, 1.0)).collect(),
-            Mode::Real | Mode::Pressed => {
-                let rows = (0..unknowns).flat_map(|i| self.row(i).map(move |(j, m)| (i, j, m)));
-                rows.filter(|(_, j, _)| *j < unknowns).collect()
-            }
-        }
+    /// The sum over unknowns as (row, column, mass).
+    pub(super) fn entries(&self, unknowns: usize) -> Vec<(usize, usize, f64)> {
+        let rows = (0..unknowns).flat_map(|i| self.row(i).map(move |(j, m)| (i, j, m)));
+        rows.filter(|(_, j, _)| *j < unknowns).collect()
     }
 }

@@ -29,7 +29,7 @@ pub use torque::{Torque, TorqueModel};
 pub use torsion_spring::{TorsionSpring, TorsionSpringModel};
 pub use weld::{SlopeClamp, Weld};
 
-use crate::body::{Body, PointRef};
+use crate::body::{Body, Content, PointRef};
 use crate::document::{Fields, Kind, SceneError, Span};
 use crate::force::Force;
 use crate::marker::{Marker, Spin};
@@ -112,6 +112,25 @@ impl Placed {
     /// The direction of the body at a point.
     pub fn spin(&self, point: usize) -> Spin {
         self.kind.spin(point, &self.x)
+    }
+
+    /// Its coordinates that are angles and slopes, each with the largest distance by which a unit of it moves a point \[m\]; the
+    /// contents are those of its slots.
+    pub fn levers(
+        &self,
+        contents: impl Iterator<Item = Content>,
+    ) -> impl Iterator<Item = (usize, f64)> {
+        let slots = self.x.iter().enumerate().zip(contents);
+        slots.flat_map(|((slot, x), content)| {
+            let lever = self.kind.lever(slot);
+            let own = match content {
+                Content::Slope => *x..x + 2,
+                content => content
+                    .angle()
+                    .map_or(0..0, |angle| x + angle..x + angle + 1),
+            };
+            own.map(move |x| (x, lever))
+        })
     }
 }
 

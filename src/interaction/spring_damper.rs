@@ -89,7 +89,7 @@ impl ForceModel for SpringDamperModel {
     }
 }
 
-/// Ends at a smaller distance coincide \[m\]: the digits of typed positions.
+/// Ends at a smaller distance than this part of the rest length coincide: the digits of typed positions.
 const MEETING: f64 = 1e-9;
 
 /// The line between the ends.
@@ -204,7 +204,8 @@ impl Force for SpringDamper {
 
     fn fault(&self, at: &State) -> Option<&'static str> {
         let length = self.line(at).length;
-        let undefined = self.rest_length != 0.0 && (length.is_nan() || length <= MEETING);
+        let undefined = self.rest_length != 0.0
+            && (length.is_nan() || length <= MEETING * self.rest_length.abs());
         undefined.then_some("a spring with a rest length has no direction where its ends coincide")
     }
 

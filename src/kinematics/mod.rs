@@ -18,9 +18,9 @@ use numbers::number;
 use series::Series;
 use std::sync::Arc;
 
-/// After an update below this the error is far below rounding, by the quadratic convergence of Newton's method.
+/// After an update below this part of the mechanism the error is far below rounding, by the quadratic convergence of Newton's method.
 const LAST_UPDATE: f64 = 1e-9;
-/// An update below this leaves the factors as good as they would be anew.
+/// An update below this part leaves the factors as good as they would be anew.
 const SAME_POSE: f64 = 1e-15;
 
 /// The ideal mechanism and where its coordinates stand among those of the real one.
@@ -38,6 +38,10 @@ pub struct Kinematics {
     pub(crate) period: f64,
     /// End of the motion \[s\].
     pub(crate) duration: f64,
+    /// Length of the mechanism \[m\].
+    pub(crate) size: f64,
+    /// How far every unknown moves points of its body \[m\].
+    pub(crate) lengths: Vec<f64>,
     /// Two links in series between known points: the loops whose closing can be described in words.
     pub(crate) dyads: Vec<Dyad>,
 }
@@ -188,8 +192,9 @@ impl Kinematics {
             for (q, dq) in inner.state.q.iter_mut().zip(&inner.b[..n]) {
                 *q += dq;
             }
-            let update = Update::largest(inner.b[..n].iter().copied());
-            last = update.size;
+            let moved = inner.b[..n].iter().zip(&self.lengths);
+            let update = Update::largest(moved.map(|(dq, length)| dq * length));
+            last = update.size / self.size;
             Ok((update, last <= LAST_UPDATE))
         });
         closed.map_err(|failure| self.explain(failure, inner))?;
@@ -206,7 +211,8 @@ impl Kinematics {
         Ok(())
     }
 
-    /// Phi and the factors of \[\[I, Phi_q^T\], \[Phi_q, 0\]\] at the current coordinates. A weak pivot is that of a singular pose,
+    /// Phi and the factors of \[\[L, Phi_q^T\], \[Phi_q, 0\]\] at the current coordinates, with the squared displacements of the unknowns
+    /// in L. A weak pivot is that of a singular pose,
     /// which no exchange of rows removes.
     fn factor(&self, inner: &mut Inner) -> Result<(), Failure> {
         let Inner {
@@ -222,7 +228,7 @@ impl Kinematics {
 
     /// Why the mechanism has no pose.
     fn explain(&self, failure: Failure, inner: &Inner) -> PrescribeError {
-        let closed = inner.phi.iter().all(|x| x.abs() < LAST_UPDATE);
+        let closed = inner.phi.iter().all(|x| x.abs() < LAST_UPDATE * self.size);
         match failure {
             Failure::Singular { index } if closed => {
                 let name = self.mechanism.unknown_name(index);
@@ -234,7 +240,7 @@ impl Kinematics {
         }
     }
 
-    /// Solves Phi_q x = -phi for the x of least norm: the first entries of `inner.b`.
+    /// Solves Phi_q x = -phi for the x of the least displacements: the first entries of `inner.b`.
     fn least_norm(&self, inner: &mut Inner) {
         let n = self.mechanism.shape().unknowns;
         for (b, phi) in inner.b[n..].iter_mut().zip(&inner.phi) {

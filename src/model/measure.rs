@@ -1,7 +1,7 @@
 //! Measured quantities of a model: poses, strains, energies, joint forces, drive torques.
 
 use super::{Actuator, Model, PlacedEccentric, PlacedJoint, Reaction};
-use crate::body::{Content, Pose, Strain};
+use crate::body::{Pose, Strain};
 use crate::contact;
 use crate::contact::geometry::Gap;
 use crate::force::Force;
@@ -49,16 +49,8 @@ impl Model {
     pub fn lengths(&self) -> Vec<f64> {
         let mut lengths = vec![1.0; self.shape().coordinates];
         for place in self.bodies() {
-            for (slot, x) in place.placed.x.iter().enumerate() {
-                let lever = place.placed.kind.lever(slot);
-                match place.contents[slot] {
-                    Content::Slope => lengths[*x..x + 2].fill(lever),
-                    content => {
-                        if let Some(angle) = content.angle() {
-                            lengths[x + angle] = lever;
-                        }
-                    }
-                }
+            for (x, lever) in place.placed.levers(place.contents.iter().copied()) {
+                lengths[x] = lever;
             }
         }
         for state in &self.states {
