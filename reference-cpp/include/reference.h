@@ -117,7 +117,7 @@ int32_t ls_scene_elongation_rates(const ls_scene *scene, const double *q, double
 int32_t ls_scene_mass(const ls_scene *scene, double *mass, ls_error *error);
 
 /* f (n), and df/dq and df/dv (n x n each; either may be null). z: one number a joint. Torsion springs are taken within half a
- * turn of their rest angle. */
+ * turn of their angle at the start. */
 int32_t ls_scene_force(const ls_scene *scene, double t, const double *q, const double *v, const double *z,
                        double *force, double *by_q, double *by_v, ls_error *error);
 

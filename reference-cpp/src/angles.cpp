@@ -32,7 +32,7 @@ Angles starting_angles(const Model &model) {
     for (const AngleDrive &drive : model.scene.angle_drives)
         near.joint[drive.joint] = evaluate(drive.angle, 0.0).value;
     near.spring.setZero(static_cast<int>(system.torsion_springs().size()));
-    for (int i = 0; i < near.spring.size(); ++i) near.spring[i] = system.torsion_springs()[i].rest_angle;
+    for (int i = 0; i < near.spring.size(); ++i) near.spring[i] = system.torsion_springs()[i].rest_angle + model.memory.turn[i];
     return continued(system, near, model.q);
 }
 

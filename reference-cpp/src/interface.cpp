@@ -13,8 +13,7 @@
 struct ls_scene {
     explicit ls_scene(Model m) : model(std::move(m)), channels(model), angles(starting_angles(model)) {
         selected = channels.selected(model.scene.patterns, model.scene.patterns_source);
-        memory = model.system.memory();
-        memory.turn = spring_turns(model.system, angles);
+        memory = model.memory;
         energy = model.system.energies(model.q, model.v, memory).total();
     }
     ls_scene(const ls_scene &) = delete;
@@ -109,8 +108,8 @@ struct GivenState {
 
     GivenState(const ls_scene &scene, double time, const double *qs, const double *vs, const double *z)
         : t(time), q(input(qs, scene.model.system.coordinates(), "q")),
-          v(input(vs, scene.model.system.coordinates(), "v")), memory(scene.model.system.memory()) {
-        memory.elongation = scene.memory.elongation;
+          v(input(vs, scene.model.system.coordinates(), "v")), memory(scene.memory) {
+        memory.turn = spring_turns(scene.model.system, continued(scene.model.system, scene.angles, q));
         require(std::isfinite(t), "t is not finite");
         memory.impact_velocity = input(z, memory.impact_velocity.size(), "z");
     }
@@ -284,7 +283,6 @@ std::int32_t ls_scene_channels(const ls_scene *scene, double t, const double *q,
         s.v = state.v;
         s.angles = continued(system, scene->angles, s.q);
         s.memory = state.memory;
-        s.memory.turn = spring_turns(system, s.angles);
         s.initial_energy = scene->energy;
         Acceleration level(system);
         level.solve(t, s.q, s.v, s.memory, true);

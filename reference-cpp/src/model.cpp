@@ -106,10 +106,12 @@ Model make_model(Scene scene) {
     std::vector<std::string> names;
     for (int row : redundant) names.push_back(system.row_name(row));
     system.leave_out(redundant);
+    Memory memory = system.memory();
+    system.count_turns(q, memory);
     if (scene.initial.equilibrium) {
-        Statics(system).relax(q);
+        Statics(system).relax(memory, q);
         v.setZero();
         Acceleration(system).project(0.0, q, v, std::numeric_limits<double>::infinity());
     }
-    return {std::move(scene), std::move(system), std::move(q), std::move(v), std::move(start.poses), std::move(names)};
+    return {std::move(scene), std::move(system), std::move(q), std::move(v), std::move(memory), std::move(start.poses), std::move(names)};
 }

@@ -7,6 +7,7 @@ struct Model {
     Scene scene;
     System system;
     VectorXd q, v;                      // start
+    Memory memory;                      // at the start
     std::vector<Frame> poses;           // of the bodies at the start
     std::vector<std::string> redundant; // rows left out
 };

@@ -17,6 +17,7 @@ struct TorsionSpring {
     std::string name;
     Attachment bearing, journal;
     double stiffness, damping, rest_angle;
+    double start; // an angle phi - phi_0 within half a turn of that at t = 0
 };
 
 template <class T>

@@ -4,9 +4,8 @@
 
 StaticRun::StaticRun(const Model &model)
     : model_(model), channels_(model_), statics_(model_.system), q_(model_.q), angles_(starting_angles(model_)),
-      memory_(model_.system.memory()) {
-    memory_.turn = spring_turns(model_.system, angles_);
-    if (!statics_.follow(0.0, memory_, q_)) statics_.relax(q_);
+      memory_(model_.memory) {
+    if (!statics_.follow(0.0, memory_, q_)) statics_.relax(memory_, q_);
     describe();
 }
 

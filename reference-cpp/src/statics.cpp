@@ -70,9 +70,8 @@ bool Statics::follow(double t, const Memory &memory, VectorXd &q) {
 
 // Implicit Euler steps of M q'' damped to the utmost, that is (K + s M) dq = -residual. s falls as long as the steps are short
 // and the matrix is positive definite, so the way leads downhill, past equilibria that are not stable.
-void Statics::relax(VectorXd &q) {
+void Statics::relax(Memory &memory, VectorXd &q) {
     const Inputs inputs = system_.inputs(0.0);
-    const Memory memory = system_.memory();
     const double extent = std::max(q.maxCoeff() - q.minCoeff(), system_.levers().maxCoeff());
     constexpr double longest = 0.05, falling = 0.3, rising = 5.0, first = 1e6, least = 1e-9;
     constexpr int most_steps = 2000;
@@ -87,6 +86,7 @@ void Statics::relax(VectorXd &q) {
             inertia *= rising;
         }
         q += update;
+        system_.count_turns(q, memory);
         lambda_ = next_lambda;
         inertia *= falling;
         if (inertia > least) continue;

@@ -11,7 +11,7 @@ public:
     bool follow(double t, const Memory &memory, VectorXd &q);
     // From q anywhere, down to the equilibrium that a heavily damped mechanism comes to, under the loads at t = 0. Throws
     // where there is none, or where some motion is not held.
-    void relax(VectorXd &q);
+    void relax(Memory &memory, VectorXd &q);
     const VectorXd &lambda() const { return lambda_; }
 
 private:

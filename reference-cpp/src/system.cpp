@@ -4,6 +4,27 @@
 #include <algorithm>
 #include <cmath>
 
+namespace {
+
+// The angle of a body at t = 0 with its full turns, where the scene gives them.
+std::optional<double> given_angle(const Scene &scene, int body) {
+    if (scene.bodies[body].kind == BodyKind::ground) return 0.0;
+    if (scene.bodies[body].path) return evaluate((*scene.bodies[body].path)[2], 0.0).value;
+    if (const std::optional<State> &state = scene.initial.states[body]) return state->pose.theta;
+    return {};
+}
+
+// phi - phi_0 with the turns of a drive of the joint or of the two bodies. A sketch gives none: within half a turn of 0.
+double starting_deviation(const Scene &scene, const TorsionSpringDescription &spring) {
+    for (const AngleDrive &drive : scene.angle_drives)
+        if (drive.joint == spring.joint) return evaluate(drive.angle, 0.0).value - spring.rest_angle;
+    const JointDescription &joint = scene.joints[spring.joint];
+    const std::optional<double> first = given_angle(scene, joint.first.body), second = given_angle(scene, joint.second.body);
+    return first && second ? *second - *first - spring.rest_angle : 0.0;
+}
+
+} // namespace
+
 System::System(const Scene &scene, std::shared_ptr<const DrivenAngles> driven_angles)
     : driven_angles_(std::move(driven_angles)), full_load_(scene.is_static ? scene.duration : 0.0) {
     add_bodies(scene);
@@ -55,7 +76,8 @@ void System::add_forces(const Scene &scene) {
             {s.name, attachment(s.from), attachment(s.to), s.stiffness, s.damping, s.rest_length});
     for (const TorsionSpringDescription &s : scene.torsion_springs) {
         const Joint &joint = joints_[s.joint];
-        torsion_springs_.push_back({s.name, joint.bearing, joint.journal, s.stiffness, s.damping, s.rest_angle});
+        torsion_springs_.push_back({s.name, joint.bearing, joint.journal, s.stiffness, s.damping, s.rest_angle,
+                                    starting_deviation(scene, s)});
     }
     elongation_.resize(static_cast<int>(scene.maxwells.size()));
     for (const MaxwellDescription &m : scene.maxwells) {
@@ -138,6 +160,11 @@ Inputs System::inputs(double t) const {
 }
 
 Memory System::memory() const {
-    return {VectorXd::Zero(static_cast<int>(joints_.size())), VectorXd::Zero(static_cast<int>(torsion_springs_.size())),
-            elongation_};
+    VectorXd turn(static_cast<int>(torsion_springs_.size()));
+    for (int i = 0; i < turn.size(); ++i) turn[i] = torsion_springs_[i].start;
+    return {VectorXd::Zero(static_cast<int>(joints_.size())), std::move(turn), elongation_};
+}
+
+void System::count_turns(const VectorXd &q, Memory &memory) const {
+    for (int i = 0; i < memory.turn.size(); ++i) memory.turn[i] = deviation(torsion_springs_[i], memory.turn[i], q);
 }

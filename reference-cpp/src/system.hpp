@@ -106,7 +106,9 @@ public:
     const std::vector<double> &breaks() const { return breaks_; }
 
     Inputs inputs(double t) const;
-    Memory memory() const; // all contacts open, torsion springs within half a turn of their rest, z of the scene
+    Memory memory() const; // at the start: all contacts open, turns of torsion springs and z of the scene
+    // Makes torsion springs remember their angles at q, less than half a turn from those they remember.
+    void count_turns(const VectorXd &q, Memory &memory) const;
 
     void force(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory, VectorXd &f) const;
     // df/dq and df/dv, appended; entries of the same place add up
