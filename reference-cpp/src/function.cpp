@@ -90,6 +90,7 @@ Jet at(const TimeFunction &function, const Jet &t) {
                 return f.start + f.speed / f.duration * (0.5 * t * t + (cos(k * t) - 1.0) * (1.0 / (k * k)));
             },
             [&](const Spline &f) { return interpolate(f, t); },
+            [&](const MonotoneTable &f) { return interpolate(f, t); },
             [&](const Formula &f) { // t is the time itself, of rate 1
                 const Prescribed p = f.at(value_of(t));
                 return jet(p.value, p.rate, p.acceleration);
@@ -116,6 +117,7 @@ void add_breaks(const TimeFunction &function, std::vector<double> &times) {
                    [&](const SpinUp &f) { times.push_back(f.duration); },
                    [&](const PiecewiseLinear &f) { insert(f.t); },
                    [&](const Spline &f) { insert(f.t); },
+                   [&](const MonotoneTable &f) { insert(f.t); },
                    [&](const Formula &f) {
                        insert(f.kinks);
                        times.push_back(f.end);

@@ -7,6 +7,7 @@
 
 #include "dual.hpp"
 #include "expression.hpp"
+#include "monotone.hpp"
 
 // A quantity given at one instant, with its derivatives by time.
 struct Prescribed {
@@ -48,8 +49,8 @@ struct Formula { // an expression of the scene
     Prescribed at(double t) const;
 };
 
-using TimeFunction =
-    std::variant<Constant, Polynomial, Harmonic, Ramp, SmoothStep, PiecewiseLinear, SpinUp, Spline, Formula>;
+using TimeFunction = std::variant<Constant, Polynomial, Harmonic, Ramp, SmoothStep, PiecewiseLinear, SpinUp, Spline,
+                                  MonotoneTable, Formula>;
 
 Jet at(const TimeFunction &function, const Jet &t);
 Prescribed evaluate(const TimeFunction &function, double t);

@@ -22,6 +22,19 @@ std::vector<std::vector<double>> read_rows(const Value &value, std::size_t colum
     return table;
 }
 
+// One curve a column of values.
+std::vector<TimeFunction> read_table(Fields &f, std::size_t columns, double duration) {
+    const std::vector<std::vector<double>> table = read_rows(f.get("rows"), columns, duration);
+    const bool monotone = f.has("shape") && f.choice<bool>("shape", {{"natural", false}, {"monotone", true}});
+    std::vector<TimeFunction> curves;
+    for (std::size_t i = 1; i < columns; ++i)
+        if (monotone)
+            curves.emplace_back(monotone_table(table[0], table[i]));
+        else
+            curves.emplace_back(natural_spline(table[0], table[i]));
+    return curves;
+}
+
 } // namespace
 
 TimeFunction read_function(const Value &value, double duration) {
@@ -57,11 +70,7 @@ TimeFunction read_function(const Value &value, double duration) {
         break;
     }
     case Type::spin_up: function = SpinUp{f.number("start"), f.number("speed"), f.positive("duration")}; break;
-    case Type::table: {
-        std::vector<std::vector<double>> table = read_rows(f.get("rows"), 2, duration);
-        function = natural_spline(std::move(table[0]), std::move(table[1]));
-        break;
-    }
+    case Type::table: function = read_table(f, 2, duration)[0]; break;
     }
     f.finish();
     return function;
@@ -98,8 +107,8 @@ Path read_path(const Value &value, double duration) {
         break;
     }
     case Type::table: {
-        const std::vector<std::vector<double>> table = read_rows(f.get("rows"), 4, duration);
-        for (std::size_t i = 0; i < 3; ++i) path[i] = natural_spline(table[0], table[i + 1]);
+        const std::vector<TimeFunction> curves = read_table(f, 4, duration);
+        std::copy(curves.begin(), curves.end(), path.begin());
         break;
     }
     case Type::coordinates:
