@@ -6,7 +6,7 @@ import sys
 import numpy as np
 
 import driver
-from driver import ROOT, expect, path_of, run, scene
+from driver import ROOT, expect, path_of, refused, run, scene
 from library import CONSTRAINT, COORDINATE, Scene
 
 # ---- derivatives: of analytic functions by differences on a circle in the complex plane, which are exact ---------------------------
@@ -18,10 +18,17 @@ SMOOTH = [
     "sin(3*t + 0.2)", "cos(t^2 - 1)", "tan(0.9*t)", "asin(0.6*t)", "acos(0.5*t - 0.1)", "atan(4*t - 1)", "sinh(2*t)", "cosh(2*t - 1)",
     "tanh(3*t - 1)", "exp(-t^2)", "log(1 + t)", "sqrt(0.1 + t)", "atan2(1 + t, 0.3 - t)", "atan2(-2 - t, sin(t))", "atan2(t - 2, -1)",
     "atan2(1, 2)*t", "asin(0.1 * sin(10 * t))", "exp(sin(t)/(1 + t^2))*tanh(t)", "sqrt(1 + sin(t)^2)", "log(cosh(t))", "cos(sin(cos(3*t)))",
-    "asin(tanh(t))", "tan(atan(t)*0.5)", "sin(t)*cos(t)*exp(t)*t", "1/(1 + exp(-40*(t - 0.5)))", "+".join(["t*t*sin(t)"] * 90), "*".join(["t"] * 500),
+    "asin(tanh(t))", "tan(atan(t)*0.5)", "smooth_step(0.3 + 0.5*t)", "smooth_step(sin(t))^2*t", "smooth_step(1 + t)*t", "t + smooth_step(-t)", "sin(t)*cos(t)*exp(t)*t", "1/(1 + exp(-40*(t - 0.5)))", "+".join(["t*t*sin(t)"] * 90), "*".join(["t"] * 500),
 ]
+
+
+def smooth_step(u):
+    """Also of complex arguments."""
+    return np.where(np.real(u) <= 0, 0, np.where(np.real(u) >= 1, 1, u ** 3 * (10 - 15 * u + 6 * u * u)))
+
+
 ANALYTIC = dict(sin=np.sin, cos=np.cos, tan=np.tan, asin=np.arcsin, acos=np.arccos, atan=np.arctan, sinh=np.sinh, cosh=np.cosh, tanh=np.tanh,
-                exp=np.exp, log=np.log, sqrt=np.sqrt, atan2=lambda y, x: np.log((x + 1j * y) / np.sqrt(x * x + y * y + 0j)) / 1j, pi=np.pi)
+                exp=np.exp, log=np.log, sqrt=np.sqrt, smooth_step=smooth_step, atan2=lambda y, x: np.log((x + 1j * y) / np.sqrt(x * x + y * y + 0j)) / 1j, pi=np.pi)
 REAL = dict(ANALYTIC, atan2=np.arctan2, abs=np.abs, min=np.minimum, max=np.maximum)
 
 
@@ -64,6 +71,25 @@ for i, formula in enumerate(SMOOTH):
 START = {"t^0": (1, 0, 0), "t^1": (0, 1, 0), "t^2": (0, 0, 2), "t^3": (0, 0, 0), "t^2.5": (0, 0, 0), "t^(4/2)": (0, 0, 2), "(2*t)^(1 + 1)": (0, 0, 8),
          "(t^2)^2": (0, 0, 0), "(sin(t))^1": (0, 1, 0), "t^2^1": (0, 0, 2), "t*t": (0, 0, 2), "atan2(t, 1)": (0, 1, 0), "0*sqrt(1 - t)": (0, 0, 0)}
 expect("at t = 0: " + ", ".join(START), prescribed(START, [0.0])[0] - np.array(list(START.values())), 0.0)
+
+# motions that switch smoothly, away from the switch as if there were none
+SWITCHING = {"max(0, t - 0.4)^3": lambda t: (t - 0.4) ** 3 * (np.real(t) > 0.4), "abs(t - 0.3)^3": lambda t: (t - 0.3) ** 3 * np.sign(np.real(t) - 0.3),
+             "min(t, 0.5)^2 + max(0, t - 0.5)^4 + max(0, t - 0.5) + max(0, t - 0.5)^2": lambda t: np.where(np.real(t) < 0.5, t ** 2, t ** 2 + (t - 0.5) ** 4),
+             "abs(sin(10*t))^3": lambda t: np.sin(10 * t) ** 3 * np.sign(np.sin(10 * np.real(t))), "abs(t - t)*t + t": lambda t: t}
+found = prescribed(SWITCHING, times)
+for i, (formula, function) in enumerate(SWITCHING.items()):
+    exact = np.array([taylor(function, t) for t in times])
+    expect(f"{formula}: value and derivatives", found[:, i] - exact, 1e-9)
+for formula, what in (("max(0, t - 0.7)^2", "acceleration"), ("max(0, t - 0.7)", "velocity"), ("abs(t - 0.7)^2*sin(t) + abs(cos(20*t))", "velocity"),
+                      ("t + max(0, sin(2*pi*t) - 0.9999999999)", "velocity"), ("max(0, 1e-9 - (t - 0.12345)^2)*1e6", "velocity"),
+                      ("0.5*t^2 + min(t, 0.123456789)^2", "velocity")):
+    moving = 'bodies.ground = {{ type = "ground" }}\nbodies.b = {{ type = "moving", path = {{ type = "coordinates", x = "{0}", y = 0.0, theta = 0.0 }} }}\n'
+    refused([path_of("jump", scene(1.0, 1e-2, moving.format(formula)))], f"the {what} of a prescribed motion must not jump")
+end = "smooth_step((t - 0.1) / 0.1) - smooth_step((t - 0.3) / 0.1)"
+u = lambda t, start: (t - start) / 0.1
+for t in (0.05, 0.1, 0.13, 0.19, 0.2, 0.25, 0.33, 0.4, 0.5):
+    steps = [np.array([smooth_step(x), 10 * 30 * x ** 2 * (1 - x) ** 2 * (0 < x < 1), 100 * 60 * x * (1 - x) * (1 - 2 * x) * (0 < x < 1)]) for x in (u(t, 0.1), u(t, 0.3))]
+    expect(f"{end} at {t}", prescribed([end], [t])[0][0] - (steps[0] - steps[1]), 1e-9)
 
 # ---- values of loads: the grammar, and kinks ----------------------------------------------------------------------------------------
 

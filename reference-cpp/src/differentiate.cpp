@@ -33,7 +33,13 @@ int Differentiation::rule(int i) {
     case Operator::sqrt: return quotient(da, product(e_.number(2.0), i));
     case Operator::atan2:
         return quotient(difference(product(b, da), product(a, db)), sum(product(a, a), product(b, b)));
-    default: throw Failure(LS_INTERNAL, "a formula with kinks has been accepted as a motion");
+    case Operator::smooth_step: return product(e_.apply(Operator::smooth_step_rate, a), da);
+    case Operator::smooth_step_rate: return product(e_.apply(Operator::smooth_step_bend, a), da);
+    case Operator::abs: return choice(da, negative(da), a);
+    case Operator::max: return choice(da, db, difference(a, b));
+    case Operator::min: return choice(db, da, difference(a, b));
+    case Operator::choice: return choice(da, db, o.c);
+    default: throw Failure(LS_INTERNAL, "a formula is differentiated more often than it can be");
     }
 }
 
@@ -55,6 +61,8 @@ int Differentiation::product(int a, int b) {
 int Differentiation::quotient(int a, int b) {
     return e_.is(a, 0.0) || e_.is(b, 1.0) ? a : e_.apply(Operator::quotient, a, b);
 }
+
+int Differentiation::choice(int a, int b, int c) { return a == b ? a : e_.choice(a, b, c); }
 
 int Differentiation::power(int a, double exponent) {
     if (exponent == 0.0) return one_;

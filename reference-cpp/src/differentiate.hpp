@@ -6,7 +6,7 @@
 class Differentiation {
 public:
     explicit Differentiation(Expression &expression) : e_(expression), zero_(e_.number(0.0)), one_(e_.number(1.0)) {}
-    // Adds the derivative of a result to the expression, and returns its place. The formula must not have kinks.
+    // Adds the derivative of a result to the expression, and returns its place. At a kink it is that of one side.
     int of(int result);
 
 private:
@@ -18,6 +18,7 @@ private:
     int product(int a, int b);
     int quotient(int a, int b);
     int power(int a, double exponent);
+    int choice(int a, int b, int c);
 
     Expression &e_;
     const int zero_, one_;

@@ -4,6 +4,15 @@
 
 namespace {
 
+// The derivative of 10 u^3 - 15 u^4 + 6 u^5 of the given order, with u between 0 and 1; constant beyond.
+double smooth_step(double u, int order) {
+    if (std::isnan(u)) return u;
+    if (u <= 0.0 || u >= 1.0) return order == 0 && u > 0.0 ? 1.0 : 0.0;
+    if (order == 0) return u * u * u * (10.0 + u * (6.0 * u - 15.0));
+    if (order == 1) return 30.0 * u * u * (1.0 - u) * (1.0 - u);
+    return 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u);
+}
+
 double result(Operator op, double a, double b) {
     switch (op) {
     case Operator::negative: return -a;
@@ -25,6 +34,9 @@ double result(Operator op, double a, double b) {
     case Operator::log: return std::log(a);
     case Operator::sqrt: return std::sqrt(a);
     case Operator::abs: return std::abs(a);
+    case Operator::smooth_step: return smooth_step(a, 0);
+    case Operator::smooth_step_rate: return smooth_step(a, 1);
+    case Operator::smooth_step_bend: return smooth_step(a, 2);
     case Operator::atan2: return std::atan2(a, b);
     // what is not a number stays so, on either side
     case Operator::min: return std::isnan(b) || b < a ? b : a;
@@ -49,6 +61,8 @@ int Expression::apply(Operator op, int a, int b) {
     return add({op, a, b});
 }
 
+int Expression::choice(int a, int b, int c) { return add({Operator::choice, a, b, 0.0, c}); }
+
 std::vector<double> Expression::at(double t) const {
     std::vector<double> results;
     results.reserve(operations_.size());
@@ -57,6 +71,7 @@ std::vector<double> Expression::at(double t) const {
         switch (o.op) {
         case Operator::number: results.push_back(o.value); break;
         case Operator::time: results.push_back(t); break;
+        case Operator::choice: results.push_back(of(of(o.c) >= 0.0 ? o.a : o.b)); break;
         default: results.push_back(result(o.op, of(o.a), of(o.b)));
         }
     return results;

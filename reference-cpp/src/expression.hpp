@@ -11,13 +11,16 @@ enum class Operator {
     negative, sum, difference, product, quotient,
     power, // its exponent is a number
     sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, sqrt, abs,
+    smooth_step, smooth_step_rate, smooth_step_bend, // and its derivatives
     atan2, min, max,
+    choice, // of three operands: a where the third is not negative, otherwise b
 };
 
 struct Operation {
     Operator op;
     int a = 0, b = 0;   // results it works on
     double value = 0.0; // of a number
+    int c = 0;          // the third result of a choice
 };
 
 class Expression {
@@ -27,6 +30,7 @@ public:
     int time();
     int apply(Operator op, int a) { return apply(op, a, a); } // operators of one operand do not look at the other
     int apply(Operator op, int a, int b);
+    int choice(int a, int b, int c);
 
     const Operation &operation(int i) const { return operations_[static_cast<std::size_t>(i)]; }
     bool is_number(int i) const { return operation(i).op == Operator::number; }

@@ -60,9 +60,13 @@ Spline natural_spline(std::vector<double> t, std::vector<double> y) {
     return {std::move(t), std::move(y), std::move(c)};
 }
 
-// Beyond the end a parabola goes on.
+// Beyond the end a parabola goes on. Within a switch the branches need not fit together; what follows it holds there.
 Prescribed Formula::at(double t) const {
-    const double inside = std::min(t, end), h = t - inside;
+    double inside = std::min(t, end);
+    const double h = t - inside;
+    const auto next = std::lower_bound(switches.begin(), switches.end(), inside,
+                                       [](const Switch &s, double time) { return s.after < time; });
+    if (next != switches.end() && inside > next->before) inside = next->after;
     const std::vector<double> results = expression.at(inside);
     auto of = [&](int i) { return results[static_cast<std::size_t>(i)]; };
     const double r = of(rate), a = of(acceleration);
@@ -119,7 +123,7 @@ void add_breaks(const TimeFunction &function, std::vector<double> &times) {
                    [&](const Spline &f) { insert(f.t); },
                    [&](const MonotoneTable &f) { insert(f.t); },
                    [&](const Formula &f) {
-                       insert(f.kinks);
+                       for (const Switch &s : f.switches) times.push_back(s.after);
                        times.push_back(f.end);
                    },
                },

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "dual.hpp"
-#include "expression.hpp"
 #include "monotone.hpp"
+#include "switches.hpp"
 
 // A quantity given at one instant, with its derivatives by time.
 struct Prescribed {
@@ -43,7 +43,7 @@ Spline natural_spline(std::vector<double> t, std::vector<double> y);
 struct Formula { // an expression of the scene
     Expression expression;
     int value = 0, rate = 0, acceleration = 0; // places in it; the last two of a load are zero
-    std::vector<double> kinks;
+    std::vector<Switch> switches; // in order
     double end = 0.0; // of the run; the expression need not have a value beyond
 
     Prescribed at(double t) const;

@@ -25,7 +25,8 @@ constexpr Function functions[] = {
     {"abs", Operator::abs, 1},   {"acos", Operator::acos, 1}, {"asin", Operator::asin, 1}, {"atan", Operator::atan, 1},
     {"atan2", Operator::atan2, 2}, {"cos", Operator::cos, 1}, {"cosh", Operator::cosh, 1}, {"exp", Operator::exp, 1},
     {"log", Operator::log, 1},   {"max", Operator::max, 2},   {"min", Operator::min, 2},   {"sin", Operator::sin, 1},
-    {"sinh", Operator::sinh, 1}, {"sqrt", Operator::sqrt, 1}, {"tan", Operator::tan, 1},   {"tanh", Operator::tanh, 1},
+    {"sinh", Operator::sinh, 1}, {"smooth_step", Operator::smooth_step, 1},                {"sqrt", Operator::sqrt, 1},
+    {"tan", Operator::tan, 1},   {"tanh", Operator::tanh, 1},
 };
 
 class Parser {
@@ -132,9 +133,13 @@ private:
         if (count != function.arguments)
             fail(name, quoted(name) + " takes " + (function.arguments == 1 ? "one argument" : "two arguments") + ", not " +
                            std::to_string(count));
-        if (function.op == Operator::abs) out_.kinks.push_back(first);
+        if (function.op == Operator::abs) out_.switches.push_back(first);
         if (function.op == Operator::min || function.op == Operator::max)
-            out_.kinks.push_back(apply(Operator::difference, first, last));
+            out_.switches.push_back(apply(Operator::difference, first, last));
+        if (function.op == Operator::smooth_step) {
+            out_.switches.push_back(first);
+            out_.switches.push_back(apply(Operator::difference, first, out_.expression.number(1.0)));
+        }
         return apply(function.op, first, last);
     }
 

@@ -1,9 +1,11 @@
 // Expressions as functions of time.
+#include <array>
 #include <cmath>
 
 #include "differentiate.hpp"
 #include "parse_expression.hpp"
 #include "reader.hpp"
+#include "switches.hpp"
 
 namespace {
 
@@ -34,21 +36,49 @@ void check_values(const ParsedExpression &parsed, const Formula &formula, const 
     }
 }
 
-// Instants at which a result changes its sign, one a trial interval at most, by bisection to the last bit.
-void add_sign_changes(const Expression &expression, int result, double duration, std::vector<double> &times) {
-    auto sign = [&](double t) {
-        const double x = expression.at(t)[static_cast<std::size_t>(result)];
-        return (x > 0.0) - (x < 0.0);
-    };
-    for (int i = 0; i < intervals; ++i) {
-        double before = trial_time(i, duration), after = trial_time(i + 1, duration);
-        const int start = sign(before);
-        if (sign(after) == start) continue;
-        for (double middle = 0.5 * (before + after); middle > before && middle < after; middle = 0.5 * (before + after))
-            (sign(middle) == start ? before : after) = middle;
-        times.push_back(after);
+// A motion must not jump where abs, min or max switch.
+class Smoothness {
+public:
+    Smoothness(const Formula &motion, const Expression &expression, const Source &source)
+        : motion_(motion), expression_(expression), source_(source) {
+        for (int i = 0; i <= intervals; ++i) look_at(trial_time(i, motion.end));
+        for (std::size_t i = 1; i < motion.switches.size(); ++i)
+            look_at(0.5 * (motion.switches[i - 1].after + motion.switches[i].before));
     }
-}
+
+    // A jump is rounding if it is small beside the largest value of its kind, or if what it adds to the velocity or the value
+    // until the end is.
+    void check(const Switch &s) const {
+        constexpr double rounding = 1e-8;
+        const char *names[3] = {"value", "velocity", "acceleration"};
+        const std::array<double, 3> before = at(s.before), after = at(s.after);
+        for (std::size_t k = 0; k < 3; ++k) {
+            double effect = std::abs(after[k] - before[k]);
+            bool small = false;
+            for (std::size_t i = k + 1; i-- > 0; effect *= motion_.end) small = small || effect <= rounding * largest_[i];
+            require(small, source_, std::string("the ") + names[k] + " of a prescribed motion must not jump; where abs, min or max " +
+                                        "switches at t = " + text_of(s.after) + " it goes from " + value_text(before[k]) + " to " +
+                                        value_text(after[k]));
+        }
+    }
+
+private:
+    void look_at(double t) {
+        const std::array<double, 3> x = at(t);
+        for (std::size_t k = 0; k < 3; ++k) largest_[k] = std::max(largest_[k], std::abs(x[k]));
+    }
+
+    std::array<double, 3> at(double t) const {
+        const std::vector<double> results = expression_.at(t);
+        auto of = [&](int i) { return results[static_cast<std::size_t>(i)]; };
+        return {of(motion_.value), of(motion_.rate), of(motion_.acceleration)};
+    }
+
+    const Formula &motion_;
+    const Expression &expression_;
+    const Source &source_;
+    std::array<double, 3> largest_{};
+};
 
 } // namespace
 
@@ -59,19 +89,21 @@ TimeFunction read_expression(const Value &value, double duration, Use use) {
     require(text.size() <= most_characters, value.source,
             "an expression has at most " + std::to_string(most_characters) + " characters, not " + std::to_string(text.size()));
     ParsedExpression parsed = parse_expression(text, value.source);
+    Expression &expression = parsed.expression;
     Formula formula;
     formula.value = parsed.value;
     formula.end = duration;
-    if (use == Use::motion) {
-        require(parsed.kinks.empty(), value.source, "abs, min and max cannot prescribe a motion, because its rate jumps");
-        Differentiation derivative(parsed.expression);
-        formula.rate = derivative.of(formula.value);
-        formula.acceleration = derivative.of(formula.rate);
-    } else {
-        formula.rate = formula.acceleration = parsed.expression.number(0.0);
-    }
+    std::vector<Watched> watched;
+    Differentiation derivative(expression);
+    for (int result : parsed.switches) watched.push_back({result, derivative.of(result)});
+    formula.rate = use == Use::motion ? derivative.of(formula.value) : expression.number(0.0);
+    formula.acceleration = use == Use::motion ? derivative.of(formula.rate) : formula.rate;
     check_values(parsed, formula, value.source);
-    for (int result : parsed.kinks) add_sign_changes(parsed.expression, result, duration, formula.kinks);
-    formula.expression = std::move(parsed.expression);
+    formula.switches = find_switches(expression, watched, duration);
+    if (use == Use::motion) {
+        const Smoothness smoothness(formula, expression, value.source);
+        for (const Switch &s : formula.switches) smoothness.check(s);
+    }
+    formula.expression = std::move(expression);
     return formula;
 }
