@@ -173,6 +173,8 @@ void run_scene(const Options &options) {
     ls_description description;
     ls_scene_describe(scene.get(), &description);
     std::printf("%s\n", description.title);
+    for (std::size_t i = 0; i < ls_scene_count(scene.get(), LS_NOTE); ++i)
+        std::printf("note: %s\n", ls_scene_name(scene.get(), LS_NOTE, i));
     if (options.start_only) {
         print_start(scene.get());
         return;

@@ -94,7 +94,8 @@ typedef enum {
     LS_CHANNEL = 3,    /* all channels of the scene, t first */
     LS_SELECTED = 4,   /* those that `output.channels` selects, in its order, t first */
     LS_REDUNDANT = 5,  /* constraint rows left out */
-    LS_ELONGATION = 6  /* Maxwell elements */
+    LS_ELONGATION = 6, /* Maxwell elements */
+    LS_NOTE = 7        /* facts about the scene that are no errors, in words */
 } ls_list;
 size_t ls_scene_count(const ls_scene *scene, int32_t list);
 const char *ls_scene_name(const ls_scene *scene, int32_t list, size_t index); /* null beyond the end */

@@ -151,7 +151,7 @@ Attachment make_attachment(const Body &b, Vec<double> at) {
     a.length = 1.0;
     a.point = at;
     if (b.kind == BodyKind::rigid_link) {
-        a.end = at.x > 0.5 * b.length ? 1 : 0;
+        a.share = at.x / b.length;
         a.length = b.length;
     }
     if (b.kind == BodyKind::flexible_link) {

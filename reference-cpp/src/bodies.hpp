@@ -54,7 +54,7 @@ struct Attachment {
     BodyKind kind;
     int offset; // of its first coordinate in q
     int size;
-    int end;           // rigid link: 0 the start, 1 the end
+    double share;      // rigid link: how much of the point its end counts, between 0 at the start and 1
     double length;     // of the direction where nothing is deformed
     Vec<double> point; // ground: global; rigid and moving body: in its own axes
 
@@ -75,11 +75,18 @@ Vec<T> arm(const Attachment &a, const T *q) {
     return {c * a.point.x - s * a.point.y, s * a.point.x + c * a.point.y};
 }
 
+// The point between the ends of a rigid link.
+template <class T>
+Vec<T> along(const Attachment &a, const T *q) {
+    const double rest = 1.0 - a.share;
+    return {rest * q[0] + a.share * q[2], rest * q[1] + a.share * q[3]};
+}
+
 // Here and below q, v are the coordinates of the attachment only.
 template <class T>
 Vec<T> position(const Attachment &a, const T *q) {
     switch (a.kind) {
-    case BodyKind::rigid_link: return {q[2 * a.end], q[2 * a.end + 1]};
+    case BodyKind::rigid_link: return along(a, q);
     case BodyKind::flexible_link:
     case BodyKind::point_mass: return {q[0], q[1]};
     case BodyKind::rigid_body:
@@ -91,7 +98,7 @@ Vec<T> position(const Attachment &a, const T *q) {
 template <class T>
 Vec<T> velocity(const Attachment &a, const T *q, const T *v) {
     switch (a.kind) {
-    case BodyKind::rigid_link: return {v[2 * a.end], v[2 * a.end + 1]};
+    case BodyKind::rigid_link: return along(a, v);
     case BodyKind::flexible_link:
     case BodyKind::point_mass: return {v[0], v[1]};
     case BodyKind::rigid_body:
@@ -129,9 +136,16 @@ T spin(const Attachment &a, const T *q, const T *v) {
 template <class T>
 void add_force(const Attachment &a, const T *q, const Vec<T> &force, T *Q) {
     if (a.kind == BodyKind::ground) return;
-    const int i = a.kind == BodyKind::rigid_link ? 2 * a.end : 0;
-    Q[i] += force.x;
-    Q[i + 1] += force.y;
+    if (a.kind == BodyKind::rigid_link) {
+        const double rest = 1.0 - a.share;
+        Q[0] += rest * force.x;
+        Q[1] += rest * force.y;
+        Q[2] += a.share * force.x;
+        Q[3] += a.share * force.y;
+        return;
+    }
+    Q[0] += force.x;
+    Q[1] += force.y;
     if (a.is_frame()) Q[2] += cross(arm(a, q), force);
 }
 

@@ -58,7 +58,12 @@ void Channels::evaluate(const Snapshot &snapshot, double *values) const {
     for (const Group &group : groups_) group.fill(snapshot, values + group.first);
 }
 
-std::vector<std::size_t> Channels::selected(const std::vector<std::string> &patterns, const Source &source) const {
+void Channels::note_absent(const std::string &prefix, std::initializer_list<const char *> quantities) {
+    for (const char *quantity : quantities) absent_.push_back(prefix + quantity);
+}
+
+std::vector<std::size_t> Channels::selected(const std::vector<std::string> &patterns, const Source &source,
+                                            std::vector<std::string> &notes) const {
     std::vector<std::size_t> chosen{0};
     for (const std::string &pattern : patterns) {
         bool any = false;
@@ -67,7 +72,12 @@ std::vector<std::size_t> Channels::selected(const std::vector<std::string> &patt
             any = true;
             if (std::find(chosen.begin(), chosen.end(), i) == chosen.end()) chosen.push_back(i);
         }
-        require(any, source, "the pattern \"" + pattern + "\" matches no channel");
+        if (any) continue;
+        const bool is_pattern = pattern.find('*') != std::string::npos;
+        require(is_pattern || std::find(absent_.begin(), absent_.end(), pattern) != absent_.end(), source,
+                "there is no channel \"" + pattern + "\"");
+        notes.push_back(is_pattern ? "the pattern \"" + pattern + "\" matches no channel"
+                                   : "the link is rigid or the joint ideal: there is no channel \"" + pattern + "\"");
     }
     return chosen;
 }
@@ -95,6 +105,7 @@ void Channels::add_bodies() {
             });
         if (body.kind == BodyKind::flexible_link)
             add(prefix, {"strain"}, [&body](const Snapshot &s, double *out) { *out = largest_strain(body, s.q); });
+        if (body.kind == BodyKind::rigid_link) note_absent(prefix, {"strain"});
     }
 }
 
@@ -128,6 +139,8 @@ void Channels::add_joint_kinematics(const std::string &prefix, int number) {
                 const bool touches = s.memory.impact_velocity[number] > 0.0 && g.delta() > 0.0;
                 put(out, {g.e.x, g.e.y, g.size(), g.e_dot.x, g.e_dot.y, g.rate(), g.delta(), touches ? 1.0 : 0.0});
             });
+    } else if (joint.kind == JointKind::revolute) {
+        note_absent(prefix, {"ex", "ey", "eccentricity", "ex_rate", "ey_rate", "eccentricity_rate", "penetration", "contact"});
     }
     if (joint.driven)
         add(prefix, {"angle", "speed", "acceleration"}, [&joint, number](const Snapshot &s, double *out) {
@@ -165,6 +178,7 @@ void Channels::add_points() {
                 add(prefix, {"slope_x", "slope_y"}, [point](const Snapshot &s, double *out) {
                     put(out, {s.q[point.offset + 2], s.q[point.offset + 3]});
                 });
+            if (body.kind == BodyKind::rigid_link) note_absent(prefix, {"slope_x", "slope_y"});
         }
     }
 }

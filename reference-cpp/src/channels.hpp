@@ -22,8 +22,10 @@ public:
 
     const std::vector<std::string> &names() const { return names_; }
     void evaluate(const Snapshot &snapshot, double *values) const;
-    // Those that patterns select, each once, t first. Refuses a pattern that matches nothing.
-    std::vector<std::size_t> selected(const std::vector<std::string> &patterns, const Source &source) const;
+    // Those that patterns select, each once, t first. Notes a pattern that matches nothing, and a channel that the mechanism
+    // would have with flexible links and clearance; refuses other names without a channel.
+    std::vector<std::size_t> selected(const std::vector<std::string> &patterns, const Source &source,
+                                      std::vector<std::string> &notes) const;
 
 private:
     using Fill = std::function<void(const Snapshot &, double *)>;
@@ -36,6 +38,8 @@ private:
     void add_forces();
     void add_energies();
 
+    void note_absent(const std::string &prefix, std::initializer_list<const char *> quantities);
+
     struct Group {
         std::size_t first; // of its channels
         Fill fill;
@@ -43,5 +47,6 @@ private:
     const Model &model_;
     const System &system_;
     std::vector<std::string> names_;
+    std::vector<std::string> absent_; // names that other models of links and joints have
     std::vector<Group> groups_;
 };

@@ -82,6 +82,8 @@ double Fields::positive(const char *key) {
     return x;
 }
 
+double Fields::positive(const char *key, double otherwise) { return has(key) ? positive(key) : otherwise; }
+
 double Fields::not_negative(const char *key) {
     const double x = number(key);
     require(x >= 0.0, source(key), "must not be negative");

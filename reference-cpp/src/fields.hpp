@@ -30,6 +30,7 @@ public:
     double number(const char *key) { return as_number(get(key)); }
     double number(const char *key, double otherwise);
     double positive(const char *key);
+    double positive(const char *key, double otherwise);
     double not_negative(const char *key);
     double not_negative(const char *key, double otherwise);
     int count(const char *key, int least, int most);

@@ -12,7 +12,7 @@
 
 struct ls_scene {
     explicit ls_scene(Model m) : model(std::move(m)), channels(model), angles(starting_angles(model)) {
-        selected = channels.selected(model.scene.patterns, model.scene.patterns_source);
+        selected = channels.selected(model.scene.patterns, model.scene.patterns_source, notes);
         memory = model.memory;
         energy = model.system.energies(model.q, model.v, memory).total();
     }
@@ -23,6 +23,7 @@ struct ls_scene {
     const Channels channels;
     const Angles angles;
     std::vector<std::size_t> selected;
+    std::vector<std::string> notes;
     Memory memory; // at the start
     double energy = 0.0;
 };
@@ -170,6 +171,7 @@ std::size_t ls_scene_count(const ls_scene *scene, std::int32_t list) {
     case LS_SELECTED: return scene->selected.size();
     case LS_REDUNDANT: return scene->model.redundant.size();
     case LS_ELONGATION: return system.maxwells().size();
+    case LS_NOTE: return scene->notes.size();
     default: return 0;
     }
 }
@@ -184,6 +186,7 @@ const char *ls_scene_name(const ls_scene *scene, std::int32_t list, std::size_t 
     case LS_CHANNEL: return scene->channels.names()[index].c_str();
     case LS_SELECTED: return scene->channels.names()[scene->selected[index]].c_str();
     case LS_ELONGATION: return system.maxwells()[index].name.c_str();
+    case LS_NOTE: return scene->notes[index].c_str();
     default: return scene->model.redundant[index].c_str();
     }
 }

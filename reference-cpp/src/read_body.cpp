@@ -95,12 +95,15 @@ void read_disc(Fields &f, const Library &library, BodyDescription &body) {
 void read_link_points(Fields &f, BodyDescription &body) {
     body.points = {{"start", {0.0, 0.0}}, {"end", {body.length, 0.0}}};
     each_entry(f.find("points"), [&](const std::string &name, const Value &value) {
-        require(body.kind == BodyKind::flexible_link, value.source, "only a flexible link has points of its own");
         require(name != "start" && name != "end", value.source, "every link has this point already");
-        const double x = as_number(value), element = body.length / body.elements, node = std::round(x / element);
-        constexpr double rounding = 1e-9;
-        require(node >= 0.0 && node <= body.elements && std::abs(x - node * element) <= rounding * body.length,
-                value.source, "is not at a node between elements, which are " + text_of(element) + " m long");
+        const double x = as_number(value);
+        require(x >= 0.0 && x <= body.length, value.source, "must be between the ends of the link");
+        if (body.kind == BodyKind::flexible_link) {
+            const double element = body.length / body.elements;
+            constexpr double rounding = 1e-9;
+            require(std::abs(x - std::round(x / element) * element) <= rounding * body.length, value.source,
+                    "is not at a node between elements, which are " + text_of(element) + " m long");
+        }
         body.points.push_back({name, {x, 0.0}});
     });
 }
@@ -115,23 +118,23 @@ void read_link(Fields &f, const Library &library, BodyDescription &body) {
     body.inertia = body.mass * body.length * body.length / 12.0;
     // a choice of unknowns, which changes no result; here every rigid link has the positions of its ends
     if (f.has("coordinates")) f.choice<bool>("coordinates", {{"natural", true}, {"center", false}});
+    const bool flexible = body.kind == BodyKind::flexible_link;
     constexpr int most_elements = 10000;
-    if (body.kind == BodyKind::flexible_link) {
+    const int elements = flexible || f.has("elements") ? f.count("elements", 1, most_elements) : 0;
+    double mass_damping = 0.0, strain_damping = f.not_negative("kelvin_voigt", 0.0);
+    if (const Value *value = f.find("rayleigh")) {
+        Fields rayleigh(*value);
+        mass_damping = rayleigh.not_negative("mass");
+        strain_damping += rayleigh.not_negative("stiffness");
+        rayleigh.finish();
+    }
+    if (flexible) { // a rigid link ignores these
         require(material.youngs_modulus.has_value(), f.source("material"), "a flexible link needs its youngs_modulus");
-        body.elements = f.count("elements", 1, most_elements);
+        body.elements = elements;
         body.axial_stiffness = *material.youngs_modulus * area;
         body.bending_stiffness = body.axial_stiffness * section.width * section.width / 12.0;
-        body.strain_damping = f.not_negative("kelvin_voigt", 0.0);
-        if (const Value *value = f.find("rayleigh")) {
-            Fields rayleigh(*value);
-            body.mass_damping = rayleigh.not_negative("mass");
-            body.strain_damping += rayleigh.not_negative("stiffness");
-            rayleigh.finish();
-        }
-    } else {
-        if (f.has("elements")) f.count("elements", 1, most_elements);
-        for (const char *key : {"kelvin_voigt", "rayleigh"})
-            require(!f.has(key), f.source(key), "only a flexible link has damping");
+        body.strain_damping = strain_damping;
+        body.mass_damping = mass_damping;
     }
     read_link_points(f, body);
 }

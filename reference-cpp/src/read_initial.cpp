@@ -35,10 +35,10 @@ State read_state(const Value &value, const BodyDescription &body) {
     state.pose = {f.number("x"), f.number("y"), has_angle ? f.number("theta") : 0.0};
     if (f.has("vx") || f.has("vy") || (has_angle && f.has("omega")))
         state.velocity = Frame{f.number("vx"), f.number("vy"), has_angle ? f.number("omega") : 0.0};
-    if (body.kind == BodyKind::flexible_link) {
-        state.deformation = {f.number("strain", 0.0), f.number("bending_rate", 0.0)};
-        require(state.deformation.strain > -0.5 && state.deformation.strain <= 1.0, f.source("strain"),
-                "must be above -0.5 and at most 1");
+    if (body.is_link()) {
+        const Deformation given{f.number("strain", 0.0), f.number("bending_rate", 0.0)};
+        require(given.strain > -0.5 && given.strain <= 1.0, f.source("strain"), "must be above -0.5 and at most 1");
+        if (body.kind == BodyKind::flexible_link) state.deformation = given; // a rigid link ignores them
         // a link that bends has a velocity: what is not given of it is zero, at the point too
         if (state.deformation.bending_rate != 0.0 && !state.velocity) state.velocity = Frame{};
     }

@@ -22,52 +22,51 @@ void read_accuracy(const Value &value, bool has_clearance) {
     f.finish();
 }
 
-// The methods are those of the main program. Of this section the reference uses the step of a static analysis.
+// The methods are those of the main program.
+void read_method(Fields &f) {
+    enum class Method { automatic, bathe, damped, hht, other };
+    const Method method = f.choice<Method>("method", {{"auto", Method::automatic},
+                                                      {"bathe", Method::bathe},
+                                                      {"trapezoidal", Method::other},
+                                                      {"generalized_alpha", Method::damped},
+                                                      {"hht", Method::hht},
+                                                      {"backward_euler", Method::other},
+                                                      {"esdirk3", Method::other},
+                                                      {"esdirk5", Method::other},
+                                                      {"dormand_prince", Method::other},
+                                                      {"dop853", Method::other},
+                                                      {"velocity_verlet", Method::other}});
+    require(method != Method::automatic || f.has("accuracy"), f.source("method"), "\"auto\" needs an accuracy");
+    if (method == Method::bathe && f.has("gamma")) {
+        const double gamma = f.number("gamma");
+        require(gamma > 0.0 && gamma < 1.0, f.source("gamma"), "must be between 0 and 1");
+    }
+    const bool damps = method == Method::damped || method == Method::hht;
+    if (!damps && !(method == Method::bathe && f.has("spectral_radius"))) return;
+    const double radius = f.number("spectral_radius"), least = method == Method::hht ? 0.5 : 0.0;
+    require(radius >= least && radius <= 1.0, f.source("spectral_radius"), "must be from " + text_of(least) + " to 1");
+}
+
+// Of this section the reference uses the step of a static analysis and the tolerance of onsets.
 void read_integrator(const Value &value, Scene &scene) {
-    enum class Method { bathe, trapezoidal, generalized_alpha, hht, backward_euler, esdirk3, esdirk5, dormand_prince,
-                        velocity_verlet };
     Fields f(value);
     double least_clearance = std::numeric_limits<double>::infinity();
     for (const JointDescription &joint : scene.joints)
         if (joint.law) least_clearance = std::min(least_clearance, joint.law->clearance);
-    const bool has_clearance = std::isfinite(least_clearance);
 
-    bool implicit = !scene.is_static;
-    if (!scene.is_static || f.has("method")) {
-        const Method method = f.choice<Method>("method", {{"bathe", Method::bathe},
-                                                          {"trapezoidal", Method::trapezoidal},
-                                                          {"generalized_alpha", Method::generalized_alpha},
-                                                          {"hht", Method::hht},
-                                                          {"backward_euler", Method::backward_euler},
-                                                          {"esdirk3", Method::esdirk3},
-                                                          {"esdirk5", Method::esdirk5},
-                                                          {"dormand_prince", Method::dormand_prince},
-                                                          {"velocity_verlet", Method::velocity_verlet}});
-        if (method == Method::dormand_prince || method == Method::velocity_verlet) implicit = false;
-        if (method == Method::bathe && f.has("gamma")) {
-            const double gamma = f.number("gamma");
-            require(gamma > 0.0 && gamma < 1.0, f.source("gamma"), "must be between 0 and 1");
-        }
-        const bool damped_family = method == Method::generalized_alpha || method == Method::hht;
-        if (damped_family || (method == Method::bathe && f.has("spectral_radius"))) {
-            const double radius = f.number("spectral_radius"), least = method == Method::hht ? 0.5 : 0.0;
-            require(radius >= least && radius <= 1.0, f.source("spectral_radius"),
-                    "must be from " + text_of(least) + " to 1");
-        }
-    }
+    if (!scene.is_static || f.has("method")) read_method(f);
     if (const Value *accuracy = f.find("accuracy")) {
         require(!f.has("step"), accuracy->source, "give either an accuracy or a step, not both");
         require(!scene.is_static, accuracy->source, "a static analysis needs a step, not an accuracy");
-        read_accuracy(*accuracy, has_clearance);
+        read_accuracy(*accuracy, std::isfinite(least_clearance));
     } else {
         scene.step = f.positive("step");
         require(scene.step <= scene.duration, f.source("step"), "must be at most the duration");
     }
-    if (implicit || f.has("newton_tolerance")) f.positive("newton_tolerance");
-    if (has_clearance || f.has("onset_tolerance")) {
-        const double tolerance = f.positive("onset_tolerance");
-        require(tolerance < least_clearance, f.source("onset_tolerance"), "must be below every clearance");
-    }
+    if (f.has("newton_tolerance")) f.positive("newton_tolerance");
+    scene.onset_tolerance = f.positive("onset_tolerance", 1e-7 * least_clearance);
+    require(!std::isfinite(least_clearance) || scene.onset_tolerance < least_clearance, f.source("onset_tolerance"),
+            "must be below every clearance");
     f.flag("locate_onsets", true);
     f.finish();
 }
@@ -84,9 +83,10 @@ void read_output(const Value &value, Scene &scene) {
     }
     scene.patterns = as_texts(f.get("channels"));
     scene.patterns_source = f.source("channels");
-    // both about files that are not written here
+    // about files that are not written here
     if (f.has("format")) f.choice<int>("format", {{"csv", 0}, {"json_lines", 1}});
     f.flag("motion", true);
+    require(f.not_negative("extremes_from", 0.0) <= scene.duration, f.source("extremes_from"), "must be at most the duration");
     f.finish();
 }
 

@@ -166,6 +166,7 @@ struct Scene {
     double duration = 0.0;
     Vec<double> gravity{0.0, 0.0};
     double step = 0.0; // 0: an accuracy instead
+    double onset_tolerance = 0.0;
     double interval = 0.0;
     std::vector<std::string> patterns; // of channels
     Source patterns_source;
