@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Wound torsion springs, equilibria, static load paths and pressed journals, against closed forms: make && python3 checks/equilibria.py"""
+import io
 import math
+import re
+import subprocess
 import sys
 
 import numpy as np
 
 import driver
-from driver import expect, run, scene
+from driver import expect, judge, path_of, run, scene
 
 # ---- torsion springs count turns ------------------------------------------------------------------------------------------------
 
@@ -28,5 +31,128 @@ sketched, _ = run("sketched", scene(0.1, 0.01, COIL.format(k=STIFF, rest=WOUND +
 expect("a sketch gives no turns", sketched["coil.angle"][0] - WOUND, 1e-12)
 driven, _ = run("driven", scene(0.1, 0.01, COIL.format(k=STIFF, rest=0.0, more='drives.turn = { type = "angle", joint = "pin", angle = "12.0 + t" }\n')))
 expect("a drive gives the turns", driven["coil.torque"] + STIFF * (12.0 + driven["t"]), 1e-9)
+
+# ---- equilibria at the start ----------------------------------------------------------------------------------------------------
+
+G, L, M = 9.81, 0.4, 0.3
+BAR = """bodies.ground = {{ type = "ground", points.o = [0.0, 0.0] }}
+bodies.bar = {{ type = "rigid_body", mass = {m}, inertia = {j}, points.p = [-{s}, 0.0] }}
+joints.pin = {{ type = "revolute", bearing = "ground.o", journal = "bar.p", model = "ideal" }}
+{more}
+"""
+J = M * L * L / 12
+
+
+def start_of(text):
+    """What the driver says of the equilibrium at the start, and the coordinates."""
+    result = subprocess.run([driver.DRIVER, path_of("rest", text), "--start"], capture_output=True, text=True)
+    judge(result.returncode == 0, "equilibrium found" + result.stderr)
+    lines = result.stdout.splitlines()
+    said = re.match(r"equilibrium: (\w+), smallest eigenvalue ([-+.e\d]+)", lines[1])
+    places = {words[0]: float(words[1]) for words in (line.split() for line in lines[2:]) if len(words) == 3}
+    return said[1], float(said[2]), places
+
+
+def bar(angle, kind, more=""):
+    place = f"initial.bodies.bar = {{ x = {L / 2 * math.cos(angle)!r}, y = {L / 2 * math.sin(angle)!r}, theta = {angle!r} }}\n"
+    return scene(1.0, 0.01, BAR.format(m=M, j=J, s=L / 2, more=f"initial.equilibrium = {kind}\n{more}{place}"), (0.0, -G))
+
+
+pace = 1.5 * G / L  # of small vibrations, squared
+for angle in (0.3, math.pi / 2, 1.5, -2.0, math.pi):
+    kind, value, places = start_of(bar(angle, "true"))
+    expect(f"a bar from {angle:.2f} rad hangs", [math.sin(places["bar.theta"]) + 1, places["bar.x"], places["bar.y"] + L / 2], 1e-12)
+    judge(kind == "stable" and abs(value / pace - 1) < 1e-12, f"its eigenvalue is 3 g/(2 l): {value / pace - 1:.0e}, {kind}")
+kind, value, places = start_of(bar(1.3, '"nearest"'))
+expect("the nearest equilibrium of a bar near its summit is the summit", places["bar.theta"] - math.pi / 2, 1e-12)
+judge(kind == "unstable" and abs(value / pace + 1) < 1e-12, f"its eigenvalue is -3 g/(2 l): {value / pace + 1:.0e}, {kind}")
+kind, value, _ = start_of(scene(1.0, 0.01, BAR.format(m=M, j=J, s=L / 2, more="initial.equilibrium = true\ninitial.bodies.bar = { x = 0.2, y = 0.0, theta = 0.0 }")))
+judge(kind == "neutral", f"without weight it is neutral: {kind}, {value}")
+held = 'forces.coil = { type = "torsion_spring", joint = "pin", stiffness = 0.2, damping = 0.0, rest_angle = 20.0 }\n'
+kind, value, places = start_of(bar(0.0, "true", held))
+theta = places["bar.theta"]
+expect(f"a wound coil turns the bar to {theta:.3f} rad, in balance with its weight", 0.2 * (20.0 - theta) - M * G * L / 2 * math.cos(theta), 1e-12)
+
+# ---- statics of driven mechanisms: no freedom, no elasticity ---------------------------------------------------------------------------
+
+arm = """bodies.ground = { type = "ground", points.o = [0.0, 0.0] }
+bodies.bar = { type = "rigid_body", mass = 0.3, inertia = 1e-3, points.p = [-0.2, 0.0], points.q = [0.2, 0.0] }
+joints.pin = { type = "revolute", bearing = "ground.o", journal = "bar.p", model = "ideal" }
+drives.turn = { type = "angle", joint = "pin", angle = "0.5 + t" }
+forces.pull = { type = "force", point = "bar.q", x = 2.0, y = 0.0, frame = "ground" }
+"""
+text = scene(1.0, 0.125, arm, (0.0, -G), analysis="static")
+text = text.replace('method = "bathe", ', "").replace(", newton_tolerance = 1e-10", "")
+bar_of, _ = run("arm", text)
+t = bar_of["t"]
+expect("a driven arm: torque", bar_of["pin.torque"] - t * (0.3 * G * 0.2 * np.cos(0.5 + t) + 2.0 * 0.4 * np.sin(0.5 + t)), 1e-12)
+expect("a driven arm: reactions", [bar_of["pin.fx"] + 2.0 * t, bar_of["pin.fy"] - 0.3 * G * t], 1e-12)
+
+# ---- static load paths ------------------------------------------------------------------------------------------------------------------
+
+HALF, RISE, K = 0.5, 0.2, 300.0
+L0 = math.hypot(HALF, RISE)
+TRUSS = f"""bodies.ground = {{ type = "ground", points.a = [-{HALF}, 0.0], points.b = [{HALF}, 0.0], points.o = [0.0, 0.0] }}
+bodies.top = {{ type = "rigid_body", mass = 0.1, inertia = 1e-4, points.c = [0.0, 0.0] }}
+joints.line = {{ type = "prismatic", guide = "ground.o", direction = [0.0, 1.0], slider = "top.c", rotation = "locked" }}
+forces.left = {{ type = "spring_damper", from = "ground.a", to = "top.c", stiffness = {K}, damping = 0.0, rest_length = {L0!r} }}
+forces.right = {{ type = "spring_damper", from = "ground.b", to = "top.c", stiffness = {K}, damping = 0.0, rest_length = {L0!r} }}
+forces.load = {{ type = "force", point = "top.c", x = 0.0, y = -10.0, frame = "ground" }}
+initial.bodies.top = {{ x = 0.0, y = {RISE}, theta = 0.0 }}
+"""
+
+
+def truss_load(y):
+    return 2 * K * y * (L0 / np.hypot(HALF, y) - 1)
+
+
+y_limit = math.sqrt((L0 * HALF * HALF) ** (2 / 3) - HALF * HALF)
+limit = truss_load(y_limit) / 10.0
+
+
+def critical_points(name, text, options=(), fails=False):
+    result = subprocess.run([driver.DRIVER, path_of(name, text), "--out", driver.FOLDER / "out.csv", "--unstable", driver.FOLDER / "unstable.csv", "--all", *options],
+                            capture_output=True, text=True)
+    judge((result.returncode != 0) == fails, f"{name}: {result.stderr.strip().split('toml')[-1] or 'complete'}")
+    found = re.findall(r"(limit point|bifurcation) at t = ([-+.e\d]+), .* load, (\S+)", result.stdout)
+    tables = []
+    for path in ("out.csv", "unstable.csv"):
+        with open(driver.FOLDER / path) as file:
+            names = file.readline().strip().split(",")
+            rows = file.read()
+        tables.append(dict(zip(names, np.loadtxt(io.StringIO(rows), delimiter=",", ndmin=2).T)) if rows else {})
+    return [(kind, float(t), what) for kind, t, what in found], *tables, result.stdout
+
+
+truss = scene(1.0, 0.05, TRUSS, analysis="static")
+found, rows, _, _ = critical_points("truss", truss, fails=True)
+judge([p[0] for p in found] == ["limit point"] and found[0][2] == "top.y", f"a truss stops at a limit point: {found}")
+expect("its load", found[0][1] - limit, 1e-9)
+expect("the path up to it", truss_load(rows["top.y"]) - 10 * rows["t"], 1e-9)
+found, rows, unstable, said = critical_points("truss-follow", truss.replace('analysis = "static"', 'analysis = "static", at_limit = "follow"'))
+judge([p[0] for p in found] == ["limit point"] * 2 and "stable" in said, f"a truss that is followed snaps through: {found}")
+expect("the loads of its limit points", [found[0][1] - limit, found[1][1] + limit], 1e-9)
+expect(f"{len(unstable['t'])} unstable steps on the path", truss_load(unstable["top.y"]) - 10 * unstable["t"], 1e-9)
+expect("rows on the path", truss_load(rows["top.y"]) - 10 * rows["t"], 1e-9)
+judge(rows["top.y"][-1] < -RISE and np.all(np.diff(unstable["top.y"]) < 0), f"it ends below, at {rows['top.y'][-1]:.3f} m")
+
+COIL_COLUMN = """bodies.ground = { type = "ground", points.o = [0.0, 0.0] }
+bodies.bar = { type = "link", model = "rigid", length = 0.5, section = "strip", material = "steel" }
+materials.steel = { density = 7850.0, youngs_modulus = 2e9 }
+sections.strip = { width = 0.006, height = 0.02 }
+joints.pin = { type = "revolute", bearing = "ground.o", journal = "bar.start", model = "ideal" }
+forces.coil = { type = "torsion_spring", joint = "pin", stiffness = 3.0, damping = 0.0, rest_angle = 1.5707963267948966 }
+forces.load = { type = "force", point = "bar.end", x = 0.0, y = -10.0, frame = "ground" }
+initial.bodies.bar = { x = 0.0, y = 0.25, theta = 1.5707963267948966 }
+"""
+found, _, _, _ = critical_points("column", scene(1.0, 0.05, COIL_COLUMN, analysis="static"), fails=True)
+judge([p[0] for p in found] == ["bifurcation"], f"a hinged column buckles: {found}")
+expect("its load k/l", 10 * found[0][1] - 3.0 / 0.5, 1e-9)
+found, rows, unstable, said = critical_points("column-follow", scene(1.0, 0.05, COIL_COLUMN, analysis="static").replace('analysis = "static"', 'analysis = "static", at_limit = "follow"'))
+judge(len(found) == 1 and "unstable" in said, f"followed, it stays straight and unstable: {found}")
+expect("straight", rows["bar.x"], 1e-9)
+imperfect, _ = run("imperfect", scene(1.0, 0.05, COIL_COLUMN, analysis="static").replace("x = 0.0, y = -10.0", "x = 0.3, y = -10.0"))
+theta = math.pi / 2 - imperfect["coil.angle"]
+expect("with a small side load it bends instead", 3.0 * theta - imperfect["t"] * 0.5 * (10 * np.sin(theta) + 0.3 * np.cos(theta)), 1e-10)
 
 sys.exit(driver.failures != 0)

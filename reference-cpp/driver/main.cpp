@@ -1,6 +1,6 @@
 // Runs a scene with the reference implementation, to try it without another program:
 //
-//     reference SCENE.toml [--set PATH=VALUE]... [--out channels.csv] [--onsets onsets.csv] [--until T]
+//     reference SCENE.toml [--set PATH=VALUE]... [--out channels.csv] [--onsets onsets.csv] [--unstable steps.csv] [--until T]
 //               [--relative R] [--position P] [--velocity V] [--sparse] [--all] [--start]
 //
 // --start prints the start and ends, --all writes every channel instead of those that the scene selects.
@@ -21,7 +21,7 @@
 namespace {
 
 struct Options {
-    std::string scene, out, onsets;
+    std::string scene, out, onsets, unstable;
     std::vector<std::string> overrides;
     double until = -1.0;
     bool start_only = false, all = false;
@@ -47,6 +47,8 @@ Options parse(int count, char **arguments) {
             options.out = next();
         else if (word == "--onsets")
             options.onsets = next();
+        else if (word == "--unstable")
+            options.unstable = next();
         else if (word == "--until")
             options.until = std::stod(next());
         else if (word == "--relative")
@@ -105,6 +107,43 @@ void print_start(const ls_scene *scene) {
     std::printf("%zu coordinates, %zu constraints, violated by %.1e m, %.1e m/s\n", n, m, position, velocity);
 }
 
+void print_rest(const ls_scene *scene, const ls_rest &rest) {
+    if (rest.coordinate < 0) {
+        std::printf("equilibrium: nothing can move\n");
+        return;
+    }
+    const char *kind = rest.stability > 0 ? "stable" : rest.stability < 0 ? "unstable" : "neutral";
+    std::printf("equilibrium: %s, smallest eigenvalue %.9g 1/s2, %s\n", kind, rest.eigenvalue,
+                ls_scene_name(scene, LS_COORDINATE, static_cast<std::size_t>(rest.coordinate)));
+}
+
+void print_path(const ls_scene *scene, const ls_run *run) {
+    for (std::size_t i = 0; i < ls_run_critical_count(run); ++i) {
+        ls_critical_point c;
+        ls_run_critical_point(run, i, &c);
+        std::printf("%s at t = %.12g, %.12g of the load, %s\n", c.is_limit ? "limit point" : "bifurcation", c.t, c.part,
+                    ls_scene_name(scene, LS_COORDINATE, static_cast<std::size_t>(c.coordinate)));
+    }
+    ls_rest rest;
+    if (ls_run_rest(run, &rest, nullptr) == LS_OK) print_rest(scene, rest);
+}
+
+// The steps along unstable paths, every channel.
+void write_unstable(const ls_scene *scene, const ls_run *run, const std::string &path) {
+    const std::size_t count = ls_scene_count(scene, LS_CHANNEL);
+    std::vector<double> values(count);
+    std::ofstream file(path);
+    file.precision(17);
+    for (std::size_t i = 0; i < count; ++i) file << (i > 0 ? "," : "") << ls_scene_name(scene, LS_CHANNEL, i);
+    file << "\n";
+    for (std::size_t row = 0; row < ls_run_unstable_count(run); ++row) {
+        ls_error error{};
+        if (ls_run_unstable(run, row, values.data(), &error) != LS_OK) throw described(path, error);
+        for (std::size_t i = 0; i < count; ++i) file << (i > 0 ? "," : "") << values[i];
+        file << "\n";
+    }
+}
+
 void write_rows(const ls_scene *scene, ls_run *run, const Options &options, const ls_description &description) {
     const std::size_t count = ls_scene_count(scene, LS_CHANNEL);
     std::vector<std::size_t> columns;
@@ -148,6 +187,8 @@ void write_rows(const ls_scene *scene, ls_run *run, const Options &options, cons
                 static_cast<long long>(s.jacobians), static_cast<long long>(s.restarts), ls_run_event_count(run),
                 static_cast<double>(rows - 1) * description.interval);
     std::printf("energy.numerical up to %.2e J of %.2e J kinetic and elastic energy\n", drift, most_energy);
+    print_path(scene, run);
+    if (!options.unstable.empty()) write_unstable(scene, run, options.unstable);
     if (error.code != LS_OK) throw described(options.scene, error);
 }
 
@@ -175,6 +216,8 @@ void run_scene(const Options &options) {
     std::printf("%s\n", description.title);
     for (std::size_t i = 0; i < ls_scene_count(scene.get(), LS_NOTE); ++i)
         std::printf("note: %s\n", ls_scene_name(scene.get(), LS_NOTE, i));
+    ls_rest rest;
+    if (ls_scene_rest(scene.get(), &rest, nullptr) == LS_OK) print_rest(scene.get(), rest);
     if (options.start_only) {
         print_start(scene.get());
         return;

@@ -55,7 +55,8 @@ typedef enum {
     LS_UNREACHABLE = 2, /* the inverse kinematics has no solution at `time` */
     LS_IDA = 3,         /* SUNDIALS failed; `flag` is its return value, the message is its own */
     LS_NOT_FINITE = 4,  /* a value is not finite, or Newton's method of the statics does not converge */
-    LS_INTERNAL = 5     /* anything else (out of memory, ...) */
+    LS_INTERNAL = 5,    /* anything else (out of memory, ...) */
+    LS_LIMIT = 6        /* a static analysis with `at_limit = "stop"` has come to a critical point; `time` is its t */
 } ls_code;
 
 /* Texts are zero-terminated. `field` is the path of the key in the scene, "" if the failure has no place there; a line of 0
@@ -104,6 +105,15 @@ size_t ls_scene_selected(const ls_scene *scene, size_t index);
 
 /* The start (q, v: n each), t = 0. */
 int32_t ls_scene_start(const ls_scene *scene, double *q, double *v, ls_error *error);
+
+/* An equilibrium. */
+typedef struct {
+    double eigenvalue;  /* the smallest mu of K x + Phi_q^T nu = mu M x, Phi_q x = 0, 1/s2; 0 if nothing can move */
+    int32_t stability;  /* 1 stable (or nothing can move), 0 neutral within rounding, -1 unstable */
+    int32_t coordinate; /* that moves most in the motion of that eigenvalue; -1 if nothing can move */
+} ls_rest;
+/* The start of a scene with `initial.equilibrium`; an error of any other. */
+int32_t ls_scene_rest(const ls_scene *scene, ls_rest *rest, ls_error *error);
 
 /* ---- the equations at a given state ---------------------------------------------------------------------------- */
 
@@ -183,6 +193,26 @@ typedef struct {
 /* Onsets and losses of contact so far. */
 size_t ls_run_event_count(const ls_run *run);
 int32_t ls_run_event(const ls_run *run, size_t index, ls_event *event);
+
+/* Static analyses. ls_run_advance comes to the first equilibrium at t along the path; with `at_limit = "follow"` the path may
+ * lead over unstable equilibria under other loads, smaller and negative ones too. */
+
+/* A zero of an eigenvalue on the path: a limit point, at which the load has an extreme, or a bifurcation. */
+typedef struct {
+    double t;
+    double part;        /* of the full load, t / duration */
+    int32_t is_limit;   /* 1 limit point, 0 bifurcation */
+    int32_t coordinate; /* that moves most in the motion without resistance */
+} ls_critical_point;
+size_t ls_run_critical_count(const ls_run *run); /* those passed so far, and one that has ended the run */
+int32_t ls_run_critical_point(const ls_run *run, size_t index, ls_critical_point *point);
+
+/* The equilibrium after the last `ls_run_advance`. */
+int32_t ls_run_rest(const ls_run *run, ls_rest *rest, ls_error *error);
+
+/* The steps along unstable paths so far, in order: all channels of one, t among them. */
+size_t ls_run_unstable_count(const ls_run *run);
+int32_t ls_run_unstable(const ls_run *run, size_t index, double *values, ls_error *error);
 
 /* residuals, jacobians: evaluations; clamps: times that a contact force began to be held at zero */
 typedef struct {

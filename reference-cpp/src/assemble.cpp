@@ -87,6 +87,16 @@ void System::force_derivatives(const Inputs &inputs, const VectorXd &q, const Ve
     });
 }
 
+void System::load_rates(const Inputs &inputs, const VectorXd &q, VectorXd &rates) const {
+    rates = -inputs.weight_rate * weight_;
+    const VectorXd rest = VectorXd::Zero(n_);
+    for (const Load &l : loads_) {
+        const Vec<double> rate{inputs.given[l.x].rate, inputs.given[l.y].rate};
+        subtract_forces(l.reaction, l.point,
+                        [&](auto qi, auto, auto qj, auto) { return load_forces(l, rate, qi, qj); }, q, rest, rates);
+    }
+}
+
 void System::elongation_rates(const VectorXd &q, const Memory &memory, VectorXd &rates) const {
     rates.resize(elongations());
     for (int i = 0; i < elongations(); ++i) rates[i] = pull(maxwells_[i], memory.elongation[i], q) / maxwells_[i].damping;

@@ -116,6 +116,19 @@ struct GivenState {
     }
 };
 
+ls_rest described(const Stability &stability, const System &system) {
+    if (!stability.can_move()) return {0.0, 1, -1};
+    ls_rest rest{stability.least(), stability.is_stable() ? 1 : stability.is_unstable() ? -1 : 0, 0};
+    system.levers().cwiseProduct(stability.softest()).cwiseAbs().maxCoeff(&rest.coordinate);
+    return rest;
+}
+
+const StaticRun &static_run(const ls_run *run) {
+    const std::unique_ptr<StaticRun> &equilibria = need(run, "run").equilibria;
+    require(equilibria != nullptr, "the run is no static analysis");
+    return *equilibria;
+}
+
 ls_run *new_run(const ls_scene *scene, double t, const double *q, const double *v, bool from_start,
                 const ls_tolerances *tolerances, ls_error *error) noexcept {
     ls_run *result = nullptr;
@@ -200,6 +213,14 @@ std::int32_t ls_scene_start(const ls_scene *scene, double *q, double *v, ls_erro
         const Model &model = need(scene, "scene").model;
         output(model.q, q, "q");
         output(model.v, v, "v");
+    });
+}
+
+std::int32_t ls_scene_rest(const ls_scene *scene, ls_rest *rest, ls_error *error) {
+    return guarded(error, [&] {
+        const Model &model = need(scene, "scene").model;
+        require(model.rest.has_value(), "the scene does not start in equilibrium");
+        need(rest, "rest") = described(*model.rest, model.system);
     });
 }
 
@@ -346,6 +367,36 @@ std::int32_t ls_run_event(const ls_run *run, std::size_t index, ls_event *event)
     if (!event || index >= ls_run_event_count(run)) return LS_BAD_INPUT;
     *event = run->dynamic->events()[index];
     return LS_OK;
+}
+
+std::size_t ls_run_critical_count(const ls_run *run) {
+    return run && run->equilibria ? run->equilibria->critical_points().size() : 0;
+}
+
+std::int32_t ls_run_critical_point(const ls_run *run, std::size_t index, ls_critical_point *point) {
+    if (!point || index >= ls_run_critical_count(run)) return LS_BAD_INPUT;
+    const CriticalPoint &c = run->equilibria->critical_points()[index];
+    *point = {c.t, c.t / run->equilibria->full_load(), c.limit ? 1 : 0, c.coordinate};
+    return LS_OK;
+}
+
+std::int32_t ls_run_rest(const ls_run *run, ls_rest *rest, ls_error *error) {
+    return guarded(error, [&] {
+        const StaticRun &equilibria = static_run(run);
+        need(rest, "rest") = described(equilibria.stability(), equilibria.system());
+    });
+}
+
+std::size_t ls_run_unstable_count(const ls_run *run) {
+    return run && run->equilibria ? run->equilibria->unstable().size() : 0;
+}
+
+std::int32_t ls_run_unstable(const ls_run *run, std::size_t index, double *values, ls_error *error) {
+    return guarded(error, [&] {
+        const StaticRun &equilibria = static_run(run);
+        require(index < equilibria.unstable().size(), "there is no such step");
+        equilibria.channels().evaluate(equilibria.unstable()[index], &need(values, "values"));
+    });
 }
 
 void ls_run_statistics(const ls_run *run, ls_statistics *statistics) {

@@ -1,6 +1,7 @@
 #include "model.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "acceleration.hpp"
 #include "assembly.hpp"
@@ -74,6 +75,20 @@ void check_exact_start(const Scene &scene, const System &system, const VectorXd 
                                                : "the journal starts outside its bearing");
 }
 
+void start_at_rest(Model &model) {
+    Statics statics(model.system);
+    Equilibrium x{0.0, model.q, VectorXd::Zero(model.system.constraints()), model.memory};
+    if (model.scene.initial.equilibrium == Initial::Rest::nearest)
+        statics.approach(x);
+    else
+        statics.descend(x);
+    model.rest = statics.stability(x);
+    model.q = x.q;
+    model.memory = x.memory;
+    model.v.setZero();
+    Acceleration(model.system).project(0.0, model.q, model.v, std::numeric_limits<double>::infinity());
+}
+
 } // namespace
 
 Model make_model(Scene scene) {
@@ -108,10 +123,8 @@ Model make_model(Scene scene) {
     system.leave_out(redundant);
     Memory memory = system.memory();
     system.count_turns(q, memory);
-    if (scene.initial.equilibrium) {
-        Statics(system).relax(memory, q);
-        v.setZero();
-        Acceleration(system).project(0.0, q, v, std::numeric_limits<double>::infinity());
-    }
-    return {std::move(scene), std::move(system), std::move(q), std::move(v), std::move(memory), std::move(start.poses), std::move(names)};
+    Model model{std::move(scene), std::move(system), std::move(q), std::move(v), std::move(memory), std::move(start.poses),
+                std::move(names), {}};
+    if (model.scene.initial.equilibrium != Initial::Rest::none) start_at_rest(model);
+    return model;
 }

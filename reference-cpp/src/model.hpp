@@ -1,6 +1,7 @@
 // A scene with its equations and its start.
 #pragma once
 
+#include "stability.hpp"
 #include "system.hpp"
 
 struct Model {
@@ -10,6 +11,7 @@ struct Model {
     Memory memory;                      // at the start
     std::vector<Frame> poses;           // of the bodies at the start
     std::vector<std::string> redundant; // rows left out
+    std::optional<Stability> rest;      // of a start in equilibrium
 };
 
 Model make_model(Scene scene);

@@ -77,6 +77,12 @@ void read_sketch(const Value *section, const Scene &scene, const Library &librar
     });
 }
 
+Initial::Rest read_equilibrium(Fields &f) {
+    const Value *value = f.find("equilibrium");
+    if (value && value->kind == Value::string) return f.choice<Initial::Rest>("equilibrium", {{"nearest", Initial::Rest::nearest}});
+    return f.flag("equilibrium", false) ? Initial::Rest::downhill : Initial::Rest::none;
+}
+
 } // namespace
 
 Initial read_initial(const Value *value, const Scene &scene, const Library &library) {
@@ -93,11 +99,11 @@ Initial read_initial(const Value *value, const Scene &scene, const Library &libr
         const int body = read_free_body(name, entry, scene, library);
         read_velocities(entry, body, scene.bodies[body].has_direction(), initial.velocities);
     });
-    initial.equilibrium = f.flag("equilibrium", false);
+    initial.equilibrium = read_equilibrium(f);
 
     if (scene.inverse_kinematics)
         require(initial.velocities.empty(), f.source("velocities"), "are refused in a scene with inverse kinematics");
-    if (initial.equilibrium) {
+    if (initial.equilibrium != Initial::Rest::none) {
         const Source &source = f.source("equilibrium");
         require(!scene.is_static, source, "is refused in a static analysis");
         require(initial.velocities.empty(), source, "is refused in a scene with given velocities");

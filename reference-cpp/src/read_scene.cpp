@@ -11,6 +11,7 @@ void read_simulation(const Value &value, Scene &scene) {
     scene.is_static = f.has("analysis") && f.choice<bool>("analysis", {{"dynamic", false}, {"static", true}});
     scene.duration = f.positive("duration");
     if (f.has("gravity")) scene.gravity = f.pair("gravity");
+    scene.follow_at_limit = f.has("at_limit") && f.choice<bool>("at_limit", {{"stop", false}, {"follow", true}});
     f.finish();
 }
 

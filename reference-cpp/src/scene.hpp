@@ -157,12 +157,13 @@ struct Initial {
     std::vector<SketchedPoint> points;
     std::vector<std::optional<State>> states; // by body
     std::vector<SingleVelocity> velocities;
-    bool equilibrium = false;
+    enum class Rest { none, downhill, nearest } equilibrium = Rest::none;
 };
 
 struct Scene {
     std::string title;
     bool is_static = false;
+    bool follow_at_limit = false; // static
     double duration = 0.0;
     Vec<double> gravity{0.0, 0.0};
     double step = 0.0; // 0: an accuracy instead

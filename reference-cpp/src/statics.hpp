@@ -1,25 +1,24 @@
-// Equilibrium f + Phi_q^T lambda = 0, Phi = 0 at rest, by Newton's method.
+// Equilibria by Newton's method and by descent.
 #pragma once
 
-#include "system.hpp"
+#include "equilibrium.hpp"
 
 class Statics {
 public:
-    explicit Statics(const System &system) : system_(system), lambda_(VectorXd::Zero(system.constraints())) {}
+    explicit Statics(const System &system) : equations_(system) {}
 
-    // From q near by, under the loads at t. False if Newton's method does not converge; q is then as it was.
-    bool follow(double t, const Memory &memory, VectorXd &q);
-    // From q anywhere, down to the equilibrium that a heavily damped mechanism comes to, under the loads at t = 0. Throws
-    // where there is none, or where some motion is not held.
-    void relax(Memory &memory, VectorXd &q);
-    const VectorXd &lambda() const { return lambda_; }
+    // From an equilibrium near by, under the loads at x.t. False if Newton's method does not converge; x is then as it was.
+    bool correct(Equilibrium &x);
+    // From anywhere, down to the equilibrium that a heavily damped mechanism comes to; neutral at worst. Throws if there is none.
+    void descend(Equilibrium &x);
+    // From anywhere, to the equilibrium that Newton's method with short steps comes to, stable or not. Throws if there is none.
+    void approach(Equilibrium &x);
+    Stability stability(const Equilibrium &x);
+
+    StaticEquations &equations() { return equations_; }
 
 private:
-    void assemble(const Inputs &inputs, const Memory &memory, const VectorXd &q);
-    bool is_held(double inertia) const;
-    VectorXd solve(double inertia, VectorXd &next_lambda) const;
+    bool step(const Equilibrium &x, double inertia, VectorXd &dq, VectorXd &lambda) const;
 
-    const System &system_;
-    VectorXd lambda_, force_, phi_, phi_t_;
-    MatrixXd phi_q_, stiffness_;
+    StaticEquations equations_;
 };

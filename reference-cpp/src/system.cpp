@@ -148,11 +148,15 @@ VectorXd System::divided_by_mass(const VectorXd &x) const {
 
 Inputs System::inputs(double t) const {
     Inputs inputs;
-    const double part = full_load_ > 0.0 ? t / full_load_ : 1.0;
-    inputs.weight = part;
+    const bool grows = full_load_ > 0.0;
+    inputs.weight = grows ? t / full_load_ : 1.0;
+    inputs.weight_rate = grows ? 1.0 / full_load_ : 0.0;
     for (std::size_t i = 0; i < functions_.size(); ++i) {
         inputs.given.push_back(evaluate(functions_[i], t));
-        if (grows_[i]) inputs.given.back().value *= part;
+        if (!grows_[i]) continue;
+        Prescribed &load = inputs.given.back(); // of a constant
+        load.rate = load.value * inputs.weight_rate;
+        load.value *= inputs.weight;
     }
     if (driven_angles_)
         for (const Prescribed &angle : driven_angles_->at_time(t)) inputs.given.push_back(angle);

@@ -45,7 +45,8 @@ struct Gap {
 // All that depends on time alone.
 struct Inputs {
     std::vector<Prescribed> given; // the functions of time in use, then the angles of the inverse kinematics
-    double weight = 1.0;           // part of the weight that acts; below 1 only in a static analysis
+    double weight = 1.0;           // part of the weight that acts; differs from 1 only in a static analysis
+    double weight_rate = 0.0;      // its rate
 };
 
 // What the forces remember.
@@ -114,6 +115,9 @@ public:
     // df/dq and df/dv, appended; entries of the same place add up
     void force_derivatives(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory,
                            Entries &by_q, Entries &by_v) const;
+
+    // df/dt of loads and weight, with the state held
+    void load_rates(const Inputs &inputs, const VectorXd &q, VectorXd &rates) const;
 
     // dz/dt of the Maxwell elements, and dL/dq of their lengths, appended: one row an element
     void elongation_rates(const VectorXd &q, const Memory &memory, VectorXd &rates) const;
