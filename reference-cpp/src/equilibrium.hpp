@@ -22,6 +22,7 @@ public:
     Stability stability() const { return Stability(stiffness_, magnitude_, mass_, phi_q_); }
     // Whether stiffness and `inertia` times mass resist every motion that the constraints permit.
     bool is_held(double inertia) const;
+    double largest_stiffness() const { return stiffness_.size() > 0 ? stiffness_.cwiseAbs().maxCoeff() : 0.0; }
     // Whether no force drives the motions that nothing resists.
     bool is_balanced() const;
     // The largest extent of the mechanism: the measure of what is near.

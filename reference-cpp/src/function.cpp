@@ -14,10 +14,10 @@ struct Overloaded : Cases... {
 template <class... Cases>
 Overloaded(Cases...) -> Overloaded<Cases...>;
 
-// `from` before the start, `to` after the end, `shape` of the part of the duration that has passed between.
+// `from` before the start, `to` from the end on, `shape` of the part of the duration that has passed between.
 template <class Step, class Shape>
 Jet transition(const Step &f, const Jet &t, Shape shape) {
-    if (value_of(t) <= f.start) return Jet(f.from);
+    if (value_of(t) < f.start) return Jet(f.from);
     if (value_of(t) >= f.start + f.duration) return Jet(f.to);
     return f.from + (f.to - f.from) * shape((t - f.start) / f.duration);
 }

@@ -15,9 +15,13 @@ void StaticRun::advance(double t) {
     require(std::isfinite(t) && t >= x_.t, "time must not run backwards");
     constexpr double rounding = 1e-9;
     while (x_.t < t) {
-        const double step = model_.scene.step, next = t - x_.t <= step * (1.0 + rounding) ? t : x_.t + step;
+        // the path has a kink where a load has one
+        const std::vector<double> &breaks = model_.system.breaks();
+        const auto kink = std::upper_bound(breaks.begin(), breaks.end(), x_.t);
+        const double end = kink != breaks.end() ? std::min(t, *kink) : t, step = model_.scene.step;
+        const double next = end - x_.t <= step * (1.0 + rounding) ? end : x_.t + step;
         if (unstable_path_)
-            follow_path(t);
+            follow_path(end);
         else if (!stability_.is_stable())
             come_down(next);
         else if (!follow_load(next))

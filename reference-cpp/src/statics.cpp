@@ -29,6 +29,12 @@ bool Statics::step(const Equilibrium &x, double inertia, VectorXd &dq, VectorXd 
     return update.allFinite();
 }
 
+// Whether the multipliers, on which the tangent depends, change by rounding or hardly.
+bool Statics::settles(const Equilibrium &x, const VectorXd &lambda) const {
+    constexpr double good = 1e-6, rounding = 1e-12;
+    return (lambda - x.lambda).norm() <= good * lambda.norm() + rounding * equations_.largest_stiffness() * (1.0 + x.q.norm());
+}
+
 bool Statics::correct(Equilibrium &x) {
     const Equilibrium before = x;
     constexpr int most_passes = 60;
@@ -39,7 +45,7 @@ bool Statics::correct(Equilibrium &x) {
         VectorXd dq, lambda;
         if (!step(x, 0.0, dq, lambda)) break;
         const double size = dq.cwiseAbs().maxCoeff(), scale = 1.0 + x.q.cwiseAbs().maxCoeff();
-        const bool settled = (lambda - x.lambda).norm() <= good * lambda.norm(); // the tangent depends on them
+        const bool settled = settles(x, lambda);
         x.lambda = lambda;
         // the updates have come down to rounding when they cease to shrink
         if (settled && (size <= rounding * scale || (size <= good * scale && size > 0.25 * last))) {
@@ -96,7 +102,7 @@ void Statics::approach(Equilibrium &x) {
         VectorXd dq, lambda;
         if (!step(x, 0.0, dq, lambda)) break;
         const double size = dq.cwiseAbs().maxCoeff();
-        const bool settled = (lambda - x.lambda).norm() <= near * lambda.norm(); // the tangent depends on them
+        const bool settled = settles(x, lambda);
         x.lambda = lambda;
         if (settled && size <= near * extent && correct(x)) return;
         if (size > 0.0) x.q += std::min(1.0, longest * extent / size) * dq;

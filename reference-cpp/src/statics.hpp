@@ -19,6 +19,7 @@ public:
 
 private:
     bool step(const Equilibrium &x, double inertia, VectorXd &dq, VectorXd &lambda) const;
+    bool settles(const Equilibrium &x, const VectorXd &lambda) const;
 
     StaticEquations equations_;
 };
