@@ -9,7 +9,7 @@ import sys
 import numpy as np
 
 import driver
-from driver import expect, judge, path_of, run, scene
+from driver import expect, judge, path_of, refused, run, scene
 
 # ---- torsion springs count turns ------------------------------------------------------------------------------------------------
 
@@ -155,4 +155,92 @@ imperfect, _ = run("imperfect", scene(1.0, 0.05, COIL_COLUMN, analysis="static")
 theta = math.pi / 2 - imperfect["coil.angle"]
 expect("with a small side load it bends instead", 3.0 * theta - imperfect["t"] * 0.5 * (10 * np.sin(theta) + 0.3 * np.cos(theta)), 1e-10)
 
+# a flexible column, clamped at its foot: P_c of EQUATIONS.md
+E_A, E_I, HIGH = 2e9 * 0.006 * 0.02, 2e9 * 0.006 ** 3 * 0.02 / 12, 0.5
+BEAM_COLUMN = """bodies.ground = { type = "ground", points.o = [0.0, 0.0] }
+bodies.bar = { type = "link", model = "flexible", length = 0.5, section = "strip", material = "steel", elements = 8 }
+materials.steel = { density = 7850.0, youngs_modulus = 2e9 }
+sections.strip = { width = 0.006, height = 0.02 }
+joints.clamp = { type = "weld", first = "ground.o", second = "bar.start", angle = 1.5707963267948966 }
+forces.load = { type = "force", point = "bar.end", x = 0.0, y = -10.0, frame = "ground" }
+initial.bodies.bar = { x = 0.0, y = 0.25, theta = 1.5707963267948966 }
+"""
+euler = (math.pi / 2) ** 2 * E_I / HIGH ** 2
+exact = euler * math.sqrt(1 - 2 * euler / E_A)
+for elements, limit in ((8, 4e-6), (16, 3e-7)):
+    text = scene(1.0, 0.05, BEAM_COLUMN, analysis="static").replace("elements = 8", f"elements = {elements}")
+    found, _, _, _ = critical_points("beam-column", text, fails=True)
+    judge([p[0] for p in found] == ["bifurcation"], f"a flexible column buckles: {found}")
+    expect(f"its load, {elements} elements", 10 * found[0][1] / exact - 1, limit)
+
+# ---- journals that start pressed --------------------------------------------------------------------------------------------------------
+
+PIN = """contacts.pin = {{ law = "{law}", bearing_radius = 0.01, clearance = 1e-4, stiffness = 1e8, exponent = 1.5{rest} }}
+bodies.ground = {{ type = "ground", points.o = [0.1, 0.2] }}
+bodies.bob = {{ type = "rigid_body", mass = 0.5, inertia = 2e-3, points.p = [0.0, 0.3] }}
+joints.pin = {{ type = "revolute", bearing = "ground.o", journal = "bob.p", model = "clearance", contact = "pin" }}
+{start}
+"""
+damped = ", restitution = 0.8, impact_velocity_floor = 1e-3"
+hanging = PIN.format(law="hunt_crossley", rest=damped, start="initial.journals = \"pressed\"\ninitial.bodies.bob = { x = 0.1, y = -0.1, theta = 0.0 }")
+bob, events = run("pressed", scene(0.05, 1e-3, hanging, (0.0, -G), clearance=True))
+delta = (0.5 * G / 1e8) ** (1 / 1.5)
+expect("a bob hangs pressed: penetration", bob["pin.penetration"][0] / delta - 1, 1e-6)
+expect("its eccentricity", [bob["pin.ex"][0], bob["pin.ey"][0] + 1e-4 + delta], 1e-15)
+expect("its force is the weight, and stays so", [np.max(np.abs(bob["pin.fx"])), np.max(np.abs(bob["pin.fy"] - 0.5 * G))], 1e-6)
+expect("it stays at rest", [np.max(np.abs(bob["bob.vx"])), np.max(np.abs(bob["bob.vy"]))], 1e-9)
+judge(len(events) == 0, f"without events: {len(events)}")
+
+# a bob that swings: the force is that of the ideal pendulum, to the ratio of the clearance to its length
+angle, spin = 0.7, 6.0
+state = f"x = {0.1 + 0.3 * math.sin(angle)!r}, y = {0.2 - 0.3 * math.cos(angle)!r}, theta = {angle}, vx = {spin * 0.3 * math.cos(angle)!r}, vy = {spin * 0.3 * math.sin(angle)!r}, omega = {spin}"
+swinging = PIN.format(law="hertz", rest="", start=f"initial.journals = \"pressed\"\ninitial.bodies.bob = {{ {state} }}")
+bob, _ = run("pressed-swing", scene(0.01, 1e-3, swinging, (0.0, -G), clearance=True))
+ideal, _ = run("ideal-swing", scene(0.01, 1e-3, swinging.replace('model = "clearance"', 'model = "ideal"'), (0.0, -G)))
+size = ideal["pin.force"][0]
+expect("a bob swings pressed: force of the ideal joint", [bob["pin.fx"][0] - ideal["pin.fx"][0], bob["pin.fy"][0] - ideal["pin.fy"][0]], 1e-9 * size)
+expect("the surfaces rest on each other", [bob["pin.ex_rate"][0], bob["pin.ey_rate"][0]], 1e-12)
+expect("it moves no farther than the clearance", [bob["bob.x"][0] - ideal["bob.x"][0], bob["bob.y"][0] - ideal["bob.y"][0]], 2e-4)
+light = hanging.replace("mass = 0.5", "mass = 1e-12")
+bob, _ = run("pressed-light", scene(0.001, 1e-4, light, (0.0, -G), clearance=True).replace("onset_tolerance = 1e-12", "onset_tolerance = 1e-9"))
+expect("what needs no penetration stays in the middle", bob["pin.eccentricity"][0], 1e-15)
+refused([path_of("deep", scene(0.05, 1e-3, hanging.replace("stiffness = 1e8", "stiffness = 1e3"), (0.0, -G), clearance=True))], "more than its clearance")
+
+# a pin in a guide
+SLOT = f"""contacts.wall = {{ law = "hertz", clearance = 1e-3, stiffness = 1e6, exponent = 1.0 }}
+bodies.ground = {{ type = "ground", points.o = [0.0, 0.0] }}
+bodies.pin = {{ type = "point_mass", mass = 0.2 }}
+joints.slot = {{ type = "loose_guide", guide = "ground.o", direction = [{math.cos(0.5)}, {math.sin(0.5)}], slider = "pin.center", contact = "wall" }}
+initial.journals = "pressed"
+initial.bodies.pin = {{ x = 0.0, y = 0.0 }}
+"""
+pin, _ = run("pressed-slot", scene(0.1, 1e-2, SLOT, (0.0, -G), clearance=True))
+press = 0.2 * G * math.cos(0.5)
+expect("a pin slides pressed: penetration", pin["slot.penetration"] - press / 1e6, 1e-11)
+expect("along the guide g sin", pin["slot.travel"] + 0.5 * G * math.sin(0.5) * pin["t"] ** 2, 1e-8)
+
+# flexible links count as rigid ones for the forces
+RODS = """contacts.pin = { law = "hunt_crossley", bearing_radius = 0.01, clearance = 2e-5, stiffness = 1e9, exponent = 1.5, restitution = 0.8, impact_velocity_floor = 1e-3 }
+materials.steel = { density = 7850.0, youngs_modulus = 210e9 }
+sections.strip = { width = 0.01, height = 0.02 }
+bodies.ground = { type = "ground", points.a = [0.0, 0.0], points.b = [0.5, 0.0] }
+bodies.crank = { type = "link", model = "rigid", length = 0.15, section = "strip", material = "steel" }
+bodies.rod = { type = "link", model = "flexible", length = 0.45, section = "strip", material = "steel", elements = 2 }
+bodies.block = { type = "rigid_body", mass = 0.3, inertia = 1e-3, points.p = [0.0, 0.0] }
+joints.pivot = { type = "revolute", bearing = "ground.a", journal = "crank.start", model = "ideal" }
+joints.elbow = { type = "revolute", bearing = "crank.end", journal = "rod.start", model = "clearance", contact = "pin" }
+joints.wrist = { type = "revolute", bearing = "rod.end", journal = "block.p", model = "ideal" }
+joints.rail = { type = "prismatic", guide = "ground.b", direction = [1.0, 0.0], slider = "block.p", rotation = "locked" }
+drives.spin = { type = "angle", joint = "pivot", angle = "0.8 + 20*t" }
+initial = { journals = "pressed", sketch = { elbow = [0.1, 0.1], wrist = [0.5, 0.0] } }
+"""
+loose, _ = run("pressed-rods", scene(1e-3, 1e-4, RODS, (0.0, -G), clearance=True))
+ideal, _ = run("ideal-rods", scene(1e-3, 1e-4, RODS.replace('model = "clearance"', 'model = "ideal"').replace('model = "flexible"', 'model = "rigid"'), (0.0, -G)))
+force = np.array([ideal["elbow.fx"][0], ideal["elbow.fy"][0]])
+delta = (np.linalg.norm(force) / 1e9) ** (1 / 1.5)
+expect("a crank and a flexible rod: eccentricity against the ideal force",
+       np.array([loose["elbow.ex"][0], loose["elbow.ey"][0]]) + (2e-5 + delta) * force / np.linalg.norm(force), 1e-12)
+expect("at rest on each other", [loose["elbow.ex_rate"][0], loose["elbow.ey_rate"][0]], 1e-10)
+
+print(f"{driver.failures} failures")
 sys.exit(driver.failures != 0)

@@ -106,6 +106,10 @@ size_t ls_scene_selected(const ls_scene *scene, size_t index);
 /* The start (q, v: n each), t = 0. */
 int32_t ls_scene_start(const ls_scene *scene, double *q, double *v, ls_error *error);
 
+/* The impact velocities at the start (z: joints): those of contacts that begin closed with `initial.journals = "pressed"`, else 0.
+ * No event tells of their onset. */
+int32_t ls_scene_start_contacts(const ls_scene *scene, double *z, ls_error *error);
+
 /* An equilibrium. */
 typedef struct {
     double eigenvalue;  /* the smallest mu of K x + Phi_q^T nu = mu M x, Phi_q x = 0, 1/s2; 0 if nothing can move */

@@ -61,6 +61,16 @@ void Acceleration::project(double t, VectorXd &q, VectorXd &v, double limit) {
         require_small(phi_, limit, "positions", t);
     }
     require_small(phi_q_ * v + phi_t_, limit, "velocities", t);
+    project_velocities(v);
+}
+
+void Acceleration::project_velocities(double t, const VectorXd &q, VectorXd &v) {
+    if (system_.constraints() == 0) return;
+    linearise(t, q);
+    project_velocities(v);
+}
+
+void Acceleration::project_velocities(VectorXd &v) const {
     for (const auto &p : system_.prescribed()) v[p.coordinate] = -phi_t_[p.row];
     v.noalias() -= w_ * factor_.solve(phi_q_ * v + phi_t_);
 }

@@ -17,6 +17,8 @@ public:
     void solve(double t, const VectorXd &q, const VectorXd &v, const Memory &memory, bool refine);
     // Moves q to Phi = 0 and v to Phi_q v + Phi_t = 0 along M^-1 Phi_q^T; refuses larger violations than `limit`.
     void project(double t, VectorXd &q, VectorXd &v, double limit);
+    // Moves v to Phi_q v + Phi_t = 0 in the same way, at any q.
+    void project_velocities(double t, const VectorXd &q, VectorXd &v);
     // Power of the constraints that prescribe a motion, after `solve`.
     double prescribed_power() const { return lambda.dot(phi_t_); }
 
@@ -24,6 +26,7 @@ public:
     Inputs inputs;
 
 private:
+    void project_velocities(VectorXd &v) const;
     void linearise(double t, const VectorXd &q);
     void require_small(const VectorXd &violation, double limit, const char *what, double t) const;
 

@@ -2,41 +2,13 @@
 
 #include <cmath>
 
+#include "closing.hpp"
 #include "decomposition.hpp"
 #include "placing.hpp"
 
 namespace {
 
-constexpr double closure = 1e-12;         // allowed gap of a joint, m
 constexpr double velocity_rounding = 1e-9; // allowed contradiction of velocities, m/s and rad/s
-
-// Newton's method of least norm: lengths count as they are, angles times the radius of gyration.
-void close_joints(const System &system, const VectorXd &freedom, VectorXd &q) {
-    const Inputs inputs = system.inputs(0.0);
-    const VectorXd scale = freedom.cwiseQuotient(system.levers());
-    VectorXd phi, phi_t;
-    MatrixXd phi_q;
-    system.constraint_rows(inputs, q, phi, phi_q, phi_t);
-    if (phi.size() == 0) return;
-    constexpr int most_passes = 100;
-    double best = phi.cwiseAbs().maxCoeff();
-    for (int pass = 0; pass < most_passes; ++pass) {
-        const VectorXd next = q - scale.cwiseProduct(Decomposition(phi_q * scale.asDiagonal()).solve(phi));
-        VectorXd rest;
-        system.constraint_rows(inputs, next, rest, phi_q, phi_t);
-        const double size = rest.cwiseAbs().maxCoeff();
-        if (best <= closure && !(size < best)) break;
-        best = size;
-        q = next;
-        phi = rest;
-    }
-    Eigen::Index worst = 0;
-    if (!(phi.cwiseAbs().maxCoeff(&worst) <= closure))
-        refuse(system.row_source(static_cast<int>(worst)), "the mechanism cannot be closed from this start: " +
-                                                               system.row_name(static_cast<int>(worst)) +
-                                                               " stays open by " + text_of(phi[worst]));
-    system.check_angles(inputs, q);
-}
 
 // One row of what is known of the velocities: the rate of a coordinate.
 struct GivenRate {
@@ -113,7 +85,8 @@ Assembled assemble(const Scene &ideal, bool states_are_guesses) {
         const bool stays = body.kind == BodyKind::moving || (ideal.initial.states[i] && !states_are_guesses);
         if (stays) freedom.segment(body.offset, body.size).setZero();
     }
-    close_joints(system, freedom, q);
+    // lengths count as they are, angles times the radius of gyration
+    close_rows(system, VectorXd::Zero(system.constraints()), freedom.cwiseQuotient(system.levers()), q);
     v = least_velocities(ideal, system, q, states_are_guesses);
 
     Assembled start;

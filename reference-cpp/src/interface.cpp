@@ -141,7 +141,7 @@ ls_run *new_run(const ls_scene *scene, double t, const double *q, const double *
         } else {
             const int n = model.system.coordinates();
             require(std::isfinite(t), "t is not finite");
-            Memory memory = model.system.memory();
+            Memory memory = from_start ? model.memory : model.system.memory();
             if (!from_start) memory.elongation = scene->memory.elongation;
             run->dynamic = std::make_unique<Run>(model, t, from_start ? model.q : input(q, n, "q"),
                                                  from_start ? model.v : input(v, n, "v"), memory,
@@ -214,6 +214,10 @@ std::int32_t ls_scene_start(const ls_scene *scene, double *q, double *v, ls_erro
         output(model.q, q, "q");
         output(model.v, v, "v");
     });
+}
+
+std::int32_t ls_scene_start_contacts(const ls_scene *scene, double *z, ls_error *error) {
+    return guarded(error, [&] { output(need(scene, "scene").model.memory.impact_velocity, z, "z"); });
 }
 
 std::int32_t ls_scene_rest(const ls_scene *scene, ls_rest *rest, ls_error *error) {

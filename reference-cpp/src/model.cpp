@@ -7,6 +7,7 @@
 #include "assembly.hpp"
 #include "ideal.hpp"
 #include "placing.hpp"
+#include "pressed.hpp"
 #include "redundancy.hpp"
 #include "statics.hpp"
 
@@ -25,11 +26,9 @@ bool needs_assembly(const Scene &scene) {
 }
 
 // A straight line of another length, or one that bends, is not the rigid link that an assembly moves.
-void refuse_deformations(const Scene &scene) {
+void refuse_deformations(const Scene &scene, const char *why) {
     for (const std::optional<State> &state : scene.initial.states)
-        if (state && state->deformation.any())
-            refuse(state->source, "a link with a strain or bending_rate cannot be assembled: give every body a state, and "
-                                  "neither a sketch nor velocities");
+        if (state && state->deformation.any()) refuse(state->source, why);
 }
 
 // States as they are; of moving bodies those of their paths.
@@ -105,23 +104,38 @@ Model make_model(Scene scene) {
                 start.velocities[i] = state->velocity.value_or(Frame{});
             }
     } else {
-        if (assembled) refuse_deformations(scene);
+        if (assembled)
+            refuse_deformations(scene, "a link with a strain or bending_rate cannot be assembled: give every body a state, and "
+                                       "neither a sketch nor velocities");
         start = assembled ? assemble(ideal, false) : exact_states(scene);
     }
 
-    System system(scene, std::move(driven_angles));
+    System system(scene, driven_angles);
     VectorXd q = VectorXd::Zero(system.coordinates()), v = q;
-    for (std::size_t i = 0; i < start.poses.size(); ++i) {
-        const std::optional<State> &state = scene.initial.states[i];
-        put_body(system.bodies()[i], start.poses[i], start.velocities[i], state ? state->deformation : Deformation{}, q, v);
-    }
+    auto put_bodies = [&] {
+        for (std::size_t i = 0; i < start.poses.size(); ++i) {
+            const std::optional<State> &state = scene.initial.states[i];
+            put_body(system.bodies()[i], start.poses[i], start.velocities[i], state ? state->deformation : Deformation{}, q, v);
+        }
+    };
+    put_bodies();
     check_exact_start(scene, system, q, v);
+    std::vector<bool> closed(scene.joints.size(), false);
+    if (scene.initial.pressed && !system.loose_joints().empty()) {
+        refuse_deformations(scene, "a link with a strain or bending_rate cannot start with pressed journals");
+        Pressed pressed = press(scene, driven_angles, start);
+        start = std::move(pressed.start);
+        closed = std::move(pressed.closed);
+        put_bodies();
+    }
 
     const std::vector<int> redundant = redundant_rows(system, q);
     std::vector<std::string> names;
     for (int row : redundant) names.push_back(system.row_name(row));
     system.leave_out(redundant);
     Memory memory = system.memory();
+    for (int k : system.loose_joints())
+        if (closed[k]) memory.impact_velocity[k] = system.law(k).impact_velocity_floor;
     system.count_turns(q, memory);
     Model model{std::move(scene), std::move(system), std::move(q), std::move(v), std::move(memory), std::move(start.poses),
                 std::move(names), {}};

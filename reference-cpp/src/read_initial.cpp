@@ -99,6 +99,7 @@ Initial read_initial(const Value *value, const Scene &scene, const Library &libr
         const int body = read_free_body(name, entry, scene, library);
         read_velocities(entry, body, scene.bodies[body].has_direction(), initial.velocities);
     });
+    initial.pressed = f.has("journals") && f.choice<bool>("journals", {{"centred", false}, {"pressed", true}});
     initial.equilibrium = read_equilibrium(f);
 
     if (scene.inverse_kinematics)

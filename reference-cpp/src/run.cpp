@@ -42,6 +42,10 @@ Run::Run(const Model &model, double t, const VectorXd &q, const VectorXd &v, con
     system_.check_angles(acceleration_.inputs, q_);
     memory_.turn = spring_turns(system_, angles_);
     initial_energy_ = system_.energies(q_, v_, memory_).total();
+    for (std::size_t i = 0; i < deepest_.size(); ++i) {
+        const int k = system_.loose_joints()[i];
+        if (closed(k)) deepest_[i] = system_.gap(k, q_.data(), v_.data()).delta();
+    }
     set_up(tolerances);
 }
 

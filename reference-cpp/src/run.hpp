@@ -14,7 +14,7 @@ using Ledger = Powers;
 
 class Run {
 public:
-    // memory: all contacts open; the elongations of Maxwell elements at t
+    // memory: the impact velocities of closed contacts and the elongations of Maxwell elements at t
     Run(const Model &model, double t, const VectorXd &q, const VectorXd &v, const Memory &memory,
         const ls_tolerances &tolerances);
     Run(const Run &) = delete;

@@ -157,6 +157,7 @@ struct Initial {
     std::vector<SketchedPoint> points;
     std::vector<std::optional<State>> states; // by body
     std::vector<SingleVelocity> velocities;
+    bool pressed = false; // the journals
     enum class Rest { none, downhill, nearest } equilibrium = Rest::none;
 };
 
