@@ -515,7 +515,8 @@ REFUSED = [
     (wall, f"clearance = {PLAY}", f"clearance = {PLAY}, bearing_radius = {PLAY}", "must be below bearing_radius"),
     (wall, f"clearance = {PLAY}", f"clearance = {PLAY}, bearing_radius = -1.0", "must be positive"),
     (wall, f"clearance = {PLAY}, ", "", "`clearance` is missing"),
-    (wall, ", onset_tolerance = 1e-12", "", "onset_tolerance"),
+    (wall, ", onset_tolerance = 1e-12", ", onset_tolerance = 0.0", "must be positive"),
+    (wall, 'method = "bathe"', 'method = "auto"', "needs an accuracy"),
     (wall, "onset_tolerance = 1e-12", "onset_tolerance = 1e-2", "below every clearance"),
     (wall, 'analysis = "dynamic"', 'analysis = "static"', "refused in a static analysis"),
     (scene(1.0, 0.1, HOLD), 'analysis = "dynamic"', 'analysis = "static"', "refused in a static analysis"),
@@ -546,6 +547,30 @@ for text, old, new, expected in REFUSED:
     assert old in text, old
     refused([path_of("refused", text.replace(old, new, 1))], expected)
 (FOLDER / "refused.toml").unlink()
+
+# ---- defaults, and models of links --------------------------------------------------------------------------------------------------------
+
+fric = walls("hunt_crossley", 1.5, 0.7, ', friction = { law = "ambrosio", coefficient = 0.1, v0 = 1e-4, v1 = 1e-3 }')
+short = scene(0.02, 1e-4, fric.replace("v0 = 1e-4, v1 = 1e-3", "v0 = 1e-4"), clearance=True)
+short = short.replace(", newton_tolerance = 1e-10, onset_tolerance = 1e-12", ", accuracy = { position = 1e-6, horizon = 0.01 }").replace("step = 0.0001, accuracy", "accuracy")
+short = short.replace('method = "bathe"', 'method = "auto"').replace("step = 0.0001", "").replace(", , ", ", ").replace("v0 = 1e-4", "").replace("0.1,  }", "0.1 }")
+one, other = (run("defaults", text)[0] for text in (scene(0.02, 1e-4, fric, clearance=True), short))
+expect("defaults of friction and tolerances: every channel", [np.max(np.abs(one[k] - other[k])) for k in one], 1e-12)
+ROD = """materials.steel = { density = 7850.0, youngs_modulus = 2e9 }
+sections.strip = { width = 0.006, height = 0.02 }
+bodies.ground = { type = "ground", points.o = [0.0, 0.0] }
+bodies.rod = { type = "link", model = "MODEL", length = 0.4, section = "strip", material = "steel"MORE }
+joints.pin = { type = "revolute", bearing = "ground.o", journal = "rod.start", model = "ideal" }
+forces.push = { type = "force", point = "rod.quarter", x = 0.0, y = 2.0, frame = "body" }
+initial.bodies.rod = { point = "quarter", x = 0.1, y = 0.0, theta = 0.0 }
+"""
+text = scene(0.5, 0.01, ROD, (0.0, -9.81)).replace("MODEL", "rigid").replace('channels = ["*"]', 'channels = ["*", "*.strain", "rod.strain", "points.rod.quarter.slope_x", "pin.penetration"]')
+many = ", elements = 3, kelvin_voigt = 1e-3, rayleigh = { mass = 5.0, stiffness = 1e-3 }, points.quarter = 0.1"
+one, _ = run("rigid-ignores", text.replace("MORE", many).replace("theta = 0.0", "theta = 0.0, strain = 0.01, bending_rate = 2.0"))
+body, _ = run("rigid-body", scene(0.5, 0.01, ROD.replace('"link", model = "MODEL", length = 0.4, section = "strip", material = "steel"MORE',
+    f'"rigid_body", mass = {7850 * 0.006 * 0.02 * 0.4!r}, inertia = {7850 * 0.006 * 0.02 * 0.4 ** 3 / 12!r}, points.start = [-0.2, 0.0], points.quarter = [-0.1, 0.0]'), (0.0, -9.81)))
+expect("a rigid link with the keys of a flexible one, pushed between its ends: as a rigid body",
+       [np.max(np.abs(one[k] - body[k])) for k in body if k in one and "energy" not in k and ".a" not in k], 1e-7)
 
 # ---- derivatives of forces and rows -------------------------------------------------------------------------------------------------
 
