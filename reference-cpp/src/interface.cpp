@@ -118,9 +118,8 @@ struct GivenState {
 
 ls_rest described(const Stability &stability, const System &system) {
     if (!stability.can_move()) return {0.0, 1, -1};
-    ls_rest rest{stability.least(), stability.is_stable() ? 1 : stability.is_unstable() ? -1 : 0, 0};
-    system.levers().cwiseProduct(stability.softest()).cwiseAbs().maxCoeff(&rest.coordinate);
-    return rest;
+    return {stability.least(), stability.is_stable() ? 1 : stability.is_unstable() ? -1 : 0,
+            system.moves_most(stability.softest())};
 }
 
 const StaticRun &static_run(const ls_run *run) {

@@ -187,6 +187,6 @@ CriticalPoint LoadPath::locate(const PathPoint &from, double length, const PathP
     CriticalPoint critical;
     critical.t = 0.5 * (left.x.t + right.x.t);
     critical.limit = left.dt * right.dt < 0.0;
-    equations.system().levers().cwiseProduct(mode).cwiseAbs().maxCoeff(&critical.coordinate);
+    critical.coordinate = equations.system().moves_most(mode);
     return critical;
 }

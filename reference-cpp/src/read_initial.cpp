@@ -102,6 +102,10 @@ Initial read_initial(const Value *value, const Scene &scene, const Library &libr
     initial.pressed = f.has("journals") && f.choice<bool>("journals", {{"centred", false}, {"pressed", true}});
     initial.equilibrium = read_equilibrium(f);
 
+    if (scene.is_static)
+        for (const std::optional<State> &state : initial.states)
+            if (state && state->deformation.bending_rate != 0.0)
+                refuse(state->source, "a rate of bending is refused in a static analysis");
     if (scene.inverse_kinematics)
         require(initial.velocities.empty(), f.source("velocities"), "are refused in a scene with inverse kinematics");
     if (initial.equilibrium != Initial::Rest::none) {

@@ -103,6 +103,8 @@ public:
     const std::vector<PrescribedCoordinate> &prescribed() const { return prescribed_; }
     // Length by which tolerances in m and m/s are divided for each coordinate (1 where it is a length itself).
     const VectorXd &levers() const { return levers_; }
+    // The coordinate of largest magnitude in a motion; slopes follow the positions of their nodes and do not count.
+    int moves_most(const VectorXd &motion) const;
     // Instants at which a function in use has a kink in some derivative, in order.
     const std::vector<double> &breaks() const { return breaks_; }
 
