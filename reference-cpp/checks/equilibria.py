@@ -88,6 +88,24 @@ t = bar_of["t"]
 expect("a driven arm: torque", bar_of["pin.torque"] - t * (0.3 * G * 0.2 * np.cos(0.5 + t) + 2.0 * 0.4 * np.sin(0.5 + t)), 1e-12)
 expect("a driven arm: reactions", [bar_of["pin.fx"] + 2.0 * t, bar_of["pin.fy"] - 0.3 * G * t], 1e-12)
 
+# a chain without weight at first, sketched upwards, comes down as soon as its weight acts; its links stretch
+CHAIN = """bodies.ground = { type = "ground", points.o = [0.0, 0.0] }
+bodies.a = { type = "link", model = "flexible", length = 0.5, section = "s", material = "m", elements = 3 }
+bodies.b = { type = "rigid_body", mass = 0.1, inertia = 1e-4, points.p = [0.0, 0.1] }
+materials.m = { density = 2700.0, youngs_modulus = 1e8 }
+sections.s = { width = 0.004, height = 0.02 }
+joints.o = { type = "revolute", bearing = "ground.o", journal = "a.start", model = "ideal" }
+joints.p = { type = "revolute", bearing = "a.end", journal = "b.p", model = "ideal" }
+initial.bodies.a = { x = 0.0, y = 0.25, theta = 1.5707963267948966 }
+initial.bodies.b = { x = 0.0, y = 0.6, theta = 3.141592653589793 }
+"""
+chain, _ = run("chain", scene(1.0, 0.1, CHAIN, (0.0, -G), analysis="static"))
+t = chain["t"][1:]
+expect("a chain sketched upwards hangs", [chain["a.x"][1:], chain["b.x"][1:]], 1e-12)
+expect("its tension", chain["o.fy"][1:] - t * G * (0.1 + 2700.0 * 0.004 * 0.02 * 0.5), 1e-9)
+stretch = t * G * (0.1 + 2700.0 * 0.004 * 0.02 * 0.25) / (1e8 * 0.004 * 0.02)
+expect("it stretches, to first order", -0.6 - chain["b.y"][1:] - 0.5 * stretch, 1e-7)
+
 # ---- static load paths ------------------------------------------------------------------------------------------------------------------
 
 HALF, RISE, K = 0.5, 0.2, 300.0
@@ -135,6 +153,10 @@ expect("the loads of its limit points", [found[0][1] - limit, found[1][1] + limi
 expect(f"{len(unstable['t'])} unstable steps on the path", truss_load(unstable["top.y"]) - 10 * unstable["t"], 1e-9)
 expect("rows on the path", truss_load(rows["top.y"]) - 10 * rows["t"], 1e-9)
 judge(rows["top.y"][-1] < -RISE and np.all(np.diff(unstable["top.y"]) < 0), f"it ends below, at {rows['top.y'][-1]:.3f} m")
+
+pushed = truss.replace('forces.load = { type = "force", point = "top.c", x = 0.0, y = -10.0, frame = "ground" }', f'drives.push = {{ type = "point", point = "top.c", y = "{RISE} - 0.4*t" }}')
+rows, _ = run("pushed-truss", pushed)
+expect("a truss that is pushed through has no critical point", rows["top.y"] - RISE + 0.4 * rows["t"], 1e-12)
 
 COIL_COLUMN = """bodies.ground = { type = "ground", points.o = [0.0, 0.0] }
 bodies.bar = { type = "link", model = "rigid", length = 0.5, section = "strip", material = "steel" }

@@ -1,5 +1,9 @@
 #include "equilibrium.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 StaticEquations::StaticEquations(const System &system) : system_(system), mass_(system.mass()) {}
 
 void StaticEquations::assemble(const Equilibrium &x) {
@@ -18,6 +22,7 @@ void StaticEquations::assemble(const Equilibrium &x) {
         stiffness_(entry.row(), entry.col()) += entry.value();
         magnitude_(entry.row(), entry.col()) += std::abs(entry.value());
     }
+    place_ = x.q.cwiseAbs();
     system_.load_rates(inputs, x.q, force_by_time_);
     // at rest the rate of a row is Phi_t, so its derivatives by q are those of Phi_q by t
     for (const auto &entry : rate_by_q) force_by_time_[entry.col()] += entry.value() * x.lambda[entry.row()];
@@ -57,9 +62,11 @@ bool StaticEquations::is_held(double inertia) const {
 
 bool StaticEquations::is_balanced() const {
     const MatrixXd motions = stability().neutral();
-    constexpr double rounding = 1e-9;
+    // a part of the forces, and what the rounding of the coordinates may make of the stiffness
+    constexpr double part = 1e-9, rounding = 1e3 * std::numeric_limits<double>::epsilon();
+    const VectorXd limit = part * applied_.cwiseAbs() + rounding * (magnitude_ * place_);
     for (Eigen::Index i = 0; i < motions.cols(); ++i)
-        if (std::abs(motions.col(i).dot(force_)) > rounding * motions.col(i).cwiseAbs().dot(applied_.cwiseAbs())) return false;
+        if (std::abs(motions.col(i).dot(force_)) > motions.col(i).cwiseAbs().dot(limit)) return false;
     return true;
 }
 

@@ -35,5 +35,6 @@ private:
     const System &system_;
     MatrixXd mass_, stiffness_, magnitude_, phi_q_;
     VectorXd applied_, force_; // f; with the forces of the constraints
+    VectorXd place_;           // magnitudes of q
     VectorXd phi_, phi_t_, force_by_time_;
 };

@@ -18,6 +18,7 @@ public:
     Eigen::VectorXd softest() const { return mode(0); } // its motion x, with x.M x = 1
     Eigen::VectorXd mode(int i) const { return modes_.col(i); } // in the order of the eigenvalues
     int negative() const;
+    double rounding() const { return rounding_; } // what an eigenvalue may have by rounding
     bool is_stable() const { return !can_move() || values_[0] > rounding_; }
     bool is_unstable() const { return can_move() && values_[0] < -rounding_; }
     // Motions that nothing resists or drives, one a column.
@@ -26,5 +27,5 @@ public:
 private:
     Eigen::VectorXd values_; // in ascending order
     Eigen::MatrixXd modes_;
-    double rounding_ = 0.0; // what an eigenvalue may have by rounding
+    double rounding_ = 0.0;
 };

@@ -65,7 +65,9 @@ bool Statics::correct(Equilibrium &x) {
 // and the matrix is positive definite, so the way leads downhill.
 void Statics::descend(Equilibrium &x) {
     const double extent = equations_.extent(x.q);
-    constexpr double falling = 0.3, rising = 5.0, first = 1e6, least = 1e-9, nudge = 1e-3;
+    constexpr double falling = 0.3, rising = 5.0, first = 1e6, nudge = 1e-3;
+    // below the rounding of the eigenvalues inertia no longer tells what resists
+    const double least = std::max(1e-9, 10.0 * stability(x).rounding());
     constexpr int most_steps = 5000, most_trials = 60;
     double inertia = first;
     for (int pass = 0; pass < most_steps; ++pass) {
