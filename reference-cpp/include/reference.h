@@ -106,8 +106,8 @@ size_t ls_scene_selected(const ls_scene *scene, size_t index);
 /* The start (q, v: n each), t = 0. */
 int32_t ls_scene_start(const ls_scene *scene, double *q, double *v, ls_error *error);
 
-/* The impact velocities at the start (z: joints): those of contacts that begin closed with `initial.journals = "pressed"`, else 0.
- * No event tells of their onset. */
+/* The impact velocities at the start (z: joints): those of contacts that begin closed with `initial.journals = "pressed"`,
+ * else 0. No event tells of their onset. */
 int32_t ls_scene_start_contacts(const ls_scene *scene, double *z, ls_error *error);
 
 /* An equilibrium. */

@@ -13,6 +13,9 @@
 struct ls_scene {
     explicit ls_scene(Model m) : model(std::move(m)), channels(model), angles(starting_angles(model)) {
         selected = channels.selected(model.scene.patterns, model.scene.patterns_source, notes);
+        if (model.rest && !model.rest->is_stable())
+            notes.push_back(std::string("the equilibrium of the start is ") + (model.rest->is_unstable() ? "unstable" : "neutral") +
+                            ": " + model.system.coordinate_name(model.system.moves_most(model.rest->softest())) + " moves");
         memory = model.memory;
         energy = model.system.energies(model.q, model.v, memory).total();
     }

@@ -56,9 +56,9 @@ public:
             double effect = std::abs(after[k] - before[k]);
             bool small = false;
             for (std::size_t i = k + 1; i-- > 0; effect *= motion_.end) small = small || effect <= rounding * largest_[i];
-            require(small, source_, std::string("the ") + names[k] + " of a prescribed motion must not jump; where abs, min or max " +
-                                        "switches at t = " + text_of(s.after) + " it goes from " + value_text(before[k]) + " to " +
-                                        value_text(after[k]));
+            require(small, source_,
+                    std::string("the ") + names[k] + " of a prescribed motion must not jump; where abs, min or max switches at t = " +
+                        text_of(s.after) + " it goes from " + value_text(before[k]) + " to " + value_text(after[k]));
         }
     }
 

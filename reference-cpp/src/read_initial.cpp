@@ -79,7 +79,8 @@ void read_sketch(const Value *section, const Scene &scene, const Library &librar
 
 Initial::Rest read_equilibrium(Fields &f) {
     const Value *value = f.find("equilibrium");
-    if (value && value->kind == Value::string) return f.choice<Initial::Rest>("equilibrium", {{"nearest", Initial::Rest::nearest}});
+    if (value && value->kind == Value::string)
+        return f.choice<Initial::Rest>("equilibrium", {{"nearest", Initial::Rest::nearest}});
     return f.flag("equilibrium", false) ? Initial::Rest::downhill : Initial::Rest::none;
 }
 

@@ -9,7 +9,8 @@ public:
 
     // From an equilibrium near by, under the loads at x.t. False if Newton's method does not converge; x is then as it was.
     bool correct(Equilibrium &x);
-    // From anywhere, down to the equilibrium that a heavily damped mechanism comes to; neutral at worst. Throws if there is none.
+    // From anywhere, down to the equilibrium that a heavily damped mechanism comes to, neutral at worst. Throws if there is
+    // none.
     void descend(Equilibrium &x);
     // From anywhere, to the equilibrium that Newton's method with short steps comes to, stable or not. Throws if there is none.
     void approach(Equilibrium &x);

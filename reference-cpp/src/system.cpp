@@ -149,7 +149,8 @@ VectorXd System::divided_by_mass(const VectorXd &x) const {
 int System::moves_most(const VectorXd &motion) const {
     VectorXd size = levers_.cwiseProduct(motion).cwiseAbs();
     for (const Body &b : bodies_)
-        for (int i = 0; i <= b.elements && b.kind == BodyKind::flexible_link; ++i) size.segment<2>(b.offset + 4 * i + 2).setZero();
+        for (int i = 0; i <= b.elements && b.kind == BodyKind::flexible_link; ++i)
+            size.segment<2>(b.offset + 4 * i + 2).setZero();
     int coordinate = 0;
     size.maxCoeff(&coordinate);
     return coordinate;
