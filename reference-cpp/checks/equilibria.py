@@ -48,8 +48,9 @@ def start_of(text):
     result = subprocess.run([driver.DRIVER, path_of("rest", text), "--start"], capture_output=True, text=True)
     judge(result.returncode == 0, "equilibrium found" + result.stderr)
     lines = result.stdout.splitlines()
-    said = re.match(r"equilibrium: (\w+), smallest eigenvalue ([-+.e\d]+)", lines[1])
-    places = {words[0]: float(words[1]) for words in (line.split() for line in lines[2:]) if len(words) == 3}
+    said = re.search(r"equilibrium: (\w+), smallest eigenvalue ([-+.e\d]+)", result.stdout)
+    judge((said[1] != "stable") == ("note: the equilibrium" in result.stdout), "a note says where it is not stable")
+    places = {words[0]: float(words[1]) for words in (line.split() for line in lines) if len(words) == 3 and "." in words[0]}
     return said[1], float(said[2]), places
 
 
