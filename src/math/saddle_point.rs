@@ -105,6 +105,8 @@ pub struct SaddleFactors {
     pub gradient: Vec<f64>,
     /// Factors of S or of the whole matrix.
     values: Vec<f64>,
+    /// The diagonal of S, where S is formed.
+    diagonal: Vec<f64>,
     /// Memory of a solve.
     scratch: Vec<f64>,
     /// Factors of the whole matrix with row exchanges, where the fixed pivot order met a weak pivot.
@@ -313,6 +315,7 @@ impl SaddlePoint {
         SaddleFactors {
             gradient: vec![0.0; self.entries.columns.len() + 1],
             values: vec![0.0; length],
+            diagonal: vec![0.0; self.entries.ends.len()],
             scratch: vec![0.0; self.entries.unknowns],
             dense: None,
         }
@@ -364,12 +367,15 @@ impl SaddlePoint {
     /// A weak pivot.
     pub fn factor(&self, factors: &mut SaddleFactors) -> Result<(), WeakPivot> {
         let SaddleFactors {
-            gradient, values, ..
+            gradient,
+            values,
+            diagonal,
+            ..
         } = factors;
         factors.dense = None;
         match &self.form {
             SaddleForm::Complement(complement) => {
-                complement.factor(gradient, &self.dropped, values)
+                complement.factor(gradient, &self.dropped, values, diagonal)
             }
             SaddleForm::Bordered(bordered) => {
                 values.copy_from_slice(&bordered.mass);
@@ -402,14 +408,18 @@ impl SaddlePoint {
         }
     }
 
-    /// Smallest over largest pivot of the rows of G; zero where a pivot was weak.
+    /// Smallest pivot of the rows of G over its entry in S, or where S is not formed over the largest pivot; zero where a pivot was weak.
+    /// The first is the squared sine of a row to those before it in the metric of M^-1, whatever the units of the rows.
     pub fn pivot_range(&self, factors: &SaddleFactors) -> f64 {
         if factors.dense.is_some() {
             return 0.0;
         }
         match &self.form {
             SaddleForm::Complement(complement) => {
-                complement.symbolic.pivot_range(&factors.values, 0)
+                let pivot = |row| complement.symbolic.pivot(&factors.values, row).abs();
+                let rows = factors.diagonal.iter().enumerate();
+                let sines = rows.map(|(row, entry)| pivot(row) / entry.abs());
+                sines.fold(f64::INFINITY, f64::min)
             }
             SaddleForm::Bordered(bordered) => bordered
                 .symbolic
@@ -424,6 +434,7 @@ impl SaddlePoint {
             values,
             scratch,
             dense,
+            ..
         } = factors;
         if let Some(dense) = dense {
             return dense.solve(b);
@@ -531,6 +542,7 @@ impl Complement {
         gradient: &[f64],
         dropped: &[usize],
         values: &mut [f64],
+        diagonal: &mut [f64],
     ) -> Result<(), WeakPivot> {
         values.fill(0.0);
         let mut start = 0;
@@ -546,6 +558,7 @@ impl Complement {
         for &row in dropped {
             values[self.symbolic.slot(row, row) as usize] = 1.0;
         }
+        self.symbolic.copy_diagonal(values, diagonal);
         self.symbolic.factor(values)
     }
 }
