@@ -3,13 +3,14 @@
 use super::assembly::{closed_mechanism, constraint_rows};
 use super::extent::extent;
 use super::locked::Locked;
-use super::{Compiler, Mode, Role, known_roles};
+use super::{Compiler, Mode, Role, is_ideal, known_roles};
 use crate::body::PointRef;
 use crate::kinematics::limit::{End, Tracer};
+use crate::math::bisection::bisected;
 use crate::math::independent_rows::IndependentRows;
 use crate::model::Model;
 use crate::motion::Function;
-use crate::scene::{Contact, MotionKind, PrescribedMotion, Scene, SceneError};
+use crate::scene::{MotionKind, PrescribedMotion, Scene, SceneError};
 use crate::system::State;
 use numbers::number;
 use std::collections::BTreeSet;
@@ -128,20 +129,6 @@ fn values(function: &Function, duration: f64) -> Vec<(f64, f64)> {
         values.push((to, function.at(to)[0]));
     }
     values
-}
-
-/// Where a condition that holds at `from` and not at `to` ends, to rounding.
-fn bisected(mut from: f64, mut to: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    loop {
-        let middle = 0.5 * (from + to);
-        if middle == from || middle == to {
-            return to;
-        }
-        match holds(middle) {
-            true => from = middle,
-            false => to = middle,
-        }
-    }
 }
 
 /// With one drive the pose depends on its value alone: it is traced over the range of its values, once.
@@ -320,7 +307,8 @@ fn determined(c: &Compiler) -> Option<(Model, State)> {
         .collect();
     let is_left_out = |k: &usize| {
         let is_redundant = independent.dependent.binary_search(k).is_ok();
-        is_redundant || rows[*k].iter().any(|(i, _)| moves[*i])
+        // a body that turns freely about its pin has no part in it
+        is_redundant || rows[*k].iter().any(|(i, g)| *g != 0.0 && moves[*i])
     };
     let left_out: Vec<_> = (0..rows.len())
         .filter(is_left_out)
@@ -365,14 +353,15 @@ fn limit(
             )
         }
     };
-    let is_rigid = c.scene.bodies.iter().all(|body| body.kind.is_rigid());
-    let contacts: Vec<&Contact> = c.scene.joints.iter().filter_map(|j| j.contact()).collect();
+    let owners = stressed
+        .iter()
+        .flat_map(|&k| mechanism.constraints[k].owners.iter().copied());
     DriveLimit {
         t,
         drive,
         values,
-        cause: Locked::at(c, mechanism, pose, stressed).in_words(),
+        cause: Locked::at(c, mechanism, pose, owners).in_words(),
         what,
-        is_exact: is_rigid && contacts.is_empty(),
+        is_exact: is_ideal(c.scene),
     }
 }

@@ -33,24 +33,18 @@ pub(super) struct Locked<'a> {
 }
 
 impl<'a> Locked<'a> {
-    /// Of a pose in which the forces of these constraints are in equilibrium by themselves.
+    /// Of a pose in which forces in these bodies are in equilibrium by themselves.
     pub fn at(
         c: &'a Compiler,
         mechanism: &'a Model,
         pose: &'a State,
-        stressed: &[usize],
+        stressed: impl Iterator<Item = usize>,
     ) -> Locked<'a> {
-        let owners = stressed
-            .iter()
-            .flat_map(|&k| &mechanism.constraints[k].owners);
         Locked {
             c,
             mechanism,
             pose,
-            loaded: owners
-                .copied()
-                .filter(|b| c.roles[*b] == Role::Free)
-                .collect(),
+            loaded: stressed.filter(|b| c.roles[*b] == Role::Free).collect(),
             apart: ALIGNED * extent(c.scene),
         }
     }
@@ -74,8 +68,30 @@ impl<'a> Locked<'a> {
         });
         let is_of_loop =
             |other: usize| self.loaded.contains(&other) || self.c.roles[other] != Role::Free;
-        all.filter(|(.., other)| other.is_none_or(is_of_loop))
-            .collect()
+        let (mut places, others): (Vec<_>, Vec<_>) =
+            all.partition(|(.., other)| other.is_none_or(is_of_loop));
+        for (place, own, other) in others {
+            // a body that only hands on a force, from one joint to another at the same place
+            let is_new = places.iter().all(|(_, p, _)| !self.are_together(*p, own));
+            if is_new && other.is_some_and(|other| self.hands_on(own, other)) {
+                places.push((place, own, other));
+            }
+        }
+        places
+    }
+
+    fn are_together(&self, a: PointRef, b: PointRef) -> bool {
+        (self.place(a) - self.place(b)).norm() <= self.apart
+    }
+
+    /// True of a body with a joint to a second body of the loop where it is joined to that of `own`.
+    fn hands_on(&self, own: PointRef, other: usize) -> bool {
+        (0..self.c.bodies[other].points().len()).any(|point| {
+            let point = PointRef { body: other, point };
+            let mut partners = self.c.joints_at(point).iter();
+            self.are_together(point, own)
+                && partners.any(|(_, p)| p.body != own.body && self.loaded.contains(&p.body))
+        })
     }
 
     fn place(&self, point: PointRef) -> Vec2 {
@@ -115,18 +131,28 @@ impl<'a> Locked<'a> {
         let in_line = self.in_line();
         let found = in_line.or_else(|| self.perpendicular());
         let found = found.or_else(|| self.beyond());
+        let found = found.or_else(|| self.meeting());
         found.unwrap_or_else(|| {
             let bodies: Vec<&str> = self.loaded.iter().map(|b| self.body(*b)).collect();
-            format!("the joints of {} lock each other there", listed(&bodies))
+            format!(
+                "forces in {} are in equilibrium by themselves",
+                listed(&bodies)
+            )
         })
     }
 
-    /// Two bodies whose three joints lie on one line.
+    /// Two bodies that share a joint, or have joints at one place, and whose three joints lie on one line.
     fn in_line(&self) -> Option<String> {
-        for &first in &self.loaded {
-            for (middle, own, second) in self.places_of(first) {
-                let second = second.filter(|b| *b > first && self.loaded.contains(b));
-                let Some(second) = second else { continue };
+        let pairs = self.loaded.iter().flat_map(|first| {
+            let others = self.loaded.range(first + 1..);
+            others.map(move |second| (*first, *second))
+        });
+        for (first, second) in pairs {
+            let shares = |(_, own, other): &(Place, PointRef, Option<usize>)| {
+                let mut places = self.places_of(second).into_iter();
+                *other == Some(second) || places.any(|(_, p, _)| self.are_together(p, *own))
+            };
+            for (middle, own, _) in self.places_of(first).into_iter().filter(shares) {
                 let centre = self.place(own);
                 let far = |body: usize| {
                     let places = self.places_of(body).into_iter();
@@ -150,6 +176,32 @@ impl<'a> Locked<'a> {
             }
         }
         None
+    }
+
+    /// Three bodies with two joints each, along which forces act that meet in one point or are parallel.
+    fn meeting(&self) -> Option<String> {
+        let lines = self.loaded.iter().filter_map(|&body| {
+            let [(_, a, _), (_, b, _)] = self.places_of(body)[..] else {
+                return None;
+            };
+            let (from, arm) = (self.place(a), self.place(b) - self.place(a));
+            let along = arm.try_normalize(self.apart)?;
+            Some((body, from, along))
+        });
+        let lines: Vec<_> = lines.collect();
+        let &[(first, p, a), (second, q, b), (third, r, c)] = &lines[..] else {
+            return None;
+        };
+        let names = listed(&[first, second, third].map(|body| self.body(body)));
+        let sine = a.perp(&b);
+        if sine.abs() <= ALIGNED {
+            let is_parallel = a.perp(&c).abs() <= ALIGNED;
+            return is_parallel.then(|| format!("{names} are parallel"));
+        }
+        let meets = p + (q - p).perp(&b) / sine * a;
+        let off = (meets - r).perp(&c).abs();
+        (off <= ALIGNED * (meets - r).norm())
+            .then(|| format!("the lines of {names} meet in one point"))
     }
 
     /// A joint of the loop on the line through the two joints of a body, along which the force in this body acts.
@@ -215,7 +267,7 @@ impl<'a> Locked<'a> {
 }
 
 /// Names in a sentence.
-fn listed(names: &[&str]) -> String {
+pub(super) fn listed(names: &[&str]) -> String {
     match names {
         [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
         names => names.join(", "),

@@ -227,6 +227,13 @@ impl Compiler<'_> {
     }
 }
 
+/// True of a scene that is its own ideal mechanism: rigid links and joints without clearance.
+pub(crate) fn is_ideal(scene: &Scene) -> bool {
+    let mut bodies = scene.bodies.iter();
+    let mut joints = scene.joints.iter();
+    bodies.all(|body| body.kind.is_rigid()) && joints.all(|joint| joint.contact().is_none())
+}
+
 /// Roles that a scene gives directly: ground, bodies on paths, rigid bodies turned about a point of the ground.
 fn known_roles(scene: &Scene) -> Vec<Role> {
     let role = |b: &NamedBody| match b.kind.known() {

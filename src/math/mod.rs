@@ -1,5 +1,6 @@
 //! Small mathematics that the mechanics stands on.
 
+pub mod bisection;
 pub mod dense;
 pub mod groups;
 pub mod independent_rows;
