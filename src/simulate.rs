@@ -169,6 +169,7 @@ pub struct Simulation {
     ended_at_limit: bool,
     /// Those of a mechanism that is driven, once a report has asked for them: to count them the ideal mechanism is closed.
     freedoms: OnceLock<Option<Freedoms>>,
+    course: OnceLock<DriveCourse>,
 }
 
 impl Simulation {
@@ -177,9 +178,9 @@ impl Simulation {
         self.recorder.channels()
     }
 
-    /// How far the drives lead the ideal rigid mechanism.
-    pub fn drive_course(&self) -> DriveCourse {
-        drive_limit::follow(&self.scene)
+    /// How far the drives lead the ideal rigid mechanism: followed once, when it is first asked for.
+    pub fn drive_course(&self) -> &DriveCourse {
+        self.course.get_or_init(|| drive_limit::follow(&self.scene))
     }
 
     /// The compiled mechanism.

@@ -36,7 +36,7 @@ fn simulation(text: &str) -> Simulation {
 
 fn limit(text: &str) -> DriveLimit {
     match simulation(text).drive_course() {
-        DriveCourse::Limited(limit) => *limit,
+        DriveCourse::Limited(limit) => (**limit).clone(),
         other => panic!("{other:?}\n{text}"),
     }
 }
@@ -219,7 +219,7 @@ fn what_stays_within_the_reach_has_no_limit() {
         four_bar([5.0, 4.0, 2.0, 3.5], 0.6, &to_the_end, 2.0),
         four_bar([1.0, 0.4, 1.0, 0.4], 0.5, "\"0.5 + 2*t\"", 20.0),
     ] {
-        let course = simulation(&text).drive_course();
+        let course = simulation(&text).drive_course().clone();
         assert_eq!(course, DriveCourse::Complete, "{text}");
     }
     let text = four_bar([5.0, 4.0, 2.0, 3.5], toggle - 0.2, &swing(1.001), 10.0);
@@ -260,7 +260,7 @@ fn limits_of_several_drives() {
         "arm and forearm are in line at joints A, B and C"
     );
     let text = five_bar("\"1.5 + 0.1*sin(t)\"", "\"1.6 - 0.1*sin(2*t)\"");
-    assert_eq!(simulation(&text).drive_course(), DriveCourse::Complete);
+    assert_eq!(*simulation(&text).drive_course(), DriveCourse::Complete);
     // crank and coupler turn towards each other until |O B| = g - c
     let (start, expected) = (-0.8_f64, -(-0.95_f64).acos());
     let (x, y) = (0.5 + 0.6 * start.cos(), 0.6 * start.sin());
@@ -308,7 +308,7 @@ fn freedoms_that_no_drive_determines() {
         pin("E", "extra.end", "rocker.end"),
         ""
     );
-    assert_eq!(simulation(&five).drive_course(), DriveCourse::Undetermined);
+    assert_eq!(*simulation(&five).drive_course(), DriveCourse::Undetermined);
 }
 
 /// The scenes of the project go to their ends.
@@ -317,11 +317,14 @@ fn scenes_of_the_project_have_no_limit() {
     let mut complete = 0;
     for name in all_scenes() {
         let scene = load(&name, &[]);
-        let course = Simulation::new(&scene).unwrap().drive_course();
-        assert!(
-            matches!(course, DriveCourse::Complete | DriveCourse::Undetermined),
-            "{name}: {course:?}"
-        );
+        let course = Simulation::new(&scene).unwrap().drive_course().clone();
+        let is_singular = name == "hard/type-2-singularity.toml";
+        let is_expected = match course {
+            DriveCourse::LosesControl(_) => is_singular,
+            DriveCourse::Complete | DriveCourse::Undetermined => !is_singular,
+            _ => false,
+        };
+        assert!(is_expected, "{name}: {course:?}");
         complete += usize::from(course == DriveCourse::Complete);
     }
     assert!(complete > 5, "{complete}");

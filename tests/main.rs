@@ -1,6 +1,7 @@
 //! All integration tests, in one binary.
 
 mod accuracy;
+mod actuation;
 mod architecture;
 mod bad_input;
 mod bad_mechanism;

@@ -1,5 +1,7 @@
 //! Limits of drives, in words: what is in line where a drive cannot go on, and when.
 
+use super::actuation::{Actuation, Control};
+pub use super::actuation::{LossOfControl, Uncontrolled};
 use super::assembly::{closed_mechanism, constraint_rows};
 use super::extent::extent;
 use super::locked::Locked;
@@ -75,19 +77,44 @@ impl DriveLimit {
 /// How far the drives of a scene lead the ideal rigid mechanism.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DriveCourse {
-    /// They determine no motion. Inverse kinematics checks its path by itself.
+    /// They determine no motion, or joints of inverse kinematics repeat others.
     Undetermined,
     /// Through the whole duration.
     Complete,
-    /// To a limit.
+    /// To a limit. Inverse kinematics has none: its path is checked when the scene is compiled.
     Limited(Box<DriveLimit>),
     /// To an instant \[s\] after which it takes too much work to follow them.
     Cut(f64),
+    /// The joints of inverse kinematics do not move the driven body along its path.
+    Uncontrolled(Box<Uncontrolled>),
+    /// Inverse kinematics passes a pose in which its joints do not hold the mechanism.
+    LosesControl(Box<LossOfControl>),
+}
+
+impl DriveCourse {
+    /// What is in doubt of a motion that comes to time t \[s\].
+    pub fn doubt(&self, t: f64) -> Option<String> {
+        match self {
+            DriveCourse::Undetermined | DriveCourse::Complete | DriveCourse::Cut(_) => None,
+            DriveCourse::Limited(limit) => (t > limit.t).then(|| limit.to_string()),
+            DriveCourse::Uncontrolled(found) => Some(found.to_string()),
+            DriveCourse::LosesControl(found) => found.up_to(t).map(|found| found.to_string()),
+        }
+    }
 }
 
 /// Follows the drives of a scene through the whole duration, in the ideal rigid mechanism, as far as they determine it.
 pub fn follow(scene: &Scene) -> DriveCourse {
-    if scene.motions.is_empty() || !scene.drives.is_empty() {
+    if !scene.drives.is_empty() {
+        let control = Actuation::of(scene).and_then(Actuation::control);
+        return match control {
+            None => DriveCourse::Undetermined,
+            Some(Control::Kept) => DriveCourse::Complete,
+            Some(Control::Missing(found)) => DriveCourse::Uncontrolled(Box::new(found)),
+            Some(Control::Lost(found)) => DriveCourse::LosesControl(Box::new(found)),
+        };
+    }
+    if scene.motions.is_empty() {
         return DriveCourse::Undetermined;
     }
     let course = match single_function(&scene.motions) {

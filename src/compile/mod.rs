@@ -1,5 +1,6 @@
 //! Scene -> model: shares nodes, eliminates known coordinates, and builds only the terms that the scene has.
 
+pub(crate) mod actuation;
 pub(crate) mod assembly;
 mod build;
 mod drive;

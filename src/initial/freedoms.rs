@@ -1,14 +1,16 @@
 //! Degrees of freedom of the ideal mechanism, and how many of them are driven.
 
 use super::redundancy::{Ranks, Redundancy};
+use crate::compile::actuation::Actuation;
 use crate::compile::assembly::closed;
 use crate::compile::extent::extent;
 use crate::model::Rule;
 use crate::scene::{MotionKind, Scene};
+use serde::Serialize;
 use std::fmt::{Display, Formatter};
 
 /// Degrees of freedom with rigid links and ideal joints.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Freedoms {
     /// Those that drives prescribe.
     pub driven: usize,
@@ -19,8 +21,8 @@ pub struct Freedoms {
 }
 
 impl Freedoms {
-    /// Those of a scene; none where the start is a singular pose, in which they cannot be counted, or where no ideal mechanism fits
-    /// the given states.
+    /// Those of a scene; none where the start is a singular pose, in which they cannot be counted, where no ideal mechanism fits
+    /// the given states, or where a joint holds the body that follows a path on what is known.
     pub fn of(scene: &Scene) -> Option<Freedoms> {
         let prescribed = scene.motions.iter().map(|motion| match &motion.kind {
             MotionKind::Angle { .. } => 1,
@@ -28,12 +30,12 @@ impl Freedoms {
         });
         let driven = prescribed.sum::<usize>();
         if let Some(drive) = scene.drives.first() {
-            // a path that does not determine the mechanism is refused
-            let driven = driven + drive.joints.len();
+            // a path that does not determine the mechanism is refused, so what other drives prescribe repeats nothing
+            let [followed, left] = Actuation::of(scene)?.freedoms()?;
             return Some(Freedoms {
-                driven,
-                left: 0,
-                repeated: 0,
+                driven: driven + followed,
+                left,
+                repeated: drive.joints.len() - followed,
             });
         }
         let (model, state) = closed(scene).ok()?;

@@ -5,8 +5,11 @@
 //! The linear systems are those of the acceleration level with unit masses, \[\[I, Phi_q^T\], \[Phi_q, 0\]\], whose
 //! solution is the one of least norm.
 
+mod inverse_jacobian;
 pub(crate) mod limit;
 mod series;
+
+pub(crate) use inverse_jacobian::UnitMotions;
 
 use crate::checkpoint::carried;
 use crate::math::plane::pair;

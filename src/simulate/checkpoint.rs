@@ -68,6 +68,7 @@ impl Simulation {
             // that of the start, which a fresh simulation has found
             rest: _,
             freedoms: _,
+            course: _,
             // a static analysis has no checkpoints
             indeterminate: _,
             critical_points: _,

@@ -215,7 +215,7 @@ impl Simulation {
         let t = self.state.t + self.pacer.scale();
         match self.drive_course() {
             DriveCourse::Limited(limit) if t >= (1.0 - NEAR_LIMIT) * limit.t => {
-                RunError::DriveLimit(limit)
+                RunError::DriveLimit(limit.clone())
             }
             _ => error,
         }

@@ -9,6 +9,7 @@ use super::{
 };
 use crate::body::{Body, CentredLink, RigidLink, Strain};
 use crate::checkpoint::carried;
+use crate::compile::is_ideal;
 use crate::initial::{Freedoms, is_assembled};
 use crate::model::{Model, PlacedBody};
 use crate::record::Ledger;
@@ -190,6 +191,9 @@ pub struct Report {
     pub extremes: BTreeMap<String, Extreme>,
     /// Errors of driven bodies, forces of joints, loads of drives, contacts.
     pub closing: Closing,
+    /// What is in doubt of the motion that drives prescribe.
+    #[serde(skip)]
+    pub drive_doubt: Option<String>,
     /// What is remarkable about the scene, see [`Simulation::scene_notes`].
     #[serde(skip)]
     pub scene_notes: Vec<String>,
@@ -202,8 +206,11 @@ pub struct Inspection {
     pub unknowns: usize,
     /// Multipliers.
     pub multipliers: usize,
-    /// Degrees of freedom: unknown coordinates that are positions, less the constraints that are kept.
-    pub freedoms: usize,
+    /// Independent coordinates: unknown ones that are positions, less the constraints that are kept. Links that bend and journals that
+    /// move in their bearings have theirs.
+    pub independent: usize,
+    /// Degrees of freedom with rigid links and ideal joints; none where they cannot be counted.
+    pub freedoms: Option<Freedoms>,
     /// Contact terms.
     pub contacts: usize,
     /// Effects present.
@@ -258,12 +265,25 @@ impl Simulation {
         told
     }
 
-    /// Its degrees of freedom, where drives prescribe some of them and leave others.
+    /// Its degrees of freedom.
+    fn freedoms(&self) -> Option<Freedoms> {
+        *self.freedoms.get_or_init(|| Freedoms::of(&self.scene))
+    }
+
+    /// Its degrees of freedom, where drives prescribe some of them and leave others or repeat themselves.
     fn partly_driven(&self) -> Option<Freedoms> {
-        let is_driven = !self.scene.motions.is_empty();
-        let count = || is_driven.then(|| Freedoms::of(&self.scene)).flatten();
-        let freedoms = *self.freedoms.get_or_init(count);
-        freedoms.filter(|freedoms| freedoms.left > 0)
+        let is_driven = !(self.scene.motions.is_empty() && self.scene.drives.is_empty());
+        let freedoms = is_driven.then(|| self.freedoms()).flatten();
+        freedoms.filter(|freedoms| freedoms.left > 0 || freedoms.repeated > 0)
+    }
+
+    /// What is in doubt of the motion that drives prescribe, up to now. The ideal mechanism itself cannot pass a limit.
+    fn drive_doubt(&self) -> Option<String> {
+        let follows = !self.scene.drives.is_empty();
+        let may_pass = follows || !(self.scene.motions.is_empty() || is_ideal(&self.scene));
+        let is_asked = may_pass && !self.is_trial_run && !self.ended_at_limit;
+        let course = is_asked.then(|| self.drive_course());
+        course.and_then(|course| course.doubt(self.state.t))
     }
 
     /// Joints that are open at the start.
@@ -289,7 +309,8 @@ impl Simulation {
         Inspection {
             unknowns: shape.unknowns,
             multipliers: shape.multipliers,
-            freedoms: (shape.unknowns + redundant.len())
+            freedoms: self.freedoms(),
+            independent: (shape.unknowns + redundant.len())
                 .saturating_sub(self.model.states.len() + shape.multipliers),
             contacts: shape.contacts,
             effects: self
@@ -437,6 +458,7 @@ impl Simulation {
             closing: self
                 .closing
                 .report(&self.model, &self.impacts, self.state.t),
+            drive_doubt: self.drive_doubt(),
             scene_notes: self.scene_notes(),
         }
     }

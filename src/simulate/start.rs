@@ -144,6 +144,7 @@ impl Simulation {
             error: None,
             ended_at_limit: false,
             freedoms: OnceLock::new(),
+            course: OnceLock::new(),
             model,
             scene: scene.clone(),
         })

@@ -54,7 +54,7 @@ impl Report {
         warnings
     }
 
-    /// Where a law or a theory does not hold, or does not do what its name says.
+    /// Where a drive, a law or a theory does not hold, or does not do what its name says.
     fn validity_warnings(&self) -> Vec<String> {
         let overrun = self.overrun.iter().map(|(joint, overrun)| {
             format!(
@@ -86,6 +86,7 @@ impl Report {
         });
         let implausible = self.implausible.iter().cloned();
         implausible
+            .chain(self.drive_doubt.clone())
             .chain(overrun)
             .chain(strained)
             .chain(creep)

@@ -64,12 +64,24 @@ pub fn inspect(arguments: &Arguments) -> Result<(), CommandFailure> {
 fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection, all: bool) -> String {
     let mut out = format!("{}\n\n", scene.title);
     let duration = scene.simulation.duration;
+    let mobility = match inspection.freedoms {
+        Some(freedoms) => freedoms.to_string(),
+        None => {
+            "not counted: the start is singular, or does not fit the ideal mechanism".to_owned()
+        }
+    };
     for (name, value) in [
         ("bodies", scene.bodies.len().to_string()),
         ("joints", scene.joints.len().to_string()),
-        ("unknown coordinates", inspection.unknowns.to_string()),
+        ("mobility", mobility),
+        (
+            "unknown coordinates",
+            format!(
+                "{}, of which {} are independent",
+                inspection.unknowns, inspection.independent
+            ),
+        ),
         ("multipliers", inspection.multipliers.to_string()),
-        ("degrees of freedom", inspection.freedoms.to_string()),
         ("contacts", inspection.contacts.to_string()),
         ("effects", inspection.effects.join(", ")),
         (

@@ -190,15 +190,17 @@ fn check(arguments: &SceneArguments) -> Result<(), CommandFailure> {
     let (scene, simulation) = arguments.load()?;
     let notes = simulation.scene_notes();
     notes.iter().for_each(|note| remark(note));
-    match simulation.drive_course() {
+    let course = simulation.drive_course();
+    match course {
         DriveCourse::Limited(limit) if limit.is_exact() => return Err(limit.fault(&scene).into()),
-        DriveCourse::Limited(limit) => progress::warn(&limit.to_string()),
         DriveCourse::Cut(t) => progress::warn(&format!(
             "the drives are followed up to t = {} s only: whether they meet a limit later was not checked",
-            numbers::number(t, 6)
+            numbers::number(*t, 6)
         )),
-        DriveCourse::Undetermined | DriveCourse::Complete => {}
+        _ => {}
     }
+    let doubt = course.doubt(scene.simulation.duration);
+    doubt.iter().for_each(|told| progress::warn(told));
     let implausible = simulation.implausible();
     implausible.iter().for_each(|told| progress::warn(told));
     let freedoms = Freedoms::of(&scene).map_or(String::new(), |found| format!("; {found}"));

@@ -541,7 +541,10 @@ fn check_and_inspect() {
     let output = looselink(&["inspect", SCENE, "--set", friction]);
     expect(&output, 0, "");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(text.contains("unknown coordinates   3\n"), "{text}");
+    assert!(
+        text.contains("unknown coordinates   3, of which 3 are independent\n"),
+        "{text}"
+    );
     assert!(text.contains("0.9132"), "{text}");
     assert!(text.contains("stiffness K = "), "{text}");
     let contact = "/m^1.5 (that of a sphere in a spherical cup, without the length of the pin), friction 0.1 with v0 = 0.0001 m/s, \
@@ -569,6 +572,7 @@ fn check_and_inspect() {
         (json["unknowns"].as_u64(), json["contacts"].as_u64()),
         (Some(3), Some(1))
     );
+    assert_eq!(json["freedoms"]["left"].as_u64(), Some(1));
 }
 
 /// Every scene of the project on one screen, and all of it with `--all`.
@@ -595,7 +599,8 @@ fn an_inspection_fits_on_a_screen() {
     }
     let text = shown("scenes/3rrr/case4.toml", &[]);
     for line in [
-        "  degrees of freedom    27\n",
+        "  mobility              3 degrees of freedom, all of them driven\n",
+        "  unknown coordinates   27, of which 27 are independent\n",
         "  B1, B2, B3, C1, C2, C3 clearance 2e-5 m",
         "  B1, B2, B3, C1, C2, C3: lankarani_nikravesh with a restitution of 0.9 gives 0.9132",
         " more: --all\n",
