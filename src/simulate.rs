@@ -1,5 +1,6 @@
 //! The loop: step, locate contact onset and loss, commit memory, record.
 
+mod arc;
 mod change;
 mod checkpoint;
 mod choice;
@@ -7,6 +8,7 @@ mod closing;
 mod closures;
 mod control;
 mod creep;
+mod critical;
 mod cubic;
 mod energy;
 mod equilibrium;
@@ -42,12 +44,13 @@ use closures::Closures;
 pub use control::AccuracyReport;
 pub use creep::Creep;
 use creep::CreepWatch;
+pub use critical::{CriticalKind, CriticalPoint};
 pub use energy::EnergyError;
 pub use equilibrium::{FoundRest, Stability};
 pub use failure::RunError;
 use impacts::Impacts;
 pub use impacts::{Impact, Overrun};
-pub use load_path::{CriticalKind, CriticalPoint};
+use load_path::Heading;
 pub use meter::Integration;
 use meter::Meter;
 pub use observer::{ContactEnd, ContactEvent, Control, Notice, Observer, Onset, Progress};
@@ -162,6 +165,8 @@ pub struct Simulation {
     rest: Option<FoundRest>,
     /// The joints whose reactions in a static analysis are one of many, once a row was recorded.
     indeterminate: Vec<usize>,
+    /// How the load path goes on from the last stable equilibrium.
+    heading: Option<Heading>,
     /// Where the load path could not go on or branched.
     critical_points: Vec<CriticalPoint>,
     status: Status,

@@ -123,20 +123,36 @@ const COLUMNS: [(&str, f64); 3] = [
 ];
 
 fn column(ends: &str, width: f64, elements: usize, load: f64) -> String {
+    column_in(0.0, 17, ends, width, elements, load)
+}
+
+/// The column in a direction that is typed with so many digits.
+fn column_in(
+    direction: f64,
+    digits: usize,
+    ends: &str,
+    width: f64,
+    elements: usize,
+    load: f64,
+) -> String {
+    let [x, y] = unit(direction, digits);
+    let angle = typed(direction, digits);
     let guide = |rotation: &str| {
         format!(
-            "joints.guide = {{ type = \"prismatic\", guide = \"ground.O\", direction = [1.0, 0.0], slider = \"column.end\", rotation = \"{rotation}\" }}\n"
+            "joints.guide = {{ type = \"prismatic\", guide = \"ground.O\", direction = [{x:?}, {y:?}], slider = \"column.end\", rotation = {rotation} }}\n"
         )
     };
     let held = match ends {
-        "clamped-free" => weld("foot", "ground.O", "column.start", 0.0),
-        "pinned" => "joints.foot = { type = \"revolute\", bearing = \"ground.O\", journal = \"column.start\", model = \"ideal\" }\n".to_owned() + &guide("free"),
-        _ => weld("foot", "ground.O", "column.start", 0.0) + &guide("locked"),
+        "clamped-free" => weld("foot", "ground.O", "column.start", angle),
+        "pinned" => "joints.foot = { type = \"revolute\", bearing = \"ground.O\", journal = \"column.start\", model = \"ideal\" }\n".to_owned() + &guide("\"free\""),
+        _ => weld("foot", "ground.O", "column.start", angle) + &guide(&format!("\"locked\", angle = {angle:?}")),
     };
     let parts = link("column", 1.0, elements)
         + &held
-        + &force("load", "column.end", [-load, 0.0])
-        + "initial.bodies.column = { x = 0.5, y = 0.0, theta = 0.0 }\n";
+        + &force("load", "column.end", [-load * x, -load * y])
+        + &format!(
+            "initial.bodies.column = {{ point = \"start\", x = 0.0, y = 0.0, theta = {angle:?} }}\n"
+        );
     statics("points.O = [0.0, 0.0]", width, &parts)
 }
 
@@ -284,4 +300,218 @@ fn a_frame_sways_and_arches_snap_or_sway_at_the_loads_of_shooting() {
     Rung::Computed
         .asks("Frame and shallow arches: loads at which they sway or snap through, against shooting for the same energy, relative error")
         .within(&worst, 1e-5, "16 cubic elements a member leave 4e-6");
+}
+
+/// Directions of a structure: upright, along the axes, and six that have no short digits.
+const DIRECTIONS: [f64; 9] = [
+    0.0,
+    FRAC_PI_2,
+    PI,
+    0.318_309_886,
+    0.915_965_594,
+    1.202_056_903,
+    2.226_244_147,
+    -0.693_147_181,
+    -2.665_144_143,
+];
+
+/// A number as a user types it, with so many digits.
+fn typed(x: f64, digits: usize) -> f64 {
+    format!("{x:.*e}", digits - 1).parse().unwrap()
+}
+
+/// A unit vector, typed.
+fn unit(angle: f64, digits: usize) -> [f64; 2] {
+    [angle.cos(), angle.sin()].map(|x| typed(x, digits))
+}
+
+/// The bar on a torsion spring below: half its weight times its length, and the stiffness of the spring.
+const TOPPLING: f64 = 0.165_543_75;
+const SPRING: f64 = 0.1;
+
+/// A bar on a torsion spring, in a direction, under a weight that points against it, but for an angle.
+fn bar_on_a_spring(direction: f64, digits: usize, off: f64, step: f64) -> String {
+    let [x, y] = unit(direction + off, digits).map(|x| -9.81 * x);
+    let angle = typed(direction, digits);
+    format!(
+        r#"
+format = 1
+title = "a bar on a torsion spring"
+simulation = {{ analysis = "static", duration = 1.0, gravity = [{x:?}, {y:?}] }}
+integrator = {{ step = {step:?} }}
+output = {{ interval = 0.1, channels = ["*"] }}
+materials.al = {{ density = 2700.0, youngs_modulus = 70e9, poissons_ratio = 0.33 }}
+sections.bar = {{ width = 0.02, height = 0.01 }}
+bodies.ground = {{ type = "ground", points.O = [0.0, 0.0] }}
+bodies.arm = {{ type = "link", model = "rigid", length = 0.25, section = "bar", material = "al" }}
+joints.O = {{ type = "revolute", bearing = "ground.O", journal = "arm.start", model = "ideal" }}
+forces.coil = {{ type = "torsion_spring", joint = "O", stiffness = {SPRING:?}, damping = 0.0, rest_angle = {angle:?} }}
+initial.bodies.arm = {{ point = "start", x = 0.0, y = 0.0, theta = {angle:?} }}
+"#
+    )
+}
+
+/// As many digits as a number has, and two shorter ways to write it.
+const DIGITS: [usize; 3] = [17, 8, 7];
+
+#[test]
+fn a_bar_buckles_alike_in_all_directions() {
+    let [exact, rounded] = [Worst::new(), Worst::new()];
+    for direction in DIRECTIONS {
+        for digits in DIGITS {
+            for step in [0.1, 1e-2, 1e-3] {
+                let text = bar_on_a_spring(direction, digits, 0.0, step);
+                let case = format!("direction {direction}, {digits} digits, step {step}");
+                let (point, _) = first_critical(&text, 1.0);
+                assert_eq!(point.kind, CriticalKind::Bifurcation, "{case}");
+                assert_eq!(point.moves_most, "arm.theta", "{case}");
+                let worst = if digits == 17 { &exact } else { &rounded };
+                worst.at(&case);
+                worst.see(point.t * TOPPLING / SPRING - 1.0);
+                // followed, the bar stands up to the full load
+                let (ended, recording, report) = run(&text, &["simulation.at_limit=follow"]);
+                ended.unwrap_or_else(|e| panic!("{case}: {e}"));
+                assert_eq!(report.critical_points, [point], "{case}");
+                assert_eq!(report.rest.unwrap().stability(), Stability::Unstable);
+                let t = recording.get("t").unwrap();
+                assert!(t.windows(2).all(|t| t[0] < t[1]), "{case}: {t:?}");
+                assert_eq!(t.last(), Some(&1.0), "{case}");
+                let theta = recording.get("arm.theta").unwrap();
+                assert!(
+                    theta.iter().all(|x| (x - direction).abs() < 1e-4),
+                    "{case}: {theta:?}"
+                );
+            }
+        }
+    }
+    Rung::ClosedForms
+        .asks("A bar on a torsion spring in nine directions, with steps of 0.1 to 0.001: critical load, relative error")
+        .within(&exact, 1e-13, "rounding of the weight and of the direction");
+    Rung::ClosedForms
+        .asks("The same, its directions typed to 8 and 7 digits: critical load, relative error")
+        .within(
+            &rounded,
+            1e-6,
+            "the digits of the weight; Koiter's law would give the power 2/3 of it, 1e-4",
+        );
+}
+
+/// k x = t W sin(x + e) has no bifurcation for e = 0.001: the bar leans more and more.
+#[test]
+fn a_bar_that_leans_bends_without_a_critical_point() {
+    let worst = Worst::new();
+    for direction in DIRECTIONS {
+        for step in [0.1, 1e-2, 1e-3] {
+            for at_limit in ["stop", "follow"] {
+                let off = 1e-3;
+                let text = bar_on_a_spring(direction, 17, off, step);
+                let overrides = [format!("simulation.at_limit={at_limit}")];
+                let (ended, recording, report) = run(&text, &[&overrides[0]]);
+                ended.unwrap_or_else(|e| panic!("{direction} {step}: {e}"));
+                assert_eq!(report.critical_points, [], "{direction} {step}");
+                assert_eq!(report.rest.unwrap().stability(), Stability::Stable);
+                let theta = recording.get("arm.theta").unwrap();
+                let lean = theta.last().unwrap() - direction;
+                worst.at(format!("direction {direction}, step {step}"));
+                worst.see(SPRING * lean / (TOPPLING * (lean - off).sin()) - 1.0);
+                assert!(lean < -1.0, "{lean}");
+            }
+        }
+    }
+    Rung::ClosedForms
+        .asks("A bar that leans by 0.001 on a torsion spring: balance of torques beyond the load at which a perfect one buckles")
+        .within(&worst, 1e-12, "rounding");
+}
+
+#[test]
+fn columns_buckle_alike_in_all_directions() {
+    let worst = Worst::new();
+    for (ends, beta) in COLUMNS {
+        for width in [0.1, 0.01] {
+            let load = 1.5 * critical_load(beta, width)[0];
+            let (_, along_x) = first_critical(&column(ends, width, 8, load), load);
+            // a guide must meet the column to more digits
+            let digits = match ends {
+                "clamped-free" => &DIGITS[..],
+                _ => &DIGITS[..1],
+            };
+            for direction in DIRECTIONS {
+                for &digits in digits {
+                    let text = column_in(direction, digits, ends, width, 8, load);
+                    let (point, critical) = first_critical(&text, load);
+                    let case =
+                        format!("{ends}, width {width}, direction {direction}, {digits} digits");
+                    assert_eq!(point.kind, CriticalKind::Bifurcation, "{case}");
+                    worst.at(&case);
+                    worst.see(critical / along_x - 1.0);
+                }
+            }
+        }
+    }
+    Rung::Routes
+        .asks("Columns in nine directions, typed to 17, 8 and 7 digits: critical load against that of the column along x, relative difference")
+        .within(&worst, 1e-6, "the digits of the load");
+}
+
+/// The horizontal part of a load that leans makes the arch imperfect: it sways in the way that it leans, and its load has a limit.
+#[test]
+fn an_arch_under_a_load_that_hardly_leans_is_perfect() {
+    let load = 1.5 * 182.115_795_592;
+    let limit = |lean: f64| {
+        let upright = format!("x = 0.0, y = {:?}", -load);
+        let leaning = format!("x = {:?}, y = {:?}", load * lean.sin(), -load * lean.cos());
+        let text = arch(0.03, 16, load).replace(&upright, &leaning);
+        first_critical(&text, load)
+    };
+    let (_, perfect) = limit(0.0);
+    let slight = Worst::new();
+    for lean in [1e-12, 1e-9, 1e-6, 1e-5] {
+        let (point, critical) = limit(lean);
+        assert_eq!(point.kind, CriticalKind::Bifurcation, "{lean}");
+        slight.at(format!("lean {lean}"));
+        slight.see(critical / perfect - 1.0);
+    }
+    Rung::Routes
+        .asks("Arch of 0.03 m under a load that leans by 1e-12 to 1e-5: load at which it sways, against the upright load, relative difference")
+        .within(&slight, 1e-9, "rounding of the eigenvalue of stiff elements");
+    let (point, critical) = limit(0.03);
+    assert_eq!(point.kind, CriticalKind::Limit);
+    let fall = 1.0 - critical / perfect;
+    assert!((5e-4..2e-3).contains(&fall), "{fall}");
+}
+
+/// A truss that is pressed by a tenth of its limit load at any t snaps at t = 0.9, and hangs on at the reversed full load: its lower limit
+/// is at t = -1.1.
+#[test]
+fn a_path_that_leads_to_the_reversed_load_ends_there() {
+    let (stiffness, rest) = (1e4_f64, 1.0_f64.hypot(0.3));
+    let length = rest.cbrt();
+    let limit = 2.0 * stiffness * (length * length - 1.0).sqrt() * (rest / length - 1.0);
+    let spring = |name: &str, from: &str| {
+        format!(
+            "forces.{name} = {{ type = \"spring_damper\", from = \"ground.{from}\", to = \"apex.center\", stiffness = {stiffness:?}, damping = 0.0, rest_length = {rest:?} }}\n"
+        )
+    };
+    let parts = "bodies.apex = { type = \"point_mass\", mass = 1.0 }\n".to_owned()
+        + &spring("left", "A")
+        + &spring("right", "B")
+        + &force("load", "apex.center", [0.0, -limit])
+        + &format!(
+            "forces.dead = {{ type = \"force\", point = \"apex.center\", x = 0.0, y = \"{}\", frame = \"ground\" }}\n",
+            -0.1 * limit
+        )
+        + "initial.bodies.apex = { x = 0.0, y = 0.3 }\n";
+    let text = statics(
+        "points.A = [-1.0, 0.0], points.B = [1.0, 0.0]",
+        0.01,
+        &parts,
+    );
+    let (ended, recording, report) = run(&text, &["simulation.at_limit=follow"]);
+    let message = ended.unwrap_err().to_string();
+    assert!(message.contains("reversed load"), "{message}");
+    assert_eq!(report.critical_points.len(), 1);
+    assert!((report.critical_points[0].t - 0.9).abs() < 1e-9);
+    let t = recording.get("t").unwrap();
+    assert_eq!(t.last(), Some(&-1.0));
+    assert!(t.iter().all(|t| t.abs() <= 1.0), "{t:?}");
 }

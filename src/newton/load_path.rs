@@ -16,9 +16,9 @@ use super::{Extent, Failure, Newton, Update, iterate};
 use crate::system::{Equilibrium, State, Work};
 
 /// Largest number of iterations of a point; one that stays on its path needs fewer.
-const MAX_ITERATIONS: usize = 20;
+pub(super) const MAX_ITERATIONS: usize = 20;
 /// Loads are differenced over this part of the duration; those that grow in proportion to t have no error of truncation.
-const DIFFERENCE: f64 = 1e-4;
+pub(super) const DIFFERENCE: f64 = 1e-4;
 
 /// Sets the known coordinates and the loads of a state at its t.
 pub type SetLoad<'a, E> = &'a dyn Fn(&mut State, &mut Work) -> Result<(), E>;
@@ -26,8 +26,10 @@ pub type SetLoad<'a, E> = &'a dyn Fn(&mut State, &mut Work) -> Result<(), E>;
 /// A direction of the path.
 #[derive(Debug, Clone)]
 pub struct PathTangent {
-    /// Change of the unknown coordinates, then of the multipliers, per arc length.
+    /// Change of the unknown coordinates, then of the multipliers, per arc length, ...
     unknowns: Vec<f64>,
+    /// ... and how many coordinates these are.
+    coordinates: usize,
     /// Change of t per arc length, as part of the duration.
     pub load: f64,
 }
@@ -51,23 +53,49 @@ impl ArcMetric<'_> {
         parts.sum::<f64>() / self.extent.size.powi(2)
     }
 
+    /// The length of a change of coordinates and of t, as part of the duration.
+    fn length(&self, change: &[f64], load: f64) -> f64 {
+        (self.product(change, change) + load * load).sqrt()
+    }
+
     /// The distance of a state from a base point along a tangent.
     pub fn distance(&self, tangent: &PathTangent, base: &State, at: &State) -> f64 {
         let from_base: Vec<f64> = at.q.iter().zip(&base.q).map(|(a, b)| a - b).collect();
         let load = (at.t - base.t) / self.duration;
-        self.product(&tangent.unknowns, &from_base) + tangent.load * load
+        self.product(tangent.way(), &from_base) + tangent.load * load
     }
 
     /// The cosine of the angle between two tangents.
     pub fn cosine(&self, a: &PathTangent, b: &PathTangent) -> f64 {
-        self.product(&a.unknowns, &b.unknowns) + a.load * b.load
+        self.product(a.way(), b.way()) + a.load * b.load
     }
 }
 
 impl PathTangent {
+    /// Along some changes of unknowns and multipliers and of t, as part of the duration.
+    pub(super) fn normalised(
+        metric: ArcMetric,
+        coordinates: usize,
+        mut unknowns: Vec<f64>,
+        load: f64,
+    ) -> PathTangent {
+        let length = metric.length(&unknowns[..coordinates], load);
+        unknowns.iter_mut().for_each(|x| *x /= length);
+        PathTangent {
+            unknowns,
+            coordinates,
+            load: load / length,
+        }
+    }
+
+    /// The part of the coordinates.
+    fn way(&self) -> &[f64] {
+        &self.unknowns[..self.coordinates]
+    }
+
     /// The unknown that moves a point farthest.
     pub fn moves_most(&self, extent: Extent) -> usize {
-        extent.farthest(self.unknowns.iter().copied()).0
+        extent.farthest(self.way().iter().copied()).0
     }
 
     /// The other way.
@@ -93,15 +121,12 @@ impl Newton {
         let scale = self.renew_stiffness(system, s, 0.0, work)?;
         let slope = self.follow_load(system, metric, set_load, s, scale, work)?;
         let n = system.shape().unknowns;
-        let length = (metric.product(&slope[..n], &slope[..n]) + 1.0).sqrt();
-        Ok(PathTangent {
-            unknowns: slope.iter().map(|x| x / length).collect(),
-            load: 1.0 / length,
-        })
+        Ok(PathTangent::normalised(metric, n, slope, 1.0))
     }
 
     /// The point of the path at the distance `arc` from `base` along its tangent, in `to`. Where the first correction
-    /// is more than a quarter of the step along the tangent, the point may be on another path.
+    /// is more than a quarter of the step along the tangent, and the second more than a quarter of the first, the point may be on another
+    /// path.
     ///
     /// # Errors
     /// See [`Failure`].
@@ -118,7 +143,7 @@ impl Newton {
         to.copy_from(base);
         to.v.fill(0.0);
         to.a.fill(0.0);
-        let way = &tangent.unknowns[..n];
+        let way = tangent.way();
         let step: Vec<f64> = tangent.unknowns.iter().map(|x| arc * x).collect();
         move_by(to, &step);
         to.t += arc * tangent.load * metric.duration;
@@ -132,6 +157,7 @@ impl Newton {
             Failure::NotFinite { index: 0 }
         };
         let predicted = Update::largest(step[..n].iter().copied()).size;
+        let mut corrects = false;
         let ended = iterate(MAX_ITERATIONS, |iteration| {
             self.counters.newton_iterations += 1;
             let scale = self.renew_stiffness(system, to, 0.0, work)?;
@@ -149,11 +175,15 @@ impl Newton {
             set_load(to, work).map_err(&mut refuse)?;
             let update = Update::largest(change[..n].iter().copied());
             let size = largest_coordinate(to);
-            if iteration.number == 0 && update.size > CONTRACTION * predicted.max(ROUNDING * size) {
-                return Err(Failure::NoConvergence {
-                    index: update.index,
-                    update: update.size,
-                });
+            match iteration.number {
+                0 => corrects = update.size > CONTRACTION * predicted.max(ROUNDING * size),
+                1 if corrects && iteration.last * CONTRACTION < update.size => {
+                    return Err(Failure::NoConvergence {
+                        index: update.index,
+                        update: update.size,
+                    });
+                }
+                _ => {}
             }
             Ok((update, ending.is_reached(iteration, update, size)))
         });
@@ -166,7 +196,7 @@ impl Newton {
     }
 
     /// Change of unknowns and multipliers with t, over the duration, with the factors of the stiffness at hand.
-    fn follow_load<E: From<Failure>>(
+    pub(super) fn follow_load<E: From<Failure>>(
         &mut self,
         system: &dyn Equilibrium,
         metric: ArcMetric,

@@ -1,5 +1,6 @@
 //! Newton's method: stages, projections and equilibria, and the linear solves of the acceleration level.
 
+mod crossing;
 mod descent;
 mod factors;
 mod iteration;
@@ -12,6 +13,7 @@ mod stage;
 mod statics;
 mod tangent;
 
+pub use crossing::Crossing;
 pub use descent::Extent;
 pub(crate) use iteration::{Update, iterate};
 pub use load_path::{ArcMetric, PathTangent};

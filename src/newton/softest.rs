@@ -16,7 +16,7 @@ use nalgebra::DMatrix;
 
 /// The first w \[1/s2\]: a period of ten minutes is slower than mechanisms are. It makes the matrix regular where a mechanism moves
 /// without force; there, eigenvalues down to -1e6/s2 are seen beside it.
-const SLOWEST: f64 = 1e-4;
+pub(super) const SLOWEST: f64 = 1e-4;
 /// Vectors tried at most with one w; the smallest eigenvalue of a mechanism that bends stands apart from the others.
 const VECTORS: usize = 80;
 /// An eigenvalue is found where the residual is below this part of it.

@@ -13,7 +13,7 @@ use crate::system::{Equilibrium, State, Work};
 /// Largest number of Newton iterations of a load step; one that converges needs fewer.
 const MAX_ITERATIONS: usize = 40;
 /// An update below this part of the largest coordinate is followed by one more, whose error is the square of it.
-const LAST_UPDATE: f64 = 1e-8;
+pub(super) const LAST_UPDATE: f64 = 1e-8;
 /// An update below this part of the largest coordinate that no longer decreases is rounding.
 pub(super) const ROUNDING: f64 = 1e-12;
 

@@ -71,6 +71,7 @@ impl Simulation {
             course: _,
             // a static analysis has no checkpoints
             indeterminate: _,
+            heading: _,
             critical_points: _,
             status: _,
             error: _,

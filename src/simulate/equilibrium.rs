@@ -172,6 +172,14 @@ impl FoundRest {
         }
     }
 
+    /// The same of a state at which the eigenvalue is zero but for rounding.
+    pub(super) fn at_zero(self) -> FoundRest {
+        FoundRest {
+            smallest_eigenvalue: Some(0.0),
+            ..self
+        }
+    }
+
     /// What a user should know of an equilibrium that is not stable.
     pub(super) fn note(&self) -> Option<String> {
         let (moves, t) = (&self.moves_most, number(self.t, 7));

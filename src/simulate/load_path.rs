@@ -1,86 +1,32 @@
-//! Static runs: equilibria under loads that grow with t, and the points at which they lose stability.
+//! Static runs: equilibria under loads that grow with t, and the path on which they lose stability.
 
-use super::equilibrium::{FoundRest, Stability, come_to_rest, explain};
-use super::{
-    Control, GRID_ROUNDING, HALVINGS, Observer, Progress, RunError, Simulation, check_turns, scale,
-};
-use crate::model::Model;
-use crate::newton::{ArcMetric, Extent, Failure, PathTangent};
+use super::arc::{Arc, LEAST_COSINE, set_load};
+use super::critical::{Critical, CriticalKind};
+use super::equilibrium::{FoundRest, Stability, come_to_rest};
+use super::{Control, GRID_ROUNDING, HALVINGS, Observer, Progress, RunError, Simulation, scale};
+use crate::newton::{ArcMetric, Extent, PathTangent};
 use crate::stepper::StepError;
-use crate::system::{State, System, Work};
-use numbers::{number, share};
-use serde::Serialize;
-use std::fmt;
 
-/// The directions of a path at the two ends of a step differ by less than the angle of this cosine, 25 degrees: the step sees its turns.
-const LEAST_COSINE: f64 = 0.9;
-/// A critical point is located to this part of a step: at a limit point t has the square of this error.
-const LOCATED: f64 = 1e-10;
-/// Within this part of a step of a bifurcation Newton's method may find no point: the root of rounding.
-const NEAR: f64 = 1e-5;
-/// Evaluations of a location at most; bisection alone needs 34.
-const EVALUATIONS: usize = 60;
-/// The direction of the path is taken so far before a critical point, in parts of the step, ...
-const BEFORE: f64 = 1e-6;
-/// ... where the load of a limit point grows less than this part of the arc length. At a bifurcation it grows as on the way.
-const STANDS: f64 = 1e-4;
-/// Steps along the path between two rows at most.
+/// Steps along the path between two rows, or between two critical points, at most.
 const ARCS: usize = 10_000;
 
-/// What happens at a critical point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CriticalKind {
-    /// The load cannot grow.
-    Limit,
-    /// Another path of equilibria begins.
-    Bifurcation,
+/// How the path goes on from the last stable equilibrium.
+#[derive(Debug)]
+pub(super) struct Heading {
+    along: PathTangent,
+    /// True where the smallest eigenvalue has fallen in the last step, or the bifurcation is ahead for which it fell.
+    softens: bool,
 }
 
-/// An equilibrium without stiffness in one direction.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CriticalPoint {
-    /// What happens there.
-    pub kind: CriticalKind,
-    /// The measure of the load.
-    pub t: f64,
-    /// The same as part of the full load.
-    pub part: f64,
-    /// The unknown that moves most in the direction without stiffness.
-    pub moves_most: String,
+/// What a step along the path leads to.
+enum Walked {
+    /// An equilibrium, in the trial state, and the direction of the path there.
+    To(FoundRest, PathTangent),
+    Met(Box<Critical>),
 }
 
-impl fmt::Display for CriticalPoint {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let (load, t) = (share(self.part, "the full load"), number(self.t, 9));
-        let moves = &self.moves_most;
-        match self.kind {
-            CriticalKind::Limit => write!(
-                f,
-                "the load cannot grow beyond {load}: snap-through of {moves}, a limit point at t = {t}"
-            ),
-            CriticalKind::Bifurcation => write!(
-                f,
-                "the equilibrium is stable up to {load}: buckling of {moves}, a bifurcation at t = {t}"
-            ),
-        }
-    }
-}
-
-/// Sets the loads of a state, and what is prescribed, at its t.
-fn set_load(
-    model: &Model,
-    duration: f64,
-    at: &mut State,
-    work: &mut Work,
-) -> Result<(), StepError> {
-    at.weight = at.t / duration;
-    let from = at.clone();
-    model.prescribe(&from, at, work)?;
-    let known = model.shape().unknowns..;
-    at.v[known.clone()].fill(0.0);
-    at.a[known].fill(0.0);
-    Ok(())
+fn is_stable(found: &FoundRest) -> bool {
+    found.stability() == Stability::Stable
 }
 
 impl Simulation {
@@ -88,54 +34,109 @@ impl Simulation {
     pub(super) fn run_loads(&mut self, observer: &mut dyn Observer) -> Result<(), RunError> {
         let (interval, duration) = (self.scene.output.interval, self.scene.simulation.duration);
         let rows = (duration / interval + GRID_ROUNDING).floor() as u64;
-        self.load_to(0.0, observer)?;
-        self.record(observer)?;
-        for k in 1..=rows {
+        for k in 0..=rows {
             self.load_to((k as f64 * interval).min(duration), observer)?;
-            self.record(observer)?;
         }
-        self.load_to(duration, observer)
+        self.reach(duration, observer)
     }
 
-    /// Equilibria up to the loads at `target`.
+    /// Equilibria up to the loads at `target`, with a row there; nothing more once the path was followed to its end.
     pub(super) fn load_to(
         &mut self,
         target: f64,
         observer: &mut dyn Observer,
     ) -> Result<(), RunError> {
+        self.reach(target, observer)?;
+        match self.is_followed() {
+            true => Ok(()),
+            false => self.record(observer),
+        }
+    }
+
+    /// True where the path was followed beyond a critical point.
+    fn is_followed(&self) -> bool {
+        self.scene.simulation.follows_limits && !self.critical_points.is_empty()
+    }
+
+    /// Equilibria up to the loads at `target`, or to the end of the path beyond a critical point.
+    fn reach(&mut self, target: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
         let lengths = self.model.lengths();
         let metric = self.arc_metric(&lengths);
         if self.rest.is_none() {
             self.come_to_rest_at(self.state.t, observer)?;
         }
-        while self.state.t != target {
+        while self.state.t != target && !self.is_followed() {
             let left = target - self.state.t;
             // a remainder of the load factor below this is rounding
             let next = match left <= (1.0 + GRID_ROUNDING) * self.pacer.scale() {
                 true => target,
                 false => self.state.t + self.pacer.scale(),
             };
-            let is_stable = |rest: &FoundRest| rest.stability() == Stability::Stable;
-            match self.rest.as_ref().map(FoundRest::stability) {
-                Some(Stability::Stable) => {}
-                Some(Stability::Unstable) if self.scene.simulation.follows_limits => {
-                    self.follow_path(metric, next, observer)?;
-                    continue;
-                }
-                _ => {
-                    self.come_to_rest_at(next, observer)?;
-                    continue;
-                }
-            }
-            let near = self.state.clone();
-            match self.equilibrium_near(metric, &near, next) {
-                Ok(found) if is_stable(&found) => self.keep_equilibrium(found, observer)?,
-                _ => {
-                    self.counters.rejected += 1;
-                    self.follow_path(metric, next, observer)?;
-                }
+            match self.rest.as_ref().is_some_and(is_stable) {
+                true => self.step_load(metric, next, observer)?,
+                false => self.come_to_rest_at(next, observer)?,
             }
         }
+        Ok(())
+    }
+
+    /// The next stable equilibrium of the path; by arc length where it turns too fast for a step of the load.
+    fn step_load(
+        &mut self,
+        metric: ArcMetric,
+        next: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<(), RunError> {
+        let base = self.state.clone();
+        let Heading { along, softens } = match self.heading.take() {
+            Some(heading) => heading,
+            None => Heading {
+                along: self
+                    .path_tangent(metric, &base)
+                    .map_err(|error| self.no_equilibrium(error, base.t))?,
+                softens: false,
+            },
+        };
+        let growth = next - base.t;
+        let tried = self.equilibrium_near(metric, &base, next).ok();
+        let reached = self.trial.clone();
+        let tried = tried.filter(is_stable);
+        let tried =
+            tried.and_then(|found| Some((found, self.path_tangent(metric, &reached).ok()?)));
+        let Some((found, onward)) = tried else {
+            self.counters.rejected += 1;
+            let within = |critical: &Critical| critical.t() > base.t && critical.t() <= next;
+            if let Some(critical) = self.bifurcation_near(metric, &base).filter(within) {
+                return self.meet(metric, critical, observer);
+            }
+            let length = growth / (metric.duration * along.load);
+            let step = Arc {
+                base,
+                along,
+                length,
+            };
+            return self.follow_stable(metric, step, next, observer);
+        };
+        let before = self.rest.as_ref().and_then(|rest| rest.smallest_eigenvalue);
+        let mut falls = found.smallest_eigenvalue < before;
+        let turns = metric.cosine(&along, &onward) < LEAST_COSINE;
+        if turns || (softens && !falls) {
+            // the step passes a crossing of paths, or the path has begun to turn away from one
+            let critical = self.bifurcation_near(metric, &base);
+            match critical.filter(|critical| critical.t() > base.t - growth) {
+                Some(critical) if critical.t() <= next => {
+                    return self.meet(metric, critical, observer);
+                }
+                Some(_) => falls = true,
+                None => {}
+            }
+            self.trial.copy_from(&reached);
+        }
+        self.keep_equilibrium(found, observer)?;
+        self.heading = Some(Heading {
+            along: onward,
+            softens: falls,
+        });
         Ok(())
     }
 
@@ -182,246 +183,162 @@ impl Simulation {
         }
     }
 
-    /// Follows the path of equilibria by its arc length up to `target`, through or to the points at which it loses stability.
-    fn follow_path(
+    /// Follows stable equilibria by the arc length of their path up to `target`, or to the point at which they lose stability.
+    fn follow_stable(
         &mut self,
         metric: ArcMetric,
+        mut step: Arc,
         target: f64,
         observer: &mut dyn Observer,
     ) -> Result<(), RunError> {
-        let duration = metric.duration;
-        let tangent = self.path_tangent(metric, &self.state.clone());
-        let mut along = tangent.map_err(|error| self.no_equilibrium(error, self.state.t))?;
-        let mut arc = (target - self.state.t) / (duration * along.load);
-        let smallest = arc * 2.0_f64.powi(-HALVINGS);
+        let smallest = step.length * 2.0_f64.powi(-HALVINGS);
+        // the step of the load that failed has searched
+        let mut searches = false;
         for _ in 0..ARCS {
-            let (base, was) = (self.state.clone(), self.rest.clone());
-            let was_unstable = was.is_some_and(|rest| rest.stability() == Stability::Unstable);
-            if was_unstable {
-                // what is followed beyond a limit is shown
-                arc = arc.min(self.scene.output.interval / duration);
-            }
-            let (found, next) = match self.path_step(metric, &base, &along, arc) {
-                Ok(step) => step,
+            let (found, next) = match self.walk(metric, &mut step, Some(true), searches) {
+                Ok(Walked::To(found, next)) => (found, next),
+                Ok(Walked::Met(critical)) => return self.meet(metric, *critical, observer),
                 Err(error) => {
-                    self.counters.rejected += 1;
-                    arc *= 0.5;
-                    if arc < smallest {
-                        return Err(self.no_equilibrium(error, base.t));
-                    }
+                    self.shorten(&mut step, smallest, error)?;
+                    searches = false;
                     continue;
                 }
             };
-            if (found.stability() == Stability::Unstable) != was_unstable {
-                let found = self.locate_critical(metric, &base, &along, arc)?;
-                let point = self.critical_point(metric, &base, &along, &found);
-                self.critical_points.push(point.clone());
-                if !self.scene.simulation.follows_limits {
-                    self.keep_equilibrium(found, observer)?;
-                    self.record(observer)?;
-                    return Err(RunError::Limit(point));
-                }
-                // beyond the point, where the stiffness is regular again
-                let (found, next) = self
-                    .path_step(metric, &base, &along, arc)
-                    .map_err(|error| self.no_equilibrium(error, base.t))?;
-                self.keep_equilibrium(found, observer)?;
-                self.record(observer)?;
-                along = next;
-                continue;
-            }
-            if self.trial.t >= target && base.t < target {
+            if self.trial.t >= target {
                 let near = self.trial.clone();
-                if let Ok(found) = self.equilibrium_near(metric, &near, target) {
-                    return self.keep_equilibrium(found, observer);
+                match self.equilibrium_near(metric, &near, target) {
+                    Ok(found) if is_stable(&found) => {
+                        return self.keep_equilibrium(found, observer);
+                    }
+                    Ok(_) => step.length *= 0.5,
+                    Err(error) => self.shorten(&mut step, smallest, error)?,
                 }
-                arc *= 0.5;
                 continue;
             }
             self.keep_equilibrium(found, observer)?;
-            if was_unstable {
-                self.record(observer)?;
-            }
-            along = next;
-            arc *= 2.0;
+            step = step.onward(&self.state, next, f64::INFINITY);
+            searches = true;
         }
-        let message = "the path of equilibria has no end".to_owned();
-        Err(RunError::Equilibrium {
-            name: self
-                .rest
-                .as_ref()
-                .map_or_else(String::new, |r| r.moves_most.clone()),
-            cause: message,
-            t: self.state.t,
+        Err(self.endless())
+    }
+
+    /// The path meets a critical point: the run ends there, or follows the path through it to its end.
+    fn meet(
+        &mut self,
+        metric: ArcMetric,
+        mut critical: Critical,
+        observer: &mut dyn Observer,
+    ) -> Result<(), RunError> {
+        loop {
+            let point = critical.point(metric.duration);
+            self.critical_points.push(point.clone());
+            self.trial.copy_from(&critical.state);
+            self.keep_equilibrium(critical.found, observer)?;
+            self.record(observer)?;
+            if !self.scene.simulation.follows_limits {
+                return Err(RunError::Limit(point));
+            }
+            match self.follow(metric, critical.kind, critical.onward, observer)? {
+                Some(next) => critical = next,
+                None => return Ok(()),
+            }
+        }
+    }
+
+    /// Follows the path from a critical point, a row a step, to the next one or to the full load.
+    fn follow(
+        &mut self,
+        metric: ArcMetric,
+        from: CriticalKind,
+        mut step: Arc,
+        observer: &mut dyn Observer,
+    ) -> Result<Option<Critical>, RunError> {
+        let longest = self.scene.output.interval / metric.duration;
+        let smallest = longest * 2.0_f64.powi(-HALVINGS);
+        // whether the equilibria beyond the critical point are stable, once a step has left it
+        let mut side = None;
+        let mut searches = false;
+        for _ in 0..ARCS {
+            let (found, next) = match self.walk(metric, &mut step, side, searches) {
+                Ok(Walked::To(found, next)) => (found, next),
+                Ok(Walked::Met(critical)) => return Ok(Some(*critical)),
+                // an imperfection bends the paths near their crossing, which a longer step leaves behind
+                Err(_)
+                    if side.is_none() && from == CriticalKind::Bifurcation && step.length < 1.0 =>
+                {
+                    self.counters.rejected += 1;
+                    step.length *= 2.0;
+                    continue;
+                }
+                Err(error) => {
+                    self.shorten(&mut step, smallest, error)?;
+                    searches = false;
+                    continue;
+                }
+            };
+            side = Some(is_stable(&found));
+            self.keep_equilibrium(found, observer)?;
+            self.record(observer)?;
+            if self.state.t == metric.duration {
+                return Ok(None);
+            }
+            if self.state.t == -metric.duration {
+                let cause =
+                    "the path of equilibria leads to the reversed load instead of the full one";
+                return Err(self.ends_elsewhere(cause));
+            }
+            step = step.onward(&self.state, next, longest);
+            searches = true;
+        }
+        Err(self.endless())
+    }
+
+    /// A step along the path, at most to the full load or its reverse, or the critical point at which equilibria would change their
+    /// side. Where the step fails, a bifurcation within it is searched for if asked to.
+    fn walk(
+        &mut self,
+        metric: ArcMetric,
+        step: &mut Arc,
+        side: Option<bool>,
+        searches: bool,
+    ) -> Result<Walked, StepError> {
+        let walked = self.path_step_to_end(metric, step);
+        let walked = walked.and_then(|(found, next)| {
+            match side.is_some_and(|side| side != is_stable(&found)) {
+                true => self
+                    .critical_within(metric, step)
+                    .map(|critical| Walked::Met(Box::new(critical))),
+                false => Ok(Walked::To(found, next)),
+            }
+        });
+        walked.or_else(|error| {
+            let search = || self.bifurcation_within(metric, step, &step.base);
+            let critical = searches.then(search).flatten();
+            let met = |critical| Walked::Met(Box::new(critical));
+            critical.map(met).ok_or(error)
         })
     }
 
-    /// A step along the path into the trial state: what it is, and the direction there.
-    fn path_step(
-        &mut self,
-        metric: ArcMetric,
-        base: &State,
-        along: &PathTangent,
-        arc: f64,
-    ) -> Result<(FoundRest, PathTangent), StepError> {
-        self.path_point(metric, base, along, arc)?;
-        check_turns(&self.model, base, &self.trial)?;
-        let reached = self.trial.clone();
-        let mut next = self.path_tangent(metric, &reached)?;
-        let mut cosine = metric.cosine(along, &next);
-        if cosine < 0.0 {
-            next.reverse();
-            cosine = -cosine;
-        }
-        if cosine < LEAST_COSINE {
-            let index = next.moves_most(metric.extent);
-            return Err(Failure::NoConvergence { index, update: arc }.into());
-        }
-        let found = self.stability_of_trial(metric)?;
-        Ok((found, next))
-    }
-
-    /// What arcs are measured by; `lengths` are those of the model.
-    fn arc_metric<'a>(&self, lengths: &'a [f64]) -> ArcMetric<'a> {
-        ArcMetric {
-            extent: Extent {
-                lengths,
-                size: scale::size(&self.scene, &self.model, &self.start),
-            },
-            duration: self.scene.simulation.duration,
+    /// Halves a step that failed.
+    fn shorten(&mut self, step: &mut Arc, smallest: f64, error: StepError) -> Result<(), RunError> {
+        self.counters.rejected += 1;
+        step.length *= 0.5;
+        match step.length < smallest {
+            true => Err(self.no_equilibrium(error, step.base.t)),
+            false => Ok(()),
         }
     }
 
-    /// The point of the path at a distance, in the trial state.
-    fn path_point(
-        &mut self,
-        metric: ArcMetric,
-        base: &State,
-        along: &PathTangent,
-        arc: f64,
-    ) -> Result<(), StepError> {
-        let (model, work) = (&*self.model, &mut self.work);
-        let load = |at: &mut State, work: &mut Work| set_load(model, metric.duration, at, work);
-        let (point, trial) = ((base, along, arc), &mut self.trial);
-        self.newton
-            .path_point(model, metric, &load, point, trial, work)
+    fn endless(&self) -> RunError {
+        self.ends_elsewhere("the path of equilibria has no end")
     }
 
-    fn path_tangent(&mut self, metric: ArcMetric, at: &State) -> Result<PathTangent, StepError> {
-        let (model, work) = (&*self.model, &mut self.work);
-        let load = |at: &mut State, work: &mut Work| set_load(model, metric.duration, at, work);
-        self.newton.path_tangent(model, metric, &load, at, work)
-    }
-
-    fn stability_of_trial(&mut self, metric: ArcMetric) -> Result<FoundRest, StepError> {
-        let (newton, work) = (&mut self.newton, &mut self.work);
-        Ok(FoundRest::of(
-            &self.model,
-            newton,
-            metric.extent,
-            &self.trial,
-            work,
-        )?)
-    }
-
-    /// The point at which the smallest eigenvalue changes its sign within a step, in the trial state: regula falsi with the weights
-    /// of the Illinois method.
-    fn locate_critical(
-        &mut self,
-        metric: ArcMetric,
-        base: &State,
-        along: &PathTangent,
-        arc: f64,
-    ) -> Result<FoundRest, RunError> {
-        let value = |found: &FoundRest| found.smallest_eigenvalue.unwrap_or(0.0);
-        let first = self.rest.as_ref().map_or(0.0, value);
-        let last = self.stability_of_trial(metric).map(|found| value(&found));
-        let last = last.map_err(|error| self.no_equilibrium(error, base.t))?;
-        let (mut a, mut b) = ((0.0, first), (arc, last));
-        for _ in 0..EVALUATIONS {
-            let middle = b.0 - b.1 * (b.0 - a.0) / (b.1 - a.1);
-            let last = self.trial.clone();
-            let evaluated = self.path_point(metric, base, along, middle);
-            let found = match evaluated.and_then(|()| self.stability_of_trial(metric)) {
-                Ok(found) => found,
-                // so near that rounding decides how far the mechanism moves in the direction without stiffness
-                Err(_) if (middle - b.0).abs() <= NEAR * arc => {
-                    self.trial.copy_from(&last);
-                    break;
-                }
-                Err(error) => return Err(self.no_equilibrium(error, base.t)),
-            };
-            let here = value(&found);
-            if here == 0.0
-                || (b.0 - a.0).abs() <= LOCATED * arc
-                || (middle - b.0).abs() <= LOCATED * arc
-            {
-                return Ok(found);
-            }
-            match here * b.1 < 0.0 {
-                true => a = b,
-                false => a.1 *= 0.5,
-            }
-            b = (middle, here);
+    fn ends_elsewhere(&self, cause: &str) -> RunError {
+        let name = self.rest.as_ref().map(|rest| rest.moves_most.clone());
+        RunError::Equilibrium {
+            name: name.unwrap_or_default(),
+            cause: cause.to_owned(),
+            t: self.state.t,
         }
-        self.stability_of_trial(metric)
-            .map_err(|error| self.no_equilibrium(error, base.t))
-    }
-
-    /// What the critical point in the trial state is.
-    fn critical_point(
-        &mut self,
-        metric: ArcMetric,
-        base: &State,
-        along: &PathTangent,
-        found: &FoundRest,
-    ) -> CriticalPoint {
-        let reached = self.trial.clone();
-        let arc = metric.distance(along, base, &reached);
-        let before = self.path_point(metric, base, along, (1.0 - BEFORE) * arc);
-        let near = self.trial.clone();
-        let direction = before.and_then(|()| self.path_tangent(metric, &near));
-        self.trial.copy_from(&reached);
-        let stands = direction.map_or(true, |direction| direction.load < STANDS);
-        CriticalPoint {
-            kind: match stands {
-                true => CriticalKind::Limit,
-                false => CriticalKind::Bifurcation,
-            },
-            t: reached.t,
-            part: reached.t / metric.duration,
-            moves_most: found.moves_most.clone(),
-        }
-    }
-
-    fn no_equilibrium(&self, error: StepError, t: f64) -> RunError {
-        match error {
-            StepError::Prescribe(error) => RunError::Drive(error),
-            StepError::Turn { index, cause } => RunError::Equilibrium {
-                name: self.model.unknown_name(index),
-                cause: cause.to_owned(),
-                t,
-            },
-            StepError::Stage(failure) => {
-                let (name, cause) = explain(&self.model, &failure);
-                RunError::Equilibrium { name, cause, t }
-            }
-        }
-    }
-
-    /// The equilibrium at t near another one, in `trial`.
-    fn equilibrium_near(
-        &mut self,
-        metric: ArcMetric,
-        near: &State,
-        t: f64,
-    ) -> Result<FoundRest, StepError> {
-        let (model, trial, work) = (&*self.model, &mut self.trial, &mut self.work);
-        trial.copy_from(near);
-        trial.t = t;
-        set_load(model, metric.duration, trial, work)?;
-        self.newton.balance_on_path(model, trial, work)?;
-        check_turns(model, &self.state, trial)?;
-        self.stability_of_trial(metric)
     }
 }

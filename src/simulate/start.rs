@@ -139,6 +139,7 @@ impl Simulation {
             started,
             rest,
             indeterminate: Vec::new(),
+            heading: None,
             critical_points: Vec::new(),
             status: Status::Incomplete,
             error: None,

@@ -12,10 +12,12 @@ impl Simulation {
     /// See [`RunError`].
     pub fn advance_to(&mut self, t: f64, observer: &mut dyn Observer) -> Result<(), RunError> {
         match self.scene.simulation.analysis {
-            Analysis::Dynamic => self.advance(t, observer)?,
-            Analysis::Static => self.load_to(t, observer)?,
+            Analysis::Dynamic => {
+                self.advance(t, observer)?;
+                self.record(observer)
+            }
+            Analysis::Static => self.load_to(t, observer),
         }
-        self.record(observer)
     }
 
     /// Steps to time `t` with the rows on the way that the run of the scene has: warnings are relative to the motion that they show.
