@@ -1,7 +1,7 @@
 //! Equilibria: the one that a motion starts from, and what becomes of a small push.
 
 use super::failure::describe;
-use super::scale;
+use super::{Simulation, scale};
 use crate::model::Model;
 use crate::newton::{Extent, Failure, Newton, Softest};
 use crate::scene::{Analysis, Rest, Scene, SceneError};
@@ -201,6 +201,26 @@ impl FoundRest {
             Some(0.0) => Stability::Neutral,
             _ => Stability::Stable,
         }
+    }
+}
+
+impl Simulation {
+    /// The equilibrium in which a mechanism without loose joints and internal states rests, if it is unstable and the scene has not
+    /// asked for one.
+    pub(super) fn unstable_rest(&self) -> Option<FoundRest> {
+        let model = &*self.model;
+        if self.rest.is_some() || model.shape().contacts > 0 || !model.states.is_empty() {
+            return None;
+        }
+        let lengths = model.lengths();
+        let extent = Extent {
+            lengths: &lengths,
+            size: scale::size(&self.scene, model, &self.state),
+        };
+        // a report changes nothing of the run
+        let (mut newton, mut work) = (Newton::new(model, 0.0), self.work.clone());
+        let found = FoundRest::of(model, &mut newton, extent, &self.state, &mut work).ok()?;
+        (found.stability() == Stability::Unstable).then_some(found)
     }
 }
 

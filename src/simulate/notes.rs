@@ -24,6 +24,12 @@ impl Report {
         notes.extend(self.freedoms.iter().cloned());
         notes.extend(self.critical_points.iter().map(ToString::to_string));
         notes.extend(self.rest.as_ref().and_then(FoundRest::note));
+        notes.extend(self.unstable_rest.as_ref().map(|rest| {
+            format!(
+                "the mechanism rests in an unstable equilibrium: a small push of {} grows",
+                rest.moves_most
+            )
+        }));
         let strained = self.strain.iter();
         let most = strained.max_by(|a, b| a.1.largest().total_cmp(&b.1.largest()));
         if let Some((name, strain)) = most.filter(|(_, strain)| strain.largest() > NOTABLE) {

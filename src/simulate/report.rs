@@ -153,6 +153,9 @@ pub struct Report {
     /// The equilibrium that the motion starts from, where the scene asks for one; of a static analysis the last one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rest: Option<FoundRest>,
+    /// The unstable equilibrium in which a motion rests throughout.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unstable_rest: Option<FoundRest>,
     /// Where the path of a static analysis reached a limit or branched.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub critical_points: Vec<CriticalPoint>,
@@ -377,6 +380,8 @@ impl Simulation {
     pub fn report(&self) -> Report {
         let newton = self.newton.counters;
         let dynamic = self.scene.simulation.analysis == Analysis::Dynamic;
+        let integration = dynamic.then(|| self.meter.report(&self.model));
+        let rests = integration.as_ref().is_some_and(Integration::rests);
         let bodies = self.model.bodies().iter().enumerate();
         let names = self.recorder.channels().iter().map(|c| c.name.clone());
         Report {
@@ -431,8 +436,9 @@ impl Simulation {
                 .filter(DeliveredRestitution::differs)
                 .collect(),
             rest: self.rest.clone(),
+            unstable_rest: rests.then(|| self.unstable_rest()).flatten(),
             critical_points: self.critical_points.clone(),
-            integration: dynamic.then(|| self.meter.report(&self.model)),
+            integration,
             ledger: dynamic.then(|| {
                 self.recorder
                     .ledger(&self.model.energies(&self.state), &self.state)
