@@ -118,7 +118,7 @@ fn a_crank_stops_where_coupler_and_rocker_are_in_line() {
         assert!((limit.t - (expected - start).abs()).abs() < 1e-9, "{limit}");
         let cause = "coupler and rocker are in line at joints A, B and D";
         assert_eq!(limit.cause, cause, "{limit}");
-        assert!(limit.is_exact());
+        assert!(limit.stops_the_motion());
         found += 1;
         folded += i;
     }
@@ -201,7 +201,8 @@ fn a_tip_that_leaves_the_reach() {
     assert_eq!(limit.cause, cause);
 }
 
-/// Cranks that turn fully, a drive that ends at its limit, one that turns back before it, and a flat parallelogram that is passed.
+/// Cranks that turn fully, a drive that turns back before its limit, and a flat parallelogram that is passed; a drive that ends at its
+/// limit is told.
 #[test]
 fn what_stays_within_the_reach_has_no_limit() {
     let crank_rocker = [1.0, 0.3, 0.8, 0.7];
@@ -216,12 +217,14 @@ fn what_stays_within_the_reach_has_no_limit() {
     for text in [
         four_bar(crank_rocker, 0.4, "\"0.4 + 30*t\"", 200.0),
         four_bar([5.0, 4.0, 2.0, 3.5], toggle - 0.2, &swing(0.999), 10.0),
-        four_bar([5.0, 4.0, 2.0, 3.5], 0.6, &to_the_end, 2.0),
         four_bar([1.0, 0.4, 1.0, 0.4], 0.5, "\"0.5 + 2*t\"", 20.0),
     ] {
         let course = simulation(&text).drive_course().clone();
         assert_eq!(course, DriveCourse::Complete, "{text}");
     }
+    let text = four_bar([5.0, 4.0, 2.0, 3.5], 0.6, &to_the_end, 2.0);
+    let at_end = limit(&text);
+    assert!(at_end.t == 1.0 && !at_end.stops_the_motion(), "{at_end}");
     let text = four_bar([5.0, 4.0, 2.0, 3.5], toggle - 0.2, &swing(1.001), 10.0);
     let limit = limit(&text);
     assert!((limit.values[0].unwrap() - toggle).abs() < 1e-9, "{limit}");
@@ -626,4 +629,60 @@ fn a_rigid_but_shaky_start_is_named() {
         "{head}initial.sketch = {{ A = [0.4, 0.0], B = [1.4, 0.0] }}\n"
     ));
     assert!(error.contains("the start is a singular pose"), "{error}");
+}
+
+/// A drive that ends exactly in a dead centre: `check` and a run that cannot end there name it; a motion that can is not stopped.
+#[test]
+fn a_drive_may_end_in_its_limit() {
+    let text = |reach: f64| {
+        let [x, y]: [f64; 2] = [1.0 / 60.0, (0.01_f64 - 1.0 / 3600.0).sqrt()];
+        slider_crank(
+            0.1,
+            0.3,
+            &format!(
+                "drives.m = {{ type = \"point\", point = \"slider.center\", x = {{ type = \"smooth_step\", from = {:?}, to = {reach:?}, start = 0.0, duration = 1.5 }} }}",
+                x + (0.09 - y * y).sqrt()
+            ),
+            [x, y],
+            2.0,
+        )
+    };
+    let at_end = limit(&text(0.4));
+    assert!(
+        (at_end.t - 1.5).abs() < 1e-3 && !at_end.stops_the_motion(),
+        "{at_end}"
+    );
+    let beyond = limit(&text(0.4 + 1e-6));
+    assert!(beyond.t < 1.5 && beyond.stops_the_motion(), "{beyond}");
+    for found in [at_end, beyond] {
+        assert!(
+            found
+                .to_string()
+                .contains("cannot move slider.center beyond x = 0.4 m"),
+            "{found}"
+        );
+        assert!(found.cause.contains("crank and rod are in line"), "{found}");
+    }
+    assert!(matches!(
+        simulation(&text(0.4 - 1e-6)).drive_course(),
+        DriveCourse::Complete
+    ));
+}
+
+/// A static analysis does not follow an arc past the toggle of its crank: it ends with the words of `check`.
+#[test]
+fn a_static_drive_ends_at_its_limit() {
+    let text = four_bar([0.6, 0.5, 0.3, 0.45], 0.6, "\"0.6 + 0.5*t\"", 3.0);
+    for method in ["", "analysis = \"static\", "] {
+        let text = text.replace("simulation = { ", &format!("simulation = {{ {method}"));
+        let mut simulation = simulation(&text);
+        let Err(error) = simulation.run(&mut ()) else {
+            panic!("{text}");
+        };
+        assert!(
+            matches!(error, RunError::DriveLimit(_))
+                && error.to_string().contains("at t = 1.7830935 s"),
+            "{error}"
+        );
+    }
 }

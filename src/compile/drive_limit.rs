@@ -7,7 +7,7 @@ use super::extent::extent;
 use super::locked::Locked;
 use super::{Compiler, Mode, Role, is_ideal, known_roles};
 use crate::body::PointRef;
-use crate::kinematics::limit::{End, Tracer};
+use crate::kinematics::limit::{End, LOCATED, Tracer};
 use crate::math::bisection::bisected;
 use crate::math::independent_rows::IndependentRows;
 use crate::model::Model;
@@ -26,6 +26,8 @@ const INSTANTS: usize = 10_000;
 const STEPS: f64 = 100.0;
 /// Largest change of a drive in a step: of an angle \[rad\], and of a coordinate as a part of the mechanism.
 const CHANGE: f64 = 0.1;
+/// A drive is followed by this part of its largest step beyond its end: far enough for a limit at the end to stand out from rounding.
+const BEYOND: f64 = 1e-3;
 /// A mechanism is back at its pose after a turn up to this part of its length.
 const BACK: f64 = 1e-6;
 /// Significant digits of instants and values.
@@ -46,6 +48,8 @@ pub struct DriveLimit {
     what: String,
     /// False where links are flexible or joints have clearance: the mechanism of the scene may differ a little.
     is_exact: bool,
+    /// True where the drive leads no farther than to the limit.
+    is_end: bool,
 }
 
 impl Display for DriveLimit {
@@ -61,9 +65,9 @@ impl Display for DriveLimit {
 }
 
 impl DriveLimit {
-    /// True where the mechanism of the scene is the ideal rigid one.
-    pub fn is_exact(&self) -> bool {
-        self.is_exact
+    /// True where the drive leads farther and the mechanism of the scene, which is the ideal rigid one, cannot follow.
+    pub fn stops_the_motion(&self) -> bool {
+        self.is_exact && !self.is_end
     }
 
     /// The limit as a fault of a scene, at its drive.
@@ -184,9 +188,11 @@ fn by_value(scene: &Scene, component: usize, function: &Function) -> Option<Driv
     let longest = |_: f64| if is_angle { CHANGE } else { CHANGE * size };
     let mut tracer = Tracer::new(&mechanism, size, &longest);
     let mut ends = Vec::new();
-    'ends: for end in [high, low] {
+    'ends: for end in [high, low].into_iter().filter(|end| *end != 0.0) {
         let mut state = pose.clone();
         let direction = end.signum();
+        // a limit at the end itself is seen from beyond
+        let end = end + direction * BEYOND * longest(0.0);
         while state.t != end {
             let turns = is_angle && (end - state.t).abs() > TAU;
             let to = if turns {
@@ -211,19 +217,28 @@ fn by_value(scene: &Scene, component: usize, function: &Function) -> Option<Driv
             }
         }
     }
+    // when the drive leads to a value and beyond, or no farther
     let crossing = |direction: f64, value: f64| {
-        let beyond = |x: f64| (x - start - value) * direction > 0.0;
-        let k = values.iter().position(|(_, x)| beyond(*x))?;
+        let ahead = |x: f64| (x - start - value) * direction;
+        let all = values.iter().map(|(_, x)| ahead(*x));
+        let farthest = all.fold(f64::NEG_INFINITY, f64::max);
+        if farthest <= LOCATED * longest(0.0) {
+            let is_there = |x: f64| ahead(x) >= farthest - f64::EPSILON * longest(0.0);
+            let (t, _) = values.iter().find(|(_, x)| is_there(*x))?;
+            return (farthest >= -LOCATED * longest(0.0)).then_some((*t, true));
+        }
+        let k = values.iter().position(|(_, x)| ahead(*x) > 0.0)?;
         let (from, to) = (values[k - 1].0, values[k].0);
-        Some(bisected(from, to, |t| !beyond(function.at(t)[0])))
+        let t = bisected(from, to, |t| ahead(function.at(t)[0]) <= 0.0);
+        Some((t, false))
     };
     let ends = ends
         .into_iter()
         .filter_map(|(direction, value, fold)| Some((crossing(direction, value)?, fold)));
-    let (t, fold, stressed) = match ends.min_by(|a, b| a.0.total_cmp(&b.0)) {
+    let (t, is_end, fold, stressed) = match ends.min_by(|a, b| a.0.0.total_cmp(&b.0.0)) {
         None => return Some(DriveCourse::Complete),
-        Some((t, None)) => return Some(DriveCourse::Cut(t)),
-        Some((t, Some((fold, stressed)))) => (t, fold, stressed),
+        Some(((t, _), None)) => return Some(DriveCourse::Cut(t)),
+        Some(((t, is_end), Some((fold, stressed)))) => (t, is_end, fold, stressed),
     };
     let mut at = [None; 2];
     match &by_value.motions[0].kind {
@@ -235,6 +250,7 @@ fn by_value(scene: &Scene, component: usize, function: &Function) -> Option<Driv
         }
     }
     let limit = limit(&c, &mechanism, &fold, &stressed, (t, 0, at));
+    let limit = DriveLimit { is_end, ..limit };
     Some(DriveCourse::Limited(Box::new(limit)))
 }
 
@@ -312,7 +328,10 @@ fn by_time(scene: &Scene) -> Option<DriveCourse> {
         }),
     };
     let t = fold.t;
-    let limit = limit(&c, &mechanism, &fold, &stressed, (t, drive, at));
+    let limit = DriveLimit {
+        is_end: duration - t <= LOCATED * longest(duration),
+        ..limit(&c, &mechanism, &fold, &stressed, (t, drive, at))
+    };
     Some(DriveCourse::Limited(Box::new(limit)))
 }
 
@@ -390,5 +409,6 @@ fn limit(
         cause: Locked::at(c, mechanism, pose, owners).in_words(),
         what,
         is_exact: is_ideal(c.scene),
+        is_end: false,
     }
 }

@@ -41,8 +41,9 @@ const ARC_STEPS: usize = 400;
 const LEAST_COSINE: f64 = 0.87;
 /// A dp/ds below this is one that vanishes; that of a fold changes its sign.
 const FLAT: f64 = 1e-7;
-/// The arc length of a fold as a part of the mechanism: p is stationary there, so its error is the square of this.
-const LOCATED: f64 = 1e-9;
+/// The arc length of a fold as a part of the mechanism: p is stationary there, so its error is the square of this. A motion that ends
+/// within this part of the longest step of p ends at the fold.
+pub(crate) const LOCATED: f64 = 1e-9;
 /// Multiply-adds that a trace may take: about a second.
 const WORK: u64 = 400_000_000;
 /// Multiply-adds, by their order of magnitude, of the evaluation of a constraint.
@@ -282,8 +283,8 @@ impl<'m> Tracer<'m> {
             if along(&next) < -FLAT {
                 let fold = arc.fold(&here, ds, direction);
                 return match fold {
-                    // the end of the motion may come first, or be the limit itself
-                    Some(fold) if (target - fold.t) * direction <= LOCATED * longest => {
+                    // the end of the motion comes first
+                    Some(fold) if (target - fold.t) * direction < -LOCATED * longest => {
                         Turn::Passed(Box::new(fold))
                     }
                     Some(fold) => {

@@ -6,6 +6,7 @@ use super::equilibrium::{FoundRest, Stability, come_to_rest};
 use super::{Control, GRID_ROUNDING, HALVINGS, Observer, Progress, RunError, Simulation, scale};
 use crate::newton::{ArcMetric, Extent, PathTangent};
 use crate::stepper::StepError;
+use crate::system::State;
 
 /// Steps along the path between two rows, or between two critical points, at most.
 const ARCS: usize = 10_000;
@@ -105,6 +106,9 @@ impl Simulation {
             tried.and_then(|found| Some((found, self.path_tangent(metric, &reached).ok()?)));
         let Some((found, onward)) = tried else {
             self.counters.rejected += 1;
+            if self.cannot_move() {
+                return self.step_drives(metric, &base, growth, observer);
+            }
             let within = |critical: &Critical| critical.t() > base.t && critical.t() <= next;
             if let Some(critical) = self.bifurcation_near(metric, &base).filter(within) {
                 return self.meet(metric, critical, observer);
@@ -138,6 +142,35 @@ impl Simulation {
             softens: falls,
         });
         Ok(())
+    }
+
+    /// True of a mechanism without stiffness whose drives leave no freedom. Its eigenvalues do not tell: close to the limit of a drive
+    /// rounding makes one.
+    fn cannot_move(&self) -> bool {
+        let is_driven = !self.scene.motions.is_empty();
+        is_driven && !self.model.is_elastic() && self.partly_driven().is_none()
+    }
+
+    /// The longest step of a mechanism that follows its drives alone, which may have come to their limit: there is no other path.
+    fn step_drives(
+        &mut self,
+        metric: ArcMetric,
+        base: &State,
+        growth: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<(), RunError> {
+        let mut t = base.t + growth;
+        let mut halved = 0;
+        loop {
+            match self.equilibrium_near(metric, base, t) {
+                Ok(found) => return self.keep_equilibrium(found, observer),
+                Err(error) if halved == HALVINGS => return Err(self.no_equilibrium(error, t)),
+                Err(_) => {
+                    halved += 1;
+                    t = base.t + growth * 0.5_f64.powi(halved);
+                }
+            }
+        }
     }
 
     /// The mechanism comes downhill to rest under the loads at t.

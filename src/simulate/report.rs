@@ -274,7 +274,7 @@ impl Simulation {
     }
 
     /// Its degrees of freedom, where drives prescribe some of them and leave others or repeat themselves.
-    fn partly_driven(&self) -> Option<Freedoms> {
+    pub(super) fn partly_driven(&self) -> Option<Freedoms> {
         let is_driven = !(self.scene.motions.is_empty() && self.scene.drives.is_empty());
         let freedoms = is_driven.then(|| self.freedoms()).flatten();
         freedoms.filter(|freedoms| freedoms.left > 0 || freedoms.repeated > 0)

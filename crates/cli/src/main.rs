@@ -192,7 +192,9 @@ fn check(arguments: &SceneArguments) -> Result<(), CommandFailure> {
     notes.iter().for_each(|note| remark(note));
     let course = simulation.drive_course();
     match course {
-        DriveCourse::Limited(limit) if limit.is_exact() => return Err(limit.fault(&scene).into()),
+        DriveCourse::Limited(limit) if limit.stops_the_motion() => {
+            return Err(limit.fault(&scene).into());
+        }
         DriveCourse::Cut(t) => progress::warn(&format!(
             "the drives are followed up to t = {} s only: whether they meet a limit later was not checked",
             numbers::number(*t, 6)
