@@ -166,11 +166,14 @@ impl Model {
         }
     }
 
-    /// Adds s Phi_q^T Phi_q to a tangent and s Phi_q^T Phi to the residual, where s is the largest entry on the diagonal of the
-    /// tangent, and multiplies the constraint rows and columns by s. Returns s.
+    /// Adds s Phi_q^T Phi_q to a tangent and s Phi_q^T Phi to the residual, where s is the largest stiffness on the diagonal of the
+    /// tangent against displacements of points, and multiplies the constraint rows and columns by s. Returns s.
     fn augment(&self, at: &State, r: &mut [f64], k: &mut [f64]) -> f64 {
-        let diagonal = (0..self.shape.unknowns).map(|i| k[self.symbolic.slot(i, i) as usize].abs());
-        let s = match diagonal.fold(0.0, f64::max) {
+        let lengths = self.lengths().into_iter().enumerate();
+        let lengths = lengths.filter(|(_, length)| *length > 0.0);
+        let stiffness = lengths
+            .map(|(i, length)| k[self.symbolic.slot(i, i) as usize].abs() / (length * length));
+        let s = match stiffness.fold(0.0, f64::max) {
             0.0 => 1.0,
             largest => largest,
         };

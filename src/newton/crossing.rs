@@ -18,8 +18,8 @@
 
 use super::load_path::{ArcMetric, DIFFERENCE, MAX_ITERATIONS, PathTangent, SetLoad};
 use super::softest::SLOWEST;
-use super::statics::{Ending, LAST_UPDATE, largest_coordinate, move_by};
-use super::{Failure, Newton, Update, iterate};
+use super::statics::{Ending, LAST_UPDATE, move_by};
+use super::{Failure, Newton, iterate};
 use crate::system::{Equilibrium, State, Work};
 
 /// Updates of Newton's method for a saddle at least halve, by the theorem of Newton and Kantorovich.
@@ -255,9 +255,11 @@ impl Newton {
             }
             *beta += growth;
             move_by(state, &change);
-            let update = Update::largest(change[..n].iter().copied());
-            let size = largest_coordinate(state);
-            Ok((update, ending.is_reached(iteration, update, size)))
+            let update = metric.extent.update(&change[..n]);
+            Ok((
+                update,
+                ending.is_reached(iteration, update, metric.extent, state),
+            ))
         })?;
         state.q_low.fill(0.0);
         let mut load = self.follow_load(system, metric, set_load, state, scale, work)?;

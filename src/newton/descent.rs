@@ -12,8 +12,8 @@
 //! the mechanism, so that it stays on its slope; otherwise tau is reduced. As the forces vanish tau grows, and the steps become those of
 //! Newton's method for the equilibrium. A force that has no potential, such as one that follows a body, is judged by its work as well.
 
-use super::statics::Anchor;
-use super::{Failure, Newton};
+use super::statics::{Anchor, Limits, ROUNDING};
+use super::{Failure, Newton, Update};
 use crate::math::quadrature::GAUSS5;
 use crate::system::{Equilibrium, State, Work};
 
@@ -29,7 +29,11 @@ const RADIUS: f64 = 0.1;
 /// reaches rounding in one iteration.
 const AT_REST: f64 = 1e-8;
 /// A step that needs more iterations is too long; whether it fell decides on the rest.
-const LIMITS: (usize, f64) = (12, f64::INFINITY);
+const LIMITS: Limits = Limits {
+    iterations: 12,
+    contraction: f64::INFINITY,
+    radius: f64::INFINITY,
+};
 /// More steps than this fall a hundred times the size of the mechanism: nothing ends the fall.
 const STEPS: usize = 2000;
 /// The work of the forces is rounded by so many roundings of the forces times the coordinates.
@@ -45,11 +49,24 @@ pub struct Extent<'a> {
 }
 
 impl Extent<'_> {
-    /// The largest distance between two states, as part of the size.
-    pub fn distance(&self, from: &State, to: &State) -> f64 {
-        let changes = from.q.iter().zip(&to.q).zip(self.lengths);
-        let distances = changes.map(|((a, b), length)| length * (b - a).abs());
-        distances.fold(0.0, crate::math::larger) / self.size
+    /// The largest displacement of some changes of the unknowns, as part of the size.
+    pub(super) fn update(&self, changes: &[f64]) -> Update {
+        let moved = changes.iter().zip(self.lengths);
+        Update::largest(moved.map(|(x, length)| x * length / self.size))
+    }
+
+    /// The largest coordinate, known or not, as a displacement \[m\].
+    fn farthest_coordinate(&self, s: &State) -> f64 {
+        let (unknown, known) = s.q.split_at(self.lengths.len());
+        let unknown = unknown.iter().zip(self.lengths);
+        let displacements = unknown.map(|(q, length)| q * length);
+        let all = displacements.chain(known.iter().copied());
+        all.fold(0.0, |m, q| m.max(q.abs()))
+    }
+
+    /// What is rounding of an update, as part of the size.
+    pub(super) fn rounding(&self, s: &State) -> f64 {
+        ROUNDING * (self.farthest_coordinate(s) / self.size).max(1.0)
     }
 
     /// The unknown that moves a point farthest in some changes of the unknowns, the first of them without any, and how far \[m\].
@@ -67,7 +84,7 @@ impl Newton {
     /// the way. The end may be a saddle of the potential where the descent met one exactly.
     ///
     /// # Errors
-    /// [`Failure::NoConvergence`] of a fall without end, with the unknown that moves most; that of the shortest step.
+    /// [`Failure::Falls`] of a fall without end; that of the shortest step.
     pub fn descend(
         &mut self,
         system: &dyn Equilibrium,
@@ -80,6 +97,7 @@ impl Newton {
         s.a.fill(0.0);
         let mut next = s.clone();
         let mut tau = LARGEST_TAU;
+        let mut most = 0;
         for _ in 0..STEPS {
             let distance = loop {
                 next.copy_from(s);
@@ -87,15 +105,21 @@ impl Newton {
                     q: &s.q,
                     inertia: 1.0 / tau,
                 };
-                let made = self.balance_with(system, Some(anchor), LIMITS, &mut next, work);
-                let distance = extent.distance(s, &next);
-                if made.is_ok() && distance <= RADIUS && self.falls(system, s, &next, work) {
+                let made = self.balance_with(system, extent, Some(anchor), LIMITS, &mut next, work);
+                let moved = extent.update(&change(s, &next));
+                let distance = moved.size;
+                if made.is_ok() && distance <= RADIUS && self.falls(system, extent, s, &next, work)
+                {
+                    most = moved.index;
                     break distance;
                 }
                 tau /= REDUCTION;
                 if tau < LEAST_TAU {
                     made?;
-                    return Err(unending(extent, s, &next));
+                    return Err(Failure::NoConvergence {
+                        index: moved.index,
+                        update: distance,
+                    });
                 }
             };
             s.copy_from(&next);
@@ -104,8 +128,8 @@ impl Newton {
             see(s);
             if distance <= AT_REST && tau == LARGEST_TAU {
                 // a mechanism that can move without any force rests where it is
-                if self.balance(system, &mut next, work).is_ok()
-                    && extent.distance(s, &next) <= AT_REST
+                if self.balance(system, extent, &mut next, work).is_ok()
+                    && extent.update(&change(s, &next)).size <= AT_REST
                 {
                     s.copy_from(&next);
                 }
@@ -113,19 +137,22 @@ impl Newton {
             }
             tau = LARGEST_TAU.min(tau * REDUCTION.sqrt());
         }
-        Err(unending(extent, s, &next))
+        Err(Failure::Falls { index: most })
     }
 
     /// True where the forces do work, or none to rounding, on the chord from one state to another.
     fn falls(
         &mut self,
         system: &dyn Equilibrium,
+        extent: Extent,
         from: &State,
         to: &State,
         work: &mut Work,
     ) -> bool {
         let n = system.shape().unknowns;
         let mut at = from.clone();
+        // constraints carry the rounding of the farthest coordinate to all others
+        let far = extent.farthest_coordinate(from);
         let (mut rise, mut magnitude) = (0.0, 0.0);
         for (x, weight) in GAUSS5 {
             for i in 0..n {
@@ -135,7 +162,8 @@ impl Newton {
             for i in 0..n {
                 let (force, way) = (weight * self.r[i], to.q[i] - from.q[i]);
                 rise += force * way;
-                magnitude += force.abs() * (way.abs() + from.q[i].abs());
+                magnitude +=
+                    force.abs() * (way.abs() + from.q[i].abs().max(far / extent.lengths[i]));
             }
         }
         rise <= ROUNDINGS * f64::EPSILON * magnitude
@@ -165,13 +193,11 @@ impl Newton {
             q: &origin,
             inertia: 2.0 * growth,
         };
-        self.balance_with(system, Some(anchor), LIMITS, s, work)
+        self.balance_with(system, extent, Some(anchor), LIMITS, s, work)
     }
 }
 
-/// The failure of a descent; names the unknown that moves most in a last step without a bound.
-fn unending(extent: Extent, from: &State, to: &State) -> Failure {
-    let changes = from.q.iter().zip(&to.q).map(|(a, b)| b - a);
-    let (index, update) = extent.farthest(changes);
-    Failure::NoConvergence { index, update }
+/// Changes of the coordinates from one state to another.
+fn change(from: &State, to: &State) -> Vec<f64> {
+    from.q.iter().zip(&to.q).map(|(a, b)| b - a).collect()
 }

@@ -11,8 +11,8 @@
 //! equations are regular at a limit point, where K is singular. They are solved by two right sides for K, which lose digits there
 //! in the update only, so that Newton's method still converges.
 
-use super::statics::{CONTRACTION, Ending, ROUNDING, largest_coordinate, move_by};
-use super::{Extent, Failure, Newton, Update, iterate};
+use super::statics::{CONTRACTION, Ending, move_by};
+use super::{Extent, Failure, Newton, iterate};
 use crate::system::{Equilibrium, State, Work};
 
 /// Largest number of iterations of a point; one that stays on its path needs fewer.
@@ -156,7 +156,7 @@ impl Newton {
             refused = Some(error);
             Failure::NotFinite { index: 0 }
         };
-        let predicted = Update::largest(step[..n].iter().copied()).size;
+        let predicted = metric.extent.update(&step[..n]).size;
         let mut corrects = false;
         let ended = iterate(MAX_ITERATIONS, |iteration| {
             self.counters.newton_iterations += 1;
@@ -173,10 +173,12 @@ impl Newton {
             move_by(to, &change);
             to.t += growth * metric.duration;
             set_load(to, work).map_err(&mut refuse)?;
-            let update = Update::largest(change[..n].iter().copied());
-            let size = largest_coordinate(to);
+            let update = metric.extent.update(&change[..n]);
             match iteration.number {
-                0 => corrects = update.size > CONTRACTION * predicted.max(ROUNDING * size),
+                0 => {
+                    let rounding = metric.extent.rounding(to);
+                    corrects = update.size > CONTRACTION * predicted.max(rounding);
+                }
                 1 if corrects && iteration.last * CONTRACTION < update.size => {
                     return Err(Failure::NoConvergence {
                         index: update.index,
@@ -185,7 +187,10 @@ impl Newton {
                 }
                 _ => {}
             }
-            Ok((update, ending.is_reached(iteration, update, size)))
+            Ok((
+                update,
+                ending.is_reached(iteration, update, metric.extent, to),
+            ))
         });
         if let Some(error) = refused {
             return Err(error);

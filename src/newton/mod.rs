@@ -105,6 +105,11 @@ pub enum Failure {
         /// Unknown.
         index: usize,
     },
+    /// The potential falls without end; the unknown that moves most.
+    Falls {
+        /// Unknown.
+        index: usize,
+    },
 }
 
 impl From<WeakPivot> for Failure {
@@ -119,7 +124,8 @@ impl Failure {
         match *self {
             Failure::NoConvergence { index, .. }
             | Failure::NotFinite { index }
-            | Failure::Singular { index } => index,
+            | Failure::Singular { index }
+            | Failure::Falls { index } => index,
         }
     }
 }

@@ -6,21 +6,24 @@
 //! multipliers as lambda/s, so that all entries of the matrix are of similar size.
 
 use super::iteration::Iteration;
-use super::{Failure, Newton, Update, iterate};
+use super::{Extent, Failure, Newton, Update, iterate};
 use crate::math::lu::LARGEST_MULTIPLIER;
 use crate::system::{Equilibrium, State, Work};
 
 /// Largest number of Newton iterations of a load step; one that converges needs fewer.
 const MAX_ITERATIONS: usize = 40;
-/// An update below this part of the largest coordinate is followed by one more, whose error is the square of it.
+/// An update below this part of the size of the mechanism is followed by one more, whose error is the square of it.
 pub(super) const LAST_UPDATE: f64 = 1e-8;
-/// An update below this part of the largest coordinate that no longer decreases is rounding.
+/// An update below this part of the size, or of the largest coordinate, that no longer decreases is rounding.
 pub(super) const ROUNDING: f64 = 1e-12;
 
 /// By the theorem of Newton and Kantorovich a solution is near, and Newton's method finds it, where the second update is at most half
 /// the first; half of that is left for what updates in two norms differ by (Deuflhard 2011, Newton Methods for Nonlinear Problems,
 /// 2.1).
 pub(super) const CONTRACTION: f64 = 0.25;
+
+/// An equilibrium nearby is sought by steps that move nothing farther than this part of the size of the mechanism.
+const NEARBY: f64 = 0.1;
 
 /// What a step of a descent is pulled back to: M (q - q_0) w is added to the forces.
 #[derive(Debug, Clone, Copy)]
@@ -31,18 +34,39 @@ pub(super) struct Anchor<'a> {
     pub inertia: f64,
 }
 
+/// How Newton's method for an equilibrium proceeds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    /// Iterations at most.
+    pub iterations: usize,
+    /// The largest ratio of the second update to the first.
+    pub contraction: f64,
+    /// Longer updates are shortened to this part of the size.
+    pub radius: f64,
+}
+
+impl Limits {
+    /// Updates of any length, and as many as any equilibrium needs.
+    const NONE: Limits = Limits {
+        iterations: MAX_ITERATIONS,
+        contraction: f64::INFINITY,
+        radius: f64::INFINITY,
+    };
+}
+
 impl Newton {
     /// Equilibrium at the known coordinates and loads of `s`, from the q and lambda in it.
     ///
     /// # Errors
-    /// See [`Failure`]; updates are reported in units of coordinates. `s` is then undefined.
+    /// See [`Failure`]; updates are parts of the size of the mechanism. `s` is then undefined.
     pub fn balance(
         &mut self,
         system: &dyn Equilibrium,
+        extent: Extent,
         s: &mut State,
         work: &mut Work,
     ) -> Result<(), Failure> {
-        self.balance_with(system, None, (MAX_ITERATIONS, f64::INFINITY), s, work)
+        self.balance_with(system, extent, None, Limits::NONE, s, work)
     }
 
     /// As [`Newton::balance`] from a state nearby on a path of equilibria: fails where the second update is not much smaller than
@@ -53,19 +77,44 @@ impl Newton {
     pub fn balance_on_path(
         &mut self,
         system: &dyn Equilibrium,
+        extent: Extent,
         s: &mut State,
         work: &mut Work,
     ) -> Result<(), Failure> {
-        self.balance_with(system, None, (MAX_ITERATIONS, CONTRACTION), s, work)
+        let limits = Limits {
+            contraction: CONTRACTION,
+            ..Limits::NONE
+        };
+        self.balance_with(system, extent, None, limits, s, work)
     }
 
-    /// As [`Newton::balance`], with the pull of an anchor, at most so many iterations, and the largest ratio of the second update to the
-    /// first.
+    /// The equilibrium near a state, stable or not, by steps of Newton's method that move nothing far. The multipliers begin as those
+    /// that balance the forces best: without them the stiffness lacks what they contribute, and steps lead anywhere.
+    ///
+    /// # Errors
+    /// As [`Newton::balance`].
+    pub fn balance_nearby(
+        &mut self,
+        system: &dyn Equilibrium,
+        extent: Extent,
+        s: &mut State,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
+        self.make_consistent(system, s, work)?;
+        let limits = Limits {
+            radius: NEARBY,
+            ..Limits::NONE
+        };
+        self.balance_with(system, extent, None, limits, s, work)
+    }
+
+    /// As [`Newton::balance`], with the pull of an anchor, within limits.
     pub(super) fn balance_with(
         &mut self,
         system: &dyn Equilibrium,
+        extent: Extent,
         anchor: Option<Anchor>,
-        (iterations, contraction): (usize, f64),
+        limits: Limits,
         s: &mut State,
         work: &mut Work,
     ) -> Result<(), Failure> {
@@ -75,7 +124,7 @@ impl Newton {
         self.counters.stages += 1;
         let inertia = anchor.map_or(0.0, |anchor| anchor.inertia);
         let mut ending = Ending::default();
-        iterate(iterations, |iteration| {
+        iterate(limits.iterations, |iteration| {
             self.counters.newton_iterations += 1;
             if let Some(Anchor { q, inertia }) = anchor {
                 for (a, (q, from)) in s.a[..n].iter_mut().zip(s.q.iter().zip(q)) {
@@ -84,17 +133,20 @@ impl Newton {
             }
             let scale = self.renew_stiffness(system, s, inertia, work)?;
             self.solve_against_residual(system, scale);
+            let update = extent.update(&self.b[..n]);
+            if update.size > limits.radius {
+                let part = limits.radius / update.size;
+                self.b.iter_mut().for_each(|x| *x *= part);
+            }
             move_by(s, &self.b);
-            let update = Update::largest(self.b[..n].iter().copied());
-            let size = largest_coordinate(s);
-            let is_far = iteration.number == 1 && update.size > contraction * iteration.last;
-            if is_far && update.size > LAST_UPDATE * size {
+            let is_far = iteration.number == 1 && update.size > limits.contraction * iteration.last;
+            if is_far && update.size > LAST_UPDATE {
                 return Err(Failure::NoConvergence {
                     index: update.index,
                     update: update.size,
                 });
             }
-            Ok((update, ending.is_reached(iteration, update, size)))
+            Ok((update, ending.is_reached(iteration, update, extent, s)))
         })?;
         s.a.fill(0.0);
         s.q_low.fill(0.0);
@@ -155,11 +207,6 @@ pub(super) fn move_by(s: &mut State, changes: &[f64]) {
         .for_each(|(x, d)| *x += d);
 }
 
-/// The size that updates are relative to.
-pub(super) fn largest_coordinate(s: &State) -> f64 {
-    s.q.iter().fold(f64::MIN_POSITIVE, |m, q| m.max(q.abs()))
-}
-
 /// When Newton's method for an equilibrium ends: after an update whose error is the square of a small one.
 #[derive(Debug, Default)]
 pub(super) struct Ending {
@@ -168,10 +215,16 @@ pub(super) struct Ending {
 }
 
 impl Ending {
-    /// True where this update, of coordinates of some size, is the last.
-    pub fn is_reached(&mut self, before: &Iteration, update: Update, size: f64) -> bool {
-        let smaller = update.size < before.last || update.size <= ROUNDING * size;
-        let was_last = std::mem::replace(&mut self.is_last, update.size <= LAST_UPDATE * size);
+    /// True where this update, as part of the size, is the last.
+    pub fn is_reached(
+        &mut self,
+        before: &Iteration,
+        update: Update,
+        extent: Extent,
+        s: &State,
+    ) -> bool {
+        let smaller = update.size < before.last || update.size <= extent.rounding(s);
+        let was_last = std::mem::replace(&mut self.is_last, update.size <= LAST_UPDATE);
         was_last && smaller
     }
 }

@@ -146,7 +146,8 @@ impl Simulation {
         trial.copy_from(near);
         trial.t = t;
         set_load(model, metric.duration, trial, work)?;
-        self.newton.balance_on_path(model, trial, work)?;
+        self.newton
+            .balance_on_path(model, metric.extent, trial, work)?;
         check_turns(model, &self.state, trial)?;
         self.stability_of_trial(metric)
     }
@@ -160,7 +161,7 @@ impl Simulation {
                 t,
             },
             StepError::Stage(failure) => {
-                let (name, cause) = explain(&self.model, &failure);
+                let (name, cause) = explain(&self.model, &failure, "try a smaller step");
                 RunError::Equilibrium { name, cause, t }
             }
         }

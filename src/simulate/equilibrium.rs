@@ -100,12 +100,12 @@ pub(super) fn prepare(
         };
         let found = match rest {
             Some(Rest::Nearest) => newton
-                .balance(model, state, work)
+                .balance_nearby(model, extent, state, work)
                 .and_then(|()| FoundRest::of(model, newton, extent, state, work)),
             _ => come_to_rest(model, newton, extent, state, work),
         };
         let found = found.map_err(|failure| {
-            let (name, cause) = explain(model, &failure);
+            let (name, cause) = explain(model, &failure, "draw the mechanism closer to it");
             let message = format!("no equilibrium was found to start from: {name}: {cause}");
             scene.error(scene.initial.span, message, "this start")
         })?;
@@ -246,18 +246,20 @@ pub(super) fn come_to_rest(
     }
 }
 
-/// The unknown and the cause of a failure of a static solve, for the message.
-pub(super) fn explain(model: &Model, failure: &Failure) -> (String, String) {
-    match failure {
-        Failure::Singular { index } => (
-            model.unknown_name(*index),
-            "it is free to move: a static analysis needs a spring, a drive or a joint that holds it"
-                .to_owned(),
-        ),
-        Failure::NoConvergence { index, .. } => (
-            model.unknown_name(*index),
-            "Newton's method does not converge; try a smaller step".to_owned(),
-        ),
-        Failure::NotFinite { .. } => describe(model, failure),
-    }
+/// The unknown and the cause of a failure to find an equilibrium, for the message, with what to do where Newton's method fails.
+pub(super) fn explain(model: &Model, failure: &Failure, advice: &str) -> (String, String) {
+    let name = model.unknown_name(failure.index());
+    let cause = match failure {
+        Failure::Singular { .. } => {
+            "it is free to move: an equilibrium needs a spring, a drive or a joint that holds it"
+                .to_owned()
+        }
+        Failure::Falls { .. } => {
+            "nothing stops it: the loads move it on and on, there is no equilibrium downhill"
+                .to_owned()
+        }
+        Failure::NoConvergence { .. } => format!("Newton's method does not converge; {advice}"),
+        Failure::NotFinite { .. } => return describe(model, failure),
+    };
+    (name, cause)
 }

@@ -261,5 +261,9 @@ pub(super) fn describe(model: &Model, failure: &Failure) -> (String, String) {
             model.unknown_name(index),
             "the equations are singular".to_owned(),
         ),
+        Failure::Falls { index } => (
+            model.unknown_name(index),
+            "the loads move it on and on".to_owned(),
+        ),
     }
 }
