@@ -137,6 +137,11 @@ impl<'a> Actuation<'a> {
         Some([rank, POSE - rank])
     }
 
+    /// The bodies that move with the joints held.
+    pub fn left_free(mut self) -> Option<Vec<usize>> {
+        Some(self.determined()?.moving)
+    }
+
     /// What the joints control along the path. None where some of them repeat others, whose ranks no determinant shows.
     pub fn control(mut self) -> Option<Control> {
         let Determined {

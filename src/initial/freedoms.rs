@@ -62,6 +62,30 @@ impl Freedoms {
     }
 }
 
+/// The bodies that the drives of a scene leave free to move, with rigid links and ideal joints; none where there is no drive or where
+/// it is not known.
+pub(crate) fn left_free(scene: &Scene) -> Option<Vec<usize>> {
+    if !scene.drives.is_empty() {
+        return Actuation::of(scene)?.left_free();
+    }
+    if scene.motions.is_empty() {
+        return None;
+    }
+    let (model, state) = closed(scene).ok()?;
+    let determined = Ranks::of(&model, &state, extent(scene)).determined();
+    let bodies = model.bodies().iter().enumerate();
+    let free = bodies.filter(|(_, body)| {
+        let slots = body.placed.x.iter().zip(&body.contents);
+        let mut coordinates = slots.flat_map(|(x, content)| *x..x + content.names().len());
+        coordinates.any(|i| {
+            determined
+                .get(i)
+                .is_some_and(|is_determined| !is_determined)
+        })
+    });
+    Some(free.map(|(b, _)| b).collect())
+}
+
 impl Display for Freedoms {
     fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
         let Freedoms {

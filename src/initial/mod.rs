@@ -6,6 +6,7 @@ pub(crate) mod redundancy;
 pub(crate) mod turns;
 
 pub use freedoms::Freedoms;
+pub(crate) use freedoms::left_free;
 pub(crate) use redundancy::unit_lengths;
 
 use crate::body::{Content, Deformation, Frame};

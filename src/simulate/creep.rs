@@ -1,7 +1,9 @@
 //! Creep: a friction law whose force grows with the slip from zero on cannot hold a body, which slides slowly where it should stick.
 
 use crate::checkpoint::{Carried, Checkpoint, carried};
+use crate::initial::left_free;
 use crate::model::Model;
+use crate::scene::Scene;
 use crate::system::State;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -70,16 +72,24 @@ impl CreepWatch {
         }
     }
 
-    /// The longest creep of every joint in a run of this duration that has some.
-    pub fn report(&self, model: &Model, duration: f64) -> BTreeMap<String, Creep> {
+    /// The longest creep of every joint that has some, in a run of this scene. Where the drives determine both bodies of a joint they
+    /// impose its slip, and nothing should stick.
+    pub fn report(&self, scene: &Scene, model: &Model) -> BTreeMap<String, Creep> {
         let contacts = self.longest.iter().enumerate();
         let lasting = contacts.filter(|(_, creep)| {
-            creep.rows >= ROWS && creep.to - creep.from >= SUSTAINED * duration
+            creep.rows >= ROWS && creep.to - creep.from >= SUSTAINED * scene.simulation.duration
         });
-        let named = lasting.filter_map(|(contact, creep)| {
-            let joint = model.contact_joint(contact)?;
-            Some((model.joints()[joint].name.clone(), *creep))
-        });
+        let joints =
+            lasting.filter_map(|(contact, creep)| Some((model.contact_joint(contact)?, creep)));
+        let joints: Vec<(usize, &Creep)> = joints.collect();
+        let free = (!joints.is_empty()).then(|| left_free(scene)).flatten();
+        let is_free = |joint: &usize| {
+            let bodies = scene.joints[*joint].points().map(|point| point.body);
+            let moves = |free: &Vec<usize>| bodies.iter().any(|body| free.contains(body));
+            free.as_ref().is_none_or(moves)
+        };
+        let creeping = joints.into_iter().filter(|(joint, _)| is_free(joint));
+        let named = creeping.map(|(joint, creep)| (scene.joints[joint].name.clone(), *creep));
         named.collect()
     }
 }

@@ -428,9 +428,7 @@ impl Simulation {
             ended_contacts: self.closures.ended,
             brief_contacts: self.closures.brief,
             chatter: self.closures.chatter(&self.model),
-            creep: self
-                .creep
-                .report(&self.model, self.scene.simulation.duration),
+            creep: self.creep.report(&self.scene, &self.model),
             restitution: restitution::delivered(&self.scene)
                 .into_iter()
                 .filter(DeliveredRestitution::differs)
