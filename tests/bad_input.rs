@@ -230,6 +230,14 @@ fn functions_of_time() {
         "where `max(...)` switches: at t = 1 s its acceleration jumps by 1 m/s2",
     );
     text(
+        "0.5 * max(0, t - 1)^1.5",
+        "where `max(...)` switches: at t = 1 s its acceleration becomes infinite",
+    );
+    text(
+        "max(0, sin(3 * t))",
+        "where `max(...)` switches: at t = 1.0472 s its velocity jumps by 3 m/s",
+    );
+    text(
         "abs(t - 0.2501) / (t - 0.2501)",
         "where `abs(...)` switches: at t = 0.2501 s its value is not a number",
     );

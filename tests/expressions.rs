@@ -211,3 +211,50 @@ fn dwells_are_kept_or_their_overshoot_is_told() {
         .to_string();
     assert!(error.contains("its velocity jumps by"), "{error}");
 }
+
+/// What switches at the start, at the end, at a touch, or together with another function is what the motion is without it; with
+/// its velocity and its acceleration in every row, the first and the last among them.
+#[test]
+fn switches_without_a_kink_leave_the_motion_as_it_is() {
+    let motion = |text: &str| {
+        let (recording, notes) = dwell(&[&format!("drives.cam.y=\"{text}\"")]);
+        assert!(notes.is_empty(), "{text}: {notes:?}");
+        recording
+    };
+    for (text, plain) in [
+        ("max(0, t)", "t"),
+        ("min(t, 1)^2", "t^2"),
+        ("abs(t - 1) + min(0, t)", "1 - t"),
+        ("max(0, 1 - cos(t))", "1 - cos(t)"),
+        ("max(0, 1 - cos(t - 0.5))", "1 - cos(t - 0.5)"),
+        ("max(t, 0.5) + min(t, 0.5)", "t + 0.5"),
+        ("max(t, 1 - t) + min(t, 1 - t)", "1"),
+    ] {
+        let [a, b] = [text, plain].map(motion);
+        let worst = difference([&a, &b], ["follower.vy", "follower.ay"], 1.0);
+        Rung::Routes
+            .asks(format!(
+                "Follower driven by {text}: difference of velocity and acceleration from {plain} [m/s, m/s2]"
+            ))
+            .within(&worst, 1e-15, "rounding of sums of two numbers up to 1");
+    }
+}
+
+/// The acceleration of u^2.5 is 3.75 u^0.5: continuous, from zero.
+#[test]
+fn powers_of_a_switch_may_begin_with_a_vertical_tangent() {
+    let (recording, _) = dwell(&["drives.cam.y=\"100 + max(0, t - 0.5)^2.5\""]);
+    let worst = Worst::new();
+    for (t, a) in (recording.get("t").iter()).zip(recording.get("follower.ay")) {
+        worst.see(a - 3.75 * (t - 0.5).max(0.0).sqrt());
+    }
+    Rung::ClosedForms
+        .asks(
+            "Follower driven by max(0, u)^2.5: distance of its acceleration from 3.75 u^0.5 [m/s2]",
+        )
+        .within(
+            &worst,
+            1e-7,
+            "the root of the rounding of u, 1e-16, times 3.75 at the switch",
+        );
+}

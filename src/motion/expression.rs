@@ -31,19 +31,19 @@ pub(super) enum Formula {
 pub(super) struct Univariate {
     pub name: &'static str,
     /// Value, first and second derivative by the argument; none of a function that switches between its argument and its negative.
-    at: Option<fn(f64) -> Jet>,
+    pub at: Option<fn(f64) -> Jet>,
 }
 
 /// An operator, or a function of two arguments.
 #[derive(Debug)]
 pub(super) struct Bivariate {
     pub name: &'static str,
-    rule: Rule,
+    pub rule: Rule,
 }
 
 /// How a function of two arguments comes from them.
 #[derive(Debug)]
-enum Rule {
+pub(super) enum Rule {
     Smooth(fn(Jet, Jet) -> Jet),
     /// It switches to the larger of its arguments
     Larger,
@@ -157,7 +157,7 @@ fn logarithm(u: f64) -> Jet {
 }
 
 /// u^n. A coefficient of zero wins over an infinite power: t^1 has the second derivative 0 at t = 0.
-fn power(u: f64, n: f64) -> Jet {
+pub(super) fn power(u: f64, n: f64) -> Jet {
     let scaled = |coefficient: f64, exponent: f64| match coefficient {
         0.0 => 0.0,
         _ => coefficient * u.powf(exponent),
@@ -181,12 +181,11 @@ impl Univariate {
 
 impl Bivariate {
     fn of(&self, a: Jet, b: Jet, switches: &mut impl Switches) -> Jet {
-        let (higher, lower) = match self.rule {
+        let margin = match self.rule {
             Rule::Smooth(at) => return at(a, b),
-            Rule::Larger => (a, b),
-            Rule::Smaller => (b, a),
+            Rule::Larger => margin(a, b),
+            Rule::Smaller => margin(b, a),
         };
-        let margin = std::array::from_fn(|level| higher[level] - lower[level]);
         match switches.first(self.name, margin) {
             // a comparison must not hide what is not a number
             _ if a[0].is_nan() || b[0].is_nan() => [f64::NAN; 3],
@@ -196,8 +195,13 @@ impl Bivariate {
     }
 }
 
+/// By how much a is above b.
+fn margin(a: Jet, b: Jet) -> Jet {
+    std::array::from_fn(|level| a[level] - b[level])
+}
+
 /// f(u(t)).
-fn chain(f: impl Fn(f64) -> Jet, u: Jet) -> Jet {
+pub(super) fn chain(f: impl Fn(f64) -> Jet, u: Jet) -> Jet {
     let [value, slope, curvature] = f(u[0]);
     [value, slope * u[1], curvature * u[1] * u[1] + slope * u[2]]
 }
@@ -209,12 +213,12 @@ pub(super) trait Switches {
     fn first(&mut self, name: &'static str, margin: Jet) -> bool;
 }
 
-/// The branches that the values call for.
+/// The branches that the values call for; where both have the same value, those that the values call for right after.
 struct ByValue;
 
 impl Switches for ByValue {
-    fn first(&mut self, _: &'static str, margin: Jet) -> bool {
-        margin[0] >= 0.0
+    fn first(&mut self, _: &'static str, [value, rate, acceleration]: Jet) -> bool {
+        value > 0.0 || value == 0.0 && (rate > 0.0 || rate == 0.0 && acceleration >= 0.0)
     }
 }
 
@@ -236,6 +240,33 @@ impl Formula {
             Formula::Joined(f, pair) => {
                 let a = pair[0].at(t, switches);
                 f.of(a, pair[1].at(t, switches), switches)
+            }
+        }
+    }
+
+    /// The same formula with its switches fixed: `branches` says of each, in the order of [`Switches`], whether it is always on its
+    /// first branch or always on the other one, and of the rest nothing.
+    pub fn settled(self, branches: &mut impl Iterator<Item = Option<bool>>) -> Formula {
+        match self {
+            Formula::Number(_) | Formula::Time => self,
+            Formula::Power(u, n) => Formula::raised(u.settled(branches), Formula::Number(n)),
+            Formula::Applied(f, u) => {
+                let u = u.settled(branches);
+                match f.at.is_none().then(|| branches.next().flatten()).flatten() {
+                    Some(true) => u,
+                    Some(false) => Formula::joined(&PRODUCT, Formula::Number(-1.0), u),
+                    None => Formula::applied(f, u),
+                }
+            }
+            Formula::Joined(f, pair) => {
+                let [a, b] = *pair;
+                let (a, b) = (a.settled(branches), b.settled(branches));
+                let switches = !matches!(f.rule, Rule::Smooth(_));
+                match switches.then(|| branches.next().flatten()).flatten() {
+                    Some(true) => a,
+                    Some(false) => b,
+                    None => Formula::joined(f, a, b),
+                }
             }
         }
     }

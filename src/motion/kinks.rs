@@ -1,18 +1,21 @@
 //! Kinks of formulas: instants at which `abs`, `min` or `max` switches and the value of the formula or one of its first two derivatives
 //! jumps.
 //!
-//! At equally spaced times the branch of every such function is known. Between two of these times a function switches if its
-//! branches there differ, or if its margin has an extreme in between on the other side of zero. The instant is then bisected to the
-//! last digit, and the formula is evaluated there on the branches of either side. So every switching is found but those of a
-//! function that switches there and back between neighbouring times and whose margin has more than one extreme between them.
+//! A function switches where its margin, by which one branch leads, changes its sign; a margin within its rounding has no sign. The signs
+//! are compared at many times, at the extremes of the margins and at the instants at which others switch. Each instant is bisected to
+//! the last digit. Functions whose margins are zero at the same instant switch together: there the formula is evaluated on the branches
+//! of before and on those of after, with what is within its rounding taken as zero, so that the two values are the limits from either
+//! side. So every switching is found but those of a function that switches there and back between neighbouring times and whose margin
+//! has more than one extreme between them.
 
-use super::expression::{Expression, Jet, Switches};
+use super::expression::{Expression, Jet};
+use super::rounded::Rounded;
 
-/// Number of equal intervals at whose ends the branches are compared.
-const INTERVALS: u32 = 10_000;
+/// Number of equal intervals at whose ends the signs are compared. It is irrational, so that no periodic margin has its roots there.
+const INTERVALS: f64 = 10_000.618_033_988_749;
 
-/// Switchings without a jump that are followed from one time to the next.
-const FOLLOWED: usize = 4;
+/// Halvings of the first and of the last interval, at whose ends margins often are zero: down to the last digit.
+const HALVINGS: u32 = f64::MANTISSA_DIGITS;
 
 /// A jump below this part of the largest value of its level is rounding, of a formula in which not more than half of the digits
 /// cancel.
@@ -27,142 +30,275 @@ pub(super) struct Kink {
     pub t: f64,
     /// What jumps: 0 the value, 1 its rate, 2 its acceleration.
     pub level: usize,
-    /// By how much.
+    /// By how much; infinite where one of the sides is.
     pub jump: f64,
 }
 
-/// A function that switches, at some time.
+/// The margin of a function that switches, at some time.
 #[derive(Debug, Clone, Copy)]
 struct Margin {
     name: &'static str,
-    /// True on its first branch.
-    first: bool,
+    value: f64,
     rate: f64,
 }
 
-/// Notes the branches that the values call for.
-#[derive(Default)]
-struct Seen(Vec<Margin>);
-
-impl Switches for Seen {
-    fn first(&mut self, name: &'static str, margin: Jet) -> bool {
-        let [value, rate, _] = margin;
-        let first = value >= 0.0;
-        self.0.push(Margin { name, first, rate });
-        first
+impl Margin {
+    /// True where the first branch leads, false where the other one does, none within rounding.
+    fn sign(&self) -> Option<bool> {
+        match self.value {
+            x if x > 0.0 => Some(true),
+            x if x < 0.0 => Some(false),
+            _ => None,
+        }
     }
 }
 
-/// Keeps to given branches.
-struct Kept<'a>(std::slice::Iter<'a, Margin>);
+/// A function that switches.
+#[derive(Debug, Clone, Copy)]
+struct Switching {
+    /// Which, in the order of the formula.
+    function: usize,
+    /// When \[s\]: between the last time before and the first time after at which its margin has a sign.
+    within: [f64; 2],
+    /// True where it switches to its first branch.
+    to_first: bool,
+}
 
-impl Switches for Kept<'_> {
-    fn first(&mut self, _: &'static str, _: Jet) -> bool {
-        self.0.next().is_some_and(|margin| margin.first)
-    }
+/// What a function does during the motion.
+#[derive(Debug, Clone, Copy, Default)]
+struct Course {
+    /// The first sign of its margin.
+    first: Option<bool>,
+    /// The last sign, and when it was seen.
+    last: Option<(f64, bool)>,
+    /// True where it switches, or has no value to tell.
+    is_open: bool,
 }
 
 impl Expression {
-    /// The first kink from t = 0 to `duration`; of the levels that jump there the lowest.
-    pub(super) fn kink(&self, duration: f64) -> Option<Kink> {
-        let times = (0..=INTERVALS).map(|k| duration * (f64::from(k) / f64::from(INTERVALS)));
-        let times: Vec<f64> = times.collect();
-        let mut before = self.margins(0.0);
-        if before.is_empty() {
-            return None;
+    /// The formula of a motion from t = 0 to `duration`, with every function that keeps its branch replaced by this branch: at the ends
+    /// of the motion, too, it then has the derivatives that it has within.
+    ///
+    /// # Errors
+    /// The first kink; of the levels that jump there the lowest.
+    pub(super) fn without_kinks(self, duration: f64) -> Result<Expression, Kink> {
+        let motion = Motion {
+            expression: &self,
+            duration,
+        };
+        let names: Vec<_> = motion.margins(0.0).iter().map(|m| m.name).collect();
+        if names.is_empty() {
+            return Ok(self);
         }
-        let mut sizes = [0.0_f64; 3];
-        for t in &times {
-            let jet = self.at(*t);
-            sizes = std::array::from_fn(|level| sizes[level].max(jet[level].abs()));
+        let (courses, switchings) = motion.follow(names.len());
+        if let Some(kink) = motion.first_kink(&names, &courses, switchings) {
+            return Err(kink);
         }
-        // a jump also is rounding where it changes the level below by rounding within the duration
-        for level in 1..3 {
-            sizes[level] = sizes[level].max(sizes[level - 1] / duration);
+        let keeps = |course: &Course| course.first.filter(|_| !course.is_open);
+        let formula = self.formula.settled(&mut courses.iter().map(keeps));
+        Ok(Expression { formula })
+    }
+}
+
+/// A formula from t = 0 to the end of a motion.
+struct Motion<'e> {
+    expression: &'e Expression,
+    duration: f64,
+}
+
+impl Motion<'_> {
+    /// A time, which is known to the last digit of the duration.
+    fn time(&self, t: f64) -> Rounded {
+        Rounded::new([t, 1.0, 0.0], f64::EPSILON * self.duration)
+    }
+
+    /// The margins of all functions that switch, on the branches that the values call for.
+    fn margins(&self, t: f64) -> Vec<Margin> {
+        let mut margins = Vec::new();
+        self.expression
+            .formula
+            .rounded(self.time(t), &mut |name, margin| {
+                let [value, rate, _] = margin.jet;
+                margins.push(Margin { name, value, rate });
+                value >= 0.0
+            });
+        margins
+    }
+
+    /// Value and derivatives on given branches.
+    fn on(&self, branches: &[bool], t: f64) -> Jet {
+        let mut branches = branches.iter();
+        let mut first = |_, _| *branches.next().expect("every function has a branch");
+        self.expression
+            .formula
+            .rounded(self.time(t), &mut first)
+            .jet
+    }
+
+    /// Times that share no period with a formula, closer to one another at both ends.
+    fn times(&self) -> Vec<f64> {
+        let interval = self.duration / INTERVALS;
+        let equal = (1..=INTERVALS as u32).map(|k| interval * f64::from(k));
+        let halves = || (1..=HALVINGS).map(|k| interval * 0.5_f64.powi(k as i32));
+        let mut times: Vec<f64> = equal.chain(halves()).collect();
+        times.extend(halves().map(|before| self.duration - before));
+        times.extend([0.0, self.duration]);
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        times
+    }
+
+    /// The course of each function, and all switchings.
+    fn follow(&self, count: usize) -> (Vec<Course>, Vec<Switching>) {
+        let mut courses = vec![Course::default(); count];
+        let mut switchings = Vec::new();
+        let mut before: Option<(f64, Vec<Margin>)> = None;
+        for t in self.times() {
+            let margins = self.margins(t);
+            let mut stops = match &before {
+                Some((from, first)) => self.stops([*from, t], [first, &margins]),
+                None => Vec::new(),
+            };
+            stops.sort_by(f64::total_cmp);
+            for stop in stops {
+                self.visit(stop, &self.margins(stop), &mut courses, &mut switchings);
+            }
+            self.visit(t, &margins, &mut courses, &mut switchings);
+            before = Some((t, margins));
         }
-        for pair in times.windows(2) {
-            let after = self.margins(pair[1]);
-            let between = self.extremes([pair[0], pair[1]], [&before, &after]);
-            let ends = between.into_iter().chain([pair[1]]);
-            let mut from = pair[0];
-            for to in ends {
-                if let Some(kink) = self.kink_between(from, to, sizes) {
-                    return Some(kink);
+        (courses, switchings)
+    }
+
+    /// Takes down the signs of the margins at a time.
+    fn visit(
+        &self,
+        t: f64,
+        margins: &[Margin],
+        courses: &mut [Course],
+        switchings: &mut Vec<Switching>,
+    ) {
+        for (k, (margin, course)) in margins.iter().zip(courses).enumerate() {
+            course.is_open |= margin.value.is_nan();
+            let Some(sign) = margin.sign() else { continue };
+            match course.last {
+                Some((from, last)) if last != sign => {
+                    course.is_open = true;
+                    switchings.push(self.switching(k, [from, t], sign));
                 }
-                from = to;
+                _ => {}
+            }
+            course.first.get_or_insert(sign);
+            course.last = Some((t, sign));
+        }
+    }
+
+    /// The switching of a function between two times at which its margin has different signs.
+    fn switching(&self, function: usize, [from, to]: [f64; 2], to_first: bool) -> Switching {
+        let sign = |t: f64| self.margins(t)[function].sign();
+        let [before, _] = bisected([from, to], |t| sign(t) == Some(!to_first));
+        let [_, after] = bisected([before, to], |t| sign(t) != Some(to_first));
+        Switching {
+            function,
+            within: [before, after],
+            to_first,
+        }
+    }
+
+    /// Instants between two times at which a function may have another branch than at both: at the extreme of its margin, or where another
+    /// one switches.
+    fn stops(&self, times: [f64; 2], [before, after]: [&[Margin]; 2]) -> Vec<f64> {
+        let mut stops = Vec::new();
+        for (k, (a, b)) in before.iter().zip(after).enumerate() {
+            let (Some(first), Some(last)) = (a.sign(), b.sign()) else {
+                continue;
+            };
+            if first != last {
+                let [before, after] = self.switching(k, times, last).within;
+                stops.push(before.midpoint(after));
+                continue;
+            }
+            let nears = |rate: f64| if first { rate < 0.0 } else { rate > 0.0 };
+            if nears(a.rate) && nears(-b.rate) {
+                let [_, extreme] = bisected(times, |t| nears(self.margins(t)[k].rate));
+                stops.push(extreme);
+            }
+        }
+        stops
+    }
+
+    /// The first kink among the switchings.
+    fn first_kink(
+        &self,
+        names: &[&'static str],
+        courses: &[Course],
+        mut switchings: Vec<Switching>,
+    ) -> Option<Kink> {
+        let sizes = self.sizes();
+        let first = courses.iter().map(|course| course.first.unwrap_or(true));
+        let mut before: Vec<bool> = first.collect();
+        switchings.sort_by(|a, b| a.within[1].total_cmp(&b.within[1]));
+        while let Some(first) = switchings.first() {
+            let [_, end] = first.within;
+            let (now, later): (Vec<_>, Vec<_>) =
+                (switchings.into_iter()).partition(|switching| switching.within[0] < end);
+            switchings = later;
+            let mut after = before.clone();
+            for switching in &now {
+                after[switching.function] = switching.to_first;
+            }
+            let begin = now.iter().fold(0.0_f64, |t, s| t.max(s.within[0]));
+            if let Some((level, jump)) = self.jump([&before, &after], [begin, end], sizes) {
+                let function = now.iter().map(|s| s.function).min()?;
+                return Some(Kink {
+                    name: names[function],
+                    t: begin.midpoint(end),
+                    level,
+                    jump,
+                });
             }
             before = after;
         }
         None
     }
 
-    fn margins(&self, t: f64) -> Vec<Margin> {
-        let mut seen = Seen::default();
-        self.formula.at(t, &mut seen);
-        seen.0
-    }
-
-    /// Instants between two times at which a margin that has the same sign at both has another one, at its extreme.
-    fn extremes(&self, times: [f64; 2], [before, after]: [&[Margin]; 2]) -> Vec<f64> {
-        let mut found = Vec::new();
-        for (k, (a, b)) in before.iter().zip(after).enumerate() {
-            let nears = |at: &Margin, rate: f64| if at.first { rate < 0.0 } else { rate > 0.0 };
-            if a.first != b.first || !nears(a, a.rate) || !nears(b, -b.rate) {
-                continue;
-            }
-            let falls_still = |t: f64| nears(a, self.margins(t)[k].rate);
-            let [_, extreme] = bisected(times, falls_still);
-            if self.margins(extreme)[k].first != a.first {
-                found.push(extreme);
+    /// The largest value and derivatives.
+    fn sizes(&self) -> Jet {
+        let mut sizes = [0.0_f64; 3];
+        for t in self.times() {
+            let jet = self.expression.at(t);
+            for (size, x) in sizes.iter_mut().zip(jet).filter(|(_, x)| x.is_finite()) {
+                *size = size.max(x.abs());
             }
         }
-        found.sort_by(f64::total_cmp);
-        found
+        // a jump also is rounding where it changes the level below by rounding within the duration
+        for level in 1..3 {
+            sizes[level] = sizes[level].max(sizes[level - 1] / self.duration);
+        }
+        sizes
     }
 
-    /// The first kink between two times, of the branches that they and the times between them have.
-    fn kink_between(&self, from: f64, to: f64, sizes: [f64; 3]) -> Option<Kink> {
-        let last = self.margins(to);
-        let same = |a: &[Margin], b: &[Margin]| a.iter().zip(b).all(|(a, b)| a.first == b.first);
-        let mut at = from;
-        for _ in 0..FOLLOWED {
-            let here = self.margins(at);
-            if same(&here, &last) {
-                break;
+    /// The lowest level in which the formula on some branches differs from that on others at an instant between two times, and by how
+    /// much.
+    fn jump(&self, sides: [&[bool]; 2], within: [f64; 2], sizes: Jet) -> Option<(usize, f64)> {
+        let at = |t: f64| sides.map(|branches| self.on(branches, t));
+        let [before, after] = at(within[0].midpoint(within[1]));
+        for (level, size) in sizes.into_iter().enumerate() {
+            let (a, b) = (before[level], after[level]);
+            if a.is_infinite() || b.is_infinite() {
+                return Some((level, f64::INFINITY));
             }
-            // branches that agree at both ends are the same curve: of equal arguments rounding decides which is larger
-            let agrees = |t: f64| self.jump([&here, &last], t, sizes).is_none();
-            if agrees(from) && agrees(to) {
-                break;
+            let jump = (b - a).abs();
+            // what changes its sign between the two times is zero at some instant between them; what is not a number is no rounding
+            let differences = within.map(|t| {
+                let [before, after] = at(t);
+                after[level] - before[level]
+            });
+            let vanishes = differences[0] * differences[1] < 0.0;
+            if !(jump <= ROUNDING * size || vanishes) {
+                return Some((level, jump));
             }
-            let [_, switched] = bisected([at, to], |t| same(&here, &self.margins(t)));
-            let there = self.margins(switched);
-            if let Some((level, jump)) = self.jump([&here, &there], switched, sizes) {
-                let mut pairs = here.iter().zip(&there);
-                let (switch, _) = pairs.find(|(a, b)| a.first != b.first)?;
-                return Some(Kink {
-                    name: switch.name,
-                    t: switched,
-                    level,
-                    jump,
-                });
-            }
-            at = switched;
         }
         None
-    }
-
-    /// The lowest level in which the formula on some branches differs at time t from that on others, and by how much.
-    fn jump(&self, sides: [&[Margin]; 2], t: f64, sizes: [f64; 3]) -> Option<(usize, f64)> {
-        let [before, after] = sides.map(|branches| self.formula.at(t, &mut Kept(branches.iter())));
-        let jumps = (0..3).map(|level| (level, (after[level] - before[level]).abs()));
-        let is_rounding = |&(level, jump): &(usize, f64)| {
-            // in the last digit of the instant a level changes by so much
-            let next = [before, after].map(|jet| jet.get(level + 1).map_or(0.0, |x| x.abs()));
-            jump <= f64::EPSILON * t * (next[0] + next[1]) + ROUNDING * sizes[level]
-        };
-        // what is not a number is no rounding
-        jumps.into_iter().find(|jump| !is_rounding(jump))
     }
 }
 
@@ -184,12 +320,15 @@ fn bisected([mut from, mut to]: [f64; 2], holds: impl Fn(f64) -> bool) -> [f64; 
 mod tests {
     use super::super::expression::tests::read;
     use super::*;
+    use std::f64::consts::PI;
+
+    fn kink(text: &str) -> Option<Kink> {
+        read(text).without_kinks(2.0).err()
+    }
 
     #[track_caller]
     fn jumps(text: &str, expected: (&str, f64, usize, f64)) {
-        let kink = read(text)
-            .kink(2.0)
-            .unwrap_or_else(|| panic!("{text} has no kink"));
+        let kink = kink(text).unwrap_or_else(|| panic!("{text} has no kink"));
         assert_eq!((kink.name, kink.level), (expected.0, expected.2), "{text}");
         // instants are roots to rounding, and jumps rounding of numbers below 100
         assert!((kink.t - expected.1).abs() < 1e-14, "{text}: {kink:?}");
@@ -214,10 +353,76 @@ mod tests {
         jumps("max(abs(t - 1), 0.5)", ("max", 0.5, 1, 1.0));
     }
 
+    /// At the first instant within the motion; those at its start and end, and beyond, are none.
+    #[test]
+    fn kinks_are_those_within_the_motion() {
+        jumps("max(0, sin(3 * t))", ("max", PI / 3.0, 1, 3.0));
+        jumps("min(0, sin(3 * t))", ("min", PI / 3.0, 1, 3.0));
+        jumps("abs(t * (t - 1))", ("abs", 1.0, 1, 2.0));
+        jumps("min(1, max(0, t))", ("min", 1.0, 1, 1.0));
+        jumps("max(0, t * (1e-5 - t))", ("max", 1e-5, 1, 1e-5));
+        jumps("max(0, (2 - t) * (1.99999 - t))", ("max", 1.99999, 1, 1e-5));
+        // a tent between two of the times, and one whose roots are at equal times
+        jumps(
+            "max(0, 1e-9 - abs(t - 1.00003))",
+            ("max", 1.00003 - 1e-9, 1, 1.0),
+        );
+        jumps("max(0, sin(5000 * pi * t))", ("max", 2e-4, 1, 5000.0 * PI));
+    }
+
+    /// Of the limits from either side.
+    #[test]
+    fn functions_that_switch_together_are_compared_together() {
+        jumps("abs(t - 1) + abs(1 - t)", ("abs", 1.0, 1, 4.0));
+        jumps("max(t, 1) + 2 * min(t, 1)", ("max", 1.0, 1, 1.0));
+        jumps(
+            "max(0, t - 1) + max(0, 1 - t) - 3 * abs(t - 1)",
+            ("max", 1.0, 1, 4.0),
+        );
+        // 1.5 u^0.5 at the instant, and nothing at one before
+        for text in [
+            "max(0, t - 1)^1.5",
+            "abs(t - 1)^1.5",
+            "3 + max(0, sin(3 * t))^1.5",
+        ] {
+            let kink = kink(text).expect(text);
+            assert_eq!((kink.level, kink.jump), (2, f64::INFINITY), "{text}");
+        }
+        for text in ["sqrt(abs(t - 1))", "sqrt(max(0, t - 1))"] {
+            let kink = kink(text).expect(text);
+            assert_eq!((kink.level, kink.jump), (1, f64::INFINITY), "{text}");
+        }
+    }
+
+    /// On the branch that a function keeps, a motion has the derivatives of its other times at its ends, too.
+    #[test]
+    fn functions_that_keep_their_branch_are_this_branch() {
+        for (text, same) in [
+            ("max(0, t)", "t"),
+            ("min(0, t)", "0 * t"),
+            ("max(0, t)^2", "t^2"),
+            ("max(0, -t)", "0 * t"),
+            ("abs(-t)", "t"),
+            ("abs(t - 2)", "2 - t"),
+            ("max(0, t - 2) + min(0, 2 - t)", "0 * t"),
+            ("min(t, 2)", "t"),
+            ("max(0, 1 - cos(t))", "1 - cos(t)"),
+            ("min(0, 1 - cos(t))", "0 * t"),
+            ("max(t, 5) + abs(t + 1)", "6 + t"),
+            ("max(0, t - 5)^1.5", "0 * t"),
+        ] {
+            let motion = read(text).without_kinks(2.0);
+            let motion = motion.unwrap_or_else(|kink| panic!("{text}: {kink:?}"));
+            for t in [0.0, 0.7, 2.0] {
+                assert_eq!(motion.at(t), read(same).at(t), "{text} at {t}");
+            }
+        }
+    }
+
     /// A branch has no value at the instant.
     #[test]
     fn what_is_not_a_number_is_a_kink() {
-        let kink = read("abs(t - 0.5) / (t - 0.5)").kink(2.0);
+        let kink = kink("abs(t - 0.5) / (t - 0.5)");
         let kink = kink.expect("its sign jumps");
         assert_eq!((kink.name, kink.t, kink.level), ("abs", 0.5, 0));
         assert!(kink.jump.is_nan());
@@ -237,20 +442,41 @@ mod tests {
             "max(sin(t)^2 + cos(t)^2, 1) + min(t, t)",
             "0.03 * max(sin(9 * t)^2 + cos(9 * t)^2, 1)",
             "abs(t)",
+            // u^2.5 has the second derivative 3.75 u^0.5
+            "max(0, t - 1)^2.5",
+            "min(0, 1 - t)^2 * max(0, t - 1)",
+            "100 + max(0, t - 1)^2.5",
+            "max(0, t - 1)^2.2",
+            "abs(t - 1)^2.5",
+            "max(0, sin(3 * t))^2.2",
+            // together
+            "max(t, 1) + min(t, 1)",
+            "max(t, 2 - t) + min(t, 2 - t)",
+            "abs(t - 1) - max(t - 1, 1 - t)",
+            "max(0, t - 1) - max(0, 1 - t)",
+            "abs(t - 1) * abs(1 - t)",
+            "max(0, t - 1) * max(0, 1 - t)",
+            // touched, not crossed
+            "max(0, 1 - cos(t - 1))",
+            "max(0, (t - 1)^2) + abs(t^2 - 2 * t + 1)",
+            "min(1, sin(t)) + max(-1, cos(3 * t))",
+            // of a margin that is zero for a while, and of one that is rounding for a while
+            "max(0, max(0, t - 1)^3) + max(min(t - 1, max(0, t - 1.5)^3), 0)",
+            "max(0, t^3 - 3 * t^2 + 3 * t - 1)",
         ] {
-            assert_eq!(read(text).kink(2.0), None, "{text}");
+            assert_eq!(kink(text), None, "{text}");
         }
     }
 
     /// A margin that crosses zero for a part of an interval only is found by its extreme.
     #[test]
     fn brief_switchings_are_found() {
-        let interval = 2.0 / f64::from(INTERVALS);
+        let interval = 2.0 / INTERVALS;
         for part in [0.9, 0.3, 1e-3] {
             let half = 0.5 * part * interval;
             let middle = 0.61 + 0.5 * interval;
             let text = format!("max(0, {half}^2 - (t - {middle})^2)");
-            let kink = read(&text).kink(2.0).expect(&text);
+            let kink = kink(&text).expect(&text);
             assert_eq!((kink.name, kink.level), ("max", 1));
             // the root of a difference of squares: rounding 1e-16 over its slope
             assert!(

@@ -10,6 +10,7 @@ mod monotone;
 mod parse_expression;
 mod read_function;
 mod read_path;
+mod rounded;
 mod table;
 
 pub use circle::Circle;

@@ -255,9 +255,13 @@ fn read_expression(field: &Field, purpose: Use, duration: f64) -> Result<Express
         let error = field.fault(message, "not an expression");
         error.with_help(format!("known: {known}"))
     })?;
-    let levels = match purpose {
-        Use::Motion => ["value", "rate", "acceleration"].as_slice(),
-        Use::Load => &["value"],
+    let (levels, expression) = match purpose {
+        Use::Motion => {
+            let smooth = expression.without_kinks(duration);
+            let smooth = smooth.map_err(|kink| kinked_expression(field, kink))?;
+            (["value", "rate", "acceleration"].as_slice(), smooth)
+        }
+        Use::Load => (["value"].as_slice(), expression),
     };
     for k in 0..=INTERVALS {
         let t = duration * (f64::from(k) / f64::from(INTERVALS));
@@ -271,28 +275,22 @@ fn read_expression(field: &Field, purpose: Use, duration: f64) -> Result<Express
             return Err(field.fault(message, "not finite"));
         }
     }
-    match purpose {
-        Use::Motion => refuse_kink(field, &expression, duration)?,
-        Use::Load => {}
-    }
     Ok(expression)
 }
 
-/// Refuses a motion whose value, velocity or acceleration jumps where `abs`, `min` or `max` switches.
-fn refuse_kink(field: &Field, expression: &Expression, duration: f64) -> Result<(), SceneError> {
-    let Some(Kink {
+/// The fault of a motion whose value, velocity or acceleration jumps where `abs`, `min` or `max` switches.
+fn kinked_expression(field: &Field, kink: Kink) -> SceneError {
+    let Kink {
         name,
         t,
         level,
         jump,
-    }) = expression.kink(duration)
-    else {
-        return Ok(());
-    };
+    } = kink;
     let (quantity, per) = [("value", ""), ("velocity", "/s"), ("acceleration", "/s2")][level];
-    let jump = match jump.is_nan() {
-        true => "is not a number".to_owned(),
-        false => format!("jumps by {} {}{per}", number(jump, 4), field.unit()),
+    let jump = match jump {
+        _ if jump.is_nan() => "is not a number".to_owned(),
+        f64::INFINITY => "becomes infinite".to_owned(),
+        _ => format!("jumps by {} {}{per}", number(jump, 4), field.unit()),
     };
     let message = format!(
         "`{}` has a kink where `{name}(...)` switches: at t = {} s its {quantity} {jump}",
@@ -300,9 +298,9 @@ fn refuse_kink(field: &Field, expression: &Expression, duration: f64) -> Result<
         number(t, 6),
     );
     let error = field.fault(message, "no continuous acceleration");
-    Err(error.with_help(format!(
+    error.with_help(format!(
         "a motion needs a continuous acceleration: `smooth_step(u)` rises from 0 to 1 while u does; or {MONOTONE}"
-    )))
+    ))
 }
 
 /// Rows of a table over time: times increase and cover the duration.
