@@ -12,6 +12,8 @@ fn faults_of_the_text_itself() {
         ("length = 0.245", "length = 0.245\nlength = 0.3", "the key `length` is given twice", "length"),
         ("[bodies.link1]", "[bodies.crank1]", "the key `crank1` is given twice", "crank1"),
         ("title = \"3-RRR, case 4 with friction in B and C\"", "title = \"3-RRR", "not valid TOML", "title = \"3-RRR"),
+        ("length = 0.245", "length\u{a0}= 0.245", "this no-break space (U+00A0) is not that of a keyboard: write a space", "\u{a0}"),
+        ("title = \"3-RRR, case 4 with friction in B and C\"", "title = “3-RRR”", "this quotation mark (U+201C) is not that of a keyboard: write \"", "“"),
     ]);
     check(&fault("", &[]), "empty", "the scene is empty", "");
     check(

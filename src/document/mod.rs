@@ -24,4 +24,4 @@ pub use names::derived;
 pub(crate) use names::{RESERVED, check_name, named};
 pub(crate) use overrides::apply as apply_overrides;
 pub(crate) use tree::document;
-pub(crate) use written::{decimal_comma, quantity};
+pub(crate) use written::{decimal_comma, lookalike, quantity};

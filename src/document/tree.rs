@@ -150,7 +150,9 @@ impl TextPlace<'_> {
     fn syntax(&self, error: &Error) -> SceneError {
         let range = self.visible(error.span().unwrap_or(0..0));
         let written = self.sources.written(self.span(range.clone()));
-        if let Some((place, message)) = self.meant(range.start) {
+        let said = self.in_line(range.start, |line| written::meant(line, self.offset == 0));
+        let said = said.or_else(|| self.in_line(range.start, written::first_lookalike));
+        if let Some((place, message)) = said {
             return self.error(place, &message, "here");
         }
         let (message, label) = match error.message() {
@@ -163,12 +165,16 @@ impl TextPlace<'_> {
         self.error(range, &message, label)
     }
 
-    /// What is meant by a value in the line of this byte that is no TOML, and where it stands.
-    fn meant(&self, byte: usize) -> Option<(Range<usize>, String)> {
+    /// What is said of the line of this byte, and where.
+    fn in_line(
+        &self,
+        byte: usize,
+        said: impl Fn(&str) -> Option<(Range<usize>, String)>,
+    ) -> Option<(Range<usize>, String)> {
         let text = &self.sources.text(self.source)[self.offset..];
         let start = text.get(..byte)?.rfind('\n').map_or(0, |n| n + 1);
         let line = text[start..].lines().next()?;
-        let (place, message) = written::meant(line, self.offset == 0)?;
+        let (place, message) = said(line)?;
         Some((start + place.start..start + place.end, message))
     }
 

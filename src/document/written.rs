@@ -50,6 +50,57 @@ const UNITS: [(&str, [f64; 2], &str); 40] = [
     ("degrees", [PI, 180.0], "rad"),
 ];
 
+/// Quotation marks of printed text.
+const PRINTED_QUOTES: [char; 9] = ['“', '”', '„', '«', '»', '‘', '’', '‚', '´'];
+
+/// Characters that editors and web pages put in place of those of a keyboard: what they are called, and what to do.
+const LOOKALIKES: [(&[char], &str, &str); 6] = [
+    (&['\u{2212}'], "minus sign", "write -"),
+    (
+        &['\u{2010}', '\u{2011}', '\u{2013}', '\u{2014}'],
+        "dash",
+        "write -",
+    ),
+    (&['\u{a0}', '\u{202f}'], "no-break space", "write a space"),
+    (
+        &['\u{200b}', '\u{feff}'],
+        "invisible character",
+        "delete it",
+    ),
+    (&['×', '·', '⋅', '∙'], "multiplication sign", "write *"),
+    (&PRINTED_QUOTES, "quotation mark", "write \""),
+];
+
+/// What to type in place of a character that only looks like one of a keyboard.
+pub(crate) fn lookalike(c: char) -> Option<String> {
+    let (_, name, advice) = LOOKALIKES.iter().find(|(these, ..)| these.contains(&c))?;
+    let code = u32::from(c);
+    Some(format!(
+        "this {name} (U+{code:04X}) is not that of a keyboard: {advice}"
+    ))
+}
+
+/// The first such character of a line outside of texts and comments, or the quotation mark with which a text seems to end.
+pub(super) fn first_lookalike(line: &str) -> Option<(Range<usize>, String)> {
+    let (mut quote, mut end) = (None, None);
+    for (i, c) in line.char_indices() {
+        let found = || lookalike(c).map(|said| (i..i + c.len_utf8(), said));
+        match (quote, c) {
+            (Some(open), _) if open == c => (quote, end) = (None, None),
+            (Some(_), c) if PRINTED_QUOTES.contains(&c) => end = end.or_else(found),
+            (Some(_), _) => {}
+            (None, '"' | '\'') => quote = Some(c),
+            (None, '#') => return None,
+            (None, _) => {
+                if let Some(found) = found() {
+                    return Some(found);
+                }
+            }
+        }
+    }
+    end
+}
+
 /// What is meant by the first value of a line that is no TOML, and where it stands in the line. `keyed` is false where the line is
 /// a value alone.
 pub(super) fn meant(line: &str, keyed: bool) -> Option<(Range<usize>, String)> {
@@ -305,6 +356,34 @@ mod tests {
             ),
         ] {
             assert_eq!(said(line), wanted);
+        }
+    }
+
+    #[test]
+    fn characters_of_no_keyboard_are_named() {
+        for (line, wanted) in [
+            (
+                "a\u{a0}= 1",
+                "\u{a0}: this no-break space (U+00A0) is not that of a keyboard: write a space",
+            ),
+            (
+                "a = “b”",
+                "“: this quotation mark (U+201C) is not that of a keyboard: write \"",
+            ),
+            (
+                "a = \"b”",
+                "”: this quotation mark (U+201D) is not that of a keyboard: write \"",
+            ),
+            (
+                "a = [\"–\", –1]",
+                "–: this dash (U+2013) is not that of a keyboard: write -",
+            ),
+            ("a = \"b – c\" # “", ""),
+            ("a = \"b – c", ""),
+        ] {
+            let said = first_lookalike(line);
+            let said = said.map(|(at, said)| format!("{}: {said}", &line[at]));
+            assert_eq!(said.unwrap_or_default(), wanted, "{line}");
         }
     }
 

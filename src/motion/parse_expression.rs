@@ -4,7 +4,7 @@
 use super::expression::{
     BIVARIATE, Bivariate, DIFFERENCE, Expression, Formula, PRODUCT, QUOTIENT, SUM, UNIVARIATE,
 };
-use crate::document::{decimal_comma, did_you_mean, quantity};
+use crate::document::{decimal_comma, did_you_mean, lookalike, quantity};
 use winnow::ascii::{digit0, digit1, multispace0};
 use winnow::combinator::{
     Infix, Prefix, alt, cut_err, delimited, dispatch, empty, expression, fail, opt, peek, preceded,
@@ -30,7 +30,7 @@ impl Expression {
             let (read, rest) = text.split_at(error.offset());
             match error.inner().cause() {
                 Some(fault) => fault.to_string(),
-                None => misplaced(read, rest.trim_start()),
+                None => misplaced(read, rest),
             }
         })?;
         Ok(Expression { formula })
@@ -43,10 +43,14 @@ const SHOWN: usize = 20;
 /// What is wrong between the part of a formula that can be read and the rest.
 fn misplaced(read: &str, rest: &str) -> String {
     let is_open = read.matches('(').count() > read.matches(')').count();
-    let rest = match rest.char_indices().nth(SHOWN) {
-        Some((end, _)) => format!("{} ...", &rest[..end]),
-        None => rest.to_owned(),
+    let typed = rest.trim_start_matches(|c: char| c.is_whitespace() && lookalike(c).is_none());
+    let rest = match typed.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{} ...", &typed[..end]),
+        None => typed.to_owned(),
     };
+    if let Some(said) = typed.chars().next().and_then(lookalike) {
+        return format!("{said}, in `{rest}`");
+    }
     if let Some(said) = comma(read, &rest) {
         return said;
     }
@@ -277,7 +281,19 @@ mod tests {
             ("atan2(1, 2 +)", "an operand is missing before `)`"),
             ("t) + 1", "no `(` is open before `) + 1`"),
             ("sin(t; 2)", "`; 2)` means nothing there"),
-            ("2 \u{b7} t", "`\u{b7} t` means nothing there"),
+            (
+                "2 \u{b7} t",
+                "this multiplication sign (U+00B7) is not that of a keyboard: write *, in `\u{b7} t`",
+            ),
+            (
+                "1e3*(t\u{2212}0.1)",
+                "this minus sign (U+2212) is not that of a keyboard: write -, in `\u{2212}0.1)`",
+            ),
+            (
+                "2 *\u{a0}t",
+                "this no-break space (U+00A0) is not that of a keyboard: write a space, in `\u{a0}t`",
+            ),
+            ("t ? 2", "`? 2` means nothing there"),
             (". + t", "`. + t` means nothing there"),
             (
                 "t 34567890123456789012345",
