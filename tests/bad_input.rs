@@ -293,6 +293,23 @@ fn functions_of_time() {
     );
 }
 
+/// What is written without quotes, or with characters of no keyboard.
+#[test]
+fn advice_says_what_to_type() {
+    for (change, advice) in [
+        (
+            "initial.equilibrium=\"true\"",
+            "write it without quotes: true",
+        ),
+        ("output.motion=\"false\"", "write it without quotes: false"),
+        ("integrator.step=\"1e-6\"", "write it without quotes: 1e-6"),
+    ] {
+        let fault = fault(CASE4, &[change]);
+        let said = fault.advice().unwrap_or_default();
+        assert!(said.contains(advice), "{change}: {fault}: {said}");
+    }
+}
+
 #[test]
 fn combinations_that_make_no_sense() {
     let circle = "{ type = \"circle\", center = [0.0, 0.0], radius = 0.1, frequency = 1.0, phase = 0.0, theta = 0.0 }";

@@ -128,7 +128,17 @@ impl<'a> Field<'a> {
     pub fn boolean(&self) -> Result<bool, SceneError> {
         match self.node.value {
             Value::Boolean(x) => Ok(x),
-            _ => Err(self.wrong_type("true or false")),
+            _ => Err(self.without_quotes(self.wrong_type("true or false"))),
+        }
+    }
+
+    /// A fault of a value that may be `true` or `false`: of the same word in quotes, with how it is written.
+    fn without_quotes(&self, error: SceneError) -> SceneError {
+        match &self.node.value {
+            Value::Text(text) if text.parse::<bool>().is_ok() => {
+                error.with_help(format!("write it without quotes: {text}"))
+            }
+            _ => error,
         }
     }
 
@@ -142,7 +152,8 @@ impl<'a> Field<'a> {
             Value::Text(_) => {
                 let places = words.iter().enumerate();
                 let places: Vec<_> = places.map(|(i, word)| (*word, i)).collect();
-                Ok(Err(self.choice(&places)?))
+                let place = self.choice(&places);
+                place.map(Err).map_err(|error| self.without_quotes(error))
             }
             _ => Err(self.wrong_type(&format!("true, false or {}", quoted(words.iter().copied())))),
         }
