@@ -228,6 +228,48 @@ fn scenes_of_the_project_are_plausible() {
     assert_eq!(told, Vec::<String>::new());
 }
 
+/// Of an expression the value at the start; of a table rows that all are whole numbers of halves.
+#[test]
+fn angles_of_expressions_and_tables_are_judged() {
+    let told = |angle: &str| {
+        let text = format!(
+            "format = 1\n\
+             title = \"a crank\"\n\
+             simulation = {{ duration = 0.1 }}\n\
+             integrator = {{ method = \"bathe\", step = 1e-3 }}\n\
+             output = {{ interval = 1e-2, channels = [\"*\"] }}\n\
+             bodies.ground = {{ type = \"ground\", points.O = [0.1, 0.0] }}\n\
+             bodies.crank = {{ type = \"rigid_body\", mass = 1.0, inertia = 1e-3, points = {{ o = [0.0, 0.0], tip = [0.2, 0.0] }} }}\n\
+             joints.O = {{ type = \"revolute\", model = \"ideal\", bearing = \"ground.O\", journal = \"crank.o\" }}\n\
+             drives.motor = {{ type = \"angle\", joint = \"O\", angle = {angle} }}\n"
+        );
+        Scene::parse("scene.toml", &text, &[])
+            .unwrap()
+            .implausible()
+    };
+    let table = |shape: &str, rows: &str| {
+        format!("{{ type = \"table\", shape = \"{shape}\", rows = {rows} }}")
+    };
+    let asked = "drives.motor.angle is 90 rad, 14.3 turns: are these degrees? Angles are in radians, and 90 degrees are 1.5708 rad";
+    for angle in [
+        "90",
+        "\"90 + 30*t\"",
+        "\"90 * cos(2*t)\"",
+        &table("natural", "[[0, 0], [0.03, 90], [0.1, 22.5]]"),
+        &table("monotone", "[[0, 0], [0.03, 4.5], [0.1, 90]]"),
+    ] {
+        assert_eq!(told(angle), [asked], "{angle}");
+    }
+    for angle in [
+        "\"6 + 30*t\"",
+        "\"30*pi + 30*t\"",
+        &table("natural", "[[0, 0], [0.03, 90], [0.1, 22.6]]"),
+        &table("monotone", "[[0, 0], [0.03, 4.5], [0.1, 6]]"),
+    ] {
+        assert_eq!(told(angle), Vec::<String>::new(), "{angle}");
+    }
+}
+
 /// A drive whose angle would fit the sketch as a number of degrees: the error says so.
 #[test]
 fn a_drive_that_contradicts_the_sketch_in_degrees_is_asked() {

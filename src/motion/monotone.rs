@@ -30,6 +30,7 @@ const STENCIL: usize = 5;
 #[derive(Debug, Clone)]
 pub struct MonotoneQuintic<const N: usize> {
     times: Vec<f64>,
+    values: Vec<[f64; N]>,
     /// Of each interval: coefficients of the powers of u = (t - t_0)/h.
     pieces: Vec<[[f64; 6]; N]>,
 }
@@ -48,7 +49,16 @@ impl<const N: usize> MonotoneQuintic<N> {
                 piece[i] = quintic(h, end(k), end(k + 1));
             }
         }
-        MonotoneQuintic { times, pieces }
+        MonotoneQuintic {
+            times,
+            values,
+            pieces,
+        }
+    }
+
+    /// The values of its rows.
+    pub(crate) fn values(&self) -> &[[f64; N]] {
+        &self.values
     }
 
     /// Values, first and second derivatives at time t.

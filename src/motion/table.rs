@@ -41,6 +41,11 @@ impl<const N: usize> CubicSpline<N> {
         }
     }
 
+    /// The values of its rows.
+    pub(crate) fn values(&self) -> &[[f64; N]] {
+        &self.values
+    }
+
     /// Values, first and second derivatives at time t.
     pub fn derivatives(&self, t: f64) -> [[f64; N]; 3] {
         let k = self

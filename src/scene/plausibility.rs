@@ -271,11 +271,24 @@ fn width(link: &Link) -> f64 {
 
 /// True of more than a turn in a whole number of halves: multiples of pi are no such numbers, degrees usually are.
 fn is_in_degrees(angle: f64) -> bool {
-    angle.abs() > TAU && (2.0 * angle).fract() == 0.0
+    angle.abs() > TAU && is_halves(angle)
+}
+
+/// True of a whole number of halves.
+fn is_halves(angle: f64) -> bool {
+    (2.0 * angle).fract() == 0.0
 }
 
 /// The angles among the numbers of a function of time.
 fn typed(function: &Function) -> Vec<f64> {
+    // one row of many may be a whole number by chance
+    let all_halves = |values: &[[f64; 1]]| -> Vec<f64> {
+        let values = values.iter().map(|[value]| *value);
+        match values.clone().all(is_halves) {
+            true => values.collect(),
+            false => Vec::new(),
+        }
+    };
     match function {
         Function::Constant(value) => vec![*value],
         Function::Polynomial(coefficients) => coefficients.iter().take(1).copied().collect(),
@@ -285,9 +298,12 @@ fn typed(function: &Function) -> Vec<f64> {
         Function::Ramp(step) | Function::SmoothStep(step) => vec![step.from, step.to],
         Function::SpinUp { start, .. } => vec![*start],
         Function::Piecewise(rows) => rows.iter().map(|[_, value]| *value).collect(),
-        Function::Table(_)
-        | Function::MonotoneTable(_)
-        | Function::Expression(_)
-        | Function::Own(_) => Vec::new(),
+        Function::Table(table) => all_halves(table.values()),
+        Function::MonotoneTable(table) => all_halves(table.values()),
+        Function::Expression(expression) => {
+            let [at_start, ..] = expression.at(0.0);
+            vec![at_start]
+        }
+        Function::Own(_) => Vec::new(),
     }
 }
