@@ -69,6 +69,8 @@ pub(super) struct ClosingLength {
     body: usize,
     /// The one closest to that of the body \[m\].
     length: f64,
+    /// What its last digit may be worth at least \[m\].
+    resolution: f64,
     /// True where the other constraints leave no other.
     is_fixed: bool,
 }
@@ -383,6 +385,7 @@ impl<'m> Closing<'m> {
             Some(ClosingLength {
                 body: placed.owners[0],
                 length: link.length + change,
+                resolution: FITS * self.size,
                 is_fixed: self.is_fixed(k, &others, &least),
             })
         };
@@ -394,6 +397,8 @@ impl<'m> Closing<'m> {
             Some(ClosingLength {
                 body,
                 length,
+                // found to the gap that is left
+                resolution: 10.0 * TRACED * self.size,
                 is_fixed,
             })
         });
@@ -564,7 +569,7 @@ impl OpenLoop<'_> {
             let (b, length) = (closing.body, closing.length);
             let own = c.bodies[b].length().unwrap_or(length);
             let wanted = match (closing.is_fixed, length > own) {
-                (true, _) => format!("{} m", numbers::number(length, 12)),
+                (true, _) => format!("{} m", resolved(length, closing.resolution)),
                 (false, true) => format!("{} m or longer", directed(length, f64::ceil)),
                 (false, false) => format!("{} m or shorter", directed(length, f64::floor)),
             };
@@ -582,6 +587,12 @@ impl OpenLoop<'_> {
     }
 }
 
+/// A length whose last digit is worth the power of ten at or below a resolution.
+fn resolved(length: f64, resolution: f64) -> String {
+    let digits = length.abs().log10().floor() - resolution.log10().floor() + 1.0;
+    numbers::number(length, digits.max(1.0) as usize)
+}
+
 /// A length with four digits, rounded in one direction: what is printed closes the loop.
 fn directed(length: f64, round: fn(f64) -> f64) -> String {
     let digit = 10_f64.powi(length.abs().log10().floor() as i32 - 3);
@@ -597,4 +608,26 @@ fn directed(length: f64, round: fn(f64) -> f64) -> String {
 
 fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No digits of the search, all of the length; rounding is less than the resolution.
+    #[test]
+    fn lengths_are_printed_to_their_resolution() {
+        for (length, resolution, printed) in [
+            (0.420_000_000_005, 5e-10, "0.42"),
+            (0.419_999_999_995, 5e-10, "0.42"),
+            (0.420_000_000_5, 5e-10, "0.4200000005"),
+            (1234.567_890_123, 2e-6, "1234.56789"),
+            (4.2e-7, 5e-16, "4.2e-7"),
+            (0.123_456_789, 5e-7, "0.1234568"),
+        ] {
+            assert_eq!(resolved(length, resolution), printed);
+            let rounding = printed.parse::<f64>().unwrap() - length;
+            assert!(rounding.abs() <= resolution, "{length}");
+        }
+    }
 }
