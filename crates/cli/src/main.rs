@@ -112,7 +112,7 @@ struct SceneArguments {
     overrides: Vec<String>,
     /// Choose the steps by their estimated error: the allowed error of positions (m) and of the energy balance (J), and the
     /// time (s) over which errors may accumulate, for example `position=1e-9,horizon=0.01`; a number without a key is the position.
-    #[arg(long, value_name = "position=M[,energy=J][,horizon=S]", value_parser = accuracy)]
+    #[arg(long, value_name = "position=M[,energy=J][,horizon=S]", value_parser = accuracy, allow_hyphen_values = true)]
     accuracy: Option<String>,
 }
 

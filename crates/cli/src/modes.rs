@@ -25,7 +25,12 @@ pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// Time of the pose (s); the scene is simulated up to it. In a static analysis the measure of the load, up to its duration.
-    #[arg(long, value_name = "T", default_value = "0")]
+    #[arg(
+        long,
+        value_name = "T",
+        default_value = "0",
+        allow_hyphen_values = true
+    )]
     at: f64,
     /// What the loose joints do.
     #[arg(long, value_name = "STATE", default_value = "as-is")]

@@ -473,6 +473,17 @@ fn usage_errors() {
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
     expect(&run(&file, &[]), 2, "is not a directory");
+    // a negative number is a value, not an option
+    expect(
+        &looselink(&["modes", SCENE, "--at", "-1"]),
+        2,
+        "--at -1 lies outside the duration",
+    );
+    expect(
+        &looselink(&["check", SCENE, "--accuracy", "-1e-3"]),
+        2,
+        "`integrator.accuracy.position` must be greater than zero, not -1e-3",
+    );
 }
 
 #[test]
