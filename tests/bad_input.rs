@@ -293,7 +293,7 @@ fn functions_of_time() {
     );
 }
 
-/// What is written without quotes, or with characters of no keyboard.
+/// Of what is written without quotes.
 #[test]
 fn advice_says_what_to_type() {
     for (change, advice) in [

@@ -128,17 +128,15 @@ impl<'a> Field<'a> {
     pub fn boolean(&self) -> Result<bool, SceneError> {
         match self.node.value {
             Value::Boolean(x) => Ok(x),
-            _ => Err(self.without_quotes(self.wrong_type("true or false"))),
-        }
-    }
-
-    /// A fault of a value that may be `true` or `false`: of the same word in quotes, with how it is written.
-    fn without_quotes(&self, error: SceneError) -> SceneError {
-        match &self.node.value {
-            Value::Text(text) if text.parse::<bool>().is_ok() => {
-                error.with_help(format!("write it without quotes: {text}"))
+            _ => {
+                let error = self.wrong_type("true or false");
+                Err(match &self.node.value {
+                    Value::Text(text) if text.parse::<bool>().is_ok() => {
+                        error.with_help(format!("write it without quotes: {text}"))
+                    }
+                    _ => error,
+                })
             }
-            _ => error,
         }
     }
 
@@ -153,7 +151,8 @@ impl<'a> Field<'a> {
                 let places = words.iter().enumerate();
                 let places: Vec<_> = places.map(|(i, word)| (*word, i)).collect();
                 let place = self.choice(&places);
-                place.map(Err).map_err(|error| self.without_quotes(error))
+                let also = "or true or false, without quotes";
+                place.map(Err).map_err(|error| error.with_help(also))
             }
             _ => Err(self.wrong_type(&format!("true, false or {}", quoted(words.iter().copied())))),
         }

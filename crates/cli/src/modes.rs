@@ -29,7 +29,7 @@ pub struct Arguments {
         long,
         value_name = "T",
         default_value = "0",
-        allow_hyphen_values = true
+        allow_negative_numbers = true
     )]
     at: f64,
     /// What the loose joints do.

@@ -33,16 +33,16 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", group = "what")]
     spectrum: Option<String>,
     /// With --spectrum: leave out frequencies above this one (Hz).
-    #[arg(long, value_name = "HZ", requires = "spectrum", conflicts_with_all = ["channels", "phase"], allow_hyphen_values = true)]
+    #[arg(long, value_name = "HZ", requires = "spectrum", conflicts_with_all = ["channels", "phase"], allow_negative_numbers = true)]
     max_frequency: Option<f64>,
     /// With --phase: a point at every multiple of this period (s) instead of a curve, a Poincare section.
-    #[arg(long, value_name = "PERIOD", requires = "phase", conflicts_with_all = ["channels", "spectrum"], allow_hyphen_values = true)]
+    #[arg(long, value_name = "PERIOD", requires = "phase", conflicts_with_all = ["channels", "spectrum"], allow_negative_numbers = true)]
     poincare: Option<f64>,
     /// Leave out what comes before this time (s).
-    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
     from: Option<f64>,
     /// Leave out what comes after this time (s).
-    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
     to: Option<f64>,
     /// The figure, an SVG file or, with the feature `png`, a PNG file.
     #[arg(short, long, value_name = "FILE")]

@@ -45,7 +45,7 @@ pub struct RunOptions {
     #[arg(long)]
     pub quiet: bool,
     /// Time between two checkpoints, from which `looselink resume` goes on if the program is killed.
-    #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = seconds, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = seconds, allow_negative_numbers = true)]
     checkpoint: f64,
 }
 
