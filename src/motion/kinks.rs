@@ -2,13 +2,13 @@
 //! jumps.
 //!
 //! A function switches where its margin, by which one branch leads, changes its sign; a margin within its rounding has no sign. The signs
-//! are compared at many times, at the extremes of the margins and at the instants at which others switch. Each instant is bisected to
-//! the last digit. Functions whose margins are zero at the same instant switch together: there the formula is evaluated on the branches
+//! are compared at many times, at the extremes of the margins and at the instants at which others switch. Each instant is found to the
+//! last digit. Functions whose margins are zero at the same instant switch together: there the formula is evaluated on the branches
 //! of before and on those of after, with what is within its rounding taken as zero, so that the two values are the limits from either
 //! side. So every switching is found but those of a function that switches there and back between neighbouring times and whose margin
 //! has more than one extreme between them.
 
-use super::expression::{Expression, Jet};
+use super::expression::{Expression, Jet, Switches};
 use super::rounded::Rounded;
 
 /// Number of equal intervals at whose ends the signs are compared. It is irrational, so that no periodic margin has its roots there.
@@ -50,6 +50,17 @@ impl Margin {
             x if x < 0.0 => Some(false),
             _ => None,
         }
+    }
+}
+
+/// Notes the rates of the margins, on the branches that the values call for.
+#[derive(Default)]
+struct Rates(Vec<f64>);
+
+impl Switches for Rates {
+    fn first(&mut self, _: &'static str, [value, rate, _]: Jet) -> bool {
+        self.0.push(rate);
+        value >= 0.0
     }
 }
 
@@ -195,13 +206,44 @@ impl Motion<'_> {
     /// The switching of a function between two times at which its margin has different signs.
     fn switching(&self, function: usize, [from, to]: [f64; 2], to_first: bool) -> Switching {
         let sign = |t: f64| self.margins(t)[function].sign();
-        let [before, _] = bisected([from, to], |t| sign(t) == Some(!to_first));
-        let [_, after] = bisected([before, to], |t| sign(t) != Some(to_first));
+        let root = self.root(function, [from, to]);
+        // outwards to where the margin has a sign
+        let steps = || (0..).map(|k| f64::EPSILON * self.duration * 2.0_f64.powi(k));
+        let mut before = steps().map(|step| from.max(root - step));
+        let mut after = steps().map(|step| to.min(root + step));
+        let before = before.find(|t| *t == from || sign(*t) == Some(!to_first));
+        let after = after.find(|t| *t == to || sign(*t) == Some(to_first));
         Switching {
             function,
-            within: [before, after],
+            within: [before.unwrap_or(from), after.unwrap_or(to)],
             to_first,
         }
+    }
+
+    /// An instant between two times at which the margin of a function has no sign, or changes it: by turns from the secant and by halving.
+    fn root(&self, function: usize, [mut from, mut to]: [f64; 2]) -> f64 {
+        let margin = |t: f64| self.margins(t)[function];
+        let (mut first, mut last) = (margin(from), margin(to));
+        for is_secant in [true, false].into_iter().cycle() {
+            let t = match is_secant {
+                true => from + (to - from) * (first.value / (first.value - last.value)),
+                false => from.midpoint(to),
+            };
+            let is_within = from < t && t < to;
+            if !is_within && !is_secant {
+                break;
+            }
+            if !is_within {
+                continue;
+            }
+            let here = margin(t);
+            match here.sign() {
+                None => return t,
+                sign if sign == first.sign() => (from, first) = (t, here),
+                _ => (to, last) = (t, here),
+            }
+        }
+        to
     }
 
     /// Instants between two times at which a function may have another branch than at both: at the extreme of its margin, or where another
@@ -213,17 +255,30 @@ impl Motion<'_> {
                 continue;
             };
             if first != last {
-                let [before, after] = self.switching(k, times, last).within;
-                stops.push(before.midpoint(after));
+                stops.push(self.root(k, times));
                 continue;
             }
             let nears = |rate: f64| if first { rate < 0.0 } else { rate > 0.0 };
             if nears(a.rate) && nears(-b.rate) {
-                let [_, extreme] = bisected(times, |t| nears(self.margins(t)[k].rate));
-                stops.push(extreme);
+                stops.push(self.extreme(k, times, nears));
             }
         }
         stops
+    }
+
+    /// The extreme of a margin between two times, up to which it nears zero. Half of the digits of its instant give all of its value.
+    fn extreme(&self, function: usize, times: [f64; 2], nears: impl Fn(f64) -> bool) -> f64 {
+        let [mut from, mut to] = times;
+        for _ in 0..HALVINGS / 2 {
+            let middle = from.midpoint(to);
+            let mut rates = Rates::default();
+            self.expression.formula.at(middle, &mut rates);
+            match nears(rates.0[function]) {
+                true => from = middle,
+                false => to = middle,
+            }
+        }
+        to
     }
 
     /// The first kink among the switchings.
@@ -236,17 +291,19 @@ impl Motion<'_> {
         let sizes = self.sizes();
         let first = courses.iter().map(|course| course.first.unwrap_or(true));
         let mut before: Vec<bool> = first.collect();
-        switchings.sort_by(|a, b| a.within[1].total_cmp(&b.within[1]));
-        while let Some(first) = switchings.first() {
-            let [_, end] = first.within;
-            let (now, later): (Vec<_>, Vec<_>) =
-                (switchings.into_iter()).partition(|switching| switching.within[0] < end);
-            switchings = later;
+        switchings.sort_by(|a, b| a.within[0].total_cmp(&b.within[0]));
+        let mut switchings = switchings.into_iter().peekable();
+        while let Some(first) = switchings.next() {
+            let [mut begin, mut end] = first.within;
+            let mut now = vec![first];
+            while let Some(next) = switchings.next_if(|next| next.within[0] < end) {
+                (begin, end) = (next.within[0], end.min(next.within[1]));
+                now.push(next);
+            }
             let mut after = before.clone();
             for switching in &now {
                 after[switching.function] = switching.to_first;
             }
-            let begin = now.iter().fold(0.0_f64, |t, s| t.max(s.within[0]));
             if let Some((level, jump)) = self.jump([&before, &after], [begin, end], sizes) {
                 let function = now.iter().map(|s| s.function).min()?;
                 return Some(Kink {
@@ -288,31 +345,20 @@ impl Motion<'_> {
                 return Some((level, f64::INFINITY));
             }
             let jump = (b - a).abs();
+            if jump <= ROUNDING * size {
+                continue;
+            }
             // what changes its sign between the two times is zero at some instant between them; what is not a number is no rounding
-            let differences = within.map(|t| {
+            let [first, last] = within.map(|t| {
                 let [before, after] = at(t);
                 after[level] - before[level]
             });
-            let vanishes = differences[0] * differences[1] < 0.0;
-            if !(jump <= ROUNDING * size || vanishes) {
-                return Some((level, jump));
+            if first * last < 0.0 {
+                continue;
             }
+            return Some((level, jump));
         }
         None
-    }
-}
-
-/// Neighbouring numbers within an interval, at the first of which a condition holds as it does at its begin.
-fn bisected([mut from, mut to]: [f64; 2], holds: impl Fn(f64) -> bool) -> [f64; 2] {
-    loop {
-        let middle = from + 0.5 * (to - from);
-        if middle <= from || middle >= to {
-            return [from, to];
-        }
-        match holds(middle) {
-            true => from = middle,
-            false => to = middle,
-        }
     }
 }
 
@@ -360,8 +406,8 @@ mod tests {
         jumps("min(0, sin(3 * t))", ("min", PI / 3.0, 1, 3.0));
         jumps("abs(t * (t - 1))", ("abs", 1.0, 1, 2.0));
         jumps("min(1, max(0, t))", ("min", 1.0, 1, 1.0));
-        jumps("max(0, t * (1e-5 - t))", ("max", 1e-5, 1, 1e-5));
-        jumps("max(0, (2 - t) * (1.99999 - t))", ("max", 1.99999, 1, 1e-5));
+        jumps("max(0, t * (1e-4 - t))", ("max", 1e-4, 1, 1e-4));
+        jumps("max(0, (2 - t) * (1.9999 - t))", ("max", 1.9999, 1, 1e-4));
         // a tent between two of the times, and one whose roots are at equal times
         jumps(
             "max(0, 1e-9 - abs(t - 1.00003))",
