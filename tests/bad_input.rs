@@ -299,7 +299,7 @@ fn advice_says_what_to_type() {
     for (change, advice) in [
         (
             "initial.equilibrium=\"true\"",
-            "write it without quotes: true",
+            "known: \"nearest\"\nor true or false, without quotes",
         ),
         ("output.motion=\"false\"", "write it without quotes: false"),
         ("integrator.step=\"1e-6\"", "write it without quotes: 1e-6"),
