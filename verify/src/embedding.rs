@@ -100,6 +100,18 @@ fn placement(model: &Model, name: &str) -> Option<Placement> {
     })
 }
 
+/// True where the coordinate of the reference is a copy of this unknown, or turns with it.
+pub fn depends(model: &Model, coordinate: &str, unknown: &str) -> bool {
+    let index = model
+        .unknown_names()
+        .iter()
+        .position(|name| name == unknown);
+    let placement = placement(model, coordinate);
+    placement.zip(index).is_some_and(|(placement, index)| {
+        placement.copy == index || placement.arm.is_some_and(|(angle, _)| angle == index)
+    })
+}
+
 impl Embedding {
     /// The coordinates of a scene.
     pub fn new(reference: &ReferenceScene, model: &Model) -> Embedding {

@@ -40,6 +40,25 @@ pub struct LsEvent {
     pub onset: i32,
 }
 
+/// `ls_rest`
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct LsRest {
+    pub eigenvalue: f64,
+    pub stability: i32,
+    pub coordinate: i32,
+}
+
+/// `ls_critical_point`
+#[repr(C)]
+#[derive(Default)]
+pub struct LsCriticalPoint {
+    pub t: f64,
+    pub part: f64,
+    pub is_limit: i32,
+    pub coordinate: i32,
+}
+
 /// `ls_scene`
 #[repr(C)]
 pub struct LsScene([u8; 0]);
@@ -55,6 +74,8 @@ unsafe extern "C" {
     pub fn ls_scene_free(scene: *mut LsScene);
     pub fn ls_scene_name(scene: *const LsScene, list: i32, index: usize) -> *const c_char;
     pub fn ls_scene_start(scene: *const LsScene, q: *mut f64, v: *mut f64, error: *mut LsError) -> c_int;
+    pub fn ls_scene_start_contacts(scene: *const LsScene, z: *mut f64, error: *mut LsError) -> c_int;
+    pub fn ls_scene_rest(scene: *const LsScene, rest: *mut LsRest, error: *mut LsError) -> c_int;
     pub fn ls_scene_set_elongations(scene: *mut LsScene, elongations: *const f64, error: *mut LsError) -> c_int;
     pub fn ls_scene_elongation_rates(scene: *const LsScene, q: *const f64, rates: *mut f64, by_q: *mut f64,
         error: *mut LsError) -> c_int;
@@ -72,5 +93,8 @@ unsafe extern "C" {
     pub fn ls_run_advance(run: *mut LsRun, t: f64, values: *mut f64, error: *mut LsError) -> c_int;
     pub fn ls_run_event_count(run: *const LsRun) -> usize;
     pub fn ls_run_event(run: *const LsRun, index: usize, event: *mut LsEvent) -> c_int;
+    pub fn ls_run_critical_count(run: *const LsRun) -> usize;
+    pub fn ls_run_critical_point(run: *const LsRun, index: usize, point: *mut LsCriticalPoint) -> c_int;
+    pub fn ls_run_rest(run: *const LsRun, rest: *mut LsRest, error: *mut LsError) -> c_int;
     pub fn ls_sundials_version() -> *const c_char;
 }

@@ -1,7 +1,7 @@
 //! The reference implementation as a Rust library: owned values, typed errors. The only file that calls C.
 
 use crate::ffi::*;
-pub use crate::ffi::{LsEvent, LsTolerances};
+pub use crate::ffi::{LsCriticalPoint, LsEvent, LsRest, LsTolerances};
 use crate::trajectory::tolerances;
 use nalgebra::{DMatrix, DVector};
 use std::ffi::{CStr, CString, c_char, c_int};
@@ -9,6 +9,9 @@ use std::ptr::NonNull;
 
 /// Of a call of the reference.
 type Result<T> = std::result::Result<T, ReferenceError>;
+
+/// The code of a static analysis that a critical point ends, as in the header.
+pub const LIMIT: i32 = 6;
 
 /// What the reference implementation reports when it cannot go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -84,6 +87,14 @@ fn filled<const N: usize>(
     let pointers = vectors.each_mut().map(Vec::as_mut_ptr);
     let (code, error) = call(|e| work(pointers, e));
     if code == 0 { Ok(vectors) } else { Err(error()) }
+}
+
+/// Calls a function that describes an equilibrium.
+fn found(work: impl FnOnce(*mut LsRest, *mut LsError) -> c_int) -> Result<LsRest> {
+    let mut rest = LsRest::default();
+    let pointer: *mut LsRest = &mut rest;
+    let (code, error) = call(|e| work(pointer, e));
+    if code == 0 { Ok(rest) } else { Err(error()) }
 }
 
 /// Version of the library that integrates.
@@ -201,6 +212,21 @@ impl ReferenceScene {
         v.extend(&self.elongations);
         q.resize(v.len(), 0.0);
         Ok([q, v])
+    }
+
+    /// The impact velocity of every joint at t = 0, 0 where open.
+    pub fn start_contacts(&self) -> Result<Vec<f64>> {
+        // SAFETY: a number for every joint
+        let [z] = filled([self.joints.len()], |[z], e| unsafe {
+            ls_scene_start_contacts(self.handle.as_ptr(), z, e)
+        })?;
+        Ok(z)
+    }
+
+    /// The equilibrium that a scene starts from.
+    pub fn rest(&self) -> Result<LsRest> {
+        // SAFETY: the handle is of a scene
+        found(|rest, e| unsafe { ls_scene_rest(self.handle.as_ptr(), rest, e) })
     }
 
     /// M.
@@ -335,5 +361,24 @@ impl ReferenceRun<'_> {
             event
         };
         (first..count).map(event).collect()
+    }
+
+    /// The last equilibrium of a static analysis.
+    pub fn rest(&self) -> Result<LsRest> {
+        // SAFETY: the handle is of a run
+        found(|rest, e| unsafe { ls_run_rest(self.handle.as_ptr(), rest, e) })
+    }
+
+    /// The critical points that a static analysis has passed, and one that has ended it.
+    pub fn critical_points(&self) -> Vec<LsCriticalPoint> {
+        // SAFETY: the handle is of a run
+        let count = unsafe { ls_run_critical_count(self.handle.as_ptr()) };
+        let point = |i| {
+            let mut point = LsCriticalPoint::default();
+            // SAFETY: the index is below the count
+            unsafe { ls_run_critical_point(self.handle.as_ptr(), i, &mut point) };
+            point
+        };
+        (0..count).map(point).collect()
     }
 }

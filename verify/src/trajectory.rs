@@ -1,9 +1,9 @@
 //! The same scene on both sides, as columns with the same names.
 
 use crate::ida_of_system::{LinearSolver, NEWTON};
-use crate::reference::{LsTolerances, ReferenceScene};
+use crate::reference::{LIMIT, LsRest, LsTolerances, ReferenceScene};
 use looselink::scene::Scene;
-use looselink::simulate::{Recording, RunError, Simulation};
+use looselink::simulate::{CriticalKind, FoundRest, Recording, RunError, Simulation, Stability};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use records::root;
 use serde::Deserialize;
@@ -42,6 +42,30 @@ pub struct ComparedImpact {
     pub velocity: f64,
 }
 
+/// An equilibrium.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComparedRest {
+    /// Smallest eigenvalue of the stiffness relative to the masses \[1/s2\], 0 where nothing can move.
+    pub eigenvalue: f64,
+    /// 1 stable, 0 neutral, -1 unstable.
+    pub stability: i32,
+    /// The coordinate that moves most in its motion, in the words of this side; none where nothing can move.
+    pub moves: Option<String>,
+}
+
+/// A point at which a static analysis loses or regains stability.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComparedCriticalPoint {
+    /// The measure of the load.
+    pub t: f64,
+    /// The same as part of the full load.
+    pub part: f64,
+    /// True of a limit point, false of a bifurcation.
+    pub is_limit: bool,
+    /// The coordinate that moves most in the motion without resistance, in the words of this side.
+    pub moves: String,
+}
+
 /// What one side computed.
 #[derive(Debug)]
 pub struct Trajectory {
@@ -49,6 +73,10 @@ pub struct Trajectory {
     pub columns: BTreeMap<String, Vec<f64>>,
     /// Contacts that closed, in order.
     pub impacts: Vec<ComparedImpact>,
+    /// The equilibrium of the start, or the last one of a static analysis.
+    pub rest: Option<ComparedRest>,
+    /// Those of a static analysis, in the order of its path; the last one may have ended it.
+    pub critical_points: Vec<ComparedCriticalPoint>,
 }
 
 impl Trajectory {
@@ -56,6 +84,54 @@ impl Trajectory {
     pub fn get(&self, name: &str) -> &[f64] {
         let column = self.columns.get(name);
         column.unwrap_or_else(|| panic!("no column {name}"))
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.get("t").len()
+    }
+
+    /// The first rows, and the last one if it comes later.
+    pub fn first(&self, rows: usize, with_last: bool) -> Trajectory {
+        let last = self.rows() - 1;
+        let keep = |i: usize| i < rows || (with_last && i == last);
+        let kept = |column: &Vec<f64>| {
+            let values = column.iter().enumerate().filter(|(i, _)| keep(*i));
+            values.map(|(_, value)| *value).collect()
+        };
+        let columns = self.columns.iter();
+        Trajectory {
+            columns: columns
+                .map(|(name, column)| (name.clone(), kept(column)))
+                .collect(),
+            impacts: self.impacts.clone(),
+            rest: self.rest.clone(),
+            critical_points: self.critical_points.clone(),
+        }
+    }
+}
+
+impl ComparedRest {
+    fn of_looselink(rest: &FoundRest) -> ComparedRest {
+        let moves = Some(rest.moves_most.clone());
+        ComparedRest {
+            eigenvalue: rest.smallest_eigenvalue.unwrap_or(0.0),
+            stability: match rest.stability() {
+                Stability::Stable => 1,
+                Stability::Neutral => 0,
+                Stability::Unstable => -1,
+            },
+            moves: moves.filter(|moves| !moves.is_empty()),
+        }
+    }
+
+    fn of_reference(scene: &ReferenceScene, rest: &LsRest) -> ComparedRest {
+        let coordinate = usize::try_from(rest.coordinate).ok();
+        ComparedRest {
+            eigenvalue: rest.eigenvalue,
+            stability: rest.stability,
+            moves: coordinate.map(|i| scene.coordinates[i].clone()),
+        }
     }
 }
 
@@ -129,6 +205,8 @@ impl ComparisonPlan {
         recording.most_onsets = impacts;
         match simulation.run(&mut recording) {
             Err(RunError::Interrupted { .. }) if recording.onsets.len() >= impacts => {}
+            // it is among the critical points
+            Err(RunError::Limit(_)) => {}
             result => result.into_diagnostic().wrap_err_with(|| self.name())?,
         }
         let closed = recording.onsets.iter().map(|onset| ComparedImpact {
@@ -136,9 +214,19 @@ impl ComparisonPlan {
             joint: onset.joint.clone(),
             velocity: onset.impact_velocity,
         });
+        let report = simulation.report();
+        let critical = report.critical_points.iter();
+        let critical = critical.map(|point| ComparedCriticalPoint {
+            t: point.t,
+            part: point.part,
+            is_limit: point.kind == CriticalKind::Limit,
+            moves: point.moves_most.clone(),
+        });
         Ok(Trajectory {
             impacts: closed.collect(),
             columns: recording.into_columns().collect(),
+            rest: report.rest.as_ref().map(ComparedRest::of_looselink),
+            critical_points: critical.collect(),
         })
     }
 
@@ -160,6 +248,9 @@ impl ComparisonPlan {
         let (mut seen, last) = (0, (self.duration / self.interval).round() as usize);
         for k in 0..=last {
             let row = run.advance((k as f64 * self.interval).min(self.duration));
+            if matches!(&row, Err(error) if error.code == LIMIT) {
+                break;
+            }
             let row = row.into_diagnostic().wrap_err_with(|| self.name())?;
             for (column, value) in columns.iter_mut().zip(row) {
                 column.push(value);
@@ -177,9 +268,20 @@ impl ComparisonPlan {
                 break;
             }
         }
+        // a motion that does not start in equilibrium has none
+        let rest = run.rest().or_else(|_| scene.rest()).ok();
+        let critical = run.critical_points().into_iter();
+        let critical = critical.map(|point| ComparedCriticalPoint {
+            t: point.t,
+            part: point.part,
+            is_limit: point.is_limit != 0,
+            moves: scene.coordinates[point.coordinate as usize].clone(),
+        });
         Ok(Trajectory {
             columns: scene.channels.iter().cloned().zip(columns).collect(),
             impacts: closed,
+            rest: rest.map(|rest| ComparedRest::of_reference(&scene, &rest)),
+            critical_points: critical.collect(),
         })
     }
 }

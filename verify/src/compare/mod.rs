@@ -7,6 +7,7 @@ pub mod impacts;
 pub mod machines;
 pub mod rigid;
 pub mod scenes;
+pub mod stability;
 pub mod statistics;
 
 use crate::trajectory::ComparisonPlan;
@@ -15,6 +16,7 @@ use serde::Deserialize;
 /// `verify/plans.toml`
 #[derive(Deserialize)]
 struct Plans {
+    scenes: Vec<ComparisonPlan>,
     equations: Vec<ComparisonPlan>,
     motions: Vec<ComparisonPlan>,
     convergence: Vec<flexible::ConvergencePlan>,
