@@ -3,7 +3,7 @@
 use looselink::simulate::Simulation;
 use std::collections::BTreeSet;
 use verify::compare::scenes;
-use verify::reference::{ReferenceError, ReferenceScene};
+use verify::reference::{LIMIT, ReferenceError, ReferenceScene};
 use verify::trajectory::{ComparisonPlan, tolerances};
 
 /// Codes of errors, as in the header: the scene makes no sense, the path is out of reach, IDA failed.
@@ -88,6 +88,18 @@ fn a_path_out_of_reach_is_refused_with_its_time() {
     let mut rows = (0..100).map(|k| run.advance(0.01 * f64::from(k)));
     let e = failure(rows.find(Result::is_err).unwrap(), UNREACHABLE);
     assert!(e.t > 0.1 && e.t < 1.0 && e.message.contains("B1"), "{e}");
+}
+
+/// So is a load that cannot grow.
+#[test]
+fn a_limit_point_ends_a_static_analysis_with_its_load() {
+    let stop = "simulation.at_limit='stop'".to_owned();
+    let plan = ComparisonPlan::new("../verify/scenes/frame", 1.0, 0.1).with(&[stop]);
+    let scene = plan.reference().unwrap();
+    let mut run = scene.run(&tolerances(1e-6)).unwrap();
+    let mut rows = (0..=10).map(|k| run.advance(0.1 * f64::from(k)));
+    let e = failure(rows.find(Result::is_err).unwrap(), LIMIT);
+    assert!(e.t > 0.7 && e.t < 0.8 && e.message.contains("rod"), "{e}");
 }
 
 /// What IDA says arrives word by word, with its flag and the time, and the run is dead afterwards.

@@ -68,11 +68,16 @@ fn motion_of_scene_everything_agrees() {
 }
 
 #[test]
+fn motion_of_pressed_journals_agrees() {
+    motions_agree(&machines::others()[1..2]);
+}
+
+#[test]
 fn first_rows_without_clearance_agree() {
     motions_agree(&machines::smooth().unwrap());
 }
 
 #[test]
 fn fine_meshes_agree() {
-    motions_agree(&machines::others()[1..]);
+    motions_agree(&machines::others()[2..]);
 }

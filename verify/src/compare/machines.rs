@@ -17,7 +17,7 @@ pub fn smooth() -> Result<Vec<ComparisonPlan>> {
     })
 }
 
-/// A scene with every element but clearance and inverse kinematics, and fine meshes.
+/// A scene with every element but clearance and inverse kinematics, one whose contacts stay closed, and fine meshes.
 pub fn others() -> Vec<ComparisonPlan> {
     plans().motions
 }
