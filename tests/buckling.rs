@@ -515,3 +515,32 @@ fn a_path_that_leads_to_the_reversed_load_ends_there() {
     assert_eq!(t.last(), Some(&-1.0));
     assert!(t.iter().all(|t| t.abs() <= 1.0), "{t:?}");
 }
+
+/// No step of the load passes a limit point without a word: an arch snaps at the same load whatever the step, where the load step on the
+/// far side of the limit has a stable equilibrium to jump to.
+#[test]
+fn an_arch_snaps_at_the_same_load_by_any_step() {
+    let text = arch(0.05, 4, 3000.0);
+    let critical: Vec<CriticalPoint> = ["0.5", "0.25", "0.1", "0.05", "0.04", "0.02", "0.01"]
+        .iter()
+        .map(|step| {
+            match run(
+                &text,
+                &[&format!("integrator.step={step}"), "output.interval=1.0"],
+            )
+            .0
+            {
+                Err(RunError::Limit(point)) => point,
+                other => panic!("{step}: {other:?}"),
+            }
+        })
+        .collect();
+    let worst = Worst::new();
+    for point in &critical {
+        assert_eq!(point.kind, critical[0].kind);
+        worst.see(point.t / critical[0].t - 1.0);
+    }
+    Rung::Identities
+        .asks("Limit load of a shallow arch by load steps of half to a hundredth of the full load: relative difference")
+        .within(&worst, 1e-9, "a point located to 1e-10 of a step has the square of this error in the load; the rest is rounding of a slender arch");
+}

@@ -211,6 +211,33 @@ friction = { law = "ambrosio", coefficient = 0.5, v0 = 1e-4, v1 = 1e-3 }
     assert!(free.creep.is_empty());
 }
 
+/// The same slip creeps in a pendulum that its pin should hold, and not in one that a drive turns as slowly.
+#[test]
+fn slip_that_a_drive_imposes_is_no_creep() {
+    let text = r#"
+simulation = { duration = 1.0, gravity = [0.0, -9.81] }
+integrator = { method = "bathe", step = 1e-4, onset_tolerance = 1e-10 }
+bodies.ground = { type = "ground", points.O = [0.0, 0.0] }
+bodies.bar = { type = "rigid_body", mass = 1.0, inertia = 1e-3, points = { pin = [0.0, 0.05], end = [0.0, -0.05] } }
+joints.pin = { type = "revolute", model = "clearance", contact = "bearing", bearing = "ground.O", journal = "bar.pin" }
+initial = { journals = "pressed", sketch = { pin = [0.0, 0.0], bar.end = [0.005, -0.099875] } }
+[contacts.bearing]
+law = "hunt_crossley"
+bearing_radius = 0.01
+clearance = 2e-5
+stiffness = 1e10
+exponent = 1.5
+restitution = 0.2
+impact_velocity_floor = 1e-6
+friction = { law = "ambrosio", coefficient = 0.5 }
+"#;
+    let drive = "[drives.hand]\ntype = \"point\"\npoint = \"bar.end\"\nx = \"0.005 - 0.003*t\"\n";
+    let free = report(&scene(text, &[]));
+    assert!(free.creep.contains_key("pin"), "{:?}", free.warnings());
+    let driven = report(&scene(&format!("{text}{drive}"), &[]));
+    assert!(driven.creep.is_empty(), "{:?}", driven.warnings());
+}
+
 fn report_without_friction(text: &str) -> Report {
     let start = text.find("friction = {").unwrap();
     report(&scene(&text[..start], &[]))

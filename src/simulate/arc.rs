@@ -20,6 +20,15 @@ pub(super) struct Arc {
 }
 
 impl Arc {
+    /// As long as the path of this direction takes to a t.
+    pub fn towards(t: f64, metric: ArcMetric, base: State, along: PathTangent) -> Arc {
+        Arc {
+            length: (t - base.t) / (metric.duration * along.load),
+            base,
+            along,
+        }
+    }
+
     /// The next step: twice as long, but at most the longest.
     pub fn onward(&self, from: &State, along: PathTangent, longest: f64) -> Arc {
         Arc {

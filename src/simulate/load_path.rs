@@ -113,13 +113,12 @@ impl Simulation {
             if let Some(critical) = self.bifurcation_near(metric, &base).filter(within) {
                 return self.meet(metric, critical, observer);
             }
-            let length = growth / (metric.duration * along.load);
-            let step = Arc {
-                base,
-                along,
-                length,
-            };
-            return self.follow_stable(metric, step, next, observer);
+            return self.follow_stable(
+                metric,
+                Arc::towards(next, metric, base, along),
+                next,
+                observer,
+            );
         };
         let before = self.rest.as_ref().and_then(|rest| rest.smallest_eigenvalue);
         let mut falls = found.smallest_eigenvalue < before;
@@ -132,6 +131,15 @@ impl Simulation {
                     return self.meet(metric, critical, observer);
                 }
                 Some(_) => falls = true,
+                // it may have left the path
+                None if turns => {
+                    return self.follow_stable(
+                        metric,
+                        Arc::towards(next, metric, base, along),
+                        next,
+                        observer,
+                    );
+                }
                 None => {}
             }
             self.trial.copy_from(&reached);
