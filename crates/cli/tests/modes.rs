@@ -156,7 +156,11 @@ fn what_has_no_modes_is_refused() {
     let refused = |arguments: &[&str], code, message| {
         expect(&looselink(&[&["modes"], arguments].concat()), code, message);
     };
-    refused(&[CASE_4, "--at", "-1"], 2, "unexpected argument");
+    refused(
+        &[CASE_4, "--at", "-1"],
+        2,
+        "--at -1 lies outside the duration",
+    );
     refused(
         &[CASE_4, "--at", "1e9"],
         2,

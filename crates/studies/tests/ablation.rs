@@ -296,7 +296,14 @@ fn what_is_measured_is_what_a_run_records() {
     };
     let rms = |v: &[f64]| (v.iter().map(|v| v * v).sum::<f64>() / v.len() as f64).sqrt();
     let peak = |v: &[f64]| v.iter().copied().fold(0.0, f64::max);
-    let force = |joint: &str| peak(&run.get(&format!("{joint}.force")));
+    // rows miss peaks of the loose joints, which every contact keeps
+    let force = |joint: &str| {
+        let rows = run.get(&format!("{joint}.force"));
+        let contacts = run.onsets.iter().filter(|c| c.joint == joint);
+        contacts
+            .map(|c| c.largest_force)
+            .fold(peak(&rows), f64::max)
+    };
     let contact = |joint: &str| {
         let column = run.get(&format!("{joint}.contact"));
         column.iter().sum::<f64>() / column.len() as f64
