@@ -1,6 +1,6 @@
 //! Equilibria that a mechanism reaches from its sketch.
 
-use crate::support::{all_scenes, load};
+use crate::support::{all_scenes, load, run_scene};
 use ladder::{Rung, Worst};
 use looselink::newton::{Extent, Newton};
 use looselink::registry::Registry;
@@ -559,5 +559,42 @@ fn what_nothing_stops_is_named() {
         let message = falls(what);
         assert!(message.contains(named), "{message}");
         assert!(!message.contains("step"), "{message}");
+    }
+}
+
+/// The angle of a body counts the turns that it makes on the way to rest, as the angle of the spring that turns it does.
+#[test]
+fn a_body_that_a_wound_spring_turns_counts_its_turns() {
+    let rest = 4.0 * TAU + 0.3;
+    for analysis in ["analysis = \"static\", ", ""] {
+        let method = match analysis {
+            "" => "method = \"bathe\", ",
+            _ => "",
+        };
+        let equilibrium = match analysis {
+            "" => "initial.equilibrium = true\n",
+            _ => "",
+        };
+        let scene = parse(&format!(
+            "format = 1\n\
+             title = \"a wound spring\"\n\
+             simulation = {{ {analysis}duration = 0.1, gravity = [0.0, -9.81] }}\n\
+             integrator = {{ {method}step = 1e-2 }}\n\
+             output = {{ interval = 1e-2, channels = [\"*\"] }}\n\
+             bodies.ground = {{ type = \"ground\", points.O = [0.0, 0.0] }}\n\
+             bodies.arm = {{ type = \"rigid_body\", mass = 1.0, inertia = 0.01, points.o = [-0.2, 0.0] }}\n\
+             joints.O = {{ type = \"revolute\", model = \"ideal\", bearing = \"ground.O\", journal = \"arm.o\" }}\n\
+             forces.coil = {{ type = \"torsion_spring\", joint = \"O\", stiffness = 2.0, damping = 0.0, rest_angle = {rest:?} }}\n\
+             initial.bodies.arm = {{ x = 0.2, y = 0.0, theta = 0.0 }}\n\
+             {equilibrium}"
+        ));
+        let (run, _) = run_scene(&scene);
+        let [theta, angle] = ["arm.theta", "coil.angle"].map(|channel| run.get(channel));
+        let last = angle.last().unwrap();
+        // k (rest - phi) = m g l cos(phi)
+        assert!((2.0 * (rest - last) - 9.81 * 0.2 * last.cos()).abs() < 1e-9);
+        for (theta, angle) in theta.iter().zip(&angle) {
+            assert!((theta - angle).abs() < 1e-12, "{theta} {angle}");
+        }
     }
 }

@@ -5,7 +5,7 @@
 //! singular pose of type 2 (Gosselin and Angeles 1990, IEEE Transactions on Robotics and Automation 6:281): its determinant has a zero
 //! there, which a change of its sign shows.
 
-use super::drive::{ideal_mechanism, mark_driven};
+use super::drive::{at_start, mark_driven};
 use super::extent::extent;
 use super::locked::{Locked, listed};
 use super::{Compiler, Mode, Role, is_ideal, known_roles};
@@ -109,7 +109,7 @@ impl<'a> Actuation<'a> {
     pub fn of(scene: &'a Scene) -> Option<Actuation<'a>> {
         let drive = scene.drives.first()?;
         let roles = known_roles(scene);
-        let kinematics = ideal_mechanism(scene, drive, &roles).ok()?;
+        let (_, kinematics, _) = at_start(scene, drive, &roles).ok()?;
         let is_known = |body: usize| body == drive.body || roles[body] != Role::Free;
         let mut sides = scene.joints.iter().map(|j| j.points().map(|p| p.body));
         if sides.any(|sides| sides.contains(&drive.body) && sides.into_iter().all(is_known)) {

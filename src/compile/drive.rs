@@ -19,6 +19,17 @@ pub(super) fn ideal_mechanism(
     drive: &Drive,
     roles: &[Role],
 ) -> Result<Kinematics, SceneError> {
+    let (compiler, kinematics, start) = at_start(scene, drive, roles)?;
+    sweep(&compiler, drive, &kinematics, &start)?;
+    Ok(kinematics)
+}
+
+/// The ideal mechanism of a drive, closed at the start of its path.
+pub(super) fn at_start<'s>(
+    scene: &'s Scene,
+    drive: &Drive,
+    roles: &[Role],
+) -> Result<(Compiler<'s>, Kinematics, State), SceneError> {
     let mut roles = roles.to_vec();
     roles[drive.body] = Role::Path;
     let compiler = Compiler::new(scene, Mode::Ideal, roles);
@@ -43,9 +54,8 @@ pub(super) fn ideal_mechanism(
         duration: scene.simulation.duration,
     };
     let start = close(&compiler, drive, &kinematics)?;
-    sweep(&compiler, drive, &kinematics, &start)?;
-    kinematics.start = start.q;
-    Ok(kinematics)
+    kinematics.start.clone_from(&start.q);
+    Ok((compiler, kinematics, start))
 }
 
 /// The error of a path that leaves so many coordinates free, or prescribes so many too many where the number is negative.

@@ -9,7 +9,7 @@ use crate::checkpoint::carried;
 use crate::math::plane::full_turns;
 use crate::model::{Energies, Model};
 use crate::motion::Function;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Analysis, Scene, SceneError};
 use crate::system::{State, Work};
 use channels::{Part, parts, removed};
 use std::collections::HashMap;
@@ -267,6 +267,13 @@ fn choose<'a>(
 fn given_angle(scene: &Scene, driven: &HashMap<usize, &Function>, part: Part) -> Option<[f64; 3]> {
     match part {
         Part::Pose(b) => {
+            // a body with a coordinate for its angle knows how far it has turned on the way to an equilibrium
+            let comes_to_rest = scene.initial.equilibrium.is_some()
+                || scene.simulation.analysis == Analysis::Static;
+            let slots = scene.bodies[b].kind.slots();
+            if comes_to_rest && slots.iter().any(|slot| slot.content.angle().is_some()) {
+                return None;
+            }
             let given = scene.initial.state_of(b)?;
             Some([given.position[2], given.velocity[2], 0.0])
         }

@@ -8,10 +8,13 @@ use std::process::Command;
 /// Ends of the two runs whose difference is counted, or timed \[s\].
 pub const ENDS: [f64; 2] = [0.002, 0.012];
 
+/// The function that a run is inside of from its first row to its last.
+pub const RUN: &str = "*Simulation*run_to_end*";
+
 /// Longer than any run \[s\]: a checkpoint, which a slow run writes, takes a digest of the program: more instructions than the run.
 const NEVER: &str = "1e6";
 
-/// Instructions of one step of the program `looselink`.
+/// Instructions of one step of the program `looselink`, without what it does before and after the motion.
 ///
 /// # Errors
 /// When Valgrind is missing or a run fails.
@@ -24,7 +27,7 @@ pub fn per_step(program: &Path, root: &Path, row: &StepRow) -> Result<u64> {
             command.args(["--set", &change]);
         }
         command.args(["--checkpoint", NEVER, "--out"]);
-        instructions(&[], command.arg(folder.path().join("out")))
+        instructions_inside(RUN, command.arg(folder.path().join("out")))
     });
     let steps = ((ENDS[1] - ENDS[0]) / STEP).round() as u64;
     let taken = long.and_then(|long| Ok(long - short?));

@@ -22,8 +22,6 @@ pub const STEP: f64 = 1e-5;
 pub const STEPS: usize = 20;
 /// Runs whose times have the median that counts.
 const REPEATS: u16 = 3;
-/// The function that a run is inside of from its first row to its last.
-const RUN: &str = "*Simulation*run_to_end*";
 
 /// A mechanism and what it costs.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -57,7 +55,7 @@ pub fn all(journal: &Journal) -> Result<Vec<SizeCost>> {
         journal.item(&format!("{}, {bodies} bodies", family.name()), || {
             let mut cost = apart(family, bodies)?;
             if COUNTED.contains(&bodies) {
-                let inside = count::instructions_inside(RUN, &command(family, bodies, 1)?)?;
+                let inside = count::instructions_inside(count::RUN, &command(family, bodies, 1)?)?;
                 cost.instructions = Some(inside / STEPS as u64);
             }
             Ok(cost)
