@@ -300,13 +300,6 @@ impl Symbolic {
         node.start + (place - node.first) * (node.size + 1)
     }
 
-    /// The diagonal of a matrix that is not factorised yet.
-    pub fn copy_diagonal(&self, values: &[f64], out: &mut [f64]) {
-        for (unknown, out) in out.iter_mut().enumerate() {
-            *out = values[self.diagonal(unknown)];
-        }
-    }
-
     /// The pivot of an unknown in the factors of [`Symbolic::factor`].
     pub fn pivot(&self, values: &[f64], unknown: usize) -> f64 {
         1.0 / values[self.diagonal(unknown)]

@@ -61,6 +61,8 @@ struct Complement {
     products: Vec<Product>,
     /// The entries of S that are sums of products, in the order of the products.
     sums: Vec<Sum>,
+    /// Where the diagonal of S stands.
+    diagonal: Vec<u32>,
 }
 
 /// Columns of M^-1, one after the other.
@@ -267,6 +269,7 @@ impl SaddleEntries {
             inverse: (inverse.entries.len() <= longest).then_some(inverse),
             products: Vec::new(),
             sums: Vec::new(),
+            diagonal: (0..symbolic.n()).map(|i| symbolic.slot(i, i)).collect(),
             symbolic,
         };
         for ((i, j), products) in sums {
@@ -416,10 +419,11 @@ impl SaddlePoint {
         }
         match &self.form {
             SaddleForm::Complement(complement) => {
-                let pivot = |row| complement.symbolic.pivot(&factors.values, row).abs();
-                let rows = factors.diagonal.iter().enumerate();
-                let sines = rows.map(|(row, entry)| pivot(row) / entry.abs());
-                sines.fold(f64::INFINITY, f64::min)
+                // the factors hold the inverses of the pivots
+                let rows = factors.diagonal.iter().zip(&complement.diagonal);
+                let inverses =
+                    rows.map(|(entry, slot)| (entry * factors.values[*slot as usize]).abs());
+                1.0 / inverses.fold(0.0, f64::max)
             }
             SaddleForm::Bordered(bordered) => bordered
                 .symbolic
@@ -558,7 +562,9 @@ impl Complement {
         for &row in dropped {
             values[self.symbolic.slot(row, row) as usize] = 1.0;
         }
-        self.symbolic.copy_diagonal(values, diagonal);
+        for (entry, slot) in diagonal.iter_mut().zip(&self.diagonal) {
+            *entry = values[*slot as usize];
+        }
         self.symbolic.factor(values)
     }
 }
