@@ -1,9 +1,9 @@
-//! Values of formulas with bounds of their rounding, by running error analysis (Higham 2002, Accuracy and Stability of Numerical
+//! Values of formulas with estimates of their rounding to first order, by running error analysis (Higham 2002, Accuracy and Stability of Numerical
 //! Algorithms, section 3.3): every operation hands on the errors of its operands and adds its own.
 
 use super::expression::{Formula, Jet, Rule, chain, power};
 
-/// A value with its derivatives, and a bound of the error of the value. A value within this bound is zero.
+/// A value with its derivatives, and an estimate of the error of the value. A value within this error is zero.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rounded {
     pub jet: Jet,
@@ -20,7 +20,7 @@ impl Rounded {
         }
     }
 
-    /// What is computed from operands with errors: `ends` are its values where these are largest.
+    /// What is computed from operands with errors: `ends` are, for each operand, the results at both ends of its interval of error.
     fn computed(jet: Jet, ends: impl IntoIterator<Item = [f64; 2]>) -> Rounded {
         let [value, ..] = jet;
         let own = f64::EPSILON * value.abs();

@@ -23,7 +23,7 @@ const LARGEST_TAU: f64 = 1e10;
 const REDUCTION: f64 = 16.0;
 /// Below this tau \[s2\], (1e-15 s)^2, no mechanism moves.
 const LEAST_TAU: f64 = 1e-30;
-/// Nothing moves farther in a step than this part of the size of the mechanism: about a twentieth of a turn of its largest body.
+/// Nothing moves farther in a step than this part of the size of the mechanism: a sixtieth to a thirtieth of a turn of its largest body.
 const RADIUS: f64 = 0.1;
 /// A descent ends where nothing moves farther than this part of the size: the root of rounding, from which Newton's method
 /// reaches rounding in one iteration.
@@ -34,7 +34,7 @@ const LIMITS: Limits = Limits {
     contraction: f64::INFINITY,
     radius: f64::INFINITY,
 };
-/// More steps than this fall a hundred times the size of the mechanism: nothing ends the fall.
+/// More steps than this fall two hundred times the size of the mechanism: nothing ends the fall.
 const STEPS: usize = 2000;
 /// The work of the forces is rounded by so many roundings of the forces times the coordinates.
 const ROUNDINGS: f64 = 64.0;
