@@ -75,6 +75,7 @@ use numbers::si;
 use pace::Pacer;
 use plausibility::Plausibility;
 use stall::Stall;
+use std::collections::BTreeSet;
 use std::sync::{Arc, OnceLock};
 
 /// A step is halved this many times at most before the run gives up.
@@ -164,7 +165,7 @@ pub struct Simulation {
     /// The equilibrium that the motion starts from, where the scene asks for one; in a static analysis the last one.
     rest: Option<FoundRest>,
     /// The joints whose reactions in a static analysis are one of many, once a row was recorded.
-    indeterminate: Vec<usize>,
+    indeterminate: BTreeSet<usize>,
     /// How the load path goes on from the last stable equilibrium.
     heading: Option<Heading>,
     /// Where the load path could not go on or branched.
@@ -479,7 +480,7 @@ impl Simulation {
         } = self;
         output.copy_from(state);
         if *leaves_out && scene.simulation.analysis == Analysis::Static {
-            *indeterminate = least_reactions(model, extent(scene), output, work);
+            indeterminate.extend(least_reactions(model, extent(scene), output, work));
         }
         let shape = model.shape();
         let is_consistent = shape.multipliers > 0 && shape.contacts == 0;

@@ -135,7 +135,7 @@ fn actuated(
             names.joints[index].name, field.path
         );
         let error = field.fault(message, "a second time");
-        return Err(error.with_help("remove one of the two drives"));
+        return Err(error.with_help("remove one of the two"));
     }
     Ok(index)
 }

@@ -218,14 +218,21 @@ impl SimulationTable {
 fn simulation(root: &Fields) -> Result<SimulationTable, SceneError> {
     let mut table = root.field("simulation")?.fields()?;
     table.declare(&[], &SIMULATION)?;
+    let analysis = match table.optional_word("analysis")? {
+        Some(1) => Analysis::Static,
+        _ => Analysis::Dynamic,
+    };
+    let follows_limits = table.optional_word("at_limit")?;
+    let field = table.optional("at_limit");
+    if let Some(field) = field.filter(|_| analysis == Analysis::Dynamic) {
+        let message = "`simulation.at_limit` belongs to a static analysis";
+        return Err(field.fault(message, "a motion has no load path"));
+    }
     Ok(SimulationTable {
-        analysis: match table.optional_word("analysis")? {
-            Some(1) => Analysis::Static,
-            _ => Analysis::Dynamic,
-        },
+        analysis,
         duration: table.number("duration")?,
         gravity: table.optional_vector("gravity")?,
-        follows_limits: table.optional_word("at_limit")? == Some(1),
+        follows_limits: follows_limits == Some(1),
     })
 }
 

@@ -1,7 +1,7 @@
 //! Steps along the path of equilibria of a static run.
 
 use super::equilibrium::{FoundRest, explain};
-use super::{RunError, Simulation, check_turns, scale};
+use super::{GRID_ROUNDING, RunError, Simulation, check_turns, scale};
 use crate::model::Model;
 use crate::newton::{ArcMetric, Extent, Failure, PathTangent};
 use crate::stepper::StepError;
@@ -98,7 +98,9 @@ impl Simulation {
         step: &mut Arc,
     ) -> Result<(FoundRest, PathTangent), StepError> {
         let (found, next) = self.path_step(metric, step)?;
-        if self.trial.t.abs() < metric.duration {
+        // an end that is off by rounding is the end
+        let rounding = GRID_ROUNDING * self.pacer.scale();
+        if self.trial.t.abs() < metric.duration - rounding {
             return Ok((found, next));
         }
         let beyond = self.trial.clone();

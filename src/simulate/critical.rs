@@ -16,7 +16,7 @@ use std::fmt;
 const NOT_MEANT: f64 = 1e-5;
 /// A critical point is located to this part of a step: at a limit point t has the square of this error.
 const LOCATED: f64 = 1e-10;
-/// Within this part of a step of a critical point Newton's method may find no point: the root of rounding.
+/// Within this part of a step of a critical point Newton's method may find no point: the root of what points are located to.
 const NEAR: f64 = 1e-5;
 /// Evaluations of a location at most; bisection alone needs 34.
 const EVALUATIONS: usize = 60;
@@ -44,6 +44,9 @@ pub struct CriticalPoint {
     pub part: f64,
     /// The unknown that moves most in the direction without stiffness.
     pub moves_most: String,
+    /// True of the first one, up to which the load grows.
+    #[serde(skip)]
+    pub is_first: bool,
 }
 
 impl fmt::Display for CriticalPoint {
@@ -51,13 +54,21 @@ impl fmt::Display for CriticalPoint {
         let (load, t) = (share(self.part, "the full load"), number(self.t, 9));
         let moves = &self.moves_most;
         match self.kind {
-            CriticalKind::Limit => write!(
+            CriticalKind::Limit if self.is_first => write!(
                 f,
                 "the load cannot grow beyond {load}: snap-through of {moves}, a limit point at t = {t}"
             ),
-            CriticalKind::Bifurcation => write!(
+            CriticalKind::Limit => write!(
+                f,
+                "the load turns round at {load}: snap-through of {moves}, a limit point at t = {t}"
+            ),
+            CriticalKind::Bifurcation if self.is_first => write!(
                 f,
                 "the equilibrium is stable up to {load}: buckling of {moves}, a bifurcation at t = {t}"
+            ),
+            CriticalKind::Bifurcation => write!(
+                f,
+                "the equilibrium branches at {load}: buckling of {moves}, a bifurcation at t = {t}"
             ),
         }
     }
@@ -80,12 +91,13 @@ impl Critical {
     }
 
     /// What a user reads of it.
-    pub fn point(&self, duration: f64) -> CriticalPoint {
+    pub fn point(&self, duration: f64, is_first: bool) -> CriticalPoint {
         CriticalPoint {
             kind: self.kind,
             t: self.state.t,
             part: self.state.t / duration,
             moves_most: self.found.moves_most.clone(),
+            is_first,
         }
     }
 }

@@ -22,14 +22,14 @@ pub(super) fn least_reactions(
     at: &mut State,
     work: &mut Work,
 ) -> Vec<usize> {
-    let own_stresses = own_stresses(model, at);
+    let self_stresses = self_stresses(model, at);
     let given = reactions(model, length, at, work);
     let largest = at.lambda.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     // of the size of the multipliers, for the sake of rounding
     let unit = if largest > 0.0 { largest } else { 1.0 };
     let balanced = at.lambda.clone();
-    let mut changes = Mat::zeros(given.len(), own_stresses.len());
-    for (k, stress) in own_stresses.iter().enumerate() {
+    let mut changes = Mat::zeros(given.len(), self_stresses.len());
+    for (k, stress) in self_stresses.iter().enumerate() {
         let shifted = balanced.iter().zip(stress).map(|(x, w)| x + unit * w);
         at.lambda.splice(.., shifted);
         let changed = reactions(model, length, at, work).into_iter().zip(&given);
@@ -38,7 +38,11 @@ pub(super) fn least_reactions(
         }
     }
     at.lambda.copy_from_slice(&balanced);
-    for (amount, stress) in least_squares(&changes, &given).iter().zip(&own_stresses) {
+    // of what is not finite nothing is claimed, and the row says so
+    let Some(amounts) = least_squares(&changes, &given) else {
+        return Vec::new();
+    };
+    for (amount, stress) in amounts.iter().zip(&self_stresses) {
         let stressed = at.lambda.iter_mut().zip(stress);
         stressed.for_each(|(x, w)| *x -= amount * w);
     }
@@ -49,9 +53,10 @@ pub(super) fn least_reactions(
     (0..model.joints().len()).filter(changes).collect()
 }
 
-/// Independent multipliers w with w^T Phi_q = 0, one for every row that is left out: the parts of these rows that no balance of forces
+/// Independent states of self-stress, multipliers w with w^T Phi_q = 0 (Pellegrino & Calladine 1986, Int. J. Solids Struct. 22:409), one
+/// for every row that is left out: the parts of these rows that no balance of forces
 /// sees.
-fn own_stresses(model: &Model, at: &State) -> Vec<Vec<f64>> {
+fn self_stresses(model: &Model, at: &State) -> Vec<Vec<f64>> {
     let shape = model.shape();
     let lengths = unit_lengths(model);
     let mut balance = vec![SparseRow::new(); shape.unknowns];
@@ -62,12 +67,12 @@ fn own_stresses(model: &Model, at: &State) -> Vec<Vec<f64>> {
     }
     let zero = vec![0.0; shape.unknowns];
     let balance = IndependentRows::new(shape.multipliers, &balance, &zero);
-    let own_stress = |row: usize| {
+    let self_stress = |row: usize| {
         let mut unit = vec![0.0; shape.multipliers];
         unit[row] = 1.0;
         balance.free_part(&unit)
     };
-    model.left_out().map(own_stress).collect()
+    model.left_out().map(self_stress).collect()
 }
 
 /// Force \[N\], and torque divided by a length \[N\], of every joint.
@@ -84,11 +89,9 @@ fn reactions(model: &Model, length: f64, at: &State, work: &mut Work) -> Vec<f64
     reactions
 }
 
-/// The x of least norm that minimises |A x - b|.
-fn least_squares(a: &Mat<f64>, b: &[f64]) -> Vec<f64> {
-    let Ok(svd) = a.thin_svd() else {
-        return vec![0.0; a.ncols()];
-    };
+/// The x of least norm that minimises |A x - b|; none where these are not finite.
+fn least_squares(a: &Mat<f64>, b: &[f64]) -> Option<Vec<f64>> {
+    let svd = a.thin_svd().ok()?;
     let values = svd.S().column_vector();
     let largest = values.iter().fold(0.0_f64, |m, x| m.max(*x));
     let mut x = vec![0.0; a.ncols()];
@@ -101,5 +104,5 @@ fn least_squares(a: &Mat<f64>, b: &[f64]) -> Vec<f64> {
         let parts = x.iter_mut().zip(svd.V().col(k).iter());
         parts.for_each(|(x, v)| *x += v * along / value);
     }
-    x
+    Some(x)
 }

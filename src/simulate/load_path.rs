@@ -105,7 +105,6 @@ impl Simulation {
         let tried =
             tried.and_then(|found| Some((found, self.path_tangent(metric, &reached).ok()?)));
         let Some((found, onward)) = tried else {
-            self.counters.rejected += 1;
             if self.cannot_move() {
                 return self.step_drives(metric, &base, growth, observer);
             }
@@ -271,7 +270,7 @@ impl Simulation {
         observer: &mut dyn Observer,
     ) -> Result<(), RunError> {
         loop {
-            let point = critical.point(metric.duration);
+            let point = critical.point(metric.duration, self.critical_points.is_empty());
             self.critical_points.push(point.clone());
             self.trial.copy_from(&critical.state);
             self.keep_equilibrium(critical.found, observer)?;
@@ -307,7 +306,6 @@ impl Simulation {
                 Err(_)
                     if side.is_none() && from == CriticalKind::Bifurcation && step.length < 1.0 =>
                 {
-                    self.counters.rejected += 1;
                     step.length *= 2.0;
                     continue;
                 }

@@ -11,10 +11,11 @@ impl Report {
     pub fn notes(&self) -> Vec<String> {
         let mut notes = self.scene_notes.clone();
         notes.extend(self.start_notes());
-        notes.extend(self.redundant.iter().map(|name| {
-            format!("{name} is redundant: the constraint forces in its loop are not unique")
-        }));
-        if !self.one_of_many.is_empty() {
+        if self.one_of_many.is_empty() {
+            notes.extend(self.redundant.iter().map(|name| {
+                format!("{name} is redundant: the constraint forces in its loop are not unique")
+            }));
+        } else {
             let joints = self.one_of_many.join(", ");
             notes.push(format!(
                 "the reactions of {joints} are one of many that balance the forces: those of the least norm"
@@ -22,7 +23,14 @@ impl Report {
         }
         notes.extend(self.restitution.iter().map(ToString::to_string));
         notes.extend(self.freedoms.iter().cloned());
-        notes.extend(self.critical_points.iter().map(ToString::to_string));
+        // the error of a run that ends at the first one has said it
+        let said = |point: &String| {
+            self.error
+                .as_ref()
+                .is_some_and(|error| error.contains(point))
+        };
+        let critical = self.critical_points.iter().map(ToString::to_string);
+        notes.extend(critical.filter(|point| !said(point)));
         notes.extend(self.rest.as_ref().and_then(FoundRest::note));
         notes.extend(self.unstable_rest.as_ref().map(|rest| {
             format!(

@@ -138,7 +138,7 @@ impl Simulation {
             gaps,
             started,
             rest,
-            indeterminate: Vec::new(),
+            indeterminate: Default::default(),
             heading: None,
             critical_points: Vec::new(),
             status: Status::Incomplete,

@@ -77,7 +77,7 @@ fn text(scene: &Scene, simulation: &Simulation, inspection: &Inspection, all: bo
         (
             "unknown coordinates",
             format!(
-                "{}, of which {} are independent",
+                "{}, {} of them independent",
                 inspection.unknowns, inspection.independent
             ),
         ),

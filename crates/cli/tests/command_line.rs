@@ -553,7 +553,7 @@ fn check_and_inspect() {
     expect(&output, 0, "");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(
-        text.contains("unknown coordinates   3, of which 3 are independent\n"),
+        text.contains("unknown coordinates   3, 3 of them independent\n"),
         "{text}"
     );
     assert!(text.contains("0.9132"), "{text}");
@@ -611,7 +611,7 @@ fn an_inspection_fits_on_a_screen() {
     let text = shown("scenes/3rrr/case4.toml", &[]);
     for line in [
         "  mobility              3 degrees of freedom, all of them driven\n",
-        "  unknown coordinates   27, of which 27 are independent\n",
+        "  unknown coordinates   27, 27 of them independent\n",
         "  B1, B2, B3, C1, C2, C3 clearance 2e-5 m",
         "  B1, B2, B3, C1, C2, C3: lankarani_nikravesh with a restitution of 0.9 gives 0.9132",
         " more: --all\n",
