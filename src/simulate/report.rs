@@ -381,7 +381,9 @@ impl Simulation {
         let newton = self.newton.counters;
         let dynamic = self.scene.simulation.analysis == Analysis::Dynamic;
         let integration = dynamic.then(|| self.meter.report(&self.model));
-        let rests = integration.as_ref().is_some_and(Integration::rests);
+        // forces of a run that failed are not asked again
+        let rests =
+            self.status == Status::Complete && integration.as_ref().is_some_and(Integration::rests);
         let bodies = self.model.bodies().iter().enumerate();
         let names = self.recorder.channels().iter().map(|c| c.name.clone());
         Report {
