@@ -69,31 +69,43 @@ fn first_critical(text: &str, load: f64) -> (CriticalPoint, f64) {
     }
 }
 
+/// The limit load of a von Mises truss, see below.
+fn limit_of_truss(stiffness: f64, height: f64) -> f64 {
+    let rest = 1.0_f64.hypot(height);
+    let length = rest.cbrt();
+    2.0 * stiffness * (length * length - 1.0).sqrt() * (rest / length - 1.0)
+}
+
+/// A von Mises truss under a load downwards and what else acts.
+fn truss(stiffness: f64, height: f64, load: f64, also: &str) -> String {
+    let rest = 1.0_f64.hypot(height);
+    let spring = |name: &str, from: &str| {
+        format!(
+            "forces.{name} = {{ type = \"spring_damper\", from = \"ground.{from}\", to = \"apex.center\", stiffness = {stiffness:?}, damping = 0.0, rest_length = {rest:?} }}\n"
+        )
+    };
+    let parts = "bodies.apex = { type = \"point_mass\", mass = 1.0 }\n".to_owned()
+        + &spring("left", "A")
+        + &spring("right", "B")
+        + &force("load", "apex.center", [0.0, -load])
+        + also
+        + &format!("initial.bodies.apex = {{ x = 0.0, y = {height:?} }}\n");
+    statics(
+        "points.A = [-1.0, 0.0], points.B = [1.0, 0.0]",
+        0.01,
+        &parts,
+    )
+}
+
 /// Two springs of stiffness k from (-1, 0) and (1, 0) to a mass at (0, h) under a load: F(y) = 2 k y (l0/l - 1) is largest where
 /// l^3 = l0.
 #[test]
 fn a_von_mises_truss_snaps_at_its_limit_load() {
     let worst = Worst::new();
     for (stiffness, height) in [(1e4_f64, 0.1_f64), (1e4, 0.3), (1e9, 0.02)] {
-        let rest = 1.0_f64.hypot(height);
-        let length = rest.cbrt();
-        let limit = 2.0 * stiffness * (length * length - 1.0).sqrt() * (rest / length - 1.0);
+        let limit = limit_of_truss(stiffness, height);
         let load = 1.4 * limit;
-        let spring = |name: &str, from: &str| {
-            format!(
-                "forces.{name} = {{ type = \"spring_damper\", from = \"ground.{from}\", to = \"apex.center\", stiffness = {stiffness:?}, damping = 0.0, rest_length = {rest:?} }}\n"
-            )
-        };
-        let parts = "bodies.apex = { type = \"point_mass\", mass = 1.0 }\n".to_owned()
-            + &spring("left", "A")
-            + &spring("right", "B")
-            + &force("load", "apex.center", [0.0, -load])
-            + &format!("initial.bodies.apex = {{ x = 0.0, y = {height:?} }}\n");
-        let text = statics(
-            "points.A = [-1.0, 0.0], points.B = [1.0, 0.0]",
-            0.01,
-            &parts,
-        );
+        let text = truss(stiffness, height, load, "");
         let (point, critical) = first_critical(&text, load);
         assert_eq!(point.kind, CriticalKind::Limit);
         assert_eq!(point.moves_most, "apex.center.y");
@@ -484,28 +496,12 @@ fn an_arch_under_a_load_that_hardly_leans_is_perfect() {
 /// is at t = -1.1.
 #[test]
 fn a_path_that_leads_to_the_reversed_load_ends_there() {
-    let (stiffness, rest) = (1e4_f64, 1.0_f64.hypot(0.3));
-    let length = rest.cbrt();
-    let limit = 2.0 * stiffness * (length * length - 1.0).sqrt() * (rest / length - 1.0);
-    let spring = |name: &str, from: &str| {
-        format!(
-            "forces.{name} = {{ type = \"spring_damper\", from = \"ground.{from}\", to = \"apex.center\", stiffness = {stiffness:?}, damping = 0.0, rest_length = {rest:?} }}\n"
-        )
-    };
-    let parts = "bodies.apex = { type = \"point_mass\", mass = 1.0 }\n".to_owned()
-        + &spring("left", "A")
-        + &spring("right", "B")
-        + &force("load", "apex.center", [0.0, -limit])
-        + &format!(
-            "forces.dead = {{ type = \"force\", point = \"apex.center\", x = 0.0, y = \"{}\", frame = \"ground\" }}\n",
-            -0.1 * limit
-        )
-        + "initial.bodies.apex = { x = 0.0, y = 0.3 }\n";
-    let text = statics(
-        "points.A = [-1.0, 0.0], points.B = [1.0, 0.0]",
-        0.01,
-        &parts,
+    let limit = limit_of_truss(1e4, 0.3);
+    let dead = format!(
+        "forces.dead = {{ type = \"force\", point = \"apex.center\", x = 0.0, y = \"{}\", frame = \"ground\" }}\n",
+        -0.1 * limit
     );
+    let text = truss(1e4, 0.3, limit, &dead);
     let (ended, recording, report) = run(&text, &["simulation.at_limit=follow"]);
     let message = ended.unwrap_err().to_string();
     assert!(message.contains("reversed load"), "{message}");

@@ -56,22 +56,8 @@ fn a_pendulum_hangs_from_any_sketch() {
 /// A pendulum that stands upright without being asked to rests there, and is said to fall; one that hangs has no note.
 #[test]
 fn a_motion_that_rests_upright_says_so() {
-    for (end, grows) in [("[0.0, 1.0]", true), ("[0.0, -1.0]", false)] {
-        let scene = parse(&format!(
-            r#"
-format = 1
-title = "a bar stands on a pin"
-simulation = {{ duration = 0.5, gravity = [0.0, -9.81] }}
-integrator = {{ method = "bathe", step = 1e-2, newton_tolerance = 1e-9 }}
-output = {{ interval = 0.1, channels = ["bar.theta"] }}
-materials.steel = {{ density = 7850.0 }}
-sections.bar = {{ width = 0.01, height = 0.02 }}
-bodies.ground = {{ type = "ground", points.O = [0.0, 0.0] }}
-bodies.bar = {{ type = "link", model = "rigid", length = 1.0, section = "bar", material = "steel" }}
-joints.O = {{ type = "revolute", bearing = "ground.O", journal = "bar.start", model = "ideal" }}
-initial.sketch.bar = {{ end = {end} }}
-"#
-        ));
+    for (end, grows) in [([0.0, 1.0], true), ([0.0, -1.0], false)] {
+        let scene = pendulum(end, "false");
         let mut simulation = Simulation::new(&scene).unwrap();
         simulation.run(&mut ()).unwrap();
         let report = simulation.report();

@@ -228,25 +228,27 @@ fn scenes_of_the_project_are_plausible() {
     assert_eq!(told, Vec::<String>::new());
 }
 
+/// A crank that a drive turns by an angle, as written, with a sketch.
+fn driven_crank(angle: &str, sketch: &str) -> Scene {
+    let text = format!(
+        "format = 1\n\
+         title = \"a crank\"\n\
+         simulation = {{ duration = 0.1 }}\n\
+         integrator = {{ method = \"bathe\", step = 1e-3 }}\n\
+         output = {{ interval = 1e-2, channels = [\"*\"] }}\n\
+         bodies.ground = {{ type = \"ground\", points.O = [0.1, 0.0] }}\n\
+         bodies.crank = {{ type = \"rigid_body\", mass = 1.0, inertia = 1e-3, points = {{ o = [0.0, 0.0], tip = [0.2, 0.0] }} }}\n\
+         joints.O = {{ type = \"revolute\", model = \"ideal\", bearing = \"ground.O\", journal = \"crank.o\" }}\n\
+         drives.motor = {{ type = \"angle\", joint = \"O\", angle = {angle} }}\n\
+         {sketch}"
+    );
+    Scene::parse("scene.toml", &text, &[]).unwrap()
+}
+
 /// Of an expression the value at the start; of a table rows that all are whole numbers of halves.
 #[test]
 fn angles_of_expressions_and_tables_are_judged() {
-    let told = |angle: &str| {
-        let text = format!(
-            "format = 1\n\
-             title = \"a crank\"\n\
-             simulation = {{ duration = 0.1 }}\n\
-             integrator = {{ method = \"bathe\", step = 1e-3 }}\n\
-             output = {{ interval = 1e-2, channels = [\"*\"] }}\n\
-             bodies.ground = {{ type = \"ground\", points.O = [0.1, 0.0] }}\n\
-             bodies.crank = {{ type = \"rigid_body\", mass = 1.0, inertia = 1e-3, points = {{ o = [0.0, 0.0], tip = [0.2, 0.0] }} }}\n\
-             joints.O = {{ type = \"revolute\", model = \"ideal\", bearing = \"ground.O\", journal = \"crank.o\" }}\n\
-             drives.motor = {{ type = \"angle\", joint = \"O\", angle = {angle} }}\n"
-        );
-        Scene::parse("scene.toml", &text, &[])
-            .unwrap()
-            .implausible()
-    };
+    let told = |angle: &str| driven_crank(angle, "").implausible();
     let table = |shape: &str, rows: &str| {
         format!("{{ type = \"table\", shape = \"{shape}\", rows = {rows} }}")
     };
@@ -274,19 +276,8 @@ fn angles_of_expressions_and_tables_are_judged() {
 #[test]
 fn a_drive_that_contradicts_the_sketch_in_degrees_is_asked() {
     let crank = |angle: &str| {
-        let text = format!(
-            "format = 1\n\
-             title = \"a crank\"\n\
-             simulation = {{ duration = 0.1 }}\n\
-             integrator = {{ method = \"bathe\", step = 1e-3 }}\n\
-             output = {{ interval = 1e-2, channels = [\"*\"] }}\n\
-             bodies.ground = {{ type = \"ground\", points.O = [0.1, 0.0] }}\n\
-             bodies.crank = {{ type = \"rigid_body\", mass = 1.0, inertia = 1e-3, points = {{ o = [0.0, 0.0], tip = [0.2, 0.0] }} }}\n\
-             joints.O = {{ type = \"revolute\", model = \"ideal\", bearing = \"ground.O\", journal = \"crank.o\" }}\n\
-             drives.motor = {{ type = \"angle\", joint = \"O\", angle = {angle} }}\n\
-             initial.sketch = {{ crank = {{ tip = [-0.0489, 0.1336] }} }}\n"
-        );
-        let scene = Scene::parse("scene.toml", &text, &[]).unwrap();
+        let sketch = "initial.sketch = { crank = { tip = [-0.0489, 0.1336] } }\n";
+        let scene = driven_crank(angle, sketch);
         Simulation::new(&scene)
             .map(drop)
             .map_err(|error| Diagnostic::help(&error).map(|help| help.to_string()))
