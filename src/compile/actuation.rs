@@ -13,7 +13,7 @@ use crate::kinematics::{Inner, Kinematics, UnitMotions};
 use crate::marker::Spin;
 use crate::math::bisection::bisected;
 use crate::math::independent_rows::IndependentRows;
-use crate::math::larger;
+use crate::math::{generic, larger};
 use crate::model::PlacedConstraint;
 use crate::scene::{Drive, Scene};
 use crate::system::State;
@@ -183,6 +183,11 @@ impl<'a> Actuation<'a> {
         }))
     }
 
+    /// Motions of the driven body along x, along y and about its reference point by which points move alike.
+    fn units(&self) -> [f64; POSE] {
+        [self.size, self.size, 1.0]
+    }
+
     /// What the joints determine in a pose that is not singular.
     fn determined(&mut self) -> Option<Determined> {
         let (horizon, _) = self.drive.path.sweep(self.kinematics.duration);
@@ -197,19 +202,18 @@ impl<'a> Actuation<'a> {
         let rows: Vec<Vec<(usize, f64)>> = rows
             .map(|row| row.iter().copied().enumerate().collect())
             .collect();
-        let independent = IndependentRows::new(POSE, &rows, &vec![0.0; rows.len()]);
+        let independent = IndependentRows::homogeneous(POSE, &rows);
         let still = |x: [f64; POSE]| {
             let free = independent.free_part(&x);
             free.iter().all(|x| x.abs() <= ZERO)
         };
-        // a motion that shares no symmetry with the mechanism
-        let free = independent.free_part(&[1.0_f64, 3.4, 5.8].map(f64::sin));
+        let free = independent.free_part(&[0, 1, 2].map(generic));
         let mechanism = &*self.kinematics.mechanism;
         let bodies = mechanism.bodies();
         let (mut lengths, angles) = (mechanism.lengths(), mechanism.known_angles());
         let known = lengths.len()..pose.state.q.len();
         lengths.extend(known.map(|i| if angles.contains(&i) { self.size } else { 1.0 }));
-        let units = [self.size, self.size, 1.0];
+        let units = self.units();
         let moves = |i: usize| {
             let parts = free.iter().zip(units).zip(&pose.motions);
             let rate: f64 = parts
@@ -217,11 +221,7 @@ impl<'a> Actuation<'a> {
                 .sum();
             rate.abs() * lengths[i] > ZERO * self.size
         };
-        let moving = (0..bodies.len()).filter(|&b| {
-            let slots = bodies[b].placed.x.iter().zip(&bodies[b].contents);
-            let mut coordinates = slots.flat_map(|(x, content)| *x..x + content.names().len());
-            coordinates.any(moves)
-        });
+        let moving = (0..bodies.len()).filter(|&b| bodies[b].coordinates().any(moves));
         Determined {
             rank: rows.len() - independent.dependent.len(),
             is_placed: still([1.0, 0.0, 0.0]) && still([0.0, 1.0, 0.0]),
@@ -251,7 +251,7 @@ impl<'a> Actuation<'a> {
     /// The rates in the pose that was just solved for.
     fn measured(&mut self, state: State) -> PoseOnPath {
         let motions = self.kinematics.unit_motions(&mut self.inner, self.x);
-        let units = [self.size, self.size, 1.0];
+        let units = self.units();
         let rates = self.spins.iter().map(|spins| {
             let row = std::array::from_fn(|i| {
                 let [first, second] = spins.map(|spin| spin.rate(&state.q, &motions[i]));

@@ -9,6 +9,7 @@ use super::{Compiler, Mode, Role, is_ideal, known_roles};
 use crate::body::PointRef;
 use crate::kinematics::limit::{End, LOCATED, Tracer};
 use crate::math::bisection::bisected;
+use crate::math::generic;
 use crate::math::independent_rows::IndependentRows;
 use crate::model::Model;
 use crate::motion::Function;
@@ -341,9 +342,8 @@ fn determined(c: &Compiler) -> Option<(Model, State)> {
     let (mut mechanism, state) = closed_mechanism(c).ok()?;
     let n = mechanism.shape().unknowns;
     let rows = constraint_rows(&mechanism, &state);
-    let independent = IndependentRows::new(n, &rows, &vec![0.0; rows.len()]);
-    // a direction that shares no symmetry with a mechanism
-    let direction: Vec<f64> = (0..n).map(|i| (1.0 + 2.4 * i as f64).sin()).collect();
+    let independent = IndependentRows::homogeneous(n, &rows);
+    let direction: Vec<f64> = (0..n).map(generic).collect();
     let moves: Vec<bool> = (independent.free_part(&direction).iter())
         .map(|x| x.abs() > DETERMINED)
         .collect();

@@ -75,13 +75,12 @@ pub(crate) fn left_free(scene: &Scene) -> Option<Vec<usize>> {
     let determined = Ranks::of(&model, &state, extent(scene)).determined();
     let bodies = model.bodies().iter().enumerate();
     let free = bodies.filter(|(_, body)| {
-        let slots = body.placed.x.iter().zip(&body.contents);
-        let mut coordinates = slots.flat_map(|(x, content)| *x..x + content.names().len());
-        coordinates.any(|i| {
+        let is_free = |i| {
             determined
                 .get(i)
                 .is_some_and(|is_determined| !is_determined)
-        })
+        };
+        body.coordinates().any(is_free)
     });
     Some(free.map(|(b, _)| b).collect())
 }

@@ -6,6 +6,7 @@
 //! rigid but shaky; where it has two, branches of the motion cross.
 
 use crate::compile::assembly::{closing_step, constraint_rows};
+use crate::math::generic;
 use crate::math::groups::Groups;
 use crate::math::independent_rows::IndependentRows;
 use crate::model::Model;
@@ -45,14 +46,13 @@ fn dependent(model: &Model, state: &State) -> (Vec<(usize, usize)>, IndependentR
     let constraints = model.constraints.iter().enumerate();
     let all = constraints.flat_map(|(i, placed)| (0..placed.rows).map(move |d| (i, d)));
     let all: Vec<_> = all.collect();
-    let zero = vec![0.0; all.len()];
     // of displacements, so that ranks do not depend on the size of the mechanism
     let lengths = unit_lengths(model);
     let mut rows = constraint_rows(model, state);
     for (i, x) in rows.iter_mut().flatten() {
         *x /= lengths[*i];
     }
-    let equations = IndependentRows::new(model.shape().unknowns, &rows, &zero);
+    let equations = IndependentRows::homogeneous(model.shape().unknowns, &rows);
     let dependent = equations.dependent.iter().map(|&k| all[k]);
     (dependent.collect(), equations)
 }
@@ -148,7 +148,7 @@ impl<'m> Ranks<'m> {
 /// that shares no symmetry with a mechanism. None where no motion is possible.
 fn free_displacements(model: &Model, equations: &IndependentRows) -> Option<Vec<f64>> {
     let n = model.shape().unknowns;
-    let direction: Vec<f64> = (0..n).map(|i| (1.0 + 2.4 * i as f64).sin()).collect();
+    let direction: Vec<f64> = (0..n).map(generic).collect();
     let mut free = equations.free_part(&direction);
     let largest = free.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     free.iter_mut().for_each(|x| *x /= largest);

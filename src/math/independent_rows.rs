@@ -2,6 +2,7 @@
 //! they are few; otherwise in a time that grows little faster than their number, where few of them depend on others.
 
 use super::dense::{DEPENDENT, Equations, norm};
+use super::generic;
 use super::groups::Groups;
 use super::sparse_rows::{SparseRow, SparseRows, SymmetricBlock, full_row, square, times};
 use faer::Mat;
@@ -49,6 +50,11 @@ impl IndependentRows {
         sparse
             .flatten()
             .unwrap_or_else(|| IndependentRows::dense(n, rows, b))
+    }
+
+    /// Of n unknowns, with right sides of zero.
+    pub fn homogeneous(n: usize, rows: &[SparseRow]) -> IndependentRows {
+        IndependentRows::new(n, rows, &vec![0.0; rows.len()])
     }
 
     /// None where it is not certain which rows are independent.
@@ -150,9 +156,7 @@ fn certainly_independent(n: usize, rows: &[SparseRow]) -> Option<SparseRows> {
     }
     // right sides that no sum of rows gives
     let sizes = rows.iter().map(|row| square(row).sqrt()).enumerate();
-    let b: Vec<f64> = sizes
-        .map(|(k, size)| size * (1.0 + 2.4 * k as f64).sin())
-        .collect();
+    let b: Vec<f64> = sizes.map(|(k, size)| size * generic(k)).collect();
     let x = factors.solve(&vec![0.0; n], &b);
     let is_solved =
         |(row, b): (&SparseRow, &f64)| (times(row, &x) - b).abs() <= SOLVED * square(row).sqrt();

@@ -21,3 +21,8 @@ pub fn larger(m: f64, x: f64) -> f64 {
         false => x.abs(),
     }
 }
+
+/// Component i of a direction that shares no symmetry with a mechanism: its components are a golden angle, about 2.4 rad, apart.
+pub fn generic(i: usize) -> f64 {
+    (1.0 + 2.4 * i as f64).sin()
+}

@@ -166,6 +166,20 @@ impl Model {
         }
     }
 
+    /// Speed of a joint that a drive turns \[rad/s\], and the torque of the drive or of what holds the angle \[N m\].
+    pub fn joint_turn(&self, index: usize, at: &State, work: &mut Work) -> [f64; 2] {
+        match &self.joints[index].actuator {
+            Some(actuator) => {
+                let [_, speed, _, torque] = self.actuator(actuator, at, work);
+                [speed, torque]
+            }
+            None => [
+                self.turned(index, at)[1],
+                self.joint_couple(index, at, work),
+            ],
+        }
+    }
+
     /// Angle (up to full turns), speed and acceleration of the second side of a joint relative to the first, if a motion
     /// prescribes them by a constraint.
     pub fn turned(&self, index: usize, at: &State) -> [f64; 3] {

@@ -234,6 +234,14 @@ pub struct PlacedBody {
     pub(crate) elements: Range<usize>,
 }
 
+impl PlacedBody {
+    /// Indices of its coordinates, slot by slot.
+    pub(crate) fn coordinates(&self) -> impl Iterator<Item = usize> {
+        let slots = self.placed.x.iter().zip(&self.contents);
+        slots.flat_map(|(x, content)| *x..x + content.names().len())
+    }
+}
+
 /// A named point of a body.
 #[derive(Debug, Clone)]
 pub struct PlacedPoint {

@@ -12,8 +12,9 @@
 //! the mechanism, so that it stays on its slope; otherwise tau is reduced. As the forces vanish tau grows, and the steps become those of
 //! Newton's method for the equilibrium. A force that has no potential, such as one that follows a body, is judged by its work as well.
 
-use super::statics::{Anchor, Limits, ROUNDING};
-use super::{Failure, Newton, Update};
+use super::extent::{Extent, NEARBY};
+use super::statics::{Anchor, Limits};
+use super::{Failure, Newton};
 use crate::math::quadrature::GAUSS5;
 use crate::system::{Equilibrium, State, Work};
 
@@ -23,8 +24,6 @@ const LARGEST_TAU: f64 = 1e10;
 const REDUCTION: f64 = 16.0;
 /// Below this tau \[s2\], (1e-15 s)^2, no mechanism moves.
 const LEAST_TAU: f64 = 1e-30;
-/// Nothing moves farther in a step than this part of the size of the mechanism: a sixtieth to a thirtieth of a turn of its largest body.
-const RADIUS: f64 = 0.1;
 /// A descent ends where nothing moves farther than this part of the size: the root of rounding, from which Newton's method
 /// reaches rounding in one iteration.
 const AT_REST: f64 = 1e-8;
@@ -38,46 +37,6 @@ const LIMITS: Limits = Limits {
 const STEPS: usize = 2000;
 /// The work of the forces is rounded by so many roundings of the forces times the coordinates.
 const ROUNDINGS: f64 = 64.0;
-
-/// How far changes of coordinates move a mechanism.
-#[derive(Debug, Clone, Copy)]
-pub struct Extent<'a> {
-    /// The largest distance \[m\] by which a unit of each unknown moves a point of its body.
-    pub lengths: &'a [f64],
-    /// The size of the mechanism \[m\].
-    pub size: f64,
-}
-
-impl Extent<'_> {
-    /// The largest displacement of some changes of the unknowns, as part of the size.
-    pub(super) fn update(&self, changes: &[f64]) -> Update {
-        let moved = changes.iter().zip(self.lengths);
-        Update::largest(moved.map(|(x, length)| x * length / self.size))
-    }
-
-    /// The largest coordinate, known or not, as a displacement \[m\].
-    fn farthest_coordinate(&self, s: &State) -> f64 {
-        let (unknown, known) = s.q.split_at(self.lengths.len());
-        let unknown = unknown.iter().zip(self.lengths);
-        let displacements = unknown.map(|(q, length)| q * length);
-        let all = displacements.chain(known.iter().copied());
-        all.fold(0.0, |m, q| m.max(q.abs()))
-    }
-
-    /// What is rounding of an update, as part of the size.
-    pub(super) fn rounding(&self, s: &State) -> f64 {
-        ROUNDING * (self.farthest_coordinate(s) / self.size).max(1.0)
-    }
-
-    /// The unknown that moves a point farthest in some changes of the unknowns, the first of them without any, and how far \[m\].
-    pub fn farthest(&self, changes: impl Iterator<Item = f64>) -> (usize, f64) {
-        let moved = changes
-            .zip(self.lengths)
-            .map(|(x, length)| (x * length).abs());
-        let most = moved.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        most.unwrap_or((0, 0.0))
-    }
-}
 
 impl Newton {
     /// Brings a state that satisfies the constraints downhill to rest, at its known coordinates and loads, and shows every state on
@@ -108,7 +67,7 @@ impl Newton {
                 let made = self.balance_with(system, extent, Some(anchor), LIMITS, &mut next, work);
                 let moved = extent.update(&change(s, &next));
                 let distance = moved.size;
-                if made.is_ok() && distance <= RADIUS && self.falls(system, extent, s, &next, work)
+                if made.is_ok() && distance <= NEARBY && self.falls(system, extent, s, &next, work)
                 {
                     most = moved.index;
                     break distance;

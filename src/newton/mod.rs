@@ -2,6 +2,7 @@
 
 mod crossing;
 mod descent;
+mod extent;
 mod factors;
 mod iteration;
 mod load_path;
@@ -14,7 +15,7 @@ mod statics;
 mod tangent;
 
 pub use crossing::Crossing;
-pub use descent::Extent;
+pub use extent::Extent;
 pub(crate) use iteration::{Update, iterate};
 pub use load_path::{ArcMetric, PathTangent};
 pub use response::{Response, ResponseTerm};

@@ -5,8 +5,9 @@
 //! same solution for any s > 0; s is the largest stiffness on the diagonal. The constraints are written as s Phi = 0 and the
 //! multipliers as lambda/s, so that all entries of the matrix are of similar size.
 
+use super::extent::{Extent, NEARBY};
 use super::iteration::Iteration;
-use super::{Extent, Failure, Newton, Update, iterate};
+use super::{Failure, Newton, Update, iterate};
 use crate::math::lu::LARGEST_MULTIPLIER;
 use crate::system::{Equilibrium, State, Work};
 
@@ -14,16 +15,11 @@ use crate::system::{Equilibrium, State, Work};
 const MAX_ITERATIONS: usize = 40;
 /// An update below this part of the size of the mechanism is followed by one more, whose error is the square of it.
 pub(super) const LAST_UPDATE: f64 = 1e-8;
-/// An update below this part of the size, or of the largest coordinate, that no longer decreases is rounding.
-pub(super) const ROUNDING: f64 = 1e-12;
 
 /// By the theorem of Newton and Kantorovich a solution is near, and Newton's method finds it, where the second update is at most half
 /// the first; half of that is left for what updates in two norms differ by (Deuflhard 2011, Newton Methods for Nonlinear Problems,
 /// 2.1).
 pub(super) const CONTRACTION: f64 = 0.25;
-
-/// An equilibrium nearby is sought by steps that move nothing farther than this part of the size of the mechanism.
-const NEARBY: f64 = 0.1;
 
 /// What a step of a descent is pulled back to: M (q - q_0) w is added to the forces.
 #[derive(Debug, Clone, Copy)]

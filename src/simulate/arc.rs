@@ -3,7 +3,7 @@
 use super::equilibrium::{FoundRest, explain};
 use super::{GRID_ROUNDING, RunError, Simulation, check_turns, scale};
 use crate::model::Model;
-use crate::newton::{ArcMetric, Extent, Failure, PathTangent};
+use crate::newton::{ArcMetric, Failure, PathTangent};
 use crate::stepper::StepError;
 use crate::system::{State, System, Work};
 
@@ -59,10 +59,7 @@ impl Simulation {
     /// What arcs are measured by; `lengths` are those of the model.
     pub(super) fn arc_metric<'a>(&self, lengths: &'a [f64]) -> ArcMetric<'a> {
         ArcMetric {
-            extent: Extent {
-                lengths,
-                size: scale::size(&self.scene, &self.model, &self.start),
-            },
+            extent: scale::extent(&self.scene, &self.model, &self.start, lengths),
             duration: self.scene.simulation.duration,
         }
     }

@@ -196,16 +196,7 @@ impl ClosingSums {
             let Some([torques, powers]) = &mut sums.drive else {
                 continue;
             };
-            let [speed, torque] = match &model.joints()[sums.joint].actuator {
-                Some(actuator) => {
-                    let [_, speed, _, torque] = model.actuator(actuator, at, work);
-                    [speed, torque]
-                }
-                None => [
-                    model.turned(sums.joint, at)[1],
-                    model.joint_couple(sums.joint, at, work),
-                ],
-            };
+            let [speed, torque] = model.joint_turn(sums.joint, at, work);
             torques.see(torque, t, have_settled);
             powers.see(torque * speed, t, have_settled);
         }

@@ -94,10 +94,7 @@ pub(super) fn prepare(
             state.a[known.clone()].to_vec(),
         );
         let lengths = model.lengths();
-        let extent = Extent {
-            lengths: &lengths,
-            size: scale::size(scene, model, state),
-        };
+        let extent = scale::extent(scene, model, state, &lengths);
         let found = match rest {
             Some(Rest::Nearest) => newton
                 .balance_nearby(model, extent, state, work)
@@ -213,10 +210,7 @@ impl Simulation {
             return None;
         }
         let lengths = model.lengths();
-        let extent = Extent {
-            lengths: &lengths,
-            size: scale::size(&self.scene, model, &self.state),
-        };
+        let extent = scale::extent(&self.scene, model, &self.state, &lengths);
         // a report changes nothing of the run
         let (mut newton, mut work) = (Newton::new(model, 0.0), self.work.clone());
         let found = FoundRest::of(model, &mut newton, extent, &self.state, &mut work).ok()?;

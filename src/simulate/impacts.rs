@@ -127,8 +127,11 @@ impl ContactCount {
         self.closed += (to - course.t.max(from)).max(0.0);
     }
 
-    /// A force that counts.
-    fn see(&mut self, force: f64, t: f64) {
+    /// A force, which counts from a time on.
+    fn see(&mut self, force: f64, t: f64, from: f64) {
+        if t < from {
+            return;
+        }
         if force > self.largest[0] {
             self.largest = [force, t];
         }
@@ -241,9 +244,7 @@ impl Impacts {
         count.impacts += u64::from(!starts_closed && at.t >= self.from);
         count.has_settled |= starts_closed;
         count.has_begun = true;
-        if at.t >= self.from {
-            count.see(course.largest_force, at.t);
-        }
+        count.see(course.largest_force, at.t, self.from);
     }
 
     /// What was counted of a contact up to time t.
@@ -300,9 +301,7 @@ impl Impacts {
             let force = model.contact_force(contact, at).norm();
             course.largest_force = course.largest_force.max(force);
             let count = &mut self.counts[contact];
-            if at.t >= self.from {
-                count.see(force, at.t);
-            }
+            count.see(force, at.t, self.from);
             course.before = [delta, rate];
             course.end = (!closed).then_some(ContactEnd {
                 t: at.t,

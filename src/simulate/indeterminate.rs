@@ -54,8 +54,7 @@ pub(super) fn least_reactions(
 }
 
 /// Independent states of self-stress, multipliers w with w^T Phi_q = 0 (Pellegrino & Calladine 1986, Int. J. Solids Struct. 22:409), one
-/// for every row that is left out: the parts of these rows that no balance of forces
-/// sees.
+/// for every row that is left out: the parts of these rows that no balance of forces sees.
 fn self_stresses(model: &Model, at: &State) -> Vec<Vec<f64>> {
     let shape = model.shape();
     let lengths = unit_lengths(model);
@@ -65,8 +64,7 @@ fn self_stresses(model: &Model, at: &State) -> Vec<Vec<f64>> {
             balance[i].push((row, g / lengths[i]));
         }
     }
-    let zero = vec![0.0; shape.unknowns];
-    let balance = IndependentRows::new(shape.multipliers, &balance, &zero);
+    let balance = IndependentRows::homogeneous(shape.multipliers, &balance);
     let self_stress = |row: usize| {
         let mut unit = vec![0.0; shape.multipliers];
         unit[row] = 1.0;
@@ -78,11 +76,8 @@ fn self_stresses(model: &Model, at: &State) -> Vec<Vec<f64>> {
 /// Force \[N\], and torque divided by a length \[N\], of every joint.
 fn reactions(model: &Model, length: f64, at: &State, work: &mut Work) -> Vec<f64> {
     let mut reactions = Vec::with_capacity(3 * model.joints().len());
-    for (j, joint) in model.joints().iter().enumerate() {
-        let torque = match &joint.actuator {
-            Some(actuator) => model.actuator(actuator, at, work)[3],
-            None => model.joint_couple(j, at, work),
-        };
+    for j in 0..model.joints().len() {
+        let [_, torque] = model.joint_turn(j, at, work);
         let force = model.joint_force(j, at, work);
         reactions.extend([force.x, force.y, torque / length]);
     }

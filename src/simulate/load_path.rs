@@ -4,7 +4,7 @@ use super::arc::{Arc, LEAST_COSINE, set_load};
 use super::critical::{Critical, CriticalKind};
 use super::equilibrium::{FoundRest, Stability, come_to_rest};
 use super::{Control, GRID_ROUNDING, HALVINGS, Observer, Progress, RunError, Simulation, scale};
-use crate::newton::{ArcMetric, Extent, PathTangent};
+use crate::newton::{ArcMetric, PathTangent};
 use crate::stepper::StepError;
 use crate::system::State;
 
@@ -185,10 +185,7 @@ impl Simulation {
         let lengths = self.model.lengths();
         let duration = self.scene.simulation.duration;
         let (model, work) = (&*self.model, &mut self.work);
-        let extent = Extent {
-            lengths: &lengths,
-            size: scale::size(&self.scene, model, &self.state),
-        };
+        let extent = scale::extent(&self.scene, model, &self.state, &lengths);
         let (newton, trial) = (&mut self.newton, &mut self.trial);
         trial.copy_from(&self.state);
         trial.t = t;

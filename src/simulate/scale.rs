@@ -1,6 +1,7 @@
 //! The size of a mechanism.
 
 use crate::model::Model;
+use crate::newton::Extent;
 use crate::scene::Scene;
 use crate::system::State;
 
@@ -38,5 +39,18 @@ pub(super) fn size(scene: &Scene, model: &Model, at: &State) -> f64 {
     match extents.chain(levers).chain(sizes).fold(0.0, f64::max) {
         0.0 => 1.0,
         size => size,
+    }
+}
+
+/// What displacements are measured by; `lengths` are those of the model.
+pub(super) fn extent<'a>(
+    scene: &Scene,
+    model: &Model,
+    at: &State,
+    lengths: &'a [f64],
+) -> Extent<'a> {
+    Extent {
+        lengths,
+        size: size(scene, model, at),
     }
 }

@@ -9,6 +9,7 @@ use super::super::extent::FITS;
 use super::{Compiler, constraint_rows, name, whole_name};
 use crate::body::PointRef;
 use crate::constraint::ROWS;
+use crate::math::generic;
 use crate::math::groups::Groups;
 use crate::math::independent_rows::IndependentRows;
 use crate::math::plane::pair;
@@ -311,11 +312,11 @@ impl<'m> Closing<'m> {
 
     /// True where the gap of a constraint is the same in all poses nearby in which others are closed.
     fn is_fixed(&self, k: usize, closed: &[usize], at: &State) -> bool {
-        // of its own points, in a direction that shares no symmetry with a mechanism
+        // of its own points
         let mut direction = vec![0.0; self.held.len()];
         for &i in &self.model.constraints[k].block.coordinates {
             if i < direction.len() && !self.held[i] {
-                direction[i] = (1.0 + 2.4 * i as f64).sin();
+                direction[i] = generic(i);
             }
         }
         let free = self.equations(closed, at).free_part(&direction);

@@ -184,9 +184,7 @@ impl PartialAssembly<'_> {
 
 /// The unknown coordinates of a body.
 pub(super) fn coordinates(mechanism: &Model, body: usize) -> Vec<usize> {
-    let body = &mechanism.bodies()[body];
-    let slots = body.placed.x.iter().zip(&body.contents);
-    let all = slots.flat_map(|(x, content)| *x..x + content.names().len());
+    let all = mechanism.bodies()[body].coordinates();
     let n = mechanism.shape().unknowns;
     all.filter(|&i| i < n).collect()
 }
