@@ -44,9 +44,10 @@ const LAYERS: [&str; 27] = [
 const ABOVE: &str = "output";
 
 /// Crates that the solver is made of. toml_parser and winnow are compiled for toml in any case.
-const CRATES: [&str; 16] = [
+const CRATES: [&str; 17] = [
     "cpu-time",
     "faer",
+    "folder",
     "indexmap",
     "miette",
     "nalgebra",

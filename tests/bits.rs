@@ -1,7 +1,8 @@
 //! Every number on disk reads back to the bits that were recorded, through the writer of runs.
 
 use crate::support::load;
-use looselink::output::{Folder, Results, files};
+use looselink::output::folder::Folder;
+use looselink::output::{Results, kind};
 use looselink::scene::Scene;
 use looselink::simulate::{
     ContactEvent, Control, Observer, Onset, Progress, Recording, Simulation,
@@ -14,7 +15,7 @@ use std::path::Path;
 
 fn begin(scene: &Scene, folder: &Path) -> (Simulation, Results) {
     let simulation = Simulation::new(scene).unwrap();
-    let folder = Folder::new(folder, &files(&FORMATS), false).unwrap();
+    let folder = Folder::claim(folder, kind(&FORMATS, &[]), false).unwrap();
     let results = Results::begin(folder, scene, &simulation).unwrap();
     (simulation, results)
 }

@@ -8,6 +8,7 @@
 arrays. `sweep` runs a scene at many values of its fields. All quantities are in SI units.
 """
 
+from . import _looselink
 from ._looselink import (
     Run,
     RunError,
@@ -21,6 +22,8 @@ from ._looselink import (
     loads,
 )
 from .sweeps import SweepResult, sweep
+
+_looselink._program_is(_looselink.__file__)
 
 __all__ = [
     "Run",

@@ -22,6 +22,7 @@ __all__ = [
     "_Sweep",
     "__version__",
     "_make_tasks",
+    "_program_is",
     "load",
     "loads",
 ]
@@ -147,4 +148,5 @@ class _Sweep:
     def make(self, threads: int | None, told: Callable[[int, int], object] | None) -> None: ...
     def merge(self) -> None: ...
 
+def _program_is(path: str) -> None: ...
 def _make_tasks(version: str, source: str, tasks: list[str]) -> list[tuple[str, str]]: ...

@@ -1,6 +1,6 @@
 //! Exceptions and the category of warnings.
 
-use looselink::output::OutputError;
+use folder::OutputError;
 use looselink::scene::SceneError;
 use messages::{Colors, scene_fault};
 use pyo3::exceptions::{PyFileExistsError, PyNotADirectoryError, PyOSError};

@@ -6,9 +6,9 @@ use super::memory::Memory;
 use super::progress::ProgressDisplay;
 use super::scene::from_json;
 use super::view::PyView;
+use folder::Folder;
 use looselink::document::nearest;
-use looselink::output::{Folder, Results, files, summary};
-use looselink::registry::Registry;
+use looselink::output::{Results, summary};
 use looselink::scene::Scene;
 use looselink::simulate::{Channel, Impact, Report, RunError, Simulation};
 use messages::{closing_table, run_failure};
@@ -96,8 +96,8 @@ fn simulate(
     out: Option<&Path>,
     force: bool,
 ) -> PyResult<FinishedRun> {
-    let files = files(&Registry::standard().formats);
-    let folder = out.map(|out| Folder::new(out, &files, force)).transpose();
+    let folder = out.map(|out| Folder::claim(out, view::kind(), force));
+    let folder = folder.transpose();
     let folder = folder.map_err(|error| output_error(&error))?;
     let simulation = Simulation::new(scene);
     if let Some(raised) = take_raised() {

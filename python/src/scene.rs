@@ -6,7 +6,7 @@ use super::load::LOAD;
 use super::progress::ProgressDisplay;
 use super::run::{PyRun, run, warn};
 use super::value::{document, named_callable, override_value, quoted, written_key};
-use looselink::output::json;
+use folder::json;
 use looselink::registry::Registry;
 use looselink::scene::{Analysis, Scene, SceneError};
 use looselink::simulate::Simulation;

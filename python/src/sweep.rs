@@ -249,6 +249,13 @@ fn sweep_of(source: String) -> PyResult<Arc<Sweep>> {
     Ok(sweep)
 }
 
+/// Says where the file of this module is, by which rows name the program that has made them.
+#[pyfunction]
+#[pyo3(name = "_program_is")]
+pub fn program_is(path: PathBuf) {
+    looselink::output::program_is(path);
+}
+
 /// Makes some runs of a sweep; sources, tasks and results are JSON. Returns a row and its time for each. `version` is that of the
 /// package that asks.
 #[pyfunction]

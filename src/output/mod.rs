@@ -9,15 +9,16 @@
 //! | `summary.json` | status, counters, energy ledger, extremes, warnings |
 //! | `timing.json` | wall and processor time, machine, date |
 //! | `checkpoint.bin` | what an interrupted run goes on from; a complete result has none |
+//! | `manifest.jsonl` | the files of the result and, of those that are written to their end, size and CRC-32: see [`mod@folder`] |
 //!
 //! Only `timing.json` differs when a run is repeated. `summary.json` says `incomplete` from the first rows to the last, so
 //! that a run that was killed is not taken for a finished one; without a summary there is no result. A kill or a full disk
-//! may cut the last row: a row is whole when it ends with a line feed.
+//! may cut the last row: a row is whole when it ends with a line feed. Rows that somebody else has changed while the run wrote
+//! them end in an error, not in a complete result.
 //!
 //! A result that is replaced stands in `previous-result` inside the folder until the new one is complete.
 
 mod checkpoint;
-mod folder;
 mod table_file;
 mod timing;
 
@@ -28,13 +29,14 @@ use crate::simulate::{ContactEvent, Report, Simulation, Status};
 use crate::system::State;
 use crate::table::{Cell, Format, float64};
 use checkpoint::CHECKPOINT;
-pub use checkpoint::StoredCheckpoint;
-pub use folder::{Folder, OutputError, earlier_result, json, naming, replace};
+pub use checkpoint::{StoredCheckpoint, program, program_is};
+pub use folder;
+use folder::{Folder, Kind, OutputError, json};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs::{self, File, TryLockError};
+use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use table_file::TableFile;
 pub use timing::machine;
 use timing::{Elapsed, Stopwatch};
@@ -59,18 +61,33 @@ const CONTACT: [&str; 9] = [
     "exit_velocity [m/s]",
 ];
 
-/// The files that a result can have, with tables in any of some formats; first the summary, which closes it.
-pub fn files(formats: &[&'static Format]) -> Vec<String> {
+/// A run as a kind of result, with tables in any of some formats; `more` are files that are put beside it.
+pub fn kind(formats: &[&'static Format], more: &[&str]) -> Kind {
     let tables = [CHANNELS, ONSETS].into_iter();
     let tables = tables.flat_map(|table| formats.iter().map(move |format| format.file(table)));
-    let others = [
+    let mut files = vec![SUMMARY.to_owned()];
+    files.extend(tables);
+    files.extend([
         float64::FORMAT.file(MOTION),
         SCENE.to_owned(),
         TIMING.to_owned(),
         CHECKPOINT.to_owned(),
-    ];
-    let summary = std::iter::once(SUMMARY.to_owned());
-    summary.chain(tables).chain(others).collect()
+    ]);
+    files.extend(more.iter().map(|file| (*file).to_owned()));
+    Kind {
+        name: "a run",
+        files,
+        keys: &["scene_hash", "status", "version"],
+    }
+}
+
+/// The files of the run of a scene, the summary last.
+fn files(scene: &Scene) -> Vec<String> {
+    let format = scene.output.format;
+    let mut files = vec![format.file(CHANNELS), format.file(ONSETS)];
+    files.extend(scene.output.motion.then(|| float64::FORMAT.file(MOTION)));
+    files.extend([SCENE, TIMING, CHECKPOINT, SUMMARY].map(str::to_owned));
+    files
 }
 
 /// A result being written.
@@ -98,23 +115,22 @@ struct Tables {
 impl Tables {
     /// Opens each by `open`, first the channels.
     fn new(
-        folder: &Folder,
         scene: &Scene,
         simulation: &Simulation,
-        open: impl Fn(PathBuf, &'static Format, Vec<String>) -> io::Result<TableFile>,
-    ) -> io::Result<Tables> {
-        let path = |format: &Format, table| folder.path.join(format.file(table));
+        open: impl Fn(&str, &'static Format, Vec<String>) -> Result<TableFile, OutputError>,
+    ) -> Result<Tables, OutputError> {
+        let open =
+            |table, format: &'static Format, columns| open(&format.file(table), format, columns);
         let format = scene.output.format;
         let channels = simulation.channels().iter();
         let channels = channels.map(|c| format!("{} [{}]", c.name, c.unit));
-        let channels = open(path(format, CHANNELS), format, channels.collect())?;
+        let channels = open(CHANNELS, format, channels.collect())?;
         let onsets = CONTACT.map(str::to_owned).to_vec();
-        let onsets = open(path(format, ONSETS), format, onsets)?;
+        let onsets = open(ONSETS, format, onsets)?;
         let motion = scene.output.motion.then(|| {
             let layout = MotionLayout::new(simulation.model());
-            let format = &float64::FORMAT;
-            let table = open(path(format, MOTION), format, layout.names().to_vec())?;
-            Ok::<_, io::Error>((layout, table))
+            let table = open(MOTION, &float64::FORMAT, layout.names().to_vec())?;
+            Ok::<_, OutputError>((layout, table))
         });
         Ok(Tables {
             channels,
@@ -189,69 +205,48 @@ pub fn summary(scene: &Scene, report: &Report) -> Result<Vec<u8>, OutputError> {
 }
 
 impl Results {
-    /// Starts a result; files that are not part of one are left alone.
+    /// Starts a result in a folder that was claimed for a [`kind`] of it; files that are not part of one are left alone.
     ///
     /// # Errors
-    /// When the folder or a file cannot be written, or another run writes to it.
+    /// When the folder or a file cannot be written.
     pub fn begin(
-        folder: Folder,
+        mut folder: Folder,
         scene: &Scene,
         simulation: &Simulation,
     ) -> Result<Results, OutputError> {
-        folder.make()?;
-        if folder.replaces {
-            refuse_busy(&folder)?;
-            let complete = status(&folder.path).as_deref() == Some("complete");
-            folder.set_aside(complete)?;
-        }
-        // First of all and never over another: of two runs that start together one fails.
-        let tables = Tables::new(&folder, scene, simulation, TableFile::create);
-        let tables = tables.map_err(|e| match e.kind() {
-            io::ErrorKind::AlreadyExists => OutputError::Occupied {
-                folder: folder.path.clone(),
-                file: scene.output.format.file(CHANNELS),
-            },
-            _ => e.into(),
+        folder.begin(files(scene))?;
+        let tables = Tables::new(scene, simulation, |name, format, columns| {
+            TableFile::create(&folder, name, format, columns)
         })?;
         let results = Results::new(folder, Header::new(scene), tables, Elapsed::NONE)?;
-        let text = scene.text().as_bytes();
-        results.folder.replace(SCENE, text)?;
+        results.folder.replace(SCENE, scene.text().as_bytes())?;
         Ok(results)
     }
 
-    /// Goes on with the result of a run that was interrupted: brings a fresh simulation of the scene to where the run was, and
-    /// cuts what was written after its checkpoint. `folder` is that of the run, with leave to replace what is there.
+    /// Continues the result of a run that was interrupted: brings a fresh simulation of the scene to where the run was, and
+    /// cuts what was written after its checkpoint.
     ///
     /// # Errors
-    /// [`OutputError::NotResumable`] for another scene or another program, [`OutputError::Busy`] while a run writes there; the
-    /// result is then as it was. As [`Results::begin`] later.
+    /// [`OutputError::NotResumable`] for another scene or another program, and for rows that were changed; the result is then
+    /// as it was. As [`Results::begin`] later.
     pub fn resume(
-        mut folder: Folder,
+        from: StoredCheckpoint,
         scene: &Scene,
         simulation: &mut Simulation,
-        from: StoredCheckpoint,
     ) -> Result<Results, OutputError> {
-        let (header, program) = (Header::new(scene), checkpoint::program()?);
+        let (header, program) = (Header::new(scene), program()?);
         from.check(&header, &program)?;
-        let open = |path: PathBuf, format, columns| {
-            let name = path.file_name().unwrap_or_default();
-            let size = from.size(&name.to_string_lossy());
-            TableFile::reopen(path, format, columns, size)
-        };
-        let tables = Tables::new(&folder, scene, simulation, open);
-        let mut tables = tables.map_err(|e| match e.kind() {
-            io::ErrorKind::WouldBlock => OutputError::Busy(folder.path.clone()),
-            io::ErrorKind::InvalidData | io::ErrorKind::NotFound => from.refused(e.to_string()),
-            _ => e.into(),
-        })?;
-        // while the tables were not locked the run may have come to its end
-        from.still_stands()?;
+        let tables = Tables::new(scene, simulation, |name, format, columns| {
+            TableFile::reopen(from.folder(), name, format, columns, from.rows(name))
+        });
+        let mut tables = tables.map_err(|e| from.refused(e.to_string()))?;
         from.restore(simulation)?;
-        for table in tables.all() {
-            table.cut(from.size(&table.name()))?;
-        }
-        folder.replaces = from.replaces();
-        let mut results = Results::new(folder, header, tables, from.elapsed())?;
+        let elapsed = from.elapsed();
+        let mut folder = from.into_folder();
+        // readers take no digest of the rows so far for that of all
+        folder.list(files(scene).into_iter().map(|file| (file, None)))?;
+        tables.all().try_for_each(TableFile::cut)?;
+        let mut results = Results::new(folder, header, tables, elapsed)?;
         results.program = Some(program);
         Ok(results)
     }
@@ -283,16 +278,16 @@ impl Results {
     pub fn checkpoint(&mut self, t: f64, bytes: &[u8]) -> Result<(), OutputError> {
         let program = match &self.program {
             Some(program) => program,
-            None => self.program.insert(checkpoint::program()?),
+            None => self.program.insert(program()?),
         };
-        let sizes = self.tables.all().map(|table| {
-            let size = table.sync()?;
-            Ok::<_, io::Error>((table.name(), size))
+        let rows = self.tables.all().map(|table| {
+            let digest = table.sync()?;
+            Ok::<_, io::Error>((table.name(), digest))
         });
-        let sizes = sizes.collect::<Result<_, _>>()?;
+        let rows = rows.collect::<Result<_, _>>()?;
         let elapsed = self.stopwatch.elapsed();
         let Results { folder, header, .. } = self;
-        checkpoint::write(folder, t, header, program, sizes, elapsed, bytes)
+        checkpoint::write(folder, t, header, program, rows, elapsed, bytes)
     }
 
     /// Appends a row of channels.
@@ -356,19 +351,20 @@ impl Results {
     /// deleted then.
     ///
     /// # Errors
-    /// When something cannot be stored; the summary then goes on saying `incomplete`.
+    /// When something cannot be stored, or somebody else has changed the rows; the summary then goes on saying `incomplete`.
     pub fn finish(mut self, report: &Report) -> Result<(), OutputError> {
-        self.tables
-            .all()
-            .try_for_each(|table| table.sync().map(drop))?;
+        let digests = self.tables.all().map(|table| {
+            let digest = table.finish()?;
+            Ok::<_, OutputError>((table.name(), Some(digest)))
+        });
+        let digests: Vec<_> = digests.collect::<Result<_, _>>()?;
+        self.folder.list(digests)?;
         let timing = self.stopwatch.stop(report.t);
         self.folder.replace(TIMING, &json(&timing)?)?;
         write_summary(&self.folder, &self.header, Ended::new(report))?;
         if report.status == Status::Complete {
             self.folder.remove(CHECKPOINT)?;
-            if self.folder.replaces {
-                self.folder.forget()?;
-            }
+            self.folder.forget()?;
         }
         Ok(())
     }
@@ -389,19 +385,6 @@ fn status(folder: &Path) -> Option<String> {
     let summary = fs::read(folder.join(SUMMARY)).ok()?;
     let summary: serde_json::Value = serde_json::from_slice(&summary).ok()?;
     summary["status"].as_str().map(str::to_owned)
-}
-
-/// Refuses a folder to which a run writes: it holds its channels locked.
-fn refuse_busy(folder: &Folder) -> Result<(), OutputError> {
-    let mut files = folder.files.iter();
-    let busy = files.any(|name| {
-        let locked = || File::open(folder.path.join(name)).map(|file| file.try_lock());
-        name.starts_with(CHANNELS) && matches!(locked(), Ok(Err(TryLockError::WouldBlock)))
-    });
-    match busy {
-        true => Err(OutputError::Busy(folder.path.clone())),
-        false => Ok(()),
-    }
 }
 
 fn write_summary(

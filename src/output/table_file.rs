@@ -1,9 +1,9 @@
 //! A table that is written row by row.
 
-use super::folder::naming;
 use crate::table::{Cell, Format};
-use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{self, BufWriter, ErrorKind, Seek, SeekFrom, Write};
+use folder::{Digest, Digesting, Folder, OutputError, naming, open, refuse_changed};
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::PathBuf;
 
 #[derive(Debug)]
@@ -12,68 +12,73 @@ pub(super) struct TableFile {
     format: &'static Format,
     columns: Vec<String>,
     writer: BufWriter<File>,
+    /// What has been written.
+    digesting: Digesting,
     /// The row being composed: rows reach the file whole, however the run ends.
     line: Vec<u8>,
 }
 
 impl TableFile {
-    /// Creates a file that is not there yet, locks it against other runs and writes the header.
+    /// Creates a file that is not there yet, and writes the header.
     pub(super) fn create(
-        path: PathBuf,
+        folder: &Folder,
+        name: &str,
         format: &'static Format,
-        columns: impl IntoIterator<Item = String>,
-    ) -> io::Result<TableFile> {
-        let file = File::create_new(&path).map_err(naming(&path))?;
-        // Not on Windows, where a lock would keep readers out; where a file system has no locks, nobody is warned.
-        if cfg!(unix) {
-            let _ = file.try_lock();
-        }
-        let mut table = TableFile::new(path, format, columns, file);
+        columns: Vec<String>,
+    ) -> Result<TableFile, OutputError> {
+        let file = folder.create(name)?;
+        let path = folder.path().join(name);
+        let mut table = TableFile::new(path, format, columns, file, Digesting::default());
         (format.header)(&table.columns, &mut table.line);
         table.write()?;
         table.flush()?;
         Ok(table)
     }
 
-    /// Opens a file again that was written before, and locks it; it must have `size` bytes at least.
+    /// Opens a file again whose first rows were written before; what follows them is cut.
+    ///
+    /// # Errors
+    /// [`OutputError::Changed`] where these rows are not what was written; the file is then as it was.
     pub(super) fn reopen(
-        path: PathBuf,
+        folder: &Folder,
+        name: &str,
         format: &'static Format,
-        columns: impl IntoIterator<Item = String>,
-        size: u64,
-    ) -> io::Result<TableFile> {
-        let file = OpenOptions::new().write(true).open(&path);
-        let file = file.map_err(naming(&path))?;
-        if cfg!(unix) && matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
-            return Err(ErrorKind::WouldBlock.into());
+        columns: Vec<String>,
+        written: Digest,
+    ) -> Result<TableFile, OutputError> {
+        let path = folder.path().join(name);
+        let file = open(&path, OpenOptions::new().read(true).write(true))?;
+        if Digest::read(&file, written.bytes).map_err(naming(&path))? != written {
+            let how = "has lost rows, or was changed since its last checkpoint";
+            return Err(OutputError::Changed { path, how });
         }
-        if file.metadata().map_err(naming(&path))?.len() < size {
-            let message = format!("`{}` has lost rows", path.display());
-            return Err(io::Error::new(ErrorKind::InvalidData, message));
-        }
-        Ok(TableFile::new(path, format, columns, file))
+        let digesting = Digesting::after(written);
+        Ok(TableFile::new(path, format, columns, file, digesting))
     }
 
-    /// Goes on after `size` bytes; what follows them is lost.
-    pub(super) fn cut(&mut self, size: u64) -> io::Result<()> {
+    /// Cuts what follows the rows that were written before.
+    pub(super) fn cut(&mut self) -> io::Result<()> {
+        let size = self.digesting.digest().bytes;
         let file = self.writer.get_mut();
         let cut = file
             .set_len(size)
-            .and_then(|()| file.seek(SeekFrom::End(0)).map(drop));
+            .and_then(|()| file.seek(SeekFrom::Start(size)).map(drop));
         cut.map_err(naming(&self.path))
     }
 
     fn new(
         path: PathBuf,
         format: &'static Format,
-        columns: impl IntoIterator<Item = String>,
+        columns: Vec<String>,
         file: File,
+        digesting: Digesting,
     ) -> TableFile {
         TableFile {
             path,
             format,
-            columns: columns.into_iter().collect(),
+            columns,
             writer: BufWriter::new(file),
+            digesting,
             line: Vec::new(),
         }
     }
@@ -91,6 +96,7 @@ impl TableFile {
 
     fn write(&mut self) -> io::Result<()> {
         let result = self.writer.write_all(&self.line);
+        self.digesting.update(&self.line);
         self.line.clear();
         result.map_err(naming(&self.path))
     }
@@ -99,11 +105,21 @@ impl TableFile {
         self.writer.flush().map_err(naming(&self.path))
     }
 
-    /// Sees that all rows so far are on disk, before another file tells of them; returns how many bytes they have.
-    pub(super) fn sync(&mut self) -> io::Result<u64> {
+    /// Sees that all rows so far are on the disk, before another file tells of them.
+    pub(super) fn sync(&mut self) -> io::Result<Digest> {
         self.flush()?;
-        let file = self.writer.get_ref();
-        let size = file.sync_all().and_then(|()| Ok(file.metadata()?.len()));
-        size.map_err(naming(&self.path))
+        let synced = self.writer.get_ref().sync_all();
+        synced.map_err(naming(&self.path))?;
+        Ok(self.digesting.digest())
+    }
+
+    /// Ends the table: all rows are on the disk, in their file, as they were written.
+    ///
+    /// # Errors
+    /// [`OutputError::Changed`] where somebody else has changed, moved or deleted them.
+    pub(super) fn finish(&mut self) -> Result<Digest, OutputError> {
+        let digest = self.sync()?;
+        refuse_changed(&self.path, self.writer.get_ref(), digest)?;
+        Ok(digest)
     }
 }

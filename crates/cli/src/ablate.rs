@@ -4,10 +4,10 @@ use super::failure::CommandFailure;
 use super::progress::show;
 use super::{SceneArguments, print};
 use clap::Args;
-use looselink::output::{Folder, json};
+use folder::{Folder, json};
 use serde::Serialize;
 use std::path::PathBuf;
-use studies::ablation::{AblationTiming, FILES, Observed, Repeatable, ablate as measure};
+use studies::ablation::{AblationTiming, Observed, Repeatable, ablate as measure, kind};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -42,18 +42,17 @@ struct AblationOutput<'a> {
 
 /// Runs all variants of the scene; one that cannot be built is a row that says why.
 pub fn ablate(arguments: &Arguments) -> Result<(), CommandFailure> {
-    let new = |out: &PathBuf| Folder::new(out, &FILES, arguments.force);
+    let new = |out: &PathBuf| Folder::claim(out, kind(), arguments.force);
     let folder = arguments.out.as_ref().map(new).transpose()?;
     let (scene, _) = arguments.scene.load()?;
     let body =
         Observed::choose(&scene, arguments.body.as_deref()).map_err(CommandFailure::bad_input)?;
-    folder.iter().try_for_each(Folder::prepare)?;
     let runs = arguments.runs.map(|runs| runs as usize);
     let ablation = measure(&scene, body, runs, &mut |notice| {
         show(notice, arguments.quiet)
     });
     // What was measured is shown also where it cannot be stored.
-    let stored = folder.map_or(Ok(()), |folder| ablation.write(&folder));
+    let stored = folder.map_or(Ok(()), |folder| ablation.write(folder));
     if arguments.json {
         print(json(&AblationOutput {
             ablation: ablation.repeatable(),

@@ -1,6 +1,6 @@
 //! How a command fails: what is shown, and the exit code.
 
-use looselink::output::OutputError;
+use folder::OutputError;
 use looselink::scene::SceneError;
 use looselink::simulate::RunError;
 use messages::{Colors, run_failure, scene_fault};
@@ -122,7 +122,10 @@ impl From<ViewError> for CommandFailure {
 impl From<OutputError> for CommandFailure {
     fn from(error: OutputError) -> CommandFailure {
         match error {
-            OutputError::Io(_) => CommandFailure::system(error),
+            OutputError::Io(_) | OutputError::Changed { .. } => CommandFailure::system(error),
+            OutputError::OfAnotherKind { .. } | OutputError::Foreign(_) => {
+                CommandFailure::bad_input(error).and("; choose another folder")
+            }
             OutputError::NotADirectory(_)
             | OutputError::NotAFile(_)
             | OutputError::Busy(_)

@@ -3,8 +3,8 @@
 use super::failure::CommandFailure;
 use super::{SceneArguments, print};
 use clap::Args;
+use folder::json;
 use looselink::interaction::contact::{V0, V1};
-use looselink::output::json;
 use looselink::scene::{Analysis, MotionKind, Pace, Scene};
 use looselink::simulate::{Inspection, Simulation};
 use numbers::{exact, number};

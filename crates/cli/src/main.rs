@@ -5,6 +5,7 @@ mod closing;
 mod completions;
 mod failure;
 mod inspect;
+mod interrupt;
 mod modes;
 mod new;
 mod plot;

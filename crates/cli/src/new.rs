@@ -5,7 +5,7 @@ use super::templates::{TEMPLATES, Template};
 use super::{print, schema};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use looselink::output::replace;
+use folder::replace;
 use std::path::{Path, PathBuf};
 
 /// The schema beside the scene, which the first line of every template names.

@@ -4,11 +4,11 @@ use super::failure::CommandFailure;
 use super::print;
 use super::progress::show;
 use clap::Args;
-use looselink::output::Folder;
+use folder::Folder;
 use std::path::PathBuf;
 use studies::machine::machine;
 use studies::precision::{
-    Compared, Effort, FILES, Found, MotionReference, StatisticsReference, Study,
+    Compared, Effort, Found, MotionReference, StatisticsReference, Study, kind,
 };
 
 #[derive(Debug, Args)]
@@ -34,19 +34,18 @@ pub struct Arguments {
 
 /// Makes all runs of a study and writes what they found and what they took.
 pub fn precision(arguments: &Arguments) -> Result<(), CommandFailure> {
-    let folder = Folder::new(&arguments.out, &FILES, arguments.force)?;
+    let folder = Folder::claim(&arguments.out, kind(), arguments.force)?;
     let study = Study::load(&arguments.study)?;
-    folder.prepare()?;
     match study.statistics {
-        Some(_) => make::<StatisticsReference>(arguments, &study, &folder),
-        None => make::<MotionReference>(arguments, &study, &folder),
+        Some(_) => make::<StatisticsReference>(arguments, &study, folder),
+        None => make::<MotionReference>(arguments, &study, folder),
     }
 }
 
 fn make<C: Compared>(
     arguments: &Arguments,
     study: &Study,
-    folder: &Folder,
+    folder: Folder,
 ) -> Result<(), CommandFailure> {
     let smoke = arguments.smoke;
     let effort = Effort {

@@ -1,14 +1,15 @@
 //! `looselink resume`
 
 use super::failure::CommandFailure;
+use super::interrupt::Interrupt;
 use super::progress::say;
-use super::run::{RunOptions, all_files, not_stored, stop_on_interrupt, to_the_end};
-use super::view;
+use super::run::{RunOptions, not_stored, to_the_end};
 use clap::Args;
-use looselink::output::{Folder, Results, StoredCheckpoint};
+use looselink::output::{Results, StoredCheckpoint};
 use looselink::registry::Registry;
 use looselink::simulate::Simulation;
 use std::path::PathBuf;
+use view::{PAGE, kind};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -20,21 +21,21 @@ pub struct Arguments {
 
 /// Goes on with a run as if it had never stopped: its files are those of a run without interruption.
 pub fn resume(arguments: &Arguments) -> Result<(), CommandFailure> {
-    let stop = stop_on_interrupt()?;
+    let interrupt = Interrupt::watch()?;
     let Arguments { folder, options } = arguments;
     let mut options = options.clone();
-    let replaced = Folder::new(folder, &all_files(), true)?;
-    let checkpoint = StoredCheckpoint::read(&replaced)?;
+    let checkpoint = StoredCheckpoint::read(folder, kind())?;
     let scene = checkpoint.scene(&Registry::standard())?;
     options.check(&scene)?;
     let mut simulation = Simulation::new(&scene)?;
     // a page of the part so far would be out of date
-    options.view |= folder.join(view::PAGE).exists();
+    options.view |= folder.join(PAGE).exists();
     let t = checkpoint.t();
-    let results = Results::resume(replaced, &scene, &mut simulation, checkpoint);
+    interrupt.begin();
+    let results = Results::resume(checkpoint, &scene, &mut simulation);
     let results = results.map_err(|error| not_stored(error, folder, true))?;
     if !options.quiet {
         say(&format!("resumed at t = {t} s"));
     }
-    to_the_end(simulation, results, folder, true, &options, stop)
+    to_the_end(simulation, results, folder, true, &options, interrupt)
 }

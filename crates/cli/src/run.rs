@@ -2,23 +2,20 @@
 
 use super::SceneArguments;
 use super::closing;
-use super::failure::{CommandFailure, INTERRUPTED};
+use super::failure::CommandFailure;
+use super::interrupt::Interrupt;
 use super::progress::{Display, remark, warn};
 use super::view;
 use clap::Args;
+use folder::{Folder, OutputError, earlier_result};
 use looselink::model::Model;
-use looselink::output::{Folder, OutputError, Results, StoredCheckpoint, earlier_result, files};
-use looselink::registry::Registry;
+use looselink::output::{Results, StoredCheckpoint};
 use looselink::scene::Scene;
 use looselink::simulate::{ContactEvent, Control, Observer, Progress, RunError, Simulation};
 use looselink::system::State;
 use messages::Ticker;
-use signal_hook::consts::SIGINT;
-use signal_hook::flag;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 #[derive(Debug, Args)]
@@ -80,7 +77,7 @@ struct RunObserver {
     /// When the last checkpoint was kept, and the time between two.
     kept: Instant,
     every: Duration,
-    stop: Arc<AtomicBool>,
+    interrupt: Interrupt,
 }
 
 impl Observer for RunObserver {
@@ -103,7 +100,7 @@ impl Observer for RunObserver {
             self.flushed = Instant::now();
         }
         self.display.show(progress, tick);
-        if self.stop.load(Ordering::Relaxed) {
+        if self.interrupt.has_come() {
             return Ok(Control::Stop);
         }
         if tick && self.kept.elapsed() >= self.every {
@@ -121,10 +118,10 @@ impl Observer for RunObserver {
 
 /// Simulates the scene; whatever ends the run, what was recorded up to there stands.
 pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
-    let stop = stop_on_interrupt()?;
+    let interrupt = Interrupt::watch()?;
     let Arguments { out, force, .. } = arguments;
-    let folder = Folder::new(out, &all_files(), *force).map_err(|error| match error {
-        OutputError::Occupied { .. } if is_resumable(out) => {
+    let folder = Folder::claim(out, ::view::kind(), *force).map_err(|error| match error {
+        OutputError::Occupied { .. } if StoredCheckpoint::is_in(out) => {
             let out = out.display();
             CommandFailure::from(error)
                 .and(&format!("; `looselink resume {out}` goes on with the run"))
@@ -133,16 +130,11 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     })?;
     let (scene, simulation) = arguments.scene.load()?;
     arguments.options.check(&scene)?;
+    interrupt.begin();
     let results = Results::begin(folder, &scene, &simulation);
     let results = results.map_err(|error| not_stored(error, out, *force))?;
-    to_the_end(simulation, results, out, *force, &arguments.options, stop)
-}
-
-/// The files of a run and its page.
-pub fn all_files() -> Vec<String> {
-    let mut files = files(&Registry::standard().formats);
-    files.push(view::PAGE.to_owned());
-    files
+    let options = &arguments.options;
+    to_the_end(simulation, results, out, *force, options, interrupt)
 }
 
 /// Simulates what is left of a run.
@@ -152,7 +144,7 @@ pub fn to_the_end(
     out: &Path,
     replaces: bool,
     options: &RunOptions,
-    stop: Arc<AtomicBool>,
+    interrupt: Interrupt,
 ) -> Result<(), CommandFailure> {
     // a unit is best mended before the run has taken its time
     let told = simulation.implausible();
@@ -166,7 +158,7 @@ pub fn to_the_end(
         flushed: started,
         kept: started,
         every: Duration::from_secs_f64(options.checkpoint),
-        stop,
+        interrupt,
     };
     let ended = simulation.run(&mut observer);
     let report = simulation.report();
@@ -185,7 +177,7 @@ pub fn to_the_end(
         warn_of_all();
         // a run that cannot go on would stop there again
         let resumable = matches!(error, RunError::Interrupted { .. } | RunError::Output(_));
-        let go_on = match resumable && is_resumable(out) {
+        let go_on = match resumable && StoredCheckpoint::is_in(out) {
             true => format!("; `looselink resume {folder}` goes on from its last checkpoint"),
             false => String::new(),
         };
@@ -222,12 +214,6 @@ pub fn to_the_end(
     Ok(())
 }
 
-/// True where a run has left a checkpoint.
-fn is_resumable(out: &Path) -> bool {
-    let folder = Folder::new(out, &all_files(), true);
-    folder.is_ok_and(|folder| StoredCheckpoint::read(&folder).is_ok())
-}
-
 /// A result that could not be stored.
 pub fn not_stored(error: OutputError, out: &Path, replaces: bool) -> CommandFailure {
     CommandFailure::from(error).and(&earlier(out, replaces))
@@ -239,14 +225,4 @@ fn earlier(out: &Path, replaces: bool) -> String {
     aside.map_or(String::new(), |aside| {
         format!("; the earlier result is in `{}`", aside.display())
     })
-}
-
-/// The flag is raised by the first Ctrl-C; the second ends the program at once.
-pub fn stop_on_interrupt() -> Result<Arc<AtomicBool>, CommandFailure> {
-    let stop = Arc::new(AtomicBool::new(false));
-    // in the order in which they are called
-    flag::register_conditional_shutdown(SIGINT, INTERRUPTED.into(), stop.clone())
-        .and_then(|_| flag::register(SIGINT, stop.clone()))
-        .map_err(|e| CommandFailure::system(format!("cannot watch for Ctrl-C: {e}")))?;
-    Ok(stop)
 }

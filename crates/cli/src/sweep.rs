@@ -1,9 +1,9 @@
 //! `looselink sweep`
 
 use super::failure::CommandFailure;
+use super::interrupt::Interrupt;
 use super::print;
 use super::progress::{RunsDisplay, say};
-use super::run::stop_on_interrupt;
 use clap::Args;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -54,15 +54,16 @@ fn target(text: &str) -> Result<SweepTarget, String> {
 
 /// Makes the runs that are missing, then tables and pictures.
 pub fn sweep(arguments: &Arguments) -> Result<(), CommandFailure> {
+    let interrupt = Interrupt::watch()?;
     let sweep = Sweep::load(&arguments.study, arguments.target.clone())?;
     if arguments.merge {
         let store = Store::read(&arguments.out, &sweep)?;
         return write(arguments, &sweep, &store);
     }
-    let stop = stop_on_interrupt()?;
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
+    interrupt.begin();
     let mut store = Store::open(&arguments.out, &sweep, shard, arguments.force)?;
-    make(arguments, &sweep, &mut store, shard, &stop)?;
+    make(arguments, &sweep, &mut store, shard, interrupt.flag())?;
     match arguments.shard {
         None => write(arguments, &sweep, &store),
         Some(shard) => {

@@ -3,14 +3,11 @@
 use super::failure::CommandFailure;
 use super::print;
 use clap::Args;
-use looselink::output::{naming, replace};
+use folder::{add, naming, replace};
 use std::fs;
 use std::path::{Path, PathBuf};
 use view::frames::frames;
-use view::{StoredRun, ViewError, page};
-
-/// The file of the page in the folder of the result.
-pub const PAGE: &str = "view.html";
+use view::{PAGE, StoredRun, ViewError, kind, page};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -51,9 +48,14 @@ pub fn view(arguments: &Arguments) -> Result<(), CommandFailure> {
     let ghost = arguments.ghost.iter().map(|dir| StoredRun::load(dir));
     let runs = std::iter::once(Ok(run)).chain(ghost);
     let runs: Vec<StoredRun> = runs.collect::<Result<_, _>>()?;
-    let own = || arguments.dir.join(PAGE);
-    let path = arguments.output.clone().unwrap_or_else(own);
-    replace(&path, page(&runs).as_bytes())?;
+    let page = page(&runs);
+    let path = match &arguments.output {
+        Some(path) => {
+            replace(path, page.as_bytes())?;
+            path.clone()
+        }
+        None => keep(&arguments.dir, &page)?,
+    };
     print(format!("open `{}` in a browser\n", path.display()))
 }
 
@@ -80,7 +82,10 @@ fn pictures(run: &StoredRun, folder: &Path, count: usize) -> Result<(), CommandF
 
 /// Writes the page of a result into its folder.
 pub fn beside(dir: &Path) -> Result<PathBuf, CommandFailure> {
-    let path = dir.join(PAGE);
-    replace(&path, page(&[StoredRun::load(dir)?]).as_bytes())?;
-    Ok(path)
+    keep(dir, &page(&[StoredRun::load(dir)?]))
+}
+
+fn keep(dir: &Path, page: &str) -> Result<PathBuf, CommandFailure> {
+    add(dir, &kind(), &[(PAGE, page.as_bytes())])?;
+    Ok(dir.join(PAGE))
 }

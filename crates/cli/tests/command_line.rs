@@ -23,9 +23,14 @@ pub fn looselink(arguments: &[&str]) -> Output {
 /// Interrupts a program as Ctrl-C does; it may have ended by itself.
 #[cfg(unix)]
 pub fn interrupt(child: &Child) {
+    signal(child, "INT");
+}
+
+/// Sends a signal by its name.
+pub fn signal(child: &Child, name: &str) {
     let process = child.id().to_string();
     let mut kill = Command::new("kill");
-    let kill = kill.args(["-INT", &process]).stderr(Stdio::null());
+    let kill = kill.args(["-s", name, &process]).stderr(Stdio::null());
     kill.status().unwrap();
 }
 
@@ -69,6 +74,7 @@ fn a_run_leaves_a_result() {
         files(&out),
         [
             "channels.csv",
+            "manifest.jsonl",
             "motion.bin",
             "onsets.csv",
             "scene.toml",
@@ -673,6 +679,7 @@ const ABLATION: &[&str] = &[
     #[cfg(feature = "png")]
     "ablation.png",
     "ablation.svg",
+    "manifest.jsonl",
     "timing.json",
 ];
 

@@ -10,7 +10,7 @@ pub mod sweep;
 
 pub use study_file::StudyError;
 
-use looselink::output::OutputError;
+use folder::OutputError;
 use plot::Figure;
 use std::io;
 

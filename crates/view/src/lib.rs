@@ -10,13 +10,13 @@ pub mod pack;
 pub mod stored;
 pub mod tracks;
 
-pub use stored::{StoredChannel, StoredResult, StoredRun, StoredSummary, ViewError};
+pub use stored::{PAGE, StoredChannel, StoredResult, StoredRun, StoredSummary, ViewError, kind};
 
 use drawing::RunDrawing;
 use pack::Pack;
 use serde::Serialize;
 
-const PAGE: &str = include_str!("../assets/viewer.html");
+const TEMPLATE: &str = include_str!("../assets/viewer.html");
 /// Where the data stand in the page.
 const PLACE: &str = "<!--DATA-->";
 
@@ -39,7 +39,7 @@ pub fn page(runs: &[StoredRun]) -> String {
     // `<` cannot end the script element from inside a string
     let data = data.replace('<', "\\u003c");
     let element = format!("<script type=\"application/json\" id=\"data\">{data}</script>");
-    let (head, tail) = PAGE
+    let (head, tail) = TEMPLATE
         .split_once(PLACE)
         .expect("the page has a place for data");
     [head, &element, tail].concat()

@@ -1,10 +1,12 @@
 //! A result of `looselink run`, read back.
 
 use super::moved::bounds;
+use folder::{Kind, OutputError, verify};
 use indexmap::IndexMap;
 use looselink::modes::NaturalMode;
-use looselink::output::summary;
+use looselink::output::{self, summary};
 use looselink::record::MotionLayout;
+use looselink::registry::Registry;
 use looselink::scene::{Scene, SceneError};
 use looselink::simulate::{Report, Simulation};
 use numbers::exact;
@@ -14,6 +16,14 @@ use std::fs;
 use std::io;
 use std::path::Path;
 use std::rc::Rc;
+
+/// The file of the page in the folder of a result.
+pub const PAGE: &str = "view.html";
+
+/// A run with its page, as a kind of result.
+pub fn kind() -> Kind {
+    output::kind(&Registry::standard().formats, &[PAGE])
+}
 
 /// Why a result cannot be shown.
 #[derive(Debug, thiserror::Error)]
@@ -277,7 +287,7 @@ impl StoredRun {
 /// A file of a result.
 fn read(folder: &Path, name: &str) -> Result<Vec<u8>, ViewError> {
     let path = folder.join(name);
-    fs::read(&path).map_err(|e| match e.kind() {
+    let bytes = fs::read(&path).map_err(|e| match e.kind() {
         io::ErrorKind::NotADirectory => ViewError::Result(format!(
             "`{}` is a file, not the folder of a result; `looselink run` writes one",
             folder.display()
@@ -287,7 +297,12 @@ fn read(folder: &Path, name: &str) -> Result<Vec<u8>, ViewError> {
             folder.display()
         )),
         _ => naming(&path, e),
-    })
+    })?;
+    verify(folder, name, &bytes).map_err(|e| match e {
+        OutputError::Io(e) => e.into(),
+        changed => ViewError::Result(changed.to_string()),
+    })?;
+    Ok(bytes)
 }
 
 fn naming(path: &Path, error: io::Error) -> ViewError {

@@ -1,7 +1,7 @@
 //! Runs that are killed at random instants.
 
 use super::{
-    ASIDE, Bytes, EARLIER, FILES, NEW, Random, arguments, check_killed, run_and_kill, status,
+    ASIDE, Bytes, COMPLETE, EARLIER, NEW, Random, arguments, check_killed, run_and_kill, status,
     twice, whole,
 };
 use crate::command_line::{expect, files, looselink};
@@ -29,7 +29,7 @@ fn a_killed_run_is_readable_and_marked_and_can_be_repeated() {
             stages.lock().unwrap()[stage] += 1;
             if ended || n % 4 == 0 {
                 expect(&looselink(&arguments(&out, &[NEW, "--force"])), 0, "");
-                assert_eq!(files(&out), FILES);
+                assert_eq!(files(&out), COMPLETE);
                 assert_eq!(Bytes::of(&out).repeatable(), bytes.repeatable());
             }
             let _ = fs::remove_dir_all(&out);
@@ -80,7 +80,7 @@ fn a_run_killed_while_it_replaces_a_result_leaves_that_whole() {
             }
             if n % 5 == 0 {
                 expect(&looselink(&arguments(&out, &[NEW, "--force"])), 0, "");
-                assert_eq!(files(&out), FILES);
+                assert_eq!(files(&out), COMPLETE);
                 assert_eq!(Bytes::of(&out).repeatable(), new.repeatable());
             }
             fs::remove_dir_all(&out).unwrap();

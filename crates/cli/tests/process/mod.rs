@@ -37,6 +37,16 @@ const FILES: [&str; 6] = [
     "summary.json",
     "timing.json",
 ];
+/// The folder of a complete result.
+const COMPLETE: [&str; 7] = [
+    "channels.csv",
+    "manifest.jsonl",
+    "motion.bin",
+    "onsets.csv",
+    "scene.toml",
+    "summary.json",
+    "timing.json",
+];
 const ASIDE: &str = "previous-result";
 
 /// Sebastiano Vigna's splitmix64: the same instants every time.
@@ -72,6 +82,14 @@ enum Moment {
 
 fn arguments<'a>(out: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
     [&RUN[..], more, &["--out", out.to_str().unwrap()]].concat()
+}
+
+/// How often something is tried: `few` times with every change of the sources, `many` times with LOOSELINK_LONG.
+fn rounds(few: usize, many: usize) -> usize {
+    match std::env::var_os("LOOSELINK_LONG") {
+        Some(_) => many,
+        None => few,
+    }
 }
 
 /// Starts the program; nobody reads its messages.

@@ -1,7 +1,7 @@
 //! Results in the way of new ones.
 
 use super::{
-    ASIDE, Bytes, EARLIER, FILES, Moment, NEW, Random, arguments, run_and_kill, start, status,
+    ASIDE, Bytes, COMPLETE, EARLIER, Moment, NEW, Random, arguments, run_and_kill, start, status,
     whole,
 };
 use crate::command_line::{TOP, expect, files, looselink, program, read, summary};
@@ -20,7 +20,7 @@ fn without_force_an_earlier_result_is_never_touched() {
     for _ in 0..40 {
         let time = Duration::from_millis(10).mul_f64(random.uniform());
         run_and_kill(&out, &[NEW], Moment::After(time));
-        assert_eq!(files(&out), FILES);
+        assert_eq!(files(&out), COMPLETE);
         assert_eq!(Bytes::of(&out), earlier);
     }
     // another scene's result is one as well
@@ -53,7 +53,7 @@ fn a_run_that_fails_names_the_earlier_result() {
         assert_eq!(Bytes::of(&out.join(ASIDE)), earlier);
     }
     expect(&journal(&[]), 0, "");
-    assert_eq!(files(&out), FILES);
+    assert_eq!(files(&out), COMPLETE);
 }
 
 /// Two runs do not write to one folder, not even on demand.
@@ -109,20 +109,26 @@ fn results_in_one_piece_are_replaced_whole() {
     let mut random = Random(30);
     for (name, command) in commands {
         let names = ["json", "md", "png", "svg"].map(|kind| format!("{name}.{kind}"));
-        let names = [&names[..], &["timing.json".to_owned()]].concat();
-        let mut written = names.clone();
-        written.retain(|file| cfg!(feature = "png") || !file.ends_with(".png"));
+        let mut names = [&names[..], &["timing.json".to_owned()]].concat();
+        names.retain(|file| cfg!(feature = "png") || !file.ends_with(".png"));
+        let mut complete = [&names[..], &["manifest.jsonl".to_owned()]].concat();
+        complete.sort();
         let is_earlier = |folder: &Path| {
             let marked = |file: &String| fs::read(folder.join(file)).is_ok_and(|b| b == b"earlier");
             names.iter().all(marked)
         };
         let mut stages = [0; 3];
+        let first = folder.path().join(name);
+        let make = [&command[..], &["--quiet", "--out", first.to_str().unwrap()]];
+        expect(&looselink(&make.concat()), 0, "");
+        let manifest = fs::read(first.join("manifest.jsonl")).unwrap();
         for n in 0..16 {
             let out = folder.path().join(format!("{name}-{n}"));
             fs::create_dir(&out).unwrap();
             names
                 .iter()
                 .for_each(|file| fs::write(out.join(file), "earlier").unwrap());
+            fs::write(out.join("manifest.jsonl"), &manifest).unwrap();
             let forced = [
                 &command[..],
                 &["--force", "--quiet", "--out", out.to_str().unwrap()],
@@ -136,9 +142,8 @@ fn results_in_one_piece_are_replaced_whole() {
             // it begins to write
             let limit = Instant::now() + Duration::from_secs(60);
             let begun = || {
-                [".previous-result.tmp", ASIDE]
-                    .iter()
-                    .any(|n| out.join(n).exists())
+                let mut files = files(&out).into_iter();
+                files.any(|name| name == ASIDE || name.starts_with(".looselink-"))
             };
             while !begun() && child.try_wait().unwrap().is_none() {
                 assert!(Instant::now() < limit, "nothing is written");
@@ -157,10 +162,9 @@ fn results_in_one_piece_are_replaced_whole() {
             stages[stage] += 1;
             if stage == 2 || n % 8 == 0 {
                 expect(&looselink(&forced), 0, "");
-                // a picture that is not written does not remain of the earlier result either
-                assert_eq!(files(&out), written);
+                assert_eq!(files(&out), complete);
                 assert!(
-                    written
+                    names
                         .iter()
                         .all(|f| fs::read(out.join(f)).unwrap() != b"earlier")
                 );
@@ -175,7 +179,8 @@ fn results_in_one_piece_are_replaced_whole() {
 fn what_is_no_file_is_not_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path();
-    fs::write(out.join("summary.json"), "{}").unwrap();
+    let summary = r#"{"scene_hash": "", "status": "complete", "version": "0.1.0"}"#;
+    fs::write(out.join("summary.json"), summary).unwrap();
     symlink("discarded", out.join("channels.csv")).unwrap();
     fs::create_dir(out.join("timing.json")).unwrap();
     let before = files(out);
@@ -191,5 +196,5 @@ fn what_is_no_file_is_not_replaced() {
     fs::remove_dir(out.join("timing.json")).unwrap();
     assert_eq!(before, ["channels.csv", "summary.json", "timing.json"]);
     assert_eq!(files(out), ["summary.json"]);
-    assert_eq!(read(out, "summary.json"), "{}");
+    assert_eq!(read(out, "summary.json"), summary);
 }

@@ -1,8 +1,11 @@
 //! Runs that are interrupted or killed, and resumed.
 
-use super::{FILES, Random, start, twice};
-use crate::command_line::{expect, files, interrupt, looselink, program, read};
+use super::{COMPLETE, FILES, Random, rounds, start, twice};
+use crate::command_line::{expect, files, interrupt, looselink, program, read, signal};
+use looselink::output::StoredCheckpoint;
+use numbers::hexadecimal;
 use serde_json::Value;
+use sha2::{Digest, Sha256};
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
@@ -26,13 +29,13 @@ const METHODS: [&str; 4] = [
 /// Interruptions of every scene with every method.
 const INTERRUPTIONS: usize = 5;
 
-/// Interrupts as Ctrl-C does, or kills, after a time; true if the program has ended by itself before.
-fn stop(mut child: Child, after: Duration, kills: bool) -> bool {
+/// What ends a run: Ctrl-C, a kill, a request to end, the end of the terminal.
+const SIGNALS: [&str; 4] = ["INT", "KILL", "TERM", "HUP"];
+
+/// Sends a signal after a time; true if the program has ended by itself before.
+fn stop(mut child: Child, after: Duration, name: &str) -> bool {
     std::thread::sleep(after);
-    match kills {
-        true => child.kill().unwrap(),
-        false => interrupt(&child),
-    }
+    signal(&child, name);
     let status = child.wait().unwrap();
     // a signal ends a program that does not watch for it yet
     let stopped = status.code() == Some(130) || status.signal().is_some();
@@ -72,7 +75,7 @@ fn check(folder: &Path, changes: [&str; 3], scene: &str, random: &mut Random) ->
         resumed += usize::from(arguments[0] == "resume");
         // together less than the run takes, also where the processor is slower for a while
         let after = time.mul_f64(random.uniform() * 0.8 / INTERRUPTIONS as f64);
-        if stop(start(&arguments), after, k % 2 == 1) {
+        if stop(start(&arguments), after, SIGNALS[k % 4]) {
             break;
         }
         stops += 1;
@@ -83,7 +86,7 @@ fn check(folder: &Path, changes: [&str; 3], scene: &str, random: &mut Random) ->
         expect(&looselink(&arguments), 0, "");
     }
     assert!(result(&parts) == result(&whole), "{scene} {changes:?}");
-    assert_eq!(files(&parts), FILES);
+    assert_eq!(files(&parts), COMPLETE);
     [stops, resumed]
 }
 
@@ -158,32 +161,56 @@ fn what_cannot_be_resumed_is_refused_by_name() {
     refused("scene.toml", scene.as_bytes(), &changed);
 
     let checkpoint = fs::read(file("checkpoint.bin")).unwrap();
-    let line = checkpoint.iter().position(|byte| *byte == b'\n').unwrap();
-    let mut header: Value = serde_json::from_slice(&checkpoint[..line]).unwrap();
     let damaged = "`checkpoint.bin` is damaged";
     refused(
         "checkpoint.bin",
         &checkpoint[..checkpoint.len() - 1],
         damaged,
     );
-    refused("checkpoint.bin", &checkpoint[..line / 2], damaged);
-    header["program"] = "0123456789abcdef".into();
-    let other = [header.to_string().as_bytes(), &checkpoint[line..]].concat();
+    refused("checkpoint.bin", &checkpoint[..100], damaged);
+    // every bit of what it belongs to
+    let lines: Vec<_> = checkpoint.splitn(3, |byte| *byte == b'\n').collect();
+    let header = lines[0].len() + 1 + lines[1].len() + 1;
+    for bit in 0..8 * header {
+        let mut flipped = checkpoint.clone();
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        fs::write(file("checkpoint.bin"), &flipped).unwrap();
+        let read = StoredCheckpoint::read(&out, view::kind());
+        assert!(read.is_err(), "bit {bit} of the header");
+    }
+    fs::write(file("checkpoint.bin"), &checkpoint).unwrap();
+    let text = |part: &[u8]| String::from_utf8(part.to_vec()).unwrap();
+    let mut of_another: Value = serde_json::from_str(&text(lines[1])).unwrap();
+    of_another["program"] = "0123456789abcdef".into();
+    let followed = [of_another.to_string().as_bytes(), b"\n", lines[2]].concat();
+    let digest = hexadecimal(&Sha256::digest(&followed));
+    let other = [digest.as_bytes(), b"\n", &followed].concat();
     let message =
         "it was begun by another program (looselink 0.1.0 with SHA-256 0123456789ab...; this is";
     refused("checkpoint.bin", &other, message);
+    // one of an earlier version
+    refused("checkpoint.bin", &followed, "an earlier version");
 
+    let mut random = Random(5);
     for table in ["channels.csv", "motion.bin"] {
         let rows = fs::read(file(table)).unwrap();
         let message = format!("`{}` has lost rows", path(&file(table)));
         refused(table, &rows[..rows.len() / 2], &message);
+        // what comes after the checkpoint does not count, and may be half of a second
+        let before = rows.len() / 4;
+        for _ in 0..rounds(20, 250) {
+            let mut flipped = rows.clone();
+            let bit = (random.uniform() * 8.0 * before as f64) as usize;
+            flipped[bit / 8] ^= 1 << (bit % 8);
+            refused(table, &flipped, &message);
+        }
     }
 
     let again = looselink(&["run", SCENES[0].0, "--out", path(&out)]);
     let hint = format!("`looselink resume {}` goes on with the run", path(&out));
     expect(&again, 2, &hint);
-    // another run holds the tables
-    let held = fs::File::open(file("channels.csv")).unwrap();
+    // another run holds the folder
+    let held = fs::File::open(file("manifest.jsonl")).unwrap();
     held.lock().unwrap();
     expect(&resume(), 2, "another run is writing to");
     drop(held);

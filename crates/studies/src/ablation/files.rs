@@ -13,10 +13,11 @@
 use super::Ablation;
 use super::picture::figure;
 use crate::pictures;
-use looselink::output::{Folder, OutputError, TIMING, json};
+use folder::{Folder, Kind, OutputError, json};
+use looselink::output::TIMING;
 
 /// Names of the files.
-pub const FILES: [&str; 5] = [
+const FILES: [&str; 5] = [
     "ablation.json",
     "ablation.md",
     TIMING,
@@ -24,12 +25,21 @@ pub const FILES: [&str; 5] = [
     "ablation.png",
 ];
 
+/// An ablation as a kind of result.
+pub fn kind() -> Kind {
+    Kind {
+        name: "an ablation",
+        files: FILES.map(str::to_owned).to_vec(),
+        keys: &["variants", "units"],
+    }
+}
+
 impl Ablation {
     /// Writes all files, `ablation.json` last.
     ///
     /// # Errors
     /// When a file cannot be written.
-    pub fn write(&self, folder: &Folder) -> Result<(), OutputError> {
+    pub fn write(&self, folder: Folder) -> Result<(), OutputError> {
         let (svg, png) = pictures(&figure(self))?;
         let mut texts = vec![
             json(&self.repeatable())?,

@@ -12,7 +12,7 @@ mod table;
 mod variants;
 
 pub use effects::{SceneEffect, effects};
-pub use files::FILES;
+pub use files::kind;
 pub use measure::{CannotObserve, Cost, Observed, Origin, Physics, PhysicsQuantity, VariantCounts};
 pub use picture::figure;
 pub use report::{AblationTiming, Repeatable};

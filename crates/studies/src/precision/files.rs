@@ -13,17 +13,27 @@
 use super::{Compared, Found, RunTiming, Study, StudyPace};
 use crate::machine::Machine;
 use crate::{pictures, warning_list};
-use looselink::output::{Folder, OutputError, TIMING, json};
+use folder::{Folder, Kind, OutputError, json};
+use looselink::output::TIMING;
 use serde::Serialize;
 
 /// Names of the files.
-pub const FILES: [&str; 5] = [
+const FILES: [&str; 5] = [
     "precision.json",
     "precision.md",
     TIMING,
     "precision.svg",
     "precision.png",
 ];
+
+/// A study as a kind of result.
+pub fn kind() -> Kind {
+    Kind {
+        name: "a study of precision",
+        files: FILES.map(str::to_owned).to_vec(),
+        keys: &["runs", "reference_warnings"],
+    }
+}
 
 /// What the processor times of a table are.
 const TIMES: &str = "Processor time of the integration on one core, without reading and compiling \
@@ -75,7 +85,7 @@ impl<C: Compared> Found<C> {
         &self,
         study: &Study,
         machine: &Machine,
-        folder: &Folder,
+        folder: Folder,
     ) -> Result<(), OutputError> {
         let (svg, png) = pictures(&C::figure(self, study))?;
         let page = self.page(study, machine).into_bytes();

@@ -16,7 +16,7 @@ mod table;
 
 pub use crate::machine::RunTiming;
 pub use errors::{Errors, MeasuredRun, MotionReference};
-pub use files::{FILES, Time};
+pub use files::{Time, kind};
 pub use statistics::{RunStatistics, StatisticsReference};
 pub use study::{ReferenceRuns, Sampling, Study, StudyCurve, StudyPace};
 

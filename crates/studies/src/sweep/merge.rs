@@ -19,15 +19,15 @@ use super::page::page;
 #[cfg(feature = "parquet")]
 use super::parquet_table::ParquetTable;
 use super::pictures::figure;
-use super::store::{remove, timings};
+use super::store::{kind, timings};
 use super::{
     Crossing, EnsembleMean, RunStatus, SobolIndices, Store, Sweep, SweepError, SweepRow,
     sobol_indices,
 };
 use crate::pictures;
 use crate::study_file::StudyError;
+use folder::{add, json};
 use indexmap::IndexMap;
-use looselink::output::{json, replace};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io;
@@ -66,6 +66,9 @@ pub struct Merged {
     pub status: BTreeMap<&'static str, usize>,
     /// Runs with warnings.
     pub warned: usize,
+    /// Number of rows by program, where more than one has made them: see [`SweepRow::program`].
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub programs: BTreeMap<String, usize>,
     /// Unit of every column that has one.
     pub units: IndexMap<String, String>,
     /// Least and largest value of every measure, and the runs that have them.
@@ -182,35 +185,25 @@ pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, Swee
         gathered.add(row);
     }
     let (mut merged, points) = gathered.finish(sweep, store, &columns)?;
-    // first the file that closes a result; tables that this sweep does not have may be of another one
-    FILES
-        .iter()
-        .try_for_each(|name| remove(&folder.join(name)))?;
-    let write = |name: &str, bytes: &[u8]| replace(&folder.join(name), bytes);
-    write("sweep.csv", &csv.finish()?)?;
+    let mut files = vec![("sweep.csv", csv.finish()?)];
     #[cfg(feature = "parquet")]
-    write("sweep.parquet", &parquet.finish().map_err(|e| failed(&e))?)?;
+    files.push(("sweep.parquet", parquet.finish().map_err(|e| failed(&e))?));
     if sweep.study.starts_of_a_point() > 1 {
-        write(
-            "points.csv",
-            &point_table(sweep, &columns, &points).map_err(|e| failed(&e))?,
-        )?;
+        let table = point_table(sweep, &columns, &points);
+        files.push(("points.csv", table.map_err(|e| failed(&e))?));
     }
     if !points.envelopes.is_empty() {
-        write(
-            "envelopes.csv",
-            &envelope_table(sweep, &points).map_err(|e| failed(&e))?,
-        )?;
+        let table = envelope_table(sweep, &points);
+        files.push(("envelopes.csv", table.map_err(|e| failed(&e))?));
     }
     let (svg, png) = pictures(&figure(sweep, &merged, &points))?;
-    write("sweep.svg", &svg)?;
-    if let Some(png) = png {
-        write("sweep.png", &png)?;
-    }
+    files.push(("sweep.svg", svg));
+    files.extend(png.map(|png| ("sweep.png", png)));
     merged.page = page(sweep, &merged, &points);
-    write("sweep.md", merged.page.as_bytes())?;
-    write("times.csv", &time_table(folder)?)?;
-    write(FILES[0], &json(&merged)?)?;
+    files.push(("sweep.md", merged.page.clone().into_bytes()));
+    files.push(("times.csv", time_table(folder)?));
+    files.push((FILES[0], json(&merged)?));
+    add(folder, &kind(), &files)?;
     match merged.no_answer {
         Some(why) => Err(SweepError::NoAnswer(why)),
         None => Ok(merged),
@@ -238,6 +231,7 @@ fn all_runs(sweep: &Sweep, store: &Store) -> Result<usize, SweepError> {
 struct Gathered {
     status: BTreeMap<&'static str, usize>,
     warned: usize,
+    programs: BTreeMap<String, usize>,
     extremes: Vec<Option<MeasureExtremes>>,
     /// By measure and point: values of the starts.
     values: Vec<Vec<Vec<f64>>>,
@@ -256,6 +250,7 @@ impl Gathered {
                 .map(|status| (status.name(), 0))
                 .into(),
             warned: 0,
+            programs: BTreeMap::new(),
             extremes: vec![None; measures],
             values: vec![Vec::new(); measures],
             starts: sweep.study.starts_of_a_point(),
@@ -274,6 +269,7 @@ impl Gathered {
     fn add(&mut self, row: SweepRow) {
         *self.status.entry(row.status.name()).or_default() += 1;
         self.warned += usize::from(!row.warnings.is_empty());
+        *self.programs.entry(row.program).or_default() += 1;
         let points = &mut self.points;
         for warning in row.warnings {
             let first = || (0, format!("run {}: {warning}", row.run));
@@ -382,6 +378,9 @@ impl Gathered {
             runs: self.status.values().sum(),
             status: self.status,
             warned: self.warned,
+            programs: Some(self.programs)
+                .filter(|all| all.len() > 1)
+                .unwrap_or_default(),
             units: units.map(|c| (c.name.clone(), c.unit.clone())).collect(),
             extremes: extremes.collect(),
             indices,

@@ -45,13 +45,16 @@ pub use value::FieldValue;
 use crate::study_file::{StudyError, text_of};
 use bisection::{Search, Visited, search};
 use design::Design;
-use looselink::output::OutputError;
+use folder::OutputError;
 use looselink::scene::{Analysis, Scene, SceneError};
 use looselink::simulate::Simulation;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+
+/// Digits of a SHA-256 that tell programs apart.
+const DIGITS: usize = 12;
 
 /// Why a sweep ends early.
 #[derive(Debug, thiserror::Error)]
@@ -136,6 +139,8 @@ pub struct Sweep {
     digest: String,
     /// Method and step of the scene.
     method: String,
+    /// See [`SweepRow::program`].
+    program: String,
 }
 
 impl Sweep {
@@ -175,6 +180,7 @@ impl Sweep {
             units: Vec::new(),
             envelope_units: Vec::new(),
             method: String::new(),
+            program: program()?,
             study,
             source,
             design,
@@ -279,7 +285,7 @@ impl Sweep {
         &self.source
     }
 
-    /// Hexadecimal SHA-256 of the study, its scene and its target.
+    /// Hexadecimal SHA-256 of the study, its scene and its target, without titles and comments.
     pub fn digest(&self) -> &str {
         &self.digest
     }
@@ -473,11 +479,28 @@ fn digest(source: &SweepSource, study: &SweepStudy) -> String {
         } = target;
         format!("{measure} {value:?} {tolerance:?}")
     });
-    for text in [&source.study, &source.scene, &target.unwrap_or_default()] {
+    let [study, scene] = [&source.study, &source.scene].map(|text| without_title(text));
+    for text in [study, scene, target.unwrap_or_default()] {
         hasher.update((text.len() as u64).to_le_bytes());
         hasher.update(text.as_bytes());
     }
     numbers::hexadecimal(&hasher.finalize())
+}
+
+/// See [`SweepRow::program`].
+fn program() -> Result<String, SweepError> {
+    let mut program = looselink::output::program()?;
+    program.truncate(DIGITS);
+    Ok(program)
+}
+
+/// The keys and values of a text but its title, in their order.
+fn without_title(text: &str) -> String {
+    let Ok(mut table) = text.parse::<toml::Table>() else {
+        return text.to_owned();
+    };
+    table.remove("title");
+    table.to_string()
 }
 
 /// Rows of a store by run.

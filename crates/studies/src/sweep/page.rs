@@ -19,6 +19,16 @@ pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
         page += &format!(", {count} {name}");
     }
     page += &format!(", {} with warnings.\n", merged.warned);
+    if !merged.programs.is_empty() {
+        let made = merged.programs.iter();
+        let made = made.map(|(program, rows)| format!("{rows} by {program}"));
+        page += &format!(
+            "\nSeveral programs of version {} have made the rows, named by the first digits of their SHA-256: {}. Their digits may \
+             differ.\n",
+            merged.version,
+            made.collect::<Vec<_>>().join(", ")
+        );
+    }
     if let Some(answer) = answer(sweep, merged) {
         page += &format!("\n{answer}\n");
     }

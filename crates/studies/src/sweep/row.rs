@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct SweepRow {
     /// Its number.
     pub run: usize,
+    /// The first digits of the SHA-256 of the program that made it.
+    pub program: String,
     /// Number of its start; 0 is that of the scene.
     pub start: usize,
     /// Values of the parameters.

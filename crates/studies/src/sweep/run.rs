@@ -143,6 +143,7 @@ impl Sweep {
 fn empty(sweep: &Sweep, task: &Task) -> SweepRow {
     SweepRow {
         run: task.run,
+        program: sweep.program.clone(),
         start: task.start,
         values: task.values.clone(),
         status: RunStatus::Refused,

@@ -1,12 +1,12 @@
 //! Rows of a sweep on disk: in every file a line that says of which sweep, then one JSON line a run, in the order in which runs
-//! ended.
+//! ended. Each line ends with its own CRC-32.
 //!
 //! A line is on the disk before the next run of its thread begins. A kill or a full disk may cut the last line, which is cut off
 //! when its file is opened again; its run is made again.
 
 use super::{FILES, RowPlaces, RowTiming, Sweep, SweepError, SweepRow};
 use crate::study_file::StudyError;
-use looselink::output::{OutputError, naming};
+use folder::{Folder, Kind, OutputError, line_of, naming, open, value_of};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -19,6 +19,9 @@ const ROWS: &str = "runs";
 /// How names of files with times begin.
 const TIMES: &str = "times";
 const EXTENSION: &str = ".jsonl";
+/// What to do with rows that cannot be continued.
+const ELSEWHERE: &str =
+    "choose another folder, or begin anew with --force (in Python `force=True`)";
 
 /// A part of the runs of a sweep: those whose number leaves the remainder `index` - 1 when it is divided by `count`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,12 +96,22 @@ pub struct Store {
     /// All files with rows.
     files: Vec<(PathBuf, File)>,
     places: RowPlaces,
-    /// The file that receives rows, its end, and the file of their times.
-    own: Option<(usize, u64, File)>,
+    own: Option<OwnRows>,
+}
+
+/// The file that receives rows.
+#[derive(Debug)]
+struct OwnRows {
+    /// Its place among all files.
+    file: usize,
+    end: u64,
+    times: File,
+    /// Locked as long as rows may come.
+    _folder: Folder,
 }
 
 impl Store {
-    /// All rows of a sweep that a folder holds.
+    /// All rows of a sweep that a folder holds, also those that were brought there.
     ///
     /// # Errors
     /// Rows of another sweep or another version of the program; files that cannot be read or are damaged.
@@ -108,59 +121,85 @@ impl Store {
             places: RowPlaces::new(),
             own: None,
         };
-        for path in row_files(folder)? {
-            let file = File::open(&path).map_err(naming(&path))?;
+        for name in names(folder, ROWS)? {
+            let path = folder.join(name);
+            let file = open(&path, OpenOptions::new().read(true))?;
             store.index(path, file, sweep)?;
         }
         Ok(store)
     }
 
     /// As [`Store::read`], and opens the file of a shard for more rows; the folder is created. With `anew` all rows and
-    /// tables that are there are deleted first.
+    /// tables that are there are deleted first. Where this is refused, nothing is changed.
     ///
     /// # Errors
-    /// As [`Store::read`]; another process writes the same shard; the files cannot be written.
-    pub fn open(
-        folder: &Path,
-        sweep: &Sweep,
-        shard: Shard,
-        anew: bool,
-    ) -> Result<Store, SweepError> {
-        fs::create_dir_all(folder).map_err(naming(folder))?;
-        let path = folder.join(shard.file(ROWS));
-        let options = OpenOptions::new()
-            .read(true)
-            .append(true)
-            .create(true)
-            .clone();
-        let mut own = options.open(&path).map_err(naming(&path))?;
-        match own.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                return Err(OutputError::Busy(folder.to_owned()).into());
+    /// As [`Store::read`]; another process writes the same shard; files of others that have the names of its files; the files
+    /// cannot be written.
+    pub fn open(path: &Path, sweep: &Sweep, shard: Shard, anew: bool) -> Result<Store, SweepError> {
+        let names = [ROWS, TIMES].map(|name| shard.file(name));
+        let (mut folder, store) = match anew {
+            true => {
+                let mut folder = Folder::claim(path, with_rows(path)?, true)?;
+                folder.clear(names.iter().cloned())?;
+                (folder, Store::read(path, sweep)?)
             }
-            Err(TryLockError::Error(e)) => return Err(naming(&path)(e).into()),
+            false => {
+                let folder = Folder::share(path, kind())?;
+                (folder, Store::read(path, sweep)?)
+            }
+        };
+        let place = store
+            .files
+            .iter()
+            .position(|(file, _)| file.ends_with(&names[0]));
+        match place {
+            // rows of this sweep, whoever has brought them here
+            Some(_) => folder.list(names.iter().map(|name| (name.clone(), None)))?,
+            None => folder.adopt(&names)?,
         }
-        if anew {
-            clear(folder, &path)?;
-            own.set_len(0).map_err(naming(&path))?;
+        store.receiving(folder, sweep, &names)
+    }
+
+    /// Opens the files that receive rows and their times.
+    fn receiving(
+        mut self,
+        folder: Folder,
+        sweep: &Sweep,
+        names: &[String; 2],
+    ) -> Result<Store, SweepError> {
+        let [path, times] = names.each_ref().map(|name| folder.path().join(name));
+        let mut options = OpenOptions::new();
+        options.read(true).append(true).create(true);
+        let mut rows = open(&path, &mut options)?;
+        match rows.try_lock() {
+            Err(TryLockError::WouldBlock) => {
+                return Err(OutputError::Busy(folder.path().to_owned()).into());
+            }
+            // a file system without locks: the documentation says what that means
+            Ok(()) | Err(TryLockError::Error(_)) => {}
         }
-        cut_torn_line(&mut own).map_err(naming(&path))?;
-        if own.metadata().map_err(naming(&path))?.len() == 0 {
+        cut_torn_line(&mut rows).map_err(naming(&path))?;
+        if rows.metadata().map_err(naming(&path))?.len() == 0 {
             let line = line_of(&FileHead::of(sweep))?;
-            own.write_all(&line).map_err(naming(&path))?;
-            own.sync_all().map_err(naming(&path))?;
+            rows.write_all(&line).map_err(naming(&path))?;
+            rows.sync_all().map_err(naming(&path))?;
         }
-        let mut store = Store::read(folder, sweep)?;
-        let end = own.metadata().map_err(naming(&path))?.len();
-        let place = store.files.iter().position(|(known, _)| *known == path);
-        let place = place.expect("the file has been created");
-        store.files[place].1 = own;
-        let times = folder.join(shard.file(TIMES));
-        let mut file = options.open(&times).map_err(naming(&times))?;
-        cut_torn_line(&mut file).map_err(naming(&times))?;
-        store.own = Some((place, end, file));
-        Ok(store)
+        let mut times = open(&times, &mut options)?;
+        // a time may be lost, but no line is to follow a part of one
+        cut_torn_line(&mut times).map_err(naming(&path))?;
+        // what has come between the first look and the lock
+        self = Store::read(folder.path(), sweep)?;
+        let file = self.files.iter().position(|(known, _)| *known == path);
+        let file = file.expect("the file has been created");
+        let end = rows.metadata().map_err(naming(&path))?.len();
+        self.files[file].1 = rows;
+        self.own = Some(OwnRows {
+            file,
+            end,
+            times,
+            _folder: folder,
+        });
+        Ok(self)
     }
 
     /// Notes where the rows of a file stand. Of a run with two rows, which two shards may have made, the first counts.
@@ -176,13 +215,16 @@ impl Store {
             }
             number += 1;
             if number == 1 {
-                let head: Option<FileHead> = serde_json::from_slice(&line).ok();
-                head.ok_or_else(|| "it holds no rows of a sweep".to_owned())
+                FileHead::read(&line)
                     .and_then(|head| head.check(sweep))
                     .map_err(fault)?;
             } else {
-                let numbered: Numbered = serde_json::from_slice(&line)
-                    .map_err(|e| fault(format!("line {number} is damaged: {e}")))?;
+                let numbered: Option<Numbered> = value_of(&line);
+                let numbered = numbered.ok_or_else(|| {
+                    fault(format!(
+                        "line {number} is damaged; without that line its run is made again"
+                    ))
+                })?;
                 let place = RowPlace {
                     file: self.files.len() as u32,
                     from,
@@ -192,7 +234,10 @@ impl Store {
             }
             from += length as u64;
         }
-        self.files.push((path, file));
+        // a file without a whole line is nobody's, unless the manifest lists it
+        if number > 0 {
+            self.files.push((path, file));
+        }
         Ok(())
     }
 
@@ -235,8 +280,8 @@ impl Store {
         file.seek(SeekFrom::Start(place.from))
             .map_err(naming(path))?;
         file.read_exact(&mut line).map_err(naming(path))?;
-        serde_json::from_slice(&line).map_err(|e| {
-            let message = format!("`{}`: the row of run {run} is damaged: {e}", path.display());
+        value_of(&line).ok_or_else(|| {
+            let message = format!("`{}`: the row of run {run} is damaged", path.display());
             StudyError::Plain(message).into()
         })
     }
@@ -249,24 +294,25 @@ impl Store {
     /// # Panics
     /// When the store was opened for reading.
     pub fn append(&mut self, row: &SweepRow, timing: &RowTiming) -> Result<(), SweepError> {
-        let (file, end, times) = self.own.as_mut().expect("a store opened for writing");
-        let (path, rows) = &mut self.files[*file];
+        let own = self.own.as_mut().expect("a store opened for writing");
+        let (path, rows) = &mut self.files[own.file];
         let line = line_of(row)?;
         let written = rows.write_all(&line).and_then(|()| rows.sync_data());
         if let Err(error) = written {
             // a part of a line would make the next one unreadable; if this fails too, the line is cut when the file is opened
-            let _ = rows.set_len(*end);
+            let _ = rows.set_len(own.end);
             return Err(naming(path)(error).into());
         }
         let place = RowPlace {
-            file: *file as u32,
-            from: *end,
+            file: own.file as u32,
+            from: own.end,
             length: line.len() as u32,
         };
-        *end += line.len() as u64;
+        own.end += line.len() as u64;
         self.places.insert(row.run, place);
         // it may be lost: it is no result
-        Ok(times.write_all(&line_of(timing)?)?)
+        let time = line_of(timing)?;
+        Ok(own.times.write_all(&time).map_err(naming(path))?)
     }
 }
 
@@ -279,19 +325,32 @@ impl FileHead {
         }
     }
 
+    fn read(line: &[u8]) -> Result<FileHead, String> {
+        if let Some(head) = value_of(line) {
+            return Ok(head);
+        }
+        let is_head = serde_json::from_slice::<FileHead>(line).is_ok();
+        Err(match is_head {
+            true => format!(
+                "its rows are of an earlier program, which gave them no checksums; {ELSEWHERE}"
+            ),
+            false => "it holds no rows of a sweep, or its first line is damaged".to_owned(),
+        })
+    }
+
     /// Refuses rows that would not be the same if they were made now.
     fn check(&self, sweep: &Sweep) -> Result<(), String> {
         let now = FileHead::of(sweep);
         if self.sweep != now.sweep {
             return Err(format!(
-                "it holds rows of another study, scene or target (\"{}\"); choose another folder, or begin anew with --force (in Python `force=True`)",
+                "it holds rows of another study, scene or target (\"{}\"); {ELSEWHERE}",
                 self.title
             ));
         }
         match self.version == now.version {
             true => Ok(()),
             false => Err(format!(
-                "it holds rows of version {} of the program, and this is {}; choose another folder, or begin anew with --force (in Python `force=True`)",
+                "it holds rows of version {} of the program, and this is {}; {ELSEWHERE}",
                 self.version, now.version
             )),
         }
@@ -304,13 +363,13 @@ impl FileHead {
 /// A file that cannot be read.
 pub(super) fn timings(folder: &Path) -> Result<Vec<RowTiming>, SweepError> {
     let mut all = std::collections::BTreeMap::new();
-    for path in time_files(folder)? {
-        let text = fs::read_to_string(&path).map_err(naming(&path))?;
-        // a line that a kill has cut is no loss
-        let lines = text
-            .lines()
-            .filter_map(|line| serde_json::from_str(line).ok());
-        for timing in lines {
+    for name in names(folder, TIMES)? {
+        let path = folder.join(name);
+        let mut bytes = Vec::new();
+        let mut file = open(&path, OpenOptions::new().read(true))?;
+        file.read_to_end(&mut bytes).map_err(naming(&path))?;
+        // a line that a kill has cut is no loss, nor is a damaged one
+        for timing in bytes.split(|byte| *byte == b'\n').filter_map(value_of) {
             let timing: RowTiming = timing;
             all.entry(timing.run).or_insert(timing);
         }
@@ -318,59 +377,43 @@ pub(super) fn timings(folder: &Path) -> Result<Vec<RowTiming>, SweepError> {
     Ok(all.into_values().collect())
 }
 
-/// Deletes the rows, times and tables of a folder but one file of rows, which is open.
-///
-/// # Errors
-/// Another process writes to one of the files; nothing is then deleted.
-fn clear(folder: &Path, own: &Path) -> Result<(), SweepError> {
-    let mut others = row_files(folder)?;
-    others.retain(|path| path != own);
-    let mut locked = Vec::new();
-    for path in &others {
-        let file = File::open(path).map_err(naming(path))?;
-        match file.try_lock() {
-            Ok(()) => locked.push(file),
-            Err(TryLockError::WouldBlock) => {
-                return Err(OutputError::Busy(folder.to_owned()).into());
-            }
-            Err(TryLockError::Error(e)) => return Err(naming(path)(e).into()),
-        }
-    }
-    let tables = FILES.iter().map(|name| folder.join(name));
-    let all = tables.chain(others).chain(time_files(folder)?);
-    all.into_iter().try_for_each(|path| remove(&path))
-}
-
-/// Deletes a file that may not be there.
-pub(super) fn remove(path: &Path) -> Result<(), SweepError> {
-    match fs::remove_file(path) {
-        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(naming(path)(e).into()),
-        _ => Ok(()),
+/// A sweep as a kind of result, without its rows.
+pub(super) fn kind() -> Kind {
+    Kind {
+        name: "a sweep",
+        files: FILES.map(str::to_owned).to_vec(),
+        keys: &["sweep", "runs", "version"],
     }
 }
 
-fn row_files(folder: &Path) -> Result<Vec<PathBuf>, SweepError> {
-    files(folder, ROWS)
+/// A sweep as a kind of result, with the names of rows and times that a folder has.
+fn with_rows(folder: &Path) -> Result<Kind, SweepError> {
+    let mut kind = kind();
+    if folder.is_dir() {
+        kind.files.extend(names(folder, ROWS)?);
+        kind.files.extend(names(folder, TIMES)?);
+    }
+    Ok(kind)
 }
 
-fn time_files(folder: &Path) -> Result<Vec<PathBuf>, SweepError> {
-    files(folder, TIMES)
-}
-
-/// The files of all shards, in the order of their names.
-fn files(folder: &Path, start: &str) -> Result<Vec<PathBuf>, SweepError> {
-    let mut files = Vec::new();
+/// The names of the files of all shards in a folder, sorted.
+fn names(folder: &Path, start: &str) -> Result<Vec<String>, SweepError> {
+    let mut names = Vec::new();
     for entry in fs::read_dir(folder).map_err(naming(folder))? {
-        let path = entry.map_err(naming(folder))?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let name = entry.map_err(naming(folder))?.file_name();
+        let Some(name) = name.to_str() else { continue };
         let rest = name.strip_prefix(start);
         let middle = rest.and_then(|rest| rest.strip_suffix(EXTENSION));
-        if middle.is_some_and(|middle| middle.is_empty() || middle.starts_with('-')) {
-            files.push(path);
+        let shard = middle.and_then(|middle| match middle {
+            "" => Some(Shard::WHOLE),
+            _ => middle.strip_prefix('-')?.replace("-of-", "/").parse().ok(),
+        });
+        if shard.is_some_and(|shard| shard.file(start) == name) {
+            names.push(name.to_owned());
         }
     }
-    files.sort();
-    Ok(files)
+    names.sort();
+    Ok(names)
 }
 
 /// Cuts what stands after the last line feed.
@@ -385,10 +428,4 @@ fn cut_torn_line(file: &mut File) -> io::Result<()> {
         }
         whole += length as u64;
     }
-}
-
-fn line_of(value: &impl Serialize) -> io::Result<Vec<u8>> {
-    let mut line = serde_json::to_vec(value)?;
-    line.push(b'\n');
-    Ok(line)
 }

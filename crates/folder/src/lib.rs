@@ -1,0 +1,64 @@
+//! The folder of a result: who writes to it, which of its files are the program's, and files that are whole or not there.
+//!
+//! `manifest.jsonl` lists the files of the program, and is locked by a program that writes to the folder. The lock is taken
+//! before anything is looked at. A file that the manifest does not list is somebody else's: it is never replaced, extended or
+//! deleted. A claim that is refused leaves the folder as it was.
+//!
+//! A file that is written in one piece is a temporary file with a name of its own until it is on the disk, then takes its place at
+//! once. What a killed program leaves of it, the next one removes.
+//!
+//! An earlier result is linked, all of its files or none, into the folder `previous-result` before it is taken out of its place,
+//! and deleted when the new one is whole. Whatever ends the program, one of the two places holds a whole result.
+
+mod claim;
+mod digest;
+mod error;
+mod line;
+mod lock;
+mod manifest;
+mod replaced;
+mod temporary;
+
+pub use claim::{Folder, Kind, add, earlier_result, refuse_changed};
+pub use digest::{Digest, Digesting};
+pub use error::{OutputError, naming};
+pub use line::{line_of, value_of};
+pub use manifest::{MANIFEST, verify};
+pub use temporary::replace;
+
+use serde::Serialize;
+use std::fs::{File, OpenOptions};
+use std::io;
+use std::path::Path;
+
+/// A value as the text of a file.
+///
+/// # Errors
+/// A value that JSON does not have.
+pub fn json(value: &impl Serialize) -> Result<Vec<u8>, OutputError> {
+    let mut bytes = serde_json::to_vec_pretty(value).map_err(io::Error::from)?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+/// Opens a file, but not what a link points at.
+///
+/// # Errors
+/// When it cannot be opened; the message names the file.
+pub fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        options.custom_flags(libc::O_NOFOLLOW);
+    }
+    if cfg!(not(unix)) && path.is_symlink() {
+        return Err(naming(path)(io::Error::other("it is a link")));
+    }
+    options.open(path).map_err(|error| {
+        let error = match path.is_symlink() {
+            true => io::Error::new(error.kind(), "it is a link"),
+            false => error,
+        };
+        naming(path)(error)
+    })
+}

@@ -1,0 +1,118 @@
+//! The lock of a folder: that of its manifest.
+
+use crate::error::{OutputError, naming};
+use crate::{MANIFEST, open};
+use same_file::Handle;
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// Who else may hold the lock.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sharing {
+    /// Nobody.
+    Alone,
+    /// Those who share it too.
+    Together,
+}
+
+/// A manifest that is open and locked.
+#[derive(Debug)]
+pub(crate) struct Lock {
+    path: PathBuf,
+    file: File,
+    /// True where there was no manifest.
+    pub is_new: bool,
+}
+
+impl Lock {
+    /// Locks a folder that is there. Without a manifest one comes into being, or there is no lock.
+    pub fn take(
+        folder: &Path,
+        sharing: Sharing,
+        creates: bool,
+    ) -> Result<Option<Lock>, OutputError> {
+        let path = folder.join(MANIFEST);
+        loop {
+            let Some((file, is_new)) = opened(&path, creates)? else {
+                return Ok(None);
+            };
+            let locked = match sharing {
+                Sharing::Alone => file.try_lock(),
+                Sharing::Together => file.try_lock_shared(),
+            };
+            match locked {
+                Err(TryLockError::WouldBlock) => return Err(OutputError::Busy(folder.to_owned())),
+                Err(TryLockError::Error(e)) if !has_no_locks(&e) => {
+                    return Err(naming(&path)(e).into());
+                }
+                _ => {}
+            }
+            let path = path.clone();
+            let lock = Lock { path, file, is_new };
+            // between the two steps another program may have given the folder up
+            if lock.is_in_place() {
+                return Ok(Some(lock));
+            }
+        }
+    }
+
+    /// False where the manifest, and perhaps its folder, has been moved, replaced or deleted.
+    pub fn is_in_place(&self) -> bool {
+        let own = self.file.try_clone().and_then(Handle::from_file);
+        own.is_ok_and(|own| is_at(&own, &self.path))
+    }
+
+    /// The manifest, opened for reading and for additions at its end.
+    pub fn file(&mut self) -> &mut File {
+        &mut self.file
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    pub fn file_and_path(&mut self) -> (&mut File, &Path) {
+        (&mut self.file, &self.path)
+    }
+
+    /// True where nobody else holds the lock; then nobody can take it.
+    pub fn is_alone(&self) -> bool {
+        self.file.try_lock().is_ok()
+    }
+}
+
+/// True of an open file that stands at a path itself, not behind a link there.
+pub(crate) fn is_at(file: &Handle, path: &Path) -> bool {
+    !path.is_symlink() && Handle::from_path(path).is_ok_and(|there| there == *file)
+}
+
+/// A manifest, and whether it came into being.
+fn opened(path: &Path, creates: bool) -> io::Result<Option<(File, bool)>> {
+    let mut options = OpenOptions::new();
+    options.read(true).append(true);
+    loop {
+        match open(path, &mut options) {
+            Ok(file) => return Ok(Some((file, false))),
+            Err(e) if e.kind() != ErrorKind::NotFound => return Err(e),
+            Err(_) if !creates => return Ok(None),
+            Err(_) => {}
+        }
+        match open(path, options.clone().create_new(true)) {
+            Ok(file) => return Ok(Some((file, true))),
+            // another program was faster
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
+            Err(e) => return Err(e),
+        }
+    }
+}
+
+/// File systems without locks, as some that are shared over a network.
+fn has_no_locks(error: &io::Error) -> bool {
+    #[cfg(unix)]
+    if let Some(code) = error.raw_os_error() {
+        return [libc::ENOTSUP, libc::EOPNOTSUPP, libc::ENOSYS, libc::ENOLCK].contains(&code);
+    }
+    error.kind() == ErrorKind::Unsupported
+}
