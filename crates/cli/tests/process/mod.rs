@@ -2,6 +2,9 @@
 //! earlier result is whole, in its place or aside.
 #![cfg(unix)]
 
+mod contended;
+mod faults;
+mod foreign;
 mod killed;
 mod no_room;
 mod replaced;

@@ -1,0 +1,368 @@
+//! Files that are not the program's, and links: they are never replaced, extended, deleted or followed.
+
+use super::{ASIDE, COMPLETE, EARLIER, NEW, arguments, whole};
+use crate::command_line::{TOP, expect, files, looselink, read};
+use std::collections::BTreeMap;
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::path::{Path, PathBuf};
+
+/// All files below a folder, and where links point.
+fn all(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_symlink() {
+            let target = fs::read_link(&path).unwrap();
+            found.insert(path, target.into_os_string().into_encoded_bytes());
+        } else if path.is_dir() {
+            found.extend(all(&path));
+            found.insert(path, Vec::new());
+        } else {
+            found.insert(path.clone(), fs::read(path).unwrap());
+        }
+    }
+    found
+}
+
+/// A command that is refused changes nothing.
+#[track_caller]
+fn refused(folder: &Path, command: &[&str], why: &str) {
+    let before = all(folder);
+    expect(&looselink(command), 2, why);
+    assert_eq!(all(folder), before);
+}
+
+fn study(folder: &Path, title: &str, masses: &str) -> String {
+    let scene = Path::new(TOP).join("scenes/pendulum.toml");
+    let path = folder.join("study.txt");
+    let text = format!(
+        "title = '{title}'\nscene = {scene:?}\nset = ['simulation.duration=0.02', 'output.interval=0.01']\n\
+         parameters.mass = {{ fields = ['bodies.rod.mass'], values = {masses} }}\n\
+         measures.last = {{ of = 'last', channels = ['points.rod.bob.x'] }}\n"
+    );
+    fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn files_of_the_user_are_not_replaced_by_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    for name in [
+        "scene.toml",
+        "summary.json",
+        "channels.csv",
+        "channels.jsonl",
+        "onsets.jsonl",
+        "motion.bin",
+        "timing.json",
+        "checkpoint.bin",
+        "view.html",
+        "manifest.jsonl",
+    ] {
+        fs::write(out.join(name), "mine").unwrap();
+        for force in [&[NEW][..], &[NEW, "--force"]] {
+            refused(
+                out,
+                &arguments(out, force),
+                &format!("{name}` is not a file of this program"),
+            );
+        }
+        fs::remove_file(out.join(name)).unwrap();
+    }
+    // beside a result too
+    whole(out, EARLIER);
+    fs::write(out.join("channels.jsonl"), "mine").unwrap();
+    fs::write(out.join("view.html"), "mine").unwrap();
+    refused(
+        out,
+        &arguments(out, &[NEW, "--force"]),
+        "channels.jsonl` is not a file of this program",
+    );
+    refused(
+        out,
+        &["view", out.to_str().unwrap()],
+        "view.html` is not a file of this program",
+    );
+    fs::remove_file(out.join("channels.jsonl")).unwrap();
+    fs::remove_file(out.join("view.html")).unwrap();
+    // what stands aside, and what somebody has put there
+    for (make, why) in [
+        (
+            (|aside| symlink("/etc", aside).unwrap()) as fn(&Path),
+            "previous-result` is not a directory",
+        ),
+        (
+            |aside| fs::write(aside, "mine").unwrap(),
+            "previous-result` is not a directory",
+        ),
+        (
+            |aside| {
+                fs::create_dir(aside).unwrap();
+                fs::write(aside.join("scene.toml"), "mine").unwrap();
+            },
+            "scene.toml` is not a file of this program",
+        ),
+    ] {
+        make(&out.join(ASIDE));
+        refused(out, &arguments(out, &[NEW, "--force"]), why);
+        let _ = fs::remove_file(out.join(ASIDE)).or_else(|_| fs::remove_dir_all(out.join(ASIDE)));
+    }
+    expect(&looselink(&arguments(out, &[NEW, "--force"])), 0, "");
+    assert_eq!(files(out), COMPLETE);
+}
+
+/// A refused command leaves no folder, no manifest, nothing.
+#[test]
+fn a_refusal_has_no_side_effects() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let out = here.join("a/b/out");
+    let name = out.to_str().unwrap();
+    let study = study(here, "masses", "[1.0, -2.0, 'x']");
+    let commands: [&[&str]; 5] = [
+        &[
+            "run",
+            "scenes/pendulum.toml",
+            "--set",
+            "integrator.step=-1",
+            "--out",
+            name,
+        ],
+        &[
+            "ablate",
+            "scenes/pendulum.toml",
+            "--body",
+            "nobody",
+            "--out",
+            name,
+        ],
+        &["precision", "scenes/pendulum.toml", "--out", name],
+        &["sweep", &study, "--out", name],
+        &["resume", name],
+    ];
+    for command in commands {
+        refused(here, command, "");
+    }
+}
+
+#[test]
+fn files_of_the_user_are_not_touched_by_a_sweep() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = study(folder.path(), "masses", "[1.0, 2.0]");
+    let out = folder.path().join("out");
+    let sweep = |more: &[&str]| {
+        let words = [
+            &["sweep", &study, "--quiet", "--out", out.to_str().unwrap()],
+            more,
+        ]
+        .concat();
+        words.into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let refused = |more: &[&str], why: &str| {
+        let words = sweep(more);
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        refused(&out, &words, why);
+    };
+    let made = |more: &[&str]| {
+        let words = sweep(more);
+        expect(
+            &looselink(&words.iter().map(String::as_str).collect::<Vec<_>>()),
+            0,
+            "",
+        );
+    };
+    fs::create_dir(&out).unwrap();
+    // also a table that this sweep does not have
+    for name in ["points.csv", "envelopes.csv", "sweep.md", "times.csv"] {
+        fs::write(out.join(name), "mine").unwrap();
+        for more in [&[][..], &["--force"]] {
+            refused(more, &format!("{name}` is not a file of this program"));
+        }
+        fs::remove_file(out.join(name)).unwrap();
+    }
+    made(&[]);
+    fs::write(out.join("runs-1-of-2.jsonl"), "mine\n").unwrap();
+    refused(
+        &["--force"],
+        "runs-1-of-2.jsonl` is not a file of this program",
+    );
+    refused(&[], "it holds no rows of a sweep");
+    fs::remove_file(out.join("runs-1-of-2.jsonl")).unwrap();
+    // names that are nearly those of rows
+    for name in ["runs-old.jsonl", "runs-3-of-2.jsonl", "runs-01-of-2.jsonl"] {
+        fs::write(out.join(name), "mine").unwrap();
+    }
+    made(&["--force"]);
+    assert_eq!(read(&out, "runs-old.jsonl"), "mine");
+
+    let other = folder.path().join("other");
+    fs::create_dir(&other).unwrap();
+    for name in [
+        "sweep.md",
+        "sweep.csv",
+        "times.csv",
+        "times.jsonl",
+        "runs.jsonl",
+        "manifest.jsonl",
+    ] {
+        fs::write(other.join(name), "mine").unwrap();
+        let words = ["sweep", &study, "--quiet", "--out", other.to_str().unwrap()];
+        let output = looselink(&words);
+        expect(&output, 2, name);
+        assert_eq!(read(&other, name), "mine");
+        let _ = fs::remove_dir_all(&other);
+        fs::create_dir(&other).unwrap();
+    }
+}
+
+/// Another study is refused and leaves nothing; a corrected title is the same one.
+#[test]
+fn a_refused_sweep_leaves_the_folder_as_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let name = out.to_str().unwrap();
+    let first = study(folder.path(), "masses", "[1.0, 2.0]");
+    expect(
+        &looselink(&["sweep", &first, "--quiet", "--shard", "1/2", "--out", name]),
+        0,
+        "",
+    );
+    let other = study(folder.path(), "masses", "[1.0, 3.0]");
+    for more in [&[][..], &["--shard", "2/2"], &["--merge"]] {
+        let words = [&["sweep", &other, "--quiet", "--out", name], more].concat();
+        refused(&out, &words, "it holds rows of another study");
+    }
+    let corrected = study(folder.path(), "Masses", "[1.0, 2.0]");
+    expect(
+        &looselink(&[
+            "sweep", &corrected, "--quiet", "--shard", "2/2", "--out", name,
+        ]),
+        0,
+        "",
+    );
+    expect(
+        &looselink(&["sweep", &corrected, "--quiet", "--merge", "--out", name]),
+        0,
+        "",
+    );
+    assert!(read(&out, "sweep.md").starts_with("# Masses"));
+}
+
+/// Wherever a link stands, what it points at stays; a file of the user that a new file would replace is another matter.
+#[test]
+fn links_are_not_followed() {
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("target");
+    fs::write(&target, "mine").unwrap();
+    let study = study(folder.path(), "masses", "[1.0, 2.0]");
+    let out = folder.path().join("out");
+    let name = out.to_str().unwrap();
+    let page = out.join("page.html");
+    let sweep: &[&str] = &["sweep", &study, "--quiet", "--out", name];
+    let brief = [
+        "run",
+        "scenes/pendulum.toml",
+        "--quiet",
+        "--set",
+        "simulation.duration=0.02",
+        "--out",
+        name,
+    ];
+    let run: &[&str] = &brief;
+    let made = [run, sweep];
+    for command in made {
+        fs::create_dir(&out).unwrap();
+        expect(&looselink(command), 0, "");
+        let names = [
+            files(&out),
+            vec!["view.html".to_owned(), "checkpoint.bin".to_owned()],
+        ]
+        .concat();
+        for link in names {
+            for first in [true, false] {
+                fs::remove_dir_all(&out).unwrap();
+                fs::create_dir(&out).unwrap();
+                if !first {
+                    expect(&looselink(command), 0, "");
+                    let _ = fs::remove_file(out.join(&link));
+                }
+                symlink(&target, out.join(&link)).unwrap();
+                let forced = [command, &["--force"]].concat();
+                let more: [&[&str]; 4] = [
+                    command,
+                    &forced,
+                    &["view", name],
+                    &["view", name, "-o", page.to_str().unwrap()],
+                ];
+                for command in more {
+                    looselink(command);
+                    assert_eq!(fs::read(&target).unwrap(), b"mine", "{link} {command:?}");
+                    assert!(target.is_file() && !target.is_symlink());
+                }
+            }
+        }
+        fs::remove_dir_all(&out).unwrap();
+    }
+    // the file that the user names: its link is replaced
+    let picture = folder.path().join("picture.svg");
+    symlink(&target, &picture).unwrap();
+    fs::create_dir(&out).unwrap();
+    expect(&looselink(run), 0, "");
+    let plot = [
+        "plot",
+        name,
+        "--channels",
+        "points.*",
+        "-o",
+        picture.to_str().unwrap(),
+    ];
+    expect(&looselink(&plot), 0, "");
+    assert_eq!(fs::read(&target).unwrap(), b"mine");
+    assert!(!picture.is_symlink() && read(folder.path(), "picture.svg").contains("<svg"));
+}
+
+/// Rows with a flipped bit are refused, and a damaged time is no loss.
+#[test]
+fn damaged_rows_of_sweeps_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = study(folder.path(), "masses", "[1.0, 2.0, 3.0]");
+    let out = folder.path().join("out");
+    let sweep = |more: &[&str]| {
+        looselink(
+            &[
+                &["sweep", &study, "--quiet", "--out", out.to_str().unwrap()],
+                more,
+            ]
+            .concat(),
+        )
+    };
+    expect(&sweep(&[]), 0, "");
+    let table = fs::read(out.join("sweep.csv")).unwrap();
+    let path = out.join("runs.jsonl");
+    let rows = fs::read(&path).unwrap();
+    let mut random = super::Random(6);
+    for _ in 0..super::rounds(30, 500) {
+        let bit = (random.uniform() * 8.0 * rows.len() as f64) as usize;
+        let mut flipped = rows.clone();
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        fs::write(&path, &flipped).unwrap();
+        let output = sweep(&["--merge"]);
+        // without its last line feed a file looks as if a kill had cut it
+        let why = if bit / 8 == rows.len() - 1 {
+            "have not been made"
+        } else {
+            "runs.jsonl`: "
+        };
+        expect(&output, 2, why);
+    }
+    fs::write(&path, &rows).unwrap();
+    let times = out.join("times.jsonl");
+    let mut damaged = fs::read(&times).unwrap();
+    damaged[3] = 0xff;
+    fs::write(&times, damaged).unwrap();
+    expect(&sweep(&["--merge"]), 0, "");
+    assert_eq!(fs::read(out.join("sweep.csv")).unwrap(), table);
+    assert_eq!(read(&out, "times.csv").lines().count(), 3);
+}
