@@ -260,9 +260,7 @@ impl Folder {
     /// When a file cannot be deleted or written.
     pub fn clear(&mut self, files: impl IntoIterator<Item = String>) -> Result<(), OutputError> {
         self.refuse_moved()?;
-        for file in self.manifest.files.keys() {
-            remove(&self.path.join(file))?;
-        }
+        replaced::delete(&self.path, &self.kind, &self.manifest)?;
         let (file, path) = self.lock.file_and_path();
         file.set_len(0).map_err(naming(path))?;
         self.manifest = Manifest::default();

@@ -66,15 +66,21 @@ pub(crate) fn set_aside(folder: &Path, kind: &Kind, held: &Manifest) -> io::Resu
     fs::rename(&temporary, &previous).map_err(naming(&previous))
 }
 
+/// Deletes the files of the program in a folder, first the one without which there is no result.
+pub(crate) fn delete(folder: &Path, kind: &Kind, held: &Manifest) -> io::Result<()> {
+    let closing = kind.files[..1].iter();
+    let closing = closing.filter(|file| held.files.contains_key(*file));
+    let mut files = closing.chain(held.files.keys());
+    files.try_for_each(|file| remove(&folder.join(file)))
+}
+
 /// Deletes what stands aside. What is not the program's stays.
 pub(crate) fn discard(folder: &Path, kind: &Kind) -> io::Result<()> {
     let path = folder.join(PREVIOUS);
     if !path.exists() {
         return Ok(());
     }
-    for file in aside(folder, kind)?.files.keys() {
-        remove(&path.join(file))?;
-    }
+    delete(&path, kind, &aside(folder, kind)?)?;
     remove(&path.join(MANIFEST))?;
     match fs::remove_dir(&path) {
         Err(e) if e.kind() != ErrorKind::DirectoryNotEmpty => Err(naming(&path)(e)),
