@@ -260,6 +260,10 @@ impl Folder {
     /// When a file cannot be deleted or written.
     pub fn clear(&mut self, files: impl IntoIterator<Item = String>) -> Result<(), OutputError> {
         self.refuse_moved()?;
+        if self.manifest.kind.is_none() {
+            // an earlier version wrote no manifest: what a kill leaves of its files is to be known as well
+            self.list(self.manifest.files.clone())?;
+        }
         replaced::delete(&self.path, &self.kind, &self.manifest)?;
         let (file, path) = self.lock.file_and_path();
         file.set_len(0).map_err(naming(path))?;
