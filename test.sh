@@ -62,7 +62,7 @@ compile_program() {
 }
 
 quick() {
-    local packages=(-p looselink -p looselink-cli -p looselink-folder -p looselink-studies -p looselink-numbers -p looselink-plot -p verify)
+    local packages=(-p looselink -p looselink-cli -p looselink-folder -p looselink-studies -p looselink-numbers -p looselink-plot -p looselink-texts -p verify)
     cargo test "${packages[@]}" -- "${slow[@]/#/--skip=}"
 }
 
@@ -112,7 +112,7 @@ same_features() {
 
 # The sources for crates.io: the solver, the command line, and what they are made of.
 packages() {
-    local names=(looselink looselink-cli looselink-folder looselink-messages looselink-numbers looselink-plot looselink-studies looselink-view)
+    local names=(looselink looselink-cli looselink-folder looselink-messages looselink-numbers looselink-plot looselink-studies looselink-texts looselink-view)
     local said
     said=$(cargo package "${names[@]/#/-p}" --no-verify --exclude-lockfile --allow-dirty --color never 2>&1) || {
         echo "$said" >&2
