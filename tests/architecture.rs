@@ -44,7 +44,7 @@ const LAYERS: [&str; 27] = [
 const ABOVE: &str = "output";
 
 /// Crates that the solver is made of. toml_parser and winnow are compiled for toml in any case.
-const CRATES: [&str; 17] = [
+const CRATES: [&str; 18] = [
     "cpu-time",
     "faer",
     "folder",
@@ -57,6 +57,7 @@ const CRATES: [&str; 17] = [
     "serde_json",
     "sha2",
     "strsim",
+    "texts",
     "thiserror",
     "toml",
     "toml_parser",

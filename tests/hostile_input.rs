@@ -53,6 +53,36 @@ fn faults_of_the_file() {
     );
 }
 
+/// Whatever text a user wrote, messages and excerpts hold no character that commands a terminal.
+#[test]
+fn harmful_characters_are_refused_and_never_shown() {
+    for (c, told) in [
+        ('\u{1b}', "U+001B, a control character"),
+        ('\u{9b}', "U+009B, a control character"),
+        ('\u{7f}', "U+007F, a control character"),
+        ('\u{2028}', "U+2028, a separator of lines"),
+        ('\u{202e}', "U+202E, which turns the direction of a text"),
+        ('\u{fffe}', "U+FFFE, which is no character"),
+    ] {
+        let escaped = format!("\\u{:04X}", u32::from(c));
+        let [raw, escaped] = [c.to_string(), escaped].map(|c| CASE4.replace("3-RRR, case 4", &c));
+        let change = format!("title=\"{c}\"");
+        for (text, overrides) in [(&*raw, &[][..]), (&escaped, &[]), (CASE4, &[&*change])] {
+            let error = fault(text, overrides);
+            let said = error.to_string();
+            assert!(said.ends_with(&format!(" holds {told}")), "{said}");
+            assert!(!rendered(&error).contains(c), "{said}");
+        }
+    }
+    // of a file with any name
+    let error = Scene::parse("a\u{1b}\nb", "x = 1", &[]).unwrap_err();
+    assert!(
+        rendered(&error).contains("[aU+001BU+000Ab:1:1]"),
+        "{}",
+        rendered(&error)
+    );
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 

@@ -26,6 +26,7 @@ mod own_interaction;
 #[allow(dead_code, reason = "the example is a program")]
 mod own_observer;
 
+mod quantities;
 mod slot;
 
 /// A wall that pushes with a constant force.

@@ -83,11 +83,15 @@ def test_values_of_python_and_numpy(oscillator):
         .set("bodies.mass.points.pin", np.array([0.1, 0.0]))
         .set("bodies.mass.points.end", (np.int64(1), 0))
         .set("integrator.method", "bathe")
-        .set("title", 'a "quoted"\ttitle\x7f\nof two lines, ∂')
+        .set("title", 'a "quoted"\ttitle, \\ and ∂')
         .set("forces.push", {"type": "force", "point": "mass.end", "x": "2 * t", "y": 0, "frame": "ground"})
     )
     assert returned is oscillator
-    assert oscillator.title == 'a "quoted"\ttitle\x7f\nof two lines, ∂'
+    assert oscillator.title == 'a "quoted"\ttitle, \\ and ∂'
+    for title, told in [("deleted\x7f", "`title` holds U+007F, a control character"), ("of two\nlines", "`title` holds U+000A, a line feed")]:
+        with pytest.raises(looselink.SceneError) as raised:
+            oscillator.set("title", title)
+        assert told in str(raised.value)
     # what a command line would have
     assert oscillator.overrides[0] == "integrator.step=0.002"
     assert oscillator.overrides[5] == "integrator.method=bathe"

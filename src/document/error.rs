@@ -5,6 +5,7 @@ use miette::{Diagnostic, LabeledSpan};
 use sha2::{Digest, Sha256};
 use std::ops::Range;
 use std::sync::Arc;
+use texts::harmless_line;
 
 /// Name of the text of an override.
 const CHANGE: &str = "--set";
@@ -135,7 +136,7 @@ impl SceneError {
     /// A fault of a file that could not be read at all.
     pub(crate) fn unreadable(message: String) -> SceneError {
         SceneError {
-            message,
+            message: shown(message),
             help: None,
             text: None,
             labels: Vec::new(),
@@ -181,11 +182,12 @@ impl SceneError {
     }
 }
 
-/// A message that quotes something long without the rest of it.
+/// A message that may quote what users wrote: in one line, without characters that could do harm, and of something long without the
+/// rest of it.
 fn shown(message: String) -> String {
     match shortened(&message) {
-        short if short.len() < message.len() => format!("{short} ..."),
-        _ => message,
+        short if short.len() < message.len() => format!("{} ...", harmless_line(short)),
+        whole => harmless_line(whole).into_owned(),
     }
 }
 

@@ -6,6 +6,7 @@ use super::likeness::{did_you_mean, listed};
 use super::tree::{Node, Value};
 use super::written::{comma_in_number, meant};
 use indexmap::IndexMap;
+use texts::described;
 
 /// A value being read.
 #[derive(Clone)]
@@ -166,6 +167,18 @@ impl<'a> Field<'a> {
             }
             Value::Text(text) => Ok(text),
             _ => Err(self.wrong_type("a string")),
+        }
+    }
+
+    /// Text in one line that is not empty.
+    pub(crate) fn line(&self) -> Result<&'a str, SceneError> {
+        match self.text()? {
+            text if text.contains('\n') => {
+                let message = format!("`{}` holds {}", self.path, described('\n'));
+                let error = self.fault(message, "must be one line");
+                Err(error.with_help("it stands in messages, above pictures and in captions"))
+            }
+            text => Ok(text),
         }
     }
 

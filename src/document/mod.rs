@@ -1,5 +1,6 @@
 //! What a user wrote: TOML text as a tree that knows where everything stands, typed access to it, and errors that point at it.
 
+mod characters;
 mod error;
 mod field;
 mod fields;
@@ -12,6 +13,7 @@ mod text;
 mod tree;
 mod written;
 
+pub(crate) use characters::{check_overrides, check_texts};
 pub use error::{SceneError, Span};
 pub(crate) use error::{Sources, quoted};
 pub use field::Field;

@@ -30,10 +30,10 @@ pub(crate) fn check_name(field: &Field, reserved: &[&str]) -> Result<(), SceneEr
             format!("the name `{name}` is reserved: channels of the program begin with it");
         return Err(field.key_fault(message, "reserved"));
     }
-    let fine = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
+    let fine = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if name.is_empty() || !name.chars().all(fine) {
         let message = format!("`{name}` is not a valid name");
-        let help = "names consist of letters, digits, `_` and `-`";
+        let help = "names consist of ASCII letters, digits, `_` and `-`";
         return Err(field.key_fault(message, "not a name").with_help(help));
     }
     Ok(())

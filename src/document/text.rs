@@ -1,25 +1,41 @@
-//! A text with its name, as faults show it: of long lines only what surrounds the fault.
+//! A text with its name, as faults show it: of long lines only what surrounds the fault, and no character that could do harm.
 
-use miette::{MietteError, MietteSpanContents, NamedSource, SourceCode, SourceSpan, SpanContents};
+use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
+use texts::{harmful, harmless_line};
 
 /// Bytes shown on each side of a fault, of its label and of its message. A line may be a table of a megabyte.
 const SHOWN: usize = 400;
 
-/// A scene, a study or an override.
+/// A scene or an override.
 #[derive(Debug)]
-pub(crate) struct Text(NamedSource<String>);
+pub(crate) struct Text {
+    name: String,
+    text: String,
+    /// The text with question marks in place of the bytes of characters that could do harm, where there are any: bytes stay where
+    /// they are.
+    masked: Option<String>,
+}
 
 impl Text {
     pub(crate) fn new(name: &str, text: &str) -> Text {
-        Text(NamedSource::new(name, text.to_owned()))
+        let mut masked = None;
+        for (at, c) in harmful(text) {
+            let masked = masked.get_or_insert_with(|| text.to_owned());
+            masked.replace_range(at..at + c.len_utf8(), &"?".repeat(c.len_utf8()));
+        }
+        Text {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            masked,
+        }
     }
 
     pub(crate) fn name(&self) -> &str {
-        self.0.name()
+        &self.name
     }
 
     pub(crate) fn inner(&self) -> &str {
-        self.0.inner()
+        &self.text
     }
 
     /// Line and column of a byte, from 0, columns in characters, and the byte its line starts at.
@@ -38,24 +54,36 @@ impl SourceCode for Text {
         lines_before: usize,
         lines_after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        let whole = self.0.read_span(span, lines_before, lines_after)?;
+        let shown = self.masked.as_ref().unwrap_or(&self.text);
+        let whole = shown.read_span(span, lines_before, lines_after)?;
+        let named = |data, span, line, column, count| {
+            let name = harmless_line(&self.name).into_owned();
+            let contents = MietteSpanContents::new_named(name, data, span, line, column, count);
+            Ok(Box::new(contents) as Box<dyn SpanContents>)
+        };
         if whole.data().len() <= 4 * SHOWN {
-            return Ok(whole);
+            let (line, column) = (whole.line(), whole.column());
+            return named(
+                whole.data(),
+                *whole.span(),
+                line,
+                column,
+                whole.line_count(),
+            );
         }
-        let text = self.inner();
         let (line, column, start) = self.place(span.offset()).ok_or(MietteError::OutOfBounds)?;
-        let from = start.max(boundary(text, span.offset().saturating_sub(SHOWN)));
+        let from = start.max(boundary(shown, span.offset().saturating_sub(SHOWN)));
         let end = span.offset() + span.len() + SHOWN;
-        let line_end = text[from..].find('\n').map_or(text.len(), |n| from + n);
-        let to = boundary(text, end.min(line_end));
-        Ok(Box::new(MietteSpanContents::new_named(
-            self.name().to_owned(),
-            &text.as_bytes()[from..to],
+        let line_end = shown[from..].find('\n').map_or(shown.len(), |n| from + n);
+        let to = boundary(shown, end.min(line_end));
+        let column = if lines_before == 0 { column } else { 0 };
+        named(
+            &shown.as_bytes()[from..to],
             (from, to - from).into(),
             line,
-            if lines_before == 0 { column } else { 0 },
+            column,
             1,
-        )))
+        )
     }
 }
 

@@ -150,7 +150,13 @@ impl TextPlace<'_> {
     fn syntax(&self, error: &Error) -> SceneError {
         let range = self.visible(error.span().unwrap_or(0..0));
         let written = self.sources.written(self.span(range.clone()));
-        let said = self.in_line(range.start, |line| written::meant(line, self.offset == 0));
+        let holds = |line: &str| {
+            let (place, c) = written::first_harmful(line)?;
+            Some((place, format!("this line holds {c}")))
+        };
+        let said = self.in_line(range.start, holds);
+        let meant = |line: &str| written::meant(line, self.offset == 0);
+        let said = said.or_else(|| self.in_line(range.start, meant));
         let said = said.or_else(|| self.in_line(range.start, written::first_lookalike));
         if let Some((place, message)) = said {
             return self.error(place, &message, "here");

@@ -3,6 +3,7 @@
 use numbers::{exact, rounded};
 use std::f64::consts::PI;
 use std::ops::Range;
+use texts::{described, harmful};
 use toml::de::DeValue;
 
 /// Units that people write behind a number: the factor to the unit of SI and its divisor, of which one is 1, so that the digits of
@@ -78,6 +79,12 @@ pub(crate) fn lookalike(c: char) -> Option<String> {
     Some(format!(
         "this {name} (U+{code:04X}) is not that of a keyboard: {advice}"
     ))
+}
+
+/// The first character of a text that could do harm, and what it is.
+pub(super) fn first_harmful(text: &str) -> Option<(Range<usize>, String)> {
+    let (at, c) = harmful(text).next()?;
+    Some((at..at + c.len_utf8(), described(c)))
 }
 
 /// The first such character of a line outside of texts and comments, or the quotation mark with which a text seems to end.

@@ -13,6 +13,7 @@ use crate::scene::{Analysis, Scene, SceneError};
 use crate::system::{State, Work};
 use channels::{Part, parts, removed};
 use std::collections::HashMap;
+use texts::{described, harmful_in_line};
 use wildmatch::WildMatchPattern;
 
 pub use channels::Channel;
@@ -110,8 +111,9 @@ impl Recorder {
     /// The channels that the scene asks for, time first, each once, in the order of the scene.
     ///
     /// # Errors
-    /// A name that no channel has.
+    /// A name that no channel has; a quantity of a force whose name or unit no text may hold.
     pub fn new(scene: &Scene, model: &Model, initial_energy: f64) -> Result<Recorder, SceneError> {
+        check_quantities(scene, model)?;
         let all = parts(model, scene.simulation.analysis);
         let mut available = Vec::new();
         for (p, part) in all.iter().enumerate() {
@@ -206,6 +208,23 @@ impl Recorder {
         }
         &self.row
     }
+}
+
+/// Refuses a force, whose kind may be a user's own, with a quantity that cannot stand above a column.
+fn check_quantities(scene: &Scene, model: &Model) -> Result<(), SceneError> {
+    for force in model.named_forces() {
+        let (name, term) = model.named_force(force);
+        let quantities = term.quantities().iter();
+        let mut texts = quantities.flat_map(|(name, unit)| [name, unit]);
+        let Some(c) = texts.find_map(|text| harmful_in_line(text)) else {
+            continue;
+        };
+        let named = scene.forces.iter().find(|force| force.name == name);
+        let span = named.map_or(scene.initial.span, |force| force.span);
+        let message = format!("a quantity of `forces.{name}` holds {}", described(c));
+        return Err(scene.error(span, message, "of this kind"));
+    }
+    Ok(())
 }
 
 /// A channel that a scene can ask for.

@@ -5,7 +5,8 @@ use super::{Analysis, integrator, kinds, motion, smallest_clearance};
 use super::{Assumption, ChannelPattern, Integrator, Output, Scene, SimulationTable};
 use crate::body::Materials;
 use crate::document::{
-    Field, Fields, Key, SceneError, Sources, Span, Takes, apply_overrides, document,
+    Field, Fields, Key, SceneError, Sources, Span, Takes, apply_overrides, check_overrides,
+    check_texts, document,
 };
 use crate::interaction::Names;
 use crate::motion::FunctionReader;
@@ -155,7 +156,9 @@ impl Scene {
     ) -> Result<Scene, SceneError> {
         let sources = Sources::new(name, text, overrides);
         let mut tree = document(&sources)?;
+        check_overrides(&sources)?;
         apply_overrides(&sources, &mut tree)?;
+        check_texts(&sources, &tree)?;
 
         let mut root = Fields::root(&sources, &tree)?;
         let format = root.required("format", SCENE[0].purpose)?;
@@ -165,7 +168,7 @@ impl Scene {
             return Err(format.fault(message, "unknown format"));
         }
         root.declare(&[], &SCENE)?;
-        let title = root.field("title")?.text()?.to_owned();
+        let title = root.field("title")?.line()?.to_owned();
         let simulation = simulation(&root)?;
         let functions = FunctionReader::new(registry.functions.clone(), simulation.duration);
         let materials = Materials::read(&root, functions)?;

@@ -1,6 +1,7 @@
-//! Cells between commas, below a line with the names of the columns.
+//! Cells between commas, below a line with the names of the columns. Names and words are no formulas of a spreadsheet.
 
 use super::{Cell, Format};
+use texts::csv::cell as written;
 
 pub(super) static FORMAT: Format = Format {
     name: "csv",
@@ -17,7 +18,7 @@ fn row(cells: &[Cell], text: &mut Vec<u8>) {
         match cell {
             // the shortest decimal fraction that reads back as the same number
             Cell::Number(x) => text.extend_from_slice(ryu::Buffer::new().format(*x).as_bytes()),
-            Cell::Word(word) => text.extend_from_slice(word.as_bytes()),
+            Cell::Word(word) => text.extend_from_slice(written(word).as_bytes()),
             Cell::Empty => {}
         }
         text.push(b',');

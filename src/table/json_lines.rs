@@ -24,9 +24,6 @@ pub(super) static FORMAT: Format = Format {
     },
 };
 
-/// Names and words hold no quotes and no backslashes.
 fn quoted(word: &str, text: &mut Vec<u8>) {
-    text.push(b'"');
-    text.extend_from_slice(word.as_bytes());
-    text.push(b'"');
+    serde_json::to_writer(text, word).expect("memory can be written, and a text is JSON");
 }

@@ -12,7 +12,7 @@ pub static FORMATS: [&Format; 2] = [&csv::FORMAT, &json_lines::FORMAT];
 pub enum Cell<'a> {
     /// A number.
     Number(f64),
-    /// A word without commas and quotes, such as the name of a joint.
+    /// A word, such as the name of a joint.
     Word(&'a str),
     /// Nothing.
     Empty,

@@ -16,6 +16,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 use std::rc::Rc;
+use texts::csv::text_of;
 
 /// The file of the page in the folder of a result.
 pub const PAGE: &str = "view.html";
@@ -370,7 +371,7 @@ fn channel(heading: &str) -> StoredChannel {
 fn read_csv(bytes: &[u8]) -> Result<Vec<StoredChannel>, String> {
     let mut reader = csv::Reader::from_reader(bytes);
     let headings = reader.headers().map_err(|e| e.to_string())?;
-    let mut channels: Vec<_> = headings.iter().map(channel).collect();
+    let mut channels: Vec<_> = headings.iter().map(text_of).map(channel).collect();
     for row in reader.deserialize() {
         let row: Vec<f64> = row.map_err(|e: csv::Error| e.to_string())?;
         for (channel, value) in channels.iter_mut().zip(row) {
