@@ -83,6 +83,59 @@ fn harmful_characters_are_refused_and_never_shown() {
     );
 }
 
+/// A file that another file names may be any: its fault is told without a word of it.
+#[test]
+fn faults_without_contents() {
+    for (text, overrides, told) in [
+        (
+            "a b",
+            &[][..],
+            "`file`, line 1, column 1: not valid TOML: key with no value, expected `=`",
+        ),
+        (
+            "x = 1\nsecret = hunter2",
+            &[],
+            "`file`, line 2, column 10: not valid TOML: string values must be quoted, expected literal string",
+        ),
+        (
+            "secret = 1",
+            &[],
+            "`file`, line 1, column 1: it has no `format = 1`, so it is no scene",
+        ),
+        (
+            "secret = 1",
+            &["simulation.duration=1"],
+            "`file`, line 1, column 1: it has no `format = 1`, so it is no scene",
+        ),
+        (
+            "format = 1\n\ntitel = 5",
+            &[],
+            "`file`, line 3, column 1: unknown key `titel` in the scene; did you mean `title`?",
+        ),
+        (
+            "format = 1\ntitle = \"x\"",
+            &["titel=5"],
+            "unknown key `titel` in the scene; did you mean `title`?",
+        ),
+    ] {
+        let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
+        let error = Scene::parse("file", text, &overrides).unwrap_err();
+        let error = error.without_contents();
+        assert_eq!(error.to_string(), told);
+        let shown = rendered(&error);
+        assert!(
+            !shown.contains("secret") && !shown.contains("hunter2"),
+            "{shown}"
+        );
+        // an override is not of the file
+        assert_eq!(
+            shown.contains("titel=5"),
+            error.change().is_some(),
+            "{shown}"
+        );
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 

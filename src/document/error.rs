@@ -85,8 +85,13 @@ pub struct SceneError {
     message: String,
     #[help]
     help: Option<String>,
-    #[source_code]
+    /// The text in which it stands.
     text: Option<Arc<Text>>,
+    /// The same where an excerpt of it may be shown.
+    #[source_code]
+    excerpt: Option<Arc<Text>>,
+    /// What can be said without a word of a text that may be no scene.
+    discreet: Option<Box<SceneError>>,
     /// The place, and one that contradicts it.
     #[label(collection)]
     labels: Vec<LabeledSpan>,
@@ -107,10 +112,13 @@ impl SceneError {
             whole => whole.len(),
         };
         let label = LabeledSpan::new(Some(shown(label.into())), span.start as usize, underlined);
+        let text = sources.0.get(span.source as usize).cloned();
         SceneError {
             message: shown(message.into()),
             help: None,
-            text: sources.0.get(span.source as usize).cloned(),
+            excerpt: text.clone(),
+            text,
+            discreet: None,
             labels: vec![label],
         }
     }
@@ -139,6 +147,8 @@ impl SceneError {
             message: shown(message),
             help: None,
             text: None,
+            excerpt: None,
+            discreet: None,
             labels: Vec::new(),
         }
     }
@@ -151,6 +161,30 @@ impl SceneError {
             None => help,
         });
         self
+    }
+
+    /// The same fault of a text that may be no scene at all; `discreet` says nothing that stands in it.
+    pub(crate) fn or(mut self, discreet: SceneError) -> SceneError {
+        self.discreet.get_or_insert(Box::new(discreet));
+        self
+    }
+
+    /// The same fault of a file that another file names, which may be any file of the user: where it stands and what was expected,
+    /// no excerpt, and of a file that is no scene not a word of what stands in it. A fault of an override stays as it is.
+    #[must_use]
+    pub fn without_contents(self) -> SceneError {
+        let mut error = match self.discreet {
+            Some(discreet) => *discreet,
+            None => self,
+        };
+        if error.excerpt.is_none() || error.change().is_some() {
+            return error;
+        }
+        let (name, line, column) = error.place().unwrap_or_default();
+        let message = &error.message;
+        error.message = shown(format!("`{name}`, line {line}, column {column}: {message}"));
+        error.excerpt = None;
+        error
     }
 
     /// File, line and column (both from 1, columns in characters), if the fault stands in a text.
@@ -173,7 +207,7 @@ impl SceneError {
 
     /// The text that is underlined.
     pub fn underlined(&self) -> &str {
-        let (Some(text), Some(span)) = (&self.text, self.labels.first()) else {
+        let (Some(text), Some(span)) = (&self.excerpt, self.labels.first()) else {
             return "";
         };
         text.inner()

@@ -25,5 +25,5 @@ pub use likeness::{did_you_mean, nearest};
 pub use names::derived;
 pub(crate) use names::{RESERVED, check_name, named};
 pub(crate) use overrides::apply as apply_overrides;
-pub(crate) use tree::document;
+pub(crate) use tree::{Node, document, is_scene, no_scene};
 pub(crate) use written::{decimal_comma, lookalike, quantity};

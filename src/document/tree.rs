@@ -39,6 +39,9 @@ pub(crate) type Table = IndexMap<String, Node>;
 /// recursion shallow.
 const DEPTH: usize = 32;
 
+/// What a file should have been that is none.
+const IS_SCENE: &str = "a scene begins with `format = 1`";
+
 impl Value {
     /// What the user would call it, with its article.
     pub(crate) fn kind(&self) -> &'static str {
@@ -91,6 +94,24 @@ impl Node {
     }
 }
 
+/// True of a document that says which version of the scene language it is written in.
+pub(crate) fn is_scene(root: &Node) -> bool {
+    let format = root.child("format").map(|format| &format.value);
+    matches!(format, Some(Value::Integer(_)))
+}
+
+/// The fault of a document that does not.
+pub(crate) fn no_scene(sources: &Sources) -> SceneError {
+    let begin = Span::new(0, 0..0);
+    let error = SceneError::new(
+        sources,
+        begin,
+        "it has no `format = 1`, so it is no scene",
+        "here",
+    );
+    error.with_help(IS_SCENE)
+}
+
 /// Reads the scene text (source 0).
 pub(crate) fn document(sources: &Sources) -> Result<Node, SceneError> {
     let place = TextPlace {
@@ -104,7 +125,7 @@ pub(crate) fn document(sources: &Sources) -> Result<Node, SceneError> {
     let span = place.span(0..0);
     if table.is_empty() {
         let error = SceneError::new(sources, span, "the scene is empty", "nothing here");
-        return Err(error.with_help("a scene begins with `format = 1`"));
+        return Err(error.with_help(IS_SCENE));
     }
     Ok(Node {
         key: span,
@@ -158,17 +179,17 @@ impl TextPlace<'_> {
         let meant = |line: &str| written::meant(line, self.offset == 0);
         let said = said.or_else(|| self.in_line(range.start, meant));
         let said = said.or_else(|| self.in_line(range.start, written::first_lookalike));
-        if let Some((place, message)) = said {
-            return self.error(place, &message, "here");
-        }
-        let (message, label) = match error.message() {
-            "duplicate key" => (
-                format!("the key `{written}` is given twice"),
-                "already given",
-            ),
-            message => (format!("not valid TOML: {message}"), "here"),
+        let message = format!("not valid TOML: {}", error.message());
+        let discreet = self.error(range.clone(), &message, "here");
+        let error = match said {
+            Some((place, message)) => self.error(place, &message, "here"),
+            None if error.message() == "duplicate key" => {
+                let message = format!("the key `{written}` is given twice");
+                self.error(range, &message, "already given")
+            }
+            None => discreet.clone(),
         };
-        self.error(range, &message, label)
+        error.or(discreet.with_help(IS_SCENE))
     }
 
     /// What is said of the line of this byte, and where.

@@ -174,7 +174,9 @@ impl StoredCheckpoint {
     /// A scene that cannot be read.
     pub fn scene(&self, registry: &Registry) -> Result<Scene, SceneError> {
         let scene = self.folder.path().join(SCENE);
-        Scene::load_with(registry, &scene, &self.header.run.overrides)
+        // the file may have been replaced by any other
+        let scene = Scene::load_with(registry, &scene, &self.header.run.overrides);
+        scene.map_err(SceneError::without_contents)
     }
 
     /// Refuses a scene and a program that are not those of the run.

@@ -5,8 +5,8 @@ use super::{Analysis, integrator, kinds, motion, smallest_clearance};
 use super::{Assumption, ChannelPattern, Integrator, Output, Scene, SimulationTable};
 use crate::body::Materials;
 use crate::document::{
-    Field, Fields, Key, SceneError, Sources, Span, Takes, apply_overrides, check_overrides,
-    check_texts, document,
+    Field, Fields, Key, Node, SceneError, Sources, Span, Takes, apply_overrides, check_overrides,
+    check_texts, document, is_scene, no_scene,
 };
 use crate::interaction::Names;
 use crate::motion::FunctionReader;
@@ -155,12 +155,21 @@ impl Scene {
         overrides: &[String],
     ) -> Result<Scene, SceneError> {
         let sources = Sources::new(name, text, overrides);
-        let mut tree = document(&sources)?;
-        check_overrides(&sources)?;
-        apply_overrides(&sources, &mut tree)?;
-        check_texts(&sources, &tree)?;
+        let tree = document(&sources)?;
+        let is_scene = is_scene(&tree);
+        Scene::read(registry, &sources, tree).map_err(|error| match is_scene {
+            true => error,
+            false => error.or(no_scene(&sources)),
+        })
+    }
 
-        let mut root = Fields::root(&sources, &tree)?;
+    /// The scene of a document.
+    fn read(registry: &Registry, sources: &Sources, mut tree: Node) -> Result<Scene, SceneError> {
+        check_overrides(sources)?;
+        apply_overrides(sources, &mut tree)?;
+        check_texts(sources, &tree)?;
+
+        let mut root = Fields::root(sources, &tree)?;
         let format = root.required("format", SCENE[0].purpose)?;
         if format.integer()? != 1 {
             let written = format.written();
@@ -199,7 +208,7 @@ impl Scene {
             forces,
             initial,
             notes: materials.functions.notes(),
-            sources,
+            sources: sources.clone(),
         })
     }
 }

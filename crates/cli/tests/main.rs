@@ -4,6 +4,7 @@ mod command_line;
 mod completions;
 mod limits;
 mod modes;
+mod named_files;
 mod new;
 mod plot;
 mod precision;

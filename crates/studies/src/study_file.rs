@@ -15,7 +15,14 @@ pub enum StudyError {
     Plain(String),
     /// A fault of its scene.
     #[error(transparent)]
-    Scene(#[from] SceneError),
+    Scene(SceneError),
+}
+
+impl From<SceneError> for StudyError {
+    /// A study can name any file as its scene.
+    fn from(error: SceneError) -> StudyError {
+        StudyError::Scene(error.without_contents())
+    }
 }
 
 impl StudyError {

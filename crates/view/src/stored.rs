@@ -34,10 +34,17 @@ pub enum ViewError {
     Result(String),
     /// Its scene has a fault.
     #[error(transparent)]
-    Scene(#[from] SceneError),
+    Scene(SceneError),
     /// The system refused; the message names the file.
     #[error("{0}")]
     Io(#[from] io::Error),
+}
+
+impl From<SceneError> for ViewError {
+    /// The file of the scene may have been replaced by any other.
+    fn from(error: SceneError) -> ViewError {
+        ViewError::Scene(error.without_contents())
+    }
 }
 
 /// A result.
@@ -101,7 +108,12 @@ impl StoredSummary {
     /// A folder without a result, and files that do not belong together.
     pub fn load(folder: &Path) -> Result<(Scene, StoredSummary), ViewError> {
         let summary: StoredSummary = serde_json::from_slice(&read(folder, "summary.json")?)
-            .map_err(|e| damaged(&folder.join("summary.json"), &e.to_string()))?;
+            .map_err(|e| {
+                damaged(
+                    &folder.join("summary.json"),
+                    &not_read(&e, "the summary of a run"),
+                )
+            })?;
         read(folder, "scene.toml")?;
         let scene = Scene::load(&folder.join("scene.toml"), &summary.overrides)?;
         if scene.hash() != summary.scene_hash {
@@ -315,6 +327,15 @@ fn damaged(path: &Path, message: &str) -> ViewError {
     ViewError::Result(format!("`{}`: {message}", path.display()))
 }
 
+/// Where JSON is not what it should be. What it is stays unsaid: any file may stand in the place of one of a result.
+fn not_read(error: &serde_json::Error, wanted: &str) -> String {
+    format!(
+        "line {}, column {}: it is not {wanted}",
+        error.line(),
+        error.column()
+    )
+}
+
 /// What precedes the rows of `motion.bin`.
 #[derive(Deserialize)]
 struct MotionHeader {
@@ -353,9 +374,12 @@ fn columns(path: &Path, bytes: &[u8], format: &str) -> Result<Vec<StoredChannel>
         other => Err(format!("tables of the format {other:?} cannot be read")),
     };
     let channels = read.map_err(|message| damaged(path, &message))?;
-    match channels.is_empty() {
-        true => Err(damaged(path, "it holds no row yet")),
-        false => Ok(channels),
+    match channels.first() {
+        None => Err(damaged(path, "it holds no row yet")),
+        Some(first) if first.name != "t" => {
+            Err(damaged(path, "its first column is not the time `t [s]`"))
+        }
+        Some(_) => Ok(channels),
     }
 }
 
@@ -384,7 +408,7 @@ fn read_csv(bytes: &[u8]) -> Result<Vec<StoredChannel>, String> {
 fn read_json_lines(bytes: &[u8]) -> Result<Vec<StoredChannel>, String> {
     let mut channels: Vec<StoredChannel> = Vec::new();
     for row in serde_json::Deserializer::from_slice(bytes).into_iter() {
-        let row: IndexMap<String, f64> = row.map_err(|e| e.to_string())?;
+        let row: IndexMap<String, f64> = row.map_err(|e| not_read(&e, "a row of numbers"))?;
         if channels.is_empty() {
             channels = row.keys().map(|heading| channel(heading)).collect();
         }

@@ -444,6 +444,7 @@ impl Sweep {
 
 /// A fault of the scene: of the study where it stands in a change that the study makes.
 fn fault_of_scene(path: &Path, text: &str, study: &SweepStudy, error: SceneError) -> StudyError {
+    let error = error.without_contents();
     let Some(change) = error.change() else {
         return error.into();
     };
