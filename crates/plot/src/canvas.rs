@@ -2,6 +2,7 @@
 
 use crate::layout::{SMALL, SMALL_LINE, WIDTH};
 use crate::{Color, palette};
+use texts::xml::escaped;
 
 /// Families in the order a browser tries them.
 const FAMILIES: &str = "DejaVu Sans, Arial, Helvetica, sans-serif";
@@ -130,9 +131,7 @@ impl Canvas {
         attributes: &str,
     ) {
         let color = code(color);
-        let text = text.replace('&', "&amp;").replace('<', "&lt;");
-        let text = text.replace('>', "&gt;").replace('"', "&quot;");
-        let text = text.replace('\'', "&apos;");
+        let text = escaped(text);
         self.0 += &format!(
             "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"{color}\"{attributes}>\n{text}\n</text>\n"
         );

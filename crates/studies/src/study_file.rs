@@ -1,5 +1,6 @@
 //! Study files: TOML text, and faults with the line they stand at.
 
+use crate::study_texts::refused;
 use looselink::document::did_you_mean;
 use looselink::scene::{SceneError, read_file};
 use serde::de::DeserializeOwned;
@@ -35,9 +36,18 @@ impl StudyError {
     /// the text is not that of a file.
     pub(crate) fn of_key(path: &Path, text: &str, message: &str) -> StudyError {
         let key = message.split('`').nth(1).unwrap_or_default();
-        let line = line_of(text, key).filter(|_| path.extension().is_some());
-        let line = line.map_or(String::new(), |line| format!(", line {line}"));
-        StudyError::Plain(format!("`{}`{line}: {message}", path.display()))
+        let line = line_of(text, key).map(|line| format!(", line {line}"));
+        StudyError::at(path, &line.unwrap_or_default(), message)
+    }
+
+    /// A fault at some place, which only the text of a file has.
+    fn at(path: &Path, place: &str, message: &str) -> StudyError {
+        let place = if path.extension().is_some() {
+            place
+        } else {
+            ""
+        };
+        StudyError::Plain(format!("`{}`{place}: {message}", path.display()))
     }
 }
 
@@ -76,9 +86,16 @@ pub(crate) fn text_of(path: &Path) -> Result<String, StudyError> {
 /// # Errors
 /// The first fault, with its line.
 pub(crate) fn parsed<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, StudyError> {
+    let table = DeTable::parse(text);
+    if let Some(refused) = table.iter().find_map(|table| refused(table.get_ref(), "")) {
+        let before = &text[..refused.byte];
+        let line = before.matches('\n').count() + 1;
+        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+        let place = format!(", line {line}, column {column}");
+        return Err(StudyError::at(path, &place, &refused.message));
+    }
     toml::from_str(text).map_err(|e| {
-        let is_scene =
-            DeTable::parse(text).is_ok_and(|table| table.get_ref().contains_key("bodies"));
+        let is_scene = table.is_ok_and(|table| table.get_ref().contains_key("bodies"));
         if is_scene {
             let message =
                 "this is a scene; a study is a file of its own that names one with `scene`";

@@ -15,6 +15,7 @@ pub use stored::{PAGE, StoredChannel, StoredResult, StoredRun, StoredSummary, Vi
 use drawing::RunDrawing;
 use pack::Pack;
 use serde::Serialize;
+use texts::harmless;
 
 const TEMPLATE: &str = include_str!("../assets/viewer.html");
 /// Where the data stand in the page.
@@ -37,7 +38,7 @@ pub fn page(runs: &[StoredRun]) -> String {
     };
     let data = serde_json::to_string(&contents).expect("numbers, texts and lists");
     // `<` cannot end the script element from inside a string
-    let data = data.replace('<', "\\u003c");
+    let data = harmless(&data).replace('<', "\\u003c");
     let element = format!("<script type=\"application/json\" id=\"data\">{data}</script>");
     let (head, tail) = TEMPLATE
         .split_once(PLACE)

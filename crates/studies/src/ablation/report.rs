@@ -10,6 +10,7 @@ use crate::warning_list;
 use numbers::{digits, si};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use texts::markdown::text;
 
 /// What stands where a variant does not have a quantity.
 const NONE: &str = "–";
@@ -126,7 +127,7 @@ impl Ablation {
 
     /// What repeats as a page.
     pub fn markdown(&self) -> String {
-        let title = &self.header.title;
+        let title = text(&self.header.title);
         let about = self.about().join(" ");
         let mut page =
             format!("# {title}, effect by effect\n\n{about}\n\n![{title}](ablation.svg)\n\n");

@@ -1,5 +1,7 @@
 //! Tables as aligned text and as Markdown.
 
+use texts::markdown::cell;
+
 /// Names in the first column, numbers in the others.
 #[derive(Debug, Clone)]
 pub(super) struct TextTable {
@@ -47,7 +49,7 @@ impl TextTable {
     pub fn markdown(&self) -> String {
         let columns = self.lines[0].len();
         let rows = self.lines.iter().map(|line| {
-            let mut cells: Vec<String> = line.iter().map(|c| c.replace('|', "\\|")).collect();
+            let mut cells: Vec<String> = line.iter().map(|text| cell(text)).collect();
             cells.resize(columns, String::new());
             format!("| {} |\n", cells.join(" | "))
         });

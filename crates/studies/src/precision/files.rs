@@ -16,6 +16,7 @@ use crate::{pictures, warning_list};
 use folder::{Folder, Kind, OutputError, json};
 use looselink::output::TIMING;
 use serde::Serialize;
+use texts::markdown::text;
 
 /// Names of the files.
 const FILES: [&str; 5] = [
@@ -70,7 +71,7 @@ impl<C: Compared> Found<C> {
     pub fn page(&self, study: &Study, machine: &Machine) -> String {
         format!(
             "# {}\n\n![{}](precision.svg)\n\n{}\n{TIMES} {machine}.\n{}",
-            self.title,
+            text(&self.title),
             C::FIGURE,
             C::table(self, study),
             warning_list(&self.warnings())

@@ -3,6 +3,7 @@
 use super::errors::NORMS;
 use super::{Compared, Errors, Found, RunTiming, StudyOutcome, StudyPace};
 use numbers::{digits, si};
+use texts::markdown::cell;
 
 impl<C: Compared> Found<C> {
     /// A table with these columns behind those of curve and pace: `cells` of every run that reached its end, then the lines of
@@ -16,6 +17,7 @@ impl<C: Compared> Found<C> {
         let heads = [&["method", "step or accuracy"], heads].concat();
         let row = |cells: Vec<String>| {
             let missing = heads.len() - cells.len();
+            let cells: Vec<String> = cells.iter().map(|text| cell(text)).collect();
             format!("| {} |{}\n", cells.join(" | "), " |".repeat(missing))
         };
         let runs = self.runs.iter().zip(&self.timings).map(|(run, timing)| {

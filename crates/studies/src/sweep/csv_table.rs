@@ -1,6 +1,8 @@
-//! A table as CSV: `name [unit]` above every column, numbers with as many digits as it takes to read back the same bits.
+//! A table as CSV: `name [unit]` above every column, numbers with as many digits as it takes to read back the same bits. Names and
+//! texts are no formulas of a spreadsheet.
 
 use super::columns::{Column, SweepCell};
+use texts::csv::content;
 
 /// A file in memory.
 pub struct CsvTable(csv::Writer<Vec<u8>>);
@@ -9,7 +11,8 @@ impl CsvTable {
     /// A table with these columns.
     pub fn new(columns: &[Column]) -> csv::Result<CsvTable> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(columns.iter().map(Column::head))?;
+        let heads = columns.iter().map(Column::head);
+        writer.write_record(heads.map(|head| content(&head).into_owned()))?;
         Ok(CsvTable(writer))
     }
 
@@ -19,7 +22,7 @@ impl CsvTable {
             SweepCell::Whole(n) => n.to_string(),
             SweepCell::Number(Some(x)) => format!("{x:?}"),
             SweepCell::Number(None) => String::new(),
-            SweepCell::Text(text) => text.clone(),
+            SweepCell::Text(text) => content(text).into_owned(),
         });
         self.0.write_record(texts)
     }

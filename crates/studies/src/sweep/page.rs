@@ -4,6 +4,7 @@ use super::design::DesignKind;
 use super::merge::{Merged, Points};
 use super::{EnsembleMean, Sweep};
 use numbers::number;
+use texts::markdown::{cell, code, text};
 
 /// Starts have parted when their values differ by this part of the differences between points.
 const PARTED: f64 = 0.01;
@@ -12,8 +13,9 @@ const LISTED: usize = 20;
 
 /// Pictures, extremes, indices, faults and warnings in Markdown.
 pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
-    let mut page = format!("# {}\n\n![{}](sweep.svg)\n\n", merged.title, merged.title);
-    page += &format!("{} runs of `{}`", merged.runs, merged.scene);
+    let title = text(&merged.title);
+    let mut page = format!("# {title}\n\n![{title}](sweep.svg)\n\n");
+    page += &format!("{} runs of {}", merged.runs, code(&merged.scene));
     let others = ["failed", "refused"].map(|name| (name, merged.status[name]));
     for (name, count) in others.iter().filter(|(_, count)| *count > 0) {
         page += &format!(", {count} {name}");
@@ -30,28 +32,32 @@ pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
         );
     }
     if let Some(answer) = answer(sweep, merged) {
-        page += &format!("\n{answer}\n");
+        page += &format!("\n{}\n", text(&answer));
     }
     page += "\n| measure | unit | least | at (least) | largest | at (largest) |\n| --- | --- | ---: | --- | ---: | --- |\n";
     for (name, extremes) in &merged.extremes {
-        let unit = merged.units.get(name).map_or("", String::as_str);
+        let unit = cell(merged.units.get(name).map_or("", String::as_str));
         let [(least, at_least), (largest, at_largest)] = [extremes.least, extremes.largest];
         let [least, largest] = [least, largest].map(|x| number(x, 4));
-        let [at_least, at_largest] = [at_least, at_largest].map(|run| place(sweep, points, run));
+        let [at_least, at_largest] =
+            [at_least, at_largest].map(|run| cell(&place(sweep, points, run)));
+        let name = cell(name);
         page += &format!("| {name} | {unit} | {least} | {at_least} | {largest} | {at_largest} |\n");
     }
     if sweep.study.design == DesignKind::Sensitivity {
         let measures = sweep.study.measures.keys();
         for name in measures.filter(|name| !merged.indices.contains_key(*name)) {
             page += &format!(
-                "\n`{name}` has no Sobol indices: fewer than two samples have a value, or all values are equal.\n"
+                "\n{} has no Sobol indices: fewer than two samples have a value, or all values are equal.\n",
+                code(name)
             );
         }
     }
     for (measure, indices) in &merged.indices {
         page += &format!(
-            "\nShare of the variance of `{measure}` that each parameter explains alone, and in which it takes part (Sobol indices, \
+            "\nShare of the variance of {} that each parameter explains alone, and in which it takes part (Sobol indices, \
              {} samples; in brackets the 95 % interval):\n\n| parameter | alone | takes part |\n| --- | ---: | ---: |\n",
+            code(measure),
             indices.samples
         );
         for (name, of) in &indices.parameters {
@@ -61,7 +67,7 @@ pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
                     [e.value, e.low, e.high].map(|x| (x * 100.0).round() / 100.0 + 0.0);
                 format!("{value:.2} ({low:.2} to {high:.2})")
             });
-            page += &format!("| {name} | {alone} | {total} |\n");
+            page += &format!("| {} | {alone} | {total} |\n", cell(name));
         }
     }
     let (alike, all) = (alike_points(sweep, points), points.values.len());
@@ -77,7 +83,7 @@ pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
     if !points.faults.is_empty() {
         page += "\nRuns without results:\n\n";
         for (run, error) in points.faults.iter().take(LISTED) {
-            page += &format!("* run {run}: {error}\n");
+            page += &format!("* run {run}: {}\n", text(error));
         }
         if points.faults.len() > LISTED {
             page += &format!(
@@ -89,7 +95,7 @@ pub fn page(sweep: &Sweep, merged: &Merged, points: &Points) -> String {
     if !points.warnings.is_empty() {
         page += "\nWarnings, each with the number of runs that have it and an example:\n\n";
         for (count, example) in points.warnings.values() {
-            page += &format!("* {count}: {example}\n");
+            page += &format!("* {count}: {}\n", text(example));
         }
     }
     page
