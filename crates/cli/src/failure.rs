@@ -1,14 +1,15 @@
 //! How a command fails: what is shown, and the exit code.
 
+use super::terminal::show;
 use folder::OutputError;
 use looselink::scene::SceneError;
 use looselink::simulate::RunError;
 use messages::{Colors, run_failure, scene_fault};
 use std::fmt::Display;
-use std::io::Write;
 use std::process::ExitCode;
 use studies::StudyError;
 use studies::sweep::SweepError;
+use texts::{harmless, harmless_line};
 use view::ViewError;
 
 const SYSTEM: u8 = 1;
@@ -21,6 +22,7 @@ pub const INTERRUPTED: u8 = 130;
 #[derive(Debug)]
 pub struct CommandFailure {
     code: u8,
+    /// Harmless but for colours of our own.
     text: String,
 }
 
@@ -28,7 +30,7 @@ impl CommandFailure {
     fn new(code: u8, message: impl Display) -> CommandFailure {
         CommandFailure {
             code,
-            text: format!("error: {message}"),
+            text: format!("error: {}", harmless_line(&message.to_string())),
         }
     }
 
@@ -59,7 +61,7 @@ impl CommandFailure {
 
     /// The same failure with more to say.
     pub fn and(mut self, more: &str) -> CommandFailure {
-        self.text += more;
+        self.text += &harmless_line(more);
         self
     }
 
@@ -70,8 +72,7 @@ impl CommandFailure {
 
     /// Tells the user on standard error.
     pub fn show(&self) -> ExitCode {
-        // Standard error is closed: nobody can read this.
-        let _ = writeln!(std::io::stderr(), "{}", self.text.trim_end());
+        show(self.text.trim_end());
         ExitCode::from(self.code)
     }
 }
@@ -88,7 +89,11 @@ impl From<SceneError> for CommandFailure {
 impl From<StudyError> for CommandFailure {
     fn from(error: StudyError) -> CommandFailure {
         match error {
-            StudyError::Plain(message) => CommandFailure::bad_input(message),
+            // lines of the study may stand below each other
+            StudyError::Plain(message) => CommandFailure {
+                code: BAD_INPUT,
+                text: format!("error: {}", harmless(&message)),
+            },
             StudyError::Scene(error) => error.into(),
         }
     }

@@ -17,6 +17,7 @@ mod schema;
 mod suggestion;
 mod sweep;
 mod templates;
+mod terminal;
 mod view;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
@@ -27,9 +28,11 @@ use looselink::initial::Freedoms;
 use looselink::scene::{Scene, SceneError};
 use looselink::simulate::Simulation;
 use progress::remark;
-use std::io::Write;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use terminal::print;
+use texts::harmless_line;
 
 /// Simulates planar mechanisms with flexible links and loose joints.
 #[derive(Debug, Parser)]
@@ -164,8 +167,7 @@ impl SceneArguments {
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::try_parse()
-        .unwrap_or_else(|error| suggestion::added(error, &Arguments::command()).exit());
+    let arguments = Arguments::try_parse().unwrap_or_else(|error| refused(error).exit());
     let result = match &arguments.command {
         Command::New(arguments) => new::new(arguments),
         Command::Run(arguments) => run::run(arguments),
@@ -185,6 +187,15 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.show(),
     }
+}
+
+/// The error of a command line. It quotes arguments, so it is made of arguments that can be shown.
+fn refused(error: clap::Error) -> clap::Error {
+    let shown = |argument: OsString| harmless_line(&argument.to_string_lossy()).into_owned();
+    let arguments = Arguments::try_parse_from(std::env::args_os().map(shown));
+    // what is wrong may be that an argument is not UTF-8
+    let error = arguments.err().unwrap_or(error);
+    suggestion::added(error, &Arguments::command())
 }
 
 fn check(arguments: &SceneArguments) -> Result<(), CommandFailure> {
@@ -208,15 +219,4 @@ fn check(arguments: &SceneArguments) -> Result<(), CommandFailure> {
     implausible.iter().for_each(|told| progress::warn(told));
     let freedoms = Freedoms::of(&scene).map_or(String::new(), |found| format!("; {found}"));
     print(format!("{}: no error found{freedoms}\n", scene.title))
-}
-
-/// Writes to standard output; a reader that has gone away is no fault.
-fn print(text: impl AsRef<[u8]>) -> Result<(), CommandFailure> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_ref()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(CommandFailure::system(
-            format!("cannot write to standard output: {e}"),
-        )),
-        _ => Ok(()),
-    }
 }

@@ -1,7 +1,8 @@
 //! `looselink modes`
 
 use super::failure::CommandFailure;
-use super::progress::{Display, remark, say, warn};
+use super::progress::{Display, remark, warn};
+use super::terminal::say;
 use super::{SceneArguments, print};
 use clap::{Args, ValueEnum};
 use folder::{json, naming, replace};

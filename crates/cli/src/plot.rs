@@ -136,7 +136,7 @@ fn find<'a>(result: &'a StoredResult, name: &str) -> Result<&'a StoredChannel, C
         let hint = did_you_mean(name, names());
         let recorded: Vec<&str> = names().collect();
         CommandFailure::bad_input(format!(
-            "the result has no channel `{name}`{hint}\nits channels: {}",
+            "the result has no channel `{name}`{hint}; its channels: {}",
             recorded.join(", ")
         ))
     })

@@ -1,9 +1,9 @@
 //! How far a run is: a bar on a terminal, a line at every tenth elsewhere and when none has come for a while.
 
+use super::terminal::{is_shown_to_people, say};
 use indicatif::{ProgressBar, ProgressStyle};
 use looselink::simulate::{Notice, Progress};
 use messages::Start;
-use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
 /// Steps of the bar.
@@ -31,7 +31,7 @@ impl Display {
         if quiet {
             return Display::None;
         }
-        if !std::io::stderr().is_terminal() {
+        if !is_shown_to_people() {
             return Display::Lines(None, Instant::now(), start);
         }
         let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}")
@@ -89,7 +89,7 @@ impl RunsDisplay {
         if quiet {
             return RunsDisplay::Quiet;
         }
-        if !std::io::stderr().is_terminal() {
+        if !is_shown_to_people() {
             return RunsDisplay::Lines(None, Instant::now());
         }
         let style = ProgressStyle::with_template("{bar:30} {pos} of {len} runs, {eta} left")
@@ -155,10 +155,4 @@ pub fn show(notice: Notice, quiet: bool) {
         Notice::Begun(_) => {}
         Notice::Warned { run, warning } => warn(&format!("{run}: {warning}")),
     }
-}
-
-/// A line on standard error.
-pub fn say(line: &str) {
-    // A run does not fail because nobody listens.
-    let _ = writeln!(std::io::stderr(), "{line}");
 }

@@ -2,8 +2,8 @@
 
 use super::failure::CommandFailure;
 use super::interrupt::Interrupt;
-use super::progress::say;
 use super::run::{RunOptions, not_stored, to_the_end};
+use super::terminal::say;
 use clap::Args;
 use looselink::output::{Results, StoredCheckpoint};
 use looselink::registry::Registry;

@@ -3,7 +3,8 @@
 use super::failure::CommandFailure;
 use super::interrupt::Interrupt;
 use super::print;
-use super::progress::{RunsDisplay, say};
+use super::progress::RunsDisplay;
+use super::terminal::say;
 use clap::Args;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;

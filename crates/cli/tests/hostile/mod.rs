@@ -3,6 +3,7 @@
 mod readers;
 mod scenes;
 mod studies;
+mod terminal;
 
 use serde::Deserialize;
 
