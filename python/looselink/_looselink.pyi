@@ -23,6 +23,7 @@ __all__ = [
     "__version__",
     "_make_tasks",
     "_program_is",
+    "_text_of",
     "load",
     "loads",
 ]
@@ -150,3 +151,4 @@ class _Sweep:
 
 def _program_is(path: str) -> None: ...
 def _make_tasks(version: str, source: str, tasks: list[str]) -> list[tuple[str, str]]: ...
+def _text_of(content: str) -> str: ...

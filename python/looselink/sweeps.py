@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ._looselink import RunWarning, Scene, __version__, _make_tasks, _Sweep, load
+from ._looselink import RunWarning, Scene, __version__, _make_tasks, _Sweep, _text_of, load
 
 if TYPE_CHECKING:
     import pandas
@@ -63,6 +63,9 @@ class SweepResult:
         # pandas 2 reads numbers with an error of the last digit unless it is told not to; later ones do not know the option
         exact: dict[str, Any] = {} if int(pandas.__version__.split(".")[0]) > 2 else {"float_precision": "round_trip"}
         frame = pandas.read_csv(self.folder / "sweep.csv", keep_default_na=False, na_values=[""], **exact)
+        frame = frame.rename(columns=_text_of)
+        for name in frame.select_dtypes(exclude=["number", "bool"]):
+            frame[name] = frame[name].map(_text_of, na_action="ignore")
         frame.attrs["title"] = self.summary["title"]
         frame.attrs["units"] = self.summary["units"]
         return frame

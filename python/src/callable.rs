@@ -4,6 +4,7 @@
 //! are those of this thread. What a callable raises is kept for this thread, too, because a simulation has one thread: the callable
 //! then counts as not a number, at which every method stops, and the exception is raised once the solver has returned.
 
+use super::errors::raise;
 use looselink::document::{Fields, Key, SceneError, Takes};
 use looselink::motion::{Function, FunctionKind, FunctionOfTime, Use};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -122,7 +123,7 @@ impl FunctionOfTime for CallableFunction {
 /// The exception for a callable that returns something else.
 pub fn wrong_result(path: &str, wanted: &str, result: &Bound<PyAny>) -> PyErr {
     let shown = result.repr().map_or(String::new(), |repr| repr.to_string());
-    PyTypeError::new_err(format!(
+    raise::<PyTypeError>(format!(
         "the callable of `{path}` must return {wanted}, not {shown}"
     ))
 }
@@ -130,7 +131,7 @@ pub fn wrong_result(path: &str, wanted: &str, result: &Bound<PyAny>) -> PyErr {
 /// Refuses values that are not finite.
 pub fn finite(path: &str, t: f64, values: &[f64]) -> PyResult<()> {
     match values.iter().find(|value| !value.is_finite()) {
-        Some(value) => Err(PyValueError::new_err(format!(
+        Some(value) => Err(raise::<PyValueError>(format!(
             "the callable of `{path}` returns {value} at t = {t} s"
         ))),
         None => Ok(()),

@@ -3,8 +3,11 @@
 use folder::OutputError;
 use looselink::scene::SceneError;
 use messages::{Colors, scene_fault};
+use pyo3::PyTypeInfo;
 use pyo3::exceptions::{PyFileExistsError, PyNotADirectoryError, PyOSError};
 use pyo3::prelude::*;
+use std::fmt::Display;
+use texts::harmless;
 
 /// What the package raises, under the names that it has in Python.
 pub mod raised {
@@ -38,10 +41,15 @@ pub mod raised {
     );
 }
 
+/// An exception with a text that may quote what users wrote: tracebacks show it on terminals.
+pub fn raise<E: PyTypeInfo>(text: impl Display) -> PyErr {
+    PyErr::new::<E, _>(harmless(&text.to_string()).into_owned())
+}
+
 /// A fault of a scene as an exception.
 pub fn scene_error(py: Python, error: &SceneError) -> PyErr {
     let text = scene_fault(error, Colors::None);
-    let raised = raised::SceneError::new_err(text.trim_end().to_owned());
+    let raised = raise::<raised::SceneError>(text.trim_end());
     let place = error.place();
     let file = place.map(|(file, ..)| file);
     let line = place.map(|(_, line, _)| line);
@@ -58,10 +66,10 @@ pub fn scene_error(py: Python, error: &SceneError) -> PyErr {
 pub fn output_error(error: &OutputError) -> PyErr {
     let text = error.to_string();
     match error {
-        OutputError::Occupied { .. } => PyFileExistsError::new_err(format!(
+        OutputError::Occupied { .. } => raise::<PyFileExistsError>(format!(
             "{text}; choose another folder, or replace it with force=True"
         )),
-        OutputError::NotADirectory(_) => PyNotADirectoryError::new_err(text),
-        _ => PyOSError::new_err(text),
+        OutputError::NotADirectory(_) => raise::<PyNotADirectoryError>(text),
+        _ => raise::<PyOSError>(text),
     }
 }

@@ -22,7 +22,7 @@ mod module {
     #[pymodule_export]
     use super::scene::{PyScene, load, loads};
     #[pymodule_export]
-    use super::sweep::{PySweep, make_tasks, program_is};
+    use super::sweep::{PySweep, make_tasks, program_is, text_of};
     #[pymodule_export]
     use super::view::PyView;
     use pyo3::prelude::*;

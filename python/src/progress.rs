@@ -1,5 +1,6 @@
 //! How far a run is, shown by Python.
 
+use super::errors::raise;
 use looselink::simulate::Progress;
 use messages::Start;
 use pyo3::exceptions::PyTypeError;
@@ -42,7 +43,7 @@ impl ProgressDisplay {
         }
         match progress.is_callable() {
             true => Ok(ProgressDisplay::Callable(progress.clone().unbind())),
-            false => Err(PyTypeError::new_err(
+            false => Err(raise::<PyTypeError>(
                 "progress is True, False or a callable that receives (t, duration)",
             )),
         }

@@ -1,7 +1,7 @@
 //! A run and its results.
 
 use super::callable::take_raised;
-use super::errors::{output_error, raised, scene_error};
+use super::errors::{output_error, raise, raised, scene_error};
 use super::memory::Memory;
 use super::progress::ProgressDisplay;
 use super::scene::from_json;
@@ -71,9 +71,9 @@ pub fn run(
     }
     match error {
         Some(RunError::Output(error)) => {
-            return Err(with_rows(PyOSError::new_err(error.to_string())));
+            return Err(with_rows(raise::<PyOSError>(error.to_string())));
         }
-        Some(error) => return Err(with_rows(raised::RunError::new_err(run_failure(&error)))),
+        Some(error) => return Err(with_rows(raise::<raised::RunError>(run_failure(&error)))),
         None => {}
     }
     warn(py, warnings)?;
@@ -183,7 +183,7 @@ impl PyRun {
             |near| format!("; did you mean {near:?}?"),
         );
         let message = format!("no channel of this run is named {name:?}{near}");
-        Err(PyKeyError::new_err(message))
+        Err(raise::<PyKeyError>(message))
     }
 
     /// The columns under the headings of `channels.csv`.
@@ -378,7 +378,7 @@ impl PyRun {
     fn view(&self, py: Python, height: u32) -> PyResult<PyView> {
         let Some((width, motion)) = &self.motion else {
             let message = "the run has no motion to show: the scene says `output.motion = false`";
-            return Err(PyValueError::new_err(message));
+            return Err(raise::<PyValueError>(message));
         };
         let mut channels = Vec::new();
         let rows = motion.len() / width;
@@ -398,7 +398,7 @@ impl PyRun {
         if let Some(raised) = take_raised() {
             return Err(raised);
         }
-        let kept = kept.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let kept = kept.map_err(|error| raise::<PyValueError>(error.to_string()))?;
         Ok(PyView {
             page: page(&[kept]),
             height,

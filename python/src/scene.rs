@@ -1,7 +1,7 @@
 //! A scene that Python reads, changes and runs.
 
 use super::callable::{FUNCTION, Given, take_raised, with_given};
-use super::errors::scene_error;
+use super::errors::{raise, scene_error};
 use super::load::LOAD;
 use super::progress::ProgressDisplay;
 use super::run::{PyRun, run, warn};
@@ -16,6 +16,7 @@ use pyo3::types::PyDict;
 use std::path::PathBuf;
 use std::sync::Arc;
 use studies::ablation::SceneEffect;
+use texts::harmless_line;
 
 /// load(source)
 /// --
@@ -35,7 +36,7 @@ pub fn load(py: Python, source: &Bound<PyAny>) -> PyResult<PyScene> {
         return PyScene::parse(py, "dict".to_owned(), text, Vec::new(), given);
     }
     let path: PathBuf = source.extract().map_err(|_| {
-        PyTypeError::new_err("a scene is loaded from a path (str, os.PathLike) or from a dict")
+        raise::<PyTypeError>("a scene is loaded from a path (str, os.PathLike) or from a dict")
     })?;
     let scene = Scene::load(&path, &[]).map_err(|error| scene_error(py, &error))?;
     Ok(PyScene {
@@ -183,7 +184,8 @@ impl PyScene {
         };
         format!(
             "<looselink.Scene {:?} from {}{overrides}>",
-            self.scene.title, self.name
+            self.scene.title,
+            harmless_line(&self.name)
         )
     }
 
@@ -205,7 +207,7 @@ impl PyScene {
     ) -> PyResult<PyRefMut<'py, Self>> {
         if path.contains('=') {
             let message = format!("the path {path:?} has a `=`: write set(path, value)");
-            return Err(PyValueError::new_err(message));
+            return Err(raise::<PyValueError>(message));
         }
         let mut given = slf.given.clone();
         let value_text = override_value(value, path, &mut given)?;
@@ -234,13 +236,13 @@ impl PyScene {
     ) -> PyResult<PyRefMut<'py, Self>> {
         for (what, function) in [("load", Some(&load)), ("tangent", tangent.as_ref())] {
             if function.is_some_and(|function| !function.is_callable()) {
-                return Err(PyTypeError::new_err(format!("{what} cannot be called")));
+                return Err(raise::<PyTypeError>(format!("{what} cannot be called")));
             }
         }
         let taken = slf.scene.forces.iter().any(|force| force.name == name);
         if taken {
             let message = format!("the scene has a force `{name}` already");
-            return Err(PyValueError::new_err(message));
+            return Err(raise::<PyValueError>(message));
         }
         let py = load.py();
         let mut given = slf.given.clone();
@@ -263,7 +265,7 @@ impl PyScene {
     fn inspect<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let simulation = compiled(py, &self.scene)?;
         let inspection = json(&simulation.inspect());
-        let inspection = inspection.map_err(|e| PyRuntimeError::new_err(e.to_string()))?;
+        let inspection = inspection.map_err(|e| raise::<PyRuntimeError>(e.to_string()))?;
         from_json(py, &inspection)
     }
 
@@ -296,13 +298,13 @@ impl PyScene {
             other => {
                 let message =
                     format!("contacts = {other:?}: it is \"as-is\", \"open\" or \"ideal\"");
-                return Err(PyValueError::new_err(message));
+                return Err(raise::<PyValueError>(message));
             }
         };
         let duration = self.scene.simulation.duration;
         if !(0.0..=duration).contains(&at) {
             let message = format!("at = {at} lies outside the duration, 0 to {duration} s");
-            return Err(PyValueError::new_err(message));
+            return Err(raise::<PyValueError>(message));
         }
         let mut simulation = compiled(py, &scene)?;
         let mut warnings = Vec::new();
@@ -310,20 +312,20 @@ impl PyScene {
             let reached = simulation.approach(at, &mut ());
             let raised = take_raised();
             let failed = |error: looselink::simulate::RunError| {
-                PyRuntimeError::new_err(messages::run_failure(&error))
+                raise::<PyRuntimeError>(messages::run_failure(&error))
             };
             raised.map_or_else(|| reached.map_err(failed), Err)?;
             warnings = simulation.report().warnings();
         }
         let found = simulation.modes(contacts == "open");
-        let found = found.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        let found = found.map_err(|error| raise::<PyRuntimeError>(error.to_string()))?;
         warnings.extend(found.asymmetry_note());
         warn(py, warnings)?;
         let model = simulation.model();
         let names = &model.unknown_names()[..model.shape().unknowns];
         let modes = found.modes.iter().take(count.unwrap_or(usize::MAX));
         let modes = modes.map(|mode| {
-            let entry = json(mode).map_err(|e| PyRuntimeError::new_err(e.to_string()))?;
+            let entry = json(mode).map_err(|e| raise::<PyRuntimeError>(e.to_string()))?;
             let entry = from_json(py, &entry)?;
             let shape = PyDict::new(py);
             for (name, value) in names.iter().zip(&mode.shape) {
@@ -349,7 +351,7 @@ impl PyScene {
         keywords: Option<Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         if !slf.borrow().given.is_empty() {
-            return Err(PyValueError::new_err(
+            return Err(raise::<PyValueError>(
                 "a scene with callables cannot be swept: their values are not in its text",
             ));
         }

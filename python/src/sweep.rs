@@ -1,6 +1,6 @@
 //! Sweeps: the runs of a study on the threads of this process, or one by one on those of others.
 
-use super::errors::{output_error, raised, scene_error};
+use super::errors::{output_error, raise, raised, scene_error};
 use super::value::document;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -16,6 +16,7 @@ use studies::sweep::{
     FILES, RowTiming, Shard, Store, Sweep, SweepError, SweepSource, SweepTarget, Task, execute,
     merge,
 };
+use texts::csv;
 
 /// Time between two looks at signals.
 const LOOK: Duration = Duration::from_millis(50);
@@ -25,15 +26,15 @@ fn sweep_error(error: &SweepError) -> PyErr {
     match error {
         SweepError::Study(StudyError::Scene(error)) => Python::attach(|py| scene_error(py, error)),
         SweepError::Study(StudyError::Plain(message)) => {
-            raised::StudyError::new_err(message.clone())
+            raise::<raised::StudyError>(message.clone())
         }
         SweepError::Output(error) => output_error(error),
-        error => PyRuntimeError::new_err(error.to_string()),
+        error => raise::<PyRuntimeError>(error.to_string()),
     }
 }
 
 fn not_json(error: &serde_json::Error) -> PyErr {
-    PyValueError::new_err(error.to_string())
+    raise::<PyValueError>(error.to_string())
 }
 
 /// A study with its scene. Private: `looselink.sweep` uses it.
@@ -60,7 +61,7 @@ impl PySweep {
     ) -> PyResult<T> {
         let mut store = self.store.lock().expect("no thread panics");
         let Some((folder, store)) = store.as_mut() else {
-            return Err(PyRuntimeError::new_err(
+            return Err(raise::<PyRuntimeError>(
                 "the folder of the rows is not open",
             ));
         };
@@ -98,7 +99,7 @@ impl PySweep {
         let mut given = Vec::new();
         let text = document(&study, &mut given)?;
         if !given.is_empty() {
-            return Err(PyTypeError::new_err("a study cannot hold callables"));
+            return Err(raise::<PyTypeError>("a study cannot hold callables"));
         }
         let source = SweepSource {
             path: PathBuf::from("study"),
@@ -268,7 +269,7 @@ pub fn make_tasks(
 ) -> PyResult<Vec<(String, String)>> {
     let own = env!("CARGO_PKG_VERSION");
     if version != own {
-        return Err(PyRuntimeError::new_err(format!(
+        return Err(raise::<PyRuntimeError>(format!(
             "a worker has version {own} of Looselink, the client {version}: install the same"
         )));
     }
@@ -288,4 +289,11 @@ pub fn make_tasks(
         let written: Result<Vec<_>, serde_json::Error> = written.collect();
         written.map_err(|error| not_json(&error))
     })
+}
+
+/// The text of a cell of a table, without what keeps a spreadsheet from taking it for a formula.
+#[pyfunction]
+#[pyo3(name = "_text_of")]
+pub fn text_of(content: &str) -> &str {
+    csv::text_of(content)
 }

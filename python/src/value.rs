@@ -1,6 +1,7 @@
 //! Python values as TOML: what is written into a scene.
 
 use super::callable::Given;
+use super::errors::raise;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
@@ -71,7 +72,7 @@ fn inline(
 ) -> PyResult<String> {
     if depth > DEPTH {
         let message = format!("`{path}` is nested too deeply for a scene");
-        return Err(PyValueError::new_err(message));
+        return Err(raise::<PyValueError>(message));
     }
     if value.is_instance_of::<PyBool>() {
         return Ok(value.extract::<bool>()?.to_string());
@@ -79,7 +80,7 @@ fn inline(
     if value.is_instance_of::<PyInt>() {
         let number = value.extract::<i64>();
         return number.map(|n| n.to_string()).map_err(|_| {
-            PyValueError::new_err(format!("`{path}` is an integer that does not fit 64 bits"))
+            raise::<PyValueError>(format!("`{path}` is an integer that does not fit 64 bits"))
         });
     }
     if value.is_instance_of::<PyFloat>() {
@@ -122,7 +123,7 @@ fn inline(
     }
     let kind = value.get_type().name()?;
     let message = format!("`{path}` cannot be written into a scene: it is of type {kind}");
-    Err(PyTypeError::new_err(message))
+    Err(raise::<PyTypeError>(message))
 }
 
 /// The table that names a callable, with other keys before its number.
@@ -140,7 +141,7 @@ pub fn named_callable(
 fn key_name(key: &Bound<PyAny>, place: &str) -> PyResult<String> {
     match key.cast::<PyString>() {
         Ok(key) => Ok(key.to_str()?.to_owned()),
-        Err(_) => Err(PyTypeError::new_err(format!(
+        Err(_) => Err(raise::<PyTypeError>(format!(
             "the keys of {place} must be strings, not {}",
             key.repr()?
         ))),
