@@ -131,7 +131,7 @@ impl Trial<'_> {
             assert!(is_whole, "{fault}: {said}");
             return;
         }
-        let named = said.contains("error: ") && said.contains(out.to_str().unwrap());
+        let named = said.contains(out.to_str().unwrap());
         assert!(named, "{fault}: {said}");
         if !is_whole {
             self.not_complete(fault, closing);
