@@ -2,6 +2,7 @@
 
 mod command_line;
 mod completions;
+mod earlier;
 mod hostile;
 mod limits;
 mod modes;
