@@ -3,19 +3,23 @@
 use crate::table::{Cell, Format};
 use folder::{Digest, Digesting, Folder, OutputError, naming, open, refuse_changed};
 use std::fs::{File, OpenOptions};
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::PathBuf;
+
+/// Bytes that are written and digested at a time: a digest of single rows would cost several times as much a byte.
+const PIECE: usize = 1 << 16;
 
 #[derive(Debug)]
 pub(super) struct TableFile {
     path: PathBuf,
     format: &'static Format,
+    /// As the format writes them.
     columns: Vec<String>,
-    writer: BufWriter<File>,
+    file: File,
     /// What has been written.
     digesting: Digesting,
-    /// The row being composed: rows reach the file whole, however the run ends.
-    line: Vec<u8>,
+    /// Whole rows that are to be written: rows reach the file whole, however the run ends.
+    rows: Vec<u8>,
 }
 
 impl TableFile {
@@ -29,8 +33,7 @@ impl TableFile {
         let file = folder.create(name)?;
         let path = folder.path().join(name);
         let mut table = TableFile::new(path, format, columns, file, Digesting::default());
-        (format.header)(&table.columns, &mut table.line);
-        table.write()?;
+        (format.header)(&table.columns, &mut table.rows);
         table.flush()?;
         Ok(table)
     }
@@ -59,10 +62,8 @@ impl TableFile {
     /// Cuts what follows the rows that were written before.
     pub(super) fn cut(&mut self) -> io::Result<()> {
         let size = self.digesting.digest().bytes;
-        let file = self.writer.get_mut();
-        let cut = file
-            .set_len(size)
-            .and_then(|()| file.seek(SeekFrom::Start(size)).map(drop));
+        let cut = self.file.set_len(size);
+        let cut = cut.and_then(|()| self.file.seek(SeekFrom::Start(size)).map(drop));
         cut.map_err(naming(&self.path))
     }
 
@@ -76,10 +77,10 @@ impl TableFile {
         TableFile {
             path,
             format,
-            columns,
-            writer: BufWriter::new(file),
+            columns: columns.iter().map(|name| (format.column)(name)).collect(),
+            file,
             digesting,
-            line: Vec::new(),
+            rows: Vec::new(),
         }
     }
 
@@ -90,26 +91,25 @@ impl TableFile {
     }
 
     pub(super) fn row(&mut self, cells: &[Cell]) -> io::Result<()> {
-        (self.format.row)(&self.columns, cells, &mut self.line);
-        self.write()
-    }
-
-    fn write(&mut self) -> io::Result<()> {
-        let result = self.writer.write_all(&self.line);
-        self.digesting.update(&self.line);
-        self.line.clear();
-        result.map_err(naming(&self.path))
+        (self.format.row)(&self.columns, cells, &mut self.rows);
+        match self.rows.len() < PIECE {
+            true => Ok(()),
+            false => self.flush(),
+        }
     }
 
     pub(super) fn flush(&mut self) -> io::Result<()> {
-        self.writer.flush().map_err(naming(&self.path))
+        self.digesting.update(&self.rows);
+        let written = self.file.write_all(&self.rows);
+        // also of rows that found no place: a second attempt could write a part of them twice
+        self.rows.clear();
+        written.map_err(naming(&self.path))
     }
 
     /// Sees that all rows so far are on the disk, before another file tells of them.
     pub(super) fn sync(&mut self) -> io::Result<Digest> {
         self.flush()?;
-        let synced = self.writer.get_ref().sync_all();
-        synced.map_err(naming(&self.path))?;
+        self.file.sync_all().map_err(naming(&self.path))?;
         Ok(self.digesting.digest())
     }
 
@@ -119,7 +119,15 @@ impl TableFile {
     /// [`OutputError::Changed`] where somebody else has changed, moved or deleted them.
     pub(super) fn finish(&mut self) -> Result<Digest, OutputError> {
         let digest = self.sync()?;
-        refuse_changed(&self.path, self.writer.get_ref(), digest)?;
+        refuse_changed(&self.path, &self.file, digest)?;
         Ok(digest)
+    }
+}
+
+impl Drop for TableFile {
+    /// A run that ends in an error keeps the rows before it.
+    fn drop(&mut self) {
+        // the error that ends the run is told, not what follows from it
+        let _ = self.flush();
     }
 }

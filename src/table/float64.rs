@@ -2,14 +2,15 @@
 //! number is NaN.
 
 use super::{Cell, Format};
-use serde_json::json;
+use serde_json::Value;
 
 pub(crate) static FORMAT: Format = Format {
     name: "float64",
     extension: "bin",
+    column: |name| Value::from(name).to_string(),
     header: |columns, text| {
-        text.extend(json!({ "columns": columns }).to_string().as_bytes());
-        text.push(b'\n');
+        let columns = columns.join(",");
+        text.extend(format!("{{\"columns\":[{columns}]}}\n").as_bytes());
     },
     row: |_, cells, text| {
         for cell in cells {

@@ -5,18 +5,19 @@ use super::{Cell, Format};
 pub(super) static FORMAT: Format = Format {
     name: "json_lines",
     extension: "jsonl",
+    column: quoted,
     header: |_, _| {},
     row: |columns, cells, text| {
         for (i, (name, cell)) in columns.iter().zip(cells).enumerate() {
             text.push(if i == 0 { b'{' } else { b',' });
-            quoted(name, text);
+            text.extend_from_slice(name.as_bytes());
             text.push(b':');
             match cell {
                 // the shortest decimal fraction that reads back as the same number
                 Cell::Number(x) if x.is_finite() => {
                     text.extend_from_slice(ryu::Buffer::new().format(*x).as_bytes());
                 }
-                Cell::Word(word) => quoted(word, text),
+                Cell::Word(word) => text.extend_from_slice(quoted(word).as_bytes()),
                 Cell::Number(_) | Cell::Empty => text.extend_from_slice(b"null"),
             }
         }
@@ -24,6 +25,6 @@ pub(super) static FORMAT: Format = Format {
     },
 };
 
-fn quoted(word: &str, text: &mut Vec<u8>) {
-    serde_json::to_writer(text, word).expect("memory can be written, and a text is JSON");
+fn quoted(word: &str) -> String {
+    serde_json::Value::from(word).to_string()
 }

@@ -25,9 +25,11 @@ pub struct Format {
     pub name: &'static str,
     /// How names of its files end.
     pub extension: &'static str,
-    /// Appends what comes before the rows of a table with these columns.
+    /// How the name of a column is written; asked once, not for every row.
+    pub column: fn(name: &str) -> String,
+    /// Appends what comes before the rows of a table with these columns, as they are written.
     pub header: fn(columns: &[String], text: &mut Vec<u8>),
-    /// Appends a row.
+    /// Appends a row of a table with these columns, as they are written.
     pub row: fn(columns: &[String], cells: &[Cell], text: &mut Vec<u8>),
 }
 
