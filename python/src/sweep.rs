@@ -214,15 +214,15 @@ fn make(
             let message = receiver.recv_timeout(LOOK);
             // the last of those that have come
             let latest = receiver.try_iter().last().or(message.ok());
-            let looked = Python::attach(|py| {
-                if let (Some(told), Some(latest)) = (told, latest) {
-                    told.call1(py, latest)?;
-                }
-                py.check_signals()
-            });
-            if let Err(error) = looked {
-                stop.store(true, Ordering::Relaxed);
-                raised.get_or_insert(error);
+            if raised.is_none() {
+                let looked = Python::attach(|py| {
+                    if let (Some(told), Some(latest)) = (told, latest) {
+                        told.call1(py, latest)?;
+                    }
+                    py.check_signals()
+                });
+                raised = looked.err();
+                stop.store(raised.is_some(), Ordering::Relaxed);
             }
             if message == Err(mpsc::RecvTimeoutError::Disconnected) {
                 break (work.join().expect("a panic of a run is a row"), raised);

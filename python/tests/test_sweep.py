@@ -226,3 +226,18 @@ def test_other_threads_go_on_meanwhile(study):
     stop.set()
     other.join()
     assert count > 20
+
+
+def test_progress_of_a_sweep_is_not_called_again_once_it_has_raised(oscillator):
+    calls = []
+
+    def show(done, left):
+        calls.append((done, left))
+        raise ZeroDivisionError
+
+    stiffness = {"fields": ["forces.spring.stiffness"], "values": [100.0 + k for k in range(20)], "unit": "N/m"}
+    with pytest.raises(ZeroDivisionError):
+        oscillator.sweep(
+            parameters={"k": stiffness}, measures={"x": {"of": "largest", "channels": ["mass.x"]}}, threads=2, progress=show
+        )
+    assert len(calls) == 1
