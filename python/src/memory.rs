@@ -1,15 +1,18 @@
 //! What a run leaves in memory, and passes on to the disk.
 
 use super::progress::ProgressDisplay;
+use folder::OutputError;
 use looselink::model::Model;
 use looselink::output::Results;
 use looselink::record::MotionLayout;
 use looselink::scene::Scene;
-use looselink::simulate::{ContactEvent, Control, Impact, Observer, Progress, Simulation};
+use looselink::simulate::{ContactEvent, Control, Impact, Observer, Progress, Report, Simulation};
 use looselink::system::State;
 use messages::Ticker;
 use pyo3::prelude::*;
 use std::io;
+use std::mem;
+use std::process;
 use std::time::{Duration, Instant};
 
 /// Rows of a folder reach the disk at least this often.
@@ -24,7 +27,9 @@ pub struct Memory {
     pub motion: Option<(MotionLayout, Vec<f64>)>,
     /// In the order of `onsets.csv`.
     pub contacts: Vec<Impact>,
-    pub results: Option<Results>,
+    results: Option<Results>,
+    /// The process that writes the results.
+    process: u32,
     pub shown: ProgressDisplay,
     /// What Python has raised.
     pub raised: Option<PyErr>,
@@ -54,12 +59,38 @@ impl Memory {
             motion,
             contacts: Vec::new(),
             results,
+            process: process::id(),
             shown,
             raised: None,
             last: None,
             ticker: Ticker::new(),
             flushed: Instant::now(),
         }
+    }
+
+    /// The results, if any are written.
+    ///
+    /// # Errors
+    /// In a process that a callable has forked: the results are its parent's, and so are the files that both have open.
+    fn results(&mut self) -> io::Result<Option<&mut Results>> {
+        if self.results.is_some() && process::id() != self.process {
+            // without a last word to the files
+            mem::forget(self.results.take());
+            return Err(io::Error::other(
+                "this process was forked during the run: its parent writes the result",
+            ));
+        }
+        Ok(self.results.as_mut())
+    }
+
+    /// Ends the results, if any are written.
+    ///
+    /// # Errors
+    /// As [`Results::finish`], and in a process that a callable has forked.
+    pub fn finish(&mut self, report: &Report) -> Result<(), OutputError> {
+        self.results()?;
+        let results = self.results.take();
+        results.map_or(Ok(()), |results| results.finish(report))
     }
 
     /// Lets Python see signals and the user progress.
@@ -79,19 +110,19 @@ impl Observer for Memory {
         for (column, value) in self.columns.iter_mut().zip(values) {
             column.push(*value);
         }
-        self.results.as_mut().map_or(Ok(()), |r| r.row(values))
+        self.results()?.map_or(Ok(()), |r| r.row(values))
     }
 
     fn state(&mut self, model: &Model, at: &State) -> io::Result<()> {
         if let Some((layout, numbers)) = &mut self.motion {
             layout.measure(model, at, numbers);
         }
-        self.results.as_mut().map_or(Ok(()), |r| r.state(model, at))
+        self.results()?.map_or(Ok(()), |r| r.state(model, at))
     }
 
     fn contact(&mut self, contact: &ContactEvent) -> io::Result<()> {
         self.contacts.push(Impact::from(contact));
-        self.results.as_mut().map_or(Ok(()), |r| r.contact(contact))
+        self.results()?.map_or(Ok(()), |r| r.contact(contact))
     }
 
     fn step(&mut self, progress: &Progress) -> io::Result<Control> {
@@ -99,10 +130,8 @@ impl Observer for Memory {
         if !self.ticker.tick() {
             return Ok(Control::Continue);
         }
-        if let Some(results) = &mut self.results
-            && self.flushed.elapsed() >= FLUSH
-        {
-            results.flush()?;
+        if self.flushed.elapsed() >= FLUSH {
+            self.results()?.map_or(Ok(()), Results::flush)?;
             self.flushed = Instant::now();
         }
         Ok(match self.tell(progress) {

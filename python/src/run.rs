@@ -28,7 +28,7 @@ struct FinishedRun {
     memory: Memory,
     report: Report,
     error: Option<RunError>,
-    /// What a callable, a signal or the shown progress has raised.
+    /// What a callable, a signal, the shown progress or the end of the files has raised.
     raised: Option<PyErr>,
 }
 
@@ -63,8 +63,9 @@ pub fn run(
     let warnings = kept.warnings.clone();
     let kept = Py::new(py, kept)?;
     let with_rows = |error: PyErr| {
-        let set = error.value(py).setattr("run", &kept);
-        set.err().unwrap_or(error)
+        // some exceptions cannot be changed
+        let _ = error.value(py).setattr("run", &kept);
+        error
     };
     if let Some(raised) = raised.or(shown.err()) {
         return Err(with_rows(raised));
@@ -76,7 +77,7 @@ pub fn run(
         Some(error) => return Err(with_rows(raise::<raised::RunError>(run_failure(&error)))),
         None => {}
     }
-    warn(py, warnings)?;
+    warn(py, warnings).map_err(with_rows)?;
     Ok(kept)
 }
 
@@ -110,12 +111,12 @@ fn simulate(
     let results = results.map_err(|error| output_error(&error))?;
     let mut memory = Memory::new(scene, &simulation, results, shown);
     let error = simulation.run(&mut memory).err();
-    let raised = take_raised().or(memory.raised.take());
     let report = simulation.report();
-    if let Some(results) = memory.results.take() {
-        let finished = results.finish(&report);
-        finished.map_err(|error| output_error(&error))?;
-    }
+    let finished = memory.finish(&report).err();
+    let raised = take_raised().or(memory.raised.take());
+    // what has ended the run comes first
+    let unfinished = finished.filter(|_| error.is_none());
+    let raised = raised.or(unfinished.map(|error| output_error(&error)));
     Ok(FinishedRun {
         channels: simulation.channels().to_vec(),
         memory,

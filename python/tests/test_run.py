@@ -158,8 +158,10 @@ def test_warnings_are_those_of_the_summary(case3):
     assert all(warning.filename == __file__ for warning in caught)
     with warnings.catch_warnings():
         warnings.simplefilter("error", looselink.RunWarning)
-        with pytest.raises(looselink.RunWarning):
+        with pytest.raises(looselink.RunWarning) as error:
             case3.run()
+    # it is the first of them, and the run is not lost
+    assert str(error.value) == run.warnings[0] == error.value.run.warnings[0]
 
 
 def test_a_run_that_fails_keeps_its_rows(program, tmp_path):
