@@ -395,7 +395,8 @@ impl PyRun {
         let motion = motion.chunks_exact(*width).take(channels[0].values.len());
         let motion = motion.map(<[f64]>::to_vec).collect();
         let scene = Scene::clone(&self.scene);
-        let kept = StoredRun::kept(self.name.clone(), scene, &self.report, channels, motion);
+        let summary = summary(&scene, &self.report).map_err(|error| output_error(&error))?;
+        let kept = StoredRun::kept(self.name.clone(), scene, &summary, channels, motion);
         if let Some(raised) = take_raised() {
             return Err(raised);
         }

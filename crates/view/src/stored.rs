@@ -4,11 +4,11 @@ use super::moved::bounds;
 use folder::{Kind, OutputError, verify};
 use indexmap::IndexMap;
 use looselink::modes::NaturalMode;
-use looselink::output::{self, summary};
+use looselink::output;
 use looselink::record::MotionLayout;
 use looselink::registry::Registry;
 use looselink::scene::{Scene, SceneError};
-use looselink::simulate::{Report, Simulation};
+use looselink::simulate::Simulation;
 use numbers::exact;
 use serde::Deserialize;
 use std::f64::consts::TAU;
@@ -193,15 +193,15 @@ impl StoredRun {
         })
     }
 
-    /// A run that a program has kept in memory, as [`StoredRun::load`] reads it from a folder called `name`: its channels, first
-    /// the time, and its rows of motion, as many as rows of channels.
+    /// A run that a program has kept in memory, as [`StoredRun::load`] reads it from a folder called `name`: its summary, as
+    /// [`looselink::output::summary`] gives it, its channels, first the time, and its rows of motion, as many as rows of channels.
     ///
     /// # Errors
-    /// A scene that does not compile, and a run without a row.
+    /// A scene that does not compile, a run without a row, and rows of the motion of another scene.
     pub fn kept(
         name: String,
         scene: Scene,
-        report: &Report,
+        summary: &[u8],
         mut channels: Vec<StoredChannel>,
         motion: Vec<Vec<f64>>,
     ) -> Result<StoredRun, ViewError> {
@@ -210,17 +210,21 @@ impl StoredRun {
         if times.is_empty() {
             return Err(ViewError::Result("the run holds no row yet".to_owned()));
         }
-        let summary = summary(&scene, report).map_err(io::Error::other)?;
+        let layout = MotionLayout::new(simulation.model());
+        if motion.iter().any(|row| row.len() != layout.names().len()) {
+            let message = "the rows of the motion are not those of the scene";
+            return Err(ViewError::Result(message.to_owned()));
+        }
         let result = StoredResult {
             name,
             scene,
-            summary: serde_json::from_slice(&summary).map_err(io::Error::from)?,
+            summary: serde_json::from_slice(summary).map_err(io::Error::from)?,
             times,
             channels,
         };
         Ok(StoredRun {
             result,
-            layout: MotionLayout::new(simulation.model()),
+            layout,
             simulation: Rc::new(simulation),
             motion,
         })
