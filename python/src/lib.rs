@@ -5,6 +5,7 @@ mod errors;
 mod load;
 mod memory;
 mod progress;
+mod results;
 mod run;
 mod scene;
 mod sweep;
@@ -18,7 +19,7 @@ mod module {
     #[pymodule_export]
     use super::errors::raised::{RunError, RunWarning, SceneError, StudyError};
     #[pymodule_export]
-    use super::run::PyRun;
+    use super::results::PyRun;
     #[pymodule_export]
     use super::scene::{PyScene, load, loads};
     #[pymodule_export]
