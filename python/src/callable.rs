@@ -1,51 +1,134 @@
-//! Functions of time as Python callables.
+//! Callables of a scene, and functions of time that call them.
 //!
-//! The text of a scene names a callable by its number: `{ type = "callable", number = 0 }`. While the scene is read, its callables
-//! are those of this thread. What a callable raises is kept for this thread, too, because a simulation has one thread: the callable
-//! then counts as not a number, at which every method stops, and the exception is raised once the solver has returned.
+//! The text of a scene names a callable by its number: `{ type = "callable", number = 0 }`. While a scene is read, run or shown, its
+//! callables are those of this thread, because a simulation has one thread. What one of them raises is kept for this thread, too:
+//! the callable then counts as not a number, at which every method stops, and the exception is raised once the solver has returned.
+//! So a compiled scene holds no object of Python.
 
 use super::errors::raise;
+use super::stack::room;
 use looselink::document::{Fields, Key, SceneError, Takes};
 use looselink::motion::{Function, FunctionKind, FunctionOfTime, Use};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// A callable of a scene.
-#[derive(Debug)]
-pub struct Given {
-    /// What is called.
-    pub function: Py<PyAny>,
-    /// What gives the derivatives of a load.
-    pub tangent: Option<Py<PyAny>>,
+/// The callables of a scene by their numbers, each as (path, function, tangent or None), or None where others have taken its place. A
+/// tuple, which the garbage collector of Python looks into.
+pub type Callables = Py<PyTuple>;
+
+/// What a callable of a scene is called for.
+#[derive(Debug, Clone, Copy)]
+pub enum Role {
+    /// The function of time, or the load.
+    Function,
+    /// The derivatives of a load.
+    Tangent,
+}
+
+/// The scene that this thread evaluates.
+struct Evaluated {
+    /// By their numbers, what is called in each role.
+    callables: Vec<Option<[Py<PyAny>; 2]>>,
+    /// How many of them have been called before.
+    checked: usize,
+    /// Those that the text names.
+    named: BTreeSet<usize>,
+    raised: Option<PyErr>,
 }
 
 thread_local! {
-    static GIVEN: RefCell<Vec<Arc<Given>>> = const { RefCell::new(Vec::new()) };
-    static RAISED: RefCell<Option<PyErr>> = const { RefCell::new(None) };
+    static EVALUATED: RefCell<Option<Evaluated>> = const { RefCell::new(None) };
 }
 
-/// Does `read` while a scene can name these callables.
-pub fn with_given<T>(given: &[Arc<Given>], read: impl FnOnce() -> T) -> T {
-    let before = GIVEN.replace(given.to_vec());
-    let result = read();
-    GIVEN.set(before);
-    result
-}
+/// The scene around the one that is evaluated, whose callable evaluates it.
+struct Outer(Option<Evaluated>);
 
-/// What a callable has raised on this thread since it was last asked for.
-pub fn take_raised() -> Option<PyErr> {
-    RAISED.take()
-}
-
-/// What a callable gives; nothing once one has raised an exception, which is kept.
-pub fn call<T>(call: impl FnOnce(Python) -> PyResult<T>) -> Option<T> {
-    if RAISED.with_borrow(Option::is_some) {
-        return None;
+impl Drop for Outer {
+    fn drop(&mut self) {
+        // what it held may end objects of Python, which are free to do anything: not while the cell is borrowed
+        drop(EVALUATED.replace(self.0.take()));
     }
-    let result = Python::attach(call);
-    result.map_err(|error| RAISED.set(Some(error))).ok()
+}
+
+/// Does `work` while a scene can call these callables, of which the first ones have been called before.
+///
+/// # Errors
+/// What a callable has raised, and RecursionError where the stack of the thread is almost full.
+pub fn evaluating<T>(
+    py: Python,
+    callables: &Callables,
+    checked: usize,
+    work: impl FnOnce() -> PyResult<T>,
+) -> PyResult<T> {
+    room()?;
+    let callables = callables.bind(py).iter().map(|callable| {
+        let callable: Option<(Py<PyAny>, _, _)> = callable.extract()?;
+        Ok(callable.map(|(_path, function, tangent)| [function, tangent]))
+    });
+    let outer = EVALUATED.replace(Some(Evaluated {
+        callables: callables.collect::<PyResult<_>>()?,
+        checked,
+        named: BTreeSet::new(),
+        raised: None,
+    }));
+    let _outer = Outer(outer);
+    let result = work();
+    // what a callable raised is the cause of the fault
+    take_raised().map_or(result, Err)
+}
+
+/// What a callable of the scene that is evaluated has raised since it was last asked for.
+pub fn take_raised() -> Option<PyErr> {
+    EVALUATED.with_borrow_mut(|evaluated| evaluated.as_mut()?.raised.take())
+}
+
+/// What a callable of the scene that is evaluated gives; nothing once one has raised an exception, which is kept.
+pub fn call<T>(
+    number: usize,
+    role: Role,
+    call: impl FnOnce(Bound<PyAny>) -> PyResult<T>,
+) -> Option<T> {
+    Python::attach(|py| {
+        let raised = |evaluated: &Evaluated| evaluated.raised.is_some();
+        let function = EVALUATED.with_borrow(|evaluated| {
+            let evaluated = evaluated.as_ref().filter(|evaluated| !raised(evaluated))?;
+            evaluated.callable(py, number, role)
+        })?;
+        // while it works it may evaluate another scene
+        call(function).map_err(keep_raised).ok()
+    })
+}
+
+fn keep_raised(error: PyErr) {
+    EVALUATED.with_borrow_mut(|evaluated| {
+        let evaluated = evaluated.as_mut().expect("a scene is evaluated");
+        evaluated.raised = Some(error);
+    });
+}
+
+impl Evaluated {
+    fn callable<'py>(
+        &self,
+        py: Python<'py>,
+        number: usize,
+        role: Role,
+    ) -> Option<Bound<'py, PyAny>> {
+        let callable = self.callables.get(number)?.as_ref()?;
+        Some(callable[role as usize].clone_ref(py).into_bound(py))
+    }
+}
+
+/// True where the scene that is evaluated has a callable in a role.
+pub fn is_given(number: usize, role: Role) -> bool {
+    Python::attach(|py| {
+        let callable =
+            EVALUATED.with_borrow(|evaluated| evaluated.as_ref()?.callable(py, number, role));
+        callable.is_some_and(|callable| !callable.is_none())
+    })
 }
 
 /// The key by which a scene names a callable.
@@ -55,15 +138,37 @@ pub const NUMBER: Key = Key::new(
     "the number of the callable",
 );
 
-/// The callable that a table names.
-pub fn given(table: &Fields) -> Result<Arc<Given>, SceneError> {
+/// The number of the callable that a table names.
+///
+/// # Errors
+/// A number that this program has not given.
+pub fn number(table: &Fields) -> Result<usize, SceneError> {
     let field = table.field(NUMBER.name)?;
     let number = usize::try_from(field.integer()?).ok();
-    let found = GIVEN.with_borrow(|given| given.get(number?).cloned());
-    found.ok_or_else(|| {
+    let known = |number: &usize| is_given(*number, Role::Function);
+    let number = number.filter(known).ok_or_else(|| {
         let message = format!("there is no callable `{}`", field.written());
         field.fault(message, "not given by this program")
-    })
+    })?;
+    EVALUATED.with_borrow_mut(|evaluated| evaluated.as_mut().map(|e| e.named.insert(number)));
+    Ok(number)
+}
+
+/// Callables by their numbers, without those that the scene that is evaluated has not named.
+///
+/// # Errors
+/// None but for want of memory.
+pub fn named_only<'py>(callables: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, PyTuple>> {
+    let named = EVALUATED.with_borrow(|evaluated| evaluated.as_ref().map(|e| e.named.clone()));
+    let named = named.unwrap_or_default();
+    let kept = callables.iter().enumerate();
+    let kept = kept.map(|(number, callable)| named.contains(&number).then_some(callable));
+    PyTuple::new(callables.py(), kept.collect::<Vec<_>>())
+}
+
+/// True of callables that have been called before to check them.
+fn is_checked(number: usize) -> bool {
+    EVALUATED.with_borrow(|evaluated| evaluated.as_ref().is_some_and(|e| number < e.checked))
 }
 
 /// A function of time that calls Python: for loads f(t) = value, for motions f(t) = (value, rate, acceleration).
@@ -73,28 +178,29 @@ pub static FUNCTION: FunctionKind = FunctionKind {
     read: |table, purpose, _| {
         let function = CallableFunction {
             path: table.path().to_owned(),
-            given: given(table)?,
+            number: number(table)?,
             purpose,
         };
-        match function.values(0.0) {
-            Some(_) => Ok(Function::Own(Arc::new(function))),
+        if !is_checked(function.number) && function.values(0.0).is_none() {
             // the exception is raised instead
-            None => Err(table.fault(format!("the callable of `{}` fails", table.path()), "here")),
+            let message = format!("the callable of `{}` fails", table.path());
+            return Err(table.fault(message, "here"));
         }
+        Ok(Function::Own(Arc::new(function)))
     },
 };
 
 #[derive(Debug)]
 struct CallableFunction {
     path: String,
-    given: Arc<Given>,
+    number: usize,
     purpose: Use,
 }
 
 impl CallableFunction {
     fn values(&self, t: f64) -> Option<[f64; 3]> {
-        call(|py| {
-            let result = self.given.function.bind(py).call1((t,))?;
+        call(self.number, Role::Function, |function| {
+            let result = function.call1((t,))?;
             let values = match self.purpose {
                 Use::Load => result.extract().map(|value| [value, 0.0, 0.0]),
                 Use::Motion => result.extract(),

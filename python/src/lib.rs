@@ -8,6 +8,8 @@ mod progress;
 mod results;
 mod run;
 mod scene;
+mod snapshot;
+mod stack;
 mod sweep;
 mod value;
 mod view;

@@ -1,6 +1,6 @@
 //! A load on a point as a Python callable of the motion of the point: F(t, x, y, vx, vy).
 
-use super::callable::{Given, NUMBER, call, finite, given, wrong_result};
+use super::callable::{NUMBER, Role, call, finite, is_given, number, wrong_result};
 use looselink::document::Key;
 use looselink::effect::Effect;
 use looselink::interaction::ForceKind;
@@ -14,9 +14,11 @@ pub static LOAD: ForceKind = ForceKind {
     keys: &[Key::point("point", "where it acts"), NUMBER],
     read: |table, names| {
         let point = names.point(&table.field("point")?)?;
+        let number = number(table)?;
         let law = CallableLaw {
             path: table.path().to_owned(),
-            given: given(table)?,
+            number,
+            has_tangent: is_given(number, Role::Tangent),
         };
         let law = Arc::new(law);
         Ok(Arc::new(PointLoad { point, law }))
@@ -27,7 +29,8 @@ pub static LOAD: ForceKind = ForceKind {
 #[derive(Debug)]
 struct CallableLaw {
     path: String,
-    given: Arc<Given>,
+    number: usize,
+    has_tangent: bool,
 }
 
 impl PointLaw for CallableLaw {
@@ -36,9 +39,8 @@ impl PointLaw for CallableLaw {
     }
 
     fn force(&self, t: f64, r: Vec2, v: Vec2) -> Vec2 {
-        let force = call(|py| {
-            let arguments = (t, r.x, r.y, v.x, v.y);
-            let result = self.given.function.bind(py).call1(arguments)?;
+        let force = call(self.number, Role::Function, |load| {
+            let result = load.call1((t, r.x, r.y, v.x, v.y))?;
             let force = result.extract();
             let force: [f64; 2] =
                 force.map_err(|_| wrong_result(&self.path, "(fx, fy)", &result))?;
@@ -49,11 +51,11 @@ impl PointLaw for CallableLaw {
     }
 
     fn gradient(&self, t: f64, r: Vec2, v: Vec2, force: Vec2) -> LoadGradient {
-        let Some(tangent) = &self.given.tangent else {
+        if !self.has_tangent {
             return differences(|r, v| self.force(t, r, v), r, v, force);
-        };
-        let gradient = call(|py| {
-            let result = tangent.bind(py).call1((t, r.x, r.y, v.x, v.y))?;
+        }
+        let gradient = call(self.number, Role::Tangent, |tangent| {
+            let result = tangent.call1((t, r.x, r.y, v.x, v.y))?;
             let wanted = "two rows of the derivatives by x, y, vx, vy as its tangent";
             let gradient = result.extract();
             let gradient: [[f64; 4]; 2] =

@@ -1,11 +1,12 @@
 //! How far a run is, shown by Python.
 
 use super::errors::raise;
-use looselink::simulate::Progress;
-use messages::Start;
+use looselink::simulate::{Control, Observer, Progress};
+use messages::{Start, Ticker};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
+use std::io;
 
 /// Lines of a run whose standard error is no terminal: one after every tenth of its duration.
 const LINES: f64 = 10.0;
@@ -88,4 +89,27 @@ fn write(py: Python, text: &str) -> PyResult<()> {
     let stderr = py.import("sys")?.getattr("stderr")?;
     stderr.call_method1("write", (text,))?;
     stderr.call_method0("flush").map(drop)
+}
+
+/// Lets Python see signals during a simulation of which nothing is kept.
+#[derive(Default)]
+pub struct Watch {
+    ticker: Ticker,
+    pub raised: Option<PyErr>,
+}
+
+impl Observer for Watch {
+    fn row(&mut self, _: &[f64]) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn step(&mut self, _: &Progress) -> io::Result<Control> {
+        if self.ticker.tick() {
+            self.raised = Python::attach(|py| py.check_signals()).err();
+        }
+        Ok(match self.raised {
+            None => Control::Continue,
+            Some(_) => Control::Stop,
+        })
+    }
 }

@@ -1,20 +1,20 @@
 //! The results of a run.
 
-use super::callable::take_raised;
 use super::errors::{output_error, raise};
 use super::memory::Memory;
-use super::scene::from_json;
+use super::scene::{PyScene, from_json};
+use super::snapshot::Snapshot;
 use super::view::PyView;
 use looselink::document::nearest;
 use looselink::output::summary;
-use looselink::scene::Scene;
 use looselink::simulate::{Channel, Impact, Report};
 use messages::closing_table;
-use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::{PyKeyError, PyValueError};
+use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyValueError};
+use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator, PyList};
-use std::sync::Arc;
+use serde::Deserialize;
 use view::{StoredChannel, StoredRun, page};
 use wildmatch::WildMatchPattern;
 
@@ -24,86 +24,195 @@ use wildmatch::WildMatchPattern;
 /// filled, without a copy, and is read-only; `.copy()` gives one that can be changed.
 #[pyclass(module = "looselink", name = "Run", frozen, mapping)]
 pub struct PyRun {
-    scene: Arc<Scene>,
+    kept: Kept,
+}
+
+/// A channel over time.
+struct Column {
+    name: String,
+    unit: String,
+    values: Py<PyArray1<f64>>,
+}
+
+/// How many numbers a row of the motion has, and the rows one after the other.
+type Motion = (usize, Py<PyArray1<f64>>);
+
+struct Kept {
+    /// The scene as it was run.
+    scene: Py<PyScene>,
     /// The folder of its files, without where it is.
     name: String,
-    channels: Vec<Channel>,
-    columns: Vec<Py<PyArray1<f64>>>,
+    columns: Vec<Column>,
     onsets: Py<PyDict>,
+    /// What `summary.json` holds, and the same as Python has it.
+    record: String,
     summary: Py<PyAny>,
-    pub warnings: Vec<String>,
+    /// What is told of it.
+    told: Told,
+    /// The lines of the closing table.
+    closing: Vec<String>,
+    motion: Option<Motion>,
+}
+
+/// What is told of a run, from its summary.
+#[derive(Deserialize)]
+struct Told {
+    title: String,
+    status: String,
+    t: f64,
+    warnings: Vec<String>,
     notes: Vec<String>,
-    report: Report,
-    /// Numbers in a row of the motion, and the rows one after the other.
-    motion: Option<(usize, Vec<f64>)>,
 }
 
 impl PyRun {
     pub fn new(
         py: Python,
-        scene: Arc<Scene>,
+        snapshot: Snapshot,
         name: String,
-        channels: Vec<Channel>,
+        channels: &[Channel],
         memory: Memory,
-        report: Report,
+        report: &Report,
     ) -> PyResult<PyRun> {
-        let bytes = summary(&scene, &report).map_err(|error| output_error(&error))?;
-        let columns = memory.columns.into_iter();
-        let columns = columns.map(|column| read_only(PyArray1::from_vec(py, column)));
-        Ok(PyRun {
-            columns: columns.collect(),
-            onsets: onsets(py, &memory.contacts)?.unbind(),
-            summary: from_json(py, &bytes)?.unbind(),
-            warnings: report.warnings(),
-            notes: report.notes(),
-            motion: memory
-                .motion
-                .map(|(layout, numbers)| (layout.names().len(), numbers)),
-            scene,
+        let record = summary(&snapshot.scene, report).map_err(|error| output_error(&error))?;
+        let columns = channels.iter().zip(memory.columns);
+        let columns = columns.map(|(channel, values)| Column {
+            name: channel.name.clone(),
+            unit: channel.unit.to_owned(),
+            values: PyArray1::from_vec(py, values).unbind(),
+        });
+        let motion = memory.motion.map(|(layout, numbers)| {
+            let numbers = PyArray1::from_vec(py, numbers);
+            (layout.names().len(), numbers.unbind())
+        });
+        let kept = Kept::new(
+            py,
+            Py::new(py, PyScene::new(snapshot))?,
             name,
-            channels,
-            report,
-        })
+            columns.collect(),
+            onsets(py, &memory.contacts)?,
+            String::from_utf8(record)?,
+            closing_table(report),
+            motion,
+        )?;
+        Ok(PyRun { kept })
     }
 
-    fn column(&self, name: &str) -> PyResult<&Py<PyArray1<f64>>> {
-        let names = self.channels.iter().map(|channel| channel.name.as_str());
-        if let Some(place) = names.clone().position(|known| known == name) {
-            return Ok(&self.columns[place]);
+    fn kept(&self) -> PyResult<&Kept> {
+        Ok(&self.kept)
+    }
+}
+
+impl Kept {
+    /// Makes the arrays read-only.
+    ///
+    /// # Errors
+    /// A summary that does not say what is told of every run.
+    fn new(
+        py: Python,
+        scene: Py<PyScene>,
+        name: String,
+        columns: Vec<Column>,
+        onsets: Bound<PyDict>,
+        record: String,
+        closing: Vec<String>,
+        motion: Option<Motion>,
+    ) -> PyResult<Kept> {
+        let kept = Kept {
+            scene,
+            name,
+            columns,
+            onsets: onsets.unbind(),
+            told: serde_json::from_str(&record)
+                .map_err(|e| raise::<PyRuntimeError>(e.to_string()))?,
+            summary: from_json(py, record.as_bytes())?.unbind(),
+            record,
+            closing,
+            motion,
+        };
+        for array in kept.arrays(py) {
+            array.call_method1("setflags", (false,))?;
         }
-        let near = nearest(name, names).map_or_else(
-            || "; `run.channels` names all".to_owned(),
-            |near| format!("; did you mean {near:?}?"),
-        );
-        let message = format!("no channel of this run is named {name:?}{near}");
-        Err(raise::<PyKeyError>(message))
+        Ok(kept)
+    }
+
+    /// All arrays.
+    fn arrays<'py>(&self, py: Python<'py>) -> Vec<Bound<'py, PyAny>> {
+        let columns = self.columns.iter().map(|column| &column.values);
+        let motion = self.motion.iter().map(|(_, numbers)| numbers);
+        let numbers = columns.chain(motion);
+        let numbers = numbers.map(|array| array.bind(py).clone().into_any());
+        let onsets = self.onsets.bind(py).values().into_iter();
+        numbers.chain(onsets).collect()
+    }
+
+    fn column(&self, name: &str) -> PyResult<&Column> {
+        let known = self.columns.iter().find(|column| column.name == name);
+        known.ok_or_else(|| {
+            let names = self.columns.iter().map(|column| column.name.as_str());
+            let near = nearest(name, names).map_or_else(
+                || "; `run.channels` names all".to_owned(),
+                |near| format!("; did you mean {near:?}?"),
+            );
+            raise::<PyKeyError>(format!("no channel of this run is named {name:?}{near}"))
+        })
     }
 
     /// The columns under the headings of `channels.csv`.
     fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let table = PyDict::new(py);
-        for (channel, column) in self.channels.iter().zip(&self.columns) {
-            table.set_item(format!("{} [{}]", channel.name, channel.unit), column)?;
+        for Column { name, unit, values } in &self.columns {
+            table.set_item(format!("{name} [{unit}]"), values)?;
         }
         Ok(table)
     }
-}
 
-fn read_only(array: Bound<'_, PyArray1<f64>>) -> Py<PyArray1<f64>> {
-    array.readwrite().make_nonwriteable();
-    array.unbind()
+    fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let units = PyDict::new(py);
+        for Column { name, unit, .. } in &self.columns {
+            units.set_item(name, unit)?;
+        }
+        Ok(units)
+    }
+
+    /// The page of the run.
+    fn page(&self, py: Python) -> PyResult<String> {
+        let Some((width, motion)) = &self.motion else {
+            let message = "the run has no motion to show: the scene says `output.motion = false`";
+            return Err(raise::<PyValueError>(message));
+        };
+        let motion = motion.bind(py).try_readonly()?;
+        let motion = motion.as_slice()?.chunks_exact((*width).max(1));
+        let mut channels = Vec::new();
+        for Column { name, unit, values } in &self.columns {
+            let values = values.bind(py).try_readonly()?;
+            let values = values.as_slice()?;
+            channels.push(StoredChannel {
+                name: name.clone(),
+                unit: unit.clone(),
+                values: values[..values.len().min(motion.len())].to_vec(),
+            });
+        }
+        let motion = motion.take(channels[0].values.len());
+        let motion = motion.map(<[f64]>::to_vec).collect();
+        self.scene.get().now(py)?.evaluate(py, |scene| {
+            let (name, scene, record) = (self.name.clone(), scene.clone(), self.record.as_bytes());
+            let page =
+                || StoredRun::kept(name, scene, record, channels, motion).map(|run| page(&[run]));
+            py.detach(page)
+                .map_err(|error| raise::<PyValueError>(error.to_string()))
+        })
+    }
 }
 
 /// The columns of `onsets.csv`.
 fn onsets<'py>(py: Python<'py>, contacts: &[Impact]) -> PyResult<Bound<'py, PyDict>> {
     let column = |value: fn(&Impact) -> f64| {
         let values = contacts.iter().map(value).collect();
-        read_only(PyArray1::from_vec(py, values))
+        PyArray1::from_vec(py, values)
     };
     let joints = contacts.iter().map(|contact| contact.joint.as_str());
     let joints = PyList::new(py, joints.collect::<Vec<_>>())?;
     let joints = py.import("numpy")?.call_method1("array", (joints, "str"))?;
-    joints.call_method1("setflags", (false,))?;
     let table = PyDict::new(py);
     table.set_item("t", column(|c| c.t))?;
     table.set_item("joint", joints)?;
@@ -124,102 +233,102 @@ impl PyRun {
     ///
     /// Raises KeyError for an unknown name, with the nearest known one.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(self.column(name)?.bind(py).clone())
+        Ok(self.kept()?.column(name)?.values.bind(py).clone())
     }
 
-    fn __contains__(&self, name: &Bound<PyAny>) -> bool {
+    fn __contains__(&self, name: &Bound<PyAny>) -> PyResult<bool> {
+        let kept = self.kept()?;
         let name = name.extract::<String>();
-        name.is_ok_and(|name| self.column(&name).is_ok())
+        Ok(name.is_ok_and(|name| kept.column(&name).is_ok()))
     }
 
     /// The number of channels.
-    fn __len__(&self) -> usize {
-        self.channels.len()
+    fn __len__(&self) -> PyResult<usize> {
+        Ok(self.kept()?.columns.len())
     }
 
     /// The names of the channels.
     fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
-        PyList::new(py, self.channels())?.try_iter()
+        PyList::new(py, self.channels()?)?.try_iter()
     }
 
-    fn __repr__(&self, py: Python) -> String {
-        let rows = self.columns[0].bind(py).len().unwrap_or_default();
-        format!(
-            "<looselink.Run {:?}, {}: {} channels, {rows} rows to t = {} s>",
-            self.scene.title,
-            self.status(),
-            self.channels.len(),
-            numbers::exact(self.report.t)
-        )
+    fn __repr__(&self, py: Python) -> PyResult<String> {
+        let Kept { told, columns, .. } = self.kept()?;
+        Ok(format!(
+            "<looselink.Run {:?}, {}: {} channels, {} rows to t = {} s>",
+            told.title,
+            told.status,
+            columns.len(),
+            columns[0].values.bind(py).len(),
+            numbers::exact(told.t)
+        ))
     }
 
     /// What `repr` says, and below it the closing table of `looselink run`: errors of driven bodies, forces, drives, contacts, energy.
-    fn __str__(&self, py: Python) -> String {
-        let mut lines = vec![self.__repr__(py)];
-        lines.extend(closing_table(&self.report));
-        lines.extend(self.notes.iter().map(|note| format!("note: {note}")));
-        lines.join("\n")
+    fn __str__(&self, py: Python) -> PyResult<String> {
+        let kept = self.kept()?;
+        let mut lines = vec![self.__repr__(py)?];
+        lines.extend_from_slice(&kept.closing);
+        let notes = kept.told.notes.iter();
+        lines.extend(notes.map(|note| format!("note: {note}")));
+        Ok(lines.join("\n"))
     }
 
     /// The names of the channels, the time "t" first.
     #[getter]
-    fn channels(&self) -> Vec<&str> {
-        let names = self.channels.iter();
-        names.map(|channel| channel.name.as_str()).collect()
+    fn channels(&self) -> PyResult<Vec<&str>> {
+        let columns = self.kept()?.columns.iter();
+        Ok(columns.map(|column| column.name.as_str()).collect())
     }
 
     /// The names of the channels, so that `dict(run)` works.
-    fn keys(&self) -> Vec<&str> {
+    fn keys(&self) -> PyResult<Vec<&str>> {
         self.channels()
     }
 
     /// The time of every row [s].
     #[getter]
-    fn t<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.columns[0].bind(py).clone()
+    fn t<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(self.kept()?.columns[0].values.bind(py).clone())
     }
 
     /// The unit of every channel; "1" of a number without one.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let units = PyDict::new(py);
-        for channel in &self.channels {
-            units.set_item(&channel.name, channel.unit)?;
-        }
-        Ok(units)
+        self.kept()?.units(py)
     }
 
     /// The contacts in the order in which they ended, as in onsets.csv: a dict of read-only arrays t [s], joint (str),
     /// impact_velocity [m/s], delta [m], angle [rad], deepest_penetration [m], largest_force [N], end [s] and exit_velocity
     /// [m/s]. The last two are NaN of a contact that is closed when the run ends.
     #[getter]
-    fn onsets(&self, py: Python) -> Py<PyDict> {
-        self.onsets.clone_ref(py)
+    fn onsets(&self, py: Python) -> PyResult<Py<PyDict>> {
+        Ok(self.kept()?.onsets.clone_ref(py))
     }
 
     /// What summary.json says: title, overrides, status, counts of the work done, energy ledger, extremes, what the run came to
     /// (`closing`), warnings, notes.
     #[getter]
-    fn summary(&self, py: Python) -> Py<PyAny> {
-        self.summary.clone_ref(py)
+    fn summary(&self, py: Python) -> PyResult<Py<PyAny>> {
+        Ok(self.kept()?.summary.clone_ref(py))
     }
 
     /// Which results are in doubt, why, and what to do, one line each.
     #[getter]
-    fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
+    fn warnings(&self) -> PyResult<Vec<String>> {
+        Ok(self.kept()?.told.warnings.clone())
     }
 
     /// Facts about the run that put no result in doubt, one line each: redundant constraints, large strains, counts of the solver.
     #[getter]
-    fn notes(&self) -> Vec<String> {
-        self.notes.clone()
+    fn notes(&self) -> PyResult<Vec<String>> {
+        Ok(self.kept()?.told.notes.clone())
     }
 
     /// "complete", "incomplete" (stopped) or "failed".
     #[getter]
-    fn status(&self) -> &'static str {
-        self.report.status.name()
+    fn status(&self) -> PyResult<&str> {
+        Ok(&self.kept()?.told.status)
     }
 
     /// The channels whose names match `pattern`, as a dict from names to arrays; `*` stands for any sequence of characters, as in
@@ -227,15 +336,16 @@ impl PyRun {
     ///
     /// Raises KeyError where none matches.
     fn select<'py>(&self, py: Python<'py>, pattern: &str) -> PyResult<Bound<'py, PyDict>> {
+        let kept = self.kept()?;
         let wanted = WildMatchPattern::<'*', '\0'>::new(pattern);
         let selected = PyDict::new(py);
-        for (channel, column) in self.channels.iter().zip(&self.columns) {
-            if wanted.matches(&channel.name) {
-                selected.set_item(&channel.name, column)?;
+        for column in &kept.columns {
+            if wanted.matches(&column.name) {
+                selected.set_item(&column.name, &column.values)?;
             }
         }
         if selected.is_empty() {
-            self.column(pattern)?;
+            kept.column(pattern)?;
         }
         Ok(selected)
     }
@@ -245,13 +355,14 @@ impl PyRun {
     ///
     /// Raises ImportError without pandas (`pip install looselink[pandas]`).
     fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let kept = self.kept()?;
         let options = PyDict::new(py);
         options.set_item("copy", false)?;
         let pandas = py.import("pandas")?;
-        let frame = pandas.call_method("DataFrame", (self.table(py)?,), Some(&options))?;
+        let frame = pandas.call_method("DataFrame", (kept.table(py)?,), Some(&options))?;
         let attributes = frame.getattr("attrs")?;
-        attributes.set_item("title", &self.scene.title)?;
-        attributes.set_item("units", self.units(py)?)?;
+        attributes.set_item("title", &kept.told.title)?;
+        attributes.set_item("units", kept.units(py)?)?;
         Ok(frame)
     }
 
@@ -260,7 +371,7 @@ impl PyRun {
     /// Raises ImportError without Polars (`pip install looselink[polars]`).
     fn to_polars<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         py.import("polars")?
-            .call_method1("DataFrame", (self.table(py)?,))
+            .call_method1("DataFrame", (self.kept()?.table(py)?,))
     }
 
     /// The run as a page in which the mechanism moves, as `looselink view` writes it. In a notebook it is shown with this `height`
@@ -269,33 +380,13 @@ impl PyRun {
     /// Raises ValueError where the run has no motion, because the scene says `output.motion = false`, or no row yet.
     #[pyo3(signature = (height=600))]
     fn view(&self, py: Python, height: u32) -> PyResult<PyView> {
-        let Some((width, motion)) = &self.motion else {
-            let message = "the run has no motion to show: the scene says `output.motion = false`";
-            return Err(raise::<PyValueError>(message));
-        };
-        let mut channels = Vec::new();
-        let rows = motion.len() / width;
-        for (channel, column) in self.channels.iter().zip(&self.columns) {
-            let column = column.bind(py).try_readonly()?;
-            let values = column.as_slice()?;
-            channels.push(StoredChannel {
-                name: channel.name.clone(),
-                unit: channel.unit.to_owned(),
-                values: values[..values.len().min(rows)].to_vec(),
-            });
-        }
-        let motion = motion.chunks_exact(*width).take(channels[0].values.len());
-        let motion = motion.map(<[f64]>::to_vec).collect();
-        let scene = Scene::clone(&self.scene);
-        let summary = summary(&scene, &self.report).map_err(|error| output_error(&error))?;
-        let kept = StoredRun::kept(self.name.clone(), scene, &summary, channels, motion);
-        if let Some(raised) = take_raised() {
-            return Err(raised);
-        }
-        let kept = kept.map_err(|error| raise::<PyValueError>(error.to_string()))?;
-        Ok(PyView {
-            page: page(&[kept]),
-            height,
-        })
+        let page = self.kept()?.page(py)?;
+        Ok(PyView { page, height })
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        visit.call(&self.kept.scene)?;
+        visit.call(&self.kept.onsets)?;
+        visit.call(&self.kept.summary)
     }
 }

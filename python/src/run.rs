@@ -5,6 +5,7 @@ use super::errors::{output_error, raise, raised, scene_error};
 use super::memory::Memory;
 use super::progress::ProgressDisplay;
 use super::results::PyRun;
+use super::snapshot::Snapshot;
 use folder::Folder;
 use looselink::output::Results;
 use looselink::scene::Scene;
@@ -14,7 +15,6 @@ use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use std::ffi::CString;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// What has become of a run.
 struct FinishedRun {
@@ -29,12 +29,14 @@ struct FinishedRun {
 /// Simulates a scene.
 pub fn run(
     py: Python,
-    scene: Arc<Scene>,
+    snapshot: Snapshot,
     shown: ProgressDisplay,
     out: Option<PathBuf>,
     force: bool,
 ) -> PyResult<Py<PyRun>> {
-    let ended = py.detach(|| simulate(&scene, shown, out.as_deref(), force))?;
+    let ended = snapshot.evaluate(py, |scene| {
+        py.detach(|| simulate(scene, shown, out.as_deref(), force))
+    })?;
     let FinishedRun {
         channels,
         mut memory,
@@ -46,15 +48,8 @@ pub fn run(
     let shown = memory.shown.finish(py, last.as_ref());
     let name = out.and_then(|out| out.canonicalize().ok());
     let name = name.and_then(|out| Some(out.file_name()?.to_string_lossy().into_owned()));
-    let kept = PyRun::new(
-        py,
-        scene,
-        name.unwrap_or_default(),
-        channels,
-        memory,
-        report,
-    )?;
-    let warnings = kept.warnings.clone();
+    let name = name.unwrap_or_default();
+    let kept = PyRun::new(py, snapshot, name, &channels, memory, &report)?;
     let kept = Py::new(py, kept)?;
     let with_rows = |error: PyErr| {
         // some exceptions cannot be changed
@@ -71,7 +66,7 @@ pub fn run(
         Some(error) => return Err(with_rows(raise::<raised::RunError>(run_failure(&error)))),
         None => {}
     }
-    warn(py, warnings).map_err(with_rows)?;
+    warn(py, report.warnings()).map_err(with_rows)?;
     Ok(kept)
 }
 
@@ -95,11 +90,10 @@ fn simulate(
     let folder = folder.transpose();
     let folder = folder.map_err(|error| output_error(&error))?;
     let simulation = Simulation::new(scene);
-    if let Some(raised) = take_raised() {
-        return Err(raised);
-    }
     let mut simulation =
         simulation.map_err(|error| Python::attach(|py| scene_error(py, &error)))?;
+    // before anything is written
+    take_raised().map_or(Ok(()), Err)?;
     let results = folder.map(|folder| Results::begin(folder, scene, &simulation));
     let results = results.transpose();
     let results = results.map_err(|error| output_error(&error))?;

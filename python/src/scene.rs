@@ -1,21 +1,21 @@
 //! A scene that Python reads, changes and runs.
 
-use super::callable::{FUNCTION, Given, take_raised, with_given};
 use super::errors::{raise, scene_error};
-use super::load::LOAD;
-use super::progress::ProgressDisplay;
+use super::progress::{ProgressDisplay, Watch};
 use super::results::PyRun;
 use super::run::{run, warn};
+use super::snapshot::Snapshot;
 use super::value::{document, named_callable, override_value, quoted, written_key};
 use folder::json;
-use looselink::registry::Registry;
-use looselink::scene::{Analysis, Scene, SceneError};
+use looselink::modes::Modes;
+use looselink::scene::{Analysis, Scene};
 use looselink::simulate::Simulation;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList, PyTuple};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use studies::ablation::SceneEffect;
 use texts::harmless_line;
 
@@ -32,21 +32,24 @@ use texts::harmless_line;
 #[pyo3(signature = (source, /))]
 pub fn load(py: Python, source: &Bound<PyAny>) -> PyResult<PyScene> {
     if let Ok(tables) = source.cast::<PyDict>() {
-        let mut given = Vec::new();
-        let text = document(tables, &mut given)?;
-        return PyScene::parse(py, "dict".to_owned(), text, Vec::new(), given);
+        let callables = PyList::empty(py);
+        let text = document(tables, &callables)?;
+        let snapshot = Snapshot::read("dict".to_owned(), text, Vec::new(), callables.to_tuple(), 0);
+        return snapshot.map(PyScene::new);
     }
     let path: PathBuf = source.extract().map_err(|_| {
         raise::<PyTypeError>("a scene is loaded from a path (str, os.PathLike) or from a dict")
     })?;
     let scene = Scene::load(&path, &[]).map_err(|error| scene_error(py, &error))?;
-    Ok(PyScene {
-        name: path.display().to_string(),
-        text: scene.text().to_owned(),
-        overrides: Vec::new(),
-        given: Vec::new(),
-        scene: Arc::new(scene),
-    })
+    let (name, text) = (path.display().to_string(), scene.text().to_owned());
+    let callables = PyTuple::empty(py).unbind();
+    Ok(PyScene::new(Snapshot::new(
+        name,
+        text,
+        Vec::new(),
+        scene,
+        callables,
+    )))
 }
 
 /// loads(text, name="scene")
@@ -58,76 +61,52 @@ pub fn load(py: Python, source: &Bound<PyAny>) -> PyResult<PyScene> {
 #[pyfunction]
 #[pyo3(signature = (text, name="scene"))]
 pub fn loads(py: Python, text: &str, name: &str) -> PyResult<PyScene> {
-    PyScene::parse(py, name.to_owned(), text.to_owned(), Vec::new(), Vec::new())
+    let (name, text) = (name.to_owned(), text.to_owned());
+    Snapshot::read(name, text, Vec::new(), PyTuple::empty(py), 0).map(PyScene::new)
 }
 
 /// A mechanism and how it is simulated, read and checked. `load` and `loads` make one.
-#[pyclass(module = "looselink", name = "Scene")]
+///
+/// A callable can evaluate scenes; one that evaluates its own scene
+/// without end gets a RecursionError.
+#[pyclass(module = "looselink", name = "Scene", frozen)]
 #[derive(Debug)]
 pub struct PyScene {
-    name: String,
-    text: String,
-    overrides: Vec<String>,
-    /// The callables, by the numbers that name them.
-    given: Vec<Arc<Given>>,
-    scene: Arc<Scene>,
+    /// None after the garbage collector has cleared it. The lock is held for an assignment only, never
+    /// while Python works.
+    snapshot: Mutex<Option<Snapshot>>,
 }
 
 impl PyScene {
-    fn parse(
-        py: Python,
-        name: String,
-        text: String,
-        overrides: Vec<String>,
-        given: Vec<Arc<Given>>,
-    ) -> PyResult<PyScene> {
-        let scene = read(&name, &text, &overrides, &given);
-        // what a callable raised is the cause of the fault
-        let scene = match (take_raised(), scene) {
-            (Some(raised), _) => return Err(raised),
-            (None, scene) => scene.map_err(|error| scene_error(py, &error))?,
-        };
-        Ok(PyScene {
-            name,
-            text,
-            overrides,
-            given,
-            scene: Arc::new(scene),
-        })
+    pub fn new(snapshot: Snapshot) -> PyScene {
+        PyScene {
+            snapshot: Mutex::new(Some(snapshot)),
+        }
     }
 
-    /// Adds an override with the callables that it names, or leaves the scene as it is.
-    fn change(&mut self, py: Python, change: String, given: Vec<Arc<Given>>) -> PyResult<()> {
-        let mut overrides = self.overrides.clone();
-        overrides.push(change);
-        *self = PyScene::parse(py, self.name.clone(), self.text.clone(), overrides, given)?;
+    fn lock(&self) -> MutexGuard<'_, Option<Snapshot>> {
+        self.snapshot.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The scene as it is now.
+    pub fn now(&self, py: Python) -> PyResult<Snapshot> {
+        let snapshot = self.lock().as_ref().map(|snapshot| snapshot.clone_ref(py));
+        snapshot.ok_or_else(|| raise::<PyRuntimeError>("the scene is no more"))
+    }
+
+    /// Puts one in the place of the snapshot from which it was made.
+    fn replace(&self, before: &Snapshot, after: Snapshot) -> PyResult<()> {
+        let mut snapshot = self.lock();
+        if !snapshot.as_ref().is_some_and(|now| now.is(before)) {
+            let message = "the scene was changed while it was being changed, by a callable that was checked or by another thread: \
+                           only that change is made";
+            return Err(raise::<PyRuntimeError>(message));
+        }
+        let before = snapshot.replace(after);
+        drop(snapshot);
+        // ends callables that others replace, and which are free to do anything
+        drop(before);
         Ok(())
-    }
-}
-
-/// Reads a scene; one with callables can name them.
-fn read(
-    name: &str,
-    text: &str,
-    overrides: &[String],
-    given: &[Arc<Given>],
-) -> Result<Scene, SceneError> {
-    let standard = Registry::standard();
-    let registry = match given.is_empty() {
-        true => standard,
-        false => standard.with_function(&FUNCTION).with_force(&LOAD),
-    };
-    with_given(given, || {
-        Scene::parse_with(&registry, name, text, overrides)
-    })
-}
-
-/// The simulation of a scene at its start.
-fn compiled(py: Python, scene: &Scene) -> PyResult<Simulation> {
-    let simulation = Simulation::new(scene);
-    match (take_raised(), simulation) {
-        (Some(raised), _) => Err(raised),
-        (None, simulation) => simulation.map_err(|error| scene_error(py, &error)),
     }
 }
 
@@ -136,58 +115,86 @@ pub fn from_json<'py>(py: Python<'py>, bytes: &[u8]) -> PyResult<Bound<'py, PyAn
     py.import("json")?.call_method1("loads", (bytes,))
 }
 
+/// The modes of a scene about its pose at a time, the names of the unknowns, and what is in doubt. Without Python, up to callables
+/// and signals.
+fn modes_at(scene: &Scene, at: f64, opens: bool) -> PyResult<(Modes, Vec<String>, Vec<String>)> {
+    let simulation = Simulation::new(scene);
+    let mut simulation =
+        simulation.map_err(|error| Python::attach(|py| scene_error(py, &error)))?;
+    let mut warnings = Vec::new();
+    if at > 0.0 || scene.simulation.analysis == Analysis::Static {
+        let mut watch = Watch::default();
+        let reached = simulation.approach(at, &mut watch);
+        watch.raised.map_or(Ok(()), Err)?;
+        reached.map_err(|error| raise::<PyRuntimeError>(messages::run_failure(&error)))?;
+        warnings = simulation.report().warnings();
+    }
+    let found = simulation.modes(opens);
+    let found = found.map_err(|error| raise::<PyRuntimeError>(error.to_string()))?;
+    warnings.extend(found.asymmetry_note());
+    let model = simulation.model();
+    let names = &model.unknown_names()[..model.shape().unknowns];
+    Ok((found, names.to_vec(), warnings))
+}
+
 #[pymethods]
 impl PyScene {
     /// The title of the scene.
     #[getter]
-    fn title(&self) -> &str {
-        &self.scene.title
+    fn title(&self, py: Python) -> PyResult<String> {
+        Ok(self.now(py)?.scene.title.clone())
     }
 
     /// Where the scene was read from, as messages call it.
     #[getter]
-    fn name(&self) -> &str {
-        &self.name
+    fn name(&self, py: Python) -> PyResult<String> {
+        Ok(self.now(py)?.name.clone())
     }
 
     /// The TOML text that the scene was read from, without the changes in `overrides`.
     #[getter]
-    fn text(&self) -> &str {
-        &self.text
+    fn text(&self, py: Python) -> PyResult<String> {
+        Ok(self.now(py)?.text.clone())
     }
 
     /// The changes made by `set` and `add_load`, as `--set` of the command line takes them.
     #[getter]
-    fn overrides(&self) -> Vec<String> {
-        self.overrides.clone()
+    fn overrides(&self, py: Python) -> PyResult<Vec<String>> {
+        Ok(self.now(py)?.overrides.clone())
     }
 
     /// A copy, which changes do not share.
-    fn copy(&self) -> PyScene {
-        PyScene {
-            name: self.name.clone(),
-            text: self.text.clone(),
-            overrides: self.overrides.clone(),
-            given: self.given.clone(),
-            scene: self.scene.clone(),
+    pub fn copy(&self, py: Python) -> PyResult<PyScene> {
+        self.now(py).map(PyScene::new)
+    }
+
+    fn __copy__(&self, py: Python) -> PyResult<PyScene> {
+        self.copy(py)
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        match self.snapshot.try_lock().as_deref() {
+            Ok(Some(snapshot)) => visit.call(&snapshot.callables),
+            _ => Ok(()),
         }
     }
 
-    fn __copy__(&self) -> PyScene {
-        self.copy()
+    fn __clear__(&self) {
+        let snapshot = self.lock().take();
+        drop(snapshot);
     }
 
-    fn __repr__(&self) -> String {
-        let overrides = match self.overrides.len() {
+    fn __repr__(&self, py: Python) -> PyResult<String> {
+        let now = self.now(py)?;
+        let overrides = match now.overrides.len() {
             0 => String::new(),
             1 => ", 1 override".to_owned(),
             count => format!(", {count} overrides"),
         };
-        format!(
-            "<looselink.Scene {:?} from {}{overrides}>",
-            self.scene.title,
-            harmless_line(&self.name)
-        )
+        let (title, name) = (&now.scene.title, harmless_line(&now.name));
+        Ok(format!(
+            "<looselink.Scene {title:?} from {name}{overrides}>"
+        ))
     }
 
     /// Changes a field and returns the scene, as `--set path=value` of the command line does.
@@ -198,21 +205,25 @@ impl PyScene {
     /// [N, N m], for a motion (value, rate, acceleration) [m or rad, and their derivatives by s]. It is called once with t = 0 to
     /// check it.
     ///
-    /// The whole scene is read again. Raises SceneError for the first fault, TypeError and ValueError for a value that a scene
-    /// cannot hold, and what the callable raises; the scene is then as it was. Whether the mechanism can be assembled is seen when
-    /// it is run or inspected.
+    /// The whole scene is read again. A run that is under way does not notice: it has a copy of its own. Raises SceneError for the
+    /// first fault, TypeError and ValueError for a value that a scene cannot hold, what the callable raises, and RuntimeError where
+    /// the callable or another thread changes the scene meanwhile; this change is then not made. Whether the mechanism can be
+    /// assembled is seen when it is run or inspected.
     fn set<'py>(
-        mut slf: PyRefMut<'py, Self>,
+        slf: Bound<'py, Self>,
         path: &str,
         value: &Bound<'py, PyAny>,
-    ) -> PyResult<PyRefMut<'py, Self>> {
+    ) -> PyResult<Bound<'py, Self>> {
         if path.contains('=') {
             let message = format!("the path {path:?} has a `=`: write set(path, value)");
             return Err(raise::<PyValueError>(message));
         }
-        let mut given = slf.given.clone();
-        let value_text = override_value(value, path, &mut given)?;
-        slf.change(value.py(), format!("{path}={value_text}"), given)?;
+        let py = slf.py();
+        let now = slf.get().now(py)?;
+        let callables = now.callables.bind(py).to_list();
+        let value_text = override_value(value, path, &callables)?;
+        let changed = now.changed(format!("{path}={value_text}"), callables.to_tuple())?;
+        slf.get().replace(&now, changed)?;
         Ok(slf)
     }
 
@@ -226,36 +237,38 @@ impl PyScene {
     /// [N/m, N s/m]. Without it they are forward differences with a step of 1.5e-8 max(|x|, 0.01) in every argument, which take
     /// four more calls. Newton's method needs derivatives to converge only; give them where the load changes within micrometres.
     ///
-    /// Raises SceneError for an unknown point or a name that is taken, TypeError for what cannot be called.
+    /// Raises SceneError for an unknown point or a name that is taken, TypeError for what cannot be called, RuntimeError as `set`.
     #[pyo3(signature = (name, point, load, tangent=None))]
     fn add_load<'py>(
-        mut slf: PyRefMut<'py, Self>,
+        slf: Bound<'py, Self>,
         name: &str,
         point: &str,
         load: Bound<'py, PyAny>,
         tangent: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<PyRefMut<'py, Self>> {
+    ) -> PyResult<Bound<'py, Self>> {
         for (what, function) in [("load", Some(&load)), ("tangent", tangent.as_ref())] {
             if function.is_some_and(|function| !function.is_callable()) {
                 return Err(raise::<PyTypeError>(format!("{what} cannot be called")));
             }
         }
-        let taken = slf.scene.forces.iter().any(|force| force.name == name);
-        if taken {
+        let py = slf.py();
+        let now = slf.get().now(py)?;
+        let forces = &now.scene.forces;
+        if forces.iter().any(|force| force.name == name) {
             let message = format!("the scene has a force `{name}` already");
             return Err(raise::<PyValueError>(message));
         }
-        let py = load.py();
-        let mut given = slf.given.clone();
+        let callables = now.callables.bind(py).to_list();
         let keys = format!("point = {}, ", quoted(point));
-        let tangent = tangent.map(Bound::unbind);
-        let table = named_callable(load.unbind(), tangent, &keys, &mut given);
         let name = written_key(name);
-        let change = match slf.scene.forces.is_empty() {
+        let path = format!("forces.{name}");
+        let table = named_callable(&path, &load, tangent.as_ref(), &keys, &callables)?;
+        let change = match forces.is_empty() {
             true => format!("forces={{ {name} = {table} }}"),
-            false => format!("forces.{name}={table}"),
+            false => format!("{path}={table}"),
         };
-        slf.change(py, change, given)?;
+        let changed = now.changed(change, callables.to_tuple())?;
+        slf.get().replace(&now, changed)?;
         Ok(slf)
     }
 
@@ -264,8 +277,11 @@ impl PyScene {
     ///
     /// Raises SceneError where the mechanism cannot be assembled or cannot start.
     fn inspect<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let simulation = compiled(py, &self.scene)?;
-        let inspection = json(&simulation.inspect());
+        let inspection = self.now(py)?.evaluate(py, |scene| {
+            let inspected = || Ok(json(&Simulation::new(scene)?.inspect()));
+            py.detach(inspected)
+                .map_err(|error| scene_error(py, &error))
+        })?;
         let inspection = inspection.map_err(|e| raise::<PyRuntimeError>(e.to_string()))?;
         from_json(py, &inspection)
     }
@@ -281,7 +297,7 @@ impl PyScene {
     /// Warnings of the run up to `at`, and of a stiffness that is not symmetric, are given with the category RunWarning.
     ///
     /// Raises ValueError for a time outside the duration or other contacts, SceneError as `inspect`, RuntimeError where there are no
-    /// modes.
+    /// modes, KeyboardInterrupt after Ctrl-C on the way to `at`.
     #[pyo3(signature = (at=0.0, contacts="as-is", count=None))]
     fn modes<'py>(
         &self,
@@ -290,40 +306,27 @@ impl PyScene {
         contacts: &str,
         count: Option<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let scene = match contacts {
-            "as-is" | "open" => Scene::clone(&self.scene),
-            "ideal" => {
-                let removed = SceneEffect::Clearance.removed_from(&self.scene);
-                removed.map_err(|error| scene_error(py, &error))?
-            }
+        let opens = match contacts {
+            "as-is" | "ideal" => false,
+            "open" => true,
             other => {
                 let message =
                     format!("contacts = {other:?}: it is \"as-is\", \"open\" or \"ideal\"");
                 return Err(raise::<PyValueError>(message));
             }
         };
-        let duration = self.scene.simulation.duration;
+        let now = self.now(py)?;
+        let duration = now.scene.simulation.duration;
         if !(0.0..=duration).contains(&at) {
             let message = format!("at = {at} lies outside the duration, 0 to {duration} s");
             return Err(raise::<PyValueError>(message));
         }
-        let mut simulation = compiled(py, &scene)?;
-        let mut warnings = Vec::new();
-        if at > 0.0 || scene.simulation.analysis == Analysis::Static {
-            let reached = simulation.approach(at, &mut ());
-            let raised = take_raised();
-            let failed = |error: looselink::simulate::RunError| {
-                raise::<PyRuntimeError>(messages::run_failure(&error))
-            };
-            raised.map_or_else(|| reached.map_err(failed), Err)?;
-            warnings = simulation.report().warnings();
-        }
-        let found = simulation.modes(contacts == "open");
-        let found = found.map_err(|error| raise::<PyRuntimeError>(error.to_string()))?;
-        warnings.extend(found.asymmetry_note());
+        let (found, names, warnings) = now.evaluate(py, |scene| {
+            let ideal = (contacts == "ideal").then(|| SceneEffect::Clearance.removed_from(scene));
+            let ideal = ideal.transpose().map_err(|error| scene_error(py, &error))?;
+            py.detach(|| modes_at(ideal.as_ref().unwrap_or(scene), at, opens))
+        })?;
         warn(py, warnings)?;
-        let model = simulation.model();
-        let names = &model.unknown_names()[..model.shape().unknowns];
         let modes = found.modes.iter().take(count.unwrap_or(usize::MAX));
         let modes = modes.map(|mode| {
             let entry = json(mode).map_err(|e| raise::<PyRuntimeError>(e.to_string()))?;
@@ -351,7 +354,7 @@ impl PyScene {
         client: Option<Bound<'py, PyAny>>,
         keywords: Option<Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        if !slf.borrow().given.is_empty() {
+        if slf.get().now(slf.py())?.has_callables(slf.py()) {
             return Err(raise::<PyValueError>(
                 "a scene with callables cannot be swept: their values are not in its text",
             ));
@@ -370,7 +373,8 @@ impl PyScene {
     ///
     /// Raises RunError, whose `run` has the rows so far, where the run cannot go on; SceneError as `inspect`; FileExistsError where
     /// `out` holds a result and `force` is False; OSError where it cannot be written; KeyboardInterrupt within a tenth of a second
-    /// after Ctrl-C; what a callable raises. The last three have a `run` with the rows so far, too, once rows have come.
+    /// after Ctrl-C; what a callable raises, and RecursionError where one runs its own scene without end. Exceptions of a run that
+    /// has begun have a `run` with the rows so far, too.
     #[pyo3(signature = (progress=None, out=None, force=false))]
     fn run(
         &self,
@@ -379,12 +383,7 @@ impl PyScene {
         out: Option<PathBuf>,
         force: bool,
     ) -> PyResult<Py<PyRun>> {
-        run(
-            py,
-            self.scene.clone(),
-            ProgressDisplay::new(progress)?,
-            out,
-            force,
-        )
+        let shown = ProgressDisplay::new(progress)?;
+        run(py, self.now(py)?, shown, out, force)
     }
 }

@@ -1,10 +1,11 @@
 //! Sweeps: the runs of a study on the threads of this process, or one by one on those of others.
 
 use super::errors::{output_error, raise, raised, scene_error};
+use super::stack::room;
 use super::value::document;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -47,9 +48,10 @@ pub struct PySweep {
 }
 
 impl PySweep {
-    fn new(sweep: Result<Sweep, SweepError>) -> PyResult<PySweep> {
+    fn new(sweep: impl FnOnce() -> Result<Sweep, SweepError>) -> PyResult<PySweep> {
+        room()?;
         Ok(PySweep {
-            sweep: Arc::new(sweep.map_err(|error| sweep_error(&error))?),
+            sweep: Arc::new(sweep().map_err(|error| sweep_error(&error))?),
             store: Mutex::new(None),
         })
     }
@@ -78,7 +80,7 @@ impl PySweep {
     /// That of a study file.
     #[staticmethod]
     fn load(path: PathBuf, target: Option<(String, f64)>) -> PyResult<PySweep> {
-        PySweep::new(Sweep::load(&path, target_of(target)))
+        PySweep::new(|| Sweep::load(&path, target_of(target)))
     }
 
     /// That of a study as a dict without its scene, and of the text of the scene with the changes of every run.
@@ -96,9 +98,9 @@ impl PySweep {
         let set: Vec<String> = set.map_or(Ok(Vec::new()), |set| set.extract())?;
         study.set_item("set", [overrides, set].concat())?;
         study.set_item("scene", name)?;
-        let mut given = Vec::new();
-        let text = document(&study, &mut given)?;
-        if !given.is_empty() {
+        let callables = PyList::empty(py);
+        let text = document(&study, &callables)?;
+        if !callables.is_empty() {
             return Err(raise::<PyTypeError>("a study cannot hold callables"));
         }
         let source = SweepSource {
@@ -107,7 +109,7 @@ impl PySweep {
             scene,
             target: target_of(target),
         };
-        py.detach(|| PySweep::new(Sweep::new(source)))
+        py.detach(|| PySweep::new(|| Sweep::new(source)))
     }
 
     /// Names of the tables and pictures, first the one that closes a result.

@@ -1,20 +1,18 @@
 //! Python values as TOML: what is written into a scene.
 
-use super::callable::Given;
 use super::errors::raise;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
-use std::sync::Arc;
 
 /// Tables in tables end at this depth; a scene needs five levels.
 const DEPTH: usize = 32;
 
-/// The text of a whole scene, one named thing a line. Callables are added to `given`.
+/// The text of a whole scene, one named thing a line. Callables are added to `callables`.
 ///
 /// # Errors
 /// A value that a scene cannot hold; the message names the key.
-pub fn document(scene: &Bound<PyDict>, given: &mut Vec<Arc<Given>>) -> PyResult<String> {
+pub fn document(scene: &Bound<PyDict>, callables: &Bound<PyList>) -> PyResult<String> {
     let mut text = String::new();
     for (key, value) in scene.iter() {
         let name = key_name(&key, "the scene")?;
@@ -26,12 +24,12 @@ pub fn document(scene: &Bound<PyDict>, given: &mut Vec<Arc<Given>>) -> PyResult<
             Some(things) => {
                 for (thing, value) in things.iter() {
                     let thing = key_name(&thing, &name)?;
-                    let value = inline(&value, &format!("{name}.{thing}"), given, 2)?;
+                    let value = inline(&value, &format!("{name}.{thing}"), callables, 2)?;
                     text += &format!("{}.{} = {value}\n", written_key(&name), written_key(&thing));
                 }
             }
             None => {
-                let value = inline(&value, &name, given, 1)?;
+                let value = inline(&value, &name, callables, 1)?;
                 text += &format!("{} = {value}\n", written_key(&name));
             }
         }
@@ -39,19 +37,19 @@ pub fn document(scene: &Bound<PyDict>, given: &mut Vec<Arc<Given>>) -> PyResult<
     Ok(text)
 }
 
-/// What stands behind the `=` of an override. Callables are added to `given`.
+/// What stands behind the `=` of an override. Callables are added to `callables`.
 ///
 /// # Errors
 /// A value that a scene cannot hold; the message names its path.
 pub fn override_value(
     value: &Bound<PyAny>,
     path: &str,
-    given: &mut Vec<Arc<Given>>,
+    callables: &Bound<PyList>,
 ) -> PyResult<String> {
     match value.cast::<PyString>() {
         // as it is typed on a command line
         Ok(word) if is_word(word.to_str()?) => Ok(word.to_str()?.to_owned()),
-        _ => inline(value, path, given, 0),
+        _ => inline(value, path, callables, 0),
     }
 }
 
@@ -67,7 +65,7 @@ fn is_word(text: &str) -> bool {
 fn inline(
     value: &Bound<PyAny>,
     path: &str,
-    given: &mut Vec<Arc<Given>>,
+    callables: &Bound<PyList>,
     depth: usize,
 ) -> PyResult<String> {
     if depth > DEPTH {
@@ -93,7 +91,7 @@ fn inline(
         let mut entries = Vec::new();
         for (key, value) in table.iter() {
             let key = key_name(&key, path)?;
-            let value = inline(&value, &format!("{path}.{key}"), given, depth + 1)?;
+            let value = inline(&value, &format!("{path}.{key}"), callables, depth + 1)?;
             entries.push(format!("{} = {value}", written_key(&key)));
         }
         return Ok(match entries.is_empty() {
@@ -107,7 +105,7 @@ fn inline(
             items.push(inline(
                 &item?,
                 &format!("{path}.{index}"),
-                given,
+                callables,
                 depth + 1,
             )?);
         }
@@ -115,11 +113,10 @@ fn inline(
     }
     // scalars and arrays of NumPy
     if value.hasattr("tolist")? {
-        return inline(&value.call_method0("tolist")?, path, given, depth + 1);
+        return inline(&value.call_method0("tolist")?, path, callables, depth + 1);
     }
     if value.is_callable() {
-        let function = value.clone().unbind();
-        return Ok(named_callable(function, None, "", given));
+        return named_callable(path, value, None, "", callables);
     }
     let kind = value.get_type().name()?;
     let message = format!("`{path}` cannot be written into a scene: it is of type {kind}");
@@ -127,15 +124,21 @@ fn inline(
 }
 
 /// The table that names a callable, with other keys before its number.
+///
+/// # Errors
+/// None but for want of memory.
 pub fn named_callable(
-    function: Py<PyAny>,
-    tangent: Option<Py<PyAny>>,
+    path: &str,
+    function: &Bound<PyAny>,
+    tangent: Option<&Bound<PyAny>>,
     keys: &str,
-    given: &mut Vec<Arc<Given>>,
-) -> String {
-    let number = given.len();
-    given.push(Arc::new(Given { function, tangent }));
-    format!("{{ type = \"callable\", {keys}number = {number} }}")
+    callables: &Bound<PyList>,
+) -> PyResult<String> {
+    let number = callables.len();
+    callables.append((path, function, tangent))?;
+    Ok(format!(
+        "{{ type = \"callable\", {keys}number = {number} }}"
+    ))
 }
 
 fn key_name(key: &Bound<PyAny>, place: &str) -> PyResult<String> {
