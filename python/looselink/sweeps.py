@@ -6,15 +6,17 @@ import contextlib
 import json
 import math
 import os
+import pickle
 import sys
 import tempfile
 import time
 import warnings
 from collections.abc import Callable, Iterator
+from copy import deepcopy
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ._looselink import RunWarning, Scene, __version__, _make_tasks, _Sweep, _text_of, load
+from ._looselink import RunWarning, Scene, __version__, _expect_version, _make_tasks, _Sweep, _text_of, load
 
 if TYPE_CHECKING:
     import pandas
@@ -47,6 +49,29 @@ class SweepResult:
         others = {"failed": self.summary["status"]["failed"], "refused": self.summary["status"]["refused"]}
         counts = [f"{self.summary['runs']} runs", *(f"{count} {name}" for name, count in others.items() if count)]
         return [*counts, f"{self.summary['warned']} with warnings"] if self.summary["warned"] else counts
+
+    def __copy__(self) -> SweepResult:
+        copy = object.__new__(SweepResult)
+        copy.__dict__.update(self.__dict__)
+        return copy
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> SweepResult:
+        # the files are those of both
+        copy = self.__copy__()
+        copy.summary = deepcopy(self.summary, memo)
+        return copy
+
+    def __getstate__(self) -> dict[str, Any]:
+        if self._kept is not None:
+            raise pickle.PicklingError(
+                f"the files of this sweep are in the temporary folder {str(self.folder)!r}, which is deleted with the result: "
+                "a sweep with `out` can be pickled"
+            )
+        return {"version": __version__, "folder": self.folder.absolute(), "summary": self.summary}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        _expect_version(state["version"])
+        self.folder, self.summary, self._kept = state["folder"], state["summary"], None
 
     @property
     def page(self) -> str:

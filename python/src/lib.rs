@@ -4,6 +4,7 @@ mod callable;
 mod errors;
 mod load;
 mod memory;
+mod pickle;
 mod progress;
 mod results;
 mod run;
@@ -20,6 +21,8 @@ use pyo3::prelude::*;
 mod module {
     #[pymodule_export]
     use super::errors::raised::{RunError, RunWarning, SceneError, StudyError};
+    #[pymodule_export]
+    use super::pickle::{blank_run, blank_scene, expect_version};
     #[pymodule_export]
     use super::results::PyRun;
     #[pymodule_export]

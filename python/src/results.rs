@@ -2,6 +2,7 @@
 
 use super::errors::{output_error, raise};
 use super::memory::Memory;
+use super::pickle::{Pickled, deep_copy, pickled, remember};
 use super::scene::{PyScene, from_json};
 use super::snapshot::Snapshot;
 use super::view::PyView;
@@ -10,11 +11,12 @@ use looselink::output::summary;
 use looselink::simulate::{Channel, Impact, Report};
 use messages::closing_table;
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyException, PyKeyError, PyRuntimeError, PyValueError};
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator, PyList};
 use serde::Deserialize;
+use std::sync::OnceLock;
 use view::{StoredChannel, StoredRun, page};
 use wildmatch::WildMatchPattern;
 
@@ -24,10 +26,13 @@ use wildmatch::WildMatchPattern;
 /// filled, without a copy, and is read-only; `.copy()` gives one that can be changed.
 #[pyclass(module = "looselink", name = "Run", frozen, mapping)]
 pub struct PyRun {
-    kept: Kept,
+    /// Nothing before a pickle has filled it.
+    kept: OnceLock<Kept>,
 }
 
 /// A channel over time.
+#[derive(FromPyObject, IntoPyObjectRef)]
+#[pyo3(from_item_all)]
 struct Column {
     name: String,
     unit: String,
@@ -37,9 +42,19 @@ struct Column {
 /// How many numbers a row of the motion has, and the rows one after the other.
 type Motion = (usize, Py<PyArray1<f64>>);
 
+/// The scene of a run as it was run.
+#[derive(FromPyObject, IntoPyObjectRef)]
+enum RunScene {
+    Known(Py<PyScene>),
+    /// Why a pickle does not hold it.
+    Refused(String),
+}
+
+/// What a run is; as an object of Python a dict.
+#[derive(FromPyObject, IntoPyObjectRef)]
+#[pyo3(from_item_all)]
 struct Kept {
-    /// The scene as it was run.
-    scene: Py<PyScene>,
+    scene: RunScene,
     /// The folder of its files, without where it is.
     name: String,
     columns: Vec<Column>,
@@ -47,8 +62,6 @@ struct Kept {
     /// What `summary.json` holds, and the same as Python has it.
     record: String,
     summary: Py<PyAny>,
-    /// What is told of it.
-    told: Told,
     /// The lines of the closing table.
     closing: Vec<String>,
     motion: Option<Motion>,
@@ -84,55 +97,67 @@ impl PyRun {
             let numbers = PyArray1::from_vec(py, numbers);
             (layout.names().len(), numbers.unbind())
         });
-        let kept = Kept::new(
+        let run = PyRun::blank();
+        run.fill(
             py,
-            Py::new(py, PyScene::new(snapshot))?,
-            name,
-            columns.collect(),
-            onsets(py, &memory.contacts)?,
-            String::from_utf8(record)?,
-            closing_table(report),
-            motion,
+            Kept {
+                scene: RunScene::Known(Py::new(py, PyScene::new(snapshot))?),
+                name,
+                columns: columns.collect(),
+                onsets: onsets(py, &memory.contacts)?.unbind(),
+                summary: from_json(py, &record)?.unbind(),
+                record: String::from_utf8(record)?,
+                closing: closing_table(report),
+                motion,
+            },
         )?;
-        Ok(PyRun { kept })
+        Ok(run)
+    }
+
+    /// A run that receives its content later: what it holds may refer to it.
+    pub fn blank() -> PyRun {
+        PyRun {
+            kept: OnceLock::new(),
+        }
+    }
+
+    /// Gives a blank run its content, whose arrays become read-only.
+    fn fill(&self, py: Python, kept: Kept) -> PyResult<()> {
+        for array in kept.arrays(py) {
+            array.call_method1("setflags", (false,))?;
+        }
+        let filled = self.kept.set(kept);
+        filled.map_err(|_| raise::<PyRuntimeError>("the run has a content already"))
     }
 
     fn kept(&self) -> PyResult<&Kept> {
-        Ok(&self.kept)
+        let kept = self.kept.get();
+        kept.ok_or_else(|| raise::<PyRuntimeError>("the run has no content"))
     }
 }
 
 impl Kept {
-    /// Makes the arrays read-only.
+    /// What is told of the run.
     ///
     /// # Errors
-    /// A summary that does not say what is told of every run.
-    fn new(
-        py: Python,
-        scene: Py<PyScene>,
-        name: String,
-        columns: Vec<Column>,
-        onsets: Bound<PyDict>,
-        record: String,
-        closing: Vec<String>,
-        motion: Option<Motion>,
-    ) -> PyResult<Kept> {
-        let kept = Kept {
-            scene,
-            name,
-            columns,
-            onsets: onsets.unbind(),
-            told: serde_json::from_str(&record)
-                .map_err(|e| raise::<PyRuntimeError>(e.to_string()))?,
-            summary: from_json(py, record.as_bytes())?.unbind(),
-            record,
-            closing,
-            motion,
-        };
-        for array in kept.arrays(py) {
-            array.call_method1("setflags", (false,))?;
+    /// A summary that is not one.
+    fn told(&self) -> PyResult<Told> {
+        serde_json::from_str(&self.record).map_err(raise::<PyValueError>)
+    }
+
+    /// As a dict without what cannot be pickled.
+    fn pickled<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let state = self.into_pyobject(py)?;
+        if let RunScene::Known(scene) = &self.scene
+            && let Err(error) = scene.get().check(py)
+        {
+            // not an interrupt
+            if !error.is_instance_of::<PyException>(py) {
+                return Err(error);
+            }
+            state.set_item("scene", error.value(py).str()?)?;
         }
-        Ok(kept)
+        Ok(state)
     }
 
     /// All arrays.
@@ -194,7 +219,14 @@ impl Kept {
         }
         let motion = motion.take(channels[0].values.len());
         let motion = motion.map(<[f64]>::to_vec).collect();
-        self.scene.get().now(py)?.evaluate(py, |scene| {
+        let scene = match &self.scene {
+            RunScene::Known(scene) => scene.get().now(py)?,
+            RunScene::Refused(why) => {
+                let message = format!("the run was pickled without its scene: {why}");
+                return Err(raise::<PyValueError>(message));
+            }
+        };
+        scene.evaluate(py, |scene| {
             let (name, scene, record) = (self.name.clone(), scene.clone(), self.record.as_bytes());
             let page =
                 || StoredRun::kept(name, scene, record, channels, motion).map(|run| page(&[run]));
@@ -253,13 +285,14 @@ impl PyRun {
     }
 
     fn __repr__(&self, py: Python) -> PyResult<String> {
-        let Kept { told, columns, .. } = self.kept()?;
+        let kept = self.kept()?;
+        let told = kept.told()?;
         Ok(format!(
             "<looselink.Run {:?}, {}: {} channels, {} rows to t = {} s>",
             told.title,
             told.status,
-            columns.len(),
-            columns[0].values.bind(py).len(),
+            kept.columns.len(),
+            kept.columns[0].values.bind(py).len(),
             numbers::exact(told.t)
         ))
     }
@@ -269,7 +302,7 @@ impl PyRun {
         let kept = self.kept()?;
         let mut lines = vec![self.__repr__(py)?];
         lines.extend_from_slice(&kept.closing);
-        let notes = kept.told.notes.iter();
+        let notes = kept.told()?.notes.into_iter();
         lines.extend(notes.map(|note| format!("note: {note}")));
         Ok(lines.join("\n"))
     }
@@ -316,19 +349,19 @@ impl PyRun {
     /// Which results are in doubt, why, and what to do, one line each.
     #[getter]
     fn warnings(&self) -> PyResult<Vec<String>> {
-        Ok(self.kept()?.told.warnings.clone())
+        Ok(self.kept()?.told()?.warnings)
     }
 
     /// Facts about the run that put no result in doubt, one line each: redundant constraints, large strains, counts of the solver.
     #[getter]
     fn notes(&self) -> PyResult<Vec<String>> {
-        Ok(self.kept()?.told.notes.clone())
+        Ok(self.kept()?.told()?.notes)
     }
 
     /// "complete", "incomplete" (stopped) or "failed".
     #[getter]
-    fn status(&self) -> PyResult<&str> {
-        Ok(&self.kept()?.told.status)
+    fn status(&self) -> PyResult<String> {
+        Ok(self.kept()?.told()?.status)
     }
 
     /// The channels whose names match `pattern`, as a dict from names to arrays; `*` stands for any sequence of characters, as in
@@ -361,7 +394,7 @@ impl PyRun {
         let pandas = py.import("pandas")?;
         let frame = pandas.call_method("DataFrame", (kept.table(py)?,), Some(&options))?;
         let attributes = frame.getattr("attrs")?;
-        attributes.set_item("title", &kept.told.title)?;
+        attributes.set_item("title", kept.told()?.title)?;
         attributes.set_item("units", kept.units(py)?)?;
         Ok(frame)
     }
@@ -384,9 +417,42 @@ impl PyRun {
         Ok(PyView { page, height })
     }
 
+    /// A copy, which has the same arrays, onsets and summary.
+    fn __copy__(&self, py: Python) -> PyResult<PyRun> {
+        let copy = PyRun::blank();
+        copy.fill(py, self.kept()?.into_pyobject(py)?.extract()?)?;
+        Ok(copy)
+    }
+
+    /// A copy with copies of all that it holds.
+    fn __deepcopy__<'py>(
+        slf: &Bound<'py, Self>,
+        memo: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, PyRun>> {
+        let py = slf.py();
+        let kept = slf.get().kept()?.into_pyobject(py)?;
+        let copy = Bound::new(py, PyRun::blank())?;
+        remember(slf, &copy, memo)?;
+        copy.get().fill(py, deep_copy(&kept, memo)?.extract()?)?;
+        Ok(copy)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Pickled<'py, Bound<'py, PyDict>>> {
+        pickled(py, "_blank_run", self.kept()?.pickled(py)?)
+    }
+
+    fn __setstate__(&self, state: &Bound<PyAny>) -> PyResult<()> {
+        self.fill(state.py(), state.extract()?)
+    }
+
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
-        visit.call(&self.kept.scene)?;
-        visit.call(&self.kept.onsets)?;
-        visit.call(&self.kept.summary)
+        let Some(kept) = self.kept.get() else {
+            return Ok(());
+        };
+        if let RunScene::Known(scene) = &kept.scene {
+            visit.call(scene)?;
+        }
+        visit.call(&kept.onsets)?;
+        visit.call(&kept.summary)
     }
 }

@@ -1,10 +1,11 @@
 //! A scene that Python reads, changes and runs.
 
 use super::errors::{raise, scene_error};
+use super::pickle::{Pickled, deep_copy, pickled, remember};
 use super::progress::{ProgressDisplay, Watch};
 use super::results::PyRun;
 use super::run::{run, warn};
-use super::snapshot::Snapshot;
+use super::snapshot::{Parts, Snapshot};
 use super::value::{document, named_callable, override_value, quoted, written_key};
 use folder::json;
 use looselink::modes::Modes;
@@ -72,7 +73,7 @@ pub fn loads(py: Python, text: &str, name: &str) -> PyResult<PyScene> {
 #[pyclass(module = "looselink", name = "Scene", frozen)]
 #[derive(Debug)]
 pub struct PyScene {
-    /// None after the garbage collector has cleared it. The lock is held for an assignment only, never
+    /// None of a blank scene, and after the garbage collector has cleared it. The lock is held for an assignment only, never
     /// while Python works.
     snapshot: Mutex<Option<Snapshot>>,
 }
@@ -84,6 +85,33 @@ impl PyScene {
         }
     }
 
+    /// A scene that receives its content later: its callables may refer to it.
+    pub fn blank() -> PyScene {
+        PyScene {
+            snapshot: Mutex::new(None),
+        }
+    }
+
+    /// Gives a blank scene its content.
+    fn fill(&self, snapshot: Snapshot) -> PyResult<()> {
+        let mut content = self.lock();
+        if content.is_some() {
+            return Err(raise::<PyRuntimeError>("the scene has a content already"));
+        }
+        *content = Some(snapshot);
+        Ok(())
+    }
+
+    /// Sees that its callables can be pickled.
+    ///
+    /// # Errors
+    /// PicklingError, which names the first that cannot.
+    pub fn check(&self, py: Python) -> PyResult<()> {
+        let callables = self.now(py)?.callables;
+        let pickles = py.import("looselink.pickles")?;
+        pickles.call_method1("check", (callables,)).map(drop)
+    }
+
     fn lock(&self) -> MutexGuard<'_, Option<Snapshot>> {
         self.snapshot.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -91,7 +119,7 @@ impl PyScene {
     /// The scene as it is now.
     pub fn now(&self, py: Python) -> PyResult<Snapshot> {
         let snapshot = self.lock().as_ref().map(|snapshot| snapshot.clone_ref(py));
-        snapshot.ok_or_else(|| raise::<PyRuntimeError>("the scene is no more"))
+        snapshot.ok_or_else(|| raise::<PyRuntimeError>("the scene has no content"))
     }
 
     /// Puts one in the place of the snapshot from which it was made.
@@ -170,6 +198,34 @@ impl PyScene {
 
     fn __copy__(&self, py: Python) -> PyResult<PyScene> {
         self.copy(py)
+    }
+
+    /// A copy with copies of its callables; functions are their own copies.
+    fn __deepcopy__<'py>(
+        slf: &Bound<'py, Self>,
+        memo: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, PyScene>> {
+        let py = slf.py();
+        let now = slf.get().now(py)?;
+        let copy = Bound::new(py, PyScene::blank())?;
+        // a callable may hold its scene
+        remember(slf, &copy, memo)?;
+        let callables = deep_copy(now.callables.bind(py), memo)?;
+        copy.get()
+            .fill(now.with_callables(callables.cast_into()?.unbind()))?;
+        Ok(copy)
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Pickled<'py, Parts<Bound<'py, PyTuple>>>> {
+        self.check(py)?;
+        pickled(py, "_blank_scene", self.now(py)?.parts(py))
+    }
+
+    fn __setstate__(&self, parts: Parts<Bound<PyTuple>>) -> PyResult<()> {
+        self.fill(Snapshot::of_parts(parts)?)
     }
 
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {

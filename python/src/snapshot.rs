@@ -19,6 +19,9 @@ pub struct Content {
     pub scene: Scene,
 }
 
+/// Name, text, overrides and callables.
+pub type Parts<T> = (String, String, Vec<String>, T);
+
 /// A scene as it is at one time. A change of the scene makes another one: what goes on with this one does not notice.
 #[derive(Debug)]
 pub struct Snapshot {
@@ -99,6 +102,24 @@ impl Snapshot {
             content: self.content.clone(),
             callables,
         }
+    }
+
+    /// Reads what [`Snapshot::parts`] gives. Its callables have been checked.
+    ///
+    /// # Errors
+    /// As [`Snapshot::read`].
+    pub fn of_parts(
+        (name, text, overrides, callables): Parts<Bound<PyTuple>>,
+    ) -> PyResult<Snapshot> {
+        let checked = callables.len();
+        Snapshot::read(name, text, overrides, callables, checked)
+    }
+
+    /// What a pickle holds.
+    pub fn parts<'py>(&self, py: Python<'py>) -> Parts<Bound<'py, PyTuple>> {
+        let (name, text) = (self.name.clone(), self.text.clone());
+        let callables = self.callables.bind(py).clone();
+        (name, text, self.overrides.clone(), callables)
     }
 
     pub fn has_callables(&self, py: Python) -> bool {
