@@ -2,14 +2,16 @@
 
 use crate::support::{all_scenes, load, run_scene};
 use ladder::{Rung, Worst};
-use looselink::newton::{Extent, Newton};
+use looselink::newton::{Extent, Newton, interruptible};
 use looselink::registry::Registry;
 use looselink::scene::Scene;
 use looselink::simulate::{Simulation, Stability};
 use looselink::system::System;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use std::cell::Cell;
 use std::f64::consts::{FRAC_PI_2, TAU};
+use std::rc::Rc;
 
 /// A pendulum of length 1 m whose end is sketched somewhere.
 fn pendulum(end: [f64; 2], equilibrium: &str) -> Scene {
@@ -51,6 +53,32 @@ fn a_pendulum_hangs_from_any_sketch() {
     Rung::ClosedForms
         .asks("Does a pendulum hang straight down from any sketch, with the eigenvalue 3g/(2l)?")
         .within(&worst, 1e-12, "rounding of an angle and of a quotient");
+}
+
+/// What is asked for may itself look for an equilibrium, which nobody ends.
+#[test]
+fn a_search_that_nobody_waits_for_ends_at_once() {
+    let scene = pendulum([0.6, 0.8], "true");
+    let asked = Rc::new(Cell::new(0));
+    let search = |waits: u32| {
+        asked.set(0);
+        let (asked, inner) = (asked.clone(), pendulum([0.8, 0.6], "true"));
+        let ended = move || {
+            asked.set(asked.get() + 1);
+            asked.get() == 1 && Simulation::new(&inner).is_err() || asked.get() > waits
+        };
+        interruptible(ended, || Simulation::new(&scene).is_ok())
+    };
+    assert!(search(u32::MAX));
+    let all = asked.get();
+    assert!(all > 20, "{all}");
+    for waits in [0, 10] {
+        assert!(!search(waits));
+        // a step downhill is tried again with a shorter time, at most some dozen times
+        assert!(asked.get() < waits + 100, "{}", asked.get());
+    }
+    // it holds for the work alone
+    assert!(Simulation::new(&scene).is_ok());
 }
 
 /// A pendulum that stands upright without being asked to rests there, and is said to fall; one that hangs has no note.

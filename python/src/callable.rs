@@ -9,12 +9,17 @@ use super::errors::raise;
 use super::stack::room;
 use looselink::document::{Fields, Key, SceneError, Takes};
 use looselink::motion::{Function, FunctionKind, FunctionOfTime, Use};
+use looselink::newton::interruptible;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Time between two looks at signals.
+const LOOK: Duration = Duration::from_millis(50);
 
 /// The callables of a scene by their numbers, each as (path, function, tangent or None), or None where others have taken its place. A
 /// tuple, which the garbage collector of Python looks into.
@@ -79,6 +84,22 @@ pub fn evaluating<T>(
     let result = work();
     // what a callable raised is the cause of the fault
     take_raised().map_or(result, Err)
+}
+
+/// Does `work`, which may take long, and ends it after Ctrl-C: what Python then raises is kept as what a callable raises.
+pub fn watching<T>(work: impl FnOnce() -> T) -> T {
+    let looked = Cell::new(Instant::now());
+    let ended = || EVALUATED.with_borrow(|e| e.as_ref().is_some_and(|e| e.raised.is_some()));
+    let asked = move || {
+        // iterations may be short or long
+        if !ended() && looked.get().elapsed() >= LOOK {
+            looked.set(Instant::now());
+            let signals = Python::attach(|py| py.check_signals());
+            signals.unwrap_or_else(keep_raised);
+        }
+        ended()
+    };
+    interruptible(asked, work)
 }
 
 /// What a callable of the scene that is evaluated has raised since it was last asked for.

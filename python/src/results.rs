@@ -1,5 +1,6 @@
 //! The results of a run.
 
+use super::callable::watching;
 use super::errors::{output_error, raise};
 use super::memory::Memory;
 use super::pickle::{Pickled, deep_copy, pickled, remember};
@@ -230,7 +231,7 @@ impl Kept {
             let (name, scene, record) = (self.name.clone(), scene.clone(), self.record.as_bytes());
             let page =
                 || StoredRun::kept(name, scene, record, channels, motion).map(|run| page(&[run]));
-            py.detach(page)
+            py.detach(|| watching(page))
                 .map_err(|error| raise::<PyValueError>(error.to_string()))
         })
     }

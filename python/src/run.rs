@@ -1,6 +1,6 @@
 //! A run of a scene.
 
-use super::callable::take_raised;
+use super::callable::{take_raised, watching};
 use super::errors::{output_error, raise, raised, scene_error};
 use super::memory::Memory;
 use super::progress::ProgressDisplay;
@@ -89,7 +89,7 @@ fn simulate(
     let folder = out.map(|out| Folder::claim(out, view::kind(), force));
     let folder = folder.transpose();
     let folder = folder.map_err(|error| output_error(&error))?;
-    let simulation = Simulation::new(scene);
+    let simulation = watching(|| Simulation::new(scene));
     let mut simulation =
         simulation.map_err(|error| Python::attach(|py| scene_error(py, &error)))?;
     // before anything is written

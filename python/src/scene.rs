@@ -1,5 +1,6 @@
 //! A scene that Python reads, changes and runs.
 
+use super::callable::watching;
 use super::errors::{raise, scene_error};
 use super::pickle::{Pickled, deep_copy, pickled, remember};
 use super::progress::{ProgressDisplay, Watch};
@@ -146,7 +147,7 @@ pub fn from_json<'py>(py: Python<'py>, bytes: &[u8]) -> PyResult<Bound<'py, PyAn
 /// The modes of a scene about its pose at a time, the names of the unknowns, and what is in doubt. Without Python, up to callables
 /// and signals.
 fn modes_at(scene: &Scene, at: f64, opens: bool) -> PyResult<(Modes, Vec<String>, Vec<String>)> {
-    let simulation = Simulation::new(scene);
+    let simulation = watching(|| Simulation::new(scene));
     let mut simulation =
         simulation.map_err(|error| Python::attach(|py| scene_error(py, &error)))?;
     let mut warnings = Vec::new();
@@ -331,10 +332,10 @@ impl PyScene {
     /// What will be simulated, as `looselink inspect --json` prints it: numbers of unknowns, multipliers and contacts, the effects
     /// of the model, assumptions, names of coordinates and constraints.
     ///
-    /// Raises SceneError where the mechanism cannot be assembled or cannot start.
+    /// Raises SceneError where the mechanism cannot be assembled or cannot start, KeyboardInterrupt after Ctrl-C.
     fn inspect<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let inspection = self.now(py)?.evaluate(py, |scene| {
-            let inspected = || Ok(json(&Simulation::new(scene)?.inspect()));
+            let inspected = || Ok(json(&watching(|| Simulation::new(scene))?.inspect()));
             py.detach(inspected)
                 .map_err(|error| scene_error(py, &error))
         })?;
@@ -353,7 +354,7 @@ impl PyScene {
     /// Warnings of the run up to `at`, and of a stiffness that is not symmetric, are given with the category RunWarning.
     ///
     /// Raises ValueError for a time outside the duration or other contacts, SceneError as `inspect`, RuntimeError where there are no
-    /// modes, KeyboardInterrupt after Ctrl-C on the way to `at`.
+    /// modes, KeyboardInterrupt after Ctrl-C.
     #[pyo3(signature = (at=0.0, contacts="as-is", count=None))]
     fn modes<'py>(
         &self,

@@ -3,7 +3,6 @@
 import dataclasses
 import gc
 import os
-import signal
 import subprocess
 import sys
 import textwrap
@@ -449,22 +448,3 @@ def test_a_forked_process_leaves_the_files_to_its_parent(tmp_path):
         assert done.returncode == 0, done.stderr
         for name in ("channels.csv", "motion.bin", "summary.json"):
             assert (folder / "whole" / name).read_bytes() == (folder / "forked" / name).read_bytes()
-
-
-def test_ctrl_c_ends_modes_and_other_threads_go_on(oscillator):
-    oscillator.set("simulation.duration", 1e5).set("output.interval", 1e5)
-    counts = []
-
-    def interrupt():
-        for _ in range(50):
-            counts.append(time.monotonic())
-            time.sleep(0.01)
-        os.kill(os.getpid(), signal.SIGINT)
-
-    thread = threading.Thread(target=interrupt)
-    thread.start()
-    with pytest.raises(KeyboardInterrupt):
-        oscillator.modes(at=1e5)
-    assert time.monotonic() - counts[-1] < 5.0
-    assert np.diff(counts).max() < 1.0
-    thread.join()

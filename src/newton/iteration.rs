@@ -1,6 +1,7 @@
 //! Newton's iteration, which stages, projections, equilibria, poses of a mechanism and its assembly share.
 
 use super::Failure;
+use super::interruption;
 use crate::math::larger;
 
 /// What is known before an iteration.
@@ -39,7 +40,7 @@ impl Update {
 /// Repeats `step`, which moves the unknowns and says how far and whether this is enough, at most `limit` times.
 ///
 /// # Errors
-/// That of `step`, an update that is not finite, no convergence.
+/// That of `step`, an update that is not finite, no convergence; an interruption counts as an update that is not finite.
 #[inline]
 pub(crate) fn iterate(
     limit: usize,
@@ -52,6 +53,9 @@ pub(crate) fn iterate(
     };
     let mut worst = 0;
     while iteration.number < limit {
+        if interruption::has_come() {
+            return Err(Failure::NotFinite { index: worst });
+        }
         let (Update { size, index }, converged) = step(&iteration)?;
         worst = index;
         if !size.is_finite() {

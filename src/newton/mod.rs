@@ -4,6 +4,7 @@ mod crossing;
 mod descent;
 mod extent;
 mod factors;
+mod interruption;
 mod iteration;
 mod load_path;
 mod prediction;
@@ -16,6 +17,7 @@ mod tangent;
 
 pub use crossing::Crossing;
 pub use extent::Extent;
+pub use interruption::interruptible;
 pub(crate) use iteration::{Update, iterate};
 pub use load_path::{ArcMetric, PathTangent};
 pub use response::{Response, ResponseTerm};
