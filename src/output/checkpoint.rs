@@ -2,7 +2,7 @@
 //! the bytes from which the run goes on.
 
 use super::timing::Elapsed;
-use super::{Header, SCENE};
+use super::{Header, SCENE, SUMMARY};
 use crate::registry::Registry;
 use crate::scene::{Scene, SceneError};
 use crate::simulate::Simulation;
@@ -126,12 +126,15 @@ impl StoredCheckpoint {
         let refused = |why: &str| refused(path, why.to_owned());
         let folder = Folder::reopen(path, kind)?;
         match super::status(path).as_deref() {
+            None if path.join(SUMMARY).exists() => {
+                return Err(refused("its `summary.json` is damaged"));
+            }
             None => return Err(refused("it has no `summary.json`, so there is no run")),
             Some("complete") => return Err(refused("it is complete")),
             Some(_) => {}
         }
         let mut folder = folder.ok_or_else(|| refused(EARLIER))?;
-        let file = fs::read(path.join(CHECKPOINT)).map_err(|e| match e.kind() {
+        let file = folder::read(&path.join(CHECKPOINT)).map_err(|e| match e.kind() {
             ErrorKind::NotFound => refused(
                 "it was stopped before its first checkpoint, or is a static analysis, which has none; run the scene again with --force",
             ),
@@ -148,7 +151,7 @@ impl StoredCheckpoint {
 
     /// True where a run can be resumed, as far as its checkpoint says.
     pub fn is_in(path: &Path) -> bool {
-        let checkpoint = fs::read(path.join(CHECKPOINT));
+        let checkpoint = folder::read(&path.join(CHECKPOINT));
         super::status(path).is_some_and(|status| status != "complete")
             && checkpoint.is_ok_and(|file| parsed(&file).is_ok())
     }

@@ -34,7 +34,6 @@ pub use folder;
 use folder::{Folder, Kind, OutputError, json};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs;
 use std::io;
 use std::path::Path;
 use table_file::TableFile;
@@ -77,7 +76,6 @@ pub fn kind(formats: &[&'static Format], more: &[&str]) -> Kind {
     Kind {
         name: "a run",
         files,
-        keys: &["scene_hash", "status", "version"],
     }
 }
 
@@ -382,7 +380,7 @@ fn write_numbers(
 
 /// The status in the summary of a run; `None` without a summary.
 fn status(folder: &Path) -> Option<String> {
-    let summary = fs::read(folder.join(SUMMARY)).ok()?;
+    let summary = folder::read(&folder.join(SUMMARY)).ok()?;
     let summary: serde_json::Value = serde_json::from_slice(&summary).ok()?;
     summary["status"].as_str().map(str::to_owned)
 }

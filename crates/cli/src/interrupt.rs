@@ -31,6 +31,11 @@ impl Interrupt {
                 })?;
             }
         }
+        // a file that grows beyond what the system allows it is an error of the call, which names the file
+        #[cfg(unix)]
+        flag::register(libc::SIGXFSZ, Arc::default()).map_err(|e| {
+            CommandFailure::system(format!("cannot watch for signal {}: {e}", libc::SIGXFSZ))
+        })?;
         Ok(interrupt)
     }
 

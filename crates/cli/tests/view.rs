@@ -38,6 +38,15 @@ fn a_part_of_a_run_can_be_seen() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path();
     expect(&run(out, &[]), 0, "");
+    let manifest = read(out, "manifest.jsonl");
+    let damaged = manifest.replace(
+        "{\"file\":\"channels.csv\",\"bytes\"",
+        "{\"fild\":\"channels.csv\",\"bytes\"",
+    );
+    assert_ne!(damaged, manifest);
+    fs::write(out.join("manifest.jsonl"), damaged).unwrap();
+    expect(&view(out, &[]), 2, "manifest.jsonl` is damaged");
+    fs::write(out.join("manifest.jsonl"), manifest).unwrap();
     for file in ["channels.csv", "motion.bin"] {
         let bytes = fs::read(out.join(file)).unwrap();
         fs::write(out.join(file), &bytes[..bytes.len() / 2 + 3]).unwrap();

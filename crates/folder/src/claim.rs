@@ -2,54 +2,15 @@
 
 use crate::digest::Digest;
 use crate::error::{OutputError, naming};
+use crate::kind::{Kind, earlier_kind};
 use crate::lock::{Lock, Sharing, is_at};
 use crate::manifest::{MANIFEST, Manifest};
 use crate::open;
 use crate::replaced::{self, PREVIOUS};
 use crate::temporary::{place, remove_left_folders, remove_leftovers};
-use same_file::Handle;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
-
-/// A kind of result.
-#[derive(Debug, Clone)]
-pub struct Kind {
-    /// What a folder holds, in words: "a run".
-    pub name: &'static str,
-    /// Names that its files can have. The first of them closes a result, is JSON and comes last: without that there is none.
-    pub files: Vec<String>,
-    /// Keys of the closing file, by which the result of an earlier version is known: that has no manifest.
-    pub keys: &'static [&'static str],
-}
-
-impl Kind {
-    /// The file that closes a result, where there is one of this kind in a folder.
-    fn closing(&self, folder: &Path) -> Option<serde_json::Value> {
-        let bytes = fs::read(folder.join(&self.files[0])).ok()?;
-        let value: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
-        let is_known = self.keys.iter().all(|key| value.get(key).is_some());
-        is_known.then_some(value)
-    }
-
-    /// True where a folder holds a result that came to its end.
-    pub(crate) fn is_whole(&self, folder: &Path) -> bool {
-        let closing = self.closing(folder);
-        closing.is_some_and(|closing| closing.get("status").is_none_or(|s| s == "complete"))
-    }
-
-    /// What a folder holds of the program: by its manifest or, of an earlier version, which wrote none, by the closing file.
-    pub(crate) fn held(&self, folder: &Path, mut manifest: Manifest) -> Manifest {
-        if manifest.kind.is_none() && self.closing(folder).is_some() {
-            let present = self
-                .files
-                .iter()
-                .filter(|file| is_there(&folder.join(file)));
-            manifest.files = present.map(|file| (file.clone(), None)).collect();
-        }
-        manifest
-    }
-}
 
 /// True of whatever has this path, also of a link to nothing.
 pub(crate) fn is_there(path: &Path) -> bool {
@@ -102,8 +63,13 @@ impl Folder {
     /// # Errors
     /// Another program writes to it; a result that may not be replaced, or files of others that have the names of its files.
     pub fn claim(path: &Path, kind: Kind, replaces: bool) -> Result<Folder, OutputError> {
-        let folder = Folder::locked(path, kind, replaces, Sharing::Alone)?;
-        folder.refuse_occupied()?;
+        let refuse = |manifest: &Manifest| refuse_occupied(path, &kind, manifest, replaces);
+        if !is_there(&path.join(MANIFEST)) {
+            // what is to be refused anyhow is refused before a lock comes into being
+            refuse(&kind.held(path, Manifest::default()))?;
+        }
+        let folder = Folder::locked(path, kind.clone(), replaces, Sharing::Alone)?;
+        refuse(&folder.manifest)?;
         remove_leftovers(path);
         remove_left_folders(path);
         Ok(folder)
@@ -115,9 +81,15 @@ impl Folder {
     /// # Errors
     /// A program has the folder for itself; it holds something else, or files of others that have the names of its files.
     pub fn share(path: &Path, kind: Kind) -> Result<Folder, OutputError> {
-        let folder = Folder::locked(path, kind, false, Sharing::Together)?;
-        folder.refuse_another_kind()?;
-        folder.refuse_foreign(&folder.kind.files)?;
+        let refuse = |manifest: &Manifest| {
+            refuse_another_kind(path, &kind, manifest)?;
+            refuse_foreign(path, manifest, &kind.files)
+        };
+        if !is_there(&path.join(MANIFEST)) {
+            refuse(&kind.held(path, Manifest::default()))?;
+        }
+        let folder = Folder::locked(path, kind.clone(), false, Sharing::Together)?;
+        refuse(&folder.manifest)?;
         remove_leftovers(path);
         Ok(folder)
     }
@@ -135,7 +107,7 @@ impl Folder {
             return Ok(None);
         };
         let folder = Folder::of(path, kind, true, Undo::default(), lock)?;
-        folder.refuse_another_kind()?;
+        refuse_another_kind(path, &folder.kind, &folder.manifest)?;
         remove_leftovers(path);
         Ok(Some(folder))
     }
@@ -193,56 +165,6 @@ impl Folder {
         self.manifest.files.contains_key(file)
     }
 
-    fn refuse_another_kind(&self) -> Result<(), OutputError> {
-        match &self.manifest.kind {
-            Some(held) if held != self.kind.name => Err(OutputError::OfAnotherKind {
-                folder: self.path.clone(),
-                held: held.clone(),
-            }),
-            None if self.manifest.is_foreign => {
-                Err(OutputError::Foreign(self.lock.path().to_owned()))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Refuses files that are there and somebody else's.
-    fn refuse_foreign(&self, files: &[String]) -> Result<(), OutputError> {
-        let foreign = |file: &&String| !self.owns(file) && is_there(&self.path.join(file));
-        match files.iter().find(foreign) {
-            Some(file) => Err(OutputError::Foreign(self.path.join(file))),
-            None => Ok(()),
-        }
-    }
-
-    /// Refuses a folder with a result unless it may be replaced, what is somebody else's, and what is no file.
-    fn refuse_occupied(&self) -> Result<(), OutputError> {
-        self.refuse_another_kind()?;
-        let listed = self.manifest.files.keys();
-        for file in self.kind.files.iter().chain(listed) {
-            let path = self.path.join(file);
-            if !is_there(&path) {
-                continue;
-            }
-            if !self.owns(file) {
-                return Err(OutputError::Foreign(path));
-            }
-            if !self.replaces {
-                return Err(OutputError::Occupied {
-                    folder: self.path.clone(),
-                    file: file.clone(),
-                });
-            }
-            if !path.is_file() {
-                return Err(OutputError::NotAFile(path));
-            }
-        }
-        match self.replaces {
-            true => replaced::refuse_foreign(&self.path, &self.kind),
-            false => Ok(()),
-        }
-    }
-
     /// Begins a result with these files: an earlier one is set aside.
     ///
     /// # Errors
@@ -276,7 +198,7 @@ impl Folder {
     /// # Errors
     /// A file of somebody else; a manifest that cannot be written.
     pub fn adopt(&mut self, files: &[String]) -> Result<(), OutputError> {
-        self.refuse_foreign(files)?;
+        refuse_foreign(&self.path, &self.manifest, files)?;
         let new = files.iter().filter(|file| !self.owns(file));
         let new: Vec<_> = new.map(|file| (file.clone(), None)).collect();
         self.list(new)
@@ -359,13 +281,74 @@ impl Folder {
 
     /// Refuses to write to a folder that is not the one that was locked.
     fn refuse_moved(&self) -> Result<(), OutputError> {
-        match self.lock.is_in_place() {
+        match self.lock.is_in_place()? {
             true => Ok(()),
             false => Err(OutputError::Changed {
                 path: self.path.clone(),
                 how: "was moved, replaced or deleted while the program wrote to it",
             }),
         }
+    }
+}
+
+fn refuse_another_kind(path: &Path, kind: &Kind, manifest: &Manifest) -> Result<(), OutputError> {
+    let held = match &manifest.kind {
+        Some(held) => Some(held.as_str()),
+        None if manifest.is_foreign => return Err(OutputError::Foreign(path.join(MANIFEST))),
+        None => earlier_kind(path),
+    };
+    match held {
+        Some(held) if held != kind.name => Err(OutputError::OfAnotherKind {
+            folder: path.to_owned(),
+            held: held.to_owned(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses files that are there and somebody else's.
+pub(crate) fn refuse_foreign(
+    path: &Path,
+    manifest: &Manifest,
+    files: &[String],
+) -> Result<(), OutputError> {
+    let foreign =
+        |file: &&String| !manifest.files.contains_key(*file) && is_there(&path.join(file));
+    match files.iter().find(foreign) {
+        Some(file) => Err(OutputError::Foreign(path.join(file))),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a folder with a result unless it may be replaced, what is somebody else's, and what is no file.
+fn refuse_occupied(
+    folder: &Path,
+    kind: &Kind,
+    manifest: &Manifest,
+    replaces: bool,
+) -> Result<(), OutputError> {
+    refuse_another_kind(folder, kind, manifest)?;
+    for file in kind.files.iter().chain(manifest.files.keys()) {
+        let path = folder.join(file);
+        if !is_there(&path) {
+            continue;
+        }
+        if !manifest.files.contains_key(file) {
+            return Err(OutputError::Foreign(path));
+        }
+        if !replaces {
+            return Err(OutputError::Occupied {
+                folder: folder.to_owned(),
+                file: file.clone(),
+            });
+        }
+        if !path.is_file() {
+            return Err(OutputError::NotAFile(path));
+        }
+    }
+    match replaces {
+        true => replaced::refuse_foreign(folder, kind),
+        false => Ok(()),
     }
 }
 
@@ -376,58 +359,6 @@ impl Drop for Folder {
             self.undo.undo();
         }
     }
-}
-
-/// Puts files into a folder beside those that are there, such as pictures of a result: each is there as the program's already, or
-/// not there. Several programs may do so at the same time. Where the file that closes a result is among them and changes, it is
-/// away until all others are in their place, and others of the kind that are the program's are deleted.
-///
-/// # Errors
-/// A file of somebody else; a file that cannot be written.
-pub fn add(
-    folder: &Path,
-    kind: &Kind,
-    files: &[(&str, impl AsRef<[u8]>)],
-) -> Result<(), OutputError> {
-    let path = folder.join(MANIFEST);
-    let mut options = OpenOptions::new();
-    let mut file = open(&path, options.read(true).append(true).create(true))?;
-    let manifest = Manifest::read(&mut file).map_err(naming(&path))?;
-    let is_new = manifest.kind.is_none();
-    let mut manifest = kind.held(folder, manifest);
-    let foreign = |name: &str| !manifest.files.contains_key(name) && is_there(&folder.join(name));
-    if let Some((name, _)) = files.iter().find(|(name, _)| foreign(name)) {
-        return Err(OutputError::Foreign(folder.join(name)));
-    }
-    let closing = folder.join(&kind.files[0]);
-    let closes = files.iter().find(|(name, _)| *name == kind.files[0]);
-    let changes = |(_, bytes): &&(&str, _)| {
-        let bytes: &[u8] = AsRef::as_ref(bytes);
-        fs::read(&closing).is_ok_and(|old| old != bytes)
-    };
-    if closes.is_some_and(|file| changes(&file)) {
-        let given = |name: &&String| files.iter().any(|(given, _)| given == name);
-        let stale = kind.files.iter().filter(|name| !given(name));
-        let stale = stale.filter(|name| manifest.files.contains_key(*name));
-        let stale = stale.map(|name| folder.join(name));
-        std::iter::once(closing.clone())
-            .chain(stale)
-            .try_for_each(|path| remove(&path))?;
-    }
-    let earlier = manifest.files.keys().filter(|_| is_new).cloned();
-    let mut new: Vec<String> = earlier.collect();
-    let unlisted = files.iter().map(|(name, _)| (*name).to_owned());
-    new.extend(unlisted.filter(|name| !manifest.files.contains_key(name)));
-    if is_new || !new.is_empty() {
-        let new = new.into_iter().map(|name| (name, None));
-        let added = manifest.add(&mut file, kind.name, new);
-        added.map_err(naming(&path))?;
-    }
-    remove_leftovers(folder);
-    for (name, bytes) in files {
-        place(&folder.join(name), bytes.as_ref())?;
-    }
-    Ok(())
 }
 
 /// Refuses a file that is written row by row and is no longer what the program wrote: another one, or with other bytes.
@@ -441,8 +372,7 @@ pub fn refuse_changed(path: &Path, file: &File, digest: Digest) -> Result<(), Ou
             how,
         })
     };
-    let own = file.try_clone().and_then(Handle::from_file);
-    if !is_at(&own.map_err(naming(path))?, path) {
+    if !is_at(file, path)? {
         return changed("was moved, replaced or deleted while the program wrote to it");
     }
     let read = File::open(path).and_then(|file| Digest::read(file, u64::MAX));

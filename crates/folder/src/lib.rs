@@ -10,24 +10,28 @@
 //! An earlier result is linked, all of its files or none, into the folder `previous-result` before it is taken out of its place,
 //! and deleted when the new one is whole. Whatever ends the program, one of the two places holds a whole result.
 
+mod add;
 mod claim;
 mod digest;
 mod error;
+mod kind;
 mod line;
 mod lock;
 mod manifest;
 mod replaced;
 mod temporary;
 
-pub use claim::{Folder, Kind, add, earlier_result, refuse_changed};
+pub use add::add;
+pub use claim::{Folder, earlier_result, refuse_changed};
 pub use digest::{Digest, Digesting};
 pub use error::{OutputError, naming};
+pub use kind::Kind;
 pub use line::{line_of, value_of};
 pub use manifest::{MANIFEST, verify};
 pub use temporary::replace;
 
 use serde::Serialize;
-use std::fs::{File, OpenOptions};
+use std::fs::{self, File, OpenOptions};
 use std::io;
 use std::path::Path;
 
@@ -41,11 +45,53 @@ pub fn json(value: &impl Serialize) -> Result<Vec<u8>, OutputError> {
     Ok(bytes)
 }
 
-/// Opens a file, but not what a link points at.
+/// Reads a whole file. A pipe or a device in its place is refused: it might never end.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn read(path: &Path) -> io::Result<Vec<u8>> {
+    match fs::metadata(path)?.is_file() {
+        true => fs::read(path),
+        false => Err(no_file()),
+    }
+}
+
+fn no_file() -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, "it is not a file")
+}
+
+/// Opens a file to read it, but not what a link points at.
+///
+/// # Errors
+/// When it cannot be opened; the message names the file.
+pub fn open_to_read(path: &Path) -> io::Result<File> {
+    open_unlinked(path, OpenOptions::new().read(true))
+}
+
+/// Opens a file to write to it, but not what a link points at, nor a file that has a second name: whoever gave it that does not expect
+/// it to change.
 ///
 /// # Errors
 /// When it cannot be opened; the message names the file.
 pub fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
+    let file = open_unlinked(path, options)?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let names = file.metadata().map_err(naming(path))?.nlink();
+        if names > 1 {
+            let message = "it has a second name (a hard link), whose content would change too; \
+                           copy the folder, or its files, instead";
+            return Err(naming(path)(io::Error::other(message)));
+        }
+    }
+    Ok(file)
+}
+
+fn open_unlinked(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
+    if fs::symlink_metadata(path).is_ok_and(|found| !found.is_file() && !found.is_symlink()) {
+        return Err(naming(path)(no_file()));
+    }
     #[cfg(unix)]
     {
         use std::os::unix::fs::OpenOptionsExt;

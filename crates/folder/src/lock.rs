@@ -3,7 +3,7 @@
 use crate::error::{OutputError, naming};
 use crate::{MANIFEST, open};
 use same_file::Handle;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
@@ -51,16 +51,15 @@ impl Lock {
             let path = path.clone();
             let lock = Lock { path, file, is_new };
             // between the two steps another program may have given the folder up
-            if lock.is_in_place() {
+            if lock.is_in_place()? {
                 return Ok(Some(lock));
             }
         }
     }
 
     /// False where the manifest, and perhaps its folder, has been moved, replaced or deleted.
-    pub fn is_in_place(&self) -> bool {
-        let own = self.file.try_clone().and_then(Handle::from_file);
-        own.is_ok_and(|own| is_at(&own, &self.path))
+    pub fn is_in_place(&self) -> io::Result<bool> {
+        is_at(&self.file, &self.path)
     }
 
     /// The manifest, opened for reading and for additions at its end.
@@ -84,8 +83,23 @@ impl Lock {
 }
 
 /// True of an open file that stands at a path itself, not behind a link there.
-pub(crate) fn is_at(file: &Handle, path: &Path) -> bool {
-    !path.is_symlink() && Handle::from_path(path).is_ok_and(|there| there == *file)
+pub(crate) fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    let named = |e| naming(path)(e);
+    match fs::symlink_metadata(path) {
+        Ok(there) if there.is_file() => {}
+        Err(e) if !matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            return Err(named(e));
+        }
+        _ => return Ok(false),
+    }
+    let own = file
+        .try_clone()
+        .and_then(Handle::from_file)
+        .map_err(named)?;
+    match Handle::from_path(path) {
+        Err(e) if e.kind() == ErrorKind::NotFound => Ok(false),
+        there => Ok(there.map_err(named)? == own),
+    }
 }
 
 /// A manifest, and whether it came into being.

@@ -3,9 +3,9 @@
 use crate::digest::Digest;
 use crate::error::{OutputError, naming};
 use crate::line::{line_of, value_of};
+use crate::read;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Component, Path};
 
@@ -49,7 +49,8 @@ impl Manifest {
         Ok(Manifest::parse(&bytes))
     }
 
-    fn parse(bytes: &[u8]) -> Manifest {
+    /// As [`Manifest::read`].
+    pub fn parse(bytes: &[u8]) -> Manifest {
         let mut manifest = Manifest::default();
         // a kill may cut the first line
         let is_cut =
@@ -102,14 +103,14 @@ fn is_plain(name: &str) -> bool {
     matches!((parts.next(), parts.next()), (Some(Component::Normal(only)), None) if only == name)
 }
 
-/// Refuses the bytes of a file of a result that are not those that the program wrote. What no manifest has a digest of is taken
-/// as it is: files of a run under way, and results of earlier versions.
+/// Refuses the bytes of a file of a result that are not those that the program wrote. Where a result has not ended, and where an
+/// earlier version wrote it, which made no manifest, there may be no digest: then they are taken as they are.
 ///
 /// # Errors
-/// [`OutputError::Changed`].
-pub fn verify(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
+/// [`OutputError::Changed`], also of the manifest of a result that `has_ended` and whose digest is lost.
+pub fn verify(folder: &Path, name: &str, bytes: &[u8], has_ended: bool) -> Result<(), OutputError> {
     let path = folder.join(MANIFEST);
-    let manifest = match fs::read(&path) {
+    let manifest = match read(&path) {
         Ok(bytes) => Manifest::parse(&bytes),
         Err(e) if e.kind() == ErrorKind::NotFound => return Ok(()),
         Err(e) => return Err(naming(&path)(e).into()),
@@ -118,6 +119,10 @@ pub fn verify(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), OutputError
         Some(Some(digest)) if *digest != Digest::of(bytes) => Err(OutputError::Changed {
             path: folder.join(name),
             how: "is damaged, or was changed after the program wrote it",
+        }),
+        None | Some(None) if has_ended => Err(OutputError::Changed {
+            path,
+            how: "is damaged, or was changed after the program wrote it: it lacks the digest of a table",
         }),
         _ => Ok(()),
     }

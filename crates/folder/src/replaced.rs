@@ -1,10 +1,12 @@
 //! The result that another one replaces: it stands aside until that is whole.
 
-use crate::claim::{Kind, is_there, remove};
+use crate::claim::{is_there, remove};
 use crate::error::{OutputError, naming};
+use crate::kind::Kind;
 use crate::manifest::{MANIFEST, Manifest};
+use crate::read;
 use crate::temporary::temporary_folder;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, Cursor, ErrorKind};
 use std::path::Path;
 
@@ -14,8 +16,8 @@ pub(crate) const PREVIOUS: &str = "previous-result";
 fn aside(folder: &Path, kind: &Kind) -> io::Result<Manifest> {
     let aside = folder.join(PREVIOUS);
     let path = aside.join(MANIFEST);
-    let manifest = match File::open(&path) {
-        Ok(mut file) => Manifest::read(&mut file).map_err(naming(&path))?,
+    let manifest = match read(&path) {
+        Ok(bytes) => Manifest::parse(&bytes),
         Err(e) if e.kind() == ErrorKind::NotFound => Manifest::default(),
         Err(e) => return Err(naming(&path)(e)),
     };

@@ -1,8 +1,8 @@
 //! Files that take their place at once.
 
 use crate::error::{OutputError, naming};
-use crate::open;
-use std::fs::{self, File, OpenOptions, TryLockError};
+use crate::open_to_read;
+use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
@@ -25,18 +25,36 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
 
 /// As [`replace`], in a folder whose leftovers are removed already.
 pub(crate) fn place(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let write = || -> io::Result<()> {
-        let mut temporary = temporary(parent(path))?;
-        temporary.as_file_mut().write_all(bytes)?;
-        // on the disk before the name points at it
-        temporary.as_file().sync_all()?;
+    let written = write(parent(path), bytes).map_err(naming(path))?;
+    written.name(path)
+}
+
+/// A file that has all its bytes, on the disk, and no name yet.
+#[derive(Debug)]
+pub(crate) struct Temporary(NamedTempFile);
+
+impl Temporary {
+    /// In a folder.
+    pub fn new(folder: &Path, bytes: &[u8]) -> io::Result<Temporary> {
+        write(folder, bytes).map_err(naming(folder))
+    }
+
+    /// Gives it a name in its folder.
+    pub fn name(self, path: &Path) -> io::Result<()> {
         // locked until it has its name
-        let (_file, temporary) = temporary.into_parts();
-        fs::rename(&temporary, path)?;
+        let (_file, temporary) = self.0.into_parts();
+        fs::rename(&temporary, path).map_err(naming(path))?;
         temporary.keep()?;
         Ok(())
-    };
-    write().map_err(naming(path))
+    }
+}
+
+fn write(folder: &Path, bytes: &[u8]) -> io::Result<Temporary> {
+    let mut temporary = temporary(folder)?;
+    temporary.as_file_mut().write_all(bytes)?;
+    // on the disk before the name points at it
+    temporary.as_file().sync_all()?;
+    Ok(Temporary(temporary))
 }
 
 /// The folder of a file.
@@ -75,7 +93,7 @@ pub(crate) fn temporary_folder(folder: &Path) -> io::Result<PathBuf> {
 /// Removes the temporary files in a folder that no program has open. What cannot be removed does no harm.
 pub(crate) fn remove_leftovers(folder: &Path) {
     for path in named_like_temporaries(folder, fs::FileType::is_file) {
-        let Ok(file) = open(&path, OpenOptions::new().read(true)) else {
+        let Ok(file) = open_to_read(&path) else {
             continue;
         };
         // locked until it is removed

@@ -1,7 +1,7 @@
 //! A result of `looselink run`, read back.
 
 use super::moved::bounds;
-use folder::{Kind, OutputError, verify};
+use folder::{Kind, MANIFEST, OutputError, verify};
 use indexmap::IndexMap;
 use looselink::modes::NaturalMode;
 use looselink::output;
@@ -12,7 +12,6 @@ use looselink::simulate::Simulation;
 use numbers::exact;
 use serde::Deserialize;
 use std::f64::consts::TAU;
-use std::fs;
 use std::io;
 use std::path::Path;
 use std::rc::Rc;
@@ -102,19 +101,24 @@ pub struct StoredSummary {
 }
 
 impl StoredSummary {
+    /// True of a run that nobody killed and that is not under way.
+    fn has_ended(&self) -> bool {
+        self.status != "incomplete"
+    }
+
     /// Reads the scene of the result in a folder, and what was kept of the run beside its rows.
     ///
     /// # Errors
     /// A folder without a result, and files that do not belong together.
     pub fn load(folder: &Path) -> Result<(Scene, StoredSummary), ViewError> {
-        let summary: StoredSummary = serde_json::from_slice(&read(folder, "summary.json")?)
-            .map_err(|e| {
-                damaged(
-                    &folder.join("summary.json"),
-                    &not_read(&e, "the summary of a run"),
-                )
-            })?;
-        read(folder, "scene.toml")?;
+        let summary = read(folder, "summary.json", false)?;
+        let summary: StoredSummary = serde_json::from_slice(&summary).map_err(|e| {
+            damaged(
+                &folder.join("summary.json"),
+                &not_read(&e, "the summary of a run"),
+            )
+        })?;
+        read(folder, "scene.toml", false)?;
         let scene = Scene::load(&folder.join("scene.toml"), &summary.overrides)?;
         if scene.hash() != summary.scene_hash {
             let message = "it is not the scene of the run that wrote `summary.json`";
@@ -130,10 +134,14 @@ impl StoredResult {
     /// # Errors
     /// A folder without a result, and files that do not belong together.
     pub fn load(folder: &Path) -> Result<StoredResult, ViewError> {
+        of_one_run(folder, || StoredResult::load_once(folder))
+    }
+
+    fn load_once(folder: &Path) -> Result<StoredResult, ViewError> {
         let (scene, summary) = StoredSummary::load(folder)?;
         let format = scene.output.format;
         let table = format.file("channels");
-        let bytes = read(folder, &table)?;
+        let bytes = read(folder, &table, summary.has_ended())?;
         let mut channels = columns(&folder.join(&table), &bytes, format.name)?;
         let times = channels.remove(0).values;
         if times.is_empty() {
@@ -163,16 +171,19 @@ impl StoredRun {
     /// # Errors
     /// As [`StoredResult::load`], and a result without its motion.
     pub fn load(folder: &Path) -> Result<StoredRun, ViewError> {
-        let mut result = StoredResult::load(folder)?;
+        let (mut result, bytes) = of_one_run(folder, || {
+            let result = StoredResult::load_once(folder)?;
+            if !result.scene.output.motion {
+                return Err(ViewError::Result(format!(
+                    "`{}` has no motion to show: the scene says `output.motion = false`",
+                    folder.display()
+                )));
+            }
+            let motion = read(folder, "motion.bin", result.summary.has_ended())?;
+            Ok((result, motion))
+        })?;
         let simulation = Simulation::new(&result.scene)?;
         let layout = MotionLayout::new(simulation.model());
-        if !result.scene.output.motion {
-            return Err(ViewError::Result(format!(
-                "`{}` has no motion to show: the scene says `output.motion = false`",
-                folder.display()
-            )));
-        }
-        let bytes = read(folder, "motion.bin")?;
         let mut motion = rows(&folder.join("motion.bin"), &bytes, &layout)?;
         // of a run under way one table can be some rows ahead of the other
         let count = motion.len().min(result.times.len());
@@ -301,10 +312,32 @@ impl StoredRun {
     }
 }
 
-/// A file of a result.
-fn read(folder: &Path, name: &str) -> Result<Vec<u8>, ViewError> {
+/// How often files are read again that another run replaces meanwhile.
+const ATTEMPTS: usize = 10;
+
+/// Reads files of a result, all of the same run: again where that has ended or has been replaced meanwhile.
+fn of_one_run<T>(folder: &Path, load: impl Fn() -> Result<T, ViewError>) -> Result<T, ViewError> {
+    let run = || {
+        [MANIFEST, "summary.json", "scene.toml"].map(|file| folder::read(&folder.join(file)).ok())
+    };
+    for _ in 0..ATTEMPTS {
+        let before = run();
+        let loaded = load();
+        if run() == before {
+            return loaded;
+        }
+    }
+    let message = format!(
+        "`{}` is being replaced by one run after the other",
+        folder.display()
+    );
+    Err(ViewError::Result(message))
+}
+
+/// A file of a result, whose table has a digest once the run `has_ended`.
+fn read(folder: &Path, name: &str, has_ended: bool) -> Result<Vec<u8>, ViewError> {
     let path = folder.join(name);
-    let bytes = fs::read(&path).map_err(|e| match e.kind() {
+    let bytes = folder::read(&path).map_err(|e| match e.kind() {
         io::ErrorKind::NotADirectory => ViewError::Result(format!(
             "`{}` is a file, not the folder of a result; `looselink run` writes one",
             folder.display()
@@ -315,7 +348,7 @@ fn read(folder: &Path, name: &str) -> Result<Vec<u8>, ViewError> {
         )),
         _ => naming(&path, e),
     })?;
-    verify(folder, name, &bytes).map_err(|e| match e {
+    verify(folder, name, &bytes, has_ended).map_err(|e| match e {
         OutputError::Io(e) => e.into(),
         changed => ViewError::Result(changed.to_string()),
     })?;
@@ -421,4 +454,32 @@ fn read_json_lines(bytes: &[u8]) -> Result<Vec<StoredChannel>, String> {
         }
     }
     Ok(channels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::of_one_run;
+    use std::cell::Cell;
+    use std::fs;
+
+    #[test]
+    fn files_are_read_again_when_another_run_has_come_between() {
+        let folder = tempfile::tempdir().unwrap();
+        let summary = folder.path().join("summary.json");
+        fs::write(&summary, "0").unwrap();
+        // replaced so many times while it is read
+        for (replaced, expected) in [(0, Some(0)), (3, Some(3)), (1000, None)] {
+            let reads = Cell::new(0);
+            let read = of_one_run(folder.path(), || {
+                let n = reads.get();
+                reads.set(n + 1);
+                if n < replaced {
+                    fs::write(&summary, (n + 1).to_string()).unwrap();
+                }
+                Ok(n)
+            });
+            assert_eq!(read.ok(), expected);
+            fs::write(&summary, "0").unwrap();
+        }
+    }
 }

@@ -136,6 +136,33 @@ fn earlier_checkpoints_and_sweeps_are_refused_by_name() {
     copy.expect("sweep study.toml --quiet --out sweep --merge", 0, "");
 }
 
+#[test]
+fn earlier_results_share_their_folder_with_no_other() {
+    let copy = Copy::new();
+    for (folder, kind) in [
+        ("run", "a run"),
+        ("interrupted", "a run"),
+        ("ablation", "an ablation"),
+        ("precision", "a study of precision"),
+    ] {
+        let message = format!("`{folder}` holds {kind} already");
+        copy.refused(
+            &format!("sweep study.toml --quiet --out {folder}"),
+            &message,
+        );
+    }
+    for force in ["", " --force"] {
+        copy.refused(
+            &format!("run scene.toml --out sweep{force}"),
+            "`sweep` holds a sweep already",
+        );
+        copy.refused(
+            &format!("run scene.toml --out ablation{force}"),
+            "holds an ablation already",
+        );
+    }
+}
+
 /// Those that have not changed since are run by the tests of this version.
 #[test]
 fn scenes_of_an_earlier_version_are_kept_and_run() {

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
 
 /// All files below a folder, and where links point.
 fn all(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
@@ -30,7 +31,28 @@ fn all(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 fn refused(folder: &Path, command: &[&str], why: &str) {
     let before = all(folder);
     expect(&looselink(command), 2, why);
-    assert_eq!(all(folder), before);
+    assert!(all(folder) == before, "{command:?}");
+}
+
+/// The same, and not even for a moment.
+#[track_caller]
+fn untouched(folder: &Path, command: &[&str], why: &str) {
+    let changed = || fs::metadata(folder).unwrap().modified().unwrap();
+    let before = changed();
+    refused(folder, command, why);
+    assert_eq!(changed(), before, "{command:?}");
+}
+
+/// A command that may wait for ever, and is ended then.
+fn impatient(before: &str, command: &[&str]) -> Output {
+    let looselink = env!("CARGO_BIN_EXE_looselink");
+    let script = format!("{before} exec timeout 20 {looselink} {}", command.join(" "));
+    let mut shell = Command::new("sh");
+    shell
+        .current_dir(TOP)
+        .args(["-c", &script])
+        .output()
+        .unwrap()
 }
 
 fn study(folder: &Path, title: &str, masses: &str) -> String {
@@ -63,7 +85,7 @@ fn files_of_the_user_are_not_replaced_by_a_run() {
     ] {
         fs::write(out.join(name), "mine").unwrap();
         for force in [&[NEW][..], &[NEW, "--force"]] {
-            refused(
+            untouched(
                 out,
                 &arguments(out, force),
                 &format!("{name}` is not a file of this program"),
@@ -75,12 +97,12 @@ fn files_of_the_user_are_not_replaced_by_a_run() {
     whole(out, EARLIER);
     fs::write(out.join("channels.jsonl"), "mine").unwrap();
     fs::write(out.join("view.html"), "mine").unwrap();
-    refused(
+    untouched(
         out,
         &arguments(out, &[NEW, "--force"]),
         "channels.jsonl` is not a file of this program",
     );
-    refused(
+    untouched(
         out,
         &["view", out.to_str().unwrap()],
         "view.html` is not a file of this program",
@@ -106,7 +128,7 @@ fn files_of_the_user_are_not_replaced_by_a_run() {
         ),
     ] {
         make(&out.join(ASIDE));
-        refused(out, &arguments(out, &[NEW, "--force"]), why);
+        untouched(out, &arguments(out, &[NEW, "--force"]), why);
         let _ = fs::remove_file(out.join(ASIDE)).or_else(|_| fs::remove_dir_all(out.join(ASIDE)));
     }
     expect(&looselink(&arguments(out, &[NEW, "--force"])), 0, "");
@@ -365,4 +387,111 @@ fn damaged_rows_of_sweeps_are_refused() {
     expect(&sweep(&["--merge"]), 0, "");
     assert_eq!(fs::read(out.join("sweep.csv")).unwrap(), table);
     assert_eq!(read(&out, "times.csv").lines().count(), 3);
+}
+
+fn into<'a>(command: &[&'a str], out: &'a Path) -> Vec<&'a str> {
+    [command, &[out.to_str().unwrap()]].concat()
+}
+
+/// A copy of a folder whose files are those of the folder.
+fn linked(folder: &Path, copy: &Path) {
+    fs::create_dir(copy).unwrap();
+    for name in files(folder) {
+        fs::hard_link(folder.join(&name), copy.join(name)).unwrap();
+    }
+}
+
+#[test]
+fn files_with_a_second_name_are_not_changed() {
+    let folder = tempfile::tempdir().unwrap();
+    let [run, sweep] = ["run", "sweep"].map(|name| folder.path().join(name));
+    whole(&run, EARLIER);
+    let study = study(folder.path(), "masses", "[1.0, 2.0]");
+    let swept = ["sweep", &study, "--quiet", "--out"];
+    expect(&looselink(&into(&swept, &sweep)), 0, "");
+    let copies = [&run, &sweep].map(|folder| folder.with_extension("copy"));
+    linked(&run, &copies[0]);
+    linked(&sweep, &copies[1]);
+    let before = all(folder.path());
+    let again = [&swept[..3], &["--force", "--out"]].concat();
+    for command in [
+        arguments(&copies[0], &[NEW, "--force"]),
+        into(&["view"], &copies[0]),
+        into(&["resume"], &copies[0]),
+        into(&swept, &copies[1]),
+        into(&again, &copies[1]),
+    ] {
+        expect(
+            &looselink(&command),
+            1,
+            "it has a second name (a hard link)",
+        );
+        assert!(all(folder.path()) == before, "{command:?}");
+    }
+}
+
+/// A pipe that nobody writes to, and a file that never ends.
+#[test]
+fn what_is_no_file_is_not_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let pipe = folder.path().join("pipe");
+    assert!(
+        Command::new("mkfifo")
+            .arg(&pipe)
+            .status()
+            .unwrap()
+            .success()
+    );
+    let picture = folder.path().join("picture.svg");
+    let [place, picture] = [&out, &picture].map(|path| path.to_str().unwrap());
+    let commands: [&[&str]; 4] = [
+        &["view", place],
+        &["plot", place, "--channels", "t", "-o", picture],
+        &["resume", place],
+        &[
+            "run",
+            "scenes/pendulum.toml",
+            "--quiet",
+            "--force",
+            "--out",
+            place,
+        ],
+    ];
+    for name in COMPLETE {
+        for target in [&pipe, Path::new("/dev/zero")] {
+            for command in commands {
+                whole(&out, EARLIER);
+                fs::remove_file(out.join(name)).unwrap();
+                // pipes have second names as files have
+                let made = fs::hard_link(target, out.join(name));
+                made.or_else(|_| symlink(target, out.join(name))).unwrap();
+                let code = impatient("", command).status.code();
+                assert!(matches!(code, Some(0..=2)), "{name} {command:?}: {code:?}");
+                fs::remove_dir_all(&out).unwrap();
+            }
+        }
+    }
+}
+
+#[test]
+fn a_program_that_may_open_no_more_files_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    for most in 3..=12 {
+        let out = folder.path().join(most.to_string());
+        let [out, duration] = [out.to_str().unwrap(), "simulation.duration=0.01"];
+        let set = [
+            "--set",
+            duration,
+            "--set",
+            "output.interval=0.01",
+            "--out",
+            out,
+        ];
+        let run = [&["run", "scenes/pendulum.toml", "--quiet"], &set[..]].concat();
+        let output = impatient(&format!("ulimit -n {most};"), &run);
+        if !output.status.success() && most > 4 {
+            expect(&output, 1, "Too many open files");
+        }
+    }
 }

@@ -30,7 +30,6 @@ pub fn kind() -> Kind {
     Kind {
         name: "an ablation",
         files: FILES.map(str::to_owned).to_vec(),
-        keys: &["variants", "units"],
     }
 }
 

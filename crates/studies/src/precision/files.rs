@@ -32,7 +32,6 @@ pub fn kind() -> Kind {
     Kind {
         name: "a study of precision",
         files: FILES.map(str::to_owned).to_vec(),
-        keys: &["runs", "reference_warnings"],
     }
 }
 

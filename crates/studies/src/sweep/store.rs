@@ -6,7 +6,7 @@
 
 use super::{FILES, RowPlaces, RowTiming, Sweep, SweepError, SweepRow};
 use crate::study_file::StudyError;
-use folder::{Folder, Kind, OutputError, line_of, naming, open, value_of};
+use folder::{Folder, Kind, OutputError, line_of, naming, open, open_to_read, value_of};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -123,7 +123,7 @@ impl Store {
         };
         for name in names(folder, ROWS)? {
             let path = folder.join(name);
-            let file = open(&path, OpenOptions::new().read(true))?;
+            let file = open_to_read(&path)?;
             store.index(path, file, sweep)?;
         }
         Ok(store)
@@ -329,8 +329,11 @@ impl FileHead {
         if let Some(head) = value_of(line) {
             return Ok(head);
         }
-        let is_head = serde_json::from_slice::<FileHead>(line).is_ok();
-        Err(match is_head {
+        // one of this version has a further key
+        let keys = serde_json::from_slice::<serde_json::Map<_, _>>(line).map(|head| head.len());
+        let is_earlier =
+            serde_json::from_slice::<FileHead>(line).is_ok() && keys.is_ok_and(|n| n == 3);
+        Err(match is_earlier {
             true => format!(
                 "its rows are of an earlier program, which gave them no checksums; {ELSEWHERE}"
             ),
@@ -366,7 +369,7 @@ pub(super) fn timings(folder: &Path) -> Result<Vec<RowTiming>, SweepError> {
     for name in names(folder, TIMES)? {
         let path = folder.join(name);
         let mut bytes = Vec::new();
-        let mut file = open(&path, OpenOptions::new().read(true))?;
+        let mut file = open_to_read(&path)?;
         file.read_to_end(&mut bytes).map_err(naming(&path))?;
         // a line that a kill has cut is no loss, nor is a damaged one
         for timing in bytes.split(|byte| *byte == b'\n').filter_map(value_of) {
@@ -382,7 +385,6 @@ pub(super) fn kind() -> Kind {
     Kind {
         name: "a sweep",
         files: FILES.map(str::to_owned).to_vec(),
-        keys: &["sweep", "runs", "version"],
     }
 }
 
