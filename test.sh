@@ -165,7 +165,7 @@ site() {
     python3 docs/site/stage.py
     mdbook build docs/site
     # links of templates are those of the pages that they make
-    lychee --offline --include-fragments --no-progress --extensions md --exclude-path evidence/templates .
+    lychee --offline --include-fragments --no-progress --extensions md --exclude-path evidence/templates --exclude-path crates/cli/tests/earlier .
     lychee --offline --include-fragments --no-progress "target/site/**/*.html"
 }
 
