@@ -15,7 +15,7 @@ use crate::checkpoint::carried;
 use crate::math::plane::pair;
 use crate::math::saddle_point::SaddleFactors;
 use crate::model::Model;
-use crate::newton::{Failure, Update, iterate};
+use crate::newton::{Failure, Update, iterate_interruptibly};
 use crate::system::{PrescribeError, Prescribed, State, System};
 use numbers::number;
 use series::Series;
@@ -189,7 +189,7 @@ impl Kinematics {
         inner.state.v[..n].fill(0.0);
         inner.state.a[..n].fill(0.0);
         let mut last = 0.0;
-        let closed = iterate(max_iterations, |_| {
+        let closed = iterate_interruptibly(max_iterations, |_| {
             self.factor(inner)?;
             self.least_norm(inner);
             for (q, dq) in inner.state.q.iter_mut().zip(&inner.b[..n]) {

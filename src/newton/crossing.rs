@@ -19,7 +19,7 @@
 use super::load_path::{ArcMetric, DIFFERENCE, MAX_ITERATIONS, PathTangent, SetLoad};
 use super::softest::SLOWEST;
 use super::statics::{Ending, LAST_UPDATE, move_by};
-use super::{Failure, Newton, iterate};
+use super::{Failure, Newton, iterate_interruptibly};
 use crate::system::{Equilibrium, State, Work};
 
 /// Updates of Newton's method for a saddle at least halve, by the theorem of Newton and Kantorovich.
@@ -226,7 +226,7 @@ impl Newton {
         let (mut scale, mut shift) = (1.0, 0.0);
         // K^-1 M c, and its product with M c
         let (mut soft, mut softness) = (Vec::new(), 0.0);
-        iterate(MAX_ITERATIONS, |iteration| {
+        iterate_interruptibly(MAX_ITERATIONS, |iteration| {
             self.counters.newton_iterations += 1;
             shift = 0.0;
             scale = match self.renew_stiffness(system, state, shift, work) {

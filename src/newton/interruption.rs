@@ -19,7 +19,7 @@ impl Drop for Before {
     }
 }
 
-/// Does `work`, before each of whose iterations of Newton's method `asked` says whether nobody waits any longer: then the iteration
+/// Does `work`, before each of whose iterations of Newton's method outside of the step loop `asked` says whether nobody waits any longer: then the iteration
 /// ends as if its state were not finite, at which every method stops. What `work` returns then is worthless.
 ///
 /// `asked` must be fast, and go on saying so once it has.

@@ -40,7 +40,7 @@ impl Update {
 /// Repeats `step`, which moves the unknowns and says how far and whether this is enough, at most `limit` times.
 ///
 /// # Errors
-/// That of `step`, an update that is not finite, no convergence; an interruption counts as an update that is not finite.
+/// That of `step`, an update that is not finite, no convergence.
 #[inline]
 pub(crate) fn iterate(
     limit: usize,
@@ -53,9 +53,6 @@ pub(crate) fn iterate(
     };
     let mut worst = 0;
     while iteration.number < limit {
-        if interruption::has_come() {
-            return Err(Failure::NotFinite { index: worst });
-        }
         let (Update { size, index }, converged) = step(&iteration)?;
         worst = index;
         if !size.is_finite() {
@@ -73,5 +70,19 @@ pub(crate) fn iterate(
     Err(Failure::NoConvergence {
         index: worst,
         update: iteration.last,
+    })
+}
+
+/// As [`iterate`], where it may take long and is no part of a step: see [`super::interruptible`].
+///
+/// # Errors
+/// Those of [`iterate`]; an interruption counts as an update that is not finite.
+pub(crate) fn iterate_interruptibly(
+    limit: usize,
+    mut step: impl FnMut(&Iteration) -> Result<(Update, bool), Failure>,
+) -> Result<(), Failure> {
+    iterate(limit, |iteration| match interruption::has_come() {
+        true => Err(Failure::NotFinite { index: 0 }),
+        false => step(iteration),
     })
 }

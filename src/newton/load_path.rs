@@ -12,7 +12,7 @@
 //! in the update only, so that Newton's method still converges.
 
 use super::statics::{CONTRACTION, Ending, move_by};
-use super::{Extent, Failure, Newton, iterate};
+use super::{Extent, Failure, Newton, iterate_interruptibly};
 use crate::system::{Equilibrium, State, Work};
 
 /// Largest number of iterations of a point; one that stays on its path needs fewer.
@@ -158,7 +158,7 @@ impl Newton {
         };
         let predicted = metric.extent.update(&step[..n]).size;
         let mut corrects = false;
-        let ended = iterate(MAX_ITERATIONS, |iteration| {
+        let ended = iterate_interruptibly(MAX_ITERATIONS, |iteration| {
             self.counters.newton_iterations += 1;
             let scale = self.renew_stiffness(system, to, 0.0, work)?;
             self.solve_against_residual(system, scale);

@@ -18,7 +18,7 @@ mod tangent;
 pub use crossing::Crossing;
 pub use extent::Extent;
 pub use interruption::interruptible;
-pub(crate) use iteration::{Update, iterate};
+pub(crate) use iteration::{Update, iterate, iterate_interruptibly};
 pub use load_path::{ArcMetric, PathTangent};
 pub use response::{Response, ResponseTerm};
 pub use softest::Softest;

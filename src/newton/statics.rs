@@ -7,7 +7,7 @@
 
 use super::extent::{Extent, NEARBY};
 use super::iteration::Iteration;
-use super::{Failure, Newton, Update, iterate};
+use super::{Failure, Newton, Update, iterate_interruptibly};
 use crate::math::lu::LARGEST_MULTIPLIER;
 use crate::system::{Equilibrium, State, Work};
 
@@ -120,7 +120,7 @@ impl Newton {
         self.counters.stages += 1;
         let inertia = anchor.map_or(0.0, |anchor| anchor.inertia);
         let mut ending = Ending::default();
-        iterate(limits.iterations, |iteration| {
+        iterate_interruptibly(limits.iterations, |iteration| {
             self.counters.newton_iterations += 1;
             if let Some(Anchor { q, inertia }) = anchor {
                 for (a, (q, from)) in s.a[..n].iter_mut().zip(s.q.iter().zip(q)) {

@@ -15,7 +15,7 @@ use crate::math::independent_rows::IndependentRows;
 use crate::math::plane::pair;
 use crate::math::sparse_rows::SparseRow;
 use crate::model::{Model, PlacedConstraint, Rule};
-use crate::newton::{Update, iterate};
+use crate::newton::{Update, iterate_interruptibly};
 use crate::system::State;
 use crate::terms::ConstraintTerm;
 use std::collections::HashMap;
@@ -513,7 +513,7 @@ pub(crate) fn close_to<'m>(
     let closed = |state: &State| open(model, state, goal, CLOSED * size).is_none();
     if !closed(state) {
         // how it fails does not matter: what stays open says more
-        let _ = iterate(ITERATIONS, |_| {
+        let _ = iterate_interruptibly(ITERATIONS, |_| {
             let update = step_to(model, state, held, goal);
             Ok((update, closed(state)))
         });
