@@ -8,7 +8,7 @@ use crate::manifest::{MANIFEST, Manifest};
 use crate::temporary::{Temporary, remove_leftovers};
 use crate::{open, read};
 use std::fs::OpenOptions;
-use std::io::{self, ErrorKind};
+use std::io;
 use std::path::Path;
 
 /// Puts files into a folder beside those that are there, such as pictures of a result: each is there as the program's already, or
@@ -22,13 +22,8 @@ pub fn add(
     kind: &Kind,
     files: &[(&str, impl AsRef<[u8]>)],
 ) -> Result<(), OutputError> {
-    let path = folder.join(MANIFEST);
     let names: Vec<String> = files.iter().map(|(name, _)| (*name).to_owned()).collect();
-    let known = match read(&path) {
-        Ok(bytes) => Manifest::parse(&bytes),
-        Err(e) if e.kind() == ErrorKind::NotFound => Manifest::default(),
-        Err(e) => return Err(naming(&path)(e).into()),
-    };
+    let known = Manifest::of(folder)?.unwrap_or_default();
     refuse_foreign(folder, &kind.held(folder, known), &names)?;
     remove_leftovers(folder);
     // what finds no room, or no right to write, is refused before anything changes
@@ -36,6 +31,7 @@ pub fn add(
         .iter()
         .map(|(_, bytes)| Temporary::new(folder, bytes.as_ref()));
     let ready = ready.collect::<io::Result<Vec<_>>>()?;
+    let path = folder.join(MANIFEST);
     let mut options = OpenOptions::new();
     let mut file = open(&path, options.read(true).append(true).create(true))?;
     let manifest = Manifest::read(&mut file).map_err(naming(&path))?;

@@ -63,13 +63,9 @@ impl Folder {
     /// # Errors
     /// Another program writes to it; a result that may not be replaced, or files of others that have the names of its files.
     pub fn claim(path: &Path, kind: Kind, replaces: bool) -> Result<Folder, OutputError> {
-        let refuse = |manifest: &Manifest| refuse_occupied(path, &kind, manifest, replaces);
-        if !is_there(&path.join(MANIFEST)) {
-            // what is to be refused anyhow is refused before a lock comes into being
-            refuse(&kind.held(path, Manifest::default()))?;
-        }
-        let folder = Folder::locked(path, kind.clone(), replaces, Sharing::Alone)?;
-        refuse(&folder.manifest)?;
+        let refuse =
+            |kind: &Kind, manifest: &Manifest| refuse_occupied(path, kind, manifest, replaces);
+        let folder = Folder::locked(path, kind, replaces, Sharing::Alone, refuse)?;
         remove_leftovers(path);
         remove_left_folders(path);
         Ok(folder)
@@ -81,15 +77,11 @@ impl Folder {
     /// # Errors
     /// A program has the folder for itself; it holds something else, or files of others that have the names of its files.
     pub fn share(path: &Path, kind: Kind) -> Result<Folder, OutputError> {
-        let refuse = |manifest: &Manifest| {
-            refuse_another_kind(path, &kind, manifest)?;
+        let refuse = |kind: &Kind, manifest: &Manifest| {
+            refuse_another_kind(path, kind, manifest)?;
             refuse_foreign(path, manifest, &kind.files)
         };
-        if !is_there(&path.join(MANIFEST)) {
-            refuse(&kind.held(path, Manifest::default()))?;
-        }
-        let folder = Folder::locked(path, kind.clone(), false, Sharing::Together)?;
-        refuse(&folder.manifest)?;
+        let folder = Folder::locked(path, kind, false, Sharing::Together, refuse)?;
         remove_leftovers(path);
         Ok(folder)
     }
@@ -112,12 +104,18 @@ impl Folder {
         Ok(Some(folder))
     }
 
+    /// Locks a folder unless what it holds is refused.
     fn locked(
         path: &Path,
         kind: Kind,
         replaces: bool,
         sharing: Sharing,
+        refuse: impl Fn(&Kind, &Manifest) -> Result<(), OutputError>,
     ) -> Result<Folder, OutputError> {
+        if !is_there(&path.join(MANIFEST)) {
+            // what is to be refused anyhow is refused before a lock comes into being
+            refuse(&kind, &kind.held(path, Manifest::default()))?;
+        }
         if is_there(path) && !path.is_dir() {
             return Err(OutputError::NotADirectory(path.to_owned()));
         }
@@ -134,7 +132,9 @@ impl Folder {
         let lock = lock.inspect_err(|_| undo.undo())?;
         let lock = lock.expect("it was to be created");
         undo.manifest = lock.is_new.then(|| lock.path().to_owned());
-        Folder::of(path, kind, replaces, undo, lock)
+        let folder = Folder::of(path, kind, replaces, undo, lock)?;
+        refuse(&folder.kind, &folder.manifest)?;
+        Ok(folder)
     }
 
     fn of(

@@ -49,8 +49,17 @@ impl Manifest {
         Ok(Manifest::parse(&bytes))
     }
 
-    /// As [`Manifest::read`].
-    pub fn parse(bytes: &[u8]) -> Manifest {
+    /// That of a folder, if it has one.
+    pub fn of(folder: &Path) -> io::Result<Option<Manifest>> {
+        let path = folder.join(MANIFEST);
+        match read(&path) {
+            Ok(bytes) => Ok(Some(Manifest::parse(&bytes))),
+            Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
+            Err(e) => Err(naming(&path)(e)),
+        }
+    }
+
+    fn parse(bytes: &[u8]) -> Manifest {
         let mut manifest = Manifest::default();
         // a kill may cut the first line
         let is_cut =
@@ -109,11 +118,8 @@ fn is_plain(name: &str) -> bool {
 /// # Errors
 /// [`OutputError::Changed`], also of the manifest of a result that `has_ended` and whose digest is lost.
 pub fn verify(folder: &Path, name: &str, bytes: &[u8], has_ended: bool) -> Result<(), OutputError> {
-    let path = folder.join(MANIFEST);
-    let manifest = match read(&path) {
-        Ok(bytes) => Manifest::parse(&bytes),
-        Err(e) if e.kind() == ErrorKind::NotFound => return Ok(()),
-        Err(e) => return Err(naming(&path)(e).into()),
+    let Some(manifest) = Manifest::of(folder)? else {
+        return Ok(());
     };
     match manifest.files.get(name) {
         Some(Some(digest)) if *digest != Digest::of(bytes) => Err(OutputError::Changed {
@@ -121,7 +127,7 @@ pub fn verify(folder: &Path, name: &str, bytes: &[u8], has_ended: bool) -> Resul
             how: "is damaged, or was changed after the program wrote it",
         }),
         None | Some(None) if has_ended => Err(OutputError::Changed {
-            path,
+            path: folder.join(MANIFEST),
             how: "is damaged, or was changed after the program wrote it: it lacks the digest of a table",
         }),
         _ => Ok(()),

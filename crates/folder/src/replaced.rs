@@ -4,7 +4,6 @@ use crate::claim::{is_there, remove};
 use crate::error::{OutputError, naming};
 use crate::kind::Kind;
 use crate::manifest::{MANIFEST, Manifest};
-use crate::read;
 use crate::temporary::temporary_folder;
 use std::fs;
 use std::io::{self, Cursor, ErrorKind};
@@ -15,12 +14,7 @@ pub(crate) const PREVIOUS: &str = "previous-result";
 /// What stands aside.
 fn aside(folder: &Path, kind: &Kind) -> io::Result<Manifest> {
     let aside = folder.join(PREVIOUS);
-    let path = aside.join(MANIFEST);
-    let manifest = match read(&path) {
-        Ok(bytes) => Manifest::parse(&bytes),
-        Err(e) if e.kind() == ErrorKind::NotFound => Manifest::default(),
-        Err(e) => return Err(naming(&path)(e)),
-    };
+    let manifest = Manifest::of(&aside)?.unwrap_or_default();
     Ok(kind.held(&aside, manifest))
 }
 

@@ -69,6 +69,7 @@ impl FromStr for Shard {
 
 /// The first line of a file.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct FileHead {
     /// See [`Sweep::digest`].
     sweep: String,
@@ -329,10 +330,8 @@ impl FileHead {
         if let Some(head) = value_of(line) {
             return Ok(head);
         }
-        // one of this version has a further key
-        let keys = serde_json::from_slice::<serde_json::Map<_, _>>(line).map(|head| head.len());
-        let is_earlier =
-            serde_json::from_slice::<FileHead>(line).is_ok() && keys.is_ok_and(|n| n == 3);
+        // one of this version has a further key, which a fault may have renamed
+        let is_earlier = serde_json::from_slice::<FileHead>(line).is_ok();
         Err(match is_earlier {
             true => format!(
                 "its rows are of an earlier program, which gave them no checksums; {ELSEWHERE}"
