@@ -31,11 +31,6 @@ impl Interrupt {
                 })?;
             }
         }
-        // a file that grows beyond what the system allows it is an error of the call, which names the file
-        #[cfg(unix)]
-        flag::register(libc::SIGXFSZ, Arc::default()).map_err(|e| {
-            CommandFailure::system(format!("cannot watch for signal {}: {e}", libc::SIGXFSZ))
-        })?;
         Ok(interrupt)
     }
 
@@ -61,6 +56,16 @@ impl Interrupt {
     pub fn flag(&self) -> &AtomicBool {
         &self.has_come
     }
+}
+
+/// Sees that a file which grows beyond what the system allows it is an error of the call, which names the file: without this the signal
+/// that comes with it ends the program.
+pub fn survive_limits() -> Result<(), CommandFailure> {
+    #[cfg(unix)]
+    flag::register(libc::SIGXFSZ, Arc::default()).map_err(|e| {
+        CommandFailure::system(format!("cannot watch for signal {}: {e}", libc::SIGXFSZ))
+    })?;
+    Ok(())
 }
 
 /// True of a signal that the surroundings have told the program not to hear, as `nohup` does; Linux alone says so.

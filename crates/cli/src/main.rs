@@ -168,7 +168,7 @@ impl SceneArguments {
 
 fn main() -> ExitCode {
     let arguments = Arguments::try_parse().unwrap_or_else(|error| refused(error).exit());
-    let result = match &arguments.command {
+    let result = interrupt::survive_limits().and_then(|()| match &arguments.command {
         Command::New(arguments) => new::new(arguments),
         Command::Run(arguments) => run::run(arguments),
         Command::Plot(arguments) => plot::plot(arguments),
@@ -182,7 +182,7 @@ fn main() -> ExitCode {
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Schema => schema::show(),
         Command::Completions(arguments) => completions::completions(arguments),
-    };
+    });
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.show(),

@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Runs under a limit of the size of files, in blocks of the shell. The signal that comes with it kills programs that do not expect it.
-fn limited(out: &Path, blocks: usize, more: &[&str]) -> Output {
+fn limited(blocks: usize, command: &[&str]) -> Output {
     Command::new("sh")
         .args(["-c", &format!("ulimit -f {blocks}; exec \"$@\"")])
         .arg("sh")
         .arg(program().get_program())
         .current_dir(TOP)
-        .args(arguments(out, more))
+        .args(command)
         .output()
         .unwrap()
 }
@@ -51,9 +51,11 @@ fn a_full_disk_ends_a_run_with_the_name_of_the_file() {
         let out = folder.path().join(format!("whole-{n}"));
         expect(&looselink(&arguments(&out, more)), 0, "");
         let whole = Bytes::of(&out);
+        let view = limited(8, &["view", out.to_str().unwrap()]);
+        expect(&view, 1, "File too large");
         for blocks in (0..40).chain([80, 160, 320]) {
             let out = folder.path().join(format!("{n}-{blocks}"));
-            let output = limited(&out, blocks, more);
+            let output = limited(blocks, &arguments(&out, more));
             if output.status.success() {
                 assert_eq!(Bytes::of(&out).repeatable(), whole.repeatable());
                 continue;
