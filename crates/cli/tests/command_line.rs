@@ -1,7 +1,8 @@
 //! The command line: exit codes, messages, and a result folder that is never damaged.
 
+use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
 const SCENE: &str = "scenes/bouncing-journal.toml";
@@ -61,6 +62,37 @@ pub fn files(folder: &Path) -> Vec<String> {
         .collect();
     names.sort();
     names
+}
+
+/// All below a folder: the bytes of files, and where links point.
+pub fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_symlink() {
+            let target = fs::read_link(&path).unwrap();
+            found.insert(path, target.into_os_string().into_encoded_bytes());
+        } else if path.is_dir() {
+            found.extend(contents(&path));
+            found.insert(path, Vec::new());
+        } else {
+            found.insert(path.clone(), fs::read(path).unwrap());
+        }
+    }
+    found
+}
+
+/// Copies a folder without links.
+pub fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap();
+        let to = to.join(entry.file_name());
+        match entry.file_type().unwrap().is_dir() {
+            true => copy(&entry.path(), &to),
+            false => drop(fs::copy(entry.path(), to).unwrap()),
+        }
+    }
 }
 
 #[test]
@@ -741,7 +773,7 @@ fn an_ablation_on_standard_output() {
     expect(&output, 0, "");
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     // variants with the same effects share one run
-    let mut reported = std::collections::BTreeMap::new();
+    let mut reported = BTreeMap::new();
     for variant in json["ablation"]["variants"].as_array().unwrap() {
         let name = variant["variant"].as_str().unwrap();
         let named = warnings(variant)

@@ -3,7 +3,7 @@
 #![cfg(target_os = "linux")]
 
 use super::{Bytes, NEW, arguments, rounds, start, status};
-use crate::command_line::{expect, interrupt, looselink, program};
+use crate::command_line::{copy, expect, interrupt, looselink, program};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -31,18 +31,6 @@ fn library() -> &'static Path {
         assert!(compiled.unwrap().success());
         path
     })
-}
-
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).unwrap();
-    for entry in fs::read_dir(from).unwrap() {
-        let entry = entry.unwrap();
-        let to = to.join(entry.file_name());
-        match entry.file_type().unwrap().is_dir() {
-            true => copy(&entry.path(), &to),
-            false => drop(fs::copy(entry.path(), to).unwrap()),
-        }
-    }
 }
 
 /// A command, and what it finds and leaves.
@@ -131,7 +119,9 @@ impl Trial<'_> {
             assert!(is_whole, "{fault}: {said}");
             return;
         }
-        let named = said.contains(out.to_str().unwrap());
+        // faults of scenes are shown with a cross
+        let is_error = said.contains("error: ") || said.contains("× ");
+        let named = is_error && said.contains(out.to_str().unwrap());
         assert!(named, "{fault}: {said}");
         if !is_whole {
             self.not_complete(fault, closing);

@@ -1,37 +1,18 @@
 //! Files that are not the program's, and links: they are never replaced, extended, deleted or followed.
 
 use super::{ASIDE, COMPLETE, EARLIER, NEW, arguments, whole};
-use crate::command_line::{TOP, expect, files, looselink, read};
-use std::collections::BTreeMap;
+use crate::command_line::{TOP, contents, expect, files, looselink, read};
 use std::fs;
 use std::os::unix::fs::symlink;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
-
-/// All files below a folder, and where links point.
-fn all(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_symlink() {
-            let target = fs::read_link(&path).unwrap();
-            found.insert(path, target.into_os_string().into_encoded_bytes());
-        } else if path.is_dir() {
-            found.extend(all(&path));
-            found.insert(path, Vec::new());
-        } else {
-            found.insert(path.clone(), fs::read(path).unwrap());
-        }
-    }
-    found
-}
 
 /// A command that is refused changes nothing.
 #[track_caller]
 fn refused(folder: &Path, command: &[&str], why: &str) {
-    let before = all(folder);
+    let before = contents(folder);
     expect(&looselink(command), 2, why);
-    assert!(all(folder) == before, "{command:?}");
+    assert!(contents(folder) == before, "{command:?}");
 }
 
 /// The same, and not even for a moment.
@@ -412,7 +393,7 @@ fn files_with_a_second_name_are_not_changed() {
     let copies = [&run, &sweep].map(|folder| folder.with_extension("copy"));
     linked(&run, &copies[0]);
     linked(&sweep, &copies[1]);
-    let before = all(folder.path());
+    let before = contents(folder.path());
     let again = [&swept[..3], &["--force", "--out"]].concat();
     for command in [
         arguments(&copies[0], &[NEW, "--force"]),
@@ -426,7 +407,7 @@ fn files_with_a_second_name_are_not_changed() {
             1,
             "it has a second name (a hard link)",
         );
-        assert!(all(folder.path()) == before, "{command:?}");
+        assert!(contents(folder.path()) == before, "{command:?}");
     }
 }
 
