@@ -1,29 +1,27 @@
 //! The rows of linear equations that do not depend on those before them, and solutions of their equations: by [`super::dense`] where
 //! they are few; otherwise in a time that grows little faster than their number, where few of them depend on others.
 
-use super::dense::{DEPENDENT, Equations, norm};
+use super::dense::{DEPENDENT, Equations};
 use super::generic;
-use super::groups::Groups;
 use super::sparse_rows::{SparseRow, SparseRows, SymmetricBlock, full_row, square, times};
 use faer::Mat;
-use indexmap::{IndexMap, IndexSet};
-use std::collections::{BTreeMap, HashMap};
+use indexmap::IndexMap;
+use std::collections::BTreeSet;
 
 /// From this number of unknowns and rows on, sparse algebra is used. Dense algebra takes some milliseconds there.
 const LARGE: usize = 300;
 /// Rows are certainly independent if the squared sine of each to the span of those eliminated before it is larger than this, and if
-/// their equations can be solved: the squared sine of a sum of rows times large factors may be above it by rounding.
-const INDEPENDENT: f64 = 1e-10;
+/// their equations can be solved: the squared sine of a sum of rows times large factors may be above it by rounding. Rounding is a
+/// thousandth of it, so that every correction of a solution gains three digits.
+const INDEPENDENT: f64 = 1e-13;
 /// Error of the solution of such equations, as a part of the length of a row: far above what corrections leave, far below the error
 /// where one of some million rows depends on the others.
 const SOLVED: f64 = 1e-6;
-/// What is added to the squared sines where they may be zero: above their rounding.
-const SHIFT: f64 = 1e-13;
-/// Rows may depend on others up to this squared sine. That of a sum of rows times factors is the shift times the squares of the factors.
-const DOUBTFUL: f64 = 1e-8;
-/// A row takes part in a sum of rows if its term is larger than this fraction of the sum: above the rounding of the terms, far
-/// below what [`super::dense`] takes for dependent.
-const TAKES_PART: f64 = 1e-11;
+/// A pivot is at least this part of the largest entry of its row (threshold pivoting; Duff, Erisman & Reid 2017, Direct Methods for Sparse
+/// Matrices, section 5.2): three digits are lost at worst, where the next larger pivots would cost many entries.
+const LEAST_PIVOT: f64 = 1e-3;
+/// Entries below this part of the largest one on the way are some tens of roundings.
+const ROUNDING: f64 = 1e-14;
 
 /// Linear equations G x = b, of which some may depend on those before them.
 #[derive(Debug)]
@@ -59,20 +57,19 @@ impl IndependentRows {
 
     /// None where it is not certain which rows are independent.
     fn sparse(n: usize, rows: &[SparseRow], b: &[f64]) -> Option<IndependentRows> {
-        let (dependent, factors) = match certainly_independent(n, rows) {
-            Some(factors) => (Vec::new(), factors),
-            None => {
-                let dependent = dependent(rows)?;
-                let factors = certainly_independent(n, &without(&dependent, rows))?;
-                (dependent, factors)
-            }
-        };
-        let b = without(&dependent, b);
-        Some(IndependentRows {
+        let sparse = |dependent, factors, b| IndependentRows {
             n,
             dependent,
             solver: RowSolver::Sparse(Box::new(factors), b),
-        })
+        };
+        if let Some(factors) = certainly_independent(n, rows) {
+            return Some(sparse(Vec::new(), factors, b.to_vec()));
+        }
+        let echelon = Echelon::of(n, rows, b);
+        let factors = certainly_independent(n, &echelon.rows)?;
+        let left_out = echelon.dependent.iter().map(|&k| &rows[k]);
+        let depend = depend(n, &left_out.collect::<Vec<_>>(), &factors);
+        depend.then(|| sparse(echelon.dependent, factors, echelon.b))
     }
 
     fn dense(n: usize, rows: &[SparseRow], b: &[f64]) -> IndependentRows {
@@ -149,6 +146,9 @@ fn identity(indices: &[usize]) -> Vec<SymmetricBlock<'_>> {
 
 /// The factors of rows for n unknowns, with M = I. None unless all are certainly independent.
 fn certainly_independent(n: usize, rows: &[SparseRow]) -> Option<SparseRows> {
+    if rows.len() > n {
+        return None;
+    }
     let factors = SparseRows::factor(n, rows, &identity(&indices(n)))?;
     let is_far = |(k, row)| factors.squared_distance(k) > INDEPENDENT * square(row);
     if !rows.iter().enumerate().all(is_far) {
@@ -163,122 +163,97 @@ fn certainly_independent(n: usize, rows: &[SparseRow]) -> Option<SparseRows> {
     rows.iter().zip(&b).all(is_solved).then_some(factors)
 }
 
-/// All but the elements with some indices, which ascend.
-fn without<T: Clone>(indices: &[usize], all: &[T]) -> Vec<T> {
-    let kept = (0..all.len()).filter(|k| indices.binary_search(k).is_err());
-    kept.map(|k| all[k].clone()).collect()
+/// True where rows are sums of those that were factorised: of what these do not see they see nothing.
+fn depend(n: usize, rows: &[&SparseRow], factors: &SparseRows) -> bool {
+    let zero = vec![0.0; factors.rows().len()];
+    [0, n].into_iter().all(|first| {
+        let direction: Vec<f64> = (first..first + n).map(generic).collect();
+        let unseen = factors.solve(&direction, &zero);
+        let seen = |row: &&SparseRow| times(row, &unseen).abs();
+        rows.iter()
+            .all(|row| seen(row) <= DEPENDENT * square(row).sqrt())
+    })
 }
 
-/// The rows that depend on those before them.
-fn dependent(rows: &[SparseRow]) -> Option<Vec<usize>> {
-    let rows: Vec<SparseRow> = rows.iter().map(merged).collect();
-    let is_zero = |k: &usize| rows[*k].is_empty();
-    let mut found: Vec<usize> = (0..rows.len()).filter(is_zero).collect();
-    // rows that are connected through unknowns which they share
-    let mut parts = Groups::new(rows.len());
-    let mut first_with: HashMap<usize, usize> = HashMap::new();
-    for (k, row) in rows.iter().enumerate() {
-        for (i, _) in row {
-            parts.unite(k, *first_with.entry(*i).or_insert(k));
-        }
-    }
-    for part in several(parts) {
-        found.extend(dependent_of(&rows, &part)?);
-    }
-    found.sort_unstable();
-    Some(found)
+/// A row with all entries divided by a number.
+fn divided(row: SparseRow, by: f64) -> SparseRow {
+    row.into_iter().map(|(i, g)| (i, g / by)).collect()
 }
 
-/// The groups of two and more.
-fn several(groups: Groups) -> impl Iterator<Item = Vec<usize>> {
-    groups.all().into_iter().filter(|group| group.len() > 1)
+/// Equations in echelon form: each row is solved for one of its unknowns, which is eliminated from the rows behind it.
+struct Echelon {
+    /// The rows that do not depend on those before them, less what these give, and their right sides.
+    rows: Vec<SparseRow>,
+    b: Vec<f64>,
+    /// The other rows.
+    dependent: Vec<usize>,
+    /// The unknown of every row, whose entry is 1, and the row of every unknown.
+    unknowns: Vec<usize>,
+    row_of: Vec<Option<usize>>,
 }
 
-/// Some rows with unknowns counted among themselves, and the number of these.
-fn local(rows: &[SparseRow], part: &[usize]) -> (Vec<SparseRow>, usize) {
-    let mut unknowns = IndexSet::new();
-    let row = |&k: &usize| {
-        let entries = rows[k].iter();
-        let entries = entries.map(|(i, g)| (unknowns.insert_full(*i).0, *g));
-        entries.collect()
-    };
-    let rows = part.iter().map(row).collect();
-    (rows, unknowns.len())
-}
-
-/// The rows of a part that depend on those before them. None where it is not certain which rows are independent.
-///
-/// Every row that may depend on others is a sum of rows that certainly do not: a relation between rows.
-fn dependent_of(all: &[SparseRow], part: &[usize]) -> Option<Vec<usize>> {
-    let (rows, n) = local(all, part);
-    let shifted = SparseRows::factor_shifted(n, &rows, &identity(&indices(n)), SHIFT)?;
-    let doubtful = |k: &usize| shifted.squared_distance(*k) <= DOUBTFUL * square(&rows[*k]);
-    let doubtful: Vec<usize> = (0..rows.len()).filter(doubtful).collect();
-    let certain = without(&doubtful, &indices(rows.len()));
-    let factors = certainly_independent(n, &without(&doubtful, &rows))?;
-    let zero = vec![0.0; certain.len()];
-    let mut relations = Vec::new();
-    for &k in &doubtful {
-        let size = square(&rows[k]).sqrt();
-        let mut rest = full_row(n, &rows[k]);
-        let mut parts = vec![0.0; certain.len()];
-        // twice for the sake of rounding
-        for _ in 0..2 {
-            let [_, more] = factors.solve_both(&rest, &zero);
-            for ((&other, part), more) in certain.iter().zip(&mut parts).zip(more) {
-                *part += more;
-                rows[other].iter().for_each(|(i, g)| rest[*i] -= more * g);
-            }
-        }
-        let rest = norm(&rest) / size;
-        if rest <= DEPENDENT {
-            let others = certain.iter().zip(&parts);
-            let others = others.map(|(&j, part)| (j, -part * square(&rows[j]).sqrt() / size));
-            let mut row_factors: BTreeMap<usize, f64> =
-                others.filter(|(_, x)| x.abs() > TAKES_PART).collect();
-            row_factors.insert(k, 1.0);
-            relations.push(Relation { row_factors, rest });
-        }
-    }
-    let found = last_rows(relations)?.into_iter().map(|k| part[k]);
-    Some(found.collect())
-}
-
-/// A sum of rows of length 1 times factors that is zero.
-#[derive(Debug)]
-struct Relation {
-    row_factors: BTreeMap<usize, f64>,
-    /// The length of the sum.
-    rest: f64,
-}
-
-/// The rows that follow from those before them by some relations: the last row of each, after the last rows of the others have been
-/// eliminated from it. None where the sum is not zero compared with the factor of this row.
-fn last_rows(relations: Vec<Relation>) -> Option<Vec<usize>> {
-    let mut found: BTreeMap<usize, Relation> = BTreeMap::new();
-    for mut relation in relations {
-        while let Some((last, factor)) = relation.row_factors.pop_last() {
-            let Some(other) = found.get(&last) else {
-                if relation.rest > DEPENDENT * factor.abs() {
-                    return None;
-                }
-                relation.row_factors.insert(last, factor);
-                found.insert(last, relation);
-                break;
+impl Echelon {
+    /// Equations of n unknowns.
+    fn of(n: usize, rows: &[SparseRow], b: &[f64]) -> Echelon {
+        let rows: Vec<SparseRow> = rows.iter().map(merged).collect();
+        let mut to_come = vec![0; n];
+        rows.iter().flatten().for_each(|(i, _)| to_come[*i] += 1);
+        let mut echelon = Echelon {
+            rows: Vec::new(),
+            b: Vec::new(),
+            dependent: Vec::new(),
+            unknowns: Vec::new(),
+            row_of: vec![None; n],
+        };
+        let mut memory = vec![0.0; n];
+        for (k, (row, b)) in rows.into_iter().zip(b).enumerate() {
+            row.iter().for_each(|(i, _)| to_come[*i] -= 1);
+            let size = square(&row).sqrt();
+            let (row, b) = echelon.reduced(divided(row, size), b / size, &mut memory);
+            let largest = row.iter().fold(0.0_f64, |m, (_, g)| m.max(g.abs()));
+            // an unknown of few rows to come, in which elimination makes few entries
+            let eligible = row.iter().filter(|(_, g)| g.abs() >= LEAST_PIVOT * largest);
+            let pivot = eligible.min_by_key(|(i, _)| (to_come[*i], *i)).copied();
+            let Some((unknown, value)) = pivot.filter(|_| largest > DEPENDENT) else {
+                echelon.dependent.push(k);
+                continue;
             };
-            let ratio = factor / other.row_factors[&last];
-            let sizes = relation.row_factors.values().map(|x| x.abs());
-            let size = sizes.fold(factor.abs(), f64::max);
-            for (row, x) in other.row_factors.range(..last) {
-                *relation.row_factors.entry(*row).or_default() -= ratio * x;
-            }
-            relation.rest += ratio.abs() * other.rest;
-            relation
-                .row_factors
-                .retain(|_, x| x.abs() > TAKES_PART * size);
+            echelon.row_of[unknown] = Some(echelon.rows.len());
+            echelon.unknowns.push(unknown);
+            echelon.rows.push(divided(row, value));
+            echelon.b.push(b / value);
         }
+        echelon
     }
-    Some(found.into_keys().collect())
+
+    /// A row of length 1 and its right side, less what the rows at hand give; `left` is memory, of zeros.
+    fn reduced(&self, row: SparseRow, mut b: f64, left: &mut [f64]) -> (SparseRow, f64) {
+        let mut largest = 0.0_f64;
+        let mut own = BTreeSet::new();
+        let mut subtract =
+            |factor: f64, row: &SparseRow, left: &mut [f64], due: &mut BTreeSet<_>| {
+                for (i, g) in row {
+                    left[*i] -= factor * g;
+                    largest = largest.max(left[*i].abs());
+                    match self.row_of[*i] {
+                        Some(row) => due.insert(row),
+                        None => own.insert(*i),
+                    };
+                }
+            };
+        // rows to subtract, the first of them first: it has no unknowns that those before it are solved for
+        let mut due = BTreeSet::new();
+        subtract(-1.0, &row, left, &mut due);
+        while let Some(row) = due.pop_first() {
+            let factor = left[self.unknowns[row]];
+            b -= factor * self.b[row];
+            subtract(factor, &self.rows[row], left, &mut due);
+            due.remove(&row);
+        }
+        let entries = own.into_iter().map(|i| (i, std::mem::take(&mut left[i])));
+        let row = entries.filter(|(_, g)| g.abs() > ROUNDING * largest);
+        (row.collect(), b)
+    }
 }
 
 /// A row in which every index stands once, with a value that is not zero.
@@ -331,32 +306,6 @@ mod tests {
         assert_eq!(assert_equal(n, &rows).dependent.len(), 5);
     }
 
-    /// The last rows of relations that share rows, with factors of any size.
-    #[test]
-    fn the_last_rows_of_relations_follow_from_those_before_them() {
-        let relation = |row_factors: &[(usize, f64)], rest: f64| Relation {
-            row_factors: row_factors.iter().copied().collect(),
-            rest,
-        };
-        let relations = || {
-            vec![
-                relation(&[(0, 3.0), (2, -1.0), (7, 1.0)], 0.0),
-                // less three times the first one: rows 0, 2 and 5
-                relation(&[(2, 1.0), (5, 0.25), (7, 3.0)], 0.0),
-                // less ten times what is left of the second one: rows 0 and 2
-                relation(&[(0, -1.0), (5, 2.5), (2, 0.5)], 0.0),
-            ]
-        };
-        assert_eq!(last_rows(relations()), Some(vec![2, 5, 7]));
-        // a length far below the factors, but not below that of the last row
-        let small = |rest: f64| last_rows(vec![relation(&[(0, 1.0), (4, 1e-4)], rest)]);
-        assert_eq!(small(1e-14), Some(vec![4]));
-        assert_eq!(small(1e-12), None);
-        let mut inherited = relations();
-        inherited[0].rest = 1e-9;
-        assert_eq!(last_rows(inherited), None);
-    }
-
     /// Rows at small angles, and sums with large factors.
     #[test]
     fn small_angles_are_not_taken_for_dependence_nor_large_factors_for_independence() {
@@ -378,10 +327,8 @@ mod tests {
         ] {
             let b = vec![1.0; rows.len()];
             assert_eq!(IndependentRows::dense(3, &rows, &b).dependent, dependent);
-            // what is not certain is left to dense algebra
-            if let Some(sparse) = IndependentRows::sparse(3, &rows, &b) {
-                assert_eq!(sparse.dependent, dependent);
-            }
+            let sparse = IndependentRows::sparse(3, &rows, &b).unwrap();
+            assert_eq!(sparse.dependent, dependent);
         }
     }
 
@@ -400,16 +347,29 @@ mod tests {
         }
     }
 
-    /// A row at a sine of 1e-7 to the others is independent, but not by these means.
+    /// A row at a sine of 1e-7 to the others is independent, one at a sine of 1e-10 is not.
     #[test]
-    fn nearly_dependent_rows_are_not_certain() {
+    fn a_row_depends_on_others_up_to_a_sine_of_1e_9() {
         let n = 12;
-        let mut rows = chain(n);
-        let mut near = [rows[3].clone(), rows[8].clone()].concat();
-        near.push((5, 1e-7));
-        rows.push(near);
-        let b = vec![0.0; rows.len()];
-        assert!(IndependentRows::sparse(n, &rows, &b).is_none());
+        for (sine, dependent) in [(1e-7, vec![]), (1e-10, vec![n - 1])] {
+            let mut rows = chain(n);
+            let mut near = [rows[3].clone(), rows[8].clone()].concat();
+            near.push((5, sine));
+            rows.push(near);
+            let b: Vec<f64> = (0..rows.len()).map(|k| (k as f64).sin()).collect();
+            let dense = IndependentRows::dense(n, &rows, &b);
+            let sparse = IndependentRows::sparse(n, &rows, &b).unwrap();
+            assert_eq!([&sparse.dependent, &dense.dependent], [&dependent; 2]);
+            let x = sparse.least_norm();
+            let size = x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            for (row, b) in rows
+                .iter()
+                .zip(&b)
+                .take(n - 1 + usize::from(dependent.is_empty()))
+            {
+                assert!((times(row, &x) - b).abs() < 1e-14 * size, "{size}");
+            }
+        }
     }
 
     proptest! {
@@ -441,7 +401,8 @@ mod tests {
             let b: Vec<f64> = rows.iter().map(|row| times(row, &x)).collect();
             if let Some(sparse) = IndependentRows::sparse(6, &rows, &b) {
                 prop_assert!(is_solved(&rows, &b, &sparse.least_norm()));
-                let rows = without(&sparse.dependent, &rows);
+                let kept = rows.iter().enumerate().filter(|(k, _)| !sparse.dependent.contains(k));
+                let rows: Vec<SparseRow> = kept.map(|(_, row)| row.clone()).collect();
                 let b: Vec<f64> = (0..rows.len()).map(|k| (k as f64).cos() * square(&rows[k]).sqrt()).collect();
                 let sparse = IndependentRows::sparse(6, &rows, &b);
                 prop_assert!(sparse.is_some_and(|sparse| is_solved(&rows, &b, &sparse.least_norm())));

@@ -23,16 +23,6 @@ pub struct SparseRows {
 impl SparseRows {
     /// With M the sum of some blocks. None where a pivot is too small.
     pub fn factor(n: usize, rows: &[SparseRow], blocks: &[SymmetricBlock]) -> Option<SparseRows> {
-        SparseRows::factor_shifted(n, rows, blocks, 0.0)
-    }
-
-    /// The same with the square of every row times `shift` subtracted from its place in the diagonal.
-    pub fn factor_shifted(
-        n: usize,
-        rows: &[SparseRow],
-        blocks: &[SymmetricBlock],
-        shift: f64,
-    ) -> Option<SparseRows> {
         let size = n + rows.len();
         let mut after = vec![Vec::new(); size];
         let mut cliques: Vec<Vec<usize>> = blocks.iter().map(|(own, _)| own.to_vec()).collect();
@@ -61,7 +51,6 @@ impl SparseRows {
                 add(n + k, *i, *g);
                 add(*i, n + k, *g);
             }
-            add(n + k, n + k, -shift * square(row));
         }
         symbolic.factor(&mut values).ok()?;
         Some(SparseRows {
@@ -72,8 +61,7 @@ impl SparseRows {
         })
     }
 
-    /// With M = I, the square of the distance of row k from the span of the rows that were eliminated before it, and the shift of
-    /// this row.
+    /// With M = I, the square of the distance of row k from the span of the rows that were eliminated before it.
     pub fn squared_distance(&self, k: usize) -> f64 {
         -self.symbolic.pivot(&self.values, self.n + k)
     }
@@ -97,7 +85,7 @@ impl SparseRows {
     }
 
     /// The same, and the multipliers of G x = b: M x + G^T mu = c.
-    pub fn solve_both(&self, c: &[f64], b: &[f64]) -> [Vec<f64>; 2] {
+    fn solve_both(&self, c: &[f64], b: &[f64]) -> [Vec<f64>; 2] {
         let mut x = [c, b].concat();
         self.symbolic.solve(&self.values, &mut x);
         let mu = x.split_off(self.n);
