@@ -38,6 +38,7 @@ mod mechanisms;
 mod methods;
 mod modes;
 mod overrides;
+mod parallel_rods;
 mod plausibility;
 mod pressed;
 mod published;

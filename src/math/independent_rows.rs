@@ -151,7 +151,7 @@ fn certainly_independent(n: usize, rows: &[SparseRow]) -> Option<SparseRows> {
     }
     let factors = SparseRows::factor(n, rows, &identity(&indices(n)))?;
     let is_far = |(k, row)| factors.squared_distance(k) > INDEPENDENT * square(row);
-    if !rows.iter().enumerate().all(is_far) {
+    if factors.smallest_tie() <= INDEPENDENT || !rows.iter().enumerate().all(is_far) {
         return None;
     }
     // right sides that no sum of rows gives

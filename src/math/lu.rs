@@ -7,6 +7,7 @@
 //! A pivot that turns out weak is reported; the caller falls back to a factorisation with row exchanges
 //! ([`DenseLu`]) and counts it.
 
+use super::copies::Copies;
 use super::larger;
 use super::minimum_degree::minimum_degree;
 use faer::linalg::solvers::{PartialPivLu, Solve};
@@ -37,6 +38,8 @@ pub struct Symbolic {
     largest_multiplier: f64,
     /// For every (row, column) pair of a supernode's structure, row by row, where its value stands behind those of the supernode.
     targets: Vec<u32>,
+    /// The copies of unknowns for which many rows wait.
+    copies: Option<Box<Copies>>,
 }
 
 /// What elimination needs to know of one supernode.
@@ -91,15 +94,20 @@ pub struct WeakPivot {
 }
 
 impl Symbolic {
-    /// Analyses an n x n matrix whose pattern is the union of dense blocks on the index sets `cliques`. Unknown i is
-    /// eliminated after those in `after[i]`: a multiplier after all coordinates of its constraint, whose elimination
+    /// Analyses an n x n matrix whose pattern is the union of dense blocks on the index sets `cliques`, each with one row at most. Unknown
+    /// i is eliminated after those in `after[i]`: a multiplier after all coordinates of its constraint, whose elimination
     /// leaves it the pivot -Phi_q M^-1 Phi_q^T.
     ///
     /// # Panics
     /// If an index is not below n, or the orders asked for contradict each other.
     pub fn analyse(n: usize, cliques: &[Vec<usize>], after: &[Vec<usize>]) -> Symbolic {
-        let (order, coupled) = minimum_degree(n, cliques, after);
-        Self::layout(order, &coupled)
+        let (mut cliques, mut after) = (cliques.to_vec(), after.to_vec());
+        let copies = Copies::put(n, &mut cliques, &mut after).map(Box::new);
+        let (order, coupled) = minimum_degree(after.len(), &cliques, &after);
+        Symbolic {
+            copies,
+            ..Self::layout(order, &coupled)
+        }
     }
 
     /// Collects the pivots in supernodes and gives every entry its place; `coupled` are the unknowns coupled to each pivot.
@@ -124,6 +132,7 @@ impl Symbolic {
             targets: Vec::new(),
             position: Vec::new(),
             order: Vec::new(),
+            copies: None,
         };
         let (mut first, mut start) = (0, 0);
         while first < n {
@@ -203,9 +212,20 @@ impl Symbolic {
         )
     }
 
+    /// Value index of an entry of the pattern.
+    fn place(&self, row: usize, column: usize) -> usize {
+        self.entry(self.position[row], self.position[column])
+            .expect("the entry belongs to a clique")
+    }
+
+    /// What a copy or what ties it stands for.
+    fn original(&self, i: usize) -> usize {
+        self.copies.as_ref().map_or(i, |copies| copies.original(i))
+    }
+
     /// Number of unknowns.
     pub fn n(&self) -> usize {
-        self.order.len()
+        self.order.len() - self.copies.as_ref().map_or(0, |copies| copies.len())
     }
 
     /// Length of the value array, the discarded last entry included.
@@ -231,8 +251,11 @@ impl Symbolic {
         if row >= self.n() || column >= self.n() {
             return self.discarded_slot();
         }
-        self.entry(self.position[row], self.position[column])
-            .expect("the entry belongs to a clique") as u32
+        let [row, column] = match &self.copies {
+            Some(copies) => copies.entry(row, column),
+            None => [row, column],
+        };
+        self.place(row, column) as u32
     }
 
     /// A matrix with these entries, each a row, a column and a value.
@@ -269,13 +292,16 @@ impl Symbolic {
     /// As [`Symbolic::factor`].
     pub fn factor_within(&self, values: &mut [f64], limit: f64) -> Result<(), WeakPivot> {
         assert_eq!(values.len(), self.len());
+        if let Some(copies) = &self.copies {
+            copies.tie(values, |i, j| self.place(i, j));
+        }
         for node in &self.supernodes {
             let (here, behind) = values.split_at_mut(node.end());
             let here = &mut here[node.start..];
             let targets = &self.targets[node.targets..][..node.count * node.count];
             let weak = of_size!(node.size, eliminate(here, behind, targets, limit));
             if let Err(pivot) = weak {
-                let index = self.order[node.first + pivot];
+                let index = self.original(self.order[node.first + pivot]);
                 return Err(WeakPivot { index });
             }
         }
@@ -305,11 +331,19 @@ impl Symbolic {
         1.0 / values[self.diagonal(unknown)]
     }
 
-    /// Smallest over largest pivot of the unknowns from `first` on, in the factors of [`Symbolic::factor`].
+    /// The smallest squared sine of a row that ties copies of an unknown to the rows eliminated before it; one where there is none.
+    pub fn smallest_tie(&self, values: &[f64]) -> f64 {
+        let ties = self.copies.iter().flat_map(|copies| copies.rows());
+        let sines = ties.map(|row| -self.pivot(values, row));
+        sines.fold(1.0, f64::min)
+    }
+
+    /// Smallest over largest pivot of the unknowns from `first` on, in the factors of [`Symbolic::factor`]; the squared sine of a tie,
+    /// where that is smaller.
     pub fn pivot_range(&self, values: &[f64], first: usize) -> f64 {
         let inverses = (first..self.n()).map(|i| values[self.diagonal(i)].abs());
         let (low, high) = inverses.fold((f64::INFINITY, 0.0_f64), |(l, h), p| (l.min(p), h.max(p)));
-        low / high
+        (low / high).min(self.smallest_tie(values))
     }
 
     /// Solves L U x = b with the factors of [`Symbolic::factor`]; `b` in, x out.
@@ -320,6 +354,17 @@ impl Symbolic {
 
     /// The same for R right sides, of which `b` has one entry each for every unknown.
     pub fn solve_all<const R: usize>(&self, values: &[f64], b: &mut [[f64; R]]) {
+        if self.copies.is_none() {
+            return self.substitute(values, b);
+        }
+        let mut all = b.to_vec();
+        all.resize(self.order.len(), [0.0; R]);
+        self.substitute(values, &mut all);
+        b.copy_from_slice(&all[..b.len()]);
+    }
+
+    /// The same, with room for the copies in b.
+    fn substitute<const R: usize>(&self, values: &[f64], b: &mut [[f64; R]]) {
         for node in &self.supernodes {
             let (own, coupled, values) = self.parts(node, values);
             of_size!(node.size, forward<R>(own, coupled, values, b))
@@ -347,11 +392,11 @@ impl Symbolic {
     /// The matrix in full, before it is factorised.
     pub fn to_dense(&self, values: &[f64]) -> faer::Mat<f64> {
         let mut dense = faer::Mat::zeros(self.n(), self.n());
-        self.for_each_entry(values, |i, j, value| dense[(i, j)] = value);
+        self.for_each_entry(values, |i, j, value| dense[(i, j)] += value);
         dense
     }
 
-    /// Visits every entry of the pattern before it is factorised: row, column, value.
+    /// Visits every entry of the pattern before it is factorised: row, column, value. An entry of copies is visited in parts.
     pub fn for_each_entry(&self, values: &[f64], mut see: impl FnMut(usize, usize, f64)) {
         for (f, node) in self.supernodes.iter().enumerate() {
             let own = node.first..node.first + node.size;
@@ -365,7 +410,8 @@ impl Symbolic {
                     };
                     for &(i, j) in &pairs[..once] {
                         let value = self.entry(i, j).map_or(0.0, |entry| values[entry]);
-                        see(self.order[i], self.order[j], value);
+                        let [row, column] = [i, j].map(|i| self.original(self.order[i]));
+                        see(row, column, value);
                     }
                 }
             }

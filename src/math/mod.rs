@@ -1,6 +1,7 @@
 //! Small mathematics that the mechanics stands on.
 
 pub mod bisection;
+mod copies;
 pub mod dense;
 pub mod groups;
 pub mod independent_rows;

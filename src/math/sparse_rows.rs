@@ -66,6 +66,11 @@ impl SparseRows {
         -self.symbolic.pivot(&self.values, self.n + k)
     }
 
+    /// [`Symbolic::smallest_tie`].
+    pub fn smallest_tie(&self) -> f64 {
+        self.symbolic.smallest_tie(&self.values)
+    }
+
     /// The rows G.
     pub fn rows(&self) -> &[SparseRow] {
         &self.rows
