@@ -44,7 +44,7 @@ const LAYERS: [&str; 27] = [
 const ABOVE: &str = "output";
 
 /// Crates that the solver is made of. toml_parser and winnow are compiled for toml in any case.
-const CRATES: [&str; 18] = [
+const CRATES: [&str; 17] = [
     "cpu-time",
     "faer",
     "folder",
@@ -61,7 +61,6 @@ const CRATES: [&str; 18] = [
     "thiserror",
     "toml",
     "toml_parser",
-    "wildmatch",
     "winnow",
 ];
 

@@ -5,6 +5,7 @@ use crate::body::Strain;
 use crate::model::Model;
 use crate::scene::Analysis;
 use crate::system::{State, Work};
+use std::collections::HashSet;
 
 /// A recorded quantity.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -135,28 +136,45 @@ pub(super) fn parts(model: &Model, analysis: Analysis) -> Vec<Part> {
     parts
 }
 
-/// Why a mechanism does not have a channel that it would have if a rigid body of it were flexible, or an ideal joint loose: another
-/// model of these must not ask for other channels.
-pub(super) fn removed(name: &str, model: &Model) -> Option<String> {
-    let (owner, quantity) = name.rsplit_once('.')?;
-    let is_one_of = |quantities: &Quantities| quantities.iter().any(|(name, _)| *name == quantity);
-    let moves = |body: &str| model.bodies().iter().any(|b| b.name == body && b.moves);
-    let body = match owner
-        .strip_prefix("points.")
-        .and_then(|point| point.split_once('.'))
-    {
-        Some((body, point)) => {
-            let mut bodies = model.bodies().iter().filter(|b| b.name == body);
-            let is_there = bodies.any(|b| b.points.iter().any(|p| p.name == point));
-            (is_there && is_one_of(SLOPE)).then_some(body)
+/// The channels that a mechanism would have if a rigid body of it were flexible, or an ideal joint loose: another model of these must not
+/// ask for other channels.
+pub(super) struct Removed<'m> {
+    /// The bodies that move, their points by the names of both, and the joints.
+    bodies: HashSet<&'m str>,
+    points: HashSet<(&'m str, &'m str)>,
+    joints: HashSet<&'m str>,
+}
+
+impl Removed<'_> {
+    pub fn of(model: &Model) -> Removed<'_> {
+        let bodies = || model.bodies().iter().filter(|body| body.moves);
+        let points = bodies().flat_map(|body| {
+            let points = body.points.iter();
+            points.map(|point| (&*body.name, &*point.name))
+        });
+        Removed {
+            bodies: bodies().map(|body| &*body.name).collect(),
+            points: points.collect(),
+            joints: model.joints().iter().map(|joint| &*joint.name).collect(),
         }
-        None => is_one_of(STRAIN).then_some(owner),
-    };
-    if let Some(body) = body.filter(|body| moves(body)) {
-        return Some(format!("{body} is rigid"));
     }
-    let is_joint = model.joints().iter().any(|joint| joint.name == owner);
-    (is_joint && is_one_of(GAP)).then(|| format!("the joint {owner} has no clearance"))
+
+    /// Why the mechanism does not have a channel of this name; none where no model of it has.
+    pub fn reason(&self, name: &str) -> Option<String> {
+        let (owner, quantity) = name.rsplit_once('.')?;
+        let is_one_of =
+            |quantities: &Quantities| quantities.iter().any(|(name, _)| *name == quantity);
+        let point = owner.strip_prefix("points.");
+        let (body, is_removed) = match point.and_then(|point| point.split_once('.')) {
+            Some(point) => (point.0, self.points.contains(&point) && is_one_of(SLOPE)),
+            None => (owner, self.bodies.contains(owner) && is_one_of(STRAIN)),
+        };
+        if is_removed {
+            return Some(format!("{body} is rigid"));
+        }
+        (self.joints.contains(owner) && is_one_of(GAP))
+            .then(|| format!("the joint {owner} has no clearance"))
+    }
 }
 
 /// Energies that a mechanism stores.

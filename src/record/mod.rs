@@ -2,6 +2,7 @@
 
 mod channels;
 mod motion;
+pub mod patterns;
 mod unknown_channel;
 
 use crate::body::Strain;
@@ -11,10 +12,9 @@ use crate::model::{Energies, Model};
 use crate::motion::Function;
 use crate::scene::{Analysis, Scene, SceneError};
 use crate::system::{State, Work};
-use channels::{Part, parts, removed};
+use channels::{Part, Removed, parts};
 use std::collections::HashMap;
 use texts::{described, harmful_in_line};
-use wildmatch::WildMatchPattern;
 
 pub use channels::Channel;
 pub use motion::MotionLayout;
@@ -242,43 +242,27 @@ fn choose<'a>(
     model: &Model,
     available: &'a [Available],
 ) -> Result<(Vec<&'a Available>, Vec<String>), SceneError> {
-    let mut is_chosen = vec![false; available.len()];
-    is_chosen[0] = true;
-    let (mut chosen, mut absent) = (vec![&available[0]], Vec::new());
-    let named = available.iter().enumerate();
-    let named: HashMap<&str, usize> = named.map(|(k, entry)| (&*entry.channel.name, k)).collect();
-    for wanted in &scene.output.channels {
+    let names: Vec<&str> = available.iter().map(|e| &*e.channel.name).collect();
+    let wanted = &scene.output.channels;
+    let time = std::iter::once(names[0]);
+    let patterns = time.chain(wanted.iter().map(|wanted| &*wanted.pattern));
+    let choice = patterns::choose(patterns, names.iter().copied());
+    let removed = Removed::of(model);
+    let mut absent = Vec::new();
+    for k in choice.unmatched {
+        // the first pattern is the time, which is there
+        let wanted = &wanted[k - 1];
         let name = &*wanted.pattern;
-        let fitting: Vec<usize> = match name.contains('*') {
-            true => {
-                let pattern = WildMatchPattern::<'*', '\0'>::new(name);
-                let fits = |k: &usize| pattern.matches(&available[*k].channel.name);
-                (0..available.len()).filter(fits).collect()
-            }
-            false => named.get(name).copied().into_iter().collect(),
-        };
-        for &k in &fitting {
-            if !std::mem::replace(&mut is_chosen[k], true) {
-                chosen.push(&available[k]);
-            }
-        }
-        if !fitting.is_empty() {
-            continue;
-        }
-        if name.contains('*') {
-            absent.push(format!(
-                "the pattern {name:?} of `output.channels` matches no channel"
-            ));
-            continue;
-        }
-        if let Some(reason) = removed(name, model) {
-            absent.push(format!("the channel {name:?} is not recorded: {reason}"));
-            continue;
-        }
-        let names: Vec<&str> = available.iter().map(|e| &*e.channel.name).collect();
-        return Err(unknown_channel::fault(scene, wanted, &names));
+        absent.push(if name.contains(patterns::WILDCARD) {
+            format!("the pattern {name:?} of `output.channels` matches no channel")
+        } else if let Some(reason) = removed.reason(name) {
+            format!("the channel {name:?} is not recorded: {reason}")
+        } else {
+            return Err(unknown_channel::fault(scene, wanted, &names));
+        });
     }
-    Ok((chosen, absent))
+    let chosen = choice.names.into_iter().map(|k| &available[k]);
+    Ok((chosen.collect(), absent))
 }
 
 /// What an angle is nearest to at t = 0, with its rate and that time: the angle that a state of the body or the drive of the

@@ -8,12 +8,11 @@ use super::print;
 use clap::{ArgGroup, Args};
 use folder::replace;
 use looselink::document::did_you_mean;
+use looselink::record::patterns;
 use plot::palette::SERIES;
 use plot::{Axis, Figure, Mark, Panel, png, svg};
-use std::collections::HashSet;
 use std::path::PathBuf;
 use view::{StoredChannel, StoredResult};
-use wildmatch::WildMatch;
 
 const NO_PNG: &str = "this program was compiled without PNG; a name that ends in .svg makes an SVG picture, and \
     `cargo install --locked --path crates/cli --features png` makes a program that has PNG";
@@ -143,21 +142,14 @@ fn find<'a>(result: &'a StoredResult, name: &str) -> Result<&'a StoredChannel, C
 }
 
 /// A panel for each unit of the channels that patterns name.
-fn over_time(result: &StoredResult, patterns: &[String]) -> Result<Vec<Panel>, CommandFailure> {
-    let mut chosen: Vec<&StoredChannel> = Vec::new();
-    for text in patterns {
-        let pattern = WildMatch::new(text);
-        let matching = result.channels.iter().filter(|c| pattern.matches(&c.name));
-        let matching: Vec<_> = matching.collect();
-        if matching.is_empty() {
-            find(result, text)?;
-        }
-        chosen.extend(matching);
+fn over_time(result: &StoredResult, wanted: &[String]) -> Result<Vec<Panel>, CommandFailure> {
+    let names = result.channels.iter().map(|c| &*c.name);
+    let choice = patterns::choose(wanted.iter().map(|text| &**text), names);
+    if let Some(&unmatched) = choice.unmatched.first() {
+        find(result, &wanted[unmatched])?;
     }
-    let mut names = HashSet::new();
-    chosen.retain(|channel| names.insert(&channel.name));
     let mut panels: Vec<(&str, Panel)> = Vec::new();
-    for channel in chosen {
+    for channel in choice.names.into_iter().map(|k| &result.channels[k]) {
         let place = panels.iter().position(|(unit, _)| *unit == channel.unit);
         let place = place.unwrap_or_else(|| {
             panels.push((
