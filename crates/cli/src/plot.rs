@@ -17,6 +17,9 @@ use view::{StoredChannel, StoredResult};
 const NO_PNG: &str = "this program was compiled without PNG; a name that ends in .svg makes an SVG picture, and \
     `cargo install --locked --path crates/cli --features png` makes a program that has PNG";
 
+/// Highest PNG in pixels. Firefox decodes no higher one; it has 275 MB of pixels.
+const HIGHEST_PNG: i32 = 32_767;
+
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("what").required(true)))]
 pub struct Arguments {
@@ -74,7 +77,11 @@ pub fn plot(arguments: &Arguments) -> Result<(), CommandFailure> {
         }
         _ => over_time(&result, &arguments.channels)?,
     };
-    let text = svg(&Figure::grid(panels, 1, caption(&result)));
+    let figure = Figure::grid(panels, 1, caption(&result));
+    if extension == "png" {
+        check_height(&figure)?;
+    }
+    let text = svg(&figure);
     let bytes = match extension.to_str() {
         Some("png") => png(&text)
             .map_err(CommandFailure::system)?
@@ -83,6 +90,20 @@ pub fn plot(arguments: &Arguments) -> Result<(), CommandFailure> {
     };
     replace(&arguments.output, &bytes)?;
     print(format!("wrote `{}`\n", arguments.output.display()))
+}
+
+/// A legend that names many channels is high.
+fn check_height(figure: &Figure) -> Result<(), CommandFailure> {
+    let height = figure.height();
+    if height <= HIGHEST_PNG {
+        return Ok(());
+    }
+    let marks = figure.rows.iter().flatten().map(|panel| panel.marks.len());
+    Err(CommandFailure::bad_input(format!(
+        "a PNG that names {} channels would be {height} pixels high, and browsers show at most {HIGHEST_PNG}; choose fewer channels, \
+         or a name that ends in .svg",
+        marks.sum::<usize>()
+    )))
 }
 
 /// Which run a figure shows, and what it warned of.

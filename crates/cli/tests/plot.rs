@@ -121,3 +121,34 @@ fn what_cannot_be_drawn_is_said() {
     );
     assert!(!out.join("figure.svg").exists());
 }
+
+/// Names so long that each has a line of the legend.
+#[test]
+fn a_png_of_too_many_channels_is_refused_with_their_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    let mut scene = "format = 1\ntitle = \"many channels\"\nsimulation = { duration = 2e-3 }\n\
+        integrator = { method = \"bathe\", step = 1e-3 }\noutput = { interval = 1e-3, channels = [\"body*\"] }\n\
+        bodies.ground = { type = \"ground\", points = { o = [0, 0] } }\n"
+        .to_owned();
+    for k in 0..100 {
+        let name = format!("body{k}-{}", "long".repeat(25));
+        scene += &format!(
+            "bodies.{name} = {{ type = \"rigid_body\", mass = 1, inertia = 1, points = {{ o = [0, 0] }} }}\n\
+             initial.bodies.{name} = {{ x = {k}, y = 0, theta = 0 }}\n"
+        );
+    }
+    let file = out.join("scene.toml");
+    std::fs::write(&file, scene).unwrap();
+    let result = out.join("result");
+    let [file, result] = [&file, &result].map(|path| path.to_str().unwrap());
+    expect(&looselink(&["run", file, "--out", result]), 0, "");
+    let result = Path::new(result);
+    std::fs::write(result.join("many.png"), "what was there").unwrap();
+    let output = plot(result, "many.png", &["--channels", "body*"]);
+    for text in ["names 900 channels", "at most 32767", ".svg"] {
+        expect(&output, 2, text);
+    }
+    assert_eq!(read(result, "many.png"), "what was there");
+    expect(&plot(result, "many.svg", &["--channels", "body*"]), 0, "");
+}

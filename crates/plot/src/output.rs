@@ -22,13 +22,30 @@ pub fn save(figure: &Figure, folder: &Path, name: &str) -> Result<()> {
 /// The SVG text of a figure.
 pub fn svg(figure: &Figure) -> String {
     let (panels, bottom) = place(figure);
-    let caption = text::wrap(&figure.caption, SMALL, WIDTH - 4 * MARGIN);
-    let mut canvas = Canvas::new(bottom + SMALL_LINE * caption.len() as i32 + MARGIN);
+    let caption = caption(figure);
+    let mut canvas = Canvas::new(height(bottom, &caption));
     for panel in panels {
         panel.draw(&mut canvas);
     }
     canvas.small_lines(&caption, (2 * MARGIN, bottom + GAP));
     canvas.finish()
+}
+
+impl Figure {
+    /// Height of the picture in pixels.
+    pub fn height(&self) -> i32 {
+        height(place(self).1, &caption(self))
+    }
+}
+
+/// The lines of the caption.
+fn caption(figure: &Figure) -> Vec<String> {
+    text::wrap(&figure.caption, SMALL, WIDTH - 4 * MARGIN)
+}
+
+/// Height of a picture whose panels end at `bottom`.
+fn height(bottom: i32, caption: &[String]) -> i32 {
+    bottom + SMALL_LINE * caption.len() as i32 + MARGIN
 }
 
 /// None: PNGs need the feature `png`.
