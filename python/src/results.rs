@@ -9,6 +9,7 @@ use super::snapshot::Snapshot;
 use super::view::PyView;
 use looselink::document::nearest;
 use looselink::output::summary;
+use looselink::record::patterns;
 use looselink::simulate::{Channel, Impact, Report};
 use messages::closing_table;
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
@@ -19,7 +20,6 @@ use pyo3::types::{PyDict, PyIterator, PyList};
 use serde::Deserialize;
 use std::sync::OnceLock;
 use view::{StoredChannel, StoredRun, page};
-use wildmatch::WildMatchPattern;
 
 /// The results of a run: a mapping from the names of channels to arrays over time.
 ///
@@ -371,12 +371,11 @@ impl PyRun {
     /// Raises KeyError where none matches.
     fn select<'py>(&self, py: Python<'py>, pattern: &str) -> PyResult<Bound<'py, PyDict>> {
         let kept = self.kept()?;
-        let wanted = WildMatchPattern::<'*', '\0'>::new(pattern);
+        let names = kept.columns.iter().map(|column| &*column.name);
         let selected = PyDict::new(py);
-        for column in &kept.columns {
-            if wanted.matches(&column.name) {
-                selected.set_item(&column.name, &column.values)?;
-            }
+        for k in patterns::choose([pattern], names).names {
+            let column = &kept.columns[k];
+            selected.set_item(&column.name, &column.values)?;
         }
         if selected.is_empty() {
             kept.column(pattern)?;
