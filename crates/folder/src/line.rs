@@ -4,14 +4,16 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::io;
 
-/// Stands before the CRC-32 of a line.
-const KEY: &[u8] = b",\"crc32\":\"";
+/// Stands before the CRC-32 of a line. The name is no other key of a line, so that every reader of JSON finds both.
+const KEY: &[u8] = b",\"line_crc32\":\"";
+/// The same in lines of earlier programs.
+const EARLIER_KEY: &[u8] = b",\"crc32\":\"";
 /// Stands after it.
 const END: &[u8] = b"\"}";
 /// Hexadecimal digits of a CRC-32.
 const DIGITS: usize = 8;
 
-/// A value with keys as a line, `{...,"crc32":"89abcdef"}` and a line feed. The CRC-32 is that of all bytes before its key.
+/// A value with keys as a line, `{...,"line_crc32":"89abcdef"}` and a line feed. The CRC-32 is that of all bytes before its key.
 ///
 /// # Errors
 /// A value that JSON does not have, or one without keys.
@@ -32,7 +34,9 @@ pub fn line_of(value: &impl Serialize) -> io::Result<Vec<u8>> {
 pub fn value_of<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
     let line = line.strip_suffix(b"\n").unwrap_or(line);
     let (rest, crc) = line.strip_suffix(END)?.split_last_chunk::<DIGITS>()?;
-    let value = rest.strip_suffix(KEY)?;
+    let value = rest
+        .strip_suffix(KEY)
+        .or_else(|| rest.strip_suffix(EARLIER_KEY))?;
     let written = format!("{:0DIGITS$x}", crc32fast::hash(value));
     if written.as_bytes() != crc {
         return None;
@@ -44,6 +48,14 @@ pub fn value_of<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
 mod tests {
     use super::{line_of, value_of};
     use std::collections::BTreeMap;
+
+    #[test]
+    fn lines_of_earlier_programs_are_read() {
+        // by Python's zlib.crc32
+        let line = br#"{"file":"a","crc32":7,"crc32":"04068cbe"}"#;
+        let value = value_of::<serde_json::Value>(line).unwrap();
+        assert_eq!(value, serde_json::json!({"file": "a", "crc32": 7}));
+    }
 
     #[test]
     fn a_line_with_any_bit_flipped_is_known() {
