@@ -1,8 +1,9 @@
 //! `looselink new`: a commented scene to start from, and the schema that editors check it with.
 
 use super::failure::CommandFailure;
+use super::schema;
 use super::templates::{TEMPLATES, Template};
-use super::{print, schema};
+use super::terminal::{print, word};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use folder::replace;
@@ -56,14 +57,4 @@ pub fn new(arguments: &Arguments) -> Result<(), CommandFailure> {
         "{typed}: {}\n\n  looselink inspect {typed}\n  looselink run {typed} --out {out} --view\n",
         template.purpose
     ))
-}
-
-/// A path as a word of a command line; in quotes, where it has letters that a shell may take for others.
-fn word(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = |c: char| c.is_alphanumeric() || "/\\:._-+".contains(c);
-    match text.chars().all(plain) {
-        true => text,
-        false => format!("{text:?}"),
-    }
 }

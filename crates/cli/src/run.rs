@@ -5,6 +5,7 @@ use super::closing;
 use super::failure::CommandFailure;
 use super::interrupt::Interrupt;
 use super::progress::{Display, remark, warn};
+use super::terminal::word;
 use super::view;
 use clap::Args;
 use folder::{Folder, OutputError, earlier_result};
@@ -122,7 +123,7 @@ pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let Arguments { out, force, .. } = arguments;
     let folder = Folder::claim(out, ::view::kind(), *force).map_err(|error| match error {
         OutputError::Occupied { .. } if StoredCheckpoint::is_in(out) => {
-            let out = out.display();
+            let out = word(out);
             CommandFailure::from(error)
                 .and(&format!("; `looselink resume {out}` goes on with the run"))
         }
@@ -178,7 +179,10 @@ pub fn to_the_end(
         // a run that cannot go on would stop there again
         let resumable = matches!(error, RunError::Interrupted { .. } | RunError::Output(_));
         let go_on = match resumable && StoredCheckpoint::is_in(out) {
-            true => format!("; `looselink resume {folder}` goes on from its last checkpoint"),
+            true => format!(
+                "; `looselink resume {}` goes on from its last checkpoint",
+                word(out)
+            ),
             false => String::new(),
         };
         let kept = match stored {

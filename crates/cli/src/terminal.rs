@@ -3,6 +3,7 @@
 
 use super::failure::CommandFailure;
 use std::io::{ErrorKind, IsTerminal, Write};
+use std::path::Path;
 use texts::{harmless, harmless_line};
 
 /// Writes to standard output; a reader that has gone away is no fault.
@@ -27,6 +28,14 @@ pub fn say(line: &str) {
 pub fn show(text: &str) {
     // A run does not fail because nobody listens.
     let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// A path as a word of a command line: in quotes, where it has characters that a shell takes for others.
+pub fn word(path: &Path) -> String {
+    let text = path.display().to_string();
+    let quoted = shlex::try_quote(&text).map(String::from);
+    // of all characters a NUL alone cannot be quoted, and no path has it
+    quoted.unwrap_or(text)
 }
 
 /// True where standard error is a terminal.

@@ -145,6 +145,6 @@ fn a_name_with_a_space_is_quoted() {
     let folder = tempfile::tempdir().unwrap();
     expect(&new(folder.path(), &["empty", "my scene.toml"]), 0, "");
     let scene = read(folder.path(), "my scene.toml");
-    let command = "looselink run \"my scene.toml\" --out \"out/my scene\" --view\n";
+    let command = "looselink run 'my scene.toml' --out 'out/my scene' --view\n";
     assert!(scene.contains(command), "{scene}");
 }

@@ -134,12 +134,12 @@ fn interrupted(out: &Path) -> Output {
 #[test]
 fn what_cannot_be_resumed_is_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("run");
+    let out = folder.path().join("the run");
     let resume = || looselink(&["resume", path(&out)]);
     expect(&resume(), 2, "it has no `summary.json`, so there is no run");
     let stopped = interrupted(&out);
     let hint = format!(
-        "`looselink resume {}` goes on from its last checkpoint",
+        "`looselink resume '{}'` goes on from its last checkpoint",
         path(&out)
     );
     expect(&stopped, 130, &hint);
@@ -207,7 +207,7 @@ fn what_cannot_be_resumed_is_refused_by_name() {
     }
 
     let again = looselink(&["run", SCENES[0].0, "--out", path(&out)]);
-    let hint = format!("`looselink resume {}` goes on with the run", path(&out));
+    let hint = format!("`looselink resume '{}'` goes on with the run", path(&out));
     expect(&again, 2, &hint);
     // another run holds the folder
     let held = fs::File::open(file("manifest.jsonl")).unwrap();
