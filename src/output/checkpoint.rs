@@ -29,8 +29,6 @@ struct CheckpointHeader {
     run: Header,
     /// SHA-256 of the program.
     program: String,
-    /// True where the run may replace an earlier result.
-    replaces: bool,
     /// The rows of every table that belong to it; later ones are cut.
     tables: BTreeMap<String, Digest>,
     #[serde(flatten)]
@@ -47,8 +45,9 @@ pub struct StoredCheckpoint {
 }
 
 /// Why a run of an earlier version is not resumed.
-const EARLIER: &str =
-    "it was begun by an earlier version of the program, which wrote no `manifest.jsonl`";
+const EARLIER: &str = "`checkpoint.bin` is of an earlier version of the program";
+/// Why a run is not resumed that is not known to be the program's.
+const UNLISTED: &str = "it has no `manifest.jsonl`, which lists the files of the program";
 /// Why a run is not resumed from some bytes.
 const DAMAGED: &str = "`checkpoint.bin` is damaged";
 
@@ -106,7 +105,6 @@ pub(super) fn write(
         t,
         run: run.clone(),
         program: program.to_owned(),
-        replaces: folder.replaces,
         tables,
         elapsed,
     };
@@ -133,15 +131,14 @@ impl StoredCheckpoint {
             Some("complete") => return Err(refused("it is complete")),
             Some(_) => {}
         }
-        let mut folder = folder.ok_or_else(|| refused(EARLIER))?;
         let file = folder::read(&path.join(CHECKPOINT)).map_err(|e| match e.kind() {
             ErrorKind::NotFound => refused(
-                "it was stopped before its first checkpoint, or is a static analysis, which has none; run the scene again with --force",
+                "it was stopped before its first checkpoint, or is a static analysis, which has none",
             ),
             _ => refused(&format!("`{CHECKPOINT}` cannot be read: {e}")),
         })?;
         let (header, bytes) = parsed(&file).map_err(refused)?;
-        folder.replaces = header.replaces;
+        let folder = folder.ok_or_else(|| refused(UNLISTED))?;
         Ok(StoredCheckpoint {
             folder,
             header,

@@ -31,7 +31,7 @@ use crate::table::{Cell, Format, float64};
 use checkpoint::CHECKPOINT;
 pub use checkpoint::{StoredCheckpoint, program, program_is};
 pub use folder;
-use folder::{Folder, Kind, OutputError, json};
+use folder::{Digest, Folder, Kind, OutputError, json, refuse_changed};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io;
@@ -94,6 +94,8 @@ pub struct Results {
     folder: Folder,
     header: Header,
     tables: Tables,
+    /// That of the scene's file.
+    scene: Digest,
     /// SHA-256 of the program, known from the first checkpoint on.
     program: Option<String>,
     /// A row of motion, and one of cells.
@@ -216,7 +218,7 @@ impl Results {
         let tables = Tables::new(scene, simulation, |name, format, columns| {
             TableFile::create(&folder, name, format, columns)
         })?;
-        let results = Results::new(folder, Header::new(scene), tables, Elapsed::NONE)?;
+        let results = Results::new(folder, scene, tables, Elapsed::NONE)?;
         results.folder.replace(SCENE, scene.text().as_bytes())?;
         Ok(results)
     }
@@ -232,8 +234,8 @@ impl Results {
         scene: &Scene,
         simulation: &mut Simulation,
     ) -> Result<Results, OutputError> {
-        let (header, program) = (Header::new(scene), program()?);
-        from.check(&header, &program)?;
+        let program = program()?;
+        from.check(&Header::new(scene), &program)?;
         let tables = Tables::new(scene, simulation, |name, format, columns| {
             TableFile::reopen(from.folder(), name, format, columns, from.rows(name))
         });
@@ -244,7 +246,7 @@ impl Results {
         // readers take no digest of the rows so far for that of all
         folder.list(files(scene).into_iter().map(|file| (file, None)))?;
         tables.all().try_for_each(TableFile::cut)?;
-        let mut results = Results::new(folder, header, tables, elapsed)?;
+        let mut results = Results::new(folder, scene, tables, elapsed)?;
         results.program = Some(program);
         Ok(results)
     }
@@ -252,16 +254,18 @@ impl Results {
     /// A result whose tables are open; its summary says that it is incomplete.
     fn new(
         folder: Folder,
-        header: Header,
+        scene: &Scene,
         tables: Tables,
         elapsed: Elapsed,
     ) -> Result<Results, OutputError> {
+        let header = Header::new(scene);
         let pending = BTreeMap::from([("status", Status::Incomplete)]);
         write_summary(&folder, &header, pending)?;
         Ok(Results {
             folder,
             header,
             tables,
+            scene: Digest::of(scene.text().as_bytes()),
             program: None,
             values: Vec::new(),
             cells: Vec::new(),
@@ -349,22 +353,39 @@ impl Results {
     /// deleted then.
     ///
     /// # Errors
-    /// When something cannot be stored, or somebody else has changed the rows; the summary then goes on saying `incomplete`.
+    /// When something cannot be stored: the summary then goes on saying `incomplete`. When somebody else has changed the rows or
+    /// the scene: the summary then says `failed`, and why.
     pub fn finish(mut self, report: &Report) -> Result<(), OutputError> {
         let digests = self.tables.all().map(|table| {
-            let digest = table.finish()?;
+            let digest = table.sync()?;
             Ok::<_, OutputError>((table.name(), Some(digest)))
         });
         let digests: Vec<_> = digests.collect::<Result<_, _>>()?;
+        // readers refuse what is no longer what was written
         self.folder.list(digests)?;
         let timing = self.stopwatch.stop(report.t);
         self.folder.replace(TIMING, &json(&timing)?)?;
-        write_summary(&self.folder, &self.header, Ended::new(report))?;
+        let changed = self.refuse_changed();
+        let mut report = report.clone();
+        if let Err(error) = &changed {
+            report.status = Status::Failed;
+            report.error.get_or_insert(error.to_string());
+        }
+        write_summary(&self.folder, &self.header, Ended::new(&report))?;
         if report.status == Status::Complete {
             self.folder.remove(CHECKPOINT)?;
             self.folder.forget()?;
         }
-        Ok(())
+        changed
+    }
+
+    /// Refuses rows and a scene that somebody else has changed, moved or deleted.
+    fn refuse_changed(&mut self) -> Result<(), OutputError> {
+        self.tables
+            .all()
+            .try_for_each(|table| table.refuse_changed())?;
+        let scene = self.folder.path().join(SCENE);
+        refuse_changed(&scene, None, self.scene, u64::MAX)
     }
 }
 

@@ -1,9 +1,9 @@
 //! A table that is written row by row.
 
 use crate::table::{Cell, Format};
-use folder::{Digest, Digesting, Folder, OutputError, naming, open, refuse_changed};
+use folder::{Digest, Digesting, Folder, OutputError, naming, naming_read, open, refuse_changed};
 use std::fs::{File, OpenOptions};
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, ErrorKind, Seek, SeekFrom, Write};
 use std::path::PathBuf;
 
 /// Bytes that are written and digested at a time: a digest of single rows would cost several times as much a byte.
@@ -50,10 +50,19 @@ impl TableFile {
         written: Digest,
     ) -> Result<TableFile, OutputError> {
         let path = folder.path().join(name);
-        let file = open(&path, OpenOptions::new().read(true).write(true))?;
-        if Digest::read(&file, written.bytes).map_err(naming(&path))? != written {
-            let how = "has lost rows, or was changed since its last checkpoint";
-            return Err(OutputError::Changed { path, how });
+        let changed = |how: &str| OutputError::Changed {
+            path: path.clone(),
+            how: how.to_owned(),
+        };
+        let file = open(&path, OpenOptions::new().read(true).write(true));
+        let file = file.map_err(|e| match e.kind() {
+            ErrorKind::NotFound => changed("is missing"),
+            _ => e.into(),
+        })?;
+        if Digest::read(&file, written.bytes).map_err(naming_read(&path))? != written {
+            return Err(changed(
+                "has lost rows, or was changed since its last checkpoint",
+            ));
         }
         let digesting = Digesting::after(written);
         Ok(TableFile::new(path, format, columns, file, digesting))
@@ -99,9 +108,12 @@ impl TableFile {
     }
 
     pub(super) fn flush(&mut self) -> io::Result<()> {
-        self.digesting.update(&self.rows);
         let written = self.file.write_all(&self.rows);
-        // also of rows that found no place: a second attempt could write a part of them twice
+        match &written {
+            Ok(()) => self.digesting.update(&self.rows),
+            // a part of the rows may have found a place
+            Err(_) => drop(self.cut()),
+        }
         self.rows.clear();
         written.map_err(naming(&self.path))
     }
@@ -113,14 +125,13 @@ impl TableFile {
         Ok(self.digesting.digest())
     }
 
-    /// Ends the table: all rows are on the disk, in their file, as they were written.
+    /// Refuses rows that somebody else has changed, moved or deleted.
     ///
     /// # Errors
-    /// [`OutputError::Changed`] where somebody else has changed, moved or deleted them.
-    pub(super) fn finish(&mut self) -> Result<Digest, OutputError> {
-        let digest = self.sync()?;
-        refuse_changed(&self.path, &self.file, digest)?;
-        Ok(digest)
+    /// [`OutputError::Changed`].
+    pub(super) fn refuse_changed(&self) -> Result<(), OutputError> {
+        let digest = self.digesting.digest();
+        refuse_changed(&self.path, Some(&self.file), digest, u64::MAX)
     }
 }
 

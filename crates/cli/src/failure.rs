@@ -128,13 +128,15 @@ impl From<OutputError> for CommandFailure {
     fn from(error: OutputError) -> CommandFailure {
         match error {
             OutputError::Io(_) | OutputError::Changed { .. } => CommandFailure::system(error),
-            OutputError::OfAnotherKind { .. } | OutputError::Foreign(_) => {
+            OutputError::OfAnotherKind { .. } => {
                 CommandFailure::bad_input(error).and("; choose another folder")
             }
             OutputError::NotADirectory(_)
             | OutputError::NotAFile(_)
             | OutputError::Busy(_)
-            | OutputError::NotResumable { .. } => CommandFailure::bad_input(error),
+            | OutputError::Foreign(_) => CommandFailure::bad_input(error),
+            OutputError::NotResumable { .. } => CommandFailure::bad_input(error)
+                .and("; `looselink run` with --force begins the run anew"),
             OutputError::Occupied { .. } => CommandFailure::bad_input(error)
                 .and("; choose another folder, or replace it with --force"),
         }

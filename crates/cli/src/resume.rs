@@ -5,6 +5,7 @@ use super::interrupt::Interrupt;
 use super::run::{RunOptions, not_stored, to_the_end};
 use super::terminal::say;
 use clap::Args;
+use folder::OutputError;
 use looselink::output::{Results, StoredCheckpoint};
 use looselink::registry::Registry;
 use looselink::simulate::Simulation;
@@ -24,7 +25,13 @@ pub fn resume(arguments: &Arguments) -> Result<(), CommandFailure> {
     let interrupt = Interrupt::watch()?;
     let Arguments { folder, options } = arguments;
     let mut options = options.clone();
-    let checkpoint = StoredCheckpoint::read(folder, kind())?;
+    let checkpoint = StoredCheckpoint::read(folder, kind()).map_err(|error| match error {
+        OutputError::OfAnotherKind { held, .. } => CommandFailure::bad_input(format!(
+            "`{}` holds {held}, and only runs are resumed; an interrupted sweep goes on by the same command",
+            folder.display()
+        )),
+        error => error.into(),
+    })?;
     let scene = checkpoint.scene(&Registry::standard())?;
     options.check(&scene)?;
     let mut simulation = Simulation::new(&scene)?;

@@ -35,7 +35,7 @@ pub struct Arguments {
     /// Find the value of the one parameter at which a measure reaches this value, by bisection; replaces the design of the study.
     #[arg(long, value_name = "MEASURE=VALUE", value_parser = target)]
     target: Option<SweepTarget>,
-    /// Begin anew: delete the rows that are there.
+    /// Begin anew; the sweep that is there is kept in `previous-result` inside the folder until the new one is complete.
     #[arg(long)]
     force: bool,
     /// Show no progress; runs without results are still shown.
@@ -58,7 +58,7 @@ pub fn sweep(arguments: &Arguments) -> Result<(), CommandFailure> {
     let interrupt = Interrupt::watch()?;
     let sweep = Sweep::load(&arguments.study, arguments.target.clone())?;
     if arguments.merge {
-        let store = Store::read(&arguments.out, &sweep)?;
+        let store = Store::to_merge(&arguments.out, &sweep)?;
         return write(arguments, &sweep, &store);
     }
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);

@@ -1,8 +1,8 @@
 //! A folder that a program has claimed for a result.
 
 use crate::digest::Digest;
-use crate::error::{OutputError, naming};
-use crate::kind::{Kind, earlier_kind};
+use crate::error::{OutputError, naming, naming_read};
+use crate::kind::Kind;
 use crate::lock::{Lock, Sharing, is_at};
 use crate::manifest::{MANIFEST, Manifest};
 use crate::open;
@@ -25,7 +25,8 @@ pub fn earlier_result(folder: &Path) -> Option<PathBuf> {
 /// What a claim has brought into being, as long as nothing is written.
 #[derive(Debug, Default)]
 struct Undo {
-    manifest: Option<PathBuf>,
+    /// With its length.
+    manifest: Option<(PathBuf, u64)>,
     /// Innermost first.
     folders: Vec<PathBuf>,
 }
@@ -33,9 +34,10 @@ struct Undo {
 impl Undo {
     /// Takes it away again, while nobody else can claim it.
     fn undo(&self) {
-        let is_empty = |path: &&PathBuf| fs::metadata(path).is_ok_and(|file| file.len() == 0);
-        if let Some(manifest) = self.manifest.as_ref().filter(is_empty) {
-            let _ = fs::remove_file(manifest);
+        if let Some((path, length)) = &self.manifest
+            && fs::metadata(path).is_ok_and(|file| file.len() == *length)
+        {
+            let _ = fs::remove_file(path);
         }
         for folder in &self.folders {
             // what has come into it since stays
@@ -50,7 +52,7 @@ pub struct Folder {
     path: PathBuf,
     kind: Kind,
     /// True where an earlier result may be replaced.
-    pub replaces: bool,
+    replaces: bool,
     manifest: Manifest,
     undo: Undo,
     lock: Lock,
@@ -91,7 +93,7 @@ impl Folder {
     /// # Errors
     /// Another program writes to it, or it holds something else. None without a manifest.
     pub fn reopen(path: &Path, kind: Kind) -> Result<Option<Folder>, OutputError> {
-        let lock = match Lock::take(path, Sharing::Alone, false) {
+        let lock = match Lock::take(path, Sharing::Alone, None) {
             Err(OutputError::Io(e)) if e.kind() == ErrorKind::NotADirectory => None,
             lock => lock?,
         };
@@ -112,12 +114,15 @@ impl Folder {
         sharing: Sharing,
         refuse: impl Fn(&Kind, &Manifest) -> Result<(), OutputError>,
     ) -> Result<Folder, OutputError> {
-        if !is_there(&path.join(MANIFEST)) {
-            // what is to be refused anyhow is refused before a lock comes into being
-            refuse(&kind, &kind.held(path, Manifest::default()))?;
-        }
         if is_there(path) && !path.is_dir() {
             return Err(OutputError::NotADirectory(path.to_owned()));
+        }
+        let mut new = Vec::new();
+        if !is_there(&path.join(MANIFEST)) {
+            // what is to be refused anyhow is refused before a lock comes into being
+            let earlier = kind.held(path)?;
+            refuse(&kind, &earlier)?;
+            new = Manifest::bytes(kind.name, &earlier.files)?;
         }
         let missing = path
             .ancestors()
@@ -128,10 +133,10 @@ impl Folder {
         };
         let made = fs::create_dir_all(path).map_err(naming(path));
         let lock = made.map_err(OutputError::from);
-        let lock = lock.and_then(|()| Lock::take(path, sharing, true));
+        let lock = lock.and_then(|()| Lock::take(path, sharing, Some(&new)));
         let lock = lock.inspect_err(|_| undo.undo())?;
         let lock = lock.expect("it was to be created");
-        undo.manifest = lock.is_new.then(|| lock.path().to_owned());
+        undo.manifest = lock.created.map(|length| (lock.path().to_owned(), length));
         let folder = Folder::of(path, kind, replaces, undo, lock)?;
         refuse(&folder.kind, &folder.manifest)?;
         Ok(folder)
@@ -144,10 +149,10 @@ impl Folder {
         undo: Undo,
         mut lock: Lock,
     ) -> Result<Folder, OutputError> {
-        let manifest = Manifest::read(lock.file()).map_err(naming(lock.path()))?;
+        let manifest = Manifest::read(lock.file()).map_err(naming_read(lock.path()))?;
         Ok(Folder {
             path: path.to_owned(),
-            manifest: kind.held(path, manifest),
+            manifest,
             kind,
             replaces,
             undo,
@@ -170,26 +175,17 @@ impl Folder {
     /// # Errors
     /// When a file cannot be written, moved or deleted.
     pub fn begin(&mut self, files: impl IntoIterator<Item = String>) -> Result<(), OutputError> {
+        self.refuse_moved()?;
         if self.replaces {
             replaced::set_aside(&self.path, &self.kind, &self.manifest)?;
-        }
-        self.clear(files)
-    }
-
-    /// Deletes the files of the program and begins a result with others.
-    ///
-    /// # Errors
-    /// When a file cannot be deleted or written.
-    pub fn clear(&mut self, files: impl IntoIterator<Item = String>) -> Result<(), OutputError> {
-        self.refuse_moved()?;
-        if self.manifest.kind.is_none() {
-            // an earlier version wrote no manifest: what a kill leaves of its files is to be known as well
-            self.list(self.manifest.files.clone())?;
         }
         replaced::delete(&self.path, &self.kind, &self.manifest)?;
         let (file, path) = self.lock.file_and_path();
         file.set_len(0).map_err(naming(path))?;
-        self.manifest = Manifest::default();
+        self.manifest = Manifest {
+            replaces: self.replaces,
+            ..Manifest::default()
+        };
         self.list(files.into_iter().map(|file| (file, None)))
     }
 
@@ -264,43 +260,48 @@ impl Folder {
         Ok(remove(&self.path.join(file))?)
     }
 
-    /// Deletes the result that this one has replaced.
+    /// Deletes the result that this one has replaced, as this one is whole.
     ///
     /// # Errors
     /// When it cannot be deleted.
     pub fn forget(&self) -> Result<(), OutputError> {
-        match self.replaces {
-            true => {
-                // the new result is on the disk, with the names of its files
-                sync_names(&self.path)?;
-                Ok(replaced::discard(&self.path, &self.kind)?)
-            }
-            false => Ok(()),
-        }
+        Ok(replaced::forget(&self.path, &self.kind, &self.manifest)?)
     }
 
-    /// Refuses to write to a folder that is not the one that was locked.
-    fn refuse_moved(&self) -> Result<(), OutputError> {
+    /// Refuses a folder that is not the one that was locked.
+    ///
+    /// # Errors
+    /// [`OutputError::Changed`] of the manifest.
+    pub fn refuse_moved(&self) -> Result<(), OutputError> {
         match self.lock.is_in_place()? {
             true => Ok(()),
-            false => Err(OutputError::Changed {
-                path: self.path.clone(),
-                how: "was moved, replaced or deleted while the program wrote to it",
-            }),
+            false => Err(changed(self.lock.path(), MOVED)),
         }
     }
 }
 
-fn refuse_another_kind(path: &Path, kind: &Kind, manifest: &Manifest) -> Result<(), OutputError> {
-    let held = match &manifest.kind {
-        Some(held) => Some(held.as_str()),
-        None if manifest.is_foreign => return Err(OutputError::Foreign(path.join(MANIFEST))),
-        None => earlier_kind(path),
-    };
-    match held {
+/// What somebody else has done to a file while the program wrote to it.
+const MOVED: &str = "was moved, replaced or deleted while the program wrote the result";
+const EDITED: &str = "was changed while the program wrote the result";
+
+fn changed(path: &Path, how: &str) -> OutputError {
+    OutputError::Changed {
+        path: path.to_owned(),
+        how: how.to_owned(),
+    }
+}
+
+/// Refuses a manifest that is none, or of a folder that holds something else.
+pub(crate) fn refuse_another_kind(
+    path: &Path,
+    kind: &Kind,
+    manifest: &Manifest,
+) -> Result<(), OutputError> {
+    match &manifest.kind {
+        None if manifest.is_foreign => Err(OutputError::Foreign(path.join(MANIFEST))),
         Some(held) if held != kind.name => Err(OutputError::OfAnotherKind {
             folder: path.to_owned(),
-            held: held.to_owned(),
+            held: held.clone(),
         }),
         _ => Ok(()),
     }
@@ -361,24 +362,36 @@ impl Drop for Folder {
     }
 }
 
-/// Refuses a file that is written row by row and is no longer what the program wrote: another one, or with other bytes.
+/// Refuses an open file that is no longer at its path.
+///
+/// # Errors
+/// [`OutputError::Changed`], or a file that cannot be found.
+pub fn refuse_moved(path: &Path, file: &File) -> Result<(), OutputError> {
+    match is_at(file, path)? {
+        true => Ok(()),
+        false => Err(changed(path, MOVED)),
+    }
+}
+
+/// Refuses a file that is no longer what the program wrote: not there, with other bytes or, where it is still open, another one. Its
+/// first bytes count, as many as `counts` says.
 ///
 /// # Errors
 /// [`OutputError::Changed`], or a file that cannot be read.
-pub fn refuse_changed(path: &Path, file: &File, digest: Digest) -> Result<(), OutputError> {
-    let changed = |how| {
-        Err(OutputError::Changed {
-            path: path.to_owned(),
-            how,
-        })
-    };
-    if !is_at(file, path)? {
-        return changed("was moved, replaced or deleted while the program wrote to it");
+pub fn refuse_changed(
+    path: &Path,
+    file: Option<&File>,
+    digest: Digest,
+    counts: u64,
+) -> Result<(), OutputError> {
+    file.map_or(Ok(()), |file| refuse_moved(path, file))?;
+    if !path.is_file() {
+        return Err(changed(path, MOVED));
     }
-    let read = File::open(path).and_then(|file| Digest::read(file, u64::MAX));
-    match read.map_err(naming(path))? == digest {
+    let read = File::open(path).and_then(|file| Digest::read(file, counts));
+    match read.map_err(naming_read(path))? == digest {
         true => Ok(()),
-        false => changed("was changed while the program wrote to it"),
+        false => Err(changed(path, EDITED)),
     }
 }
 
@@ -387,15 +400,5 @@ pub(crate) fn remove(path: &Path) -> io::Result<()> {
     match fs::remove_file(path) {
         Err(e) if e.kind() != ErrorKind::NotFound => Err(naming(path)(e)),
         _ => Ok(()),
-    }
-}
-
-/// Sees that the names in a folder are on the disk.
-fn sync_names(folder: &Path) -> io::Result<()> {
-    match cfg!(unix) {
-        true => File::open(folder)
-            .and_then(|folder| folder.sync_all())
-            .map_err(naming(folder)),
-        false => Ok(()),
     }
 }

@@ -23,7 +23,7 @@ pub enum OutputError {
         held: String,
     },
     /// A file has the name of one of the result, and is somebody else's.
-    #[error("`{}` is not a file of this program (`{}` does not list it)", .0.display(), crate::MANIFEST)]
+    #[error("`{}` is not a file of this program; move it, or choose another folder", .0.display())]
     Foreign(PathBuf),
     /// The path of the folder is that of a file.
     #[error("`{}` is not a directory", .0.display())]
@@ -48,17 +48,24 @@ pub enum OutputError {
         /// The file.
         path: PathBuf,
         /// What has become of it.
-        how: &'static str,
+        how: String,
     },
     /// The system refused; the message names the file.
     #[error("{0}")]
     Io(#[from] io::Error),
 }
 
-/// Makes an error of the system say which file it is about.
+/// Makes an error of the system say which file could not be written.
 pub fn naming(path: &Path) -> impl FnOnce(io::Error) -> io::Error {
-    move |error| {
-        let message = format!("cannot write `{}`: {error}", path.display());
-        io::Error::new(error.kind(), message)
-    }
+    move |error| failed("write", path, &error)
+}
+
+/// Makes an error of the system say which file could not be read.
+pub fn naming_read(path: &Path) -> impl FnOnce(io::Error) -> io::Error {
+    move |error| failed("read", path, &error)
+}
+
+pub(crate) fn failed(verb: &str, path: &Path, error: &io::Error) -> io::Error {
+    let message = format!("cannot {verb} `{}`: {error}", path.display());
+    io::Error::new(error.kind(), message)
 }

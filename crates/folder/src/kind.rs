@@ -1,8 +1,11 @@
 //! What a folder can hold, and how a result is known that has no manifest.
 
 use crate::claim::is_there;
+use crate::digest::Digest;
 use crate::manifest::Manifest;
 use crate::read;
+use std::fs::File;
+use std::io;
 use std::path::Path;
 
 /// A kind of result.
@@ -31,7 +34,7 @@ const EARLIER: [(&str, &str, &[&str]); 4] = [
 ];
 
 /// The result of an earlier version that is in a folder: what it is.
-pub(crate) fn earlier_kind(folder: &Path) -> Option<&'static str> {
+fn earlier_kind(folder: &Path) -> Option<&'static str> {
     let mut known = EARLIER.iter();
     let found = known.find(|(_, file, keys)| closing(folder, file, keys).is_some());
     found.map(|(name, ..)| *name)
@@ -50,18 +53,33 @@ impl Kind {
     /// True where a folder holds a result that came to its end.
     pub(crate) fn is_whole(&self, folder: &Path) -> bool {
         let closing = closing(folder, &self.files[0], &[]);
-        closing.is_some_and(|closing| closing.get("status").is_none_or(|s| s == "complete"))
+        // that of a sweep counts the runs by status
+        let status = |closing: serde_json::Value| closing["status"].as_str().map(str::to_owned);
+        closing.is_some_and(|closing| status(closing).is_none_or(|status| status == "complete"))
     }
 
-    /// What a folder holds of the program: by its manifest or, of an earlier version, which wrote none, by the closing file.
-    pub(crate) fn held(&self, folder: &Path, mut manifest: Manifest) -> Manifest {
-        if manifest.kind.is_none() && earlier_kind(folder) == Some(self.name) {
-            let present = self
-                .files
-                .iter()
-                .filter(|file| is_there(&folder.join(file)));
-            manifest.files = present.map(|file| (file.clone(), None)).collect();
+    /// What a folder holds of the program: what its manifest lists. Without a manifest it is the result of an earlier version, known by
+    /// the file that closes it. A manifest that lists nothing is no sign of an earlier version, which had none.
+    pub(crate) fn held(&self, folder: &Path) -> io::Result<Manifest> {
+        if let Some(manifest) = Manifest::of(folder)? {
+            return Ok(manifest);
         }
-        manifest
+        let kind = earlier_kind(folder);
+        let mut files = self.files.clone();
+        files.retain(|file| kind == Some(self.name) && is_there(&folder.join(file)));
+        // from now on a change of them is known, too
+        let digest = |file: &String| {
+            let path = Some(folder.join(file)).filter(|path| path.is_file())?;
+            Digest::read(File::open(path).ok()?, u64::MAX).ok()
+        };
+        let files = files.into_iter().map(|file| {
+            let digest = digest(&file);
+            (file, digest)
+        });
+        Ok(Manifest {
+            kind: kind.map(str::to_owned),
+            files: files.collect(),
+            ..Manifest::default()
+        })
     }
 }

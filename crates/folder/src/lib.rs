@@ -22,12 +22,13 @@ mod replaced;
 mod temporary;
 
 pub use add::add;
-pub use claim::{Folder, earlier_result, refuse_changed};
+pub use claim::{Folder, earlier_result, refuse_changed, refuse_moved};
 pub use digest::{Digest, Digesting};
-pub use error::{OutputError, naming};
+use error::failed;
+pub use error::{OutputError, naming, naming_read};
 pub use kind::Kind;
 pub use line::{line_of, value_of};
-pub use manifest::{MANIFEST, verify};
+pub use manifest::{MANIFEST, held, verify};
 pub use temporary::replace;
 
 use serde::Serialize;
@@ -65,7 +66,7 @@ fn no_file() -> io::Error {
 /// # Errors
 /// When it cannot be opened; the message names the file.
 pub fn open_to_read(path: &Path) -> io::Result<File> {
-    open_unlinked(path, OpenOptions::new().read(true))
+    open_unlinked("read", path, OpenOptions::new().read(true))
 }
 
 /// Opens a file to write to it, but not what a link points at, nor a file that has a second name: whoever gave it that does not expect
@@ -74,7 +75,7 @@ pub fn open_to_read(path: &Path) -> io::Result<File> {
 /// # Errors
 /// When it cannot be opened; the message names the file.
 pub fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
-    let file = open_unlinked(path, options)?;
+    let file = open_unlinked("write", path, options)?;
     #[cfg(unix)]
     {
         use std::os::unix::fs::MetadataExt;
@@ -88,9 +89,9 @@ pub fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
     Ok(file)
 }
 
-fn open_unlinked(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
+fn open_unlinked(verb: &str, path: &Path, options: &mut OpenOptions) -> io::Result<File> {
     if fs::symlink_metadata(path).is_ok_and(|found| !found.is_file() && !found.is_symlink()) {
-        return Err(naming(path)(no_file()));
+        return Err(failed(verb, path, &no_file()));
     }
     #[cfg(unix)]
     {
@@ -98,13 +99,13 @@ fn open_unlinked(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
         options.custom_flags(libc::O_NOFOLLOW);
     }
     if cfg!(not(unix)) && path.is_symlink() {
-        return Err(naming(path)(io::Error::other("it is a link")));
+        return Err(failed(verb, path, &io::Error::other("it is a link")));
     }
     options.open(path).map_err(|error| {
         let error = match path.is_symlink() {
             true => io::Error::new(error.kind(), "it is a link"),
             false => error,
         };
-        naming(path)(error)
+        failed(verb, path, &error)
     })
 }

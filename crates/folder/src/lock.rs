@@ -1,6 +1,7 @@
 //! The lock of a folder: that of its manifest.
 
 use crate::error::{OutputError, naming};
+use crate::temporary::Temporary;
 use crate::{MANIFEST, open};
 use same_file::Handle;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -21,20 +22,20 @@ pub(crate) enum Sharing {
 pub(crate) struct Lock {
     path: PathBuf,
     file: File,
-    /// True where there was no manifest.
-    pub is_new: bool,
+    /// Where there was no manifest: how long the new one was at first.
+    pub created: Option<u64>,
 }
 
 impl Lock {
-    /// Locks a folder that is there. Without a manifest one comes into being, or there is no lock.
+    /// Locks a folder that is there. Without a manifest one of these bytes comes into being, or there is no lock.
     pub fn take(
         folder: &Path,
         sharing: Sharing,
-        creates: bool,
+        new: Option<&[u8]>,
     ) -> Result<Option<Lock>, OutputError> {
         let path = folder.join(MANIFEST);
         loop {
-            let Some((file, is_new)) = opened(&path, creates)? else {
+            let Some((file, created)) = opened(&path, new)? else {
                 return Ok(None);
             };
             let locked = match sharing {
@@ -49,7 +50,11 @@ impl Lock {
                 _ => {}
             }
             let path = path.clone();
-            let lock = Lock { path, file, is_new };
+            let lock = Lock {
+                path,
+                file,
+                created,
+            };
             // between the two steps another program may have given the folder up
             if lock.is_in_place()? {
                 return Ok(Some(lock));
@@ -102,19 +107,28 @@ pub(crate) fn is_at(file: &File, path: &Path) -> io::Result<bool> {
     }
 }
 
-/// A manifest, and whether it came into being.
-fn opened(path: &Path, creates: bool) -> io::Result<Option<(File, bool)>> {
+/// A manifest and, where it came into being, its length. One that is not empty is whole at once, as nothing says later whether an empty
+/// one was new.
+pub(crate) fn opened(path: &Path, new: Option<&[u8]>) -> io::Result<Option<(File, Option<u64>)>> {
     let mut options = OpenOptions::new();
     options.read(true).append(true);
     loop {
         match open(path, &mut options) {
-            Ok(file) => return Ok(Some((file, false))),
+            Ok(file) => return Ok(Some((file, None))),
             Err(e) if e.kind() != ErrorKind::NotFound => return Err(e),
-            Err(_) if !creates => return Ok(None),
             Err(_) => {}
         }
-        match open(path, options.clone().create_new(true)) {
-            Ok(file) => return Ok(Some((file, true))),
+        let Some(bytes) = new else {
+            return Ok(None);
+        };
+        let created = match bytes {
+            [] => open(path, options.clone().create_new(true)),
+            _ => Temporary::new(path, bytes)
+                .and_then(|temporary| temporary.name_new(path))
+                .and_then(|()| open(path, &mut options)),
+        };
+        match created {
+            Ok(file) => return Ok(Some((file, Some(bytes.len() as u64)))),
             // another program was faster
             Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
             Err(e) => return Err(e),

@@ -1,12 +1,12 @@
 //! Which files of a folder are the program's.
 
 use crate::digest::Digest;
-use crate::error::{OutputError, naming};
+use crate::error::{OutputError, naming_read};
 use crate::line::{line_of, value_of};
 use crate::read;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::io::{self, Cursor, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Component, Path};
 
 /// The file of the manifest. Each of its lines ends with its own CRC-32; the last line about a file counts.
@@ -20,7 +20,12 @@ const HEAD: &[u8] = b"{\"looselink\":";
 #[serde(untagged)]
 enum Line {
     /// The first one: what the folder holds.
-    Head { looselink: String },
+    Head {
+        looselink: String,
+        /// True where the result has replaced another one, which stands aside until this one is whole.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        replaces: bool,
+    },
     /// A file of the program and, of one that is written to its end, its digest.
     File {
         file: String,
@@ -36,6 +41,8 @@ pub(crate) struct Manifest {
     pub is_foreign: bool,
     /// What the folder holds; none of an empty manifest.
     pub kind: Option<String>,
+    /// See [`Line::Head`].
+    pub replaces: bool,
     /// The files of the program.
     pub files: BTreeMap<String, Option<Digest>>,
 }
@@ -54,8 +61,10 @@ impl Manifest {
         let path = folder.join(MANIFEST);
         match read(&path) {
             Ok(bytes) => Ok(Some(Manifest::parse(&bytes))),
-            Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
-            Err(e) => Err(naming(&path)(e)),
+            Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                Ok(None)
+            }
+            Err(e) => Err(naming_read(&path)(e)),
         }
     }
 
@@ -66,7 +75,13 @@ impl Manifest {
             !bytes.contains(&b'\n') && (bytes.starts_with(HEAD) || HEAD.starts_with(bytes));
         for line in bytes.split(|byte| *byte == b'\n').filter_map(value_of) {
             match line {
-                Line::Head { looselink } => manifest.kind = Some(looselink),
+                Line::Head {
+                    looselink,
+                    replaces,
+                } => {
+                    manifest.kind = Some(looselink);
+                    manifest.replaces = replaces;
+                }
                 Line::File { file, digest } if is_plain(&file) => {
                     manifest.files.insert(file, digest);
                 }
@@ -94,7 +109,11 @@ impl Manifest {
         }
         if self.kind.is_none() {
             let looselink = kind.to_owned();
-            lines.extend(line_of(&Line::Head { looselink })?);
+            let replaces = self.replaces;
+            lines.extend(line_of(&Line::Head {
+                looselink,
+                replaces,
+            })?);
             self.kind = Some(kind.to_owned());
         }
         for (file, digest) in files {
@@ -104,12 +123,30 @@ impl Manifest {
         // in one call: programs that share a folder add lines at the same time
         to.write_all(&lines)
     }
+
+    /// The bytes of a new manifest; none where it lists no file.
+    pub fn bytes(kind: &str, files: &BTreeMap<String, Option<Digest>>) -> io::Result<Vec<u8>> {
+        let mut bytes = Cursor::new(Vec::new());
+        if !files.is_empty() {
+            let files = files.iter().map(|(file, digest)| (file.clone(), *digest));
+            Manifest::default().add(&mut bytes, kind, files)?;
+        }
+        Ok(bytes.into_inner())
+    }
 }
+
+/// What has become of a file whose bytes are not those of the program.
+const DAMAGED: &str = "is damaged, or was changed after the program wrote it";
 
 /// True of the name of a file in the folder itself.
 fn is_plain(name: &str) -> bool {
     let mut parts = Path::new(name).components();
     matches!((parts.next(), parts.next()), (Some(Component::Normal(only)), None) if only == name)
+}
+
+/// What a folder holds by its manifest: the name of a [`crate::Kind`].
+pub fn held(folder: &Path) -> Option<String> {
+    Manifest::of(folder).ok()??.kind
 }
 
 /// Refuses the bytes of a file of a result that are not those that the program wrote. Where a result has not ended, and where an
@@ -124,11 +161,11 @@ pub fn verify(folder: &Path, name: &str, bytes: &[u8], has_ended: bool) -> Resul
     match manifest.files.get(name) {
         Some(Some(digest)) if *digest != Digest::of(bytes) => Err(OutputError::Changed {
             path: folder.join(name),
-            how: "is damaged, or was changed after the program wrote it",
+            how: DAMAGED.to_owned(),
         }),
         None | Some(None) if has_ended => Err(OutputError::Changed {
             path: folder.join(MANIFEST),
-            how: "is damaged, or was changed after the program wrote it: it lacks the digest of a table",
+            how: format!("{DAMAGED}: it lacks the digest of `{name}`"),
         }),
         _ => Ok(()),
     }

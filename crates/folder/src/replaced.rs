@@ -1,22 +1,16 @@
 //! The result that another one replaces: it stands aside until that is whole.
 
 use crate::claim::{is_there, remove};
-use crate::error::{OutputError, naming};
+use crate::error::{OutputError, naming, naming_read};
 use crate::kind::Kind;
 use crate::manifest::{MANIFEST, Manifest};
 use crate::temporary::temporary_folder;
-use std::fs;
-use std::io::{self, Cursor, ErrorKind};
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 pub(crate) const PREVIOUS: &str = "previous-result";
-
-/// What stands aside.
-fn aside(folder: &Path, kind: &Kind) -> io::Result<Manifest> {
-    let aside = folder.join(PREVIOUS);
-    let manifest = Manifest::of(&aside)?.unwrap_or_default();
-    Ok(kind.held(&aside, manifest))
-}
 
 /// Refuses to replace what stands aside and is not all of the program.
 pub(crate) fn refuse_foreign(folder: &Path, kind: &Kind) -> Result<(), OutputError> {
@@ -27,9 +21,9 @@ pub(crate) fn refuse_foreign(folder: &Path, kind: &Kind) -> Result<(), OutputErr
     if !metadata.is_dir() {
         return Err(OutputError::NotADirectory(path));
     }
-    let held = aside(folder, kind)?;
-    for entry in fs::read_dir(&path).map_err(naming(&path))? {
-        let name = entry.map_err(naming(&path))?.file_name();
+    let held = kind.held(&path)?;
+    for entry in fs::read_dir(&path).map_err(naming_read(&path))? {
+        let name = entry.map_err(naming_read(&path))?.file_name();
         let is_listed = |name: &str| name == MANIFEST || held.files.contains_key(name);
         if !name.to_str().is_some_and(is_listed) {
             return Err(OutputError::Foreign(path.join(name)));
@@ -44,20 +38,18 @@ pub(crate) fn set_aside(folder: &Path, kind: &Kind, held: &Manifest) -> io::Resu
     let previous = folder.join(PREVIOUS);
     let present = held.files.iter();
     let present = present.filter(|(file, _)| is_there(&folder.join(file)));
-    let present: Vec<_> = present
+    let present: BTreeMap<_, _> = present
         .map(|(file, digest)| (file.clone(), *digest))
         .collect();
     if present.is_empty() || (previous.exists() && !kind.is_whole(folder)) {
         return Ok(());
     }
     let temporary = temporary_folder(folder)?;
-    for (file, _) in &present {
+    for file in present.keys() {
         link(&folder.join(file), &temporary.join(file))?;
     }
-    let mut manifest = Cursor::new(Vec::new());
-    Manifest::default().add(&mut manifest, kind.name, present)?;
     let path = temporary.join(MANIFEST);
-    fs::write(&path, manifest.into_inner()).map_err(naming(&path))?;
+    fs::write(&path, Manifest::bytes(kind.name, &present)?).map_err(naming(&path))?;
     discard(folder, kind)?;
     fs::rename(&temporary, &previous).map_err(naming(&previous))
 }
@@ -70,16 +62,29 @@ pub(crate) fn delete(folder: &Path, kind: &Kind, held: &Manifest) -> io::Result<
     files.try_for_each(|file| remove(&folder.join(file)))
 }
 
+/// Deletes what stands aside where a result has replaced it that is now whole.
+pub(crate) fn forget(folder: &Path, kind: &Kind, held: &Manifest) -> io::Result<()> {
+    if !held.replaces {
+        return Ok(());
+    }
+    // the new result is on the disk, with the names of its files
+    sync_names(folder)?;
+    discard(folder, kind)
+}
+
 /// Deletes what stands aside. What is not the program's stays.
-pub(crate) fn discard(folder: &Path, kind: &Kind) -> io::Result<()> {
+fn discard(folder: &Path, kind: &Kind) -> io::Result<()> {
     let path = folder.join(PREVIOUS);
     if !path.exists() {
         return Ok(());
     }
-    delete(&path, kind, &aside(folder, kind)?)?;
+    delete(&path, kind, &kind.held(&path)?)?;
     remove(&path.join(MANIFEST))?;
     match fs::remove_dir(&path) {
-        Err(e) if e.kind() != ErrorKind::DirectoryNotEmpty => Err(naming(&path)(e)),
+        // another program may have deleted it
+        Err(e) if ![ErrorKind::DirectoryNotEmpty, ErrorKind::NotFound].contains(&e.kind()) => {
+            Err(naming(&path)(e))
+        }
         _ => Ok(()),
     }
 }
@@ -92,4 +97,14 @@ fn link(from: &Path, to: &Path) -> io::Result<()> {
     };
     let copied = linked.or_else(|_| fs::copy(from, to).map(drop));
     copied.map_err(naming(to))
+}
+
+/// Sees that the names in a folder are on the disk.
+fn sync_names(folder: &Path) -> io::Result<()> {
+    match cfg!(unix) {
+        true => File::open(folder)
+            .and_then(|folder| folder.sync_all())
+            .map_err(naming(folder)),
+        false => Ok(()),
+    }
 }

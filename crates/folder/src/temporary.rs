@@ -25,8 +25,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
 
 /// As [`replace`], in a folder whose leftovers are removed already.
 pub(crate) fn place(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let written = write(parent(path), bytes).map_err(naming(path))?;
-    written.name(path)
+    Temporary::new(path, bytes)?.name(path)
 }
 
 /// A file that has all its bytes, on the disk, and no name yet.
@@ -34,9 +33,9 @@ pub(crate) fn place(path: &Path, bytes: &[u8]) -> io::Result<()> {
 pub(crate) struct Temporary(NamedTempFile);
 
 impl Temporary {
-    /// In a folder.
-    pub fn new(folder: &Path, bytes: &[u8]) -> io::Result<Temporary> {
-        write(folder, bytes).map_err(naming(folder))
+    /// In the folder of the file that it will be.
+    pub fn new(path: &Path, bytes: &[u8]) -> io::Result<Temporary> {
+        write(parent(path), bytes).map_err(naming(path))
     }
 
     /// Gives it a name in its folder.
@@ -46,6 +45,12 @@ impl Temporary {
         fs::rename(&temporary, path).map_err(naming(path))?;
         temporary.keep()?;
         Ok(())
+    }
+
+    /// The same where nothing has that name.
+    pub fn name_new(self, path: &Path) -> io::Result<()> {
+        let named = self.0.persist_noclobber(path);
+        named.map_err(|e| naming(path)(e.error)).map(drop)
     }
 }
 

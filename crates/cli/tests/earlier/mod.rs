@@ -95,11 +95,33 @@ fn earlier_results_are_replaced_on_request_only() {
     }
 }
 
+/// An earlier result is read where it stands aside, too.
+#[test]
+#[cfg(unix)]
+fn earlier_results_that_stand_aside_are_read() {
+    let copy = Copy::new();
+    let looselink = env!("CARGO_BIN_EXE_looselink");
+    let fails = format!("ulimit -f 2; exec {looselink} run scene.toml --quiet --force --out run");
+    let mut shell = std::process::Command::new("sh");
+    let output = shell.current_dir(copy.at("")).args(["-c", &fails]).output();
+    expect(
+        &output.unwrap(),
+        1,
+        "the earlier result is in `run/previous-result`",
+    );
+    copy.expect(
+        "plot run/previous-result --channels slider.x -o aside.svg",
+        0,
+        "",
+    );
+    copy.expect("view run/previous-result -o aside.html", 0, "");
+}
+
 #[test]
 fn earlier_checkpoints_and_sweeps_are_refused_by_name() {
     let copy = Copy::new();
     let version =
-        "it was begun by an earlier version of the program, which wrote no `manifest.jsonl`";
+        "`checkpoint.bin` is of an earlier version of the program; `looselink run` with --force";
     copy.refused("resume interrupted", version);
     let rows =
         "`sweep/runs.jsonl`: its rows are of an earlier program, which gave them no checksums";

@@ -1,7 +1,7 @@
 //! Several programs at once in one folder: one writes a result, the others are told so.
 
 use super::{ASIDE, Bytes, EARLIER, NEW, arguments, rounds, start, status, whole};
-use crate::command_line::{TOP, expect, files, looselink, program};
+use crate::command_line::{TOP, expect, files, looselink, program, read, summary};
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Stdio};
@@ -163,8 +163,164 @@ fn rows_that_others_change_in_mid_run_are_not_complete() {
             let output = child.wait_with_output().unwrap();
             expect(&output, 1, "while the program wrote");
             expect(&output, 1, out.to_str().unwrap());
-            assert_ne!(status(&out).as_deref(), Some("complete"), "{how} {name}");
+            let status = status(&out);
+            assert_ne!(status.as_deref(), Some("complete"), "{how} {name}");
+            if status.as_deref() == Some("failed") {
+                let why = summary(&out)["error"].as_str().unwrap().to_owned();
+                assert!(why.contains(name), "{why}");
+                // readers refuse what the program did not write
+                expect(&looselink(&["view", out.to_str().unwrap()]), 2, name);
+            } else {
+                assert_eq!(how, "moved");
+            }
         }
+    }
+}
+
+/// The scene in the folder is part of the result.
+#[test]
+fn a_scene_that_others_change_in_mid_run_is_not_complete() {
+    let folder = tempfile::tempdir().unwrap();
+    type Change = fn(&Path);
+    let changes: [Change; 3] = [
+        |scene| fs::remove_file(scene).unwrap(),
+        |scene| fs::write(scene, "title = 'mine'\n").unwrap(),
+        |scene| fs::write(scene, fs::read_to_string(scene).unwrap() + "\n").unwrap(),
+    ];
+    for (n, change) in changes.into_iter().enumerate() {
+        let out = folder.path().join(n.to_string());
+        let child = program()
+            .args(arguments(&out, &["simulation.duration=0.1"]))
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        while fs::metadata(out.join("channels.csv")).map_or(0, |file| file.len()) < 10_000 {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        change(&out.join("scene.toml"));
+        let output = child.wait_with_output().unwrap();
+        expect(&output, 1, "scene.toml` was ");
+        let summary = summary(&out);
+        assert_eq!(summary["status"], "failed");
+        assert!(summary["error"].as_str().unwrap().contains("scene.toml"));
+    }
+}
+
+/// A sweep whose rows somebody else takes away, cuts, replaces or edits makes no tables, and the same command goes on.
+#[test]
+fn rows_that_others_change_in_mid_sweep_make_no_tables() {
+    let folder = tempfile::tempdir().unwrap();
+    let masses: Vec<String> = (1..=300).map(|mass| format!("{mass}.0")).collect();
+    let masses = format!("[{}]", masses.join(", "));
+    let study = super::foreign::study(folder.path(), "masses", &masses);
+    type Change = fn(&Path);
+    let changes: [(&str, Change); 6] = [
+        ("deleted", |rows| fs::remove_file(rows).unwrap()),
+        ("cut", |rows| {
+            let file = fs::File::options().write(true).open(rows).unwrap();
+            file.set_len(1000).unwrap();
+        }),
+        ("without lines", |rows| {
+            let text = fs::read_to_string(rows).unwrap();
+            let first: Vec<&str> = text.split_inclusive('\n').take(4).collect();
+            fs::write(rows, first.concat()).unwrap();
+        }),
+        ("replaced", |rows| {
+            let copy = rows.with_extension("copy");
+            fs::copy(rows, &copy).unwrap();
+            fs::rename(copy, rows).unwrap();
+        }),
+        ("edited", |rows| {
+            use std::os::unix::fs::FileExt;
+            let file = fs::File::options().write(true).open(rows).unwrap();
+            file.write_all_at(b"#", 900).unwrap();
+        }),
+        ("without its manifest", |rows| {
+            fs::remove_file(rows.with_file_name("manifest.jsonl")).unwrap();
+        }),
+    ];
+    for (how, change) in changes {
+        for shard in [None, Some("1/1")] {
+            let out = folder.path().join(format!("{how} {}", shard.is_some()));
+            let rows = out.join("runs.jsonl");
+            let place = out.to_str().unwrap();
+            let mut words = vec!["sweep", &study, "--quiet", "--out", place];
+            words.extend(shard.iter().flat_map(|shard| ["--shard", shard]));
+            let child = program()
+                .args(&words)
+                .stderr(Stdio::piped())
+                .spawn()
+                .unwrap();
+            while fs::metadata(&rows).map_or(0, |file| file.len()) < 5000 {
+                std::thread::sleep(std::time::Duration::from_millis(1));
+            }
+            change(&rows);
+            let output = child.wait_with_output().unwrap();
+            let file = if how == "without its manifest" {
+                "manifest"
+            } else {
+                "runs"
+            };
+            expect(&output, 1, &format!("{file}.jsonl` was "));
+            assert!(!out.join("sweep.csv").exists(), "{how}");
+            let again = looselink(&words);
+            match how {
+                "edited" | "cut" => expect(
+                    &again,
+                    2,
+                    "is damaged; without that line its run is made again",
+                ),
+                "without its manifest" => {
+                    expect(&again, 2, "runs.jsonl` is not a file of this program")
+                }
+                _ => {
+                    expect(&again, 0, "");
+                    expect(&looselink(&words[..5]), 0, "");
+                    assert_eq!(read(&out, "sweep.csv").lines().count(), 301);
+                }
+            }
+        }
+    }
+}
+
+/// The same of rows that other shards have made, or somebody has brought.
+#[test]
+fn rows_of_others_that_change_in_mid_sweep_make_no_tables() {
+    let folder = tempfile::tempdir().unwrap();
+    let masses: Vec<String> = (1..=300).map(|mass| format!("{mass}.0")).collect();
+    let masses = format!("[{}]", masses.join(", "));
+    let study = super::foreign::study(folder.path(), "masses", &masses);
+    type Change = fn(&Path);
+    let changes: [Change; 3] = [
+        |rows| fs::remove_file(rows).unwrap(),
+        |rows| {
+            let file = fs::File::options().write(true).open(rows).unwrap();
+            file.set_len(1000).unwrap();
+        },
+        // of which sweep they are
+        |rows| {
+            use std::os::unix::fs::FileExt;
+            let file = fs::File::options().write(true).open(rows).unwrap();
+            file.write_all_at(b"#", 20).unwrap();
+        },
+    ];
+    for (n, change) in changes.into_iter().enumerate() {
+        let out = folder.path().join(n.to_string());
+        let words = ["sweep", &study, "--quiet", "--out", out.to_str().unwrap()];
+        let shard = [&words[..], &["--shard", "1/4"]].concat();
+        expect(&looselink(&shard), 0, "");
+        let child = program()
+            .args(words)
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        while fs::metadata(out.join("runs.jsonl")).map_or(0, |file| file.len()) < 5000 {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        change(&out.join("runs-1-of-4.jsonl"));
+        let output = child.wait_with_output().unwrap();
+        expect(&output, 1, "runs-1-of-4.jsonl` was ");
+        assert!(!out.join("sweep.csv").exists(), "{n}");
     }
 }
 

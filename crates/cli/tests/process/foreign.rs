@@ -9,7 +9,7 @@ use std::process::{Command, Output};
 
 /// A command that is refused changes nothing.
 #[track_caller]
-fn refused(folder: &Path, command: &[&str], why: &str) {
+pub(super) fn refused(folder: &Path, command: &[&str], why: &str) {
     let before = contents(folder);
     expect(&looselink(command), 2, why);
     assert!(contents(folder) == before, "{command:?}");
@@ -36,7 +36,7 @@ fn impatient(before: &str, command: &[&str]) -> Output {
         .unwrap()
 }
 
-fn study(folder: &Path, title: &str, masses: &str) -> String {
+pub(super) fn study(folder: &Path, title: &str, masses: &str) -> String {
     let scene = Path::new(TOP).join("scenes/pendulum.toml");
     let path = folder.join("study.txt");
     let text = format!(

@@ -4,7 +4,9 @@ use super::{
     ASIDE, Bytes, COMPLETE, EARLIER, Moment, NEW, Random, arguments, run_and_kill, start, status,
     whole,
 };
-use crate::command_line::{TOP, expect, files, looselink, program, read, summary};
+use crate::command_line::{
+    TOP, contents, expect, files, interrupt, looselink, program, read, summary,
+};
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
@@ -197,4 +199,65 @@ fn what_is_no_file_is_not_replaced() {
     assert_eq!(before, ["channels.csv", "summary.json", "timing.json"]);
     assert_eq!(files(out), ["summary.json"]);
     assert_eq!(read(out, "summary.json"), summary);
+}
+
+/// The rows and tables of a sweep stand aside until all runs of the new one are made, also when that is interrupted.
+#[test]
+fn a_sweep_is_replaced_when_the_new_one_is_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = |masses: usize| {
+        let values: Vec<String> = (1..=masses).map(|mass| format!("{mass}.0")).collect();
+        super::foreign::study(folder.path(), "masses", &format!("[{}]", values.join(", ")))
+    };
+    let out = folder.path().join("out");
+    let sweep = |study: &str, more: &[&str]| {
+        let out = out.to_str().unwrap();
+        let words = [
+            &["sweep", study, "--quiet", "--threads", "1", "--out", out],
+            more,
+        ]
+        .concat();
+        words.into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let made = |words: &[String]| {
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        expect(&looselink(&words), 0, "");
+    };
+    let earlier_study = study(3);
+    made(&sweep(&earlier_study, &[]));
+    let mut earlier = contents(&out);
+    earlier.retain(|path, _| !path.ends_with("manifest.jsonl"));
+    let stands = |folder: &Path| {
+        let mut files = earlier.iter();
+        files.all(|(path, bytes)| {
+            fs::read(folder.join(path.file_name().unwrap())).is_ok_and(|found| found == *bytes)
+        })
+    };
+    let long = study(400);
+    // the second interruption does not push out the earlier result
+    for _ in 0..2 {
+        let words = sweep(&long, &["--force"]);
+        let mut child = program()
+            .args(&words)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let rows = || fs::read(out.join("runs.jsonl")).map_or(0, |rows| rows.len());
+        for few in [true, false] {
+            while (rows() < 2000) != few {
+                assert!(child.try_wait().unwrap().is_none());
+                std::thread::sleep(Duration::from_micros(100));
+            }
+        }
+        interrupt(&child);
+        assert_eq!(child.wait().unwrap().code(), Some(130));
+        assert!(stands(&out.join(ASIDE)) && !out.join("sweep.json").exists());
+    }
+    // it goes on without --force
+    made(&sweep(&long, &[]));
+    assert!(!out.join(ASIDE).exists());
+    assert_eq!(read(&out, "sweep.csv").lines().count(), 401);
+    made(&sweep(&study(3), &["--force"]));
+    assert!(!out.join(ASIDE).exists());
+    assert_eq!(read(&out, "sweep.csv").lines().count(), 4);
 }

@@ -206,6 +206,15 @@ fn what_cannot_be_resumed_is_refused_by_name() {
         }
     }
 
+    let rows = file("channels.csv");
+    let away = out.join("away");
+    fs::rename(&rows, &away).unwrap();
+    expect(
+        &resume(),
+        2,
+        &format!("`{}` is missing; `looselink run`", path(&rows)),
+    );
+    fs::rename(&away, &rows).unwrap();
     let again = looselink(&["run", SCENES[0].0, "--out", path(&out)]);
     let hint = format!("`looselink resume '{}'` goes on with the run", path(&out));
     expect(&again, 2, &hint);

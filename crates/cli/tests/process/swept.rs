@@ -188,7 +188,7 @@ fn faults_of_the_command_line_of_a_sweep() {
     for (more, wanted) in cases {
         expect(&looselink(&sweep(&study, &out, more)), 2, wanted);
     }
-    expect(&looselink(&sweep(&study, &out, &["--merge"])), 1, "out");
+    expect(&looselink(&sweep(&study, &out, &["--merge"])), 2, "out");
     assert!(
         !out.exists(),
         "nothing is created by a command that is refused"

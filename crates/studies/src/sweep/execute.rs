@@ -32,7 +32,7 @@ impl SweepProgress<'_> {
 /// Makes all runs of a shard that the store does not have. `told` is called after every run, by one thread at a time.
 ///
 /// # Errors
-/// [`SweepError::Interrupted`] after `stop` was raised; a row that cannot be written. Rows made before stay in the store.
+/// [`SweepError::Interrupted`] after `stop` was raised; a row that cannot be written, or that somebody else has changed. Rows made before stay in the store.
 pub fn execute(
     sweep: &Sweep,
     store: &mut Store,
@@ -44,7 +44,7 @@ pub fn execute(
     loop {
         let pending = sweep.pending(store, shard)?;
         if pending.is_empty() {
-            return Ok(());
+            return store.refuse_changed();
         }
         let shared = Shared {
             done: store.made(shard),

@@ -160,7 +160,7 @@ impl EnvelopePart {
 /// Writes all files.
 ///
 /// # Errors
-/// Runs that have not been made; rows that cannot be read; files that cannot be written; and, after all files are written, a
+/// Runs that have not been made; rows that cannot be read, or that somebody else has changed; files that cannot be written; and, after all files are written, a
 /// bisection without an answer.
 pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, SweepError> {
     let runs = all_runs(sweep, store)?;
@@ -203,6 +203,7 @@ pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, Swee
     files.push(("sweep.md", merged.page.clone().into_bytes()));
     files.push(("times.csv", time_table(folder)?));
     files.push((FILES[0], json(&merged)?));
+    store.refuse_changed()?;
     add(folder, &kind(), &files)?;
     match merged.no_answer {
         Some(why) => Err(SweepError::NoAnswer(why)),

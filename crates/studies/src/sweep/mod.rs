@@ -316,18 +316,22 @@ impl Sweep {
         Scene::parse(&name, &self.source.scene, &self.study.overrides(values))
     }
 
+    /// Refuses a shard of a bisection.
+    fn check_shard(&self, shard: Shard) -> Result<(), StudyError> {
+        let message = "a bisection has no shards: each of its points depends on those before it";
+        match self.runs.is_none() && shard != Shard::WHOLE {
+            true => Err(self.fault(message.to_owned())),
+            false => Ok(()),
+        }
+    }
+
     /// Numbers of the runs that can be made now and are not in the store, those of a shard alone.
     ///
     /// # Errors
-    /// A shard of a bisection; a row that cannot be read.
+    /// A row that cannot be read.
     pub fn pending(&self, store: &Store, shard: Shard) -> Result<Vec<usize>, SweepError> {
         let runs = match self.runs {
             Some(runs) => 0..runs,
-            None if shard != Shard::WHOLE => {
-                let message =
-                    "a bisection has no shards: each of its points depends on those before it";
-                return Err(self.fault(message.to_owned()).into());
-            }
             None => {
                 let searched = self.searched(store)?;
                 let (starts, points) = (self.study.starts_of_a_point(), searched.places.len());

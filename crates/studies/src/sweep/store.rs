@@ -6,7 +6,10 @@
 
 use super::{FILES, RowPlaces, RowTiming, Sweep, SweepError, SweepRow};
 use crate::study_file::StudyError;
-use folder::{Folder, Kind, OutputError, line_of, naming, open, open_to_read, value_of};
+use folder::{
+    Digesting, Folder, Kind, OutputError, line_of, naming, naming_read, open, open_to_read,
+    refuse_changed, refuse_moved, value_of,
+};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -95,9 +98,20 @@ struct Numbered {
 #[derive(Debug)]
 pub struct Store {
     /// All files with rows.
-    files: Vec<(PathBuf, File)>,
+    files: Vec<RowFile>,
     places: RowPlaces,
     own: Option<OwnRows>,
+    /// Locked as long as rows may come, and until tables are made of them.
+    folder: Option<Folder>,
+}
+
+/// A file with rows.
+#[derive(Debug)]
+struct RowFile {
+    path: PathBuf,
+    file: File,
+    /// What has been read and written.
+    digesting: Digesting,
 }
 
 /// The file that receives rows.
@@ -105,10 +119,7 @@ pub struct Store {
 struct OwnRows {
     /// Its place among all files.
     file: usize,
-    end: u64,
-    times: File,
-    /// Locked as long as rows may come.
-    _folder: Folder,
+    times: (PathBuf, File),
 }
 
 impl Store {
@@ -121,6 +132,7 @@ impl Store {
             files: Vec::new(),
             places: RowPlaces::new(),
             own: None,
+            folder: None,
         };
         for name in names(folder, ROWS)? {
             let path = folder.join(name);
@@ -130,45 +142,50 @@ impl Store {
         Ok(store)
     }
 
+    /// As [`Store::read`], for tables of these rows: nobody begins the sweep anew meanwhile.
+    ///
+    /// # Errors
+    /// As [`Store::read`]; a sweep that begins anew; files of others that have the names of its tables.
+    pub fn to_merge(path: &Path, sweep: &Sweep) -> Result<Store, SweepError> {
+        if !path.is_dir() {
+            let message = format!("`{}` is no folder with rows of a sweep", path.display());
+            return Err(StudyError::Plain(message).into());
+        }
+        let folder = Folder::share(path, kind())?;
+        let mut store = Store::read(path, sweep)?;
+        store.folder = Some(folder);
+        Ok(store)
+    }
+
     /// As [`Store::read`], and opens the file of a shard for more rows; the folder is created. With `anew` all rows and
-    /// tables that are there are deleted first. Where this is refused, nothing is changed.
+    /// tables that are there are set aside first. Where this is refused, nothing is changed.
     ///
     /// # Errors
     /// As [`Store::read`]; another process writes the same shard; files of others that have the names of its files; the files
-    /// cannot be written.
+    /// cannot be written; a shard of a bisection.
     pub fn open(path: &Path, sweep: &Sweep, shard: Shard, anew: bool) -> Result<Store, SweepError> {
+        sweep.check_shard(shard)?;
         let names = [ROWS, TIMES].map(|name| shard.file(name));
-        let (mut folder, store) = match anew {
+        let folder = match anew {
             true => {
                 let mut folder = Folder::claim(path, with_rows(path)?, true)?;
-                folder.clear(names.iter().cloned())?;
-                (folder, Store::read(path, sweep)?)
+                folder.begin(names.iter().cloned())?;
+                folder
             }
             false => {
-                let folder = Folder::share(path, kind())?;
-                (folder, Store::read(path, sweep)?)
+                let mut folder = Folder::share(path, kind())?;
+                // rows that are refused are refused before anything is listed
+                Store::read(path, sweep)?;
+                folder.adopt(&names)?;
+                folder
             }
         };
-        let place = store
-            .files
-            .iter()
-            .position(|(file, _)| file.ends_with(&names[0]));
-        match place {
-            // rows of this sweep, whoever has brought them here
-            Some(_) => folder.list(names.iter().map(|name| (name.clone(), None)))?,
-            None => folder.adopt(&names)?,
-        }
-        store.receiving(folder, sweep, &names)
+        Store::receiving(folder, sweep, &names)
     }
 
     /// Opens the files that receive rows and their times.
-    fn receiving(
-        mut self,
-        folder: Folder,
-        sweep: &Sweep,
-        names: &[String; 2],
-    ) -> Result<Store, SweepError> {
-        let [path, times] = names.each_ref().map(|name| folder.path().join(name));
+    fn receiving(folder: Folder, sweep: &Sweep, names: &[String; 2]) -> Result<Store, SweepError> {
+        let [path, times_path] = names.each_ref().map(|name| folder.path().join(name));
         let mut options = OpenOptions::new();
         options.read(true).append(true).create(true);
         let mut rows = open(&path, &mut options)?;
@@ -185,32 +202,32 @@ impl Store {
             rows.write_all(&line).map_err(naming(&path))?;
             rows.sync_all().map_err(naming(&path))?;
         }
-        let mut times = open(&times, &mut options)?;
+        let mut times = open(&times_path, &mut options)?;
         // a time may be lost, but no line is to follow a part of one
-        cut_torn_line(&mut times).map_err(naming(&path))?;
-        // what has come between the first look and the lock
-        self = Store::read(folder.path(), sweep)?;
-        let file = self.files.iter().position(|(known, _)| *known == path);
+        cut_torn_line(&mut times).map_err(naming(&times_path))?;
+        let mut store = Store::read(folder.path(), sweep)?;
+        let file = store.files.iter().position(|known| known.path == path);
         let file = file.expect("the file has been created");
-        let end = rows.metadata().map_err(naming(&path))?.len();
-        self.files[file].1 = rows;
-        self.own = Some(OwnRows {
+        store.files[file].file = rows;
+        store.own = Some(OwnRows {
             file,
-            end,
-            times,
-            _folder: folder,
+            times: (times_path, times),
         });
-        Ok(self)
+        store.folder = Some(folder);
+        Ok(store)
     }
 
     /// Notes where the rows of a file stand. Of a run with two rows, which two shards may have made, the first counts.
     fn index(&mut self, path: PathBuf, file: File, sweep: &Sweep) -> Result<(), SweepError> {
         let fault = |message: String| StudyError::Plain(format!("`{}`: {message}", path.display()));
         let mut reader = BufReader::new(&file);
-        let (mut line, mut from, mut number) = (Vec::new(), 0, 0);
+        let (mut line, mut number) = (Vec::new(), 0);
+        let mut digesting = Digesting::default();
         loop {
             line.clear();
-            let length = reader.read_until(b'\n', &mut line).map_err(naming(&path))?;
+            let length = reader
+                .read_until(b'\n', &mut line)
+                .map_err(naming_read(&path))?;
             if length == 0 || line.last() != Some(&b'\n') {
                 break;
             }
@@ -228,16 +245,20 @@ impl Store {
                 })?;
                 let place = RowPlace {
                     file: self.files.len() as u32,
-                    from,
+                    from: digesting.digest().bytes,
                     length: length as u32,
                 };
                 self.places.entry(numbered.run).or_insert(place);
             }
-            from += length as u64;
+            digesting.update(&line);
         }
         // a file without a whole line is nobody's, unless the manifest lists it
         if number > 0 {
-            self.files.push((path, file));
+            self.files.push(RowFile {
+                path,
+                file,
+                digesting,
+            });
         }
         Ok(())
     }
@@ -275,16 +296,35 @@ impl Store {
         let Some(place) = self.places.get(&run) else {
             return Err(StudyError::Plain(format!("run {run} has not been made")).into());
         };
-        let (path, file) = &self.files[place.file as usize];
+        let RowFile { path, file, .. } = &self.files[place.file as usize];
         let mut line = vec![0; place.length as usize];
         let mut file: &File = file;
         file.seek(SeekFrom::Start(place.from))
-            .map_err(naming(path))?;
-        file.read_exact(&mut line).map_err(naming(path))?;
-        value_of(&line).ok_or_else(|| {
+            .map_err(naming_read(path))?;
+        file.read_exact(&mut line).map_err(naming_read(path))?;
+        let row = value_of(&line).filter(|row: &SweepRow| row.run == run);
+        row.ok_or_else(|| {
             let message = format!("`{}`: the row of run {run} is damaged", path.display());
             StudyError::Plain(message).into()
         })
+    }
+
+    /// Refuses rows that somebody else has moved, deleted or changed since they were read or written.
+    ///
+    /// # Errors
+    /// [`OutputError::Changed`].
+    pub(super) fn refuse_changed(&self) -> Result<(), SweepError> {
+        self.folder.iter().try_for_each(Folder::refuse_moved)?;
+        for (place, rows) in self.files.iter().enumerate() {
+            let known = rows.digesting.digest();
+            let counts = match self.own.as_ref().is_some_and(|own| own.file == place) {
+                true => u64::MAX,
+                // another shard may add rows
+                false => known.bytes,
+            };
+            refuse_changed(&rows.path, Some(&rows.file), known, counts)?;
+        }
+        Ok(())
     }
 
     /// Appends a row, and its time to another file; the row is on the disk when this returns.
@@ -296,24 +336,32 @@ impl Store {
     /// When the store was opened for reading.
     pub fn append(&mut self, row: &SweepRow, timing: &RowTiming) -> Result<(), SweepError> {
         let own = self.own.as_mut().expect("a store opened for writing");
-        let (path, rows) = &mut self.files[own.file];
+        let RowFile {
+            path,
+            file,
+            digesting,
+        } = &mut self.files[own.file];
+        // the next runs would be made for nothing
+        refuse_moved(path, file)?;
         let line = line_of(row)?;
-        let written = rows.write_all(&line).and_then(|()| rows.sync_data());
+        let end = digesting.digest().bytes;
+        let written = file.write_all(&line).and_then(|()| file.sync_data());
         if let Err(error) = written {
             // a part of a line would make the next one unreadable; if this fails too, the line is cut when the file is opened
-            let _ = rows.set_len(own.end);
+            let _ = file.set_len(end);
             return Err(naming(path)(error).into());
         }
         let place = RowPlace {
             file: own.file as u32,
-            from: own.end,
+            from: end,
             length: line.len() as u32,
         };
-        own.end += line.len() as u64;
+        digesting.update(&line);
         self.places.insert(row.run, place);
         // it may be lost: it is no result
         let time = line_of(timing)?;
-        Ok(own.times.write_all(&time).map_err(naming(path))?)
+        let (path, times) = &mut own.times;
+        Ok(times.write_all(&time).map_err(naming(path))?)
     }
 }
 
@@ -336,7 +384,11 @@ impl FileHead {
             true => format!(
                 "its rows are of an earlier program, which gave them no checksums; {ELSEWHERE}"
             ),
-            false => "it holds no rows of a sweep, or its first line is damaged".to_owned(),
+            false => {
+                "it holds no rows of a sweep, or its first line, which names the sweep, is damaged; \
+                 without this file its runs are made again"
+                    .to_owned()
+            }
         })
     }
 
@@ -369,7 +421,7 @@ pub(super) fn timings(folder: &Path) -> Result<Vec<RowTiming>, SweepError> {
         let path = folder.join(name);
         let mut bytes = Vec::new();
         let mut file = open_to_read(&path)?;
-        file.read_to_end(&mut bytes).map_err(naming(&path))?;
+        file.read_to_end(&mut bytes).map_err(naming_read(&path))?;
         // a line that a kill has cut is no loss, nor is a damaged one
         for timing in bytes.split(|byte| *byte == b'\n').filter_map(value_of) {
             let timing: RowTiming = timing;
@@ -400,8 +452,8 @@ fn with_rows(folder: &Path) -> Result<Kind, SweepError> {
 /// The names of the files of all shards in a folder, sorted.
 fn names(folder: &Path, start: &str) -> Result<Vec<String>, SweepError> {
     let mut names = Vec::new();
-    for entry in fs::read_dir(folder).map_err(naming(folder))? {
-        let name = entry.map_err(naming(folder))?.file_name();
+    for entry in fs::read_dir(folder).map_err(naming_read(folder))? {
+        let name = entry.map_err(naming_read(folder))?.file_name();
         let Some(name) = name.to_str() else { continue };
         let rest = name.strip_prefix(start);
         let middle = rest.and_then(|rest| rest.strip_suffix(EXTENSION));
