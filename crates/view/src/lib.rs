@@ -7,10 +7,12 @@ pub mod drawing;
 pub mod frames;
 pub mod moved;
 pub mod pack;
+mod reading;
 pub mod stored;
 pub mod tracks;
 
-pub use stored::{PAGE, StoredChannel, StoredResult, StoredRun, StoredSummary, ViewError, kind};
+pub use reading::{PAGE, ViewError, kind};
+pub use stored::{StoredChannel, StoredResult, StoredRun, StoredSummary};
 
 use drawing::RunDrawing;
 use pack::Pack;

@@ -1,13 +1,11 @@
 //! A result of `looselink run`, read back.
 
 use super::moved::bounds;
-use folder::{Kind, MANIFEST, OutputError, verify};
+use super::reading::{ViewError, of_one_run, read};
 use indexmap::IndexMap;
 use looselink::modes::NaturalMode;
-use looselink::output;
 use looselink::record::MotionLayout;
-use looselink::registry::Registry;
-use looselink::scene::{Scene, SceneError};
+use looselink::scene::Scene;
 use looselink::simulate::Simulation;
 use numbers::exact;
 use serde::Deserialize;
@@ -16,35 +14,6 @@ use std::io;
 use std::path::Path;
 use std::rc::Rc;
 use texts::csv::text_of;
-
-/// The file of the page in the folder of a result.
-pub const PAGE: &str = "view.html";
-
-/// A run with its page, as a kind of result.
-pub fn kind() -> Kind {
-    output::kind(&Registry::standard().formats, &[PAGE])
-}
-
-/// Why a result cannot be shown.
-#[derive(Debug, thiserror::Error)]
-pub enum ViewError {
-    /// A folder without a result, or with one that is damaged.
-    #[error("{0}")]
-    Result(String),
-    /// Its scene has a fault.
-    #[error(transparent)]
-    Scene(SceneError),
-    /// The system refused; the message names the file.
-    #[error("{0}")]
-    Io(#[from] io::Error),
-}
-
-impl From<SceneError> for ViewError {
-    /// The file of the scene may have been replaced by any other.
-    fn from(error: SceneError) -> ViewError {
-        ViewError::Scene(error.without_contents())
-    }
-}
 
 /// A result.
 #[derive(Debug)]
@@ -312,54 +281,6 @@ impl StoredRun {
     }
 }
 
-/// How often files are read again that another run replaces meanwhile.
-const ATTEMPTS: usize = 10;
-
-/// Reads files of a result, all of the same run: again where that has ended or has been replaced meanwhile.
-fn of_one_run<T>(folder: &Path, load: impl Fn() -> Result<T, ViewError>) -> Result<T, ViewError> {
-    let run = || {
-        [MANIFEST, "summary.json", "scene.toml"].map(|file| folder::read(&folder.join(file)).ok())
-    };
-    for _ in 0..ATTEMPTS {
-        let before = run();
-        let loaded = load();
-        if run() == before {
-            return loaded;
-        }
-    }
-    let message = format!(
-        "`{}` is being replaced by one run after the other",
-        folder.display()
-    );
-    Err(ViewError::Result(message))
-}
-
-/// A file of a result, whose table has a digest once the run `has_ended`.
-fn read(folder: &Path, name: &str, has_ended: bool) -> Result<Vec<u8>, ViewError> {
-    let path = folder.join(name);
-    let bytes = folder::read(&path).map_err(|e| match e.kind() {
-        io::ErrorKind::NotADirectory => ViewError::Result(format!(
-            "`{}` is a file, not the folder of a result; `looselink run` writes one",
-            folder.display()
-        )),
-        io::ErrorKind::NotFound => ViewError::Result(format!(
-            "`{}` holds no result of `looselink run`: it has no `{name}`",
-            folder.display()
-        )),
-        _ => naming(&path, e),
-    })?;
-    verify(folder, name, &bytes, has_ended).map_err(|e| match e {
-        OutputError::Io(e) => e.into(),
-        changed => ViewError::Result(changed.to_string()),
-    })?;
-    Ok(bytes)
-}
-
-fn naming(path: &Path, error: io::Error) -> ViewError {
-    let message = format!("cannot read `{}`: {error}", path.display());
-    io::Error::new(error.kind(), message).into()
-}
-
 fn damaged(path: &Path, message: &str) -> ViewError {
     ViewError::Result(format!("`{}`: {message}", path.display()))
 }
@@ -454,32 +375,4 @@ fn read_json_lines(bytes: &[u8]) -> Result<Vec<StoredChannel>, String> {
         }
     }
     Ok(channels)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::of_one_run;
-    use std::cell::Cell;
-    use std::fs;
-
-    #[test]
-    fn files_are_read_again_when_another_run_has_come_between() {
-        let folder = tempfile::tempdir().unwrap();
-        let summary = folder.path().join("summary.json");
-        fs::write(&summary, "0").unwrap();
-        // replaced so many times while it is read
-        for (replaced, expected) in [(0, Some(0)), (3, Some(3)), (1000, None)] {
-            let reads = Cell::new(0);
-            let read = of_one_run(folder.path(), || {
-                let n = reads.get();
-                reads.set(n + 1);
-                if n < replaced {
-                    fs::write(&summary, (n + 1).to_string()).unwrap();
-                }
-                Ok(n)
-            });
-            assert_eq!(read.ok(), expected);
-            fs::write(&summary, "0").unwrap();
-        }
-    }
 }

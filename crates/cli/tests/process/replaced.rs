@@ -1,8 +1,8 @@
 //! Results in the way of new ones.
 
 use super::{
-    ASIDE, Bytes, COMPLETE, EARLIER, Moment, NEW, Random, arguments, run_and_kill, start, status,
-    whole,
+    ASIDE, Bytes, COMPLETE, EARLIER, Moment, NEW, Random, arguments, rounds, run_and_kill, start,
+    status, whole,
 };
 use crate::command_line::{
     TOP, contents, expect, files, interrupt, looselink, program, read, summary,
@@ -199,6 +199,63 @@ fn what_is_no_file_is_not_replaced() {
     assert_eq!(before, ["channels.csv", "summary.json", "timing.json"]);
     assert_eq!(files(out), ["summary.json"]);
     assert_eq!(read(out, "summary.json"), summary);
+}
+
+/// Readers of a result that short runs replace one after the other see one of them.
+#[test]
+fn readers_see_one_result_while_it_is_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = arguments(&out, &["simulation.duration=2e-3", "--force"]);
+    expect(&looselink(&run), 0, "");
+    let picture = folder.path().join("picture.svg");
+    let [place, picture] = [&out, &picture].map(|path| path.to_str().unwrap());
+    let page = folder.path().join("page.html");
+    let readers: [&[&str]; 2] = [
+        &["plot", place, "--channels", "error.*", "-o", picture],
+        &["view", place, "-o", page.to_str().unwrap()],
+    ];
+    std::thread::scope(|scope| {
+        let runs = scope.spawn(|| {
+            for _ in 0..rounds(60, 600) {
+                expect(&looselink(&run), 0, "");
+            }
+        });
+        while !runs.is_finished() {
+            readers
+                .iter()
+                .for_each(|reader| expect(&looselink(reader), 0, ""));
+        }
+    });
+}
+
+/// A run that was killed before its first row: readers wait for it, then say where the earlier result is.
+#[test]
+fn a_result_without_rows_names_the_earlier_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    whole(&out, EARLIER);
+    let long = arguments(&out, &["simulation.duration=3.0", "--force"]);
+    let mut child = start(&long);
+    while status(&out).as_deref() != Some("incomplete") {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    fs::write(out.join("channels.csv"), "").unwrap();
+    let view = looselink(&["view", out.to_str().unwrap()]);
+    expect(&view, 2, "out/previous-result`");
+    let aside = out.join(ASIDE);
+    let page = folder.path().join("page.html");
+    let page = page.to_str().unwrap();
+    expect(
+        &looselink(&["view", aside.to_str().unwrap(), "-o", page]),
+        0,
+        "",
+    );
+    fs::remove_file(out.join("summary.json")).unwrap();
+    let view = looselink(&["view", out.to_str().unwrap()]);
+    expect(&view, 2, "it has no `summary.json`");
 }
 
 /// The rows and tables of a sweep stand aside until all runs of the new one are made, also when that is interrupted.
