@@ -129,7 +129,7 @@ def sweep(
     `target` is (measure, value): the study becomes a bisection for the value of its one parameter at which the measure has the value.
     `batch` is the number of runs of a task of Dask; by default tasks take about a second.
     `progress` is True, or a callable that receives the numbers of runs made and left.
-    `force` deletes rows that are there.
+    `force` begins anew; the rows and tables that are there are kept in `previous-result` until the new sweep is complete.
     `copy_to` is an address that pyarrow's file systems reach, such as "s3://bucket/folder": tables and pictures are copied there.
 
     The tables have the same bytes as those of `looselink sweep`, whatever the number of threads, workers and interruptions.
