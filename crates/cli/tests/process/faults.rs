@@ -237,8 +237,10 @@ fn sweeps_whose_calls_fail_go_on() {
          parameters.mass = {{ fields = ['bodies.rod.mass'], values = [1.0, 2.0, 3.0] }}\n\
          measures.last = {{ of = 'last', channels = ['points.rod.bob.x'] }}\n"
     );
-    fs::write(&study, text).unwrap();
-    let study = study.to_str().unwrap();
+    fs::write(&study, &text).unwrap();
+    let other = folder.path().join("other.toml");
+    fs::write(&other, text.replace("3.0", "4.0")).unwrap();
+    let [study, other] = [&study, &other].map(|path| path.to_str().unwrap());
     let at = |name: &str| folder.path().join(name);
     let sweep = owned(&["sweep", study, "--quiet", "--threads", "1", "--out", "OUT"]);
     let merge = owned(&["sweep", study, "--quiet", "--merge", "--out", "OUT"]);
@@ -268,10 +270,26 @@ fn sweeps_whose_calls_fail_go_on() {
         0,
         "",
     );
+    notes(&at("earlier"));
+    let earlier = at("earlier");
+    let made = [
+        "sweep",
+        other,
+        "--quiet",
+        "--out",
+        earlier.to_str().unwrap(),
+    ];
+    expect(&looselink(&made), 0, "");
+    let forced = [&sweep[..], &owned(&["--force"])].concat();
     let wanted = ["sweep.csv", "sweep.md", "sweep.svg", "sweep.json"];
     let wanted = wanted.map(|file| (file.to_owned(), fs::read(at("whole").join(file)).unwrap()));
     let mut faults = 0;
-    for (before, command) in [("nothing", &sweep), ("some", &sweep), ("rows", &merge)] {
+    for (before, command) in [
+        ("nothing", &sweep),
+        ("some", &sweep),
+        ("rows", &merge),
+        ("earlier", &forced),
+    ] {
         let trial = Trial {
             before: &at(before),
             command: command.clone(),
