@@ -68,7 +68,7 @@ use crate::newton::Newton;
 use crate::record::{Record, Recorder};
 use crate::scene::{Analysis, Scene};
 use crate::stepper::{LocalError, StepError, Stepper, midpoint};
-use crate::system::{State, System, Work};
+use crate::system::{Changed, State, System, Work};
 use control::{Candidate, Verdict};
 use indeterminate::least_reactions;
 use numbers::si;
@@ -161,7 +161,8 @@ pub struct Simulation {
     /// ... and at two neighbouring states within the step.
     last_gaps: Vec<[f64; 2]>,
     inner_gaps: Vec<[f64; 2]>,
-    started: Vec<(usize, f64, f64)>,
+    /// Changes at the end of the last step.
+    changed: Vec<Changed>,
     /// The equilibrium that the motion starts from, where the scene asks for one; in a static analysis the last one.
     rest: Option<FoundRest>,
     /// The joints whose reactions in a static analysis are one of many, once a row was recorded.
@@ -295,14 +296,11 @@ impl Simulation {
             self.commit(observer)?;
             let impacts = &mut self.impacts;
             impacts.step(&self.model, taken, &self.state, &self.gaps, observer)?;
-            let (before, after) = (&self.trial.z, &self.state.z);
             std::mem::swap(&mut self.gaps, &mut self.first_gaps);
-            let changed = self.closures.step(self.state.t, before, after);
-            self.stall
-                .step(self.state.t, before, after)
-                .map_err(|stalled| self.stalled(stalled))?;
-            let onsets = self.started.iter().map(|(contact, ..)| *contact);
-            self.pacer.kept(&self.state, goal, onsets, changed);
+            self.closures.step(self.state.t, &self.changed);
+            let stalled = self.stall.step(self.state.t, &self.changed);
+            stalled.map_err(|stalled| self.stalled(stalled))?;
+            self.pacer.kept(&self.state, goal, &self.changed);
             let contacts = self.state.z.iter().filter(|z| **z > 0.0).count();
             let progress = Progress {
                 t: self.state.t,
@@ -430,24 +428,29 @@ impl Simulation {
         let Simulation {
             model,
             state,
-            started,
+            changed,
             gaps,
             ..
         } = self;
-        started.clear();
+        changed.clear();
         let tolerance = self.scene.integrator.onset_tolerance;
-        let onsets = model.commit(state, gaps, tolerance, &mut |c, velocity, delta| {
-            started.push((c, velocity, delta))
-        });
-        self.counters.onsets += onsets as u64;
-        for &(contact, velocity, delta) in started.iter() {
-            self.impacts.begin(model, contact, [delta, velocity], state);
+        model.commit(state, gaps, tolerance, &mut |change| changed.push(change));
+        for change in changed.iter() {
+            if let Changed::Onset {
+                contact,
+                velocity,
+                delta,
+            } = *change
+            {
+                self.counters.onsets += 1;
+                self.impacts.begin(model, contact, [delta, velocity], state);
+            }
         }
         self.tell_onsets(observer)
     }
 
     fn tell_onsets(&self, observer: &mut dyn Observer) -> Result<(), RunError> {
-        for &(contact, ..) in &self.started {
+        for contact in self.changed.iter().filter_map(|change| change.closed()) {
             if let Some(onset) = self.impacts.onset(&self.model, contact) {
                 observer.onset(&onset)?;
             }

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! with the coordinates q (unknown ones first, then known ones), their first and second derivatives v and a, the multipliers
-//! lambda, and the contact memory z, which changes only between accepted steps.
+//! lambda, and the contact memory z, which changes only between accepted steps (see [`Changed`]).
 
 use crate::checkpoint::{Carried, carried};
 use crate::math::lu::Symbolic;
@@ -66,13 +66,16 @@ pub struct State {
     pub z: Vec<f64>,
     /// Angle memory: the relative angles of the last accepted step \[rad\].
     pub angles: Vec<f64>,
+    /// How often memory has changed so far in a way that the motion feels. Between two states with the same number the equations
+    /// of motion are differentiable functions; what is extrapolated or differenced over several steps holds for one number only.
+    pub changes: u64,
     /// Integrals over time since the start \[J\].
     pub integrals: [f64; INTEGRALS],
     /// Their integrands \[W\].
     pub powers: [f64; INTEGRALS],
 }
 
-carried!(State { t, weight, q, q_low, v, a, lambda, z, angles, integrals, powers } but {});
+carried!(State { t, weight, q, q_low, v, a, lambda, z, angles, changes, integrals, powers } but {});
 
 impl State {
     /// All zero.
@@ -87,6 +90,7 @@ impl State {
             lambda: vec![0.0; shape.multipliers],
             z: vec![0.0; shape.contacts],
             angles: vec![0.0; shape.angles],
+            changes: 0,
             integrals: [0.0; INTEGRALS],
             powers: [0.0; INTEGRALS],
         }
@@ -105,6 +109,7 @@ impl State {
         self.weight = other.weight;
         self.z.copy_from_slice(&other.z);
         self.angles.copy_from_slice(&other.angles);
+        self.changes = other.changes;
     }
 
     /// Copies the known coordinates and their rates.
@@ -126,8 +131,45 @@ impl State {
         self.lambda.copy_from_slice(&other.lambda);
         self.z.copy_from_slice(&other.z);
         self.angles.copy_from_slice(&other.angles);
+        self.changes = other.changes;
         self.integrals = other.integrals;
         self.powers = other.powers;
+    }
+}
+
+/// A change of memory between two steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Changed {
+    /// A contact has closed.
+    Onset {
+        /// Which one.
+        contact: usize,
+        /// Impact velocity \[m/s\]: the rate of the penetration.
+        velocity: f64,
+        /// Penetration \[m\], within the tolerance of zero where it was located.
+        delta: f64,
+    },
+    /// A contact has opened.
+    Loss {
+        /// Which one.
+        contact: usize,
+    },
+}
+
+impl Changed {
+    /// The contact that has closed or opened.
+    pub fn contact(self) -> usize {
+        match self {
+            Changed::Onset { contact, .. } | Changed::Loss { contact } => contact,
+        }
+    }
+
+    /// The contact that has closed, if one has.
+    pub fn closed(self) -> Option<usize> {
+        match self {
+            Changed::Onset { contact, .. } => Some(contact),
+            Changed::Loss { .. } => None,
+        }
     }
 }
 
@@ -237,15 +279,15 @@ pub trait System {
     fn constraint_acceleration(&self, at: &State, out: &mut [f64]);
     /// Penetration delta of every contact \[m\] and its rate \[m/s\].
     fn gaps(&self, at: &State, gaps: &mut [[f64; 2]]);
-    /// Opens and closes contacts and counts turns: the only place where memory changes. `gaps` are those of the state. Returns
-    /// the number of onsets, and calls `onset(contact, impact velocity, delta)` for each.
+    /// Opens and closes contacts and counts turns: the only place where memory changes. `gaps` are those of the state; every
+    /// change that the motion feels is counted in the state and handed to `changed`.
     fn commit(
         &self,
         at: &mut State,
         gaps: &[[f64; 2]],
         tolerance: f64,
-        onset: &mut dyn FnMut(usize, f64, f64),
-    ) -> usize;
+        changed: &mut dyn FnMut(Changed),
+    );
     /// Integrands of the ledger \[W\]; returns the number of contacts whose force is clamped.
     fn powers(&self, at: &mut State, work: &mut Work) -> usize;
     /// True where the tangent is a differentiable function of the state.

@@ -3,7 +3,7 @@
 use looselink::math::lu::Symbolic;
 use looselink::math::saddle_point::SaddlePoint;
 use looselink::stepper::Method;
-use looselink::system::{Operations, PrescribeError, Shape, State, System, Weights, Work};
+use looselink::system::{Changed, Operations, PrescribeError, Shape, State, System, Weights, Work};
 
 /// Masses and springs in series between walls: m_i a_i + d v_i + (K q)_i = 0.
 #[derive(Debug)]
@@ -12,8 +12,6 @@ pub struct Chain {
     pub springs: Vec<f64>,
     /// d, of a damper between every mass and the ground.
     pub damping: f64,
-    /// Numbers that a state remembers of contacts, which exert no force.
-    pub contacts: usize,
     /// States after this time cannot be prescribed.
     pub prescribed_until: f64,
     symbolic: Symbolic,
@@ -31,7 +29,6 @@ impl Chain {
         Chain {
             springs,
             damping: 0.0,
-            contacts: 0,
             prescribed_until: f64::INFINITY,
             symbolic: Symbolic::analyse(n, &cliques, &vec![vec![]; n]),
             acceleration_matrix: SaddlePoint::new(n, diagonal.collect(), &[]),
@@ -53,7 +50,7 @@ impl System for Chain {
             unknowns: n,
             coordinates: n,
             multipliers: 0,
-            contacts: self.contacts,
+            contacts: 0,
             angles: 0,
         }
     }
@@ -128,15 +125,7 @@ impl System for Chain {
     fn constraint_velocity(&self, _: &State, _: &mut [f64]) {}
     fn constraint_acceleration(&self, _: &State, _: &mut [f64]) {}
     fn gaps(&self, _: &State, _: &mut [[f64; 2]]) {}
-    fn commit(
-        &self,
-        _: &mut State,
-        _: &[[f64; 2]],
-        _: f64,
-        _: &mut dyn FnMut(usize, f64, f64),
-    ) -> usize {
-        0
-    }
+    fn commit(&self, _: &mut State, _: &[[f64; 2]], _: f64, _: &mut dyn FnMut(Changed)) {}
     /// Integrands of known integrals, the first three powers of t; one clamp a state.
     fn powers(&self, at: &mut State, _: &mut Work) -> usize {
         at.powers[..3].copy_from_slice(&[1.0, at.t, at.t * at.t]);

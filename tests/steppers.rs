@@ -625,11 +625,10 @@ fn bathe_loses_energy_of_linear_systems_from_the_first_step_as_the_spectral_form
 }
 
 /// Schemes that estimate their error from the step before need a midpoint where there is none: at the start, and after a change
-/// of a contact.
+/// of memory.
 #[test]
 fn schemes_need_a_midpoint_where_no_smooth_step_leads() {
-    let mut chain = Chain::new(vec![1.0], vec![2.0, 3.0]);
-    chain.contacts = 1;
+    let chain = Chain::new(vec![1.0], vec![2.0, 3.0]);
     let spectral_radius = 0.8;
     for method in [
         Method::new(&trapezoidal::SCHEME),
@@ -655,7 +654,7 @@ fn schemes_need_a_midpoint_where_no_smooth_step_leads() {
         step(&mut scheme, &to, 0.2);
         assert!(!scheme.needs_midpoint(&to), "{method:?}, after a step");
         let mut touched = to.clone();
-        touched.z[0] = 0.3;
+        touched.changes += 1;
         assert!(
             scheme.needs_midpoint(&touched),
             "{method:?}, after an onset"

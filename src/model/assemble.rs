@@ -10,8 +10,8 @@ use crate::math::lu::Symbolic;
 use crate::math::plane::{quarter_turn, rotation};
 use crate::math::saddle_point::SaddlePoint;
 use crate::system::{
-    Equilibrium, INTEGRALS, Integral, Operations, PrescribeError, Shape, State, System, Weights,
-    Work,
+    Changed, Equilibrium, INTEGRALS, Integral, Operations, PrescribeError, Shape, State, System,
+    Weights, Work,
 };
 
 /// Local coordinates of an element.
@@ -391,22 +391,26 @@ impl System for Model {
         at: &mut State,
         gaps: &[[f64; 2]],
         tolerance: f64,
-        onset: &mut dyn FnMut(usize, f64, f64),
-    ) -> usize {
-        let mut onsets = 0;
+        changed: &mut dyn FnMut(Changed),
+    ) {
         for (i, &[delta, rate]) in gaps.iter().enumerate() {
             let open = at.z[i] == 0.0;
             if open && (delta >= -tolerance && rate > 0.0 || delta > tolerance) {
                 // a contact that starts penetrated has no impact velocity: the floor of the law replaces it
                 at.z[i] = rate.max(f64::MIN_POSITIVE);
-                onset(i, rate, delta);
-                onsets += 1;
+                at.changes += 1;
+                changed(Changed::Onset {
+                    contact: i,
+                    velocity: rate,
+                    delta,
+                });
             } else if !open && (delta < -tolerance || delta <= tolerance && rate <= 0.0) {
                 at.z[i] = 0.0;
+                at.changes += 1;
+                changed(Changed::Loss { contact: i });
             }
         }
         self.remember_angles(at);
-        onsets
     }
 
     fn powers(&self, at: &mut State, work: &mut Work) -> usize {

@@ -83,7 +83,7 @@ impl Newton {
             };
             s.copy_from(&next);
             // full turns are counted; there are no contacts
-            system.commit(s, &[], 0.0, &mut |_, _, _| {});
+            system.commit(s, &[], 0.0, &mut |_| {});
             see(s);
             if distance <= AT_REST && tau == LARGEST_TAU {
                 // a mechanism that can move without any force rests where it is

@@ -28,8 +28,8 @@ pub(super) struct Prediction {
     nodes: [Earlier; NODES],
     /// How many of them are in use.
     known: usize,
-    /// Contact memory at all of them.
-    z: Vec<f64>,
+    /// Changes of memory before all of them.
+    changes: u64,
     /// True where extrapolation was better than no extrapolation.
     is_better: bool,
     /// How the stages of a step differ from the acceleration level; empty without constraints.
@@ -42,7 +42,7 @@ pub(super) struct Prediction {
     guess: Vec<f64>,
 }
 
-carried!(Prediction { nodes, known, z, is_better, shifts, start } but { unknowns, stage, guess });
+carried!(Prediction { nodes, known, changes, is_better, shifts, start } but { unknowns, stage, guess });
 
 /// Accelerations, then multipliers, at a time.
 #[derive(Debug, Clone)]
@@ -78,7 +78,7 @@ impl Prediction {
             unknowns: shape.unknowns,
             nodes: std::array::from_fn(|_| node()),
             known: 0,
-            z: vec![0.0; shape.contacts],
+            changes: 0,
             is_better: false,
             shifts: vec![shift; stages],
             start: 0.0,
@@ -87,12 +87,12 @@ impl Prediction {
         }
     }
 
-    /// A step begins at `from`. Forgets all times if a contact has changed, and returns true then. Forgets later times, unless
+    /// A step begins at `from`. Forgets all times if memory has changed, and returns true then. Forgets later times, unless
     /// this repeats a step with another length.
     pub fn begin_step(&mut self, from: &State) -> bool {
-        let has_changed = self.z != from.z;
+        let has_changed = self.changes != from.changes;
         if has_changed {
-            self.z.copy_from_slice(&from.z);
+            self.changes = from.changes;
             self.forget_all();
         }
         if self.start != from.t || self.known == 0 {
@@ -261,7 +261,6 @@ mod tests {
         guess.t = t;
         prediction.guess(Level::Position, &mut guess);
         let mut solved = exact.clone();
-        solved.z.copy_from_slice(&from.z);
         solved.a[0] += off;
         solved.lambda[0] += off;
         prediction.solved(&solved);
@@ -291,7 +290,7 @@ mod tests {
 
         // a contact closes: only the last values are known
         let mut closed = state(0.6);
-        closed.z[0] = 1.0;
+        closed.changes += 1;
         let [error, _] = step(&mut prediction, &closed, 0.7, 0.0);
         assert_eq!(error, closed.a[0] - state(0.7).a[0]);
     }

@@ -64,7 +64,7 @@ impl Simulation {
             first_gaps: _,
             last_gaps: _,
             inner_gaps: _,
-            started: _,
+            changed: _,
             // that of the start, which a fresh simulation has found
             rest: _,
             freedoms: _,

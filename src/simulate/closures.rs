@@ -2,6 +2,7 @@
 
 use crate::checkpoint::carried;
 use crate::model::Model;
+use crate::system::Changed;
 use serde::Serialize;
 
 /// A contact, or the flight between two, is brief if it has fewer steps than this: the steps do not resolve it.
@@ -77,22 +78,20 @@ impl Closures {
         }
     }
 
-    /// Records an accepted step to time t, from contact memory `before` to `after`; true if a contact has closed or opened.
-    pub fn step(&mut self, t: f64, before: &[f64], after: &[f64]) -> bool {
-        let mut changed = false;
-        for (c, contact) in self.contacts.iter_mut().enumerate() {
+    /// Records an accepted step to time t that ends with these changes.
+    pub fn step(&mut self, t: f64, changed: &[Changed]) {
+        for contact in &mut self.contacts {
             contact.steps += 1;
-            let (was, is) = (before[c] > 0.0, after[c] > 0.0);
-            if was == is {
-                continue;
-            }
-            changed = true;
+        }
+        for change in changed {
+            let c = change.contact();
+            let contact = &mut self.contacts[c];
             let brief = contact.steps < FEW_STEPS;
             contact.steps = 0;
             if !brief {
                 (contact.streak, contact.listed) = (0, None);
             }
-            if is {
+            if change.closed().is_some() {
                 if contact.streak == 0 {
                     contact.from = t;
                 }
@@ -117,7 +116,6 @@ impl Closures {
                 });
             }
         }
-        changed
     }
 
     /// The first periods of chatter.

@@ -43,7 +43,7 @@ use crate::checkpoint::{Carried, Checkpoint, carried, carry_list};
 use crate::model::Model;
 use crate::scene::{Accuracy, Scene};
 use crate::stepper::{Estimate, LocalError};
-use crate::system::{State, Work};
+use crate::system::{Changed, State, Work};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -405,13 +405,13 @@ impl Controller {
         Verdict::Keep
     }
 
-    /// The step is kept; `onsets` are the contacts that closed at its end, `changed` is true if a contact closed or opened there.
-    pub fn kept(&mut self, onsets: impl Iterator<Item = usize>, changed: bool) {
-        if changed {
+    /// The step is kept and ends with these changes.
+    pub fn kept(&mut self, changed: &[Changed]) {
+        if !changed.is_empty() {
             self.forget_last_step();
         }
         self.closing.clear();
-        for contact in onsets {
+        for contact in changed.iter().filter_map(|change| change.closed()) {
             self.next = self.next.min(self.first_steps[contact]);
             self.closing.push(contact);
         }

@@ -4,7 +4,7 @@ use super::GRID_ROUNDING;
 use super::control::Controller;
 use crate::checkpoint::{Carried, Checkpoint, carried};
 use crate::model::Model;
-use crate::system::State;
+use crate::system::{Changed, State};
 
 /// Equal steps from an anchor.
 ///
@@ -94,24 +94,17 @@ impl Pacer {
         }
     }
 
-    /// Records an accepted step that was planned to end at `goal`; `onsets` are the contacts that closed at its end, `changed` is
-    /// true if a contact closed or opened there.
-    pub fn kept(
-        &mut self,
-        at: &State,
-        goal: f64,
-        onsets: impl Iterator<Item = usize>,
-        changed: bool,
-    ) {
+    /// Records an accepted step that was planned to end at `goal` and ends with these changes.
+    pub fn kept(&mut self, at: &State, goal: f64, changed: &[Changed]) {
         match self {
             Pacer::Grid(grid) => {
-                if onsets.count() > 0 {
+                if changed.iter().any(|change| change.closed().is_some()) {
                     (grid.anchor, grid.count) = (at.t, -0.5);
                 } else if at.t != goal {
                     (grid.anchor, grid.count) = (at.t, 0.0);
                 }
             }
-            Pacer::Controller(controller) => controller.kept(onsets, changed),
+            Pacer::Controller(controller) => controller.kept(changed),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Detects a run that will not end because its steps are far too short.
 
 use crate::checkpoint::carried;
+use crate::system::Changed;
 
 /// Equal steps: the least number of steps tried, and the average step relative to that of the scene.
 const OF_EQUAL_STEPS: (u64, f64) = (20_000, 0.02);
@@ -53,10 +54,10 @@ impl Stall {
         self.tried += 1;
     }
 
-    /// Records an accepted step to t, from contact memory `before` to `after`.
-    pub fn step(&mut self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Stalled> {
-        for (changes, (before, after)) in self.changes.iter_mut().zip(before.iter().zip(after)) {
-            *changes += u64::from((*before > 0.0) != (*after > 0.0));
+    /// Records an accepted step to t that ends with these changes.
+    pub fn step(&mut self, t: f64, changed: &[Changed]) -> Result<(), Stalled> {
+        for change in changed {
+            self.changes[change.contact()] += 1;
         }
         self.steps += 1;
         self.tried += 1;

@@ -22,7 +22,7 @@ use crate::newton::Newton;
 use crate::record::{Record, Recorder};
 use crate::scene::{Analysis, Pace, Scene, SceneError};
 use crate::stepper::{Estimate, LocalError};
-use crate::system::{State, System};
+use crate::system::{Changed, State, System};
 use std::sync::{Arc, OnceLock};
 
 impl Simulation {
@@ -64,14 +64,14 @@ impl Simulation {
         let size = scale::size(scene, &model, &state);
         let mut newton = Newton::new(&*model, scene.integrator.newton_tolerance_for(size));
         let mut work = model.work();
-        let mut started = Vec::with_capacity(shape.contacts);
+        let mut changed = Vec::with_capacity(shape.contacts);
         let mut gaps = vec![[0.0; 2]; shape.contacts];
         model.gaps(&state, &mut gaps);
         model.commit(
             &mut state,
             &gaps,
             scene.integrator.onset_tolerance,
-            &mut |c, v, d| started.push((c, v, d)),
+            &mut |change| changed.push(change),
         );
         let rest = equilibrium::prepare(scene, &model, &mut newton, &mut state, &mut work)?;
         if scene.simulation.analysis == Analysis::Dynamic {
@@ -88,8 +88,17 @@ impl Simulation {
         }
         model.powers(&mut state, &mut work);
         let mut impacts = Impacts::new(scene, &model);
-        for &(contact, velocity, delta) in &started {
-            impacts.begin(&model, contact, [delta, velocity], &state);
+        let mut onsets = 0;
+        for change in &changed {
+            if let Changed::Onset {
+                contact,
+                velocity,
+                delta,
+            } = *change
+            {
+                onsets += 1;
+                impacts.begin(&model, contact, [delta, velocity], &state);
+            }
         }
         let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
         let extremes = vec![Extreme::default(); recorder.channels().len()];
@@ -128,7 +137,7 @@ impl Simulation {
                 scene.integrator.step(),
             ),
             counters: LoopCounters {
-                onsets: started.len() as u64,
+                onsets,
                 ..LoopCounters::default()
             },
             halved: vec![0; shape.unknowns + shape.multipliers],
@@ -136,7 +145,7 @@ impl Simulation {
             last_gaps: gaps.clone(),
             inner_gaps: gaps.clone(),
             gaps,
-            started,
+            changed,
             rest,
             indeterminate: Default::default(),
             heading: None,

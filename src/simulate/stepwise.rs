@@ -58,10 +58,11 @@ impl Simulation {
         state.q_low.copy_from_slice(&other.q_low);
         state.v.copy_from_slice(&other.v);
         state.z.copy_from_slice(&other.z);
+        state.changes += 1;
         let tolerance = self.scene.integrator.onset_tolerance;
         newton.forget_motion();
         model.gaps(state, first_gaps);
-        model.commit(state, first_gaps, tolerance, &mut |_, _, _| {});
+        model.commit(state, first_gaps, tolerance, &mut |_| {});
         if let Err(failure) = newton.make_consistent(&**model, state, work) {
             return Err(self.failed(failure.into(), 0.0));
         }

@@ -12,7 +12,7 @@
 //! and the projection on the constraints.
 //!
 //! a'' is the second divided difference over this step and the previous one, of length h_0, at whose beginning the
-//! acceleration was a_0. At the start, and after a change of a contact, there is no smooth previous step. There the
+//! acceleration was a_0. At the start, and after a change of memory, there is no smooth previous step. There the
 //! acceleration in the middle of the step ([`super::midpoint`]) replaces a_0, and the first formula is Simpson's rule. It holds at
 //! an onset, too, where accelerations grow as t^1.5 and a'' is infinite: the error of the trapezoidal rule, h a_1/10, is
 //! estimated as (2^1.5 - 2)/(3 2^1.5) h a_1 = 0.098 h a_1.
@@ -38,17 +38,18 @@ carried!(History { earlier, before, last } but {});
 struct Beginning {
     t: f64,
     a: Vec<f64>,
-    z: Vec<f64>,
+    /// Changes of memory before it.
+    changes: u64,
 }
 
-carried!(Beginning { t, a, z } but {});
+carried!(Beginning { t, a, changes } but {});
 
 impl Beginning {
     fn new(shape: Shape) -> Beginning {
         Beginning {
             t: f64::NAN,
             a: vec![0.0; shape.unknowns],
-            z: vec![0.0; shape.contacts],
+            changes: 0,
         }
     }
 }
@@ -67,7 +68,7 @@ impl History {
         let unknowns = self.last.a.len();
         self.last.t = from.t;
         self.last.a.copy_from_slice(&from.a[..unknowns]);
-        self.last.z.copy_from_slice(&from.z);
+        self.last.changes = from.changes;
     }
 
     /// The step is kept.
@@ -76,18 +77,18 @@ impl History {
         std::mem::swap(&mut self.before, &mut self.last);
     }
 
-    /// True if the previous step leads to this state without a change of a contact.
+    /// True if the previous step leads to this state without a change of memory.
     pub fn leads_to(&self, from: &State) -> bool {
-        from.t > self.before.t && self.before.z == from.z
+        from.t > self.before.t && self.before.changes == from.changes
     }
 
     /// Accelerations at the earliest time from which at most two smooth steps lead to this state, and that time; the state itself
     /// and a time long ago if there is none.
     pub fn earliest<'a>(&'a self, from: &'a State) -> (&'a [f64], f64) {
-        let Beginning { t, z, .. } = &self.earlier;
+        let Beginning { t, changes, .. } = &self.earlier;
         if !self.leads_to(from) {
             (&from.a, f64::NEG_INFINITY)
-        } else if self.before.t > *t && self.before.z == *z {
+        } else if self.before.t > *t && self.before.changes == *changes {
             (&self.earlier.a, *t)
         } else {
             (&self.before.a, self.before.t)

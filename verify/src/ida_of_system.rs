@@ -434,7 +434,7 @@ extern "C" fn change(e: &mut Equations, t: f64, mut y: LiVector, mut yp: LiVecto
     // a root is found to the rounding of its time
     let tolerance = e.onset_tolerance.max(1e-12);
     let (at, gaps) = (&mut e.at, &e.gaps);
-    e.system.commit(at, gaps, tolerance, &mut |_, _, _| {});
+    e.system.commit(at, gaps, tolerance, &mut |_| {});
     if e.newton.make_consistent(e.system, at, &mut e.work).is_err() {
         return 1;
     }
