@@ -301,7 +301,7 @@ impl Simulation {
             let stalled = self.stall.step(self.state.t, &self.changed);
             stalled.map_err(|stalled| self.stalled(stalled))?;
             self.pacer.kept(&self.state, goal, &self.changed);
-            let contacts = self.state.z.iter().filter(|z| **z > 0.0).count();
+            let contacts = self.model.closed(&self.state).count();
             let progress = Progress {
                 t: self.state.t,
                 duration: self.scene.simulation.duration,

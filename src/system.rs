@@ -1,11 +1,11 @@
 //! The interface between physics and time integration. The equations of motion are
 //!
 //! ```text
-//! M a + f(t, q, v; z) + Phi_q^T lambda = 0        Phi(t, q) = 0
+//! M a + f(t, q, v; m) + Phi_q^T lambda = 0        Phi(t, q) = 0
 //! ```
 //!
 //! with the coordinates q (unknown ones first, then known ones), their first and second derivatives v and a, the multipliers
-//! lambda, and the contact memory z, which changes only between accepted steps (see [`Changed`]).
+//! lambda, and the memory m, which changes only between accepted steps (see [`Changed`]).
 
 use crate::checkpoint::{Carried, carried};
 use crate::math::lu::Symbolic;
@@ -20,10 +20,10 @@ pub struct Shape {
     pub coordinates: usize,
     /// Multipliers.
     pub multipliers: usize,
-    /// Contacts, each with one number of memory.
+    /// Contacts.
     pub contacts: usize,
-    /// Relative angles whose full turns are counted, each with one number of memory.
-    pub angles: usize,
+    /// Numbers of memory: one of every contact, then those of forces.
+    pub memory: usize,
 }
 
 /// Quantities integrated over time along with the motion.
@@ -62,10 +62,8 @@ pub struct State {
     pub a: Vec<f64>,
     /// Multipliers.
     pub lambda: Vec<f64>,
-    /// Contact memory: the impact velocity \[m/s\] of a closed contact, 0 while it is open.
-    pub z: Vec<f64>,
-    /// Angle memory: the relative angles of the last accepted step \[rad\].
-    pub angles: Vec<f64>,
+    /// Memory: of every contact the impact velocity \[m/s\], 0 while it is open, then what forces keep.
+    pub memory: Vec<f64>,
     /// How often memory has changed so far in a way that the motion feels. Between two states with the same number the equations
     /// of motion are differentiable functions; what is extrapolated or differenced over several steps holds for one number only.
     pub changes: u64,
@@ -75,7 +73,7 @@ pub struct State {
     pub powers: [f64; INTEGRALS],
 }
 
-carried!(State { t, weight, q, q_low, v, a, lambda, z, angles, changes, integrals, powers } but {});
+carried!(State { t, weight, q, q_low, v, a, lambda, memory, changes, integrals, powers } but {});
 
 impl State {
     /// All zero.
@@ -88,8 +86,7 @@ impl State {
             v: vec![0.0; shape.coordinates],
             a: vec![0.0; shape.coordinates],
             lambda: vec![0.0; shape.multipliers],
-            z: vec![0.0; shape.contacts],
-            angles: vec![0.0; shape.angles],
+            memory: vec![0.0; shape.memory],
             changes: 0,
             integrals: [0.0; INTEGRALS],
             powers: [0.0; INTEGRALS],
@@ -104,11 +101,10 @@ impl State {
             + of(Integral::DampingDissipated)
     }
 
-    /// Copies what no stage of a step changes: the load, and the memory of contacts and angles.
+    /// Copies what no stage of a step changes: the load and the memory.
     pub fn copy_memory(&mut self, other: &State) {
         self.weight = other.weight;
-        self.z.copy_from_slice(&other.z);
-        self.angles.copy_from_slice(&other.angles);
+        self.memory.copy_from_slice(&other.memory);
         self.changes = other.changes;
     }
 
@@ -129,8 +125,7 @@ impl State {
         self.v.copy_from_slice(&other.v);
         self.a.copy_from_slice(&other.a);
         self.lambda.copy_from_slice(&other.lambda);
-        self.z.copy_from_slice(&other.z);
-        self.angles.copy_from_slice(&other.angles);
+        self.memory.copy_from_slice(&other.memory);
         self.changes = other.changes;
         self.integrals = other.integrals;
         self.powers = other.powers;
@@ -279,7 +274,7 @@ pub trait System {
     fn constraint_acceleration(&self, at: &State, out: &mut [f64]);
     /// Penetration delta of every contact \[m\] and its rate \[m/s\].
     fn gaps(&self, at: &State, gaps: &mut [[f64; 2]]);
-    /// Opens and closes contacts and counts turns: the only place where memory changes. `gaps` are those of the state; every
+    /// Opens and closes contacts and lets forces remember: the only place where memory changes. `gaps` are those of the state; every
     /// change that the motion feels is counted in the state and handed to `changed`.
     fn commit(
         &self,

@@ -29,8 +29,8 @@ pub struct Terms {
     pub damping: Vec<(Box<dyn Force>, usize)>,
     /// Contacts.
     pub contacts: Vec<Box<dyn ContactPair>>,
-    /// Number of angles whose full turns are counted.
-    pub angles: usize,
+    /// Numbers of memory that forces need.
+    pub slots: usize,
 }
 
 /// A constraint and the names of its rows.

@@ -51,7 +51,7 @@ impl System for Chain {
             coordinates: n,
             multipliers: 0,
             contacts: 0,
-            angles: 0,
+            memory: 0,
         }
     }
     fn symbolic(&self) -> &Symbolic {

@@ -71,7 +71,7 @@ fn at_the_onset() -> Motion {
     let mut simulation = Simulation::new(&load("bouncing-journal.toml", &changes)).unwrap();
     let ended = simulation.run(&mut FirstOnset::default());
     assert!(matches!(ended, Err(RunError::Interrupted { .. })));
-    assert!(simulation.state().z[0] > 0.0);
+    assert!(simulation.state().memory[0] > 0.0);
     Motion {
         name: "Contact with a restitution of 0.5",
         simulation,

@@ -288,7 +288,7 @@ fn case_4_with_closed_contacts_converges_with_the_elements() {
                 };
         }
         simulation.continue_from(&state).unwrap();
-        assert_eq!(simulation.state().z.iter().filter(|z| **z > 0.0).count(), 6);
+        assert_eq!(simulation.model().closed(simulation.state()).count(), 6);
         let modes = simulation.modes(false).unwrap().modes;
         let vibrating = modes
             .into_iter()

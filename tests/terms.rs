@@ -40,7 +40,7 @@ fn state(k: usize, t: f64) -> State {
         coordinates: COUNT,
         multipliers: 0,
         contacts: 0,
-        angles: 1,
+        memory: 1,
     };
     let mut s = State::zeros(shape);
     s.t = t;
@@ -740,7 +740,7 @@ fn forces_agree_with_their_differences() {
 /// The state at another instant with the memory of `s`.
 fn state_with(s: &State, k: usize, t: f64) -> State {
     let mut other = state(k, t);
-    other.angles.copy_from_slice(&s.angles);
+    other.memory.copy_from_slice(&s.memory);
     other
 }
 
@@ -913,7 +913,7 @@ fn ends_of_a_spring_that_meet_part_at_their_relative_velocity() {
         coordinates: 4,
         multipliers: 0,
         contacts: 0,
-        angles: 0,
+        memory: 0,
     };
     let spring = SpringDamper {
         from: Marker::Node { x: 0 },

@@ -145,7 +145,7 @@ pub fn bring_back(
         next.q[i] += of_q * apart(one, other, i);
         next.v[i] += of_v * (other.v[i] - one.v[i]);
     }
-    for (memory, other) in next.z.iter_mut().zip(&other.z) {
+    for (memory, other) in next.memory.iter_mut().zip(&other.memory) {
         if *memory > 0.0 && *other > 0.0 {
             *memory = (*memory + of_v * (other - *memory)).max(f64::MIN_POSITIVE);
         }

@@ -110,7 +110,7 @@ pub(super) fn build(
         coordinates: numbering.coordinates,
         multipliers,
         contacts: terms.contacts.len(),
-        angles: terms.angles,
+        memory: terms.contacts.len() + terms.slots,
     };
     let places = Places {
         tangent: &symbolic,
@@ -424,7 +424,7 @@ fn force_terms(c: &Compiler, numbering: &Numbering, terms: &mut Terms) -> Vec<(S
             bodies: &numbering.bodies,
             joints: &c.scene.joints,
             full_load,
-            memory: terms.angles,
+            memory: terms.contacts.len() + terms.slots,
             states,
         };
         names.push((force.name.clone(), terms.forces.len()));
@@ -434,7 +434,7 @@ fn force_terms(c: &Compiler, numbering: &Numbering, terms: &mut Terms) -> Vec<(S
             values: vec![1.0],
             field: vec![0.0],
         }));
-        terms.angles += usize::from(force.kind.turning_joint().is_some());
+        terms.slots += force.kind.slots();
     }
     names
 }

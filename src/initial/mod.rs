@@ -95,7 +95,7 @@ pub fn start(scene: &Scene, compiled: &Compiled) -> Result<State, SceneError> {
             model.named_force(f).1.wind(&mut state, angle);
         }
     }
-    model.remember_angles(&mut state);
+    model.remember(&mut state);
     Ok(state)
 }
 

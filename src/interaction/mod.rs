@@ -83,6 +83,10 @@ pub trait ForceModel: Any + Debug + Send + Sync {
     fn states(&self) -> &'static [&'static str] {
         &[]
     }
+    /// Numbers of memory that it needs.
+    fn slots(&self) -> usize {
+        0
+    }
     /// The term of the equations, and the bodies of its two sides.
     fn term(&self, ends: &Ends) -> (Box<dyn Force>, [usize; 2]);
 }
@@ -143,7 +147,7 @@ pub struct Ends<'a> {
     pub joints: &'a [Joint],
     /// In a static analysis the t of the full load \[s\].
     pub full_load: Option<f64>,
-    /// Index of its memory of an angle, if it needs one.
+    /// Index of the first number of its memory.
     pub memory: usize,
     /// Indices of its internal states.
     pub states: &'a [usize],

@@ -61,6 +61,10 @@ impl ForceModel for TorsionSpringModel {
         Some(self.joint)
     }
 
+    fn slots(&self) -> usize {
+        1
+    }
+
     fn term(&self, ends: &Ends) -> (Box<dyn Force>, [usize; 2]) {
         let points = ends.joints[self.joint].points();
         let [first, second] = points.map(|p| ends.spin(p));
@@ -90,7 +94,7 @@ pub struct TorsionSpring {
     pub damping: f64,
     /// phi_0 \[rad\].
     pub rest_angle: f64,
-    /// Index of its angle memory.
+    /// Index of the angle of the last accepted step in the memory.
     pub memory: usize,
 }
 
@@ -98,7 +102,7 @@ impl TorsionSpring {
     /// phi \[rad\]: the one nearest to the memory.
     fn angle(&self, at: &State) -> f64 {
         let (a, b) = (self.first.vector(&at.q), self.second.vector(&at.q));
-        let last = at.angles[self.memory];
+        let last = at.memory[self.memory];
         let change = a.perp(&b).atan2(a.dot(&b)) - last;
         last + change - full_turns(change)
     }
@@ -182,15 +186,15 @@ impl Force for TorsionSpring {
     }
 
     fn begin(&self, at: &mut State) {
-        at.angles[self.memory] = self.rest_angle;
+        at.memory[self.memory] = self.rest_angle;
     }
 
     fn wind(&self, at: &mut State, angle: f64) {
-        at.angles[self.memory] = angle;
+        at.memory[self.memory] = angle;
     }
 
     fn remember(&self, at: &mut State) {
-        at.angles[self.memory] = self.angle(at);
+        at.memory[self.memory] = self.angle(at);
     }
 
     fn quantities(&self) -> &'static [(&'static str, &'static str)] {

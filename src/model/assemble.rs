@@ -1,6 +1,6 @@
 //! The equations of a model: residual, tangent, rates, contact memory, powers.
 
-use super::measure::contact_state;
+use super::measure::{contact_state, is_closed};
 use super::{Model, PlacedContact, PlacedEccentric, Rule};
 use crate::constraint::{self, Curvature, ROWS};
 use crate::contact;
@@ -93,7 +93,7 @@ impl Model {
         at: &'a State,
     ) -> impl Iterator<Item = (&'a PlacedContact, contact::At<'a>)> {
         let contacts = self.contacts.iter().enumerate();
-        let closed = contacts.filter(|(i, _)| at.z[*i] > 0.0);
+        let closed = contacts.filter(|(i, _)| is_closed(at, *i));
         closed.map(|(i, c)| (c, contact_state(at, i)))
     }
 
@@ -235,8 +235,8 @@ impl Model {
         }
     }
 
-    /// Sets the angle memory, by which full turns are counted.
-    pub(crate) fn remember_angles(&self, at: &mut State) {
+    /// Lets forces remember a state.
+    pub(crate) fn remember(&self, at: &mut State) {
         for acting in &self.forces {
             acting.term.remember(at);
         }
@@ -394,10 +394,10 @@ impl System for Model {
         changed: &mut dyn FnMut(Changed),
     ) {
         for (i, &[delta, rate]) in gaps.iter().enumerate() {
-            let open = at.z[i] == 0.0;
+            let open = !is_closed(at, i);
             if open && (delta >= -tolerance && rate > 0.0 || delta > tolerance) {
                 // a contact that starts penetrated has no impact velocity: the floor of the law replaces it
-                at.z[i] = rate.max(f64::MIN_POSITIVE);
+                at.memory[i] = rate.max(f64::MIN_POSITIVE);
                 at.changes += 1;
                 changed(Changed::Onset {
                     contact: i,
@@ -405,12 +405,12 @@ impl System for Model {
                     delta,
                 });
             } else if !open && (delta < -tolerance || delta <= tolerance && rate <= 0.0) {
-                at.z[i] = 0.0;
+                at.memory[i] = 0.0;
                 at.changes += 1;
                 changed(Changed::Loss { contact: i });
             }
         }
-        self.remember_angles(at);
+        self.remember(at);
     }
 
     fn powers(&self, at: &mut State, work: &mut Work) -> usize {
@@ -428,8 +428,7 @@ impl System for Model {
     }
 
     fn is_smooth(&self, at: &State) -> bool {
-        let is_open = at.z.iter().all(|z| *z == 0.0);
-        is_open && self.forces.iter().all(|acting| acting.term.is_smooth())
+        self.closed(at).next().is_none() && self.forces.iter().all(|acting| acting.term.is_smooth())
     }
 
     fn unknown_name(&self, index: usize) -> String {

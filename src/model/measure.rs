@@ -141,6 +141,11 @@ impl Model {
         joint.reaction.as_ref().map_or([0.0; 3], of)
     }
 
+    /// The contacts that are closed.
+    pub fn closed<'a>(&self, at: &'a State) -> impl Iterator<Item = usize> + 'a {
+        (0..self.contacts.len()).filter(|&contact| is_closed(at, contact))
+    }
+
     /// Force of the bearing side on the journal side of contact `index` \[N\].
     pub fn contact_force(&self, index: usize, at: &State) -> Vec2 {
         self.contacts[index].pair.reaction(contact_state(at, index))
@@ -148,8 +153,8 @@ impl Model {
 
     /// The slip \[m/s\] of a contact whose friction law lets it creep.
     pub fn creep(&self, contact: usize, at: &State) -> Option<f64> {
-        let is_closed = at.z[contact] > 0.0;
-        let state = is_closed.then(|| contact_state(at, contact))?;
+        let closed = is_closed(at, contact);
+        let state = closed.then(|| contact_state(at, contact))?;
         self.contacts[contact].pair.creep(state)
     }
 
@@ -217,7 +222,7 @@ impl Model {
         let pair = &self.contacts[i].pair;
         let gap = pair.gap(&at.q, &at.v);
         let rate = pair.rate(&gap);
-        Some((gap, rate, at.z[i] > 0.0))
+        Some((gap, rate, is_closed(at, i)))
     }
 
     /// Angle (up to full turns), speed, acceleration and torque of an actuated joint.
@@ -301,8 +306,13 @@ impl Model {
     }
 }
 
+/// True of a contact that is closed.
+pub(super) fn is_closed(at: &State, contact: usize) -> bool {
+    at.memory[contact] > 0.0
+}
+
 /// Positions, velocities and memory of a contact.
 pub(super) fn contact_state(at: &State, contact: usize) -> contact::At<'_> {
-    let (q, v, z) = (&at.q, &at.v, at.z[contact]);
+    let (q, v, z) = (&at.q, &at.v, at.memory[contact]);
     contact::At { q, v, z }
 }

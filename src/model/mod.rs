@@ -358,6 +358,11 @@ impl Model {
         self.effects = effects;
     }
 
+    /// Opens all contacts.
+    pub fn open_contacts(&self, at: &mut State) {
+        at.memory[..self.shape.contacts].fill(0.0);
+    }
+
     /// True where a link or a spring stores energy.
     pub fn is_elastic(&self) -> bool {
         !self.elements.is_empty() || self.has_springs()

@@ -242,7 +242,7 @@ mod tests {
         coordinates: 1,
         multipliers: 1,
         contacts: 1,
-        angles: 0,
+        memory: 1,
     };
 
     /// A state whose acceleration and multiplier are quadratic functions of time.

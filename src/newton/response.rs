@@ -154,7 +154,7 @@ impl Response {
             v: 0.0,
         };
         self.at.copy_from(state);
-        self.at.z.fill(0.0);
+        self.at.memory[..system.shape().contacts].fill(0.0);
         self.at.lambda.fill(0.0);
         let (at, r, phi) = (&self.at, &mut self.r, &mut self.phi);
         let mut counters = Counters::default();

@@ -11,8 +11,8 @@ const LOCATION_TRIALS: usize = 100;
 const SLOPES: RangeInclusive<f64> = 0.5..=2.0;
 
 /// The sign of the penetration that leads to a change: closed contacts open when it is negative.
-fn side(z: f64) -> f64 {
-    if z == 0.0 { 1.0 } else { -1.0 }
+fn side(impact_velocity: f64) -> f64 {
+    if impact_velocity == 0.0 { 1.0 } else { -1.0 }
 }
 
 impl Simulation {
@@ -21,8 +21,8 @@ impl Simulation {
     fn furthest_past(&mut self) -> (f64, f64) {
         self.model.gaps(&self.trial, &mut self.gaps);
         let mut furthest = (f64::NEG_INFINITY, 0.0);
-        for (&[delta, rate], z) in self.gaps.iter().zip(&self.trial.z) {
-            let sign = side(*z);
+        for (&[delta, rate], v) in self.gaps.iter().zip(&self.trial.memory) {
+            let sign = side(*v);
             if sign * delta > furthest.0 {
                 furthest = (sign * delta, sign * rate);
             }
@@ -44,8 +44,8 @@ impl Simulation {
                 self.inner_gaps.copy_from_slice(&self.gaps);
             }
             let pairs = self.last_gaps.iter().zip(&self.inner_gaps);
-            for ((last, &[delta, rate]), z) in pairs.zip(&self.state.z) {
-                let sign = side(*z);
+            for ((last, &[delta, rate]), v) in pairs.zip(&self.state.memory) {
+                let sign = side(*v);
                 if is_inside && sign * delta > furthest.0 {
                     furthest = (sign * delta, s.t);
                 }
@@ -66,10 +66,10 @@ impl Simulation {
     fn first_crossing(&self) -> Option<f64> {
         let h = self.trial.t - self.state.t;
         let ends = self.first_gaps.iter().zip(&self.gaps);
-        let crossings = ends.zip(&self.trial.z).filter_map(|((from, to), z)| {
-            let sign = side(*z);
-            let [y, v] = [0, 1].map(|i| [sign * from[i], sign * to[i]]);
-            crossing(h, y, v)
+        let crossings = ends.zip(&self.trial.memory).filter_map(|((from, to), v)| {
+            let sign = side(*v);
+            let [y, rate] = [0, 1].map(|i| [sign * from[i], sign * to[i]]);
+            crossing(h, y, rate)
         });
         crossings.min_by(f64::total_cmp).map(|t| self.state.t + t)
     }

@@ -75,6 +75,10 @@ struct Racer {
 }
 
 impl Racer {
+    fn has_contacts(&self) -> bool {
+        self.simulation.model.shape().contacts > 0
+    }
+
     /// Takes some steps. Returns true at the end of the run.
     fn go_on(&mut self) -> bool {
         self.replay.steps_left = STRIDE;
@@ -82,7 +86,7 @@ impl Racer {
         let Simulation {
             state, counters, ..
         } = &self.simulation;
-        if state.z.is_empty() || counters.onsets > 0 {
+        if !self.has_contacts() || counters.onsets > 0 {
             self.course.push((state.t, self.simulation.operations()));
         }
         match result {
@@ -107,11 +111,10 @@ impl Racer {
             Pace::Accuracy(accuracy) => accuracy.horizon,
             Pace::Step(_) => 0.0,
         };
-        let has_impacts = !state.z.is_empty();
         counters.steps >= TRIAL_RUN_STEPS
             || counters.steps >= FEWEST_STEPS
                 && state.t >= PART * scene.simulation.duration
-                && (!has_impacts || closures.ended >= IMPACTS || state.t >= horizon)
+                && (!self.has_contacts() || closures.ended >= IMPACTS || state.t >= horizon)
     }
 
     /// True where another came as far as this one, from where both are compared, with far fewer operations.
@@ -119,9 +122,9 @@ impl Racer {
         let Simulation {
             state, counters, ..
         } = &self.simulation;
-        let seen = match state.z.is_empty() {
-            true => counters.steps / FEWEST_STEPS,
-            false => counters.onsets,
+        let seen = match self.has_contacts() {
+            true => counters.onsets,
+            false => counters.steps / FEWEST_STEPS,
         };
         let Some((from, _)) = self.course.first() else {
             return false;

@@ -108,7 +108,7 @@ pub(super) fn prepare(
         })?;
         state.v[known.clone()].copy_from_slice(&rates.0);
         state.a[known].copy_from_slice(&rates.1);
-        model.remember_angles(state);
+        model.remember(state);
         return Ok(Some(found));
     }
     Ok(None)

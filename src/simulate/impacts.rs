@@ -293,7 +293,7 @@ impl Impacts {
         for (contact, (slot, [_, deepest])) in self.closed.iter_mut().zip(depths).enumerate() {
             let Some(course) = slot else { continue };
             let [delta, rate] = gaps[contact];
-            let closed = at.z[contact] > 0.0;
+            let closed = at.memory[contact] > 0.0;
             let [before, rate_before] = course.before;
             let top = top(h, [before, delta], [rate_before, rate]).map_or(delta, |(_, top)| top);
             course.deepest = course.deepest.max(delta).max(top);

@@ -206,7 +206,7 @@ impl Simulation {
         observer: &mut dyn Observer,
     ) -> Result<(), RunError> {
         std::mem::swap(&mut self.state, &mut self.trial);
-        self.model.remember_angles(&mut self.state);
+        self.model.remember(&mut self.state);
         self.counters.steps += 1;
         self.rest = Some(found);
         let progress = Progress {

@@ -13,7 +13,7 @@ impl Simulation {
     pub fn modes(&mut self, opens: bool) -> Result<Modes, ModesError> {
         let (mut at, mut work) = (self.state.clone(), self.work.clone());
         if opens {
-            at.z.fill(0.0);
+            self.model.open_contacts(&mut at);
             // the multipliers without the contacts
             let newton = &mut self.newton;
             let solved = newton.accelerate_aside(&*self.model, &mut at, &mut work);

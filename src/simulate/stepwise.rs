@@ -31,7 +31,7 @@ impl Simulation {
         times.try_for_each(|row| self.advance_to(row, observer))
     }
 
-    /// Goes on, at the time reached, from the coordinates, velocities and contact memory of `other`.
+    /// Goes on, at the time reached, from the coordinates, velocities and memory of `other`.
     ///
     /// Velocities are projected on the constraints, and accelerations and multipliers follow from the equations of
     /// motion. Coordinates are not projected: a combination of consistent states at a distance d violates the constraints by
@@ -57,7 +57,7 @@ impl Simulation {
         state.q.copy_from_slice(&other.q);
         state.q_low.copy_from_slice(&other.q_low);
         state.v.copy_from_slice(&other.v);
-        state.z.copy_from_slice(&other.z);
+        state.memory.copy_from_slice(&other.memory);
         state.changes += 1;
         let tolerance = self.scene.integrator.onset_tolerance;
         newton.forget_motion();

@@ -188,8 +188,8 @@ impl ScenePair {
             known.q[i] += spread * random.random_range(-1.0..1.0);
             known.v[i] += 0.1 * random.random_range(-1.0..1.0);
         }
-        for z in &mut known.z {
-            *z = random.random_range(0.01..0.1);
+        for velocity in &mut known.memory[..model.shape().contacts] {
+            *velocity = random.random_range(0.01..0.1);
         }
         known.lambda.fill(0.0);
         known.a[..model.shape().unknowns].fill(0.0);
@@ -211,18 +211,16 @@ impl ScenePair {
         let [_, _, rust_mass] = rust_matrices(model, at);
         parts.see(MASS, &rust_mass, &mass, 0.0);
 
-        let open = State {
-            z: vec![0.0; at.z.len()],
-            ..at.clone()
-        };
+        let mut open = at.clone();
+        model.open_contacts(&mut open);
         let mut rounding = 0.0;
         for (part, state) in [(CLOSED, at), (OPEN, &open)] {
-            if part == CLOSED && at.z.is_empty() {
+            if part == CLOSED && shape.contacts == 0 {
                 continue;
             }
             let mut mine = state.clone();
             let mut z = vec![0.0; self.reference.joints.len()];
-            for (&joint, memory) in self.contacts.iter().zip(&mine.z) {
+            for (&joint, memory) in self.contacts.iter().zip(&mine.memory) {
                 z[joint] = *memory;
             }
             // tangents depend on the accelerations of known coordinates
@@ -304,10 +302,8 @@ impl ScenePair {
             parts.see(GRADIENT, &rust, &cpp, ROUNDING);
         }
 
-        let mut loaded = State {
-            z: vec![0.0; at.z.len()],
-            ..at.clone()
-        };
+        let mut loaded = at.clone();
+        model.open_contacts(&mut loaded);
         let [unloaded, ..] = rust_matrices(model, &loaded);
         for row in (0..m).filter(kept) {
             loaded.lambda[row] = 1.0 + row as f64;
