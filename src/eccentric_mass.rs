@@ -87,6 +87,7 @@ mod tests {
             coordinates: 3,
             multipliers: 0,
             contacts: 0,
+            crossings: 0,
             memory: 0,
         };
         let (v, a) = ([0.9, -0.4, 2.1], [1.3, 0.8, -1.7]);

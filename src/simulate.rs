@@ -155,12 +155,12 @@ pub struct Simulation {
     counters: LoopCounters,
     /// Failed steps by the unknown or multiplier they failed for.
     halved: Vec<u64>,
-    /// Penetration of every contact and its rate at the trial state, at the accepted one ...
-    gaps: Vec<[f64; 2]>,
-    first_gaps: Vec<[f64; 2]>,
+    /// What passes zero where memory changes, at the trial state, at the accepted one ...
+    crossings: Vec<[f64; 2]>,
+    first_crossings: Vec<[f64; 2]>,
     /// ... and at two neighbouring states within the step.
-    last_gaps: Vec<[f64; 2]>,
-    inner_gaps: Vec<[f64; 2]>,
+    last_crossings: Vec<[f64; 2]>,
+    inner_crossings: Vec<[f64; 2]>,
     /// Changes at the end of the last step.
     changed: Vec<Changed>,
     /// The equilibrium that the motion starts from, where the scene asks for one; in a static analysis the last one.
@@ -249,7 +249,7 @@ impl Simulation {
         if !std::mem::replace(&mut self.is_between_rows, true) {
             self.pacer.begin(self.state.t);
         }
-        self.model.gaps(&self.state, &mut self.first_gaps);
+        self.model.crossings(&self.state, &mut self.first_crossings);
         while self.state.t < target {
             let goal = self.pacer.goal(self.state.t, target);
             let (mut clamps, mut reached) = self.try_step(goal)?;
@@ -282,7 +282,7 @@ impl Simulation {
                     self.estimate_error();
                 }
             } else {
-                self.model.gaps(&self.trial, &mut self.gaps);
+                self.model.crossings(&self.trial, &mut self.crossings);
             }
             self.meter.step(&self.state, &self.trial, &self.local_error);
             self.stepper.accept();
@@ -295,8 +295,11 @@ impl Simulation {
             }
             self.commit(observer)?;
             let impacts = &mut self.impacts;
-            impacts.step(&self.model, taken, &self.state, &self.gaps, observer)?;
-            std::mem::swap(&mut self.gaps, &mut self.first_gaps);
+            impacts.step(&self.model, taken, &self.state, &self.crossings, observer)?;
+            match self.changed.is_empty() {
+                true => std::mem::swap(&mut self.crossings, &mut self.first_crossings),
+                false => self.model.crossings(&self.state, &mut self.first_crossings),
+            }
             self.closures.step(self.state.t, &self.changed);
             let stalled = self.stall.step(self.state.t, &self.changed);
             stalled.map_err(|stalled| self.stalled(stalled))?;
@@ -429,12 +432,14 @@ impl Simulation {
             model,
             state,
             changed,
-            gaps,
+            crossings,
             ..
         } = self;
         changed.clear();
         let tolerance = self.scene.integrator.onset_tolerance;
-        model.commit(state, gaps, tolerance, &mut |change| changed.push(change));
+        model.commit(state, crossings, tolerance, &mut |change| {
+            changed.push(change)
+        });
         for change in changed.iter() {
             if let Changed::Onset {
                 contact,

@@ -22,6 +22,8 @@ pub struct Shape {
     pub multipliers: usize,
     /// Contacts.
     pub contacts: usize,
+    /// Functions of the state that pass zero where memory changes: one of every contact, then those of forces.
+    pub crossings: usize,
     /// Numbers of memory: one of every contact, then those of forces.
     pub memory: usize,
 }
@@ -272,14 +274,15 @@ pub trait System {
     fn constraint_velocity(&self, at: &State, out: &mut [f64]);
     /// d2(Phi)/dt2, with the accelerations in `at`.
     fn constraint_acceleration(&self, at: &State, out: &mut [f64]);
-    /// Penetration delta of every contact \[m\] and its rate \[m/s\].
-    fn gaps(&self, at: &State, gaps: &mut [[f64; 2]]);
-    /// Opens and closes contacts and lets forces remember: the only place where memory changes. `gaps` are those of the state; every
-    /// change that the motion feels is counted in the state and handed to `changed`.
+    /// The functions that pass zero from below where memory changes \[m\], and their rates \[m/s\]: the penetration delta of an open
+    /// contact, -delta of a closed one.
+    fn crossings(&self, at: &State, crossings: &mut [[f64; 2]]);
+    /// Opens and closes contacts and lets forces remember: the only place where memory changes. `crossings` are those of the state;
+    /// every change that the motion feels is counted in the state and handed to `changed`.
     fn commit(
         &self,
         at: &mut State,
-        gaps: &[[f64; 2]],
+        crossings: &[[f64; 2]],
         tolerance: f64,
         changed: &mut dyn FnMut(Changed),
     );

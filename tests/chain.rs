@@ -51,6 +51,7 @@ impl System for Chain {
             coordinates: n,
             multipliers: 0,
             contacts: 0,
+            crossings: 0,
             memory: 0,
         }
     }
@@ -124,7 +125,7 @@ impl System for Chain {
     }
     fn constraint_velocity(&self, _: &State, _: &mut [f64]) {}
     fn constraint_acceleration(&self, _: &State, _: &mut [f64]) {}
-    fn gaps(&self, _: &State, _: &mut [[f64; 2]]) {}
+    fn crossings(&self, _: &State, _: &mut [[f64; 2]]) {}
     fn commit(&self, _: &mut State, _: &[[f64; 2]], _: f64, _: &mut dyn FnMut(Changed)) {}
     /// Integrands of known integrals, the first three powers of t; one clamp a state.
     fn powers(&self, at: &mut State, _: &mut Work) -> usize {

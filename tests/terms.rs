@@ -40,6 +40,7 @@ fn state(k: usize, t: f64) -> State {
         coordinates: COUNT,
         multipliers: 0,
         contacts: 0,
+        crossings: 0,
         memory: 1,
     };
     let mut s = State::zeros(shape);
@@ -913,6 +914,7 @@ fn ends_of_a_spring_that_meet_part_at_their_relative_velocity() {
         coordinates: 4,
         multipliers: 0,
         contacts: 0,
+        crossings: 0,
         memory: 0,
     };
     let spring = SpringDamper {

@@ -110,6 +110,7 @@ pub(super) fn build(
         coordinates: numbering.coordinates,
         multipliers,
         contacts: terms.contacts.len(),
+        crossings: terms.contacts.len(),
         memory: terms.contacts.len() + terms.slots,
     };
     let places = Places {

@@ -379,35 +379,40 @@ impl System for Model {
         }
     }
 
-    fn gaps(&self, at: &State, gaps: &mut [[f64; 2]]) {
-        for (c, out) in self.contacts.iter().zip(gaps) {
+    fn crossings(&self, at: &State, crossings: &mut [[f64; 2]]) {
+        for (i, (c, out)) in self.contacts.iter().zip(crossings).enumerate() {
             let gap = c.pair.gap(&at.q, &at.v);
-            *out = [gap.delta, c.pair.rate(&gap)];
+            let side = if is_closed(at, i) { -1.0 } else { 1.0 };
+            *out = [side * gap.delta, side * c.pair.rate(&gap)];
         }
     }
 
     fn commit(
         &self,
         at: &mut State,
-        gaps: &[[f64; 2]],
+        crossings: &[[f64; 2]],
         tolerance: f64,
         changed: &mut dyn FnMut(Changed),
     ) {
-        for (i, &[delta, rate]) in gaps.iter().enumerate() {
-            let open = !is_closed(at, i);
-            if open && (delta >= -tolerance && rate > 0.0 || delta > tolerance) {
+        for (i, &[past, rate]) in crossings.iter().enumerate() {
+            let closed = is_closed(at, i);
+            let passes =
+                past > tolerance || past >= -tolerance && (rate > 0.0 || closed && rate == 0.0);
+            if !passes {
+                continue;
+            }
+            at.changes += 1;
+            if closed {
+                at.memory[i] = 0.0;
+                changed(Changed::Loss { contact: i });
+            } else {
                 // a contact that starts penetrated has no impact velocity: the floor of the law replaces it
                 at.memory[i] = rate.max(f64::MIN_POSITIVE);
-                at.changes += 1;
                 changed(Changed::Onset {
                     contact: i,
                     velocity: rate,
-                    delta,
+                    delta: past,
                 });
-            } else if !open && (delta < -tolerance || delta <= tolerance && rate <= 0.0) {
-                at.memory[i] = 0.0;
-                at.changes += 1;
-                changed(Changed::Loss { contact: i });
             }
         }
         self.remember(at);

@@ -242,6 +242,7 @@ mod tests {
         coordinates: 1,
         multipliers: 1,
         contacts: 1,
+        crossings: 1,
         memory: 1,
     };
 

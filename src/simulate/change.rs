@@ -10,67 +10,54 @@ const LOCATION_TRIALS: usize = 100;
 /// Slopes of a secant over the rate of the gap that can be those of the same contact.
 const SLOPES: RangeInclusive<f64> = 0.5..=2.0;
 
-/// The sign of the penetration that leads to a change: closed contacts open when it is negative.
-fn side(impact_velocity: f64) -> f64 {
-    if impact_velocity == 0.0 { 1.0 } else { -1.0 }
-}
-
 impl Simulation {
-    /// The contact of `trial` that is furthest past its change: the distance (penetration of an open contact, gap of a closed
-    /// one) and its rate.
+    /// What of `trial` is furthest past its change: the distance (penetration of an open contact, gap of a closed one) and its rate.
     fn furthest_past(&mut self) -> (f64, f64) {
-        self.model.gaps(&self.trial, &mut self.gaps);
+        self.model.crossings(&self.trial, &mut self.crossings);
         let mut furthest = (f64::NEG_INFINITY, 0.0);
-        for (&[delta, rate], v) in self.gaps.iter().zip(&self.trial.memory) {
-            let sign = side(*v);
-            if sign * delta > furthest.0 {
-                furthest = (sign * delta, sign * rate);
+        for &[past, rate] in &self.crossings {
+            if past > furthest.0 {
+                furthest = (past, rate);
             }
         }
         furthest
     }
 
-    /// The contact that is furthest past its change inside the trial step, as (distance, time): at an interior stage of the
-    /// stepper, or at the maximum of the cubic between neighbouring states.
+    /// What is furthest past its change inside the trial step, as (distance, time): at an interior stage of the stepper, or at the maximum
+    /// of the cubic between neighbouring states.
     fn furthest_past_inside(&mut self) -> (f64, f64) {
         let mut furthest = (f64::NEG_INFINITY, 0.0);
         let mut before = self.state.t;
-        self.last_gaps.copy_from_slice(&self.first_gaps);
+        self.last_crossings.copy_from_slice(&self.first_crossings);
         for s in self.stepper.interior().iter().chain([&self.trial]) {
             let is_inside = s.t < self.trial.t;
             if is_inside {
-                self.model.gaps(s, &mut self.inner_gaps);
+                self.model.crossings(s, &mut self.inner_crossings);
             } else {
-                self.inner_gaps.copy_from_slice(&self.gaps);
+                self.inner_crossings.copy_from_slice(&self.crossings);
             }
-            let pairs = self.last_gaps.iter().zip(&self.inner_gaps);
-            for ((last, &[delta, rate]), v) in pairs.zip(&self.state.memory) {
-                let sign = side(*v);
-                if is_inside && sign * delta > furthest.0 {
-                    furthest = (sign * delta, s.t);
+            for (last, &[past, rate]) in self.last_crossings.iter().zip(&self.inner_crossings) {
+                if is_inside && past > furthest.0 {
+                    furthest = (past, s.t);
                 }
-                let ends = [sign * last[0], sign * delta];
-                if let Some((t, gap)) = top(s.t - before, ends, [sign * last[1], sign * rate])
-                    && gap > furthest.0
+                if let Some((t, past)) = top(s.t - before, [last[0], past], [last[1], rate])
+                    && past > furthest.0
                 {
-                    furthest = (gap, before + t);
+                    furthest = (past, before + t);
                 }
             }
-            std::mem::swap(&mut self.last_gaps, &mut self.inner_gaps);
+            std::mem::swap(&mut self.last_crossings, &mut self.inner_crossings);
             before = s.t;
         }
         furthest
     }
 
-    /// When the first contact changes, by the cubics through penetrations and rates at both ends of the trial step.
+    /// When the first change is due, by the cubics through values and rates at both ends of the trial step.
     fn first_crossing(&self) -> Option<f64> {
         let h = self.trial.t - self.state.t;
-        let ends = self.first_gaps.iter().zip(&self.gaps);
-        let crossings = ends.zip(&self.trial.memory).filter_map(|((from, to), v)| {
-            let sign = side(*v);
-            let [y, rate] = [0, 1].map(|i| [sign * from[i], sign * to[i]]);
-            crossing(h, y, rate)
-        });
+        let ends = self.first_crossings.iter().zip(&self.crossings);
+        let crossings =
+            ends.filter_map(|(from, to)| crossing(h, [from[0], to[0]], [from[1], to[1]]));
         crossings.min_by(f64::total_cmp).map(|t| self.state.t + t)
     }
 
@@ -139,7 +126,7 @@ impl Simulation {
         self.counters.unlocated += 1;
         if t != high {
             (clamps, _) = self.try_step(high)?;
-            self.model.gaps(&self.trial, &mut self.gaps);
+            self.model.crossings(&self.trial, &mut self.crossings);
         }
         Ok(clamps)
     }

@@ -276,7 +276,7 @@ impl Impacts {
         self.closed[contact].map(|course| course.onset(model))
     }
 
-    /// Records an accepted step of length h, with the gaps at its end, and reports the contacts that it opened. Between two steps
+    /// Records an accepted step of length h, with the crossings at its end, and reports the contacts that it opened. Between two steps
     /// the penetration is the cubic through values and rates at both ends, whose maximum has an error of h^4.
     ///
     /// # Errors
@@ -286,13 +286,13 @@ impl Impacts {
         model: &Model,
         h: f64,
         at: &State,
-        gaps: &[[f64; 2]],
+        crossings: &[[f64; 2]],
         observer: &mut dyn Observer,
     ) -> io::Result<()> {
         let depths = self.depths.iter_mut();
         for (contact, (slot, [_, deepest])) in self.closed.iter_mut().zip(depths).enumerate() {
             let Some(course) = slot else { continue };
-            let [delta, rate] = gaps[contact];
+            let [delta, rate] = crossings[contact].map(|x| -x);
             let closed = at.memory[contact] > 0.0;
             let [before, rate_before] = course.before;
             let top = top(h, [before, delta], [rate_before, rate]).map_or(delta, |(_, top)| top);

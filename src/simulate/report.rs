@@ -291,17 +291,13 @@ impl Simulation {
 
     /// Joints that are open at the start.
     fn unpressed(&self) -> Vec<String> {
-        let mut gaps = vec![[0.0; 2]; self.model.shape().contacts];
-        self.model.gaps(&self.start, &mut gaps);
         let tolerance = self.scene.integrator.onset_tolerance;
-        let open = gaps
-            .iter()
-            .enumerate()
-            .filter(|(_, [delta, _])| *delta < -tolerance);
-        let joints = open.filter_map(|(contact, _)| self.model.contact_joint(contact));
-        joints
-            .map(|joint| self.model.joints()[joint].name.clone())
-            .collect()
+        let joints = self.model.joints().iter().enumerate();
+        let open = joints.filter(|(j, _)| {
+            let gap = self.model.gap(*j, &self.start);
+            gap.is_some_and(|(gap, ..)| gap.delta < -tolerance)
+        });
+        open.map(|(_, joint)| joint.name.clone()).collect()
     }
 
     /// What will be simulated.

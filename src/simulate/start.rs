@@ -65,11 +65,11 @@ impl Simulation {
         let mut newton = Newton::new(&*model, scene.integrator.newton_tolerance_for(size));
         let mut work = model.work();
         let mut changed = Vec::with_capacity(shape.contacts);
-        let mut gaps = vec![[0.0; 2]; shape.contacts];
-        model.gaps(&state, &mut gaps);
+        let mut crossings = vec![[0.0; 2]; shape.crossings];
+        model.crossings(&state, &mut crossings);
         model.commit(
             &mut state,
-            &gaps,
+            &crossings,
             scene.integrator.onset_tolerance,
             &mut |change| changed.push(change),
         );
@@ -108,7 +108,7 @@ impl Simulation {
             stepper,
             pacer,
             leaves_out: !model.redundant().is_empty(),
-            locates: scene.integrator.locate_onsets && shape.contacts > 0,
+            locates: scene.integrator.locate_onsets && shape.crossings > 0,
             newton,
             is_between_rows: false,
             stays_in_singular_pose: false,
@@ -141,10 +141,10 @@ impl Simulation {
                 ..LoopCounters::default()
             },
             halved: vec![0; shape.unknowns + shape.multipliers],
-            first_gaps: gaps.clone(),
-            last_gaps: gaps.clone(),
-            inner_gaps: gaps.clone(),
-            gaps,
+            first_crossings: crossings.clone(),
+            last_crossings: crossings.clone(),
+            inner_crossings: crossings.clone(),
+            crossings,
             changed,
             rest,
             indeterminate: Default::default(),

@@ -50,7 +50,7 @@ impl Simulation {
             newton,
             work,
             is_between_rows,
-            first_gaps,
+            first_crossings,
             ..
         } = self;
         *is_between_rows = false;
@@ -61,8 +61,8 @@ impl Simulation {
         state.changes += 1;
         let tolerance = self.scene.integrator.onset_tolerance;
         newton.forget_motion();
-        model.gaps(state, first_gaps);
-        model.commit(state, first_gaps, tolerance, &mut |_| {});
+        model.crossings(state, first_crossings);
+        model.commit(state, first_crossings, tolerance, &mut |_| {});
         if let Err(failure) = newton.make_consistent(&**model, state, work) {
             return Err(self.failed(failure.into(), 0.0));
         }

@@ -261,7 +261,7 @@ struct Equations<'a> {
     c: f64,
     /// True where forces depend on velocities.
     is_damped: bool,
-    gaps: Vec<[f64; 2]>,
+    crossings: Vec<[f64; 2]>,
     found: Vec<Vec<f64>>,
 }
 
@@ -285,7 +285,7 @@ impl<'a> Equations<'a> {
             tangents: [vec![0.0; length], vec![0.0; length]],
             c: 1.0,
             is_damped: true,
-            gaps: vec![[0.0; 2]; shape.contacts],
+            crossings: vec![[0.0; 2]; shape.crossings],
             found: Vec::new(),
         }
     }
@@ -308,7 +308,7 @@ impl<'a> Equations<'a> {
                 self.linearise(1, q, v);
                 self.tangents[1].clone()
             });
-        let has_contacts = !self.gaps.is_empty();
+        let has_contacts = !self.crossings.is_empty();
         self.is_damped = has_contacts || mass != with_damping;
         // the entries of the pattern, each with its slot and one more
         let numbers: Vec<f64> = (1..=length).map(|number| number as f64).collect();
@@ -418,9 +418,9 @@ extern "C" fn gaps(e: &mut Equations, t: f64, y: LiVector, mut gaps: LiVector) -
     if !e.move_to(t, &y, None) {
         return 1;
     }
-    e.system.gaps(&e.at, &mut e.gaps);
-    for (out, [delta, _]) in gaps.iter_mut().zip(&e.gaps) {
-        *out = *delta;
+    e.system.crossings(&e.at, &mut e.crossings);
+    for (out, [past, _]) in gaps.iter_mut().zip(&e.crossings) {
+        *out = *past;
     }
     0
 }
@@ -430,11 +430,11 @@ extern "C" fn change(e: &mut Equations, t: f64, mut y: LiVector, mut yp: LiVecto
         return 1;
     }
     let n = e.n;
-    e.system.gaps(&e.at, &mut e.gaps);
+    e.system.crossings(&e.at, &mut e.crossings);
     // a root is found to the rounding of its time
     let tolerance = e.onset_tolerance.max(1e-12);
-    let (at, gaps) = (&mut e.at, &e.gaps);
-    e.system.commit(at, gaps, tolerance, &mut |_| {});
+    let (at, crossings) = (&mut e.at, &e.crossings);
+    e.system.commit(at, crossings, tolerance, &mut |_| {});
     if e.newton.make_consistent(e.system, at, &mut e.work).is_err() {
         return 1;
     }
