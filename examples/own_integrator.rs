@@ -44,7 +44,7 @@ impl Stepper for SymplecticEuler {
 /// As a scene names it.
 #[rustfmt::skip]
 pub static SCHEME: Scheme = Scheme {
-    name: "symplectic_euler", parameters: &[], is_explicit: true, keeps_constraints: false,
+    name: "symplectic_euler", order: 1, parameters: &[], is_explicit: true, keeps_constraints: false,
     build: |_, _| Box::new(SymplecticEuler),
 };
 

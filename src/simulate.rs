@@ -17,6 +17,7 @@ mod first_impact;
 mod foresight;
 mod impacts;
 mod indeterminate;
+mod instants;
 mod load_path;
 mod meter;
 mod modes;
@@ -63,7 +64,7 @@ use crate::checkpoint::carried;
 use crate::compile::drive_limit::{self, DriveCourse};
 use crate::compile::extent::extent;
 use crate::initial::Freedoms;
-use crate::model::Model;
+use crate::model::{Instant, Model};
 use crate::newton::Newton;
 use crate::record::{Record, Recorder};
 use crate::scene::{Analysis, Scene};
@@ -118,6 +119,8 @@ pub struct Simulation {
     start: State,
     stepper: Box<dyn Stepper>,
     pacer: Pacer,
+    /// Where functions of time end its steps.
+    instants: Vec<Instant>,
     /// True where there are contacts whose changes are located.
     locates: bool,
     /// True where constraints that repeat others are left out.
@@ -250,12 +253,19 @@ impl Simulation {
             self.pacer.begin(self.state.t);
         }
         self.model.crossings(&self.state, &mut self.first_crossings);
+        let (mut end, mut instant) = self.stop(target);
         while self.state.t < target {
-            let goal = self.pacer.goal(self.state.t, target);
+            if self.state.t >= end {
+                instant.map_or(Ok(()), |instant| self.pass(instant, observer))?;
+                (end, instant) = self.stop(target);
+                self.pacer.begin(self.state.t);
+                continue;
+            }
+            let goal = self.pacer.goal(self.state.t, end);
             let (mut clamps, mut reached) = self.try_step(goal)?;
             if matches!(self.pacer, Pacer::Controller(_)) {
                 self.passes_singular_pose = false;
-                (clamps, reached) = self.pass_singular_pose((clamps, reached), target)?;
+                (clamps, reached) = self.pass_singular_pose((clamps, reached), end)?;
             }
             self.estimate_error();
             if let Pacer::Controller(controller) = &mut self.pacer {
@@ -298,7 +308,10 @@ impl Simulation {
             impacts.step(&self.model, taken, &self.state, &self.crossings, observer)?;
             match self.changed.is_empty() {
                 true => std::mem::swap(&mut self.crossings, &mut self.first_crossings),
-                false => self.model.crossings(&self.state, &mut self.first_crossings),
+                false => {
+                    self.model.crossings(&self.state, &mut self.first_crossings);
+                    (end, instant) = self.stop(target);
+                }
             }
             self.closures.step(self.state.t, &self.changed);
             let stalled = self.stall.step(self.state.t, &self.changed);
@@ -440,16 +453,23 @@ impl Simulation {
         model.commit(state, crossings, tolerance, &mut |change| {
             changed.push(change)
         });
+        let mut switches = false;
         for change in changed.iter() {
-            if let Changed::Onset {
-                contact,
-                velocity,
-                delta,
-            } = *change
-            {
-                self.counters.onsets += 1;
-                self.impacts.begin(model, contact, [delta, velocity], state);
+            match *change {
+                Changed::Onset {
+                    contact,
+                    velocity,
+                    delta,
+                } => {
+                    self.counters.onsets += 1;
+                    self.impacts.begin(model, contact, [delta, velocity], state);
+                }
+                Changed::Loss { .. } => {}
+                Changed::Switch { .. } => switches = true,
             }
+        }
+        if switches {
+            self.make_consistent()?;
         }
         self.tell_onsets(observer)
     }

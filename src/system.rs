@@ -10,6 +10,7 @@
 use crate::checkpoint::{Carried, carried};
 use crate::math::lu::Symbolic;
 use crate::math::saddle_point::SaddlePoint;
+use crate::motion::Knot;
 
 /// Sizes of a system.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -151,13 +152,19 @@ pub enum Changed {
         /// Which one.
         contact: usize,
     },
+    /// A force follows another law.
+    Switch {
+        /// Which one.
+        force: usize,
+    },
 }
 
 impl Changed {
-    /// The contact that has closed or opened.
-    pub fn contact(self) -> usize {
+    /// Of a contact its index, of a force the index behind those of the contacts.
+    pub fn index(self, contacts: usize) -> usize {
         match self {
             Changed::Onset { contact, .. } | Changed::Loss { contact } => contact,
+            Changed::Switch { force } => contacts + force,
         }
     }
 
@@ -165,7 +172,7 @@ impl Changed {
     pub fn closed(self) -> Option<usize> {
         match self {
             Changed::Onset { contact, .. } => Some(contact),
-            Changed::Loss { .. } => None,
+            _ => None,
         }
     }
 }
@@ -206,6 +213,10 @@ pub trait Prescribed: Carried + std::fmt::Debug + Send + Sync {
     /// # Errors
     /// When the motion cannot be followed.
     fn follow(&mut self, from: &State, to: &mut State) -> Result<(), PrescribeError>;
+    /// Where the functions of time behind it are not smooth, up to a time \[s\].
+    fn knots(&self, _until: f64) -> Vec<Knot> {
+        Vec::new()
+    }
     /// The same motion with the same memory.
     fn duplicate(&self) -> Box<dyn Prescribed>;
 }
@@ -277,7 +288,11 @@ pub trait System {
     /// The functions that pass zero from below where memory changes \[m\], and their rates \[m/s\]: the penetration delta of an open
     /// contact, -delta of a closed one.
     fn crossings(&self, at: &State, crossings: &mut [[f64; 2]]);
-    /// Opens and closes contacts and lets forces remember: the only place where memory changes. `crossings` are those of the state;
+    /// The next instant after `at.t` \[s\] at which memory may change: a step ends there.
+    fn next_instant(&self, _at: &State) -> f64 {
+        f64::INFINITY
+    }
+    /// Opens and closes contacts and changes the memory of forces: the only place where memory changes. `crossings` are those of the state;
     /// every change that the motion feels is counted in the state and handed to `changed`.
     fn commit(
         &self,

@@ -25,6 +25,7 @@ mod good_input;
 mod hostile_input;
 mod ideal;
 mod indeterminate;
+mod instants;
 mod language;
 mod library;
 mod limits;

@@ -67,6 +67,7 @@ static CONSTANT: NormalLawKind = NormalLawKind {
 /// The scheme of the example, with a parameter that it does not use.
 static SYMPLECTIC_EULER: Scheme = Scheme {
     name: "symplectic_euler",
+    order: 1,
     is_explicit: true,
     keeps_constraints: false,
     parameters: &[Parameter {

@@ -18,7 +18,7 @@ use crate::math::lu::Symbolic;
 use crate::math::saddle_point::SaddlePoint;
 use crate::model::{
     Block, Border, DrivenForces, Model, PlacedBody, PlacedConstraint, PlacedContact,
-    PlacedEccentric, PlacedElement, PlacedForce, PlacedPoint,
+    PlacedEccentric, PlacedElement, PlacedEvents, PlacedForce, PlacedPoint,
 };
 use crate::scene::{Analysis, SceneError};
 use crate::system::Shape;
@@ -105,12 +105,15 @@ pub(super) fn build(
     mass.tangent = symbolic.filled(entries.iter().copied());
     symbolic.expect_diagonal(typical_mass(&entries, &angles(c, &numbering)));
     let acceleration_matrix = SaddlePoint::new(n, entries, &unknown_columns(&terms, n));
+    let events = events(&terms);
     let shape = Shape {
         unknowns: n,
         coordinates: numbering.coordinates,
         multipliers,
         contacts: terms.contacts.len(),
-        crossings: terms.contacts.len(),
+        crossings: events
+            .last()
+            .map_or(terms.contacts.len(), |last| last.crossings.end),
         memory: terms.contacts.len() + terms.slots,
     };
     let places = Places {
@@ -132,6 +135,8 @@ pub(super) fn build(
         elements: places.elements(terms.elements),
         constraints: places.constraints(terms.constraints),
         forces: places.forces(terms.forces, terms.damping),
+        instants: Vec::new(),
+        events,
         counts: Vec::new(),
         named_forces,
         contacts: places.contacts(terms.contacts),
@@ -156,6 +161,7 @@ pub(super) fn build(
         let grips = reactions.driven(kinematics.map(|k| &**k));
         let joints = (0..own.len()).map(|j| reactions.joint(j));
         model.joints = joints.collect::<Result<_, _>>()?;
+        model.instants = model.find_instants(c.scene.simulation.duration);
         model.driven = DrivenForces::new(&grips, n, &model.weight);
     }
     Ok(model)
@@ -291,6 +297,18 @@ fn owners(coordinates: &[Vec<usize>; 2], bodies: [usize; 2]) -> Vec<usize> {
     let sides = coordinates.iter().zip(bodies);
     let owners = sides.flat_map(|(side, body)| vec![body; side.len()]);
     owners.collect()
+}
+
+/// The forces that have memory. Their functions follow those of the contacts.
+fn events(terms: &Terms) -> Vec<PlacedEvents> {
+    let mut first = terms.contacts.len();
+    let forces = terms.forces.iter().enumerate();
+    let events = forces.filter_map(|(force, (term, _))| {
+        let crossings = first..first + term.events()?.crossings();
+        first = crossings.end;
+        Some(PlacedEvents { force, crossings })
+    });
+    events.collect()
 }
 
 /// The joint of every contact.

@@ -4,7 +4,7 @@ use super::{Constraint, Curvature, Gradient, ROWS};
 use crate::effect::Effect;
 use crate::marker::Spin;
 use crate::math::plane::{Rotation, Vec2, quarter_turn, rotation};
-use crate::motion::Function;
+use crate::motion::{Function, Knot};
 use crate::system::State;
 
 /// Phi = s (R(phi(t)) d_1) x d_2 with directions d of two bodies, R the rotation by the prescribed angle of the second
@@ -110,6 +110,10 @@ impl Constraint for Align {
     /// s phi_t (J R d_1 x d_2), J the quarter turn.
     fn drift(&self, at: &State) -> f64 {
         -self.scale * self.angle.at(at.t)[1] * self.along(at)
+    }
+
+    fn knots(&self, until: f64) -> Vec<Knot> {
+        self.angle.knots(until)
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {

@@ -16,6 +16,7 @@ pub use slide::Slide;
 
 use crate::effect::Effect;
 use crate::math::plane::Vec2;
+use crate::motion::Knot;
 use crate::system::State;
 
 /// Most coordinates that one constraint depends on: a point on a body or a chord, a line through a node along a chord.
@@ -89,6 +90,10 @@ pub trait Constraint: std::fmt::Debug + Send + Sync {
     /// Phi_t of its first row, the only one that may depend on time itself.
     fn drift(&self, _at: &State) -> f64 {
         0.0
+    }
+    /// Where its functions of time are not smooth, up to a time \[s\].
+    fn knots(&self, _until: f64) -> Vec<Knot> {
+        Vec::new()
     }
     /// True in the second zero of an angle, half a turn off.
     fn half_turn(&self, _at: &State) -> bool {

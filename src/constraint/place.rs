@@ -4,7 +4,7 @@ use super::{Constraint, Curvature, Gradient, ROWS};
 use crate::effect::Effect;
 use crate::marker::Marker;
 use crate::math::plane::Vec2;
-use crate::motion::Function;
+use crate::motion::{Function, Knot};
 use crate::system::State;
 
 /// Phi = n . r - f(t), one row: the coordinate of a point along the constant unit vector n follows a function of time. The
@@ -55,6 +55,10 @@ impl Constraint for Place {
 
     fn drift(&self, at: &State) -> f64 {
         -self.value.at(at.t)[1]
+    }
+
+    fn knots(&self, until: f64) -> Vec<Knot> {
+        self.value.knots(until)
     }
 
     fn acceleration(&self, at: &State) -> [f64; ROWS] {

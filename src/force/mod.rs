@@ -1,12 +1,15 @@
 //! The trait of forces, and structural damping. Forces that a scene names are in [`crate::interaction`].
 
 mod element_damping;
+mod events;
 mod mass_damping;
 
 pub use element_damping::ElementDamping;
+pub use events::{Events, NEVER, passes};
 pub use mass_damping::MassDamping;
 
 use crate::effect::Effect;
+use crate::motion::Knot;
 use crate::system::{INTEGRALS, State, Weights};
 
 /// Most coordinates that one force can depend on: a point between two nodes on both sides, and an internal state.
@@ -15,7 +18,7 @@ pub const WIDTH: usize = 9;
 /// A square block in the local coordinates of a force.
 pub type LocalMatrix = [[f64; WIDTH]; WIDTH];
 
-/// A force without memory. Its local coordinates may name a coordinate twice; what belongs to it is then the sum.
+/// A force. Its local coordinates may name a coordinate twice; what belongs to it is then the sum.
 pub trait Force: std::fmt::Debug + Send + Sync {
     /// What it is counted as.
     fn effect(&self) -> Effect;
@@ -44,6 +47,10 @@ pub trait Force: std::fmt::Debug + Send + Sync {
     fn is_smooth(&self) -> bool {
         false
     }
+    /// Where its functions of time are not smooth, up to a time \[s\].
+    fn knots(&self, _until: f64) -> Vec<Knot> {
+        Vec::new()
+    }
     /// Why it is not defined in a state, if it is not.
     fn fault(&self, _at: &State) -> Option<&'static str> {
         None
@@ -52,8 +59,10 @@ pub trait Force: std::fmt::Debug + Send + Sync {
     fn begin(&self, _at: &mut State) {}
     /// Sets the memory of an angle to one with the full turns of the start \[rad\].
     fn wind(&self, _at: &mut State, _angle: f64) {}
-    /// Updates memory at an accepted state.
-    fn remember(&self, _at: &mut State) {}
+    /// Its memory, if it has one.
+    fn events(&self) -> Option<&dyn Events> {
+        None
+    }
     /// Names and units of what [`Force::measure`] gives, three at most.
     fn quantities(&self) -> &'static [(&'static str, &'static str)] {
         &[]

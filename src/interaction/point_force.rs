@@ -7,7 +7,7 @@ use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
 use crate::marker::{Marker, Spin};
 use crate::math::plane::{Vec2, quarter_turn};
-use crate::motion::{Function, Use};
+use crate::motion::{Function, Knot, Use};
 use crate::system::{INTEGRALS, Integral, State, Weights};
 use std::sync::Arc;
 
@@ -135,6 +135,13 @@ impl Force for PointForce {
     fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
         let velocity = self.marker.velocity(&at.v, self.marker.arm(&at.q));
         powers[Integral::Work as usize] += self.value(at).dot(&velocity);
+    }
+
+    fn knots(&self, until: f64) -> Vec<Knot> {
+        self.components
+            .iter()
+            .flat_map(|f| f.knots(until))
+            .collect()
     }
 
     fn quantities(&self) -> &'static [(&'static str, &'static str)] {

@@ -7,6 +7,7 @@ use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
 use crate::marker::Marker;
 use crate::math::plane::Vec2;
+use crate::motion::Knot;
 use crate::system::{INTEGRALS, Integral, State, Weights};
 use nalgebra::{Matrix2, Matrix2x4};
 use std::fmt::Debug;
@@ -25,6 +26,11 @@ pub trait PointLaw: Debug + Send + Sync {
 
     /// F(t, r, v) \[N\].
     fn force(&self, t: f64, r: Vec2, v: Vec2) -> Vec2;
+
+    /// Where it is not a smooth function of time, up to a time \[s\]: steps end there.
+    fn knots(&self, _until: f64) -> Vec<Knot> {
+        Vec::new()
+    }
 
     /// dF/d(r, v), given F; without a formula by [`differences`].
     fn gradient(&self, t: f64, r: Vec2, v: Vec2, force: Vec2) -> LoadGradient {
@@ -140,6 +146,10 @@ impl Force for ForceByLaw {
     fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
         let [r, v] = self.motion(at);
         powers[Integral::Work as usize] += self.law.force(at.t, r, v).dot(&v);
+    }
+
+    fn knots(&self, until: f64) -> Vec<Knot> {
+        self.law.knots(until)
     }
 
     fn quantities(&self) -> &'static [(&'static str, &'static str)] {

@@ -6,7 +6,7 @@ use crate::document::Key;
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
 use crate::marker::Spin;
-use crate::motion::{Function, Use};
+use crate::motion::{Function, Knot, Use};
 use crate::system::{INTEGRALS, Integral, State, Weights};
 use std::sync::Arc;
 
@@ -127,6 +127,10 @@ impl Force for Torque {
     fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
         let rates = [self.first, self.second].map(|s| s.rate(&at.q, &at.v));
         powers[Integral::Work as usize] += self.value.at(at.t)[0] * (rates[1] - rates[0]);
+    }
+
+    fn knots(&self, until: f64) -> Vec<Knot> {
+        self.value.knots(until)
     }
 
     fn quantities(&self) -> &'static [(&'static str, &'static str)] {

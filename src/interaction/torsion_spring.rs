@@ -5,7 +5,7 @@ use super::{Ends, ForceKind, ForceModel};
 use crate::body::PointRef;
 use crate::document::Key;
 use crate::effect::Effect;
-use crate::force::{Force, LocalMatrix, WIDTH};
+use crate::force::{Events, Force, LocalMatrix, WIDTH};
 use crate::marker::{Spin, SpinDerivatives};
 use crate::math::plane::full_turns;
 use crate::system::{INTEGRALS, Integral, State, Weights};
@@ -193,8 +193,8 @@ impl Force for TorsionSpring {
         at.memory[self.memory] = angle;
     }
 
-    fn remember(&self, at: &mut State) {
-        at.memory[self.memory] = self.angle(at);
+    fn events(&self) -> Option<&dyn Events> {
+        Some(self)
     }
 
     fn quantities(&self) -> &'static [(&'static str, &'static str)] {
@@ -205,5 +205,12 @@ impl Force for TorsionSpring {
     fn measure(&self, at: &State) -> [f64; 3] {
         let [torque, angle, rate] = self.state(at);
         [-torque, angle, rate]
+    }
+}
+
+impl Events for TorsionSpring {
+    fn commit(&self, at: &mut State, _: &[[f64; 2]], _: f64) -> bool {
+        at.memory[self.memory] = self.angle(at);
+        false
     }
 }

@@ -15,6 +15,7 @@ use crate::checkpoint::carried;
 use crate::math::plane::pair;
 use crate::math::saddle_point::SaddleFactors;
 use crate::model::Model;
+use crate::motion::Knot;
 use crate::newton::{Failure, Update, iterate_interruptibly};
 use crate::system::{PrescribeError, Prescribed, State, System};
 use numbers::number;
@@ -87,6 +88,10 @@ carried!(IdealMotion { inner } but { kinematics });
 impl Prescribed for IdealMotion {
     fn follow(&mut self, from: &State, to: &mut State) -> Result<(), PrescribeError> {
         self.kinematics.prescribe(from, to, &mut self.inner)
+    }
+
+    fn knots(&self, until: f64) -> Vec<Knot> {
+        self.kinematics.mechanism.motion_knots(until)
     }
 
     fn duplicate(&self) -> Box<dyn Prescribed> {

@@ -1,6 +1,7 @@
 //! The equations of a model: residual, tangent, rates, contact memory, powers.
 
-use super::measure::{contact_state, is_closed};
+use super::measure::contact_state;
+use super::memory::is_closed;
 use super::{Model, PlacedContact, PlacedEccentric, Rule};
 use crate::constraint::{self, Curvature, ROWS};
 use crate::contact;
@@ -235,13 +236,6 @@ impl Model {
         }
     }
 
-    /// Lets forces remember a state.
-    pub(crate) fn remember(&self, at: &mut State) {
-        for acting in &self.forces {
-            acting.term.remember(at);
-        }
-    }
-
     /// Sets the known nodes that are fixed to known bodies.
     pub(crate) fn move_driven_nodes(&self, to: &mut State) {
         for driven_node in &self.driven_nodes {
@@ -380,11 +374,11 @@ impl System for Model {
     }
 
     fn crossings(&self, at: &State, crossings: &mut [[f64; 2]]) {
-        for (i, (c, out)) in self.contacts.iter().zip(crossings).enumerate() {
-            let gap = c.pair.gap(&at.q, &at.v);
-            let side = if is_closed(at, i) { -1.0 } else { 1.0 };
-            *out = [side * gap.delta, side * c.pair.rate(&gap)];
-        }
+        self.measure_crossings(at, crossings);
+    }
+
+    fn next_instant(&self, at: &State) -> f64 {
+        self.instant_after(at)
     }
 
     fn commit(
@@ -394,28 +388,8 @@ impl System for Model {
         tolerance: f64,
         changed: &mut dyn FnMut(Changed),
     ) {
-        for (i, &[past, rate]) in crossings.iter().enumerate() {
-            let closed = is_closed(at, i);
-            let passes =
-                past > tolerance || past >= -tolerance && (rate > 0.0 || closed && rate == 0.0);
-            if !passes {
-                continue;
-            }
-            at.changes += 1;
-            if closed {
-                at.memory[i] = 0.0;
-                changed(Changed::Loss { contact: i });
-            } else {
-                // a contact that starts penetrated has no impact velocity: the floor of the law replaces it
-                at.memory[i] = rate.max(f64::MIN_POSITIVE);
-                changed(Changed::Onset {
-                    contact: i,
-                    velocity: rate,
-                    delta: past,
-                });
-            }
-        }
-        self.remember(at);
+        self.commit_contacts(at, crossings, tolerance, changed);
+        self.commit_forces(at, crossings, tolerance, changed);
     }
 
     fn powers(&self, at: &mut State, work: &mut Work) -> usize {

@@ -1,5 +1,6 @@
 //! Measured quantities of a model: poses, strains, energies, joint forces, drive torques.
 
+use super::memory::is_closed;
 use super::{Actuator, Model, PlacedEccentric, PlacedJoint, Reaction};
 use crate::body::{Pose, Strain};
 use crate::contact;
@@ -139,11 +140,6 @@ impl Model {
             sum.map(|x| reaction.sign * x)
         };
         joint.reaction.as_ref().map_or([0.0; 3], of)
-    }
-
-    /// The contacts that are closed.
-    pub fn closed<'a>(&self, at: &'a State) -> impl Iterator<Item = usize> + 'a {
-        (0..self.contacts.len()).filter(|&contact| is_closed(at, contact))
     }
 
     /// Force of the bearing side on the journal side of contact `index` \[N\].
@@ -304,11 +300,6 @@ impl Model {
     pub fn position(&self, marker: &Marker, at: &State) -> Vec2 {
         marker.position(&at.q, marker.arm(&at.q))
     }
-}
-
-/// True of a contact that is closed.
-pub(super) fn is_closed(at: &State, contact: usize) -> bool {
-    at.memory[contact] > 0.0
 }
 
 /// Positions, velocities and memory of a contact.

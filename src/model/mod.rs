@@ -2,12 +2,16 @@
 
 mod assemble;
 mod block;
+mod instants;
 mod measure;
+mod memory;
 mod reaction;
 
 pub use crate::motion::Pose;
 pub use block::{Block, Border};
+pub use instants::{Instant, InstantKind};
 pub use measure::Energies;
+pub(crate) use memory::PlacedEvents;
 pub(crate) use reaction::{DrivenForces, Grip, Source};
 pub use reaction::{Reaction, Share};
 
@@ -56,6 +60,10 @@ pub struct Model {
     pub(crate) forces: Vec<PlacedForce>,
     /// Evaluations of each effect in one residual; contacts are counted separately, because they may be open.
     pub(crate) counts: Vec<(usize, u64)>,
+    /// Instants at which functions of time are not smooth.
+    pub(crate) instants: Vec<Instant>,
+    /// Forces that have memory.
+    pub(crate) events: Vec<PlacedEvents>,
     /// Forces with a name of their own, as indices into the forces.
     pub(crate) named_forces: Vec<(String, usize)>,
     /// In the order of their memory.
@@ -142,7 +150,7 @@ impl PlacedConstraint {
     }
 }
 
-/// A force without memory, with its place in the equations.
+/// A force with its place in the equations.
 #[derive(Debug)]
 pub(crate) struct PlacedForce {
     pub term: Box<dyn Force>,
@@ -356,11 +364,6 @@ impl Model {
         let counts = counts.into_iter().enumerate();
         self.counts = counts.filter(|(_, count)| *count > 0).collect();
         self.effects = effects;
-    }
-
-    /// Opens all contacts.
-    pub fn open_contacts(&self, at: &mut State) {
-        at.memory[..self.shape.contacts].fill(0.0);
     }
 
     /// True where a link or a spring stores energy.

@@ -1,6 +1,6 @@
 //! A path whose coordinates are functions of time each.
 
-use super::{Function, POSES, Path, Pose};
+use super::{Function, Knot, POSES, Path, Pose};
 
 /// x(t), y(t) \[m\], theta(t) \[rad\].
 impl Path for [Function; 3] {
@@ -15,5 +15,9 @@ impl Path for [Function; 3] {
 
     fn sweep(&self, duration: f64) -> (f64, usize) {
         (duration, POSES)
+    }
+
+    fn knots(&self, until: f64) -> Vec<Knot> {
+        self.iter().flat_map(|f| f.knots(until)).collect()
     }
 }

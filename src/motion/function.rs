@@ -1,6 +1,6 @@
 //! Scalar functions of time with exact first and second derivatives: prescribed coordinates, angles, loads.
 
-use super::{CubicSpline, Expression, MonotoneQuintic, line::quintic};
+use super::{CubicSpline, Expression, Knot, MonotoneQuintic, line::quintic};
 use std::f64::consts::TAU;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -9,6 +9,10 @@ use std::sync::Arc;
 pub trait FunctionOfTime: Debug + Send + Sync {
     /// Value, first and second derivative at time t \[s\]. Of a load the derivatives are not used.
     fn at(&self, t: f64) -> [f64; 3];
+    /// Where it is not smooth, up to a time \[s\]: steps end there.
+    fn knots(&self, _until: f64) -> Vec<Knot> {
+        Vec::new()
+    }
 }
 
 /// A function of time.
@@ -68,6 +72,12 @@ pub struct Step {
     pub duration: f64,
 }
 
+impl Step {
+    fn ends(&self) -> [f64; 2] {
+        [self.start, self.start + self.duration]
+    }
+}
+
 impl Function {
     /// A spline through rows (t, value) with increasing times, two rows at least.
     pub fn table(rows: &[[f64; 2]]) -> Function {
@@ -80,6 +90,24 @@ impl Function {
     pub fn monotone_table(rows: &[[f64; 2]]) -> Function {
         let rows = rows.iter().map(|&[t, value]| (t, [value]));
         Function::MonotoneTable(MonotoneQuintic::new(rows))
+    }
+
+    /// Where it is not smooth, up to a time \[s\].
+    pub fn knots(&self, until: f64) -> Vec<Knot> {
+        let at = |times: &[f64], level| times.iter().map(|&t| Knot::at(t, level)).collect();
+        match self {
+            Function::Constant(_) | Function::Polynomial(_) | Function::Harmonic { .. } => {
+                Vec::new()
+            }
+            Function::Ramp(step) => at(&step.ends(), 1),
+            Function::SmoothStep(step) => at(&step.ends(), 3),
+            Function::SpinUp { duration, .. } => at(&[*duration], 4),
+            Function::Table(table) => at(table.times(), 3),
+            Function::MonotoneTable(table) => at(table.times(), 3),
+            Function::Expression(expression) => expression.knots(until),
+            Function::Piecewise(rows) => rows.iter().map(|[t, _]| Knot::at(*t, 1)).collect(),
+            Function::Own(function) => function.knots(until),
+        }
     }
 
     /// Value, first and second derivative at time t \[s\].

@@ -8,6 +8,7 @@
 //! side. So every switching is found but those of a function that switches there and back between neighbouring times and whose margin
 //! has more than one extreme between them.
 
+use super::Knot;
 use super::expression::{Expression, Jet, Switches};
 use super::rounded::Rounded;
 
@@ -28,6 +29,8 @@ pub(super) struct Kink {
     pub name: &'static str,
     /// When \[s\].
     pub t: f64,
+    /// The last time before it and the first one after it at which the function has its branches \[s\].
+    pub within: [f64; 2],
     /// What jumps: 0 the value, 1 its rate, 2 its acceleration.
     pub level: usize,
     /// By how much; infinite where one of the sides is.
@@ -102,12 +105,31 @@ impl Expression {
             return Ok(self);
         }
         let (courses, switchings) = motion.follow(names.len());
-        if let Some(kink) = motion.first_kink(&names, &courses, switchings) {
-            return Err(kink);
+        if let Some(kink) = motion.kinks(&names, &courses, switchings).first() {
+            return Err(*kink);
         }
         let keeps = |course: &Course| course.first.filter(|_| !course.is_open);
         let formula = self.formula.settled(&mut courses.iter().map(keeps));
         Ok(Expression { formula })
+    }
+
+    /// The kinks from t = 0 to `duration` as knots.
+    pub(super) fn knots(&self, duration: f64) -> Vec<Knot> {
+        let motion = Motion {
+            expression: self,
+            duration,
+        };
+        let names: Vec<_> = motion.margins(0.0).iter().map(|m| m.name).collect();
+        if names.is_empty() {
+            return Vec::new();
+        }
+        let (courses, switchings) = motion.follow(names.len());
+        let kinks = motion.kinks(&names, &courses, switchings).into_iter();
+        let knot = |kink: Kink| Knot {
+            sides: kink.within,
+            level: kink.level,
+        };
+        kinks.map(knot).collect()
     }
 }
 
@@ -281,13 +303,14 @@ impl Motion<'_> {
         to
     }
 
-    /// The first kink among the switchings.
-    fn first_kink(
+    /// The kinks among the switchings, in the order of time.
+    fn kinks(
         &self,
         names: &[&'static str],
         courses: &[Course],
         mut switchings: Vec<Switching>,
-    ) -> Option<Kink> {
+    ) -> Vec<Kink> {
+        let mut kinks = Vec::new();
         let sizes = self.sizes();
         let first = courses.iter().map(|course| course.first.unwrap_or(true));
         let mut before: Vec<bool> = first.collect();
@@ -305,17 +328,21 @@ impl Motion<'_> {
                 after[switching.function] = switching.to_first;
             }
             if let Some((level, jump)) = self.jump([&before, &after], [begin, end], sizes) {
-                let function = now.iter().map(|s| s.function).min()?;
-                return Some(Kink {
-                    name: names[function],
+                let first = now
+                    .iter()
+                    .map(|s| s.function)
+                    .fold(first.function, usize::min);
+                kinks.push(Kink {
+                    name: names[first],
                     t: begin.midpoint(end),
+                    within: [begin, end],
                     level,
                     jump,
                 });
             }
             before = after;
         }
-        None
+        kinks
     }
 
     /// The largest value and derivatives.

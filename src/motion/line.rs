@@ -1,6 +1,6 @@
 //! A straight line from pose to pose, from rest to rest.
 
-use super::{POSES, Path, Pose};
+use super::{Knot, POSES, Path, Pose};
 
 /// p = from + (to - from) s(t/duration), s = 10 u^3 - 15 u^4 + 6 u^5, at rest before and after.
 #[derive(Debug, Clone, Copy)]
@@ -40,5 +40,9 @@ impl Path for Line {
 
     fn sweep(&self, duration: f64) -> (f64, usize) {
         (duration.min(self.duration), POSES)
+    }
+
+    fn knots(&self, _: f64) -> Vec<Knot> {
+        vec![Knot::at(self.duration, 3)]
     }
 }

@@ -5,6 +5,7 @@ mod coordinates;
 mod expression;
 mod function;
 mod kinks;
+mod knot;
 mod line;
 mod monotone;
 mod parse_expression;
@@ -16,6 +17,7 @@ mod table;
 pub use circle::Circle;
 pub use expression::Expression;
 pub use function::{Function, FunctionOfTime, Step};
+pub use knot::Knot;
 pub use line::Line;
 pub use monotone::MonotoneQuintic;
 pub use read_function::{FUNCTIONS, FunctionKind, FunctionReader, Use};
@@ -53,6 +55,10 @@ pub trait Path: std::any::Any + std::fmt::Debug + Send + Sync {
     /// How to see all poses of the first `duration` seconds: the time after which none is new, and a number of poses
     /// up to there that lie close together.
     fn sweep(&self, duration: f64) -> (f64, usize);
+    /// Where it is not smooth, up to a time \[s\].
+    fn knots(&self, _until: f64) -> Vec<Knot> {
+        Vec::new()
+    }
 }
 
 /// Poses tried on one revolution, one line, or one row of a table at least.

@@ -21,7 +21,7 @@
 //! Edelman and Hyman do with bounds of their own (1989, Math. Comp. 52, 471-494). EQUATIONS.md has the recipe.
 
 use super::table::poses_between;
-use super::{Path, Pose};
+use super::{Knot, Path, Pose};
 
 /// Rows of the polynomial that a slope and a second derivative come from: the error of the interpolant is of order 5.
 const STENCIL: usize = 5;
@@ -36,6 +36,11 @@ pub struct MonotoneQuintic<const N: usize> {
 }
 
 impl<const N: usize> MonotoneQuintic<N> {
+    /// The times of its rows \[s\], at which its third derivative jumps.
+    pub(crate) fn times(&self) -> &[f64] {
+        &self.times
+    }
+
     /// An interpolant of values at increasing times, two at least.
     pub fn new(rows: impl Iterator<Item = (f64, [f64; N])>) -> MonotoneQuintic<N> {
         let (times, values): (Vec<f64>, Vec<[f64; N]>) = rows.unzip();
@@ -201,6 +206,10 @@ impl Path for MonotoneQuintic<3> {
 
     fn sweep(&self, duration: f64) -> (f64, usize) {
         (duration, poses_between(&self.times, duration))
+    }
+
+    fn knots(&self, _: f64) -> Vec<Knot> {
+        self.times.iter().map(|&t| Knot::at(t, 3)).collect()
     }
 }
 

@@ -285,6 +285,7 @@ fn kinked_expression(field: &Field, kink: Kink) -> SceneError {
         t,
         level,
         jump,
+        ..
     } = kink;
     let (quantity, per) = [("value", ""), ("velocity", "/s"), ("acceleration", "/s2")][level];
     let jump = match jump {

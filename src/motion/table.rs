@@ -1,6 +1,6 @@
 //! A natural cubic spline through a table.
 
-use super::{POSES, Path, Pose};
+use super::{Knot, POSES, Path, Pose};
 
 /// Twice continuously differentiable, with zero second derivatives at both ends.
 #[derive(Debug, Clone)]
@@ -39,6 +39,11 @@ impl<const N: usize> CubicSpline<N> {
             values,
             curvatures,
         }
+    }
+
+    /// The times of its rows \[s\], at which its third derivative jumps.
+    pub(crate) fn times(&self) -> &[f64] {
+        &self.times
     }
 
     /// The values of its rows.
@@ -132,5 +137,9 @@ impl Path for CubicSpline<3> {
 
     fn sweep(&self, duration: f64) -> (f64, usize) {
         (duration, poses_between(&self.times, duration))
+    }
+
+    fn knots(&self, _: f64) -> Vec<Knot> {
+        self.times.iter().map(|&t| Knot::at(t, 3)).collect()
     }
 }

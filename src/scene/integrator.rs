@@ -16,7 +16,7 @@ const MOST_STEPS: f64 = 1e10;
 const OF_CLEARANCE: f64 = 1e-7;
 
 /// The keys of `[integrator]` besides the parameters of schemes.
-pub(super) static INTEGRATOR: [Key; 6] = [
+pub(super) static INTEGRATOR: [Key; 7] = [
     Key::name_in("method", "schemes", "the scheme, see below; auto chooses one for an accuracy")
         .or("required, except in a static analysis, which has none"),
     Key::positive(
@@ -48,6 +48,12 @@ pub(super) static INTEGRATOR: [Key; 6] = [
         "whether a step is cut where a contact closes or opens. With false the error of an impact depends on where in the step it falls; for comparisons only",
     )
     .or("true"),
+    Key::word(
+        "knots",
+        &["stop", "ignore"],
+        "whether a step of a method of order above 3 ends at every knot of a spline; at jumps and kinks every step ends",
+    )
+    .or("`\"stop\"`"),
 ];
 
 /// The keys of `[integrator.accuracy]`.
@@ -145,6 +151,7 @@ pub(super) fn read(
         newton_tolerance: table.optional_number("newton_tolerance")?,
         onset_tolerance: onset_tolerance(&table, clearance)?,
         locate_onsets: table.optional_boolean("locate_onsets")?.unwrap_or(true),
+        ends_at_knots: table.optional_word("knots")?.is_none_or(|word| word == 0),
         method_span: named.map_or(table.whole.span(), |named| named.node.span),
         pace_span,
     })

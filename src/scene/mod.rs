@@ -100,6 +100,8 @@ pub struct Integrator {
     pub onset_tolerance: f64,
     /// True where a step is cut at a contact onset or loss; false to see what it costs not to.
     pub locate_onsets: bool,
+    /// True where a step of a method of high order ends at every knot of a spline.
+    pub ends_at_knots: bool,
     /// Where `integrator.method` stands.
     pub method_span: Span,
     /// Where `integrator.step` or `integrator.accuracy` stands.

@@ -33,6 +33,7 @@ impl Simulation {
             start: _,
             stepper,
             pacer,
+            instants: _,
             locates: _,
             leaves_out: _,
             newton,

@@ -17,7 +17,7 @@
 use super::foresight::{MOST_STEPS, TRIAL_RUN_STEPS};
 use super::replay::Replay;
 use super::start::pacer;
-use super::{Observer, RunError, Simulation};
+use super::{Observer, RunError, Simulation, instants};
 use crate::scene::Pace;
 use crate::stepper::{CANDIDATES, Method, Scheme};
 use serde::Serialize;
@@ -285,6 +285,7 @@ impl Simulation {
         let estimate = self.stepper.estimate();
         self.pacer = pacer(&self.scene, &self.model, &self.state, estimate);
         self.scene.integrator.method = method;
+        self.instants = instants::of_method(&self.model, &self.scene.integrator);
         racers.into_iter().next()
     }
 

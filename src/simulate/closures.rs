@@ -84,7 +84,10 @@ impl Closures {
             contact.steps += 1;
         }
         for change in changed {
-            let c = change.contact();
+            let c = match *change {
+                Changed::Onset { contact, .. } | Changed::Loss { contact } => contact,
+                Changed::Switch { .. } => continue,
+            };
             let contact = &mut self.contacts[c];
             let brief = contact.steps < FEW_STEPS;
             contact.steps = 0;

@@ -226,7 +226,7 @@ impl Controller {
     }
 
     /// Forgets what was found of the last step and does not hold for the next one.
-    fn forget_last_step(&mut self) {
+    pub fn forget_last_step(&mut self) {
         self.balance = [f64::NAN; 2];
         self.position_error.forget_response();
     }

@@ -175,12 +175,18 @@ impl Simulation {
         let halved = self.halved.iter().enumerate().max_by_key(|(_, n)| **n);
         let halved = halved.filter(|(_, n)| **n > 0);
         let step = self.state.t - self.trial.t;
-        let cause = match (stalled.contact, halved) {
-            (Some((contact, changes)), _) => {
-                let joint = self.model.contact_joint(contact);
-                let joint = joint.map_or("", |j| &self.model.joints()[j].name);
-                format!("contact in {joint} was made or lost {changes} times")
-            }
+        let cause = match (stalled.busiest, halved) {
+            (Some((index, changes)), _) => match self.model.contacts.get(index) {
+                Some(_) => {
+                    let joint = self.model.contact_joint(index);
+                    let joint = joint.map_or("", |j| &self.model.joints()[j].name);
+                    format!("contact in {joint} was made or lost {changes} times")
+                }
+                None => {
+                    let name = self.model.force_name(index - self.model.contacts.len());
+                    format!("the force {name} changed its law {changes} times")
+                }
+            },
             (None, Some((index, times))) => format!(
                 "for {} the step failed and was halved {times} times, down to {} s",
                 self.model.unknown_name(index),

@@ -94,6 +94,13 @@ impl Pacer {
         }
     }
 
+    /// The motion changes at an instant.
+    pub fn forget(&mut self) {
+        if let Pacer::Controller(controller) = self {
+            controller.forget_last_step();
+        }
+    }
+
     /// Records an accepted step that was planned to end at `goal` and ends with these changes.
     pub fn kept(&mut self, at: &State, goal: f64, changed: &[Changed]) {
         match self {

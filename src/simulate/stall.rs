@@ -18,24 +18,25 @@ pub(super) struct Stall {
     patience: u64,
     /// Least average step \[s\].
     least: f64,
-    /// Changes of every contact so far.
+    contacts: usize,
+    /// Changes of every contact and force so far.
     changes: Vec<u64>,
 }
 
-carried!(Stall { steps, tried, changes } but { patience, least });
+carried!(Stall { steps, tried, changes } but { patience, least, contacts });
 
 /// What a stalled run did.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stalled {
     /// Steps so far.
     pub steps: u64,
-    /// The contact that changed most often, and how often.
-    pub contact: Option<(usize, u64)>,
+    /// The contact or force that changed most often, by [`Changed::index`], and how often.
+    pub busiest: Option<(usize, u64)>,
 }
 
 impl Stall {
     /// For a run of a duration, in steps of `step` if they are equal \[s\].
-    pub fn new(contacts: usize, duration: f64, step: Option<f64>) -> Stall {
+    pub fn new([contacts, forces]: [usize; 2], duration: f64, step: Option<f64>) -> Stall {
         let ((patience, part), whole) = match step {
             Some(step) => (OF_EQUAL_STEPS, step),
             None => (OF_ACCURACY, duration),
@@ -45,7 +46,8 @@ impl Stall {
             tried: 0,
             patience,
             least: part * whole,
-            changes: vec![0; contacts],
+            contacts,
+            changes: vec![0; contacts + forces],
         }
     }
 
@@ -57,7 +59,7 @@ impl Stall {
     /// Records an accepted step to t that ends with these changes.
     pub fn step(&mut self, t: f64, changed: &[Changed]) -> Result<(), Stalled> {
         for change in changed {
-            self.changes[change.contact()] += 1;
+            self.changes[change.index(self.contacts)] += 1;
         }
         self.steps += 1;
         self.tried += 1;
@@ -68,8 +70,8 @@ impl Stall {
         let busiest = busiest.max_by_key(|(_, changes)| *changes);
         Err(Stalled {
             steps: self.steps,
-            // changes of a contact are the cause only if there is one every few steps
-            contact: busiest.filter(|(_, changes)| 10 * changes > self.steps),
+            // changes of memory are the cause only if there is one every few steps
+            busiest: busiest.filter(|(_, changes)| 10 * changes > self.steps),
         })
     }
 }

@@ -11,7 +11,7 @@ use super::pace::Pacer;
 use super::plausibility::Plausibility;
 use super::report::{Extreme, Status};
 use super::stall::Stall;
-use super::{LoopCounters, Simulation, equilibrium, scale};
+use super::{LoopCounters, Simulation, equilibrium, instants, scale};
 use crate::body::{Moving, Strain};
 use crate::compile::compile;
 use crate::compile::extent::extent;
@@ -107,6 +107,7 @@ impl Simulation {
         Ok(Simulation {
             stepper,
             pacer,
+            instants: instants::of_method(&model, &scene.integrator),
             leaves_out: !model.redundant().is_empty(),
             locates: scene.integrator.locate_onsets && shape.crossings > 0,
             newton,
@@ -132,7 +133,7 @@ impl Simulation {
             creep: CreepWatch::new(shape.contacts),
             local_error: LocalError::new(shape.unknowns),
             stall: Stall::new(
-                shape.contacts,
+                [shape.contacts, model.forces.len()],
                 scene.simulation.duration,
                 scene.integrator.step(),
             ),

@@ -15,6 +15,7 @@ use crate::system::{Shape, State, System, Weights, Work};
 /// `method = "backward_euler"`
 pub static SCHEME: Scheme = Scheme {
     name: "backward_euler",
+    order: 1,
     is_explicit: false,
     keeps_constraints: true,
     parameters: &[],

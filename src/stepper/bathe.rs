@@ -32,6 +32,7 @@ use crate::system::{Shape, State, System, Weights, Work};
 /// `method = "bathe"`
 pub static SCHEME: Scheme = Scheme {
     name: "bathe",
+    order: 2,
     is_explicit: false,
     keeps_constraints: true,
     parameters: &[

@@ -267,6 +267,7 @@ static EIGHT: ExplicitTableau = ExplicitTableau {
 /// `method = "dormand_prince"`
 pub static SCHEME: Scheme = Scheme {
     name: "dormand_prince",
+    order: 5,
     is_explicit: true,
     keeps_constraints: true,
     parameters: &[],
@@ -276,6 +277,7 @@ pub static SCHEME: Scheme = Scheme {
 /// `method = "dop853"`
 pub static ORDER_8: Scheme = Scheme {
     name: "dop853",
+    order: 8,
     is_explicit: true,
     keeps_constraints: true,
     parameters: &[],

@@ -136,6 +136,7 @@ static FIVE_FOUR: Tableau = Tableau {
 /// `method = "esdirk3"`
 pub static ORDER_3: Scheme = Scheme {
     name: "esdirk3",
+    order: 3,
     is_explicit: false,
     keeps_constraints: true,
     parameters: &[],
@@ -145,6 +146,7 @@ pub static ORDER_3: Scheme = Scheme {
 /// `method = "esdirk5"`
 pub static ORDER_5: Scheme = Scheme {
     name: "esdirk5",
+    order: 5,
     is_explicit: false,
     keeps_constraints: true,
     parameters: &[],

@@ -24,6 +24,7 @@ use crate::system::{Shape, State, System, Weights, Work};
 /// `method = "generalized_alpha"`
 pub static SCHEME: Scheme = Scheme {
     name: "generalized_alpha",
+    order: 2,
     is_explicit: false,
     keeps_constraints: true,
     parameters: &[Parameter {
@@ -42,6 +43,7 @@ pub static SCHEME: Scheme = Scheme {
 /// `method = "hht"`
 pub static HHT: Scheme = Scheme {
     name: "hht",
+    order: 2,
     is_explicit: false,
     keeps_constraints: true,
     parameters: &[Parameter {

@@ -23,6 +23,8 @@ pub struct Parameter {
 pub struct Scheme {
     /// Its name in a scene.
     pub name: &'static str,
+    /// Its order: the global error is proportional to this power of the step.
+    pub order: u32,
     /// True for a scheme without equations to solve in a stage, which needs no tolerance of Newton's method.
     pub is_explicit: bool,
     /// True for a scheme that keeps constraints. Its steps end with velocities, accelerations and multipliers that satisfy them on

@@ -18,6 +18,7 @@ use crate::system::{Shape, State, System, Weights, Work};
 /// `method = "trapezoidal"`
 pub static SCHEME: Scheme = Scheme {
     name: "trapezoidal",
+    order: 2,
     is_explicit: false,
     keeps_constraints: true,
     parameters: &[],

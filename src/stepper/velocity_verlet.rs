@@ -31,6 +31,7 @@ use crate::system::{Shape, State, System, Work};
 /// `method = "velocity_verlet"`
 pub static SCHEME: Scheme = Scheme {
     name: "velocity_verlet",
+    order: 2,
     is_explicit: true,
     keeps_constraints: false,
     parameters: &[],
