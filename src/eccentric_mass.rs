@@ -89,6 +89,7 @@ mod tests {
             contacts: 0,
             crossings: 0,
             memory: 0,
+            entries: 5,
         };
         let (v, a) = ([0.9, -0.4, 2.1], [1.3, 0.8, -1.7]);
         let mut state = State::zeros(shape);

@@ -65,6 +65,7 @@ pub mod force;
 pub mod initial;
 pub mod interaction;
 pub mod kinematics;
+pub mod ledger;
 pub mod link;
 pub mod marker;
 pub mod math;

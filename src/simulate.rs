@@ -522,7 +522,7 @@ impl Simulation {
         creep.row(model, output);
         plausibility.row(scene, model, output);
         if scene.simulation.analysis == Analysis::Dynamic
-            && let Err(gain) = meter.row(&measured.energies, output)
+            && let Err(gain) = meter.row(model, &measured.energies, output)
         {
             return Err(self.unstable(gain));
         }

@@ -27,25 +27,8 @@ pub struct Shape {
     pub crossings: usize,
     /// Numbers of memory: one of every contact, then those of forces.
     pub memory: usize,
-}
-
-/// Quantities integrated over time along with the motion.
-pub const INTEGRALS: usize = 5;
-
-/// Names of the integrated quantities, all in joules: work of drives and applied forces, then what is dissipated in
-/// contact damping, friction and structural damping, then the contact energy dropped while a force is clamped (a part
-/// of the first dissipation).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(
-    missing_docs,
-    reason = "the names say it; the order is documented above"
-)]
-pub enum Integral {
-    Work = 0,
-    ContactDissipated = 1,
-    FrictionDissipated = 2,
-    DampingDissipated = 3,
-    Clamp = 4,
+    /// Entries of the energy ledger.
+    pub entries: usize,
 }
 
 /// Everything that changes while time runs.
@@ -70,10 +53,10 @@ pub struct State {
     /// How often memory has changed so far in a way that the motion feels. Between two states with the same number the equations
     /// of motion are differentiable functions; what is extrapolated or differenced over several steps holds for one number only.
     pub changes: u64,
-    /// Integrals over time since the start \[J\].
-    pub integrals: [f64; INTEGRALS],
+    /// The entries of the energy ledger: integrals over time since the start \[J\].
+    pub integrals: Vec<f64>,
     /// Their integrands \[W\].
-    pub powers: [f64; INTEGRALS],
+    pub powers: Vec<f64>,
 }
 
 carried!(State { t, weight, q, q_low, v, a, lambda, memory, changes, integrals, powers } but {});
@@ -91,17 +74,9 @@ impl State {
             lambda: vec![0.0; shape.multipliers],
             memory: vec![0.0; shape.memory],
             changes: 0,
-            integrals: [0.0; INTEGRALS],
-            powers: [0.0; INTEGRALS],
+            integrals: vec![0.0; shape.entries],
+            powers: vec![0.0; shape.entries],
         }
-    }
-
-    /// Energy dissipated since the start: in contacts, by friction, by damping \[J\].
-    pub fn dissipated(&self) -> f64 {
-        let of = |integral: Integral| self.integrals[integral as usize];
-        of(Integral::ContactDissipated)
-            + of(Integral::FrictionDissipated)
-            + of(Integral::DampingDissipated)
     }
 
     /// Copies what no stage of a step changes: the load and the memory.
@@ -130,8 +105,8 @@ impl State {
         self.lambda.copy_from_slice(&other.lambda);
         self.memory.copy_from_slice(&other.memory);
         self.changes = other.changes;
-        self.integrals = other.integrals;
-        self.powers = other.powers;
+        self.integrals.copy_from_slice(&other.integrals);
+        self.powers.copy_from_slice(&other.powers);
     }
 }
 

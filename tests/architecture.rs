@@ -10,11 +10,12 @@ use syn::visit::Visit;
 use syn::{ItemUse, UseTree};
 
 /// Folders and files at the top of `src`, the lowest first: each uses those before it only.
-const LAYERS: [&str; 27] = [
+const LAYERS: [&str; 28] = [
     "checkpoint",
     "math",
     "table",
     "effect",
+    "ledger",
     "marker",
     "link",
     "document",

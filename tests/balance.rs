@@ -114,8 +114,8 @@ fn forces_on_every_body_are_mass_times_acceleration() {
             1e-12,
             "reactions come from a linear solve of well conditioned poses: rounding of the largest force",
         );
-    assert_ne!(report.ledger.unwrap().stored.gravity, 0.0);
     let ledger = report.ledger.unwrap();
+    assert_ne!(ledger.stored.gravity, 0.0);
     Rung::Balance
         .asks("Chain of links falling for 0.02 s: numerical loss of energy over the kinetic energy")
         .within(

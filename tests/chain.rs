@@ -53,6 +53,7 @@ impl System for Chain {
             contacts: 0,
             crossings: 0,
             memory: 0,
+            entries: 3,
         }
     }
     fn symbolic(&self) -> &Symbolic {

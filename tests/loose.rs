@@ -222,7 +222,7 @@ fn no_friction_is_evaluated_unless_the_scene_names_it() {
     assert!(without.effects["contact_law"] > 0);
     let (_, with) = run("3rrr/case4-friction.toml", &short);
     assert!(with.effects["friction_law"] > 0);
-    assert!(with.ledger.unwrap().friction_dissipated >= 0.0);
+    assert!(with.ledger.as_ref().unwrap().friction_dissipated >= 0.0);
     let material = [&short[..], &["contacts.pin.friction.slip=material"]].concat();
     let (_, slipping) = run("3rrr/case4-friction.toml", &material);
     // the printed slip is delta/e times the tangential rate of e: only the first impacts are fast enough for it

@@ -12,10 +12,11 @@ use looselink::interaction::rod::Distance;
 use looselink::interaction::{
     ForceByLaw, Maxwell, PointForce, SpringDamper, Torque, TorsionSpring,
 };
+use looselink::ledger::{Powers, Side};
 use looselink::marker::{Marker, Separation, Spin};
 use looselink::math::plane::{Rotation, Vec2, unit};
 use looselink::motion::Function;
-use looselink::system::{INTEGRALS, Integral, Shape, State, Weights};
+use looselink::system::{Shape, State, Weights};
 use nalgebra::Matrix2;
 use std::sync::Arc;
 
@@ -42,6 +43,7 @@ fn state(k: usize, t: f64) -> State {
         contacts: 0,
         crossings: 0,
         memory: 1,
+        entries: 5,
     };
     let mut s = State::zeros(shape);
     s.t = t;
@@ -717,13 +719,21 @@ fn forces_agree_with_their_differences() {
             }
             assert!(resists, "{name}");
             // the power of the force is what is stored, dissipated and put in
-            let mut powers = [0.0; INTEGRALS];
-            term.powers(&s, &mut powers);
+            let entries = term.entries();
+            let mut powers = vec![0.0; entries.len()];
+            let own: Vec<usize> = (0..entries.len()).collect();
+            let (all, own) = (&mut powers[..], &own[..]);
+            term.powers(&s, &mut Powers { all, own });
+            let on = |side| {
+                let entries = entries.iter().zip(&powers);
+                let own = entries.filter(|(entry, _)| entry.side == side);
+                own.map(|(_, power)| power).sum::<f64>()
+            };
             let stored = (term.energy(&state_with(&s, k, h)) - term.energy(&state_with(&s, k, -h)))
                 / (2.0 * h);
-            let lost = powers[Integral::DampingDissipated as usize];
+            let lost = on(Side::Lost);
             let power: f64 = force(&s).iter().zip(&s.v).map(|(f, v)| f * v).sum();
-            let balance = stored + lost - powers[Integral::Work as usize];
+            let balance = stored + lost - on(Side::Supplied);
             // here an internal state moves as the other coordinates, not as its own equation says
             if !name.starts_with("maxwell") {
                 balances.see(power - balance);
@@ -919,6 +929,7 @@ fn ends_of_a_spring_that_meet_part_at_their_relative_velocity() {
         contacts: 0,
         crossings: 0,
         memory: 0,
+        entries: 5,
     };
     let spring = SpringDamper {
         from: Marker::Node { x: 0 },

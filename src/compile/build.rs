@@ -3,23 +3,17 @@
 use super::mass::{mass, weight};
 use super::motions::motion_terms;
 use super::numbering::{Numbering, shifted};
+use super::places::{Places, events, ledger};
 use super::reactions::Reactions;
 use super::rules::rules;
 use super::{Compiler, Mode, Role};
 use crate::body::Point;
-use crate::contact::ContactPair;
-use crate::eccentric_mass::EccentricMass;
-use crate::force::Force;
 use crate::interaction::{Ends, JointEnds, Placed};
 use crate::kinematics::Kinematics;
-use crate::link::AncfCable;
 use crate::marker::Marker;
 use crate::math::lu::Symbolic;
 use crate::math::saddle_point::SaddlePoint;
-use crate::model::{
-    Block, Border, DrivenForces, Model, PlacedBody, PlacedConstraint, PlacedContact,
-    PlacedEccentric, PlacedElement, PlacedEvents, PlacedForce, PlacedPoint,
-};
+use crate::model::{DrivenForces, Model, PlacedBody, PlacedPoint};
 use crate::scene::{Analysis, SceneError};
 use crate::system::Shape;
 use crate::terms::{ConstraintRows, ConstraintTerm, ForceTerm, Inertia, JointTerms, Owner, Terms};
@@ -106,6 +100,7 @@ pub(super) fn build(
     symbolic.expect_diagonal(typical_mass(&entries, &angles(c, &numbering)));
     let acceleration_matrix = SaddlePoint::new(n, entries, &unknown_columns(&terms, n));
     let events = events(&terms);
+    let entries = ledger(&terms);
     let shape = Shape {
         unknowns: n,
         coordinates: numbering.coordinates,
@@ -115,11 +110,13 @@ pub(super) fn build(
             .last()
             .map_or(terms.contacts.len(), |last| last.crossings.end),
         memory: terms.contacts.len() + terms.slots,
+        entries: entries.len(),
     };
     let places = Places {
         tangent: &symbolic,
         acceleration_level: &acceleration_matrix,
         unknowns: n,
+        ledger: &entries,
     };
     let mut model = Model {
         shape,
@@ -136,6 +133,7 @@ pub(super) fn build(
         constraints: places.constraints(terms.constraints),
         forces: places.forces(terms.forces, terms.damping),
         instants: Vec::new(),
+        ledger: entries.clone(),
         events,
         counts: Vec::new(),
         named_forces,
@@ -186,129 +184,6 @@ fn placed_body(
         elements: parts.elements,
         placed,
     }
-}
-
-/// Finds the places of terms in the matrices.
-struct Places<'a> {
-    tangent: &'a Symbolic,
-    acceleration_level: &'a SaddlePoint,
-    unknowns: usize,
-}
-
-impl Places<'_> {
-    fn block(&self, coordinates: Vec<usize>) -> Block {
-        Block::new(coordinates, self.tangent, self.unknowns)
-    }
-
-    fn eccentric(&self, masses: Vec<EccentricMass>) -> Vec<PlacedEccentric> {
-        let masses = masses.into_iter().map(|mass| {
-            let [x, y, theta] = mass.pose;
-            let known = [x.min(y), theta].map(|i| i >= self.unknowns);
-            assert!(
-                known.contains(&true),
-                "the mass matrix would depend on theta"
-            );
-            let slot = match known[1] {
-                true => self.tangent.discarded_slot(),
-                false => self.tangent.slot(theta, theta),
-            };
-            PlacedEccentric { mass, slot }
-        });
-        masses.collect()
-    }
-
-    fn elements(&self, elements: Vec<(AncfCable, Vec<usize>)>) -> Vec<PlacedElement> {
-        let elements = elements
-            .into_iter()
-            .map(|(kernel, coordinates)| PlacedElement {
-                kernel,
-                block: self.block(coordinates),
-            });
-        elements.collect()
-    }
-
-    fn constraints(&self, constraints: Vec<ConstraintRows>) -> Vec<PlacedConstraint> {
-        let mut row = 0;
-        let constraints = constraints.into_iter().map(|r| {
-            let sides = r.term.sides();
-            let (owners, coordinates) = (owners(&sides, r.sides), sides.concat());
-            let rows = r.term.rows();
-            let border = |d| Border::new(&coordinates, row + d, self.tangent, self.unknowns);
-            let entries = |d| self.entries(&coordinates, row + d);
-            let placed = PlacedConstraint {
-                border: (0..rows).map(border).collect(),
-                entries: (0..rows).map(entries).collect(),
-                owners,
-                block: self.block(coordinates),
-                row,
-                rows,
-                kept: [1.0; 2],
-                term: r.term,
-            };
-            row += rows;
-            placed
-        });
-        constraints.collect()
-    }
-
-    /// The entries of a row of Phi_q in the matrix of the acceleration level.
-    fn entries(&self, coordinates: &[usize], row: usize) -> Vec<u32> {
-        let mut next = self.acceleration_level.first_entry(row) as u32;
-        let entry = coordinates.iter().map(|&i| match i < self.unknowns {
-            true => {
-                next += 1;
-                next - 1
-            }
-            false => self.acceleration_level.discarded_entry(),
-        });
-        entry.collect()
-    }
-
-    fn forces(
-        &self,
-        forces: Vec<(Box<dyn Force>, [usize; 2])>,
-        damping: Vec<(Box<dyn Force>, usize)>,
-    ) -> Vec<PlacedForce> {
-        let damping = damping.into_iter().map(|(term, body)| (term, [body, body]));
-        let forces = forces.into_iter().chain(damping).map(|(term, sides)| {
-            let coordinates = term.sides();
-            PlacedForce {
-                owners: owners(&coordinates, sides),
-                block: self.block(coordinates.concat()),
-                counter: 0,
-                term,
-            }
-        });
-        forces.collect()
-    }
-
-    fn contacts(&self, contacts: Vec<Box<dyn ContactPair>>) -> Vec<PlacedContact> {
-        let contacts = contacts.into_iter().map(|pair| PlacedContact {
-            block: self.block(pair.coordinates()),
-            counters: Vec::new(),
-            pair,
-        });
-        contacts.collect()
-    }
-}
-
-/// The body of each local coordinate of a term.
-fn owners(coordinates: &[Vec<usize>; 2], bodies: [usize; 2]) -> Vec<usize> {
-    let sides = coordinates.iter().zip(bodies);
-    let owners = sides.flat_map(|(side, body)| vec![body; side.len()]);
-    owners.collect()
-}
-
-/// The forces that have memory. Their functions follow those of the contacts.
-fn events(terms: &Terms) -> Vec<PlacedEvents> {
-    let mut first = terms.contacts.len();
-    let forces = terms.forces.iter().enumerate();
-    let events = forces.filter_map(|(force, (term, _))| {
-        let crossings = first..first + term.events()?.crossings();
-        first = crossings.end;
-        Some(PlacedEvents { force, crossings })
-    });
-    events.collect()
 }
 
 /// The joint of every contact.

@@ -11,6 +11,7 @@ mod mass;
 mod motions;
 mod numbering;
 mod pin;
+mod places;
 mod reactions;
 mod rules;
 mod sketch;

@@ -12,8 +12,9 @@ pub use smooth::Smooth;
 
 use crate::effect::Effect;
 use crate::force::{LocalMatrix, WIDTH};
+use crate::ledger::{Entry, Powers};
 use crate::math::plane::Vec2;
-use crate::system::{INTEGRALS, Weights};
+use crate::system::Weights;
 use geometry::Gap;
 
 /// Positions and velocities, and the memory of one contact: the impact velocity \[m/s\], 0 while the contact is open.
@@ -67,6 +68,8 @@ pub trait ContactPair: std::fmt::Debug + Send + Sync {
     fn creep(&self, _at: At) -> Option<f64> {
         None
     }
-    /// Adds what it dissipates to the integrands of the ledger \[W\]; true where the normal force is clamped at zero.
-    fn powers(&self, at: At, powers: &mut [f64; INTEGRALS]) -> bool;
+    /// Its entries of the energy ledger.
+    fn entries(&self) -> Vec<&'static Entry>;
+    /// Adds what it dissipates to its entries; true where the normal force is clamped at zero.
+    fn powers(&self, at: At, powers: &mut Powers) -> bool;
 }

@@ -11,9 +11,10 @@ use super::normal::NormalForce;
 use super::{At, ContactPair, Smooth, local_indices};
 use crate::effect::{self, Effect};
 use crate::force::{LocalMatrix, WIDTH};
+use crate::ledger::{self, Entry, Powers};
 use crate::marker::{Spin, SpinDerivatives};
 use crate::math::plane::Vec2;
-use crate::system::{INTEGRALS, Integral, Weights};
+use crate::system::Weights;
 
 /// Which slip velocity friction acts against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -230,8 +231,14 @@ impl<G: Geometry> ContactPair for Rough<G> {
         self.law.creeps(slip).then_some(slip)
     }
 
-    fn powers(&self, at: At, powers: &mut [f64; INTEGRALS]) -> bool {
-        powers[Integral::FrictionDissipated as usize] += self.dissipation(at);
+    fn entries(&self) -> Vec<&'static Entry> {
+        let mut entries = self.surface.entries();
+        entries.push(&ledger::FRICTION);
+        entries
+    }
+
+    fn powers(&self, at: At, powers: &mut Powers) -> bool {
+        powers.add(2, self.dissipation(at));
         self.surface.powers(at, powers)
     }
 }

@@ -5,8 +5,9 @@ use super::normal::{NormalForce, NormalLaw};
 use super::{At, ContactPair};
 use crate::effect::{self, Effect};
 use crate::force::{LocalMatrix, WIDTH};
+use crate::ledger::{self, Entry, Powers};
 use crate::math::plane::Vec2;
-use crate::system::{INTEGRALS, Integral, Weights};
+use crate::system::Weights;
 
 /// A geometry and a normal law.
 #[derive(Debug)]
@@ -120,15 +121,19 @@ impl<G: Geometry> ContactPair for Smooth<G> {
         }
     }
 
-    fn powers(&self, at: At, powers: &mut [f64; INTEGRALS]) -> bool {
+    fn entries(&self) -> Vec<&'static Entry> {
+        vec![&ledger::CONTACT, &ledger::CLAMP]
+    }
+
+    fn powers(&self, at: At, powers: &mut Powers) -> bool {
         let gap = self.geometry.gap(at.q, at.v);
         let Some(force) = self.normal_force(&gap, at.z) else {
             return false;
         };
         let loss = (force.value - force.elastic) * self.geometry.rate(&gap);
-        powers[Integral::ContactDissipated as usize] += loss;
+        powers.add(0, loss);
         if force.clamped {
-            powers[Integral::Clamp as usize] += loss;
+            powers.add(1, loss);
         }
         force.clamped
     }

@@ -2,10 +2,11 @@
 
 use super::{Force, LocalMatrix, WIDTH};
 use crate::effect::Effect;
+use crate::ledger::{self, Entry, Powers};
 use crate::link::shape_derivatives;
 use crate::math::plane::{Vec2, pair, quarter_turn};
 use crate::math::quadrature::GAUSS5;
-use crate::system::{INTEGRALS, Integral, State, Weights};
+use crate::system::{State, Weights};
 
 /// Coordinates of an element.
 const NODAL: usize = 8;
@@ -146,12 +147,20 @@ impl Force for ElementDamping {
         }
     }
 
-    fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
+    fn entries(&self) -> Vec<&'static Entry> {
+        vec![&ledger::DAMPING]
+    }
+
+    fn powers(&self, at: &State, powers: &mut Powers) {
         let local = self.gather(at);
         for (weight, first, second) in &self.points {
             let rates = Self::rates(first, second, &local);
-            powers[Integral::DampingDissipated as usize] += weight
-                * (self.axial * rates.eps * rates.eps + self.bending * rates.kappa * rates.kappa);
+            powers.add(
+                0,
+                weight
+                    * (self.axial * rates.eps * rates.eps
+                        + self.bending * rates.kappa * rates.kappa),
+            );
         }
     }
 }

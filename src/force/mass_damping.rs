@@ -2,7 +2,8 @@
 
 use super::{Force, LocalMatrix, WIDTH};
 use crate::effect::Effect;
-use crate::system::{INTEGRALS, Integral, State, Weights};
+use crate::ledger::{self, Entry, Powers};
+use crate::system::{State, Weights};
 
 /// f = alpha M v on the coordinates of one element or link; it resists rigid motion too.
 #[derive(Debug)]
@@ -57,13 +58,17 @@ impl Force for MassDamping {
         }
     }
 
-    fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
+    fn entries(&self) -> Vec<&'static Entry> {
+        vec![&ledger::DAMPING]
+    }
+
+    fn powers(&self, at: &State, powers: &mut Powers) {
         let product = self.product(at);
         let power = self
             .coordinates
             .iter()
             .zip(product)
             .map(|(&i, p)| at.v[i] * p);
-        powers[Integral::DampingDissipated as usize] += power.sum::<f64>();
+        powers.add(0, power.sum::<f64>());
     }
 }

@@ -9,8 +9,9 @@ pub use events::{Events, NEVER, passes};
 pub use mass_damping::MassDamping;
 
 use crate::effect::Effect;
+use crate::ledger::{Entry, Powers};
 use crate::motion::Knot;
-use crate::system::{INTEGRALS, State, Weights};
+use crate::system::{State, Weights};
 
 /// Most coordinates that one force can depend on: a point between two nodes on both sides, and an internal state.
 pub const WIDTH: usize = 9;
@@ -36,8 +37,10 @@ pub trait Force: std::fmt::Debug + Send + Sync {
     fn energy(&self, _at: &State) -> f64 {
         0.0
     }
-    /// Adds what it does and dissipates to the integrands of the ledger \[W\].
-    fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]);
+    /// Its entries of the energy ledger.
+    fn entries(&self) -> Vec<&'static Entry>;
+    /// Adds what it does and dissipates to its entries.
+    fn powers(&self, at: &State, powers: &mut Powers);
     /// True of a spring: its energy is a channel.
     fn stores_energy(&self) -> bool {
         false

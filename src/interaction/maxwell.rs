@@ -6,7 +6,8 @@ use crate::body::PointRef;
 use crate::document::Key;
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
-use crate::system::{INTEGRALS, Integral, State, Weights};
+use crate::ledger::{self, Entry, Powers};
+use crate::system::{State, Weights};
 use std::sync::Arc;
 
 pub(super) static KIND: ForceKind = ForceKind {
@@ -159,9 +160,13 @@ impl Force for Maxwell {
         self.at(at).energy(at)
     }
 
-    fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
+    fn entries(&self) -> Vec<&'static Entry> {
+        vec![&ledger::DAMPING]
+    }
+
+    fn powers(&self, at: &State, powers: &mut Powers) {
         let (pull, _) = self.pull(at);
-        powers[Integral::DampingDissipated as usize] += pull * pull / self.damping;
+        powers.add(0, pull * pull / self.damping);
     }
 
     fn quantities(&self) -> &'static [(&'static str, &'static str)] {

@@ -5,10 +5,11 @@ use crate::body::PointRef;
 use crate::document::Key;
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
+use crate::ledger::{self, Entry, Powers};
 use crate::marker::{Marker, Spin};
 use crate::math::plane::{Vec2, quarter_turn};
 use crate::motion::{Function, Knot, Use};
-use crate::system::{INTEGRALS, Integral, State, Weights};
+use crate::system::{State, Weights};
 use std::sync::Arc;
 
 pub(super) static KIND: ForceKind = ForceKind {
@@ -132,9 +133,13 @@ impl Force for PointForce {
         }
     }
 
-    fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
+    fn entries(&self) -> Vec<&'static Entry> {
+        vec![&ledger::WORK]
+    }
+
+    fn powers(&self, at: &State, powers: &mut Powers) {
         let velocity = self.marker.velocity(&at.v, self.marker.arm(&at.q));
-        powers[Integral::Work as usize] += self.value(at).dot(&velocity);
+        powers.add(0, self.value(at).dot(&velocity));
     }
 
     fn knots(&self, until: f64) -> Vec<Knot> {

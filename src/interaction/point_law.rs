@@ -5,10 +5,11 @@ use super::{Ends, ForceModel};
 use crate::body::PointRef;
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
+use crate::ledger::{self, Entry, Powers};
 use crate::marker::Marker;
 use crate::math::plane::Vec2;
 use crate::motion::Knot;
-use crate::system::{INTEGRALS, Integral, State, Weights};
+use crate::system::{State, Weights};
 use nalgebra::{Matrix2, Matrix2x4};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -143,9 +144,13 @@ impl Force for ForceByLaw {
         }
     }
 
-    fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
+    fn entries(&self) -> Vec<&'static Entry> {
+        vec![&ledger::WORK]
+    }
+
+    fn powers(&self, at: &State, powers: &mut Powers) {
         let [r, v] = self.motion(at);
-        powers[Integral::Work as usize] += self.law.force(at.t, r, v).dot(&v);
+        powers.add(0, self.law.force(at.t, r, v).dot(&v));
     }
 
     fn knots(&self, until: f64) -> Vec<Knot> {

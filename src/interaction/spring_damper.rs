@@ -5,9 +5,10 @@ use crate::body::PointRef;
 use crate::document::{Fields, Key, SceneError};
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
+use crate::ledger::{self, Entry, Powers};
 use crate::marker::{Marker, Separation};
 use crate::math::plane::Vec2;
-use crate::system::{INTEGRALS, Integral, State, Weights};
+use crate::system::{State, Weights};
 use std::sync::Arc;
 
 pub(super) static KIND: ForceKind = ForceKind {
@@ -214,9 +215,13 @@ impl Force for SpringDamper {
         0.5 * self.stiffness * stretch * stretch
     }
 
-    fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
+    fn entries(&self) -> Vec<&'static Entry> {
+        vec![&ledger::DAMPING]
+    }
+
+    fn powers(&self, at: &State, powers: &mut Powers) {
         let rate = self.line(at).rate;
-        powers[Integral::DampingDissipated as usize] += self.damping * rate * rate;
+        powers.add(0, self.damping * rate * rate);
     }
 
     fn quantities(&self) -> &'static [(&'static str, &'static str)] {

@@ -5,9 +5,10 @@ use crate::body::{Ground, PointRef};
 use crate::document::Key;
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
+use crate::ledger::{self, Entry, Powers};
 use crate::marker::Spin;
 use crate::motion::{Function, Knot, Use};
-use crate::system::{INTEGRALS, Integral, State, Weights};
+use crate::system::{State, Weights};
 use std::sync::Arc;
 
 pub(super) static KIND: ForceKind = ForceKind {
@@ -124,9 +125,13 @@ impl Force for Torque {
         }
     }
 
-    fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
+    fn entries(&self) -> Vec<&'static Entry> {
+        vec![&ledger::WORK]
+    }
+
+    fn powers(&self, at: &State, powers: &mut Powers) {
         let rates = [self.first, self.second].map(|s| s.rate(&at.q, &at.v));
-        powers[Integral::Work as usize] += self.value.at(at.t)[0] * (rates[1] - rates[0]);
+        powers.add(0, self.value.at(at.t)[0] * (rates[1] - rates[0]));
     }
 
     fn knots(&self, until: f64) -> Vec<Knot> {

@@ -6,9 +6,10 @@ use crate::body::PointRef;
 use crate::document::Key;
 use crate::effect::Effect;
 use crate::force::{Events, Force, LocalMatrix, WIDTH};
+use crate::ledger::{self, Entry, Powers};
 use crate::marker::{Spin, SpinDerivatives};
 use crate::math::plane::full_turns;
-use crate::system::{INTEGRALS, Integral, State, Weights};
+use crate::system::{State, Weights};
 use std::sync::Arc;
 
 pub(super) static KIND: ForceKind = ForceKind {
@@ -180,9 +181,13 @@ impl Force for TorsionSpring {
         0.5 * self.stiffness * turn * turn
     }
 
-    fn powers(&self, at: &State, powers: &mut [f64; INTEGRALS]) {
+    fn entries(&self) -> Vec<&'static Entry> {
+        vec![&ledger::DAMPING]
+    }
+
+    fn powers(&self, at: &State, powers: &mut Powers) {
         let rate = self.rate(at);
-        powers[Integral::DampingDissipated as usize] += self.damping * rate * rate;
+        powers.add(0, self.damping * rate * rate);
     }
 
     fn begin(&self, at: &mut State) {

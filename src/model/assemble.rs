@@ -6,13 +6,13 @@ use super::{Model, PlacedContact, PlacedEccentric, Rule};
 use crate::constraint::{self, Curvature, ROWS};
 use crate::contact;
 use crate::force::WIDTH;
+use crate::ledger::{OF_WORK, Powers};
 use crate::link::{AncfCable, ElasticRoute};
 use crate::math::lu::Symbolic;
 use crate::math::plane::{quarter_turn, rotation};
 use crate::math::saddle_point::SaddlePoint;
 use crate::system::{
-    Changed, Equilibrium, INTEGRALS, Integral, Operations, PrescribeError, Shape, State, System,
-    Weights, Work,
+    Changed, Equilibrium, Operations, PrescribeError, Shape, State, System, Weights, Work,
 };
 
 /// Local coordinates of an element.
@@ -393,16 +393,25 @@ impl System for Model {
     }
 
     fn powers(&self, at: &mut State, work: &mut Work) -> usize {
-        let mut powers = [0.0; INTEGRALS];
+        let mut all = std::mem::take(&mut at.powers);
         let mut clamps = 0;
-        powers[Integral::Work as usize] = self.drive_power(at, work) + self.drift_power(at);
+        all.fill(0.0);
+        all[OF_WORK] = self.drive_power(at, work) + self.drift_power(at);
         for (c, state) in self.closed_contacts(at) {
+            let mut powers = Powers {
+                all: &mut all,
+                own: &c.entries,
+            };
             clamps += usize::from(c.pair.powers(state, &mut powers));
         }
         for acting in &self.forces {
+            let mut powers = Powers {
+                all: &mut all,
+                own: &acting.entries,
+            };
             acting.term.powers(at, &mut powers);
         }
-        at.powers = powers;
+        at.powers = all;
         clamps
     }
 

@@ -6,9 +6,10 @@ use crate::body::{Pose, Strain};
 use crate::contact;
 use crate::contact::geometry::Gap;
 use crate::force::Force;
+use crate::ledger::Side;
 use crate::marker::Marker;
 use crate::math::plane::{Vec2, pair};
-use crate::system::{Integral, State, Work};
+use crate::system::{State, Work};
 use crate::terms::{CoupleTerm, ForceTerm};
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -38,9 +39,9 @@ impl Energies {
 
     /// Stored plus dissipated energy minus the work done \[J\], which is constant up to the error of the integration; and the sum
     /// of the magnitudes of the three, to which its rounding is relative. `at` is the state of these energies.
-    pub fn balance(&self, at: &State) -> (f64, f64) {
-        let (stored, gone) = (self.total(), at.dissipated());
-        let work = at.integrals[Integral::Work as usize];
+    pub fn balance(&self, model: &Model, at: &State) -> (f64, f64) {
+        let (stored, gone) = (self.total(), model.booked(at, Side::Lost));
+        let work = model.booked(at, Side::Supplied);
         (stored + gone - work, stored.abs() + gone.abs() + work.abs())
     }
 }

@@ -22,6 +22,7 @@ use crate::eccentric_mass::EccentricMass;
 use crate::effect::{self, Effect};
 use crate::force::Force;
 use crate::interaction::Placed;
+use crate::ledger::{Entry, Side};
 use crate::link::AncfCable;
 use crate::marker::Marker;
 use crate::math::lu::Symbolic;
@@ -62,6 +63,8 @@ pub struct Model {
     pub(crate) counts: Vec<(usize, u64)>,
     /// Instants at which functions of time are not smooth.
     pub(crate) instants: Vec<Instant>,
+    /// Entries of the energy ledger.
+    pub(crate) ledger: Vec<&'static Entry>,
     /// Forces that have memory.
     pub(crate) events: Vec<PlacedEvents>,
     /// Forces with a name of their own, as indices into the forces.
@@ -159,6 +162,8 @@ pub(crate) struct PlacedForce {
     pub owners: Vec<usize>,
     /// Index of its effect.
     pub counter: usize,
+    /// Indices of its entries of the energy ledger.
+    pub entries: Vec<usize>,
 }
 
 /// A contact with its place in the equations.
@@ -168,6 +173,8 @@ pub(crate) struct PlacedContact {
     pub block: Block,
     /// Indices of its effects.
     pub counters: Vec<usize>,
+    /// Indices of its entries of the energy ledger.
+    pub entries: Vec<usize>,
 }
 
 impl PlacedContact {
@@ -364,6 +371,13 @@ impl Model {
         let counts = counts.into_iter().enumerate();
         self.counts = counts.filter(|(_, count)| *count > 0).collect();
         self.effects = effects;
+    }
+
+    /// The sum of the entries on a side of the energy ledger \[J\].
+    pub fn booked(&self, at: &State, side: Side) -> f64 {
+        let entries = self.ledger.iter().zip(&at.integrals);
+        let own = entries.filter(|(entry, _)| entry.side == side);
+        own.fold(0.0, |sum, (_, integral)| sum + integral)
     }
 
     /// True where a link or a spring stores energy.

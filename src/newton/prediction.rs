@@ -244,6 +244,7 @@ mod tests {
         contacts: 1,
         crossings: 1,
         memory: 1,
+        entries: 5,
     };
 
     /// A state whose acceleration and multiplier are quadratic functions of time.

@@ -69,14 +69,13 @@ const STORED: [(&str, Term); 6] = [
     ("gravity", |l| l.stored.gravity),
     ("springs", |l| l.stored.springs),
 ];
-/// Energies that a motion has: a load path has no balance of powers.
-const BALANCE: [(&str, Term); 6] = [
+/// Energies that a motion has: a load path has no balance of powers. Entries that only some mechanisms have stand before the last one.
+const BALANCE: [(&str, Term); 5] = [
     ("work", |l| l.work),
     ("contact_dissipated", |l| l.contact_dissipated),
     ("friction_dissipated", |l| l.friction_dissipated),
     ("damping_dissipated", |l| l.damping_dissipated),
     ("clamp", |l| l.clamp),
-    ("numerical", |l| l.numerical),
 ];
 
 /// What is measured together.
@@ -227,7 +226,12 @@ impl Part {
                 named(name, force.quantities())
             }
             Part::Stored => energies(stored(model)),
-            Part::Balance => energies(&BALANCE),
+            Part::Balance => {
+                let names = BALANCE.iter().map(|(name, _)| *name);
+                let others = model.ledger[BALANCE.len()..].iter().map(|entry| entry.name);
+                let all = names.chain(others).chain(["numerical"]);
+                named("energy", &all.map(|name| (name, "J")).collect::<Vec<_>>())
+            }
         }
     }
 
@@ -296,7 +300,11 @@ impl Part {
                 values.extend(&force.measure(at)[..force.quantities().len()]);
             }
             Part::Stored => values.extend(stored(model).iter().map(|(_, term)| term(ledger))),
-            Part::Balance => values.extend(BALANCE.iter().map(|(_, term)| term(ledger))),
+            Part::Balance => {
+                values.extend(BALANCE.iter().map(|(_, term)| term(ledger)));
+                values.extend(ledger.others.values());
+                values.push(ledger.numerical);
+            }
         }
     }
 }

@@ -7,12 +7,14 @@ mod unknown_channel;
 
 use crate::body::Strain;
 use crate::checkpoint::carried;
+use crate::ledger::{Entry, STANDARD, Side};
 use crate::math::plane::full_turns;
 use crate::model::{Energies, Model};
 use crate::motion::Function;
 use crate::scene::{Analysis, Scene, SceneError};
 use crate::system::{State, Work};
 use channels::{Part, Removed, parts};
+use indexmap::IndexMap;
 use std::collections::HashMap;
 use texts::{described, harmful_in_line};
 
@@ -34,6 +36,8 @@ pub struct Recorder {
     row: Vec<f64>,
     /// Energy at t = 0 \[J\].
     initial_energy: f64,
+    /// Entries of the energy ledger.
+    ledger: Vec<&'static Entry>,
     /// What the scene asks for and the mechanism does not have.
     absent: Vec<String>,
 }
@@ -64,7 +68,7 @@ impl Turning {
     }
 }
 
-carried!(Recorder { turning } but { channels, parts, places, values, row, initial_energy, absent });
+carried!(Recorder { turning } but { channels, parts, places, values, row, initial_energy, ledger, absent });
 
 /// What is measured at every row, whether a channel shows it or not.
 #[derive(Debug, Clone, Default)]
@@ -86,7 +90,7 @@ impl Record {
 }
 
 /// The terms of the energy ledger \[J\].
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[expect(missing_docs, reason = "the names are those of the channels")]
 pub struct Ledger {
     pub initial: f64,
@@ -97,13 +101,22 @@ pub struct Ledger {
     pub friction_dissipated: f64,
     pub damping_dissipated: f64,
     pub clamp: f64,
+    /// Entries that only some mechanisms have.
+    #[serde(flatten)]
+    pub others: IndexMap<&'static str, f64>,
+    /// Those of them that are losses.
+    #[serde(skip)]
+    pub other_losses: f64,
     pub numerical: f64,
 }
 
 impl Ledger {
-    /// Energy dissipated in contacts, by friction and by damping \[J\].
+    /// All energy dissipated \[J\].
     pub fn dissipated(&self) -> f64 {
-        self.contact_dissipated + self.friction_dissipated + self.damping_dissipated
+        self.contact_dissipated
+            + self.friction_dissipated
+            + self.damping_dissipated
+            + self.other_losses
     }
 }
 
@@ -152,6 +165,7 @@ impl Recorder {
             parts,
             values: Vec::with_capacity(count),
             initial_energy,
+            ledger: model.ledger.clone(),
             absent,
         })
     }
@@ -174,8 +188,14 @@ impl Recorder {
             friction_dissipated,
             damping_dissipated,
             clamp,
-        ] = at.integrals;
+        ] = std::array::from_fn(|entry| at.integrals[entry]);
         let supplied = self.initial_energy + work;
+        let others = || self.ledger.iter().zip(&at.integrals).skip(STANDARD.len());
+        let on = |side| {
+            let own = others().filter(|(entry, _)| entry.side == side);
+            own.fold(0.0, |sum, (_, integral)| sum + integral)
+        };
+        let other_losses = on(Side::Lost);
         Ledger {
             initial: self.initial_energy,
             stored: *stored,
@@ -184,11 +204,16 @@ impl Recorder {
             friction_dissipated,
             damping_dissipated,
             clamp,
+            others: others()
+                .map(|(entry, integral)| (entry.name, *integral))
+                .collect(),
+            other_losses,
             numerical: supplied
                 - contact_dissipated
                 - friction_dissipated
                 - damping_dissipated
-                - stored.total(),
+                - stored.total()
+                + (on(Side::Supplied) - other_losses),
         }
     }
 

@@ -307,9 +307,9 @@ impl Controller {
         let of_energy = energy.map_or(0.0, |energy| {
             let before = match self.balance {
                 [t, balance] if t == from.t => balance,
-                _ => model.energies(from).balance(from).0,
+                _ => model.energies(from).balance(model, from).0,
             };
-            let (after, size) = model.energies(to).balance(to);
+            let (after, size) = model.energies(to).balance(model, to);
             self.balance = [to.t, after];
             let change = ((after - before).abs() - BALANCE_ROUNDING * size).max(0.0);
             change / ((mean / horizon).max(LEAST_SHARE) * energy)

@@ -23,10 +23,11 @@
 
 use super::scale;
 use crate::checkpoint::carried;
+use crate::ledger::{OF_WORK, Side};
 use crate::model::{Energies, Model};
 use crate::scene::{Pace, Scene};
 use crate::stepper::LocalError;
-use crate::system::{Integral, State};
+use crate::system::State;
 use serde::Serialize;
 
 /// Coordinates with less than this part of the largest acceleration do not count for rho,
@@ -216,7 +217,7 @@ impl Meter {
     pub fn step(&mut self, from: &State, to: &State, error: &LocalError) {
         let h = to.t - from.t;
         self.elapsed = to.t;
-        self.work = self.work.max(to.integrals[Integral::Work as usize].abs());
+        self.work = self.work.max(to.integrals[OF_WORK].abs());
         let accelerations = from.a.iter().zip(&to.a);
         let errors = error.q.iter().zip(&error.v);
         for ((sums, (q, v)), (a, a_1)) in self.sums.iter_mut().zip(errors).zip(accelerations) {
@@ -234,11 +235,11 @@ impl Meter {
     ///
     /// # Errors
     /// When the integrator has put far more energy into the motion than the scene supplies.
-    pub fn row(&mut self, energies: &Energies, at: &State) -> Result<(), Gain> {
+    pub fn row(&mut self, model: &Model, energies: &Energies, at: &State) -> Result<(), Gain> {
         for (extent, (q, v)) in self.extents.iter_mut().zip(at.q.iter().zip(&at.v)) {
             extent.see(*q, *v);
         }
-        let (balance, size) = energies.balance(at);
+        let (balance, size) = energies.balance(model, at);
         let turnover = energies.total() - energies.gravity;
         let first = *self.first.get_or_insert(FirstRow {
             balance,
@@ -248,7 +249,7 @@ impl Meter {
         let lost = first.balance - balance;
         self.lost = [self.lost[0].min(lost), self.lost[1].max(lost)];
         self.turnover = self.turnover.max(turnover);
-        self.dissipated = at.dissipated();
+        self.dissipated = model.booked(at, Side::Lost);
         let weight = (energies.gravity - first.gravity).abs();
         self.supplied = self.supplied.max(first.turnover + self.work + weight);
         let supplied = self.supplied;

@@ -1,9 +1,10 @@
 //! What a run does that no machine does, seen at its rows.
 
 use crate::checkpoint::carried;
+use crate::ledger::OF_WORK;
 use crate::model::Model;
 use crate::scene::Scene;
-use crate::system::{Integral, State};
+use crate::system::State;
 use numbers::number;
 
 /// Largest power \[W\]: that of a large power station.
@@ -40,7 +41,7 @@ impl Default for Plausibility {
 impl Plausibility {
     /// Sees the state of a row.
     pub fn row(&mut self, scene: &Scene, model: &Model, at: &State) {
-        let work = at.integrals[Integral::Work as usize];
+        let work = at.integrals[OF_WORK];
         let [t, before] = std::mem::replace(&mut self.last, [at.t, work]);
         if at.t > t {
             self.power = self.power.max((work - before).abs() / (at.t - t));

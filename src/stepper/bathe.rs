@@ -140,7 +140,7 @@ impl Stepper for Bathe {
         clamps += self.stage.solve(system, w, from, to, newton, work)?;
 
         let [w0, w1, w2] = self.quadrature;
-        to.integrals = from.integrals;
+        to.integrals.copy_from_slice(&from.integrals);
         integrate(
             h,
             &[(w0, &from.powers), (w1, &middle.powers), (w2, &to.powers)],

@@ -363,7 +363,7 @@ impl Stepper for DormandPrince {
             newton.accelerate(system, to, work)?;
         }
         clamps += system.powers(to, work);
-        to.integrals = from.integrals;
+        to.integrals.copy_from_slice(&from.integrals);
         let before = [from].into_iter().chain(stages);
         for (weight, stage) in weights().zip(before).filter(|(weight, _)| *weight != 0.0) {
             integrate(h, &[(weight, &stage.powers)], &mut to.integrals);

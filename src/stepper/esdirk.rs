@@ -239,11 +239,14 @@ impl Stepper for Esdirk {
                 Err(failure) => return Err(failure.into()),
             };
         }
-        to.integrals = from.integrals;
+        to.integrals.copy_from_slice(&from.integrals);
+        let State {
+            powers, integrals, ..
+        } = to;
         let before = [from].into_iter().chain(&self.middle);
-        let powers = before.map(|stage| stage.powers).chain([to.powers]);
-        for (weight, powers) in self.tableau.weights().zip(powers) {
-            integrate(h, &[(weight, &powers)], &mut to.integrals);
+        let all = before.map(|stage| &stage.powers).chain([&*powers]);
+        for (weight, powers) in self.tableau.weights().zip(all) {
+            integrate(h, &[(weight, powers)], integrals);
         }
         Ok(clamps)
     }

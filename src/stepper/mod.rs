@@ -25,7 +25,7 @@ pub use velocity_verlet::VelocityVerlet;
 
 use crate::checkpoint::Carried;
 use crate::newton::{Failure, Level, Newton, StageEquations};
-use crate::system::{INTEGRALS, PrescribeError, Shape, State, System, Weights, Work};
+use crate::system::{PrescribeError, Shape, State, System, Weights, Work};
 
 /// Why a step was not taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -234,7 +234,7 @@ impl Stage {
 
 /// The ledger of a step without inner stages: the trapezoidal rule over its ends.
 fn integrate_ends(from: &State, to: &mut State) {
-    to.integrals = from.integrals;
+    to.integrals.copy_from_slice(&from.integrals);
     integrate(
         to.t - from.t,
         &[(0.5, &from.powers), (0.5, &to.powers)],
@@ -296,7 +296,7 @@ fn add(x: &[f64], increment: &[f64], out: &mut [f64]) {
 }
 
 /// Adds the weighted integrands of some states to the integrals of the ledger.
-fn integrate(h: f64, weighted: &[(f64, &[f64; INTEGRALS])], integrals: &mut [f64; INTEGRALS]) {
+fn integrate(h: f64, weighted: &[(f64, &[f64])], integrals: &mut [f64]) {
     for (weight, powers) in weighted {
         for (integral, power) in integrals.iter_mut().zip(*powers) {
             *integral += h * weight * power;

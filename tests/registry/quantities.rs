@@ -3,12 +3,13 @@
 use looselink::effect::Effect;
 use looselink::force::{Force, LocalMatrix, WIDTH};
 use looselink::interaction::{Ends, ForceKind, ForceModel};
+use looselink::ledger::{Entry, Powers};
 use looselink::output::folder::Folder;
 use looselink::output::{Results, kind};
 use looselink::registry::Registry;
 use looselink::scene::{PointRef, Scene};
 use looselink::simulate::Simulation;
-use looselink::system::{INTEGRALS, State, Weights};
+use looselink::system::{State, Weights};
 use serde_json::Value;
 use std::sync::Arc;
 
@@ -42,7 +43,11 @@ impl Force for Measured {
 
     fn force_and_tangent(&self, _: &State, _: Weights, _: &mut [f64; WIDTH], _: &mut LocalMatrix) {}
 
-    fn powers(&self, _: &State, _: &mut [f64; INTEGRALS]) {}
+    fn entries(&self) -> Vec<&'static Entry> {
+        Vec::new()
+    }
+
+    fn powers(&self, _: &State, _: &mut Powers) {}
 
     fn quantities(&self) -> Quantities {
         self.0
