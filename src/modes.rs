@@ -108,7 +108,8 @@ impl Linearised {
         // accelerations do not change the stiffness, but for those of the known points at which bodies are held
         let mut rest = at.clone();
         // the velocity of an internal state is its value
-        let is_state = |i: &usize| model.states.contains(i);
+        let states = model.state_indices();
+        let is_state = |i: &usize| states.contains(i);
         let moving = (0..shape.coordinates).filter(|i| !is_state(i));
         moving.for_each(|i| rest.v[i] = 0.0);
         let (mut r, mut phi) = (vec![0.0; shape.coordinates], vec![0.0; shape.multipliers]);

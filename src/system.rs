@@ -31,6 +31,18 @@ pub struct Shape {
     pub entries: usize,
 }
 
+/// An internal state of a part: a quantity x with an equation of first order, dx/dt = g(t, q, v, x; m). It is the velocity of an unknown
+/// of unit mass, on which the part exerts the force -g: every method integrates it as it integrates velocities.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InternalState {
+    /// Its name, after that of its part.
+    pub name: &'static str,
+    /// The displacement \[m\] that a unit of it stands for: an accuracy of positions bounds its error, too.
+    pub metres: f64,
+    /// True where it may change far faster than bodies move, so that explicit methods would take tiny steps.
+    pub is_stiff: bool,
+}
+
 /// Everything that changes while time runs.
 #[derive(Debug, Clone)]
 pub struct State {
@@ -220,6 +232,10 @@ pub struct PrescribeError {
 pub trait System {
     /// Sizes.
     fn shape(&self) -> Shape;
+    /// The last unknowns, which are internal states.
+    fn states(&self) -> &[InternalState] {
+        &[]
+    }
     /// Pattern of the tangent: unknown coordinates, then multipliers.
     fn symbolic(&self) -> &Symbolic;
     /// The matrix of the acceleration level.

@@ -121,7 +121,7 @@ pub(super) fn build(
     let mut model = Model {
         shape,
         names,
-        states: numbering.states.concat(),
+        states: numbering.states.clone(),
         angles: angles(c, &numbering),
         determined: vec![false; numbering.unknowns],
         kinematics_counter: 0,
@@ -303,6 +303,7 @@ fn joint_terms(
             sides: points.map(|p| p.body),
             span: joint.span,
         },
+        states: &numbering.joint_states[j],
         eliminated: numbering.eliminated[j],
     };
     Ok(c.joints[j].terms(&ends, terms))
@@ -313,7 +314,7 @@ fn force_terms(c: &Compiler, numbering: &Numbering, terms: &mut Terms) -> Vec<(S
     let simulation = &c.scene.simulation;
     let full_load = (simulation.analysis == Analysis::Static).then_some(simulation.duration);
     let mut names = Vec::new();
-    for (force, states) in c.scene.forces.iter().zip(&numbering.states) {
+    for (force, states) in c.scene.forces.iter().zip(&numbering.force_states) {
         let ends = Ends {
             bodies: &numbering.bodies,
             joints: &c.scene.joints,
@@ -323,13 +324,14 @@ fn force_terms(c: &Compiler, numbering: &Numbering, terms: &mut Terms) -> Vec<(S
         };
         names.push((force.name.clone(), terms.forces.len()));
         terms.forces.push(force.kind.term(&ends));
-        terms.inertia.extend(states.iter().map(|&x| Inertia {
-            coordinates: vec![x],
-            values: vec![1.0],
-            field: vec![0.0],
-        }));
         terms.slots += force.kind.slots();
     }
+    let states = numbering.joint_states.iter().chain(&numbering.force_states);
+    terms.inertia.extend(states.flatten().map(|&x| Inertia {
+        coordinates: vec![x],
+        values: vec![1.0],
+        field: vec![0.0],
+    }));
     names
 }
 

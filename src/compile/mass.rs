@@ -46,9 +46,7 @@ pub(super) fn mass(parts: Vec<Inertia>, numbering: &Numbering, mode: Mode) -> Ma
         row.map(|(&j, &m)| (j, m)).collect()
     });
     let mut moves = vec![true; rows.len()];
-    for state in numbering.states.iter().flatten() {
-        moves[*state] = false;
-    }
+    moves[n - numbering.states.len()..n].fill(false);
     let moving = rows.iter().zip(moves).map(|(row, moves)| {
         let row = row.iter().filter(|_| moves);
         row.map(|(&j, &m)| (j, m)).collect()

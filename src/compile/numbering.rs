@@ -9,6 +9,7 @@ use crate::math::groups::Groups;
 use crate::math::plane::Vec2;
 use crate::model::{DrivenNode, Model};
 use crate::scene::{MotionKind, SceneError};
+use crate::system::InternalState;
 use std::sync::Arc;
 
 /// All coordinates of a mechanism.
@@ -21,8 +22,11 @@ pub(crate) struct Numbering {
     pub names: Vec<String>,
     /// Every body with its coordinates.
     pub bodies: Vec<Placed>,
-    /// Internal states of every force.
-    pub states: Vec<Vec<usize>>,
+    /// Internal states of every joint and of every force: the last unknowns.
+    pub joint_states: Vec<Vec<usize>>,
+    pub force_states: Vec<Vec<usize>>,
+    /// What they are.
+    pub states: Vec<InternalState>,
     /// Known coordinates that never change, with their values.
     pub fixed: Vec<(usize, f64)>,
     pub driven_nodes: Vec<DrivenNode>,
@@ -211,13 +215,20 @@ fn number_unknowns(c: &Compiler, nodes: &mut Nodes, eliminated: Vec<bool>) -> Nu
             };
         }
     }
+    let mut states = Vec::new();
+    let mut take_states = |owner: &str, own: Vec<InternalState>| -> Vec<usize> {
+        let own = own.into_iter().map(|state| {
+            states.push(state);
+            take(&[format!("{owner}.{}", state.name)])
+        });
+        own.collect()
+    };
+    let joints = c.scene.joints.iter().zip(&c.joints);
+    let joint_states = joints.map(|(joint, model)| take_states(&joint.name, model.states()));
+    let joint_states = joint_states.collect();
     let real = c.scene.forces.iter().filter(|_| c.mode != Mode::Ideal);
-    let states = real.map(|force| {
-        let states = force.kind.states().iter();
-        let states = states.map(|state| take(&[format!("{}.{state}", force.name)]));
-        states.collect()
-    });
-    let states = states.collect();
+    let force_states = real.map(|force| take_states(&force.name, force.kind.states()));
+    let force_states = force_states.collect();
     let unknowns = names.len();
     Numbering {
         unknowns,
@@ -225,6 +236,8 @@ fn number_unknowns(c: &Compiler, nodes: &mut Nodes, eliminated: Vec<bool>) -> Nu
         offset: 0,
         names,
         bodies,
+        joint_states,
+        force_states,
         states,
         fixed: Vec::new(),
         driven_nodes: Vec::new(),

@@ -6,6 +6,7 @@ use crate::constraint::Slide;
 use crate::document::{Fields, Kind, SceneError, Span};
 use crate::marker::{Marker, Separation, Spin};
 use crate::math::plane::Rotation;
+use crate::system::InternalState;
 use crate::terms::{JointTerms, Owner, Terms};
 use indexmap::IndexMap;
 use std::any::Any;
@@ -63,6 +64,8 @@ pub struct JointEnds<'a> {
     pub inverse_sizes: [f64; 2],
     /// Its name, bodies and place in the scene.
     pub owner: Owner<'a>,
+    /// Indices of its internal states.
+    pub states: &'a [usize],
     /// True where shared or known coordinates keep its points together, so that no constraint is needed for it.
     pub eliminated: bool,
 }
@@ -131,6 +134,10 @@ pub trait JointModel: Any + Debug + Send + Sync {
     /// The same joint with another contact, or with none.
     fn with_contact(&self, _contact: Option<Contact>) -> Option<Arc<dyn JointModel>> {
         None
+    }
+    /// Its internal states.
+    fn states(&self) -> Vec<InternalState> {
+        Vec::new()
     }
     /// Adds its terms.
     fn terms(&self, ends: &JointEnds, terms: &mut Terms) -> JointTerms;

@@ -7,7 +7,7 @@ use crate::document::Key;
 use crate::effect::Effect;
 use crate::force::{Force, LocalMatrix, WIDTH};
 use crate::ledger::{self, Entry, Powers};
-use crate::system::{State, Weights};
+use crate::system::{InternalState, State, Weights};
 use std::sync::Arc;
 
 pub(super) static KIND: ForceKind = ForceKind {
@@ -62,8 +62,12 @@ impl ForceModel for MaxwellModel {
         self.spring.points()
     }
 
-    fn states(&self) -> &'static [&'static str] {
-        &["elongation"]
+    fn states(&self) -> Vec<InternalState> {
+        vec![InternalState {
+            name: "elongation",
+            metres: 1.0,
+            is_stiff: false,
+        }]
     }
 
     fn term(&self, ends: &Ends) -> (Box<dyn Force>, [usize; 2]) {

@@ -34,6 +34,7 @@ use crate::document::{Fields, Kind, SceneError, Span};
 use crate::force::Force;
 use crate::marker::{Marker, Spin};
 use crate::motion::Function;
+use crate::system::InternalState;
 use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -78,10 +79,9 @@ pub trait ForceModel: Any + Debug + Send + Sync {
     fn turning_joint(&self) -> Option<usize> {
         None
     }
-    /// Names of its internal states z, each with an equation of first order dz/dt = g(q, v, z). A state is the velocity of an
-    /// unknown of unit mass, on which the term exerts the force f = -g: every method integrates it as it integrates velocities.
-    fn states(&self) -> &'static [&'static str] {
-        &[]
+    /// Its internal states.
+    fn states(&self) -> Vec<InternalState> {
+        Vec::new()
     }
     /// Numbers of memory that it needs.
     fn slots(&self) -> usize {

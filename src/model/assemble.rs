@@ -12,7 +12,8 @@ use crate::math::lu::Symbolic;
 use crate::math::plane::{quarter_turn, rotation};
 use crate::math::saddle_point::SaddlePoint;
 use crate::system::{
-    Changed, Equilibrium, Operations, PrescribeError, Shape, State, System, Weights, Work,
+    Changed, Equilibrium, InternalState, Operations, PrescribeError, Shape, State, System, Weights,
+    Work,
 };
 
 /// Local coordinates of an element.
@@ -255,6 +256,10 @@ impl Model {
 impl System for Model {
     fn shape(&self) -> Shape {
         self.shape
+    }
+
+    fn states(&self) -> &[InternalState] {
+        &self.states
     }
 
     fn symbolic(&self) -> &Symbolic {

@@ -55,9 +55,7 @@ impl Model {
                 lengths[x] = lever;
             }
         }
-        for state in &self.states {
-            lengths[*state] = 0.0;
-        }
+        lengths[self.state_indices()].fill(0.0);
         lengths.truncate(self.shape().unknowns);
         lengths
     }

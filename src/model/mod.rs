@@ -30,7 +30,7 @@ use crate::math::plane::Vec2;
 use crate::math::saddle_point::SaddlePoint;
 use crate::math::sparse_product::SparseProduct;
 use crate::motion::{Function, Path};
-use crate::system::{Prescribed, Shape, State, Work};
+use crate::system::{InternalState, Prescribed, Shape, State, Work};
 use crate::terms::{ConstraintTerm, Inertia, JointTerms};
 use std::ops::Range;
 use std::sync::Arc;
@@ -43,8 +43,8 @@ pub struct Model {
     pub(crate) acceleration_matrix: SaddlePoint,
     /// Names of the unknowns, then of the multipliers.
     pub(crate) names: Vec<String>,
-    /// Unknowns that are internal states of forces, at the level of velocities.
-    pub(crate) states: Vec<usize>,
+    /// The last unknowns, which are internal states.
+    pub(crate) states: Vec<InternalState>,
     /// Unknown angles of rigid bodies.
     pub(crate) angles: Vec<usize>,
     /// True of unknowns that prescribed motions determine through the constraints alone.
@@ -298,6 +298,11 @@ impl Model {
     /// Sizes.
     pub fn shape(&self) -> Shape {
         self.shape
+    }
+
+    /// The unknowns that are internal states.
+    pub(crate) fn state_indices(&self) -> Range<usize> {
+        self.shape.unknowns - self.states.len()..self.shape.unknowns
     }
 
     /// The effects present, in the order of the tally.

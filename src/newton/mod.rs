@@ -148,6 +148,8 @@ fn not_finite(values: &[f64]) -> Result<(), Failure> {
 pub struct Newton {
     tolerance: f64,
     costs: Costs,
+    /// Metres per unit of the last unknowns, which are internal states.
+    metres: Vec<f64>,
     r: Vec<f64>,
     phi: Vec<f64>,
     b: Vec<f64>,
@@ -173,6 +175,7 @@ impl Newton {
         Newton {
             tolerance,
             costs: Costs::of(system),
+            metres: system.states().iter().map(|state| state.metres).collect(),
             r: vec![0.0; shape.coordinates],
             phi: vec![0.0; shape.multipliers],
             b: vec![0.0; size],
@@ -191,6 +194,7 @@ impl Newton {
         let Newton {
             tolerance: _,
             costs: _,
+            metres: _,
             r: _,
             phi: _,
             b: _,

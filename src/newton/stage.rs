@@ -76,6 +76,30 @@ impl StageEquations<'_> {
     }
 }
 
+/// The largest update of a velocity \[m/s\]. An internal state, one of the last unknowns with `metres` per unit, counts as the velocity
+/// that moves a position as far in a stage.
+#[inline]
+fn largest_update(updates: &[f64], metres: &[f64], w: Weights) -> Update {
+    let (moving, states) = updates.split_at(updates.len() - metres.len());
+    let update = Update::largest(moving.iter().map(|d| w.v * d));
+    if states.is_empty() {
+        return update;
+    }
+    let per_metre = w.v * (w.v / w.q);
+    let changes = states
+        .iter()
+        .zip(metres)
+        .map(|(d, metres)| per_metre * metres * d);
+    let of_states = Update::largest(changes);
+    match of_states.size > update.size || of_states.size.is_nan() {
+        true => Update {
+            index: moving.len() + of_states.index,
+            ..of_states
+        },
+        false => update,
+    }
+}
+
 impl Newton {
     /// Solves M a + f + Phi_q^T lambda = 0 and the constraints of the stage's level for (a, lambda), with q = q_hat + w.q a and
     /// v = v_hat + w.v a.
@@ -222,7 +246,7 @@ impl Newton {
             for (lambda, d) in s.lambda.iter_mut().zip(&self.b[n..]) {
                 *lambda += d;
             }
-            let update = Update::largest(self.b[..n].iter().map(|d| w.v * d));
+            let update = largest_update(&self.b[..n], &self.metres, w);
             let rate = update.size / iteration.last;
             let is_linear = is_stale || !is_quadratic;
             if is_stale && rate >= 1.0 && update.size > ROUNDING_BAND * tolerance {

@@ -105,8 +105,8 @@ impl PositionError {
     pub fn new(model: &Model, accuracy: f64, horizon: f64) -> PositionError {
         let mut lengths = model.lengths();
         // an error of an internal state, the velocity of its unknown, counts as one of position
-        for state in &model.states {
-            lengths[*state] = 1.0 / horizon;
+        for (i, state) in model.state_indices().zip(&model.states) {
+            lengths[i] = state.metres / horizon;
         }
         PositionError {
             accuracy,
