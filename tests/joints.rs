@@ -6,7 +6,7 @@ use looselink::contact::friction::Ambrosio;
 use looselink::contact::geometry::CircleInCircle;
 use looselink::contact::normal::NormalParameters;
 use looselink::contact::normal::damped_power::LANKARANI_NIKRAVESH;
-use looselink::contact::{At, ContactPair, Rough, Slip, Smooth};
+use looselink::contact::{ContactPair, ContactState, FrictionalPair, FrictionlessPair, Slip};
 use looselink::force::WIDTH;
 use looselink::interaction::loose_guide::Walls;
 use looselink::marker::{Marker, Separation, Spin};
@@ -34,7 +34,7 @@ const OTHER: Marker = Marker::OnBody {
     s: Vec2::new(-0.03, 0.01),
 };
 
-fn joint(bearing: Marker, journal: Marker) -> Smooth<CircleInCircle> {
+fn joint(bearing: Marker, journal: Marker) -> FrictionlessPair<CircleInCircle> {
     let parameters = NormalParameters {
         stiffness: 50.0,
         exponent: 1.5,
@@ -42,7 +42,7 @@ fn joint(bearing: Marker, journal: Marker) -> Smooth<CircleInCircle> {
         impact_velocity_floor: 1e-6,
         own: &[],
     };
-    Smooth {
+    FrictionlessPair {
         geometry: CircleInCircle {
             bearing,
             journal,
@@ -54,8 +54,12 @@ fn joint(bearing: Marker, journal: Marker) -> Smooth<CircleInCircle> {
 }
 
 /// A closed contact.
-fn closed<'a>(q: &'a [f64], v: &'a [f64]) -> At<'a> {
-    At { q, v, z: 0.5 }
+fn closed<'a>(q: &'a [f64], v: &'a [f64]) -> ContactState<'a> {
+    ContactState {
+        q,
+        v,
+        impact_velocity: 0.5,
+    }
 }
 
 /// The local force and the tangents by q and by v of a term, gathered over all coordinates.
@@ -132,7 +136,7 @@ fn tangents_with_friction() {
     for slip in [Slip::Paper, Slip::Material] {
         for (name, spin) in spins {
             let spins = [spin, Spin::Angle { theta: 6 }];
-            let friction = Rough::new(joint(NODE, BODY), Box::new(law), slip, spins);
+            let friction = FrictionalPair::new(joint(NODE, BODY), Box::new(law), slip, spins);
             let evaluate =
                 |q: &[f64], v: &[f64], w, f: &mut [f64; WIDTH], k: &mut [[f64; WIDTH]; WIDTH]| {
                     friction.force_and_tangent(closed(q, v), w, f, k)
@@ -159,7 +163,7 @@ fn friction_balances_and_dissipates() {
         v1: 0.5,
     };
     let spins = [Spin::Angle { theta: 6 }, Spin::Angle { theta: 9 }];
-    let joint = Rough::new(joint(BODY, OTHER), Box::new(law), Slip::Material, spins);
+    let joint = FrictionalPair::new(joint(BODY, OTHER), Box::new(law), Slip::Material, spins);
     let at = closed(&q, &v);
     let mut f = [0.0; WIDTH];
     assert!(joint.force(at, &mut f), "the surfaces touch");
@@ -218,14 +222,14 @@ fn the_force_alone_is_that_of_the_tangent() {
             ([0.0; WIDTH], [0.0; WIDTH], [[0.0; WIDTH]; WIDTH]);
         let smooth = joint(bearing, journal);
         let at = closed(&q, &v);
-        let normal = smooth.normal_force(&smooth.gap(&q, &v), at.z);
+        let normal = smooth.normal_force(&smooth.gap(&q, &v), at.impact_velocity);
         let normal = normal.expect("the surfaces touch").value;
         assert!(smooth.force(at, &mut alone));
         assert!(smooth.force_and_tangent(at, w, &mut with_tangent, &mut k));
         same(name, alone, with_tangent, normal);
 
         let spins = [Spin::Angle { theta: 6 }, Spin::Angle { theta: 9 }];
-        let rough = Rough::new(smooth, Box::new(law), Slip::Material, spins);
+        let rough = FrictionalPair::new(smooth, Box::new(law), Slip::Material, spins);
         let (mut alone, mut with_tangent) = ([0.0; WIDTH], [0.0; WIDTH]);
         rough.force(at, &mut alone);
         rough.force_and_tangent(at, w, &mut with_tangent, &mut k);
@@ -282,7 +286,7 @@ fn friction_follows_the_definitions_of_slip() {
         ),
     ] {
         assert!(velocity.abs() > law.v0, "the law must act");
-        let joint = Rough::new(joint(BODY, OTHER), Box::new(law), slip, spins);
+        let joint = FrictionalPair::new(joint(BODY, OTHER), Box::new(law), slip, spins);
         let at = closed(&q, &v);
         let (pressed, rubbed) = joint.forces(at).expect("the surfaces touch");
         let size = (velocity.abs() - law.v0) / (law.v1 - law.v0) * 0.3 * normal;
@@ -318,7 +322,7 @@ fn tangents_of_pins_between_walls() {
         ("on a slope", NODE, Spin::Slope { x: 10 }, OTHER),
         ("on the ground", NODE, Spin::Fixed, BODY),
     ] {
-        let surface = || Smooth {
+        let surface = || FrictionlessPair {
             geometry: Walls::new(
                 Separation {
                     from: guide,
@@ -337,7 +341,7 @@ fn tangents_of_pins_between_walls() {
             &|q, v, w, f, k| smooth.force_and_tangent(closed(q, v), w, f, k),
         );
         let spins = [spin, Spin::Angle { theta: 9 }];
-        let rough = Rough::new(surface(), Box::new(law), Slip::Material, spins);
+        let rough = FrictionalPair::new(surface(), Box::new(law), Slip::Material, spins);
         check(
             &format!("pin between walls {name}, with friction"),
             &rough.coordinates(),

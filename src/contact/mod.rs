@@ -2,13 +2,13 @@
 //! law (how hard they push), and a friction law, if there is friction.
 
 pub mod friction;
+mod frictional_pair;
+mod frictionless_pair;
 pub mod geometry;
 pub mod normal;
-mod rough;
-mod smooth;
 
-pub use rough::{Rough, Slip};
-pub use smooth::Smooth;
+pub use frictional_pair::{FrictionalPair, Slip};
+pub use frictionless_pair::FrictionlessPair;
 
 use crate::effect::Effect;
 use crate::force::{LocalMatrix, WIDTH};
@@ -19,13 +19,13 @@ use geometry::Gap;
 
 /// Positions and velocities, and the memory of one contact: the impact velocity \[m/s\], 0 while the contact is open.
 #[derive(Debug, Clone, Copy)]
-pub struct At<'a> {
+pub struct ContactState<'a> {
     /// Coordinates.
     pub q: &'a [f64],
     /// Velocities.
     pub v: &'a [f64],
     /// Impact velocity.
-    pub z: f64,
+    pub impact_velocity: f64,
 }
 
 /// Local indices of some coordinates; those that are not in the list yet are appended to it.
@@ -51,25 +51,25 @@ pub trait ContactPair: std::fmt::Debug + Send + Sync {
     /// d(delta)/dt \[m/s\].
     fn rate(&self, gap: &Gap) -> f64;
     /// Adds the local force (left side of the equations of motion); false where the surfaces do not touch.
-    fn force(&self, at: At, f: &mut [f64; WIDTH]) -> bool;
+    fn force(&self, at: ContactState, f: &mut [f64; WIDTH]) -> bool;
     /// Adds the local force and its tangent w.q df/dq + w.v df/dv; false where the surfaces do not touch.
     fn force_and_tangent(
         &self,
-        at: At,
+        at: ContactState,
         w: Weights,
         f: &mut [f64; WIDTH],
         k: &mut LocalMatrix,
     ) -> bool;
     /// Force of the first side on the second \[N\].
-    fn reaction(&self, at: At) -> Vec2;
+    fn reaction(&self, at: ContactState) -> Vec2;
     /// Stored energy of a closed contact \[J\].
-    fn energy(&self, at: At) -> f64;
+    fn energy(&self, at: ContactState) -> f64;
     /// The slip \[m/s\] of a touching contact that creeps: see [`friction::FrictionLaw::creeps`].
-    fn creep(&self, _at: At) -> Option<f64> {
+    fn creep(&self, _at: ContactState) -> Option<f64> {
         None
     }
     /// Its entries of the energy ledger.
     fn entries(&self) -> Vec<&'static Entry>;
     /// Adds what it dissipates to its entries; true where the normal force is clamped at zero.
-    fn powers(&self, at: At, powers: &mut Powers) -> bool;
+    fn powers(&self, at: ContactState, powers: &mut Powers) -> bool;
 }

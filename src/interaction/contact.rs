@@ -4,7 +4,7 @@ use crate::body::Materials;
 use crate::contact::friction::Ambrosio;
 use crate::contact::geometry::Geometry;
 use crate::contact::normal::{NormalLaw, NormalLawKind, NormalParameters};
-use crate::contact::{ContactPair, Rough, Slip, Smooth};
+use crate::contact::{ContactPair, FrictionalPair, FrictionlessPair, Slip};
 use crate::document::{Field, Fields, Key, NumberRange, SceneError, Takes, derived};
 use crate::marker::Spin;
 
@@ -139,7 +139,7 @@ impl Contact {
         spins: [Spin; 2],
     ) -> Box<dyn ContactPair> {
         let law = self.normal_law();
-        let surface = Smooth { geometry, law };
+        let surface = FrictionlessPair { geometry, law };
         let Some(f) = self.friction else {
             return Box::new(surface);
         };
@@ -148,7 +148,7 @@ impl Contact {
             v0: f.v0,
             v1: f.v1,
         };
-        Box::new(Rough::new(surface, Box::new(law), f.slip, spins))
+        Box::new(FrictionalPair::new(surface, Box::new(law), f.slip, spins))
     }
 
     /// Reads `[contacts.NAME]`.

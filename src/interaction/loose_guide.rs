@@ -9,7 +9,7 @@ use super::prismatic::{DIRECTION, Prismatic, direction};
 use super::{Contact, JointEnds, JointKind, JointModel};
 use crate::constraint::Slide;
 use crate::contact::geometry::{Gap, Geometry, Touch};
-use crate::contact::{At, Slip, local_indices};
+use crate::contact::{ContactState, Slip, local_indices};
 use crate::document::{Key, Takes};
 use crate::force::{LocalMatrix, WIDTH};
 use crate::marker::{Separation, Spin};
@@ -171,7 +171,7 @@ impl Walls {
     }
 
     /// d2s/dq2 and d2p/dq2. With phi the angle of the spin, du = m dphi and dm = -u dphi.
-    fn second(&self, at: At, pin: &Pin) -> [LocalMatrix; 2] {
+    fn second(&self, at: ContactState, pin: &Pin) -> [LocalMatrix; 2] {
         let Pin {
             u, m, s, p, e_q, b, ..
         } = pin;
@@ -236,7 +236,7 @@ impl Geometry for Walls {
         }
     }
 
-    fn push(&self, at: At, _: &Gap, force: f64, f: &mut [f64; WIDTH]) {
+    fn push(&self, at: ContactState, _: &Gap, force: f64, f: &mut [f64; WIDTH]) {
         let pin = self.pin(at.q, at.v);
         let [s_q, _] = pin.first();
         for (f, s_q) in f.iter_mut().zip(s_q) {
@@ -244,7 +244,7 @@ impl Geometry for Walls {
         }
     }
 
-    fn touch(&self, at: At, _: &Gap) -> Touch {
+    fn touch(&self, at: ContactState, _: &Gap) -> Touch {
         let pin = self.pin(at.q, at.v);
         let side = pin.s.signum();
         let [s_q, p_q] = pin.first();
@@ -267,7 +267,15 @@ impl Geometry for Walls {
         }
     }
 
-    fn curve(&self, at: At, _: &Gap, _: &Touch, normal: f64, tangential: f64, k: &mut LocalMatrix) {
+    fn curve(
+        &self,
+        at: ContactState,
+        _: &Gap,
+        _: &Touch,
+        normal: f64,
+        tangential: f64,
+        k: &mut LocalMatrix,
+    ) {
         let pin = self.pin(at.q, at.v);
         let side = pin.s.signum();
         let [s_qq, p_qq] = self.second(at, &pin);

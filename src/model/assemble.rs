@@ -93,7 +93,7 @@ impl Model {
     fn closed_contacts<'a>(
         &'a self,
         at: &'a State,
-    ) -> impl Iterator<Item = (&'a PlacedContact, contact::At<'a>)> {
+    ) -> impl Iterator<Item = (&'a PlacedContact, contact::ContactState<'a>)> {
         let contacts = self.contacts.iter().enumerate();
         let closed = contacts.filter(|(i, _)| is_closed(at, *i));
         closed.map(|(i, c)| (c, contact_state(at, i)))

@@ -302,7 +302,10 @@ impl Model {
 }
 
 /// Positions, velocities and memory of a contact.
-pub(super) fn contact_state(at: &State, contact: usize) -> contact::At<'_> {
-    let (q, v, z) = (&at.q, &at.v, at.memory[contact]);
-    contact::At { q, v, z }
+pub(super) fn contact_state(at: &State, contact: usize) -> contact::ContactState<'_> {
+    contact::ContactState {
+        q: &at.q,
+        v: &at.v,
+        impact_velocity: at.memory[contact],
+    }
 }

@@ -1,6 +1,6 @@
 //! A joint with a contact geometry of its own: a pin between two walls that keep their direction in space.
 
-use looselink::contact::At;
+use looselink::contact::ContactState;
 use looselink::contact::geometry::{Gap, Geometry, Touch};
 use looselink::document::Key;
 use looselink::force::{LocalMatrix, WIDTH};
@@ -116,12 +116,12 @@ impl Geometry for SlotWalls {
         }
     }
 
-    fn push(&self, _: At, gap: &Gap, force: f64, f: &mut [f64; WIDTH]) {
+    fn push(&self, _: ContactState, gap: &Gap, force: f64, f: &mut [f64; WIDTH]) {
         let along = self.along(self.along_normal(gap, force), gap);
         f.iter_mut().zip(along).for_each(|(f, push)| *f += push);
     }
 
-    fn touch(&self, at: At, gap: &Gap) -> Touch {
+    fn touch(&self, at: ContactState, gap: &Gap) -> Touch {
         let n = self.along_normal(gap, 1.0);
         let t = quarter_turn(n);
         let mut touch = Touch {
@@ -141,7 +141,7 @@ impl Geometry for SlotWalls {
 
     fn curve(
         &self,
-        _: At,
+        _: ContactState,
         gap: &Gap,
         touch: &Touch,
         normal: f64,

@@ -5,7 +5,7 @@
 //! of the paper's runs e = 0 and n does not exist.
 
 use super::{Gap, Geometry, Touch};
-use crate::contact::At;
+use crate::contact::ContactState;
 use crate::force::{LocalMatrix, WIDTH};
 use crate::marker::Marker;
 use crate::math::plane::quarter_turn;
@@ -49,7 +49,7 @@ impl Geometry for CircleInCircle {
     }
 
     #[inline]
-    fn push(&self, _: At, gap: &Gap, force: f64, f: &mut [f64; WIDTH]) {
+    fn push(&self, _: ContactState, gap: &Gap, force: f64, f: &mut [f64; WIDTH]) {
         let push = self.along_normal(gap, force);
         let mut column = 0;
         for (marker, sign, arm) in [
@@ -66,7 +66,7 @@ impl Geometry for CircleInCircle {
         }
     }
 
-    fn touch(&self, at: At, gap: &Gap) -> Touch {
+    fn touch(&self, at: ContactState, gap: &Gap) -> Touch {
         let n = 1.0 / gap.eccentricity * gap.e;
         let t = quarter_turn(n);
         let (rate, slip) = (gap.e_dot.dot(&n), gap.e_dot.dot(&t));
@@ -116,7 +116,7 @@ impl Geometry for CircleInCircle {
     #[inline]
     fn curve(
         &self,
-        _: At,
+        _: ContactState,
         gap: &Gap,
         touch: &Touch,
         normal: f64,

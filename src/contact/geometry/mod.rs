@@ -4,7 +4,7 @@ mod circle_in_circle;
 
 pub use circle_in_circle::CircleInCircle;
 
-use super::At;
+use super::ContactState;
 use crate::force::{LocalMatrix, WIDTH};
 use crate::math::plane::Vec2;
 
@@ -67,13 +67,13 @@ pub trait Geometry: std::fmt::Debug + Send + Sync {
         force / gap.eccentricity * gap.e
     }
     /// Adds `force` d(delta)/dq to `f`.
-    fn push(&self, at: At, gap: &Gap, force: f64, f: &mut [f64; WIDTH]);
+    fn push(&self, at: ContactState, gap: &Gap, force: f64, f: &mut [f64; WIDTH]);
     /// Directions, rates and gradients of surfaces that touch.
-    fn touch(&self, at: At, gap: &Gap) -> Touch;
+    fn touch(&self, at: ContactState, gap: &Gap) -> Touch;
     /// Adds normal d2(delta)/dq2 + tangential d2(slip)/(dv dq) to `k`, without the rates.
     fn curve(
         &self,
-        at: At,
+        at: ContactState,
         gap: &Gap,
         touch: &Touch,
         normal: f64,

@@ -2,7 +2,7 @@
 
 use super::geometry::{Gap, Geometry, Touch};
 use super::normal::{NormalForce, NormalLaw};
-use super::{At, ContactPair};
+use super::{ContactPair, ContactState};
 use crate::effect::{self, Effect};
 use crate::force::{LocalMatrix, WIDTH};
 use crate::ledger::{self, Entry, Powers};
@@ -11,14 +11,14 @@ use crate::system::Weights;
 
 /// A geometry and a normal law.
 #[derive(Debug)]
-pub struct Smooth<G> {
+pub struct FrictionlessPair<G> {
     /// The surfaces.
     pub geometry: G,
     /// Normal law.
     pub law: Box<dyn NormalLaw>,
 }
 
-impl<G: Geometry> Smooth<G> {
+impl<G: Geometry> FrictionlessPair<G> {
     /// The normal force of a closed contact; `None` where the surfaces are apart.
     #[inline]
     pub fn normal_force(&self, gap: &Gap, impact_velocity: f64) -> Option<NormalForce> {
@@ -60,7 +60,7 @@ impl<G: Geometry> Smooth<G> {
     }
 }
 
-impl<G: Geometry> ContactPair for Smooth<G> {
+impl<G: Geometry> ContactPair for FrictionlessPair<G> {
     fn coordinates(&self) -> Vec<usize> {
         self.geometry.coordinates()
     }
@@ -77,9 +77,9 @@ impl<G: Geometry> ContactPair for Smooth<G> {
         self.geometry.rate(gap)
     }
 
-    fn force(&self, at: At, f: &mut [f64; WIDTH]) -> bool {
+    fn force(&self, at: ContactState, f: &mut [f64; WIDTH]) -> bool {
         let gap = self.geometry.gap(at.q, at.v);
-        let force = self.normal_force(&gap, at.z);
+        let force = self.normal_force(&gap, at.impact_velocity);
         if let Some(force) = &force {
             self.geometry.push(at, &gap, force.value, f);
         }
@@ -88,13 +88,13 @@ impl<G: Geometry> ContactPair for Smooth<G> {
 
     fn force_and_tangent(
         &self,
-        at: At,
+        at: ContactState,
         w: Weights,
         f: &mut [f64; WIDTH],
         k: &mut LocalMatrix,
     ) -> bool {
         let gap = self.geometry.gap(at.q, at.v);
-        let Some(force) = self.normal_force(&gap, at.z) else {
+        let Some(force) = self.normal_force(&gap, at.impact_velocity) else {
             return false;
         };
         let touch = self.geometry.touch(at, &gap);
@@ -105,16 +105,16 @@ impl<G: Geometry> ContactPair for Smooth<G> {
         true
     }
 
-    fn reaction(&self, at: At) -> Vec2 {
+    fn reaction(&self, at: ContactState) -> Vec2 {
         let gap = self.geometry.gap(at.q, at.v);
-        let force = self.normal_force(&gap, at.z);
+        let force = self.normal_force(&gap, at.impact_velocity);
         force.map_or(Vec2::zeros(), |force| {
             -self.geometry.along_normal(&gap, force.value)
         })
     }
 
-    fn energy(&self, at: At) -> f64 {
-        if at.z > 0.0 {
+    fn energy(&self, at: ContactState) -> f64 {
+        if at.impact_velocity > 0.0 {
             self.law.energy(self.geometry.gap(at.q, at.v).delta)
         } else {
             0.0
@@ -125,9 +125,9 @@ impl<G: Geometry> ContactPair for Smooth<G> {
         vec![&ledger::CONTACT, &ledger::CLAMP]
     }
 
-    fn powers(&self, at: At, powers: &mut Powers) -> bool {
+    fn powers(&self, at: ContactState, powers: &mut Powers) -> bool {
         let gap = self.geometry.gap(at.q, at.v);
-        let Some(force) = self.normal_force(&gap, at.z) else {
+        let Some(force) = self.normal_force(&gap, at.impact_velocity) else {
             return false;
         };
         let loss = (force.value - force.elastic) * self.geometry.rate(&gap);

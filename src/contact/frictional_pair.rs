@@ -8,7 +8,7 @@
 use super::friction::{FrictionLaw, TangentialForce};
 use super::geometry::{Gap, Geometry, Touch};
 use super::normal::NormalForce;
-use super::{At, ContactPair, Smooth, local_indices};
+use super::{ContactPair, ContactState, FrictionlessPair, local_indices};
 use crate::effect::{self, Effect};
 use crate::force::{LocalMatrix, WIDTH};
 use crate::ledger::{self, Entry, Powers};
@@ -27,9 +27,9 @@ pub enum Slip {
 
 /// A contact with friction.
 #[derive(Debug)]
-pub struct Rough<G> {
+pub struct FrictionalPair<G> {
     /// Geometry and normal law.
-    pub surface: Smooth<G>,
+    pub surface: FrictionlessPair<G>,
     /// Tangential law.
     pub law: Box<dyn FrictionLaw>,
     slip: Slip,
@@ -57,10 +57,10 @@ struct Sliding {
     tangential: TangentialForce,
 }
 
-impl<G: Geometry> Rough<G> {
+impl<G: Geometry> FrictionalPair<G> {
     /// A contact of bodies that turn with the given spins.
     pub fn new(
-        surface: Smooth<G>,
+        surface: FrictionlessPair<G>,
         law: Box<dyn FrictionLaw>,
         slip: Slip,
         spins: [Spin; 2],
@@ -74,7 +74,7 @@ impl<G: Geometry> Rough<G> {
                 rims.push((radius, spin, local));
             }
         }
-        Rough {
+        FrictionalPair {
             surface,
             law,
             slip,
@@ -117,9 +117,9 @@ impl<G: Geometry> Rough<G> {
     }
 
     /// Everything about a touching contact; `None` where the surfaces are apart.
-    fn sliding(&self, at: At) -> Option<Sliding> {
+    fn sliding(&self, at: ContactState) -> Option<Sliding> {
         let gap = self.surface.geometry.gap(at.q, at.v);
-        let normal = self.surface.normal_force(&gap, at.z)?;
+        let normal = self.surface.normal_force(&gap, at.impact_velocity)?;
         let touch = self.surface.geometry.touch(at, &gap);
         let slip = self.slip_state(at.q, at.v, &gap, &touch);
         let tangential = self.law.force(slip.value, normal.value);
@@ -133,12 +133,12 @@ impl<G: Geometry> Rough<G> {
     }
 
     /// Normal and tangential force of a touching contact.
-    pub fn forces(&self, at: At) -> Option<(NormalForce, TangentialForce)> {
+    pub fn forces(&self, at: ContactState) -> Option<(NormalForce, TangentialForce)> {
         self.sliding(at).map(|s| (s.normal, s.tangential))
     }
 
     /// Power taken by friction \[W\]: the tangential force on the velocities it acts on.
-    pub fn dissipation(&self, at: At) -> f64 {
+    pub fn dissipation(&self, at: ContactState) -> f64 {
         self.sliding(at).map_or(0.0, |s| {
             let levers = self.coordinates.iter().zip(s.slip.lever);
             s.tangential.value * levers.map(|(&i, l)| l * at.v[i]).sum::<f64>()
@@ -146,7 +146,7 @@ impl<G: Geometry> Rough<G> {
     }
 }
 
-impl<G: Geometry> ContactPair for Rough<G> {
+impl<G: Geometry> ContactPair for FrictionalPair<G> {
     fn coordinates(&self) -> Vec<usize> {
         self.coordinates.clone()
     }
@@ -163,7 +163,7 @@ impl<G: Geometry> ContactPair for Rough<G> {
         self.surface.geometry.rate(gap)
     }
 
-    fn force(&self, at: At, f: &mut [f64; WIDTH]) -> bool {
+    fn force(&self, at: ContactState, f: &mut [f64; WIDTH]) -> bool {
         let sliding = self.sliding(at);
         if let Some(s) = &sliding {
             self.surface.geometry.push(at, &s.gap, s.normal.value, f);
@@ -176,7 +176,7 @@ impl<G: Geometry> ContactPair for Rough<G> {
 
     fn force_and_tangent(
         &self,
-        at: At,
+        at: ContactState,
         w: Weights,
         f: &mut [f64; WIDTH],
         k: &mut LocalMatrix,
@@ -216,17 +216,17 @@ impl<G: Geometry> ContactPair for Rough<G> {
         true
     }
 
-    fn reaction(&self, at: At) -> Vec2 {
+    fn reaction(&self, at: ContactState) -> Vec2 {
         self.sliding(at).map_or(Vec2::zeros(), |s| {
             -(s.normal.value * s.touch.n + s.tangential.value * s.touch.t)
         })
     }
 
-    fn energy(&self, at: At) -> f64 {
+    fn energy(&self, at: ContactState) -> f64 {
         self.surface.energy(at)
     }
 
-    fn creep(&self, at: At) -> Option<f64> {
+    fn creep(&self, at: ContactState) -> Option<f64> {
         let slip = self.sliding(at)?.slip.value;
         self.law.creeps(slip).then_some(slip)
     }
@@ -237,7 +237,7 @@ impl<G: Geometry> ContactPair for Rough<G> {
         entries
     }
 
-    fn powers(&self, at: At, powers: &mut Powers) -> bool {
+    fn powers(&self, at: ContactState, powers: &mut Powers) -> bool {
         powers.add(2, self.dissipation(at));
         self.surface.powers(at, powers)
     }
