@@ -50,6 +50,8 @@ pub static CLAMP: Entry = Entry {
 pub static STANDARD: [&Entry; 5] = [&WORK, &CONTACT, &FRICTION, &DAMPING, &CLAMP];
 /// The index of [`WORK`].
 pub const OF_WORK: usize = 0;
+/// The index of [`FRICTION`].
+pub const OF_FRICTION: usize = 2;
 
 /// The powers that a term adds to \[W\].
 #[derive(Debug)]

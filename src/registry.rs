@@ -1,6 +1,7 @@
 //! What a scene can name.
 
 use crate::body::{self, BodyKind};
+use crate::contact::friction::{FRICTIONS, FrictionKind};
 use crate::contact::normal::{LAWS, NormalLawKind};
 use crate::interaction::{FORCES, ForceKind, JOINTS, JointKind, contact};
 use crate::motion::{FUNCTIONS, FunctionKind};
@@ -21,6 +22,8 @@ pub struct Registry {
     pub functions: Vec<&'static FunctionKind>,
     /// Normal contact laws.
     pub laws: Vec<&'static NormalLawKind>,
+    /// Friction laws.
+    pub frictions: Vec<&'static FrictionKind>,
     /// Integration schemes.
     pub schemes: Vec<&'static Scheme>,
     /// Formats of tables.
@@ -36,6 +39,7 @@ impl Registry {
             forces: FORCES.to_vec(),
             functions: FUNCTIONS.to_vec(),
             laws: LAWS.to_vec(),
+            frictions: FRICTIONS.to_vec(),
             schemes: SCHEMES.to_vec(),
             formats: FORMATS.to_vec(),
         }
@@ -81,6 +85,13 @@ impl Registry {
             assert!(!taken, "`{}` of {} is taken", key.name, law.name);
         }
         self.laws.push(law);
+        self
+    }
+
+    /// The same with a friction law.
+    #[must_use]
+    pub fn with_friction(mut self, kind: &'static FrictionKind) -> Registry {
+        self.frictions.push(kind);
         self
     }
 

@@ -2,7 +2,6 @@
 
 use approx::assert_relative_eq;
 use ladder::{Rung, Worst};
-use looselink::contact::friction::{Ambrosio, FrictionLaw};
 use looselink::contact::normal::damped_power::{FLORES, HERTZ, HUNT_CROSSLEY, LANKARANI_NIKRAVESH};
 use looselink::contact::normal::{LAWS, NormalLaw, NormalLawKind, NormalParameters};
 use looselink::scene::Contact;
@@ -65,24 +64,6 @@ proptest! {
             let force = law.force(delta, rate, impact);
             prop_assert!(force.value >= 0.0 && force.value.is_finite());
             prop_assert!(!force.clamped || force.value == 0.0);
-        }
-    }
-
-    #[test]
-    fn friction_is_odd_and_opposes_slip(slip in -2e-3..2e-3_f64, normal in 0.0..100.0_f64) {
-        let law = Ambrosio { coefficient: 0.1, v0: 1e-4, v1: 1e-3 };
-        let (there, back) = (law.force(slip, normal), law.force(-slip, normal));
-        prop_assert_eq!(there.value, -back.value);
-        prop_assert!(there.value * slip >= 0.0);
-        prop_assert!(there.value.abs() <= 0.1 * normal);
-        let away_from_kinks = [1e-4, 1e-3].iter().all(|k: &f64| (slip.abs() - k).abs() > 1e-6);
-        if away_from_kinks {
-            let h = 1e-7;
-            let by_slip = (law.force(slip + h, normal).value - law.force(slip - h, normal).value) / (2.0 * h);
-            let by_normal = law.force(slip, normal + 1.0).value - there.value;
-            // piecewise linear: rounding only
-            prop_assert!((by_slip - there.by_slip).abs() <= 1e-6 * (1.0 + there.by_slip));
-            prop_assert!((by_normal - there.by_normal).abs() <= 1e-12);
         }
     }
 }

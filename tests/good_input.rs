@@ -4,6 +4,7 @@ use crate::bad_input::CASE4;
 use crate::support::{all_scenes, path};
 use looselink::body::{FlexibleLink, RigidBody};
 use looselink::contact::Slip;
+use looselink::contact::friction::Ambrosio;
 use looselink::contact::normal::damped_power::{HERTZ, LANKARANI_NIKRAVESH};
 use looselink::scene::Scene;
 use looselink::simulate::Simulation;
@@ -86,13 +87,9 @@ fn case_4_is_what_the_paper_says() {
     // R_j = R_i - c loses c's last bits.
     approx::assert_relative_eq!(pin.stiffness, stiffness, max_relative = 1e-14);
     let friction = pin.friction.unwrap();
+    let law = friction.law.get::<Ambrosio>().unwrap();
     assert_eq!(
-        (
-            friction.coefficient,
-            friction.v0,
-            friction.v1,
-            friction.slip
-        ),
+        (law.coefficient, law.v0, law.v1, friction.slip),
         (0.1, 1e-4, 1e-3, Slip::Paper)
     );
     let assumed = scene
@@ -255,8 +252,9 @@ fn velocities_of_friction_have_defaults() {
         .unwrap()
         .friction
         .unwrap();
-    assert_eq!([friction.v0, friction.v1], [1e-4, 1e-3]);
-    assert_eq!(friction.coefficient, 0.2);
+    let law = friction.law.get::<Ambrosio>().unwrap();
+    assert_eq!([law.v0, law.v1], [1e-4, 1e-3]);
+    assert_eq!(law.coefficient, 0.2);
     let typed = [
         r#"contacts.aluminium={ law = "hertz", bearing_radius = 0.01, clearance = 2e-5, stiffness = 1e10, exponent = 1.5 }"#,
     ];

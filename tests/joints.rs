@@ -2,7 +2,9 @@
 
 use crate::differencing;
 use ladder::{Rung, Worst};
-use looselink::contact::friction::Ambrosio;
+use looselink::contact::friction::{
+    Ambrosio, Bristle, CoulombStribeck, ElastoPlastic, FrictionLaw, LuGre, Stribeck,
+};
 use looselink::contact::geometry::CircleInCircle;
 use looselink::contact::normal::NormalParameters;
 use looselink::contact::normal::damped_power::LANKARANI_NIKRAVESH;
@@ -12,14 +14,15 @@ use looselink::interaction::loose_guide::Walls;
 use looselink::marker::{Marker, Separation, Spin};
 use looselink::math::plane::Vec2;
 use looselink::system::Weights;
+use std::sync::Arc;
 
-/// Coordinates: a node and a second node, a body, another body, a slope. Sizes near one, so that differences resolve.
+/// Coordinates: a node and a second node, a body, another body, a slope, an internal state. Sizes near one, so that differences resolve.
 fn coordinates() -> (Vec<f64>, Vec<f64>) {
     let q = vec![
-        0.0, 0.0, 0.9, 0.4, 0.05, 0.02, 0.7, -0.02, 0.03, -0.4, 1.1, 0.3,
+        0.0, 0.0, 0.9, 0.4, 0.05, 0.02, 0.7, -0.02, 0.03, -0.4, 1.1, 0.3, 0.0,
     ];
     let v = vec![
-        0.2, -0.1, 0.3, 0.5, 0.6, 0.25, 0.9, 0.1, 0.35, -0.7, 0.2, 0.4,
+        0.2, -0.1, 0.3, 0.5, 0.6, 0.25, 0.9, 0.1, 0.35, -0.7, 0.2, 0.4, 0.025,
     ];
     (q, v)
 }
@@ -32,6 +35,29 @@ const BODY: Marker = Marker::OnBody {
 const OTHER: Marker = Marker::OnBody {
     pose: [7, 8, 9],
     s: Vec2::new(-0.03, 0.01),
+};
+
+const COEFFICIENT: Stribeck = Stribeck {
+    kinetic: 0.3,
+    static_: 0.5,
+    velocity: 0.7,
+};
+const STRIBECK: CoulombStribeck = CoulombStribeck {
+    coefficient: COEFFICIENT,
+    v_r: 0.6,
+    viscous: 0.1,
+};
+const BRISTLE: Bristle = Bristle {
+    coefficient: COEFFICIENT,
+    stiffness: 10.0,
+    damping: 0.3,
+    damping_velocity: 0.9,
+    viscous: 0.1,
+};
+/// At the deflection of 0.025 m between the elastic limit and the steady deflection.
+const ELASTO_PLASTIC: ElastoPlastic = ElastoPlastic {
+    bristle: BRISTLE,
+    elastic_limit: 0.01,
 };
 
 fn joint(bearing: Marker, journal: Marker) -> FrictionlessPair<CircleInCircle> {
@@ -58,6 +84,7 @@ fn closed<'a>(q: &'a [f64], v: &'a [f64]) -> ContactState<'a> {
     ContactState {
         q,
         v,
+        a: &[0.0; 13],
         impact_velocity: 0.5,
     }
 }
@@ -123,27 +150,37 @@ fn tangents_without_friction() {
 #[test]
 fn tangents_with_friction() {
     // v0 < |slip| < v1: the sloping part of the law, where every term of the tangent counts
-    let law = Ambrosio {
+    let ambrosio = Ambrosio {
         coefficient: 0.3,
         v0: 0.01,
         v1: 3.0,
     };
+    let laws: [(&str, Arc<dyn FrictionLaw>); 4] = [
+        ("ambrosio", Arc::new(ambrosio)),
+        ("coulomb_stribeck", Arc::new(STRIBECK)),
+        ("lugre", Arc::new(LuGre(BRISTLE))),
+        ("elasto_plastic", Arc::new(ELASTO_PLASTIC)),
+    ];
     let spins = [
         ("fixed", Spin::Fixed),
         ("chord", Spin::Chord { from: 0, to: 2 }),
         ("slope", Spin::Slope { x: 10 }),
     ];
-    for slip in [Slip::Paper, Slip::Material] {
+    for (slip, (law_name, law)) in [Slip::Paper, Slip::Material]
+        .into_iter()
+        .flat_map(|slip| laws.iter().map(move |law| (slip, law)))
+    {
         for (name, spin) in spins {
             let spins = [spin, Spin::Angle { theta: 6 }];
-            let friction = FrictionalPair::new(joint(NODE, BODY), Box::new(law), slip, spins);
+            let state = law.state().map(|_| 12);
+            let friction = FrictionalPair::new(joint(NODE, BODY), law.clone(), slip, spins, state);
             let evaluate =
                 |q: &[f64], v: &[f64], w, f: &mut [f64; WIDTH], k: &mut [[f64; WIDTH]; WIDTH]| {
                     friction.force_and_tangent(closed(q, v), w, f, k)
                 };
             check(
                 &format!(
-                    "with friction, {} slip, {name}",
+                    "with friction {law_name}, {} slip, {name}",
                     format!("{slip:?}").to_lowercase()
                 ),
                 &friction.coordinates(),
@@ -163,7 +200,13 @@ fn friction_balances_and_dissipates() {
         v1: 0.5,
     };
     let spins = [Spin::Angle { theta: 6 }, Spin::Angle { theta: 9 }];
-    let joint = FrictionalPair::new(joint(BODY, OTHER), Box::new(law), Slip::Material, spins);
+    let joint = FrictionalPair::new(
+        joint(BODY, OTHER),
+        Arc::new(law),
+        Slip::Material,
+        spins,
+        None,
+    );
     let at = closed(&q, &v);
     let mut f = [0.0; WIDTH];
     assert!(joint.force(at, &mut f), "the surfaces touch");
@@ -183,7 +226,7 @@ fn friction_balances_and_dissipates() {
             1e-14,
             "a few roundings",
         );
-    assert!(joint.dissipation(at) > 0.0);
+    assert!(joint.dissipation(at)[0] > 0.0);
     // the work of the local force is what elastic and dissipated power add up to
     let power: f64 = joint
         .coordinates()
@@ -191,7 +234,7 @@ fn friction_balances_and_dissipates() {
         .zip(f)
         .map(|(&i, f)| f * v[i])
         .sum();
-    let expected = normal.value * joint.rate(&gap) + joint.dissipation(at);
+    let expected = normal.value * joint.rate(&gap) + joint.dissipation(at)[0];
     Rung::Balance
         .asks("Is the power of a loose joint with friction the sum of the rates of stored and dissipated energy? Relative error")
         .within((power - expected) / power.abs().max(scale), 1e-14, "a few roundings");
@@ -229,7 +272,7 @@ fn the_force_alone_is_that_of_the_tangent() {
         same(name, alone, with_tangent, normal);
 
         let spins = [Spin::Angle { theta: 6 }, Spin::Angle { theta: 9 }];
-        let rough = FrictionalPair::new(smooth, Box::new(law), Slip::Material, spins);
+        let rough = FrictionalPair::new(smooth, Arc::new(law), Slip::Material, spins, None);
         let (mut alone, mut with_tangent) = ([0.0; WIDTH], [0.0; WIDTH]);
         rough.force(at, &mut alone);
         rough.force_and_tangent(at, w, &mut with_tangent, &mut k);
@@ -286,7 +329,7 @@ fn friction_follows_the_definitions_of_slip() {
         ),
     ] {
         assert!(velocity.abs() > law.v0, "the law must act");
-        let joint = FrictionalPair::new(joint(BODY, OTHER), Box::new(law), slip, spins);
+        let joint = FrictionalPair::new(joint(BODY, OTHER), Arc::new(law), slip, spins, None);
         let at = closed(&q, &v);
         let (pressed, rubbed) = joint.forces(at).expect("the surfaces touch");
         let size = (velocity.abs() - law.v0) / (law.v1 - law.v0) * 0.3 * normal;
@@ -301,7 +344,7 @@ fn friction_follows_the_definitions_of_slip() {
             Slip::Paper => tangential * sliding,
             Slip::Material => tangential * velocity,
         };
-        worst.see((joint.dissipation(at) - taken) / taken);
+        worst.see((joint.dissipation(at)[0] - taken) / taken);
     }
     Rung::Identities
         .asks("Do normal force, friction, force on the journal and power follow their definitions, for both slips? Relative error")
@@ -341,7 +384,7 @@ fn tangents_of_pins_between_walls() {
             &|q, v, w, f, k| smooth.force_and_tangent(closed(q, v), w, f, k),
         );
         let spins = [spin, Spin::Angle { theta: 9 }];
-        let rough = FrictionalPair::new(surface(), Box::new(law), Slip::Material, spins);
+        let rough = FrictionalPair::new(surface(), Arc::new(law), Slip::Material, spins, None);
         check(
             &format!("pin between walls {name}, with friction"),
             &rough.coordinates(),

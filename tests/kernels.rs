@@ -4,6 +4,7 @@
 mod chain;
 mod contact;
 mod differencing;
+mod friction;
 mod joints;
 mod link;
 mod midpoint;

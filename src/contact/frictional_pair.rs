@@ -11,10 +11,11 @@ use super::normal::NormalForce;
 use super::{ContactPair, ContactState, FrictionlessPair, local_indices};
 use crate::effect::{self, Effect};
 use crate::force::{LocalMatrix, WIDTH};
-use crate::ledger::{self, Entry, Powers};
+use crate::ledger::{self, Entry, Powers, Side};
 use crate::marker::{Spin, SpinDerivatives};
 use crate::math::plane::Vec2;
 use crate::system::Weights;
+use std::sync::Arc;
 
 /// Which slip velocity friction acts against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,13 +26,21 @@ pub enum Slip {
     Material,
 }
 
+/// What changes of normal forces add to the energy that internal states of friction store, of either sign.
+pub static NORMAL_VARIATION: Entry = Entry {
+    name: "normal_variation",
+    side: Side::Supplied,
+};
+
 /// A contact with friction.
 #[derive(Debug)]
 pub struct FrictionalPair<G> {
     /// Geometry and normal law.
     pub surface: FrictionlessPair<G>,
     /// Tangential law.
-    pub law: Box<dyn FrictionLaw>,
+    pub law: Arc<dyn FrictionLaw>,
+    /// Index of its internal state, of a law that has one; the last of the local coordinates.
+    state: Option<usize>,
     slip: Slip,
     /// Radius times sign, spin, and local indices of the coordinates of the spin, of both sides; none for `paper`.
     rims: Vec<(f64, Spin, Vec<usize>)>,
@@ -58,12 +67,13 @@ struct Sliding {
 }
 
 impl<G: Geometry> FrictionalPair<G> {
-    /// A contact of bodies that turn with the given spins.
+    /// A contact of bodies that turn with the given spins, with the internal state of a law that has one.
     pub fn new(
         surface: FrictionlessPair<G>,
-        law: Box<dyn FrictionLaw>,
+        law: Arc<dyn FrictionLaw>,
         slip: Slip,
         spins: [Spin; 2],
+        state: Option<usize>,
     ) -> Self {
         let mut coordinates = surface.geometry.coordinates();
         let mut rims = Vec::new();
@@ -74,9 +84,11 @@ impl<G: Geometry> FrictionalPair<G> {
                 rims.push((radius, spin, local));
             }
         }
+        coordinates.extend(state);
         FrictionalPair {
             surface,
             law,
+            state,
             slip,
             rims,
             coordinates,
@@ -122,7 +134,8 @@ impl<G: Geometry> FrictionalPair<G> {
         let normal = self.surface.normal_force(&gap, at.impact_velocity)?;
         let touch = self.surface.geometry.touch(at, &gap);
         let slip = self.slip_state(at.q, at.v, &gap, &touch);
-        let tangential = self.law.force(slip.value, normal.value);
+        let state = self.internal_state(at);
+        let tangential = self.law.force(slip.value, normal.value, state);
         Some(Sliding {
             gap,
             touch,
@@ -137,11 +150,32 @@ impl<G: Geometry> FrictionalPair<G> {
         self.sliding(at).map(|s| (s.normal, s.tangential))
     }
 
-    /// Power taken by friction \[W\]: the tangential force on the velocities it acts on.
-    pub fn dissipation(&self, at: ContactState) -> f64 {
-        self.sliding(at).map_or(0.0, |s| {
+    /// The internal state of the law; zero where it has none.
+    fn internal_state(&self, at: ContactState) -> f64 {
+        self.state.map_or(0.0, |state| at.v[state])
+    }
+
+    /// What friction dissipates \[W\], the power of the tangential force on the velocities it acts on less what the state stores of it,
+    /// and what the change of the normal force adds to what is stored.
+    pub fn dissipation(&self, at: ContactState) -> [f64; 2] {
+        self.sliding(at).map_or([0.0; 2], |s| {
             let levers = self.coordinates.iter().zip(s.slip.lever);
-            s.tangential.value * levers.map(|(&i, l)| l * at.v[i]).sum::<f64>()
+            let taken = s.tangential.value * levers.map(|(&i, l)| l * at.v[i]).sum::<f64>();
+            if self.state.is_none() {
+                return [taken, 0.0];
+            }
+            let [stored, slope] = self.law.stored(self.internal_state(at));
+            let sum = |gradient: &[f64; WIDTH], of: &[f64]| {
+                let local = self.coordinates.iter().zip(gradient);
+                local.map(|(&i, g)| g * of[i]).sum::<f64>()
+            };
+            let rate = self.surface.geometry.rate(&s.gap);
+            let growth = sum(&s.touch.normal, at.a) + sum(&s.touch.rate_q, at.v);
+            let of_normal = s.normal.by_delta * rate + s.normal.by_rate * growth;
+            [
+                taken - s.normal.value * slope * s.tangential.rate.value,
+                of_normal * stored,
+            ]
         })
     }
 }
@@ -169,6 +203,9 @@ impl<G: Geometry> ContactPair for FrictionalPair<G> {
             self.surface.geometry.push(at, &s.gap, s.normal.value, f);
             for (f, lever) in f.iter_mut().zip(s.slip.lever) {
                 *f += s.tangential.value * lever;
+            }
+            if self.state.is_some() {
+                f[self.coordinates.len() - 1] -= s.tangential.rate.value;
             }
         }
         sliding.is_some()
@@ -202,6 +239,16 @@ impl<G: Geometry> ContactPair for FrictionalPair<G> {
                 k[r][c] += slip.lever[r] * gradient;
             }
         }
+        if self.state.is_some() {
+            let last = self.coordinates.len() - 1;
+            let rate = tangential.rate;
+            f[last] -= rate.value;
+            for c in 0..last {
+                k[c][last] += w.v * tangential.by_state * slip.lever[c];
+                k[last][c] -= rate.by_slip * (w.v * slip.by_v[c] + w.q * slip.by_q[c]);
+            }
+            k[last][last] -= w.v * rate.by_state;
+        }
         let [normal, tangential] = [w.q * normal.value, w.q * tangential.value];
         self.surface
             .geometry
@@ -223,7 +270,18 @@ impl<G: Geometry> ContactPair for FrictionalPair<G> {
     }
 
     fn energy(&self, at: ContactState) -> f64 {
-        self.surface.energy(at)
+        let normal = self.surface.energy(at);
+        if self.state.is_none() {
+            return normal;
+        }
+        let gap = self.surface.geometry.gap(at.q, at.v);
+        let force = self.surface.normal_force(&gap, at.impact_velocity);
+        let [stored, _] = self.law.stored(self.internal_state(at));
+        normal + force.map_or(0.0, |force| force.value * stored)
+    }
+
+    fn state(&self) -> Option<usize> {
+        self.state
     }
 
     fn creep(&self, at: ContactState) -> Option<f64> {
@@ -231,14 +289,26 @@ impl<G: Geometry> ContactPair for FrictionalPair<G> {
         self.law.creeps(slip).then_some(slip)
     }
 
+    fn may_give_energy(&self, at: ContactState) -> bool {
+        let sliding = self.sliding(at);
+        sliding.is_some_and(|s| self.law.may_give_energy(s.slip.value))
+    }
+
     fn entries(&self) -> Vec<&'static Entry> {
         let mut entries = self.surface.entries();
         entries.push(&ledger::FRICTION);
+        if self.state.is_some() {
+            entries.push(&NORMAL_VARIATION);
+        }
         entries
     }
 
     fn powers(&self, at: ContactState, powers: &mut Powers) -> bool {
-        powers.add(2, self.dissipation(at));
+        let [dissipated, varied] = self.dissipation(at);
+        powers.add(2, dissipated);
+        if self.state.is_some() {
+            powers.add(3, varied);
+        }
         self.surface.powers(at, powers)
     }
 }

@@ -7,7 +7,7 @@ mod frictionless_pair;
 pub mod geometry;
 pub mod normal;
 
-pub use frictional_pair::{FrictionalPair, Slip};
+pub use frictional_pair::{FrictionalPair, NORMAL_VARIATION, Slip};
 pub use frictionless_pair::FrictionlessPair;
 
 use crate::effect::Effect;
@@ -24,6 +24,8 @@ pub struct ContactState<'a> {
     pub q: &'a [f64],
     /// Velocities.
     pub v: &'a [f64],
+    /// Accelerations.
+    pub a: &'a [f64],
     /// Impact velocity.
     pub impact_velocity: f64,
 }
@@ -62,11 +64,19 @@ pub trait ContactPair: std::fmt::Debug + Send + Sync {
     ) -> bool;
     /// Force of the first side on the second \[N\].
     fn reaction(&self, at: ContactState) -> Vec2;
+    /// Index of the internal state of its friction law, which is zero while the contact is open.
+    fn state(&self) -> Option<usize> {
+        None
+    }
     /// Stored energy of a closed contact \[J\].
     fn energy(&self, at: ContactState) -> f64;
     /// The slip \[m/s\] of a touching contact that creeps: see [`friction::FrictionLaw::creeps`].
     fn creep(&self, _at: ContactState) -> Option<f64> {
         None
+    }
+    /// True of a touching contact whose friction law may give energy: see [`friction::FrictionLaw::may_give_energy`].
+    fn may_give_energy(&self, _at: ContactState) -> bool {
+        false
     }
     /// Its entries of the energy ledger.
     fn entries(&self) -> Vec<&'static Entry>;

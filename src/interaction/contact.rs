@@ -1,12 +1,14 @@
 //! `[contacts.NAME]`: geometry and laws of a joint with clearance.
 
 use crate::body::Materials;
-use crate::contact::friction::Ambrosio;
+use crate::contact::friction::{FrictionKind, FrictionLaw};
 use crate::contact::geometry::Geometry;
 use crate::contact::normal::{NormalLaw, NormalLawKind, NormalParameters};
 use crate::contact::{ContactPair, FrictionalPair, FrictionlessPair, Slip};
-use crate::document::{Field, Fields, Key, NumberRange, SceneError, Takes, derived};
+use crate::document::{Field, Fields, Key, Kind, NumberRange, SceneError, Takes, derived};
 use crate::marker::Spin;
+use crate::system::InternalState;
+use std::sync::Arc;
 
 const LAW: Key = Key::name_in("law", "normal laws", "the normal law, see below");
 
@@ -59,27 +61,6 @@ pub static KEYS: [Key; 10] = [
     Key::new("friction", Takes::Table, "the table of the friction law").or("none"),
 ];
 
-/// Slip below which there is no friction, where the scene says nothing \[m/s\]: the transition velocity that Adams has by default,
-/// 0.1 mm/s.
-pub const V0: f64 = 1e-4;
-/// Slip above which friction is full, where the scene says nothing \[m/s\]: the characteristic slip velocity that COMSOL has by default,
-/// 1e-3/s times the diagonal of the geometry, of a mechanism of a metre.
-pub const V1: f64 = 1e-3;
-
-/// The keys of a friction law.
-pub static FRICTION: [Key; 5] = [
-    Key::word("law", &["ambrosio"], "the friction law"),
-    Key::non_negative("coefficient", "", "the coefficient of friction c_f"),
-    Key::non_negative("v0", "m/s", "the slip below which there is no friction").or("1e-4"),
-    Key::positive(
-        "v1",
-        "m/s",
-        "the slip above which friction is full, greater than `v0`",
-    )
-    .or("1e-3"),
-    Key::word("slip", &["paper", "material"], "which slip velocity enters").or("`\"material\"`"),
-];
-
 /// Geometry and laws of a loose joint.
 #[derive(Debug, Clone)]
 pub struct Contact {
@@ -107,15 +88,11 @@ pub struct Contact {
     pub friction: Option<Friction>,
 }
 
-/// Friction of eq. 26.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Friction of a contact.
+#[derive(Debug, Clone)]
 pub struct Friction {
-    /// Coefficient c_f.
-    pub coefficient: f64,
-    /// Slip below which there is no friction \[m/s\].
-    pub v0: f64,
-    /// Slip above which friction is full \[m/s\].
-    pub v1: f64,
+    /// The law.
+    pub law: Arc<dyn FrictionLaw>,
     /// Which slip velocity enters.
     pub slip: Slip,
 }
@@ -132,23 +109,34 @@ impl Contact {
         })
     }
 
-    /// The contact of these surfaces, on bodies that turn with the given spins.
+    /// The internal states of its friction law, one at most.
+    pub fn states(&self) -> Vec<InternalState> {
+        let friction = self.friction.iter();
+        friction
+            .filter_map(|friction| friction.law.state())
+            .collect()
+    }
+
+    /// The contact of these surfaces, on bodies that turn with the given spins, with its internal states.
     pub fn pair<G: Geometry + 'static>(
         &self,
         geometry: G,
         spins: [Spin; 2],
+        states: &[usize],
     ) -> Box<dyn ContactPair> {
         let law = self.normal_law();
         let surface = FrictionlessPair { geometry, law };
-        let Some(f) = self.friction else {
+        let Some(Friction { law, slip }) = &self.friction else {
             return Box::new(surface);
         };
-        let law = Ambrosio {
-            coefficient: f.coefficient,
-            v0: f.v0,
-            v1: f.v1,
-        };
-        Box::new(FrictionalPair::new(surface, Box::new(law), f.slip, spins))
+        let state = states.first().copied();
+        Box::new(FrictionalPair::new(
+            surface,
+            law.clone(),
+            *slip,
+            spins,
+            state,
+        ))
     }
 
     /// Reads `[contacts.NAME]`.
@@ -156,6 +144,7 @@ impl Contact {
         field: &Field,
         materials: &Materials,
         laws: &[&'static NormalLawKind],
+        frictions: &[&'static FrictionKind],
     ) -> Result<Contact, SceneError> {
         let mut table = field.fields()?;
         let choices: Vec<_> = laws.iter().map(|k| (k.name, *k)).collect();
@@ -181,7 +170,10 @@ impl Contact {
             exponent: table.number("exponent")?,
             restitution: restitution(&table, law)?,
             impact_velocity_floor: floor(&table, law)?,
-            friction: friction.map(|f| read_friction(&f)).transpose()?.flatten(),
+            friction: friction
+                .map(|f| read_friction(&f, frictions))
+                .transpose()?
+                .flatten(),
         };
         // a law may divide by the restitution
         let force = contact.normal_law().force(contact.clearance, 1.0, 1.0);
@@ -272,30 +264,16 @@ fn floor(table: &Fields, law: &NormalLawKind) -> Result<f64, SceneError> {
     }
 }
 
-/// None for a coefficient of zero: what does not act does not exist.
-fn read_friction(field: &Field) -> Result<Option<Friction>, SceneError> {
-    let mut table = field.fields()?;
-    table.declare(&[], &FRICTION)?;
-    table.word("law")?;
-    let coefficient = table.number("coefficient")?;
-    let v0 = table.optional_number("v0")?.unwrap_or(V0);
-    let v1 = table.optional_number("v1")?.unwrap_or(V1);
-    if v1 <= v0 {
-        return Err(match (table.optional("v1"), table.optional("v0")) {
-            (Some(v1), _) => v1.must(&format!("be greater than `v0` = {v0:?}")),
-            (None, v0) => v0
-                .unwrap_or_else(|| field.clone())
-                .must(&format!("be less than `v1` = {v1:?}")),
-        });
-    }
+/// None where the law would not act: what does not act does not exist.
+fn read_friction(
+    field: &Field,
+    frictions: &[&'static FrictionKind],
+) -> Result<Option<Friction>, SceneError> {
+    let (kind, table) = Kind::by("law", field, "the friction law", frictions)?;
+    let law = (kind.read)(&table)?;
     let slip = match table.optional_word("slip")? {
         Some(0) => Slip::Paper,
         _ => Slip::Material,
     };
-    Ok((coefficient > 0.0).then_some(Friction {
-        coefficient,
-        v0,
-        v1,
-        slip,
-    }))
+    Ok(law.map(|law| Friction { law, slip }))
 }

@@ -135,9 +135,9 @@ pub trait JointModel: Any + Debug + Send + Sync {
     fn with_contact(&self, _contact: Option<Contact>) -> Option<Arc<dyn JointModel>> {
         None
     }
-    /// Its internal states.
+    /// Its internal states: those of its contact.
     fn states(&self) -> Vec<InternalState> {
-        Vec::new()
+        self.contact().map_or_else(Vec::new, Contact::states)
     }
     /// Adds its terms.
     fn terms(&self, ends: &JointEnds, terms: &mut Terms) -> JointTerms;

@@ -37,6 +37,7 @@ pub(super) static KIND: JointKind = JointKind {
         let (_, contact) = name.lookup("contact", contacts)?;
         if contact
             .friction
+            .as_ref()
             .is_some_and(|friction| friction.slip == Slip::Paper)
         {
             let message = format!(
@@ -87,7 +88,8 @@ impl JointModel for LooseGuide {
             ends: pin, spin, ..
         } = slide;
         let walls = Walls::new(pin, spin, self.direction, self.contact.clearance);
-        terms.contacts.push(self.contact.pair(walls, ends.spins));
+        let pair = self.contact.pair(walls, ends.spins, ends.states);
+        terms.contacts.push(pair);
         JointTerms {
             slide: Some(slide),
             ..JointTerms::of(ForceTerm::Contact(terms.contacts.len() - 1))

@@ -85,7 +85,8 @@ impl JointModel for Revolute {
                     bearing_radius: contact.bearing_radius.unwrap_or(f64::NAN),
                     clearance: contact.clearance,
                 };
-                terms.contacts.push(contact.pair(geometry, ends.spins));
+                let pair = contact.pair(geometry, ends.spins, ends.states);
+                terms.contacts.push(pair);
                 ForceTerm::Contact(terms.contacts.len() - 1)
             }
         })

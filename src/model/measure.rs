@@ -153,6 +153,12 @@ impl Model {
         self.contacts[contact].pair.creep(state)
     }
 
+    /// True of a closed contact whose friction law may give energy at its slip.
+    pub fn may_give_energy(&self, contact: usize, at: &State) -> bool {
+        let pair = &self.contacts[contact].pair;
+        is_closed(at, contact) && pair.may_give_energy(contact_state(at, contact))
+    }
+
     /// Couple of the first side on the second of a joint that holds an angle \[N m\].
     pub fn joint_couple(&self, index: usize, at: &State, work: &mut Work) -> f64 {
         let joint = &self.joints[index];
@@ -306,6 +312,7 @@ pub(super) fn contact_state(at: &State, contact: usize) -> contact::ContactState
     contact::ContactState {
         q: &at.q,
         v: &at.v,
+        a: &at.a,
         impact_velocity: at.memory[contact],
     }
 }

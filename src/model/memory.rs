@@ -1,7 +1,9 @@
 //! Memory: what contacts and forces keep from step to step, and the events at which it changes.
 
 use super::Model;
+use super::measure::contact_state;
 use crate::force::Events;
+use crate::ledger::OF_FRICTION;
 use crate::system::{Changed, State};
 use std::ops::Range;
 
@@ -72,6 +74,7 @@ impl Model {
                 continue;
             }
             at.changes += 1;
+            self.relax(i, at);
             if closed {
                 at.memory[i] = 0.0;
                 changed(Changed::Loss { contact: i });
@@ -85,6 +88,16 @@ impl Model {
                 });
             }
         }
+    }
+
+    /// Sets the internal state of a contact to zero; what it stores is lost to friction.
+    fn relax(&self, contact: usize, at: &mut State) {
+        let pair = &self.contacts[contact].pair;
+        let Some(state) = pair.state() else { return };
+        let before = pair.energy(contact_state(at, contact));
+        (at.v[state], at.a[state]) = (0.0, 0.0);
+        let after = pair.energy(contact_state(at, contact));
+        at.integrals[OF_FRICTION] += before - after;
     }
 
     /// Changes the memory of forces.

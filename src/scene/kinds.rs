@@ -54,7 +54,7 @@ pub(super) fn joints(
     registry: &Registry,
 ) -> Result<IndexMap<String, Joint>, SceneError> {
     let contacts = named(root.optional("contacts"), |field| {
-        Contact::read(field, materials, &registry.laws)
+        Contact::read(field, materials, &registry.laws, &registry.frictions)
     })?;
     named(root.optional("joints"), |field| {
         let taken = names.bodies.contains_key(&field.name);

@@ -47,7 +47,6 @@ pub fn language(registry: &Registry) -> Vec<Sheet> {
     let own = own.map(|key| key.or("required by its law"));
     let contact: Vec<Key> = contact::KEYS.into_iter().chain(own).collect();
     plain("contacts.NAME", &contact);
-    plain("contacts.NAME.friction", &contact::FRICTION);
     plain("bodies.NAME.points.NAME", &POLAR);
     plain("bodies.NAME.rayleigh", &RAYLEIGH);
     plain("initial", &motion::INITIAL);
@@ -56,6 +55,8 @@ pub fn language(registry: &Registry) -> Vec<Sheet> {
     plain("initial.bodies.NAME of a flexible link", &of_flexible_link);
     plain("initial.bodies.NAME of a point mass", &motion::POINT_STATE);
     plain("initial.velocities.NAME", &motion::VELOCITIES);
+    let frictions = &registry.frictions;
+    add_by("law", &mut sheets, "contacts.NAME.friction", frictions);
     add_by("shape", &mut sheets, "bodies.NAME.plate", &PLATES);
     add(&mut sheets, "bodies.NAME", &registry.bodies);
     add(&mut sheets, "joints.NAME", &registry.joints);

@@ -182,10 +182,12 @@ impl Scene {
                     ));
                 }
             }
-            if let Some(friction) = contact.friction.filter(|f| f.coefficient > FRICTION) {
+            let coefficient = contact.friction.iter();
+            let coefficient = coefficient.map(|friction| friction.law.largest_coefficient());
+            for (key, value) in coefficient.filter(|(_, value)| *value > FRICTION) {
                 told.push(format!(
-                    "contacts.{name}.friction.coefficient is {}: is it in per cent? Dry steel has about 0.1 to 0.6",
-                    number(friction.coefficient, 4)
+                    "contacts.{name}.friction.{key} is {}: is it in per cent? Dry steel has about 0.1 to 0.6",
+                    number(value, 4)
                 ));
             }
         }

@@ -4,7 +4,6 @@ use super::failure::CommandFailure;
 use super::{SceneArguments, print};
 use clap::Args;
 use folder::json;
-use looselink::interaction::contact::{V0, V1};
 use looselink::scene::{Analysis, MotionKind, Pace, Scene};
 use looselink::simulate::{Inspection, Simulation};
 use numbers::{exact, number};
@@ -207,14 +206,8 @@ fn clearances(scene: &Scene) -> Vec<String> {
                 true => " (that of a sphere in a spherical cup, without the length of the pin)",
                 false => "",
             };
-            let friction = contact.friction.map_or(String::new(), |f| {
-                let [v0, v1] = [(f.v0, V0), (f.v1, V1)].map(|(v, default)| match v == default {
-                    true => format!("{} m/s, the default", exact(v)),
-                    false => format!("{} m/s", exact(v)),
-                });
-                let coefficient = exact(f.coefficient);
-                format!(", friction {coefficient} with v0 = {v0}, and v1 = {v1}")
-            });
+            let friction = contact.friction.as_ref();
+            let friction = friction.map_or(String::new(), |f| format!(", {}", f.law.describe()));
             let line = format!(
                 "clearance {} m, {radius}stiffness K = {} N/m^{}{source}{friction}",
                 exact(contact.clearance),
