@@ -37,6 +37,8 @@ pub struct Shape {
 pub struct InternalState {
     /// Its name, after that of its part.
     pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
     /// The displacement \[m\] that a unit of it stands for: an accuracy of positions bounds its error, too.
     pub metres: f64,
     /// True where it may change far faster than bodies move, so that explicit methods would take tiny steps.

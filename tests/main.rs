@@ -7,6 +7,7 @@ mod bad_input;
 mod bad_mechanism;
 mod balance;
 mod bits;
+mod bristles;
 mod buckling;
 mod choice;
 mod closing;

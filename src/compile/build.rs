@@ -159,6 +159,9 @@ pub(super) fn build(
         let grips = reactions.driven(kinematics.map(|k| &**k));
         let joints = (0..own.len()).map(|j| reactions.joint(j));
         model.joints = joints.collect::<Result<_, _>>()?;
+        for (joint, states) in model.joints.iter_mut().zip(numbering.joint_states) {
+            joint.states = states;
+        }
         model.instants = model.find_instants(c.scene.simulation.duration);
         model.driven = DrivenForces::new(&grips, n, &model.weight);
     }

@@ -212,6 +212,7 @@ impl<'a> Reactions<'a> {
         let mut placed = PlacedJoint {
             name: joint.name.clone(),
             terms: self.own[j],
+            states: Vec::new(),
             reaction: None,
             actuator: None,
         };

@@ -65,6 +65,7 @@ impl ForceModel for MaxwellModel {
     fn states(&self) -> Vec<InternalState> {
         vec![InternalState {
             name: "elongation",
+            unit: "m",
             metres: 1.0,
             is_stiff: false,
         }]

@@ -275,6 +275,8 @@ pub struct PlacedJoint {
     pub name: String,
     /// Its terms, as indices into the lists of the model.
     pub terms: JointTerms,
+    /// Indices of its internal states among the unknowns.
+    pub states: Vec<usize>,
     /// Its force, where it shares or eliminates coordinates: the sum over the terms on one side.
     pub reaction: Option<Reaction>,
     /// Present if a drive actuates the joint and the joint moves a body.

@@ -92,6 +92,7 @@ pub(super) enum Part {
     Gap(usize),
     Turned(usize),
     Couple(usize),
+    States(usize),
     Travel(usize),
     Actuator(usize),
     /// Of a point of a body.
@@ -116,6 +117,7 @@ pub(super) fn parts(model: &Model, analysis: Analysis) -> Vec<Part> {
         let couple = joint.terms.couple.is_some();
         add(true, Part::Force(j));
         add(model.is_loose(j), Part::Gap(j));
+        add(!model.joints()[j].states.is_empty(), Part::States(j));
         add(couple && joint.terms.turned.is_some(), Part::Turned(j));
         add(couple, Part::Couple(j));
         add(joint.terms.slide.is_some(), Part::Travel(j));
@@ -217,6 +219,12 @@ impl Part {
             Part::Gap(j) => joint(j, GAP),
             Part::Turned(j) => joint(j, TURNED),
             Part::Couple(j) => joint(j, &[("torque", "N m")]),
+            Part::States(j) => {
+                let states = model.joints()[j].states.iter();
+                let states = states.map(|x| &model.states[x - model.state_indices().start]);
+                let named = states.map(|state| (state.name, state.unit));
+                joint(j, &named.collect::<Vec<_>>())
+            }
             Part::Travel(j) => joint(j, TRAVEL),
             Part::Actuator(j) => joint(j, ACTUATOR),
             Part::Point(b, p) => point(b, p, &POINT.map(|i| POSE[i])),
@@ -282,6 +290,7 @@ impl Part {
             }
             Part::Turned(j) => values.extend(model.turned(j, at)),
             Part::Couple(j) => values.push(model.joint_couple(j, at, work)),
+            Part::States(j) => values.extend(joint(j).states.iter().map(|x| at.v[*x])),
             Part::Travel(j) => {
                 let slide = joint(j).terms.slide.iter();
                 values.extend(slide.flat_map(|slide| slide.travel(at)));

@@ -66,7 +66,9 @@ impl JointModel for StraightSlot {
             u: unit(self.direction),
             play: self.contact.clearance,
         };
-        terms.contacts.push(self.contact.pair(walls, ends.spins));
+        terms
+            .contacts
+            .push(self.contact.pair(walls, ends.spins, ends.states));
         JointTerms {
             slide: Some(slide),
             ..JointTerms::of(ForceTerm::Contact(terms.contacts.len() - 1))

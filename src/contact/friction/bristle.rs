@@ -74,6 +74,7 @@ impl Bristle {
     pub(super) fn state() -> InternalState {
         InternalState {
             name: "bristle",
+            unit: "m",
             metres: 1.0,
             is_stiff: true,
         }
