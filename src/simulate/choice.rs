@@ -273,7 +273,10 @@ impl Simulation {
 
     /// Chooses the scheme; returns its trial run.
     fn decide(&mut self) -> Option<Racer> {
-        let mut racers: Vec<Racer> = CANDIDATES.iter().filter_map(|s| self.racer(s)).collect();
+        let is_stiff = self.model.states.iter().any(|state| state.is_stiff);
+        let candidates = CANDIDATES.iter();
+        let candidates = candidates.filter(|scheme| !(is_stiff && scheme.is_explicit));
+        let mut racers: Vec<Racer> = candidates.filter_map(|s| self.racer(s)).collect();
         race(&mut racers);
         let scheme = racers.first().map_or(CANDIDATES[0], |racer| racer.scheme);
         self.choice = Some(Choice {

@@ -35,6 +35,8 @@ carried!(Creep { from, to, distance, slip, rows } but {});
 pub(super) struct CreepWatch {
     now: Vec<Creep>,
     longest: Vec<Creep>,
+    /// When a friction law was first at a slip at which it may give energy \[s\].
+    giving: Vec<Option<f64>>,
 }
 
 impl CreepWatch {
@@ -43,11 +45,17 @@ impl CreepWatch {
         CreepWatch {
             now: vec![Creep::default(); contacts],
             longest: vec![Creep::default(); contacts],
+            giving: vec![None; contacts],
         }
     }
 
     /// A row is recorded.
     pub fn row(&mut self, model: &Model, at: &State) {
+        for (contact, from) in self.giving.iter_mut().enumerate() {
+            if from.is_none() && model.may_give_energy(contact, at) {
+                *from = Some(at.t);
+            }
+        }
         for (contact, (now, longest)) in self.now.iter_mut().zip(&mut self.longest).enumerate() {
             let slip = model.creep(contact, at).unwrap_or(0.0);
             *now = match slip * now.slip > 0.0 {
@@ -70,6 +78,16 @@ impl CreepWatch {
                 *longest = *now;
             }
         }
+    }
+
+    /// The joints whose friction law was at a slip at which it may give energy, and when first \[s\].
+    pub fn giving(&self, model: &Model) -> BTreeMap<String, f64> {
+        let contacts = self.giving.iter().enumerate();
+        let named = contacts.filter_map(|(contact, from)| {
+            let joint = model.contact_joint(contact)?;
+            Some((model.joints()[joint].name.clone(), (*from)?))
+        });
+        named.collect()
     }
 
     /// The longest creep of every joint that has some, in a run of this scene. Where the drives determine both bodies of a joint they
@@ -98,5 +116,6 @@ impl Carried for CreepWatch {
     fn carry(&mut self, checkpoint: &mut Checkpoint) {
         self.now.carry(checkpoint);
         self.longest.carry(checkpoint);
+        self.giving.carry(checkpoint);
     }
 }

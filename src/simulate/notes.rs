@@ -1,9 +1,14 @@
 //! Facts about a run that a user may want to know; none of them puts a result in doubt.
 
 use super::{FoundRest, Report};
+use crate::contact::NORMAL_VARIATION;
+use numbers::{share, si};
 
 /// Strains, and curvatures times height, are mentioned from here on: steel yields at a fifth of it.
 const NOTABLE: f64 = 0.01;
+
+/// What changes of normal forces do to bristles is mentioned beyond this part of what friction dissipates.
+const NOTABLE_VARIATION: f64 = 0.01;
 
 impl Report {
     /// One line for every fact: what is remarkable about the scene, what the start decides, redundant constraints, freedoms that drives
@@ -46,6 +51,17 @@ impl Report {
                 strain.description()
             ));
         }
+        notes.extend(self.ledger.as_ref().and_then(|ledger| {
+            let varied = *ledger.others.get(NORMAL_VARIATION.name)?;
+            let of_friction = varied.abs() / ledger.friction_dissipated;
+            (of_friction > NOTABLE_VARIATION).then(|| {
+                format!(
+                    "changes of normal forces added {} to the energy of bristles, {}",
+                    si(varied, "J"),
+                    share(of_friction, "what friction dissipates")
+                )
+            })
+        }));
         if self.ended_at_limit {
             return notes;
         }

@@ -162,6 +162,9 @@ pub struct Report {
     /// Joints that slid for long more slowly than their friction law needs for its full force.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub creep: BTreeMap<String, Creep>,
+    /// Joints whose friction law was at a slip at which it may give energy, and when first \[s\].
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub giving_friction: BTreeMap<String, f64>,
     /// Laws that deliver another restitution in a free impact than their contacts ask for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub restitution: Vec<DeliveredRestitution>,
@@ -427,6 +430,7 @@ impl Simulation {
             brief_contacts: self.closures.brief,
             chatter: self.closures.chatter(&self.model),
             creep: self.creep.report(&self.scene, &self.model),
+            giving_friction: self.creep.giving(&self.model),
             restitution: restitution::delivered(&self.scene)
                 .into_iter()
                 .filter(DeliveredRestitution::differs)

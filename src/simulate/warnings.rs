@@ -77,11 +77,18 @@ impl Report {
         });
         let creep = self.creep.iter().map(|(joint, creep)| {
             format!(
-                "{joint} creeps: from t = {} s to {} s it slides by {} m, more slowly than v1 of its friction law, which cannot hold a \
-                 body that should stick; the creep is in proportion to v1",
+                "{joint} creeps: from t = {} s to {} s it slides by {} m at a slip at which its friction law cannot hold a body that \
+                 should stick; friction \"elasto_plastic\" can",
                 number(creep.from, 4),
                 number(creep.to, 4),
                 number(creep.distance, 2)
+            )
+        });
+        let giving = self.giving_friction.iter().map(|(joint, from)| {
+            format!(
+                "from t = {} s on the slip in {joint} is at times beyond 4 g/s1, where the bristles of its friction law may give energy: \
+                 reduce s1, or let it fall with the slip by v_d",
+                number(*from, 4)
             )
         });
         let implausible = self.implausible.iter().cloned();
@@ -90,6 +97,7 @@ impl Report {
             .chain(overrun)
             .chain(strained)
             .chain(creep)
+            .chain(giving)
             .collect()
     }
 
