@@ -1,7 +1,6 @@
 //! The equations of a model: residual, tangent, rates, contact memory, powers.
 
-use super::measure::contact_state;
-use super::memory::is_closed;
+use super::memory::{contact_state, is_closed};
 use super::{Model, PlacedContact, PlacedEccentric, Rule};
 use crate::constraint::{self, Curvature, ROWS};
 use crate::contact;

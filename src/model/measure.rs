@@ -1,9 +1,8 @@
 //! Measured quantities of a model: poses, strains, energies, joint forces, drive torques.
 
-use super::memory::is_closed;
+use super::memory::{contact_state, is_closed};
 use super::{Actuator, Model, PlacedEccentric, PlacedJoint, Reaction};
 use crate::body::{Pose, Strain};
-use crate::contact;
 use crate::contact::geometry::Gap;
 use crate::force::Force;
 use crate::ledger::Side;
@@ -304,15 +303,5 @@ impl Model {
     /// Position of a marker.
     pub fn position(&self, marker: &Marker, at: &State) -> Vec2 {
         marker.position(&at.q, marker.arm(&at.q))
-    }
-}
-
-/// Positions, velocities and memory of a contact.
-pub(super) fn contact_state(at: &State, contact: usize) -> contact::ContactState<'_> {
-    contact::ContactState {
-        q: &at.q,
-        v: &at.v,
-        a: &at.a,
-        impact_velocity: at.memory[contact],
     }
 }

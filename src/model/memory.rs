@@ -1,7 +1,7 @@
 //! Memory: what contacts and forces keep from step to step, and the events at which it changes.
 
 use super::Model;
-use super::measure::contact_state;
+use crate::contact;
 use crate::force::Events;
 use crate::ledger::OF_FRICTION;
 use crate::system::{Changed, State};
@@ -18,6 +18,16 @@ pub(crate) struct PlacedEvents {
 /// True of a contact that is closed.
 pub(super) fn is_closed(at: &State, contact: usize) -> bool {
     at.memory[contact] > 0.0
+}
+
+/// Positions, velocities and memory of a contact.
+pub(super) fn contact_state(at: &State, contact: usize) -> contact::ContactState<'_> {
+    contact::ContactState {
+        q: &at.q,
+        v: &at.v,
+        a: &at.a,
+        impact_velocity: at.memory[contact],
+    }
 }
 
 impl Model {

@@ -3,7 +3,7 @@
 //! M a + f + Phi_q^T lambda of a group of terms is the external force on this group. Summed over the terms on one side of a
 //! joint it is the force of the joint; summed over all terms at a driven coordinate it is the force of the drive.
 
-use super::measure::contact_state;
+use super::memory::contact_state;
 use super::{Model, PlacedForce};
 use crate::constraint::{self, ROWS};
 use crate::force::WIDTH;

@@ -72,8 +72,7 @@ impl Stribeck {
 
     /// Its parameters in words.
     pub fn describe(&self) -> String {
-        let [kinetic, static_, velocity] =
-            [self.kinetic, self.static_, self.velocity].map(|x| exact(x));
+        let [kinetic, static_, velocity] = [self.kinetic, self.static_, self.velocity].map(exact);
         format!("friction {kinetic} (static {static_}, v_s = {velocity} m/s)")
     }
 }
