@@ -87,10 +87,17 @@ void check_exact_start(const Scene &scene, const System &system, const VectorXd 
     }
     system.check_angles(inputs, q);
     for (int k : system.loose_joints())
-        if (system.gap(k, q.data(), v.data()).delta() > limit)
+        if (system.gap(k, q.data(), v.data()).delta() > system.law(k).clearance)
             refuse(scene.joints[k].source, system.joints()[k].kind == JointKind::prismatic
                                                ? "the slider starts outside its guide"
                                                : "the journal starts outside its bearing");
+}
+
+// Contacts that begin closed because the start presses them in.
+std::vector<bool> pressed_in(const Scene &scene, const System &system, const VectorXd &q, const VectorXd &v) {
+    std::vector<bool> closed(scene.joints.size(), false);
+    for (int k : system.loose_joints()) closed[k] = system.gap(k, q.data(), v.data()).delta() > scene.onset_tolerance;
+    return closed;
 }
 
 void start_at_rest(Model &model) {
@@ -139,7 +146,7 @@ Model make_model(Scene scene) {
     };
     put_bodies();
     check_exact_start(scene, system, q, v);
-    std::vector<bool> closed(scene.joints.size(), false);
+    std::vector<bool> closed = pressed_in(scene, system, q, v);
     if (scene.initial.pressed && !system.loose_joints().empty()) {
         refuse_deformations(scene, "a link with a strain or bending_rate cannot start with pressed journals");
         Pressed pressed = press(scene, driven_angles, start);
@@ -154,7 +161,8 @@ Model make_model(Scene scene) {
     system.leave_out(redundant);
     Memory memory = system.memory();
     for (int k : system.loose_joints())
-        if (closed[k]) memory.impact_velocity[k] = system.law(k).impact_velocity_floor;
+        if (closed[k])
+            memory.impact_velocity[k] = std::max(system.gap(k, q.data(), v.data()).rate(), system.law(k).impact_velocity_floor);
     system.count_turns(q, memory);
     Model model{std::move(scene), std::move(system), std::move(q), std::move(v), std::move(memory), std::move(start.poses),
                 std::move(names), {}};
