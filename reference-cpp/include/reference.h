@@ -3,13 +3,21 @@
  * A scene is the text of a file in the language of docs/scene.md. SI units, radians, doubles; matrices are row-major.
  * The equations are those of EQUATIONS.md,
  *
- *     M a + f(t, q, v; z) + Phi_q^T lambda = 0        Phi(t, q) = 0
+ *     M a + f(t, q, v, x; z) + Phi_q^T lambda = 0        Phi(t, q) = 0        x' = g(t, q, v, x; z)
  *
- * with n coordinates, m constraint rows and one impact velocity z a joint: that of eq. 24 while the contact of a joint with
- * clearance is closed, 0 while it is open and for every other joint. Every Maxwell element adds an unknown, the elongation of
- * its damper, with the equation (damping) d(elongation)/dt = pull; f depends on it, but it is not among q or z. A run keeps it
- * as an unknown and reports it in the channel FORCE.elongation. Functions at a given state take it from
- * ls_scene_set_elongations.
+ * with n coordinates, m constraint rows, one impact velocity z a joint and s internal states x. The impact velocity is that of
+ * eq. 24 while the contact of a joint with clearance is closed, 0 while it is open and for every other joint.
+ *
+ * Internal states by name, those of joints in the order of the scene first, then those of forces:
+ *
+ *     JOINT.bristle                  deflection of the bristles, m, of a joint whose contact has the friction of LuGre or the
+ *                                    elasto-plastic one; it has the sign of the slip
+ *     FORCE.elongation               elongation of the damper of a Maxwell element, m
+ *
+ * Bristles rest (x' = 0) and are without force while their contact is open; a run sets them to 0 where it closes and where it
+ * opens. A run keeps all states as unknowns. Functions at a given state take them from ls_scene_set_states. (Lists, functions
+ * and names of elongations alone are gone: LS_STATE stands where LS_ELONGATION was and gives names of states instead of names
+ * of elements, ls_scene_set_states and ls_scene_state_rates stand for ls_scene_set_elongations and ls_scene_elongation_rates.)
  *
  * Coordinates by name, the bodies in the order of the file:
  *
@@ -95,7 +103,7 @@ typedef enum {
     LS_CHANNEL = 3,    /* all channels of the scene, t first */
     LS_SELECTED = 4,   /* those that `output.channels` selects, in its order, t first */
     LS_REDUNDANT = 5,  /* constraint rows left out */
-    LS_ELONGATION = 6, /* Maxwell elements */
+    LS_STATE = 6,      /* s: of x */
     LS_NOTE = 7        /* facts about the scene that are no errors, in words */
 } ls_list;
 size_t ls_scene_count(const ls_scene *scene, int32_t list);
@@ -106,8 +114,8 @@ size_t ls_scene_selected(const ls_scene *scene, size_t index);
 /* The start (q, v: n each), t = 0. */
 int32_t ls_scene_start(const ls_scene *scene, double *q, double *v, ls_error *error);
 
-/* The impact velocities at the start (z: joints): those of contacts that begin closed with `initial.journals = "pressed"`,
- * else 0. No event tells of their onset. */
+/* The impact velocities at the start (z: joints): those of contacts that begin closed, with `initial.journals = "pressed"` or
+ * because a given state presses them in, else 0. No event tells of their onset. */
 int32_t ls_scene_start_contacts(const ls_scene *scene, double *z, ls_error *error);
 
 /* An equilibrium. */
@@ -121,12 +129,15 @@ int32_t ls_scene_rest(const ls_scene *scene, ls_rest *rest, ls_error *error);
 
 /* ---- the equations at a given state ---------------------------------------------------------------------------- */
 
-/* The elongations of the Maxwell elements (one number an element) at which the functions below and ls_run_from take the scene
- * from now on. Before the first call they are those of the scene at t = 0. ls_run_new always starts from those of the scene. */
-int32_t ls_scene_set_elongations(ls_scene *scene, const double *elongations, ls_error *error);
+/* The internal states (s) at which the functions below and ls_run_from take the scene from now on, and what they are at present.
+ * Before the first call of ls_scene_set_states they are those at t = 0: bristles are straight, elongations those of the scene.
+ * ls_run_new always starts from those at t = 0. */
+int32_t ls_scene_set_states(ls_scene *scene, const double *states, ls_error *error);
+int32_t ls_scene_states(const ls_scene *scene, double *states, ls_error *error);
 
-/* d(elongation)/dt (one number an element) and its derivatives by q (elements x n). */
-int32_t ls_scene_elongation_rates(const ls_scene *scene, const double *q, double *rates, double *by_q, ls_error *error);
+/* The rates x' = g (s), and dg/dq, dg/dv (s x n each) and dg/dx (s x s); each may be null. z: one number a joint. */
+int32_t ls_scene_state_rates(const ls_scene *scene, double t, const double *q, const double *v, const double *z,
+                             double *rates, double *by_q, double *by_v, double *by_states, ls_error *error);
 
 /* M (n x n). */
 int32_t ls_scene_mass(const ls_scene *scene, double *mass, ls_error *error);
@@ -135,6 +146,10 @@ int32_t ls_scene_mass(const ls_scene *scene, double *mass, ls_error *error);
  * turn of their angle at the start. */
 int32_t ls_scene_force(const ls_scene *scene, double t, const double *q, const double *v, const double *z,
                        double *force, double *by_q, double *by_v, ls_error *error);
+
+/* df/dx (n x s). */
+int32_t ls_scene_force_by_states(const ls_scene *scene, double t, const double *q, const double *v, const double *z,
+                                 double *by_states, ls_error *error);
 
 /* Phi (m), Phi_q (m x n), Phi_t (m). */
 int32_t ls_scene_constraint_rows(const ls_scene *scene, double t, const double *q,
@@ -155,8 +170,8 @@ typedef enum {
     LS_SPARSE = 1 /* KLU; for fine meshes */
 } ls_linear_solver;
 
-/* The error of a step in q is weighted with relative |q| + position, in v with relative |v| + velocity, in the elongation of a
- * Maxwell element with relative |elongation| + position. */
+/* The error of a step in q is weighted with relative |q| + position, in v with relative |v| + velocity, in internal states with
+ * relative |x| + position. */
 typedef struct {
     double relative;
     double position;       /* m; angles and slopes: divided by a length of the body */
@@ -170,9 +185,9 @@ typedef struct {
 
 typedef struct ls_run ls_run;
 
-/* Starts at t = 0 from the start of the scene, or at t from (q, v) with all contacts open and the elongations of
- * ls_scene_set_elongations. The run keeps its own copy of what
- * it needs. A static scene starts from its own start only and uses no tolerance. Null on failure. */
+/* Starts at t = 0 from the start of the scene, or at t from (q, v) with all contacts open, bristles straight and the elongations
+ * of ls_scene_set_states. The run keeps its own copy of what it needs. A static scene starts from its own start only and uses no
+ * tolerance. Null on failure. */
 ls_run *ls_run_new(const ls_scene *scene, const ls_tolerances *tolerances, ls_error *error);
 ls_run *ls_run_from(const ls_scene *scene, double t, const double *q, const double *v, const ls_tolerances *tolerances,
                     ls_error *error);
@@ -184,6 +199,9 @@ int32_t ls_run_advance(ls_run *run, double t, double *values, ls_error *error);
 
 /* The state after the last `ls_run_advance`: q, v, a (n), lambda (m), z (joints). Each may be null. */
 int32_t ls_run_state(const ls_run *run, double *q, double *v, double *a, double *lambda, double *z, ls_error *error);
+
+/* The internal states (s) there. */
+int32_t ls_run_states(const ls_run *run, double *states, ls_error *error);
 
 typedef struct {
     double time;

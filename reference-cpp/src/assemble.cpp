@@ -13,6 +13,12 @@ void add_block(const ElementMatrix &block, int offset, Entries &entries) {
         for (int j = 0; j < 8; ++j) entries.emplace_back(offset + i, offset + j, block(i, j));
 }
 
+// A number in the scalar type of the variables.
+template <class T>
+T constant_like(const T *, double x) {
+    return T(x);
+}
+
 } // namespace
 
 // Calls visit(bearing, journal, law) for everything that acts between two points.
@@ -22,14 +28,9 @@ void System::visit_pairs(const Inputs &inputs, const Memory &memory, Visit visit
         const double impact_velocity = memory.impact_velocity[k];
         if (impact_velocity <= 0.0) continue;
         const Joint &j = joints_[k];
-        if (j.kind == JointKind::prismatic) {
-            visit(j.bearing, j.journal, [&](auto qi, auto vi, auto qj, auto vj) {
-                return guide_forces(*j.law, impact_velocity, j.direction, j.bearing, j.journal, qi, vi, qj, vj);
-            });
-            continue;
-        }
-        visit(j.bearing, j.journal, [&](auto qi, auto vi, auto qj, auto vj) {
-            return loose_forces(*j.law, impact_velocity, j.bearing, j.journal, qi, vi, qj, vj);
+        const double z = bristle(k, memory);
+        visit(j.bearing, j.journal, [&j, impact_velocity, z](auto qi, auto vi, auto qj, auto vj) {
+            return contact_forces(j, impact_velocity, constant_like(qi, z), qi, vi, qj, vj);
         });
     }
     for (const Spring &s : springs_)
@@ -40,14 +41,34 @@ void System::visit_pairs(const Inputs &inputs, const Memory &memory, Visit visit
         visit(s.bearing, s.journal,
               [&s, near](auto qi, auto vi, auto qj, auto vj) { return spring_forces(s, near, qi, vi, qj, vj); });
     }
-    for (int i = 0; i < elongations(); ++i) {
+    for (std::size_t i = 0; i < maxwells_.size(); ++i) {
         const Maxwell &m = maxwells_[i];
-        const double z = memory.elongation[i];
-        visit(m.from, m.to, [&m, z](auto qi, auto, auto qj, auto) { return maxwell_forces(m, z, qi, qj); });
+        const double z = memory.state[elongation(static_cast<int>(i))];
+        visit(m.from, m.to,
+              [&m, z](auto qi, auto, auto qj, auto) { return maxwell_forces(m, constant_like(qi, z), qi, qj); });
     }
     for (const Load &l : loads_)
         visit(l.reaction, l.point,
               [&](auto qi, auto, auto qj, auto) { return load_forces(l, applied(l, inputs), qi, qj); });
+}
+
+// Calls visit(number of the state, bearing, journal, law) for every internal state that is not constant.
+template <class Visit>
+void System::visit_states(const Memory &memory, Visit visit) const {
+    for (int k : loose_) {
+        const Joint &j = joints_[k];
+        const double impact_velocity = memory.impact_velocity[k];
+        if (j.bristle < 0 || impact_velocity <= 0.0) continue;
+        visit(j.bristle, j.bearing, j.journal,
+              [&j, impact_velocity](auto qi, auto vi, auto qj, auto vj, const auto &z) {
+                  return contact_forces(j, impact_velocity, z, qi, vi, qj, vj);
+              });
+    }
+    for (std::size_t i = 0; i < maxwells_.size(); ++i) {
+        const Maxwell &m = maxwells_[i];
+        visit(elongation(static_cast<int>(i)), m.from, m.to,
+              [&m](auto qi, auto, auto qj, auto, const auto &z) { return maxwell_forces(m, z, qi, qj); });
+    }
 }
 
 void System::force(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory,
@@ -97,13 +118,19 @@ void System::load_rates(const Inputs &inputs, const VectorXd &q, VectorXd &rates
     }
 }
 
-void System::elongation_rates(const VectorXd &q, const Memory &memory, VectorXd &rates) const {
-    rates.resize(elongations());
-    for (int i = 0; i < elongations(); ++i) rates[i] = pull(maxwells_[i], memory.elongation[i], q) / maxwells_[i].damping;
+void System::state_rates(const VectorXd &q, const VectorXd &v, const Memory &memory, VectorXd &rates) const {
+    rates.setZero(states());
+    visit_states(memory, [&](int number, const Attachment &bearing, const Attachment &journal, const auto &law) {
+        const double z = memory.state[number];
+        const auto at_z = [&law, z](auto qi, auto vi, auto qj, auto vj) { return law(qi, vi, qj, vj, z); };
+        rates[number] = forces_of(bearing, journal, at_z, q, v).state_rate;
+    });
 }
 
-void System::length_derivatives(const VectorXd &q, Entries &by_q) const {
-    for (int i = 0; i < elongations(); ++i) append_length_derivatives(maxwells_[i], i, q, by_q);
+void System::state_derivatives(const VectorXd &q, const VectorXd &v, const Memory &memory, StateDerivatives &out) const {
+    visit_states(memory, [&](int number, const Attachment &bearing, const Attachment &journal, const auto &law) {
+        append_state_derivatives(bearing, journal, law, number, memory.state[number], q, v, out);
+    });
 }
 
 Prescribed System::prescription(const Constraint &c, const Inputs &inputs) const {

@@ -139,8 +139,13 @@ void Channels::add_joint_kinematics(const std::string &prefix, int number) {
                 const bool touches = s.memory.impact_velocity[number] > 0.0 && g.delta() > 0.0;
                 put(out, {g.e.x, g.e.y, g.size(), g.e_dot.x, g.e_dot.y, g.rate(), g.delta(), touches ? 1.0 : 0.0});
             });
+        if (joint.bristle >= 0)
+            add(prefix, {"bristle"}, [&joint, number](const Snapshot &s, double *out) {
+                *out = s.memory.impact_velocity[number] > 0.0 ? s.memory.state[joint.bristle] : 0.0;
+            });
     } else if (joint.kind == JointKind::revolute) {
-        note_absent(prefix, {"ex", "ey", "eccentricity", "ex_rate", "ey_rate", "eccentricity_rate", "penetration", "contact"});
+        note_absent(prefix, {"ex", "ey", "eccentricity", "ex_rate", "ey_rate", "eccentricity_rate", "penetration", "contact",
+                             "bristle"});
     }
     if (joint.driven)
         add(prefix, {"angle", "speed", "acceleration"}, [&joint, number](const Snapshot &s, double *out) {
@@ -208,10 +213,10 @@ void Channels::add_forces() {
         });
     for (std::size_t i = 0; i < system_.maxwells().size(); ++i) {
         const Maxwell &m = system_.maxwells()[i];
-        const int number = static_cast<int>(i);
-        add(m.name + ".", {"length", "elongation", "force"}, [&m, number](const Snapshot &s, double *out) {
+        const int state = system_.elongation(static_cast<int>(i));
+        add(m.name + ".", {"length", "elongation", "force"}, [&m, state](const Snapshot &s, double *out) {
             const double length = magnitude(position(m.to, part(s.q, m.to)) - position(m.from, part(s.q, m.from)));
-            const double z = s.memory.elongation[number];
+            const double z = s.memory.state[state];
             put(out, {length, z, m.stiffness * (length - m.rest_length - z)});
         });
     }
@@ -236,13 +241,15 @@ void Channels::add_energies() {
             *out = system_.energies(s.q, s.v, s.memory).springs;
         });
     if (model_.scene.is_static) return;
-    add("energy.",
-        {"work", "contact_dissipated", "friction_dissipated", "damping_dissipated", "clamp", "numerical"},
-        [this](const Snapshot &s, double *out) {
-            const Powers &l = s.ledger;
-            const double balance = s.initial_energy + l.work - l.contact_dissipated - l.friction_dissipated -
-                                   l.damping_dissipated;
-            put(out, {l.work, l.contact_dissipated, l.friction_dissipated, l.damping_dissipated, l.clamp,
-                      balance - system_.energies(s.q, s.v, s.memory).total()});
-        });
+    add("energy.", {"work", "contact_dissipated", "friction_dissipated"}, [](const Snapshot &s, double *out) {
+        put(out, {s.ledger.work, s.ledger.contact_dissipated, s.ledger.friction_dissipated});
+    });
+    if (system_.bristles() > 0)
+        add("energy.", {"normal_variation"}, [](const Snapshot &s, double *out) { *out = s.ledger.normal_variation; });
+    add("energy.", {"damping_dissipated", "clamp", "numerical"}, [this](const Snapshot &s, double *out) {
+        const Powers &l = s.ledger;
+        const double balance = s.initial_energy + l.work + l.normal_variation - l.contact_dissipated -
+                               l.friction_dissipated - l.damping_dissipated;
+        put(out, {l.damping_dissipated, l.clamp, balance - system_.energies(s.q, s.v, s.memory).total()});
+    });
 }

@@ -108,6 +108,18 @@ Dual<S, N> cos(const Dual<S, N> &x) {
     return chain(x, S(cos(x.value)), S(-sin(x.value)));
 }
 template <class S, int N>
+Dual<S, N> exp(const Dual<S, N> &x) {
+    using std::exp;
+    const S f = exp(x.value);
+    return chain(x, f, f);
+}
+template <class S, int N>
+Dual<S, N> tanh(const Dual<S, N> &x) {
+    using std::tanh;
+    const S f = tanh(x.value);
+    return chain(x, f, S(1.0 - f * f));
+}
+template <class S, int N>
 Dual<S, N> acos(const Dual<S, N> &x) {
     using std::acos;
     using std::sqrt;

@@ -16,6 +16,7 @@ struct ls_scene {
         if (model.rest && !model.rest->is_stable())
             notes.push_back(std::string("the equilibrium of the start is ") + (model.rest->is_unstable() ? "unstable" : "neutral") +
                             ": " + model.system.coordinate_name(model.system.moves_most(model.rest->softest())) + " moves");
+        for (int i = 0; i < model.system.states(); ++i) state_names.push_back(model.system.state_name(i));
         memory = model.memory;
         energy = model.system.energies(model.q, model.v, memory).total();
     }
@@ -26,8 +27,8 @@ struct ls_scene {
     const Channels channels;
     const Angles angles;
     std::vector<std::size_t> selected;
-    std::vector<std::string> notes;
-    Memory memory; // at the start
+    std::vector<std::string> state_names, notes;
+    Memory memory; // at the start, but for the internal states: those that the caller has set
     double energy = 0.0;
 };
 
@@ -98,8 +99,9 @@ void output(const MatrixXd &x, double *target, const char *name) {
     if (x.size() > 0) Eigen::Map<RowMajor>(&need(target, name), x.rows(), x.cols()) = x;
 }
 
-void output(const Entries &entries, int size, double *target, const char *name) {
-    Eigen::Map<RowMajor> matrix(&need(target, name), size, size);
+void output(const Entries &entries, int rows, int columns, double *target, const char *name) {
+    if (rows == 0 || columns == 0) return;
+    Eigen::Map<RowMajor> matrix(&need(target, name), rows, columns);
     matrix.setZero();
     for (const auto &entry : entries) matrix(entry.row(), entry.col()) += entry.value();
 }
@@ -125,6 +127,8 @@ ls_rest described(const Stability &stability, const System &system) {
             system.moves_most(stability.softest())};
 }
 
+int elongations(const System &system) { return system.states() - system.bristles(); }
+
 const StaticRun &static_run(const ls_run *run) {
     const std::unique_ptr<StaticRun> &equilibria = need(run, "run").equilibria;
     require(equilibria != nullptr, "the run is no static analysis");
@@ -144,7 +148,7 @@ ls_run *new_run(const ls_scene *scene, double t, const double *q, const double *
             const int n = model.system.coordinates();
             require(std::isfinite(t), "t is not finite");
             Memory memory = from_start ? model.memory : model.system.memory();
-            if (!from_start) memory.elongation = scene->memory.elongation;
+            if (!from_start) memory.state.tail(elongations(model.system)) = scene->memory.state.tail(elongations(model.system));
             run->dynamic = std::make_unique<Run>(model, t, from_start ? model.q : input(q, n, "q"),
                                                  from_start ? model.v : input(v, n, "v"), memory,
                                                  need(tolerances, "tolerances"));
@@ -185,7 +189,7 @@ std::size_t ls_scene_count(const ls_scene *scene, std::int32_t list) {
     case LS_CHANNEL: return scene->channels.names().size();
     case LS_SELECTED: return scene->selected.size();
     case LS_REDUNDANT: return scene->model.redundant.size();
-    case LS_ELONGATION: return system.maxwells().size();
+    case LS_STATE: return scene->state_names.size();
     case LS_NOTE: return scene->notes.size();
     default: return 0;
     }
@@ -200,7 +204,7 @@ const char *ls_scene_name(const ls_scene *scene, std::int32_t list, std::size_t 
     case LS_JOINT: return system.joints()[index].name.c_str();
     case LS_CHANNEL: return scene->channels.names()[index].c_str();
     case LS_SELECTED: return scene->channels.names()[scene->selected[index]].c_str();
-    case LS_ELONGATION: return system.maxwells()[index].name.c_str();
+    case LS_STATE: return scene->state_names[index].c_str();
     case LS_NOTE: return scene->notes[index].c_str();
     default: return scene->model.redundant[index].c_str();
     }
@@ -230,29 +234,42 @@ std::int32_t ls_scene_rest(const ls_scene *scene, ls_rest *rest, ls_error *error
     });
 }
 
-std::int32_t ls_scene_set_elongations(ls_scene *scene, const double *elongations, ls_error *error) {
+std::int32_t ls_scene_set_states(ls_scene *scene, const double *states, ls_error *error) {
     return guarded(error, [&] {
-        VectorXd &target = need(scene, "scene").memory.elongation;
-        target = input(elongations, target.size(), "elongations");
+        VectorXd &target = need(scene, "scene").memory.state;
+        target = input(states, target.size(), "states");
     });
 }
 
-std::int32_t ls_scene_elongation_rates(const ls_scene *scene, const double *qs, double *rates, double *by_q,
-                                       ls_error *error) {
+std::int32_t ls_scene_states(const ls_scene *scene, double *states, ls_error *error) {
+    return guarded(error, [&] { output(need(scene, "scene").memory.state, states, "states"); });
+}
+
+std::int32_t ls_scene_state_rates(const ls_scene *scene, double t, const double *q, const double *v, const double *z,
+                                  double *rates, double *by_q, double *by_v, double *by_states, ls_error *error) {
     return guarded(error, [&] {
-        const System &system = need(scene, "scene").model.system;
-        const VectorXd q = input(qs, system.coordinates(), "q");
+        const GivenState state(need(scene, "scene"), t, q, v, z);
+        const System &system = scene->model.system;
         VectorXd values;
-        system.elongation_rates(q, scene->memory, values);
-        output(values, rates, "rates");
-        Entries lengths;
-        system.length_derivatives(q, lengths);
-        MatrixXd derivatives = MatrixXd::Zero(system.elongations(), system.coordinates());
-        for (const auto &entry : lengths) {
-            const Maxwell &m = system.maxwells()[entry.row()];
-            derivatives(entry.row(), entry.col()) += m.stiffness / m.damping * entry.value();
-        }
-        output(derivatives, by_q, "by_q");
+        system.state_rates(state.q, state.v, state.memory, values);
+        if (rates) output(values, rates, "rates");
+        if (!by_q && !by_v && !by_states) return;
+        StateDerivatives d;
+        system.state_derivatives(state.q, state.v, state.memory, d);
+        if (by_q) output(d.rate_by_q, system.states(), system.coordinates(), by_q, "by_q");
+        if (by_v) output(d.rate_by_v, system.states(), system.coordinates(), by_v, "by_v");
+        if (by_states) output(d.rate_by_state, system.states(), system.states(), by_states, "by_states");
+    });
+}
+
+std::int32_t ls_scene_force_by_states(const ls_scene *scene, double t, const double *q, const double *v, const double *z,
+                                      double *by_states, ls_error *error) {
+    return guarded(error, [&] {
+        const GivenState state(need(scene, "scene"), t, q, v, z);
+        const System &system = scene->model.system;
+        StateDerivatives d;
+        system.state_derivatives(state.q, state.v, state.memory, d);
+        output(d.force_by_state, system.coordinates(), system.states(), by_states, "by_states");
     });
 }
 
@@ -272,8 +289,8 @@ std::int32_t ls_scene_force(const ls_scene *scene, double t, const double *q, co
         if (!by_q && !by_v) return;
         Entries k, c;
         system.force_derivatives(inputs, state.q, state.v, state.memory, k, c);
-        if (by_q) output(k, system.coordinates(), by_q, "by_q");
-        if (by_v) output(c, system.coordinates(), by_v, "by_v");
+        if (by_q) output(k, system.coordinates(), system.coordinates(), by_q, "by_q");
+        if (by_v) output(c, system.coordinates(), system.coordinates(), by_v, "by_v");
     });
 }
 
@@ -365,6 +382,10 @@ std::int32_t ls_run_state(const ls_run *run, double *q, double *v, double *a, do
         put(s.lambda, lambda);
         put(s.memory.impact_velocity, z);
     });
+}
+
+std::int32_t ls_run_states(const ls_run *run, double *states, ls_error *error) {
+    return guarded(error, [&] { output(need(run, "run").snapshot().memory.state, states, "states"); });
 }
 
 std::size_t ls_run_event_count(const ls_run *run) { return run && run->dynamic ? run->dynamic->events().size() : 0; }

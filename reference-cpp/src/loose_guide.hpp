@@ -30,27 +30,25 @@ GuideMotion<T> guide_motion(double angle, const Attachment &guide, const Attachm
     return x;
 }
 
-// Forces of a closed contact (impact velocity z > 0); all zero when z = 0 or |s| <= c. The journal is the slider.
+// Forces of a closed contact (impact velocity > 0), and the rate of its bristles, as those of a loose joint. The journal is
+// the slider.
 template <class T>
-LooseForces<T> guide_forces(const ContactLaw &law, double z, double angle, const Attachment &guide,
-                            const Attachment &slider, const T *qi, const T *vi, const T *qj, const T *vj) {
-    using std::pow;
+LooseForces<T> guide_forces(const ContactLaw &law, double impact_velocity, const T &bristle, double angle,
+                            const Attachment &guide, const Attachment &slider, const T *qi, const T *vi, const T *qj,
+                            const T *vj) {
     LooseForces<T> out;
-    if (z <= 0.0) return out;
+    if (impact_velocity <= 0.0) return out;
     const GuideMotion<T> x = guide_motion(angle, guide, slider, qi, vi, qj, vj);
     const double side = value_of(x.s) < 0.0 ? -1.0 : 1.0;
     out.delta = side * x.s - law.clearance;
-    if (value_of(out.delta) <= 0.0) return out;
     out.rate = side * x.s_rate;
-    out.elastic_normal = law.stiffness * pow(out.delta, law.exponent);
-    out.normal = normal_force(law, out.delta, out.rate, z);
-    out.clamped = value_of(bracket(law, out.rate, z)) < 0.0;
-    out.on_journal = -(side * out.normal * x.m);
-    if (law.friction) {
-        const T resistance = friction_resistance(law, x.slip, out.normal);
-        out.on_journal = out.on_journal - resistance * x.u;
-        out.friction_power = -resistance * x.slip;
-    }
+    const Friction<T> friction = friction_at(law.friction, x.slip, bristle);
+    out.state_rate = friction.bristle_rate;
+    if (value_of(out.delta) <= 0.0) return out;
+    set_normal_force(law, impact_velocity, out);
+    const T resistance = friction.coefficient * out.normal;
+    out.on_journal = -(side * out.normal * x.m) - resistance * x.u;
+    out.friction_power = -resistance * x.slip;
     add_force(slider, qj, out.on_journal, out.journal);
     // the opposite force acts on the guide's body at the place of the pin
     add_force(guide, qi, -out.on_journal, out.bearing);

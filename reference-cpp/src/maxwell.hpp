@@ -26,14 +26,17 @@ T length_of(const Vec<T> &e) {
     return sqrt(dot(e, e));
 }
 
+// The forces and dz/dt.
 template <class T>
-PairForces<T> maxwell_forces(const Maxwell &m, double z, const T *qi, const T *qj) {
+PairForces<T> maxwell_forces(const Maxwell &m, const T &z, const T *qi, const T *qj) {
     const Vec<T> e = line_of(m, qi, qj);
     const T length = length_of(e);
-    const Vec<T> force = (m.stiffness * (length - m.rest_length - z) / length) * e;
+    const T pull = m.stiffness * (length - m.rest_length - z);
+    const Vec<T> force = (pull / length) * e;
     PairForces<T> out;
     add_force(m.from, qi, force, out.bearing);
     add_force(m.to, qj, -force, out.journal);
+    out.state_rate = pull / m.damping;
     return out;
 }
 
@@ -51,21 +54,4 @@ inline double energy(const Maxwell &m, double z, const Eigen::VectorXd &q) {
 inline double loss(const Maxwell &m, double z, const Eigen::VectorXd &q) {
     const double force = pull(m, z, q);
     return force * force / m.damping;
-}
-
-// dL/dq, as entries of one row.
-inline void append_length_derivatives(const Maxwell &m, int row, const Eigen::VectorXd &q, Entries &by_q) {
-    using D = Dual<double, 2 * attachment_size>;
-    D u[2][attachment_size];
-    const Attachment *end[2] = {&m.from, &m.to};
-    for (int s = 0; s < 2; ++s)
-        for (int i = 0; i < end[s]->size; ++i) {
-            u[s][i].value = q[end[s]->offset + i];
-            u[s][i].slope[attachment_size * s + i] = 1.0;
-        }
-    const D *qi = u[0], *qj = u[1];
-    const D length = length_of(line_of(m, qi, qj));
-    for (int s = 0; s < 2; ++s)
-        for (int i = 0; i < end[s]->size; ++i)
-            by_q.emplace_back(row, end[s]->offset + i, length.slope[attachment_size * s + i]);
 }

@@ -10,8 +10,8 @@ void add_to(MatrixXd &matrix, const Entries &entries, double factor) {
 
 SparseMatrix newton_matrix(const System &system, double c, const Inputs &inputs, const VectorXd &q, const VectorXd &v,
                            const Memory &memory, const VectorXd &lambda) {
-    const int n = system.coordinates(), m = system.constraints(), z = 2 * (n + m), size = z + system.elongations();
-    Entries stiffness, damping, rate, lengthening, all;
+    const int n = system.coordinates(), m = system.constraints(), x = 2 * (n + m), size = x + system.states();
+    Entries stiffness, damping, rate, all;
     system.force_derivatives(inputs, q, v, memory, stiffness, damping);
     system.constraint_derivatives(inputs, q, v, lambda, stiffness, rate);
     for (int column = 0; column < n; ++column)
@@ -39,14 +39,13 @@ SparseMatrix newton_matrix(const System &system, double c, const Inputs &inputs,
             all.emplace_back(2 * n + m + k, n + coordinate, entry);
         }
     }
-    system.length_derivatives(q, lengthening);
-    for (const auto &entry : lengthening) {
-        const double by_q = system.maxwells()[entry.row()].stiffness * entry.value();
-        all.emplace_back(z + entry.row(), entry.col(), -by_q); // r5
-        all.emplace_back(n + entry.col(), z + entry.row(), -by_q); // f holds N dL/dq
-    }
-    for (int i = 0; i < system.elongations(); ++i)
-        all.emplace_back(z + i, z + i, c * system.maxwells()[i].damping + system.maxwells()[i].stiffness);
+    StateDerivatives states;
+    system.state_derivatives(q, v, memory, states);
+    for (const auto &entry : states.rate_by_q) all.emplace_back(x + entry.row(), entry.col(), -entry.value());
+    for (const auto &entry : states.rate_by_v) all.emplace_back(x + entry.row(), n + entry.col(), -entry.value());
+    for (const auto &entry : states.rate_by_state) all.emplace_back(x + entry.row(), x + entry.col(), -entry.value());
+    for (const auto &entry : states.force_by_state) all.emplace_back(n + entry.row(), x + entry.col(), entry.value());
+    for (int i = 0; i < system.states(); ++i) all.emplace_back(x + i, x + i, c);
     SparseMatrix matrix(size, size);
     matrix.setFromTriplets(all.begin(), all.end());
     return matrix;
@@ -68,7 +67,8 @@ SparseMatrix newton_matrix(const System &system, double c, const Inputs &inputs,
 // what the first row leaves open, s = dv - c dq, is b4 - c b3 of the rows that prescribe them: it is added to dv wherever
 // that occurs. Their rows of r1 hold no more than mu, and give it at the end.
 //
-// The elongations are eliminated before all that: (c d + k) dz = b5 + k dL/dq dq.
+// The internal states are eliminated before all that: (c - dg/dx) dx = b5 + dg/dq dq + dg/dv dv. What df/dx dx holds of dq and
+// dv is added to K and C.
 
 DenseNewton::DenseNewton(const System &system) : system_(system) {}
 
@@ -84,16 +84,8 @@ void DenseNewton::assemble(double c, const Inputs &inputs, const VectorXd &q, co
     rate_by_q_.setZero(m, n);
     add_to(by_v_, damping, 1.0);
     add_to(rate_by_q_, rate, 1.0);
+    if (system_.states() > 0) eliminate_states(q, v, memory);
     damped_ = (by_v_.array() != 0.0).any();
-
-    Entries lengthening;
-    system_.length_derivatives(q, lengthening);
-    pull_by_q_.setZero(system_.elongations(), n);
-    elongation_pivot_.resize(system_.elongations());
-    for (const auto &entry : lengthening)
-        pull_by_q_(entry.row(), entry.col()) += system_.maxwells()[entry.row()].stiffness * entry.value();
-    for (int i = 0; i < system_.elongations(); ++i)
-        elongation_pivot_[i] = c * system_.maxwells()[i].damping + system_.maxwells()[i].stiffness;
 
     kkt_.setZero(n + m, n + m);
     add_to(kkt_, stiffness, 1.0 / (c * c));
@@ -101,8 +93,7 @@ void DenseNewton::assemble(double c, const Inputs &inputs, const VectorXd &q, co
         for (SparseMatrix::InnerIterator entry(system_.mass(), column); entry; ++entry)
             kkt_(entry.row(), column) += entry.value();
     if (damped_) kkt_.topLeftCorner(n, n) += by_v_ / c;
-    for (int i = 0; i < system_.elongations(); ++i)
-        kkt_.topLeftCorner(n, n) -= pull_by_q_.row(i).transpose() * pull_by_q_.row(i) / (elongation_pivot_[i] * c * c);
+    if (system_.states() > 0) kkt_.topLeftCorner(n, n) += force_by_state_ * state_by_q_ / (c * c);
     kkt_.topRightCorner(n, m) = phi_q_.transpose();
     kkt_.bottomLeftCorner(m, n) = phi_q_;
     lu_.compute(kkt_);
@@ -112,10 +103,38 @@ void DenseNewton::assemble(double c, const Inputs &inputs, const VectorXd &q, co
     projection_.compute(s_);
 }
 
+// P = c - dg/dx, P^-1 dg/dq and P^-1 dg/dv, and what they add to C.
+void DenseNewton::eliminate_states(const VectorXd &q, const VectorXd &v, const Memory &memory) {
+    const int n = system_.coordinates(), count = system_.states();
+    StateDerivatives states;
+    system_.state_derivatives(q, v, memory, states);
+    state_pivot_.setConstant(count, c_);
+    for (const auto &entry : states.rate_by_state) state_pivot_[entry.row()] -= entry.value();
+    force_by_state_.setZero(n, count);
+    state_by_q_.setZero(count, n);
+    state_by_v_.setZero(count, n);
+    add_to(force_by_state_, states.force_by_state, 1.0);
+    add_to(state_by_q_, states.rate_by_q, 1.0);
+    add_to(state_by_v_, states.rate_by_v, 1.0);
+    const VectorXd inverse = state_pivot_.cwiseInverse();
+    state_by_q_ = inverse.asDiagonal() * state_by_q_;
+    state_by_v_ = inverse.asDiagonal() * state_by_v_;
+    by_v_.noalias() += force_by_state_ * state_by_v_;
+}
+
 void DenseNewton::solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd> x) const {
+    const int n = system_.coordinates(), count = system_.states();
+    if (count == 0) return solve_motion(b, x);
+    const VectorXd known = b.tail(count).cwiseQuotient(state_pivot_);
+    VectorXd rest = b;
+    rest.segment(n, n).noalias() -= force_by_state_ * known;
+    solve_motion(rest, x);
+    x.tail(count) = known + state_by_q_ * x.head(n) + state_by_v_ * x.segment(n, n);
+}
+
+void DenseNewton::solve_motion(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd> x) const {
     const int n = system_.coordinates(), m = system_.constraints();
-    const auto b1 = b.segment(0, n), b2 = b.segment(n, n), b3 = b.segment(2 * n, m), b4 = b.segment(2 * n + m, m),
-               b5 = b.tail(system_.elongations());
+    const auto b1 = b.segment(0, n), b2 = b.segment(n, n), b3 = b.segment(2 * n, m), b4 = b.segment(2 * n + m, m);
     const VectorXd m_b1 = system_.divided_by_mass(b1);
 
     VectorXd known = -m_b1; // dv - c dq as far as it does not depend on dmu
@@ -127,7 +146,6 @@ void DenseNewton::solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd
     }
     VectorXd rhs(n + m);
     rhs.head(n) = b2 + c_ * b1;
-    if (pull_by_q_.rows() > 0) rhs.head(n) += pull_by_q_.transpose() * b5.cwiseQuotient(elongation_pivot_);
     if (damped_) rhs.head(n) -= by_v_ * (known + w_mu);
     rhs.head(n) /= c_ * c_;
     rhs.tail(m) = b3;
@@ -136,7 +154,6 @@ void DenseNewton::solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd
 
     x.segment(0, n) = dq;
     x.segment(n, n) = c_ * dq + known;
-    x.tail(system_.elongations()) = (b5 + pull_by_q_ * dq).cwiseQuotient(elongation_pivot_);
     if (m == 0) return;
     VectorXd dmu = projection_.solve(drift - rate_by_q_ * dq);
     x.segment(n, n) += w_ * dmu;

@@ -3,14 +3,13 @@
 //     r1 = M (q' - v) + Phi_q^T mu          r3 = Phi(t, q)
 //     r2 = M v' + f + Phi_q^T lambda        r4 = Phi_q v + Phi_t
 //
-// and of the elongations of Maxwell elements, d z' - k (L - L_0 - z) = r5 with the damping d, for the implicit step q' ~ c q,
-// v' ~ c v, z' ~ c z.
+// and of the internal states, r5 = x' - g(q, v, x), for the implicit step q' ~ c q, v' ~ c v, x' ~ c x.
 #pragma once
 
 #include "constraint_factor.hpp"
 #include "system.hpp"
 
-// The matrix of all unknowns in the order (q, v, lambda, mu, z), without d(Phi_q^T mu)/dq.
+// The matrix of all unknowns in the order (q, v, lambda, mu, x), without d(Phi_q^T mu)/dq.
 SparseMatrix newton_matrix(const System &system, double c, const Inputs &inputs, const VectorXd &q, const VectorXd &v,
                            const Memory &memory, const VectorXd &lambda);
 
@@ -21,17 +20,21 @@ public:
 
     void assemble(double c, const Inputs &inputs, const VectorXd &q, const VectorXd &v,
                   const Memory &memory, const VectorXd &lambda);
-    // x = J^-1 b, both ordered (q, v, lambda, mu, z)
+    // x = J^-1 b, both ordered (q, v, lambda, mu, x)
     void solve(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd> x) const;
 
 private:
+    void eliminate_states(const VectorXd &q, const VectorXd &v, const Memory &memory);
+    // all unknowns but the internal states
+    void solve_motion(const Eigen::Ref<const VectorXd> &b, Eigen::Ref<VectorXd> x) const;
+
     const System &system_;
     double c_ = 0.0;
     bool damped_ = false; // df/dv is not zero
     VectorXd phi_, phi_t_;
     MatrixXd by_v_, phi_q_, rate_by_q_, kkt_, w_, s_;
-    MatrixXd pull_by_q_;       // k dL/dq of the Maxwell elements
-    VectorXd elongation_pivot_; // c d + k
+    MatrixXd force_by_state_, state_by_q_, state_by_v_; // df/dx; dx by dq and dv in the rows of r5
+    VectorXd state_pivot_; // c - dg/dx: no state changes the rate of another
     Eigen::PartialPivLU<MatrixXd> lu_;
     ConstraintFactor projection_;
 };

@@ -9,6 +9,7 @@ void Powers::add(double weight, const Powers &p) {
     contact_dissipated += weight * p.contact_dissipated;
     clamp += weight * p.clamp;
     friction_dissipated += weight * p.friction_dissipated;
+    normal_variation += weight * p.normal_variation;
     damping_dissipated += weight * p.damping_dissipated;
 }
 
@@ -28,9 +29,39 @@ LooseForces<double> System::loose(int k, const VectorXd &q, const VectorXd &v, c
     const Joint &j = joints_[k];
     const double *qi = q.data() + j.bearing.offset, *qj = q.data() + j.journal.offset;
     const double *vi = v.data() + j.bearing.offset, *vj = v.data() + j.journal.offset;
-    const double z = memory.impact_velocity[k];
-    if (j.kind == JointKind::prismatic) return guide_forces(law(k), z, j.direction, j.bearing, j.journal, qi, vi, qj, vj);
-    return loose_forces(law(k), z, j.bearing, j.journal, qi, vi, qj, vj);
+    return contact_forces(j, memory.impact_velocity[k], bristle(k, memory), qi, vi, qj, vj);
+}
+
+double System::bristle(int k, const Memory &memory) const {
+    const int state = joints_[k].bristle;
+    return state < 0 ? 0.0 : memory.state[state];
+}
+
+double System::bristle_energy(int k, const VectorXd &q, const VectorXd &v, const Memory &memory) const {
+    return loose(k, q, v, memory).normal * law(k).friction.stored(bristle(k, memory));
+}
+
+// F_n' is the slope of F_n along (v, a).
+double System::normal_variation(const VectorXd &q, const VectorXd &v, const VectorXd &a, const Memory &memory) const {
+    using D = Dual<double, 1>;
+    double sum = 0.0;
+    for (int k : loose_) {
+        const Joint &j = joints_[k];
+        if (j.bristle < 0 || memory.impact_velocity[k] <= 0.0) continue;
+        D qs[2][attachment_size], vs[2][attachment_size];
+        const Attachment *side[2] = {&j.bearing, &j.journal};
+        for (int s = 0; s < 2; ++s)
+            for (int i = 0; i < side[s]->size; ++i) {
+                const int coordinate = side[s]->offset + i;
+                qs[s][i].value = q[coordinate];
+                qs[s][i].slope[0] = vs[s][i].value = v[coordinate];
+                vs[s][i].slope[0] = a[coordinate];
+            }
+        const D *qi = qs[0], *vi = vs[0], *qj = qs[1], *vj = vs[1];
+        const double z = bristle(k, memory);
+        sum += contact_forces(j, memory.impact_velocity[k], D(z), qi, vi, qj, vj).normal.slope[0] * law(k).friction.stored(z);
+    }
+    return sum;
 }
 
 Energies System::energies(const VectorXd &q, const VectorXd &v, const Memory &memory) const {
@@ -45,12 +76,14 @@ Energies System::energies(const VectorXd &q, const VectorXd &v, const Memory &me
     for (int k : loose_) {
         const LooseForces<double> l = loose(k, q, v, memory);
         sum.contact += l.elastic_normal * l.delta / (law(k).exponent + 1.0);
+        sum.contact += l.normal * law(k).friction.stored(bristle(k, memory));
     }
     sum.gravity = -weight_.dot(q);
     for (const Spring &s : springs_) sum.springs += energy(s, q);
     for (std::size_t i = 0; i < torsion_springs_.size(); ++i)
         sum.springs += energy(torsion_springs_[i], memory.turn[static_cast<int>(i)], q);
-    for (int i = 0; i < elongations(); ++i) sum.springs += energy(maxwells_[i], memory.elongation[i], q);
+    for (std::size_t i = 0; i < maxwells_.size(); ++i)
+        sum.springs += energy(maxwells_[i], memory.state[elongation(static_cast<int>(i))], q);
     return sum;
 }
 
@@ -68,11 +101,13 @@ Powers System::powers(const Inputs &inputs, const VectorXd &q, const VectorXd &v
         const double lost = (l.normal - l.elastic_normal) * l.rate;
         p.contact_dissipated += lost;
         if (l.clamped) p.clamp += lost;
-        p.friction_dissipated -= l.friction_power;
+        // what the friction takes, less what it stores in the bristles
+        p.friction_dissipated -= l.friction_power + l.normal * law(k).friction.s0 * bristle(k, memory) * l.state_rate;
     }
     for (const Spring &s : springs_) p.damping_dissipated += loss(s, q, v);
     for (const TorsionSpring &s : torsion_springs_) p.damping_dissipated += loss(s, q, v);
-    for (int i = 0; i < elongations(); ++i) p.damping_dissipated += loss(maxwells_[i], memory.elongation[i], q);
+    for (std::size_t i = 0; i < maxwells_.size(); ++i)
+        p.damping_dissipated += loss(maxwells_[i], memory.state[elongation(static_cast<int>(i))], q);
     for (const Body &b : bodies_) {
         if (b.strain_damping == 0.0) continue;
         for (int e = 0; e < b.elements; ++e) {
@@ -89,7 +124,7 @@ bool System::prescribes_motion() const {
 }
 
 bool System::has_power() const {
-    if (prescribes_motion() || !loads_.empty() || elongations() > 0 || mass_damping_.nonZeros() > 0) return true;
+    if (prescribes_motion() || !loads_.empty() || !maxwells_.empty() || mass_damping_.nonZeros() > 0) return true;
     for (const Spring &s : springs_)
         if (s.damping > 0.0) return true;
     for (const TorsionSpring &s : torsion_springs_)

@@ -23,18 +23,6 @@ double compliance(const Value &name, const Library &library) {
     return (1.0 - nu * nu) / *material.youngs_modulus;
 }
 
-void read_friction(const Value &value, ContactLaw &law) {
-    Fields f(value);
-    f.choice<int>("law", {{"ambrosio", 0}});
-    law.friction_coefficient = f.not_negative("coefficient");
-    law.friction_v0 = f.not_negative("v0", 1e-4);
-    law.friction_v1 = f.positive("v1", 1e-3);
-    require(law.friction_v1 > law.friction_v0, f.source("v1"), "must be greater than v0");
-    law.material_slip = !f.has("slip") || f.choice<bool>("slip", {{"material", true}, {"paper", false}});
-    law.friction = law.friction_coefficient > 0.0;
-    f.finish();
-}
-
 } // namespace
 
 Material read_material(const Value &value) {
@@ -91,8 +79,7 @@ ContactLaw read_contact(const Value &value, const Library &library) {
     // without damping the impact velocity is without effect, but it tells a closed contact from an open one
     if (!undamped || f.has("impact_velocity_floor")) law.impact_velocity_floor = f.positive("impact_velocity_floor");
     if (undamped) law.impact_velocity_floor = 1.0;
-    law.material_slip = true;
-    if (const Value *friction = f.find("friction")) read_friction(*friction, law);
+    if (const Value *friction = f.find("friction")) law.friction = read_friction(*friction);
     f.finish();
     return law;
 }

@@ -59,7 +59,7 @@ JointDescription read_joint(const std::string &name, const Value &value, const S
     case Type::loose_guide:
         read_guide(f, scene, library, joint);
         joint.law = named(library.contacts, f.get("contact"), "contact");
-        require(joint.law->material_slip, f.source("contact"), "slip \"paper\" is refused in a loose guide");
+        require(joint.law->friction.material_slip, f.source("contact"), "slip \"paper\" is refused in a loose guide");
         break;
     case Type::rod:
         joint.kind = JointKind::rod;

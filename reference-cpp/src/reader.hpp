@@ -43,6 +43,7 @@ void each_entry(const Value *section, Read read) {
 
 Material read_material(const Value &value);
 Section read_section(const Value &value);
+FrictionLaw read_friction(const Value &value);
 ContactLaw read_contact(const Value &value, const Library &library);
 
 BodyDescription read_body(const std::string &name, const Value &value, const Library &library, double duration);

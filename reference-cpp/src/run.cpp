@@ -30,7 +30,7 @@ Handle allocated(Handle handle) {
 Run::Run(const Model &model, double t, const VectorXd &q, const VectorXd &v, const Memory &memory,
          const ls_tolerances &tolerances)
     : model_(model), system_(model_.system), channels_(model_), tolerances_(tolerances), n_(system_.coordinates()),
-      m_(system_.constraints()), z_(system_.elongations()), before_(t), t_(t), target_(t), q_(q), v_(v), memory_(memory),
+      m_(system_.constraints()), x_(system_.states()), before_(t), t_(t), target_(t), q_(q), v_(v), memory_(memory),
       angles_(continued(system_, starting_angles(model_), q)), watch_before_(system_.loose_joints().size()),
       clamped_(system_.loose_joints().size(), 0), deepest_(system_.loose_joints().size(), 0.0),
       acceleration_(system_), newton_(system_), inputs_time_(std::numeric_limits<double>::quiet_NaN()),
@@ -146,9 +146,9 @@ const Inputs &Run::inputs(double t) {
 }
 
 const Memory &Run::memory_at(const double *y) {
-    if (z_ == 0) return memory_;
+    if (x_ == 0) return memory_;
     memory_at_ = memory_;
-    memory_at_.elongation = part(y, 2 * (n_ + m_), z_);
+    memory_at_.state = part(y, 2 * (n_ + m_), x_);
     return memory_at_;
 }
 
@@ -175,9 +175,8 @@ int Run::residual(double t, N_Vector yy, N_Vector yyp, N_Vector rr, void *user) 
         part(r, 2 * n, m) = run.phi_;
         part(r, 2 * n + m, m) = run.phi_t_ + run.phi_q_ * run.vs_;
         VectorXd rates;
-        s.elongation_rates(run.qs_, memory, rates);
-        for (int i = 0, first = 2 * (n + m); i < run.z_; ++i)
-            r[first + i] = s.maxwells()[i].damping * (yp[first + i] - rates[i]);
+        s.state_rates(run.qs_, run.vs_, memory, rates);
+        part(r, 2 * (n + m), run.x_) = part(yp, 2 * (n + m), run.x_) - rates;
         if (!part(r, 0, run.unknowns()).allFinite())
             throw Failure(LS_NOT_FINITE, "the residual of the equations of motion is not finite", t);
     });
@@ -217,9 +216,9 @@ int Run::weights(N_Vector yy, N_Vector ww, void *user) {
         w[i] = 1.0 / (tol.relative * std::abs(y[i]) + tol.position / levers[i]);
         w[run.n_ + i] = 1.0 / (tol.relative * std::abs(y[run.n_ + i]) + tol.velocity / levers[i]);
     }
-    const int z = 2 * (run.n_ + run.m_);
-    std::fill(w + 2 * run.n_, w + z, 0.0);
-    for (int i = z; i < run.unknowns(); ++i) w[i] = 1.0 / (tol.relative * std::abs(y[i]) + tol.position);
+    const int x = 2 * (run.n_ + run.m_);
+    std::fill(w + 2 * run.n_, w + x, 0.0);
+    for (int i = x; i < run.unknowns(); ++i) w[i] = 1.0 / (tol.relative * std::abs(y[i]) + tol.position);
     return 0;
 }
 

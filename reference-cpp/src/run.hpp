@@ -14,7 +14,7 @@ using Ledger = Powers;
 
 class Run {
 public:
-    // memory: the impact velocities of closed contacts and the elongations of Maxwell elements at t
+    // memory: the impact velocities of closed contacts and the internal states at t
     Run(const Model &model, double t, const VectorXd &q, const VectorXd &v, const Memory &memory,
         const ls_tolerances &tolerances);
     Run(const Run &) = delete;
@@ -66,8 +66,9 @@ private:
     void watch_clamps();
     void watch_depth();
 
-    int unknowns() const { return 2 * (n_ + m_) + z_; } // q, v, lambda, mu, z
-    const Memory &memory_at(const double *y);           // memory_ with the elongations of y
+    int unknowns() const { return 2 * (n_ + m_) + x_; } // q, v, lambda, mu, x
+    const Memory &memory_at(const double *y);           // memory_ with the internal states of y
+    bool bristles_touch() const;                        // some contact with bristles is closed
     void state_at(double t, VectorXd &q, VectorXd &v, Memory &memory);
     Ledger integral(double to);
     std::vector<double> kinks(double to);
@@ -78,13 +79,13 @@ private:
     const System &system_;
     Channels channels_;
     ls_tolerances tolerances_;
-    int n_, m_, z_; // numbers of coordinates, constraints, elongations
+    int n_, m_, x_; // numbers of coordinates, constraints, internal states
 
     // the last interval IDA has covered without a restart inside; t_ is reached, a restart may be pending there
     double before_, t_;
     double target_;                   // the time asked for
     VectorXd q_, v_;
-    Memory memory_;                   // its elongations: at t_
+    Memory memory_;                   // its internal states: at t_
     Memory memory_at_;                // of memory_at
     Angles angles_;                   // at t_
     double initial_energy_;

@@ -71,6 +71,11 @@ double Run::bisect(double from, double to, Function f, int joint) {
     }
 }
 
+bool Run::bristles_touch() const {
+    const std::vector<int> &loose = system_.loose_joints();
+    return std::any_of(loose.begin(), loose.end(), [&](int k) { return closed(k) && system_.joints()[k].bristle >= 0; });
+}
+
 void Run::watch_clamps() {
     const std::vector<int> &loose = system_.loose_joints();
     for (std::size_t i = 0; i < loose.size(); ++i) {
@@ -102,6 +107,10 @@ void Run::apply_pending_events() {
         const double speed = g.rate();
         const bool onset = !closed(k);
         events_.push_back({t_, speed, g.e.x, g.e.y, onset ? 0.0 : deepest_[i], k, onset ? 1 : 0});
+        if (const int bristle = system_.joints()[k].bristle; bristle >= 0) { // they are straight where contact begins
+            if (!onset) ledger_.friction_dissipated += system_.bristle_energy(k, q_, v_, memory_);
+            memory_.state[bristle] = 0.0;
+        }
         memory_.impact_velocity[k] = onset ? std::max(speed, system_.law(k).impact_velocity_floor) : 0.0;
         clamped_[i] = 0;
         deepest_[i] = 0.0;

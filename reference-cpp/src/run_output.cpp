@@ -21,13 +21,14 @@ void Run::state_at(double t, VectorXd &q, VectorXd &v, Memory &memory) {
 
 // Gauss quadrature of the powers over the last interval up to `to`, piecewise between the kinks of the contact law. The
 // rule matches the order of the interpolant. Where functions of time are prescribed IDA may take long steps, exact for
-// polynomials of its order, and powers have twice their degree.
+// polynomials of its order, and powers have twice their degree, those of bristles more.
 Ledger Run::integral(double to) {
     double from = before_;
     Ledger sum;
     if (!(to > from) || (!system_.has_power() && (memory_.impact_velocity.array() <= 0.0).all())) return sum;
     int order = 0;
     check(IDAGetLastOrder(ida_, &order));
+    const bool bristles = bristles_touch();
     std::vector<double> ends = kinks(to);
     ends.push_back(to);
     for (double end : ends) {
@@ -39,11 +40,12 @@ Ledger Run::integral(double to) {
             const double weight = g.weight * (end - from);
             const Memory &memory = memory_at(data(scratch_));
             sum.add(weight, system_.powers(inputs(t), qs_, vs_, memory));
-            if (!system_.prescribes_motion()) return;
+            if (!system_.prescribes_motion() && !bristles) return;
             acceleration_.solve(t, qs_, vs_, memory, false);
             sum.work += weight * acceleration_.prescribed_power();
+            sum.normal_variation += weight * system_.normal_variation(qs_, vs_, acceleration_.a, memory);
         };
-        if (system_.prescribes_motion() || system_.has_loads())
+        if (system_.prescribes_motion() || system_.has_loads() || bristles)
             std::for_each(gauss5.begin(), gauss5.end(), add_point);
         else if (order <= 3)
             std::for_each(gauss2.begin(), gauss2.end(), add_point);

@@ -35,7 +35,7 @@ void Run::step() {
     if (flag == IDA_TSTOP_RETURN) restart_pending_ = true;
     q_ = part(y, 0, n_);
     v_ = part(y, n_, n_);
-    if (z_ > 0) memory_.elongation = part(y, 2 * (n_ + m_), z_);
+    if (x_ > 0) memory_.state = part(y, 2 * (n_ + m_), x_);
     ledger_.add(1.0, integral(t_));
     angles_ = continued(system_, angles_, q_);
     memory_.turn = spring_turns(system_, angles_);
@@ -56,11 +56,11 @@ void Run::restart() {
     part(y, 2 * n_, m_) = acceleration_.lambda;
     part(yp, 0, n_) = v_;
     part(yp, n_, n_) = acceleration_.a;
-    if (z_ > 0) {
+    if (x_ > 0) {
         VectorXd rates;
-        system_.elongation_rates(q_, memory_, rates);
-        part(y, 2 * (n_ + m_), z_) = memory_.elongation;
-        part(yp, 2 * (n_ + m_), z_) = rates;
+        system_.state_rates(q_, v_, memory_, rates);
+        part(y, 2 * (n_ + m_), x_) = memory_.state;
+        part(yp, 2 * (n_ + m_), x_) = rates;
     }
     collect_statistics();
     ++statistics_.restarts;
@@ -85,11 +85,11 @@ void Run::stop_at_next_break() {
 }
 
 // IDA starts at order 1: its error is h^2/2 y''. For q that is the acceleration; the change of the acceleration over
-// a trial step stands for v''. It catches the contact force, F ~ t^1.5 after an onset. The change of z' stands for z''.
+// a trial step stands for v''. It catches the contact force, F ~ t^1.5 after an onset. The change of x' stands for x''.
 double Run::first_step() {
     const VectorXd a = acceleration_.a;
     VectorXd rates, rates_there;
-    system_.elongation_rates(q_, memory_, rates);
+    system_.state_rates(q_, v_, memory_, rates);
     if (weights(y_.get(), scratch_.get(), this) != 0) return 0.0;
     const VectorXd w = part(static_cast<const double *>(data(scratch_)), 0, unknowns());
     const double scale = std::sqrt(1.0 / unknowns());
@@ -101,14 +101,15 @@ double Run::first_step() {
     double h = std::min(limit, std::sqrt(2.0 * first_step_error / std::max(norm(a, 0), 1e-300)));
     for (int trial = 0; trial < 12 && h > shortest; ++trial) {
         const VectorXd q = q_ + h * v_ + 0.5 * h * h * a;
+        const VectorXd v = v_ + h * a;
         Memory memory = memory_;
-        if (z_ > 0) memory.elongation += h * rates;
-        acceleration_.solve(t_ + h, q, v_ + h * a, memory, false);
+        memory.state += h * rates;
+        acceleration_.solve(t_ + h, q, v, memory, false);
         double error = 0.5 * h * norm(acceleration_.a - a, n_);
-        if (z_ > 0) {
-            system_.elongation_rates(q, memory, rates_there);
+        if (x_ > 0) {
+            system_.state_rates(q, v, memory, rates_there);
             const VectorXd change = rates_there - rates;
-            error = std::hypot(error, 0.5 * h * scale * change.cwiseProduct(w.tail(z_)).norm());
+            error = std::hypot(error, 0.5 * h * scale * change.cwiseProduct(w.tail(x_)).norm());
         }
         if (error <= first_step_error) break;
         h *= std::max(0.05, 0.8 * std::sqrt(first_step_error / error));

@@ -59,6 +59,7 @@ void System::add_joints(const Scene &scene) {
         require(moves(d.first.body) || moves(d.second.body) || scene.inverse_kinematics, d.source,
                 "the motion of both sides is prescribed");
         if (d.law) loose_.push_back(static_cast<int>(joints_.size()));
+        if (d.law && d.law->friction.has_bristles()) joint.bristle = bristles_++;
         joints_.push_back(joint);
     }
 }
@@ -146,6 +147,12 @@ VectorXd System::divided_by_mass(const VectorXd &x) const {
     return has_mass_.cwiseProduct(mass_factor_->solve(x));
 }
 
+std::string System::state_name(int state) const {
+    if (state >= bristles_) return maxwells_[state - bristles_].name + ".elongation";
+    const auto has_it = [state](const Joint &joint) { return joint.bristle == state; };
+    return std::find_if(joints_.begin(), joints_.end(), has_it)->name + ".bristle";
+}
+
 int System::moves_most(const VectorXd &motion) const {
     VectorXd size = levers_.cwiseProduct(motion).cwiseAbs();
     for (const Body &b : bodies_)
@@ -176,7 +183,9 @@ Inputs System::inputs(double t) const {
 Memory System::memory() const {
     VectorXd turn(static_cast<int>(torsion_springs_.size()));
     for (int i = 0; i < turn.size(); ++i) turn[i] = torsion_springs_[i].start;
-    return {VectorXd::Zero(static_cast<int>(joints_.size())), std::move(turn), elongation_};
+    VectorXd state = VectorXd::Zero(states());
+    state.tail(elongation_.size()) = elongation_;
+    return {VectorXd::Zero(static_cast<int>(joints_.size())), std::move(turn), std::move(state)};
 }
 
 void System::count_turns(const VectorXd &q, Memory &memory) const {

@@ -31,7 +31,17 @@ struct Joint {
     int drive = -1;                   // that prescribes the angle
     double direction = 0.0;           // prismatic: of the line
     bool holds_angle = false, driven = false;
+    int bristle = -1;                 // number of its internal state; -1: none
 };
+
+// A joint with clearance and its contact.
+template <class T>
+LooseForces<T> contact_forces(const Joint &j, double impact_velocity, const T &bristle, const T *qi, const T *vi,
+                              const T *qj, const T *vj) {
+    if (j.kind == JointKind::prismatic)
+        return guide_forces(*j.law, impact_velocity, bristle, j.direction, j.bearing, j.journal, qi, vi, qj, vj);
+    return loose_forces(*j.law, impact_velocity, bristle, j.bearing, j.journal, qi, vi, qj, vj);
+}
 
 struct Gap {
     Vec<double> e, e_dot; // of a loose guide the part across the guide
@@ -53,7 +63,9 @@ struct Inputs {
 struct Memory {
     VectorXd impact_velocity; // by joint: of eq. 24 while its contact is closed, else 0
     VectorXd turn;            // by torsion spring: an angle phi - phi_0 within half a turn of the present one
-    VectorXd elongation;      // z by Maxwell element; an unknown of the motion, unlike the others
+    // internal states: z of the bristles by joint that has them, 0 while its contact is open, then z by Maxwell element;
+    // unknowns of the motion, unlike the others
+    VectorXd state;
 };
 
 struct Energies {
@@ -63,7 +75,8 @@ struct Energies {
 
 // Powers whose integrals are in the ledger of EQUATIONS.md.
 struct Powers {
-    double work = 0.0, contact_dissipated = 0.0, clamp = 0.0, friction_dissipated = 0.0, damping_dissipated = 0.0;
+    double work = 0.0, contact_dissipated = 0.0, clamp = 0.0, friction_dissipated = 0.0, normal_variation = 0.0,
+           damping_dissipated = 0.0;
     void add(double weight, const Powers &p);
 };
 
@@ -79,8 +92,12 @@ public:
     const std::vector<Spring> &springs() const { return springs_; }
     const std::vector<TorsionSpring> &torsion_springs() const { return torsion_springs_; }
     const std::vector<Maxwell> &maxwells() const { return maxwells_; }
-    // How many Maxwell elements act, each with an unknown z: none in a static analysis, where their pull is zero.
-    int elongations() const { return static_cast<int>(maxwells_.size()); }
+    // Internal states, each an unknown of the motion: bristles of joints, then elongations of Maxwell elements. A static
+    // analysis has none.
+    int states() const { return bristles_ + static_cast<int>(maxwells_.size()); }
+    int bristles() const { return bristles_; }
+    int elongation(int maxwell) const { return bristles_ + maxwell; } // number of its state
+    std::string state_name(int state) const;
     const std::vector<Load> &loads() const { return loads_; }
     const std::vector<int> &loose_joints() const { return loose_; }
     const ContactLaw &law(int joint) const { return *joints_[joint].law; }
@@ -121,9 +138,9 @@ public:
     // df/dt of loads and weight, with the state held
     void load_rates(const Inputs &inputs, const VectorXd &q, VectorXd &rates) const;
 
-    // dz/dt of the Maxwell elements, and dL/dq of their lengths, appended: one row an element
-    void elongation_rates(const VectorXd &q, const Memory &memory, VectorXd &rates) const;
-    void length_derivatives(const VectorXd &q, Entries &by_q) const;
+    // The rates of the internal states, and all derivatives with them, appended. Bristles of an open contact rest.
+    void state_rates(const VectorXd &q, const VectorXd &v, const Memory &memory, VectorXd &rates) const;
+    void state_derivatives(const VectorXd &q, const VectorXd &v, const Memory &memory, StateDerivatives &out) const;
 
     void constraint_rows(const Inputs &inputs, const VectorXd &q, VectorXd &phi, MatrixXd &phi_q, VectorXd &phi_t) const;
     // The coordinates that a row depends on are the first `size` of `index`.
@@ -143,7 +160,10 @@ public:
     LooseForces<double> loose(int joint, const VectorXd &q, const VectorXd &v, const Memory &memory) const;
 
     Energies energies(const VectorXd &q, const VectorXd &v, const Memory &memory) const;
-    // Without the power of constraints that prescribe a motion, which is lambda . Phi_t.
+    double bristle_energy(int joint, const VectorXd &q, const VectorXd &v, const Memory &memory) const;
+    // Sum of F_n' s_0 z^2 / 2, with the accelerations a.
+    double normal_variation(const VectorXd &q, const VectorXd &v, const VectorXd &a, const Memory &memory) const;
+    // Without the power of constraints that prescribe a motion, which is lambda . Phi_t, and without normal_variation.
     Powers powers(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory) const;
     bool prescribes_motion() const; // some row depends on time
     bool has_loads() const { return !loads_.empty(); }
@@ -165,6 +185,9 @@ private:
 
     template <class Visit>
     void visit_pairs(const Inputs &inputs, const Memory &memory, Visit visit) const;
+    template <class Visit>
+    void visit_states(const Memory &memory, Visit visit) const;
+    double bristle(int joint, const Memory &memory) const; // its deflection, 0 without bristles
     Prescribed prescription(const Constraint &c, const Inputs &inputs) const;
 
     std::vector<Body> bodies_;
@@ -188,7 +211,7 @@ private:
     std::vector<PrescribedCoordinate> prescribed_;
     std::vector<double> breaks_;
     std::vector<int> loose_;
-    int n_ = 0;
+    int n_ = 0, bristles_ = 0;
     double full_load_ = 0.0; // static analysis: t of the full load
     SparseMatrix mass_, mass_damping_; // mass_damping_: alpha M of each body
     // of M with ones for the coordinates without mass; a copy of the system shares it
@@ -197,5 +220,5 @@ private:
     SparseMatrix inverse_mass_; // its columns of the coordinates that constraints depend on
     VectorXd weight_;          // the force of gravity, M g
     VectorXd levers_;
-    VectorXd elongation_;      // z at t = 0
+    VectorXd elongation_;      // of the Maxwell elements at t = 0
 };
