@@ -69,6 +69,7 @@ void read_integrator(const Value &value, Scene &scene) {
     require(!std::isfinite(least_clearance) || scene.onset_tolerance < least_clearance, f.source("onset_tolerance"),
             "must be below every clearance");
     f.flag("locate_onsets", true);
+    if (f.has("knots")) f.choice<int>("knots", {{"stop", 0}, {"ignore", 1}});
     f.finish();
 }
 
