@@ -28,7 +28,7 @@ for name in ("ls_scene_read", "ls_run_new"):
 lib.ls_scene_count.restype = c.c_size_t
 lib.ls_scene_name.restype = c.c_char_p
 error = Error()
-COORDINATE, CONSTRAINT, JOINT, CHANNEL = range(4)
+COORDINATE, CONSTRAINT, JOINT, CHANNEL, SELECTED, REDUNDANT, STATE = range(7)
 
 
 def pointer(x):
@@ -46,10 +46,12 @@ class Scene:
         if not self.handle:
             raise RuntimeError(error.message.decode())
         self.n, self.m, self.joints, self.channels = (lib.ls_scene_count(self.handle, k) for k in range(4))
+        self.states = lib.ls_scene_count(self.handle, STATE)
         self.description = Description()
         lib.ls_scene_describe(self.handle, c.byref(self.description))
 
     def state_at(self, t):
+        """q, v and z that a run reaches; its internal states become those of the scene."""
         tolerances = Tolerances(1e-8, 1e-9, 1e-6, 0.0, 0.05, 5, 0, 10**7)
         run = c.c_void_p(lib.ls_run_new(self.handle, c.byref(tolerances), c.byref(error)))
         if not run:
@@ -57,8 +59,30 @@ class Scene:
         values, q, v, z = np.zeros(self.channels), np.zeros(self.n), np.zeros(self.n), np.zeros(self.joints)
         call(lib.ls_run_advance, run, c.c_double(t), pointer(values))
         call(lib.ls_run_state, run, pointer(q), pointer(v), None, None, pointer(z))
+        states = np.zeros(self.states)
+        call(lib.ls_run_states, run, pointer(states))
         lib.ls_run_free(run)
+        self.set_states(states)
         return q, v, z
+
+    def set_states(self, states):
+        call(lib.ls_scene_set_states, self.handle, pointer(np.array(states, float)))
+
+    def present_states(self):
+        states = np.zeros(self.states)
+        call(lib.ls_scene_states, self.handle, pointer(states))
+        return states
+
+    def state_rates(self, t, q, v, z):
+        """The rates of the internal states, and their derivatives by q, v and the states."""
+        result = [np.zeros(self.states), *(np.zeros((self.states, k)) for k in (self.n, self.n, self.states))]
+        call(lib.ls_scene_state_rates, self.handle, c.c_double(t), pointer(q), pointer(v), pointer(z), *map(pointer, result))
+        return result
+
+    def force_by_states(self, t, q, v, z):
+        result = np.zeros((self.n, self.states))
+        call(lib.ls_scene_force_by_states, self.handle, c.c_double(t), pointer(q), pointer(v), pointer(z), pointer(result))
+        return result
 
     def force(self, t, q, v, z):
         f, k, d = np.zeros(self.n), np.zeros((self.n, self.n)), np.zeros((self.n, self.n))

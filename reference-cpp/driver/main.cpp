@@ -102,6 +102,10 @@ void print_start(const ls_scene *scene) {
     }
     for (std::size_t i = 0; i < n; ++i)
         std::printf("%-28s %24.16e %24.16e\n", ls_scene_name(scene, LS_COORDINATE, i), q[i], v[i]);
+    std::vector<double> states(ls_scene_count(scene, LS_STATE));
+    ls_scene_states(scene, states.data(), &error);
+    for (std::size_t i = 0; i < states.size(); ++i)
+        std::printf("%-28s %24.16e\n", ls_scene_name(scene, LS_STATE, i), states[i]);
     for (std::size_t i = 0; i < ls_scene_count(scene, LS_REDUNDANT); ++i)
         std::printf("redundant: %s\n", ls_scene_name(scene, LS_REDUNDANT, i));
     std::printf("%zu coordinates, %zu constraints, violated by %.1e m, %.1e m/s\n", n, m, position, velocity);
