@@ -153,6 +153,14 @@ rate = v - np.abs(v) * 1e4 * z / (0.2 + 0.3 * np.exp(-(v / 0.02) ** 2))
 expect("falling damping: T", -block["track.fx"] - N * (1e4 * z + 20.0 * np.exp(-(v / 0.05) ** 2) * rate + 0.3 * v), 1e-9)
 expect("falling damping: energy", block["energy.numerical"], 1e-9)
 
+# the normal force varies: the integral of F_n' s0 z^2/2 from the rows, by the trapezoidal rule of d(F_n)
+down = 'forces.down = { type = "force", point = "block.center", x = 0.0, y = "-4 * sin(300 * t)", frame = "ground" }\n'
+block, _ = load("varied", 0.1, 1e-5, track(f'law = "elasto_plastic", {CURVE}, breakaway = 0.8', rest=down + push('"2 + 1.5 * cos(170 * t)"')))
+normal, held = np.abs(block["track.fy"]), 0.5e4 * block["track.bristle"] ** 2
+varied = np.concatenate([[0.0], np.cumsum(np.diff(normal) * (held[1:] + held[:-1]) / 2)])
+expect(f"normal force of {normal.min():.1f} to {normal.max():.1f} N: variation up to {np.abs(varied).max():.1e} J", block["energy.normal_variation"] - varied, 1e-9)
+expect("normal force varies: energy", block["energy.numerical"], 1e-10)
+
 # without memory a body that should stick creeps
 creep, _ = load("creep", 0.5, 1e-2, track('law = "coulomb_stribeck", mu_c = 0.4, mu_s = 0.4, v_s = 0.01, v_r = 1e-3', rest=push(3.0)))
 expect("coulomb_stribeck: creep", creep["block.vx"][-1] - 1e-3 * math.atanh(3.0 / (0.4 * N)), 1e-9)

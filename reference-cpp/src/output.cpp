@@ -41,26 +41,10 @@ double System::bristle_energy(int k, const VectorXd &q, const VectorXd &v, const
     return loose(k, q, v, memory).normal * law(k).friction.stored(bristle(k, memory));
 }
 
-// F_n' is the slope of F_n along (v, a).
-double System::normal_variation(const VectorXd &q, const VectorXd &v, const VectorXd &a, const Memory &memory) const {
-    using D = Dual<double, 1>;
+double System::bristle_energy(const VectorXd &q, const VectorXd &v, const Memory &memory) const {
     double sum = 0.0;
-    for (int k : loose_) {
-        const Joint &j = joints_[k];
-        if (j.bristle < 0 || memory.impact_velocity[k] <= 0.0) continue;
-        D qs[2][attachment_size], vs[2][attachment_size];
-        const Attachment *side[2] = {&j.bearing, &j.journal};
-        for (int s = 0; s < 2; ++s)
-            for (int i = 0; i < side[s]->size; ++i) {
-                const int coordinate = side[s]->offset + i;
-                qs[s][i].value = q[coordinate];
-                qs[s][i].slope[0] = vs[s][i].value = v[coordinate];
-                vs[s][i].slope[0] = a[coordinate];
-            }
-        const D *qi = qs[0], *vi = vs[0], *qj = qs[1], *vj = vs[1];
-        const double z = bristle(k, memory);
-        sum += contact_forces(j, memory.impact_velocity[k], D(z), qi, vi, qj, vj).normal.slope[0] * law(k).friction.stored(z);
-    }
+    for (int k : loose_)
+        if (joints_[k].bristle >= 0) sum += bristle_energy(k, q, v, memory);
     return sum;
 }
 
@@ -101,8 +85,9 @@ Powers System::powers(const Inputs &inputs, const VectorXd &q, const VectorXd &v
         const double lost = (l.normal - l.elastic_normal) * l.rate;
         p.contact_dissipated += lost;
         if (l.clamped) p.clamp += lost;
-        // what the friction takes, less what it stores in the bristles
-        p.friction_dissipated -= l.friction_power + l.normal * law(k).friction.s0 * bristle(k, memory) * l.state_rate;
+        const double stored = l.normal * law(k).friction.s0 * bristle(k, memory) * l.state_rate; // in the bristles
+        p.friction_dissipated -= l.friction_power + stored;
+        p.normal_variation -= stored;
     }
     for (const Spring &s : springs_) p.damping_dissipated += loss(s, q, v);
     for (const TorsionSpring &s : torsion_springs_) p.damping_dissipated += loss(s, q, v);

@@ -90,6 +90,7 @@ private:
     Angles angles_;                   // at t_
     double initial_energy_;
     Ledger ledger_before_, ledger_;
+    double bristle_energy_before_ = 0.0;
     std::vector<Watch> watch_before_; // by loose joint, at before_
     std::vector<char> clamped_;       // by loose joint
     std::vector<double> deepest_;     // by loose joint: largest penetration since the onset

@@ -20,6 +20,7 @@ void Run::step() {
     if (t_ + glance <= target_) system_.inputs(t_ + glance);
     before_ = t_;
     ledger_before_ = ledger_;
+    bristle_energy_before_ = system_.bristle_energy(q_, v_, memory_);
     const double *y = data(y_);
     const std::vector<int> &loose = system_.loose_joints();
     for (std::size_t i = 0; i < loose.size(); ++i) watch_before_[i] = watch(loose[i], y);

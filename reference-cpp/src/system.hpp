@@ -160,10 +160,10 @@ public:
     LooseForces<double> loose(int joint, const VectorXd &q, const VectorXd &v, const Memory &memory) const;
 
     Energies energies(const VectorXd &q, const VectorXd &v, const Memory &memory) const;
-    double bristle_energy(int joint, const VectorXd &q, const VectorXd &v, const Memory &memory) const;
-    // Sum of F_n' s_0 z^2 / 2, with the accelerations a.
-    double normal_variation(const VectorXd &q, const VectorXd &v, const VectorXd &a, const Memory &memory) const;
-    // Without the power of constraints that prescribe a motion, which is lambda . Phi_t, and without normal_variation.
+    double bristle_energy(int joint, const VectorXd &q, const VectorXd &v, const Memory &memory) const; // F_n s_0 z^2 / 2
+    double bristle_energy(const VectorXd &q, const VectorXd &v, const Memory &memory) const; // of all joints
+    // Without the power of constraints that prescribe a motion, which is lambda . Phi_t. normal_variation is its part
+    // -F_n s_0 z z' only: the rate of F_n s_0 z^2 / 2 is missing.
     Powers powers(const Inputs &inputs, const VectorXd &q, const VectorXd &v, const Memory &memory) const;
     bool prescribes_motion() const; // some row depends on time
     bool has_loads() const { return !loads_.empty(); }
