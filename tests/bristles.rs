@@ -4,8 +4,8 @@
 use crate::support::{TestRecording, run};
 use ladder::{Rung, Worst};
 
-const BELT: &str = "../tests/scenes/belt.toml";
-const SLOPE: &str = "../tests/scenes/block-on-slope.toml";
+const BELT: &str = "belt.toml";
+const SLOPE: &str = "block-on-slope.toml";
 
 /// The instants at which x passes a level, upwards or downwards, by the cubic through values and rates at both ends of a row.
 fn passes(run: &TestRecording, [x, v, a]: [&str; 3], level: f64, up: bool) -> Vec<f64> {

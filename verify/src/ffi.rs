@@ -76,9 +76,12 @@ unsafe extern "C" {
     pub fn ls_scene_start(scene: *const LsScene, q: *mut f64, v: *mut f64, error: *mut LsError) -> c_int;
     pub fn ls_scene_start_contacts(scene: *const LsScene, z: *mut f64, error: *mut LsError) -> c_int;
     pub fn ls_scene_rest(scene: *const LsScene, rest: *mut LsRest, error: *mut LsError) -> c_int;
-    pub fn ls_scene_set_elongations(scene: *mut LsScene, elongations: *const f64, error: *mut LsError) -> c_int;
-    pub fn ls_scene_elongation_rates(scene: *const LsScene, q: *const f64, rates: *mut f64, by_q: *mut f64,
-        error: *mut LsError) -> c_int;
+    pub fn ls_scene_set_states(scene: *mut LsScene, states: *const f64, error: *mut LsError) -> c_int;
+    pub fn ls_scene_states(scene: *const LsScene, states: *mut f64, error: *mut LsError) -> c_int;
+    pub fn ls_scene_state_rates(scene: *const LsScene, t: f64, q: *const f64, v: *const f64, z: *const f64,
+        rates: *mut f64, by_q: *mut f64, by_v: *mut f64, by_states: *mut f64, error: *mut LsError) -> c_int;
+    pub fn ls_scene_force_by_states(scene: *const LsScene, t: f64, q: *const f64, v: *const f64, z: *const f64,
+        by_states: *mut f64, error: *mut LsError) -> c_int;
     pub fn ls_scene_mass(scene: *const LsScene, mass: *mut f64, error: *mut LsError) -> c_int;
     pub fn ls_scene_force(scene: *const LsScene, t: f64, q: *const f64, v: *const f64, z: *const f64,
         force: *mut f64, by_q: *mut f64, by_v: *mut f64, error: *mut LsError) -> c_int;

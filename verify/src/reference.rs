@@ -2,7 +2,6 @@
 
 use crate::ffi::*;
 pub use crate::ffi::{LsCriticalPoint, LsEvent, LsRest, LsTolerances};
-use crate::trajectory::tolerances;
 use nalgebra::{DMatrix, DVector};
 use std::ffi::{CStr, CString, c_char, c_int};
 use std::ptr::NonNull;
@@ -105,15 +104,14 @@ pub fn versions() -> String {
 
 /// A scene as the reference reads and assembles it.
 ///
-/// The elongation z of a Maxwell element counts as the velocity of a coordinate of unit mass, as in EQUATIONS.md: f has the entry
-/// -dz/dt there.
+/// An internal state x counts as the velocity of a coordinate of unit mass, as in EQUATIONS.md: f has the entry -dx/dt there.
 #[derive(Debug)]
 pub struct ReferenceScene {
     handle: NonNull<LsScene>,
-    /// Names of the coordinates, those of elongations last.
+    /// Names of the coordinates, those of internal states last.
     pub coordinates: Vec<String>,
-    /// The elongations at t = 0.
-    elongations: Vec<f64>,
+    /// The internal states at t = 0.
+    states: Vec<f64>,
     /// Names of the constraint rows.
     pub rows: Vec<String>,
     /// Names of the joints.
@@ -148,6 +146,14 @@ pub struct ReferenceState<'a> {
     pub z: &'a [f64],
 }
 
+/// Rates of internal states and their derivatives, row by row.
+struct StateRates {
+    rates: Vec<f64>,
+    by_q: Vec<f64>,
+    by_v: Vec<f64>,
+    by_states: Vec<f64>,
+}
+
 impl ReferenceScene {
     /// Reads the text of a scene with overrides `path=value`, and assembles its start.
     pub fn read(text: &str, overrides: &[String]) -> Result<ReferenceScene> {
@@ -168,37 +174,35 @@ impl ReferenceScene {
         };
         let mut scene = ReferenceScene {
             coordinates: names(0),
-            elongations: Vec::new(),
+            states: Vec::new(),
             rows: names(1),
             joints: names(2),
             channels: names(3),
             handle,
         };
-        let names = names(6).into_iter().map(|force| force + ".elongation");
-        let names: Vec<String> = names.collect();
-        if !names.is_empty() {
-            let values = scene.run(&tolerances(1e-6))?.advance(0.0)?;
-            let channels = scene.channels.iter().zip(values);
-            let found = channels.filter(|(name, _)| names.contains(name));
-            scene.elongations = found.map(|(_, value)| value).collect();
-            scene.coordinates.extend(names);
-        }
+        let names = names(6);
+        // SAFETY: a number for every state
+        let [states] = filled([names.len()], |[states], e| unsafe {
+            ls_scene_states(scene.handle.as_ptr(), states, e)
+        })?;
+        scene.states = states;
+        scene.coordinates.extend(names);
         Ok(scene)
     }
 
     /// Number of the coordinates of bodies.
     fn of_bodies(&self) -> usize {
-        self.coordinates.len() - self.elongations.len()
+        self.coordinates.len() - self.states.len()
     }
 
-    /// Sets the elongations, after a check that a state has the right lengths. Returns q, v and z.
+    /// Sets the internal states, after a check that a state has the right lengths. Returns q, v and z.
     fn go_to(&mut self, at: ReferenceState) -> Result<[*const f64; 3]> {
         let (n, lengths) = (self.coordinates.len(), [at.q.len(), at.v.len(), at.z.len()]);
         assert_eq!(lengths, [n, n, self.joints.len()], "a state of this scene");
         let n = self.of_bodies();
-        // SAFETY: a number for every elongation
+        // SAFETY: a number for every state
         filled([], |[], e| unsafe {
-            ls_scene_set_elongations(self.handle.as_ptr(), at.v[n..].as_ptr(), e)
+            ls_scene_set_states(self.handle.as_ptr(), at.v[n..].as_ptr(), e)
         })?;
         Ok([at.q, at.v, at.z].map(<[f64]>::as_ptr))
     }
@@ -209,7 +213,7 @@ impl ReferenceScene {
         let [mut q, mut v] = filled([self.of_bodies(); 2], |[q, v], e| unsafe {
             ls_scene_start(self.handle.as_ptr(), q, v, e)
         })?;
-        v.extend(&self.elongations);
+        v.extend(&self.states);
         q.resize(v.len(), 0.0);
         Ok([q, v])
     }
@@ -243,40 +247,61 @@ impl ReferenceScene {
 
     /// f, df/dq and df/dv.
     pub fn force(&mut self, at: ReferenceState) -> Result<ForceAndTangents> {
-        let (f, by_q, mut by_v) = self.force_at(at)?;
-        // f is a linear function of the elongations
-        for i in self.of_bodies()..self.coordinates.len() {
-            let mut drawn = at.v.to_vec();
-            drawn[i] += 1.0;
-            let (moved, ..) = self.force_at(ReferenceState { v: &drawn, ..at })?;
-            by_v.set_column(i, &(moved - &f));
-        }
-        Ok((f, by_q, by_v))
-    }
-
-    /// The same without the derivatives by elongations.
-    fn force_at(&mut self, at: ReferenceState) -> Result<ForceAndTangents> {
         let ([q, v, z], scene) = (self.go_to(at)?, self.handle.as_ptr());
-        let (n, all) = (self.of_bodies(), self.coordinates.len());
+        let (n, s) = (self.of_bodies(), self.states.len());
         // SAFETY: the state fits the scene; a vector and two matrices of n
-        let [mut f, mut by_q, by_v] = filled([n, n * n, n * n], |[f, by_q, by_v], e| unsafe {
+        let [mut f, by_q, by_v] = filled([n, n * n, n * n], |[f, by_q, by_v], e| unsafe {
             ls_scene_force(scene, at.t, q, v, z, f, by_q, by_v, e)
         })?;
-        let [rates, rates_by_q] = self.elongation_rates(at.q)?;
+        // SAFETY: likewise; a matrix of n x s
+        let [by_states] = filled([n * s], |[by_states], e| unsafe {
+            ls_scene_force_by_states(scene, at.t, q, v, z, by_states, e)
+        })?;
+        let StateRates {
+            rates,
+            by_q: rates_by_q,
+            by_v: rates_by_v,
+            by_states: rates_by_states,
+        } = self.state_rates(at)?;
         f.extend(rates.iter().map(|rate| -rate));
-        by_q.extend(rates_by_q.iter().map(|rate| -rate));
-        let by_q = DMatrix::from_row_slice(all, n, &by_q).resize_horizontally(all, 0.0);
-        let by_v = DMatrix::from_row_slice(n, n, &by_v).resize(all, all, 0.0);
-        Ok((f.into(), by_q, by_v))
+        let matrix =
+            |rows, columns, entries: &[f64]| DMatrix::from_row_slice(rows, columns, entries);
+        let [mut all_by_q, mut all_by_v] = [(); 2].map(|()| DMatrix::zeros(n + s, n + s));
+        all_by_q
+            .view_mut((0, 0), (n, n))
+            .copy_from(&matrix(n, n, &by_q));
+        all_by_q
+            .view_mut((n, 0), (s, n))
+            .copy_from(&-matrix(s, n, &rates_by_q));
+        all_by_v
+            .view_mut((0, 0), (n, n))
+            .copy_from(&matrix(n, n, &by_v));
+        all_by_v
+            .view_mut((0, n), (n, s))
+            .copy_from(&matrix(n, s, &by_states));
+        all_by_v
+            .view_mut((n, 0), (s, n))
+            .copy_from(&-matrix(s, n, &rates_by_v));
+        let of_states = -matrix(s, s, &rates_by_states);
+        all_by_v.view_mut((n, n), (s, s)).copy_from(&of_states);
+        Ok((f.into(), all_by_q, all_by_v))
     }
 
-    /// dz/dt of all elongations, and its derivatives by the coordinates of bodies, row by row.
-    fn elongation_rates(&self, q: &[f64]) -> Result<[Vec<f64>; 2]> {
-        let (states, scene) = (self.elongations.len(), self.handle.as_ptr());
-        let lengths = [states, states * self.of_bodies()];
-        // SAFETY: q fits the scene; a vector and a matrix with a row for every elongation
-        filled(lengths, |[rates, by_q], e| unsafe {
-            ls_scene_elongation_rates(scene, q.as_ptr(), rates, by_q, e)
+    /// dx/dt of all internal states, and its derivatives, row by row.
+    fn state_rates(&mut self, at: ReferenceState) -> Result<StateRates> {
+        let ([q, v, z], scene) = (self.go_to(at)?, self.handle.as_ptr());
+        let (n, s) = (self.of_bodies(), self.states.len());
+        let lengths = [s, s * n, s * n, s * s];
+        // SAFETY: the state fits the scene; a vector and matrices with a row for every state
+        let [rates, by_q, by_v, by_states] =
+            filled(lengths, |[rates, by_q, by_v, by_x], e| unsafe {
+                ls_scene_state_rates(scene, at.t, q, v, z, rates, by_q, by_v, by_x, e)
+            })?;
+        Ok(StateRates {
+            rates,
+            by_q,
+            by_v,
+            by_states,
         })
     }
 
@@ -300,8 +325,7 @@ impl ReferenceScene {
         let [mut a, lambda] = filled(lengths, |[a, lambda], e| unsafe {
             ls_scene_acceleration(scene, at.t, q, v, z, a, lambda, e)
         })?;
-        let [rates, _] = self.elongation_rates(at.q)?;
-        a.extend(rates);
+        a.extend(self.state_rates(at)?.rates);
         Ok([a.into(), lambda.into()])
     }
 

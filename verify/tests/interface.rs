@@ -16,8 +16,8 @@ const IDA: i32 = 3;
 const INPUTS: [&str; 14] = [
     "const char *const *overrides",
     "const char *text",
-    "const double *elongations",
     "const double *q",
+    "const double *states",
     "const double *v",
     "const double *z",
     "const ls_run *run",

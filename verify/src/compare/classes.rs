@@ -24,11 +24,12 @@ pub const CLASSES: [(&str, &[&str]); KINDS] = [
     ("forces", &["fx", "fy", "force"]),
     ("torques and couples", &["torque"]),
     ("lengths of springs", &["length", "elongation"]),
+    ("deflections of bristles", &["bristle"]),
     ("rates of lengths of springs", &["rate"]),
     ("kinetic energy and work", &["kinetic", "work"]),
     ("stored energies and dissipations",
      &["axial", "bending", "contact", "gravity", "springs", "contact_dissipated", "friction_dissipated",
-       "damping_dissipated", "clamp"]),
+       "damping_dissipated", "clamp", "normal_variation"]),
 ];
 /// Smallest size of a kind, in SI units: with a tolerance of 1e-9 differences of 1e-14 are rounding of numbers of size 1.
 const FLOOR: f64 = 1e-5;
