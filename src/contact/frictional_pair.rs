@@ -128,10 +128,12 @@ impl<G: Geometry> FrictionalPair<G> {
         s
     }
 
-    /// Everything about a touching contact; `None` where the surfaces are apart.
+    /// Everything about a touching contact, and about one that is closed and has an internal state; `None` where the surfaces are apart.
     fn sliding(&self, at: ContactState) -> Option<Sliding> {
         let gap = self.surface.geometry.gap(at.q, at.v);
-        let normal = self.surface.normal_force(&gap, at.impact_velocity)?;
+        let force = self.surface.normal_force(&gap, at.impact_velocity);
+        let has_state = self.state.is_some() && at.impact_velocity > 0.0;
+        let normal = force.or(has_state.then(NormalForce::default))?;
         let touch = self.surface.geometry.touch(at, &gap);
         let slip = self.slip_state(at.q, at.v, &gap, &touch);
         let state = self.internal_state(at);

@@ -259,12 +259,12 @@ impl Geometry for Walls {
         };
         Touch {
             n: side * pin.m,
-            t: -side * pin.u,
-            slip: -side * pin.rates[1],
+            t: pin.u,
+            slip: pin.rates[1],
             normal: s_q.map(|x| side * x),
-            tangent: p_q.map(|x| -side * x),
+            tangent: p_q,
             rate_q: rate(&s_qq, side),
-            slip_q: rate(&p_qq, -side),
+            slip_q: rate(&p_qq, 1.0),
             ..Touch::default()
         }
     }
@@ -283,7 +283,7 @@ impl Geometry for Walls {
         let [s_qq, p_qq] = self.second(at, &pin);
         for i in 0..WIDTH {
             for j in 0..WIDTH {
-                k[i][j] += side * (normal * s_qq[i][j] - tangential * p_qq[i][j]);
+                k[i][j] += side * normal * s_qq[i][j] + tangential * p_qq[i][j];
             }
         }
     }

@@ -28,7 +28,7 @@ pub struct Gap {
 pub struct Touch {
     /// Unit normal, out of the first side.
     pub n: Vec2,
-    /// Unit tangent: n turned by 90 degrees.
+    /// Unit tangent: n turned by 90 degrees or, where there is a line along which the second side slides, the direction of the line.
     pub t: Vec2,
     /// Velocity of the second side relative to the first, along t \[m/s\].
     pub slip: f64,

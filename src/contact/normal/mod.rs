@@ -7,7 +7,7 @@ pub use damped_power::DampedPower;
 use crate::document::Key;
 
 /// A normal force with its slopes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct NormalForce {
     /// Force that pushes the surfaces apart \[N\], never negative.
     pub value: f64,

@@ -5,7 +5,7 @@ use crate::trajectory::Trajectory;
 use std::f64::consts::TAU;
 
 /// Number of kinds.
-pub const KINDS: usize = 16;
+pub const KINDS: usize = 17;
 /// Where differences are large against rounding.
 pub const NO_ROUNDING: [f64; KINDS] = [0.0; KINDS];
 /// Kinds: name and the quantities of it. Every channel is of one kind, but for those that [`class`] names.
