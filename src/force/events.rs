@@ -8,7 +8,7 @@ pub trait Events {
     fn crossings(&self) -> usize {
         0
     }
-    /// The functions \[m\] and their rates \[m/s\]. One that cannot pass zero now is [`NEVER`].
+    /// The functions \[m\] and their rates \[m/s\]. One that cannot pass zero now is negative infinity.
     fn cross(&self, _at: &State, _out: &mut [[f64; 2]]) {}
     /// The next instant after `at.t` \[s\] at which a step ends.
     fn next_instant(&self, _at: &State) -> f64 {
@@ -18,9 +18,6 @@ pub trait Events {
     /// booked in the ledger of the state. True where the motion feels the change.
     fn commit(&self, at: &mut State, crossings: &[[f64; 2]], tolerance: f64) -> bool;
 }
-
-/// A function that does not pass zero.
-pub const NEVER: [f64; 2] = [f64::NEG_INFINITY, 0.0];
 
 /// True where a function passes zero from below, within a tolerance of it.
 pub fn passes([past, rate]: [f64; 2], tolerance: f64) -> bool {

@@ -5,7 +5,7 @@ mod events;
 mod mass_damping;
 
 pub use element_damping::ElementDamping;
-pub use events::{Events, NEVER, passes};
+pub use events::{Events, passes};
 pub use mass_damping::MassDamping;
 
 use crate::effect::Effect;

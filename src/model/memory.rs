@@ -2,7 +2,7 @@
 
 use super::Model;
 use crate::contact;
-use crate::force::Events;
+use crate::force::{Events, passes};
 use crate::ledger::OF_FRICTION;
 use crate::system::{Changed, State};
 use std::ops::Range;
@@ -78,9 +78,9 @@ impl Model {
     ) {
         for (i, &[past, rate]) in crossings[..self.contacts.len()].iter().enumerate() {
             let closed = is_closed(at, i);
-            let passes =
-                past > tolerance || past >= -tolerance && (rate > 0.0 || closed && rate == 0.0);
-            if !passes {
+            // surfaces that are at rest where they part have parted
+            let parts = closed && past >= -tolerance && rate == 0.0;
+            if !(parts || passes([past, rate], tolerance)) {
                 continue;
             }
             at.changes += 1;
@@ -128,13 +128,11 @@ impl Model {
         }
     }
 
-    /// Lets forces remember a state that no step has led to; true where one of them follows another law than before.
-    pub(crate) fn remember(&self, at: &mut State) -> bool {
+    /// Lets forces remember a state that no step has led to.
+    pub(crate) fn remember(&self, at: &mut State) {
         let mut crossings = vec![[0.0; 2]; self.shape.crossings];
         self.measure_crossings(at, &mut crossings);
-        let mut changes = false;
-        self.commit_forces(at, &crossings, 0.0, &mut |_| changes = true);
-        changes
+        self.commit_forces(at, &crossings, 0.0, &mut |_| {});
     }
 
     /// The name of a force, by its index among all forces; empty for a force of structural damping.

@@ -15,10 +15,11 @@
 //! form in x and z' whose discriminant s_1^2 - 4 s_1 g/(alpha |v|) is not positive then.
 
 use super::coulomb_stribeck::{MU_C, MU_S, S2, Stribeck, V_S};
-use super::{StateRate, TangentialForce};
+use super::{FrictionLaw, SLIP, StateRate, TangentialForce};
 use crate::document::{Fields, Key, SceneError};
 use crate::system::InternalState;
 use numbers::exact;
+use std::fmt::Debug;
 
 pub(super) const S0: Key = Key::positive("s0", "1/m", "the stiffness s_0 of the bristles over F_n");
 pub(super) const S1: Key =
@@ -29,8 +30,8 @@ pub(super) const V_D: Key = Key::positive(
     "with it s_1 falls with the slip as s_1 exp(-(v/v_d)^2)",
 )
 .or("s_1 is constant");
-/// The keys that laws of bristles share, but for the slip.
-pub(super) const KEYS: [Key; 7] = [MU_C, MU_S, V_S, S0, S1, V_D, S2];
+/// The keys that laws of bristles share.
+pub(super) const KEYS: [Key; 8] = [MU_C, MU_S, V_S, S0, S1, V_D, S2, SLIP];
 
 /// What laws of bristles share.
 #[derive(Debug, Clone, Copy)]
@@ -45,6 +46,16 @@ pub struct Bristle {
     pub damping_velocity: f64,
     /// s_2 \[s/m\].
     pub viscous: f64,
+}
+
+/// A law of bristles.
+pub(super) trait BristleLaw: Debug + Send + Sync + 'static {
+    /// What it shares with others.
+    fn bristle(&self) -> &Bristle;
+    /// alpha at a slip v, a deflection z and a coefficient g.
+    fn alpha(&self, v: f64, z: f64, g: f64) -> Plasticity;
+    /// Its parameters in words.
+    fn parameters(&self) -> String;
 }
 
 /// alpha with its derivatives by z and by g.
@@ -70,16 +81,6 @@ impl Bristle {
         })
     }
 
-    /// z: an error of it is one of a position. Its rate s_0 |v|/g is far above that of any motion.
-    pub(super) fn state() -> InternalState {
-        InternalState {
-            name: "bristle",
-            unit: "m",
-            metres: 1.0,
-            is_stiff: true,
-        }
-    }
-
     /// s_1 and its derivative by the slip.
     fn damping_at(&self, slip: f64) -> [f64; 2] {
         let ratio = slip / self.damping_velocity;
@@ -87,8 +88,8 @@ impl Bristle {
         [s1, -2.0 * ratio / self.damping_velocity * s1]
     }
 
-    /// The force at a slip v, a normal force and a deflection z, with alpha(z, g).
-    pub(super) fn force(
+    /// The force at a slip v, a normal force and a deflection z, with alpha(g).
+    fn force(
         &self,
         v: f64,
         normal: f64,
@@ -117,16 +118,7 @@ impl Bristle {
         }
     }
 
-    /// s_0 z^2/2 and its derivative.
-    pub(super) fn stored(&self, z: f64) -> [f64; 2] {
-        [0.5 * self.stiffness * z * z, self.stiffness * z]
-    }
-
-    pub(super) fn may_give_energy(&self, slip: f64) -> bool {
-        let ([g, _], [s1, _]) = (self.coefficient.at(slip), self.damping_at(slip));
-        s1 * slip.abs() > 4.0 * g
-    }
-
+    /// Its parameters in words.
     pub(super) fn describe(&self) -> String {
         format!(
             "{} with s0 = {}/m, s1 = {} s/m and s2 = {} s/m",
@@ -135,5 +127,42 @@ impl Bristle {
             exact(self.damping),
             exact(self.viscous)
         )
+    }
+}
+
+impl<L: BristleLaw> FrictionLaw for L {
+    /// z: an error of it is one of a position. Its rate s_0 |v|/g is far above that of any motion.
+    fn state(&self) -> Option<InternalState> {
+        Some(InternalState {
+            name: "bristle",
+            unit: "m",
+            metres: 1.0,
+            is_stiff: true,
+        })
+    }
+
+    fn force(&self, slip: f64, normal: f64, z: f64) -> TangentialForce {
+        let alpha = |g| self.alpha(slip, z, g);
+        self.bristle().force(slip, normal, z, alpha)
+    }
+
+    /// s_0 z^2/2 and its derivative.
+    fn stored(&self, z: f64) -> [f64; 2] {
+        let s0 = self.bristle().stiffness;
+        [0.5 * s0 * z * z, s0 * z]
+    }
+
+    fn may_give_energy(&self, slip: f64) -> bool {
+        let bristle = self.bristle();
+        let ([g, _], [s1, _]) = (bristle.coefficient.at(slip), bristle.damping_at(slip));
+        s1 * slip.abs() > 4.0 * g
+    }
+
+    fn largest_coefficient(&self) -> (&'static str, f64) {
+        ("mu_s", self.bristle().coefficient.static_)
+    }
+
+    fn describe(&self) -> String {
+        self.parameters()
     }
 }

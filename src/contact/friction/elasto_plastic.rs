@@ -1,10 +1,9 @@
 //! The elasto-plastic law of Dupont, Hayward, Armstrong and Altpeter (2002, IEEE Trans. Automat. Contr. 47:787): bristles that are elastic
 //! up to the deflection of break-away, so that they hold under an oscillating load.
 
-use super::bristle::{self, Bristle, Plasticity};
-use super::{FrictionKind, FrictionLaw, SLIP, TangentialForce};
+use super::FrictionKind;
+use super::bristle::{self, Bristle, BristleLaw, Plasticity};
 use crate::document::{Key, NumberRange};
-use crate::system::InternalState;
 use numbers::exact;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
@@ -12,13 +11,13 @@ use std::sync::Arc;
 pub(super) static KIND: FrictionKind = FrictionKind {
     name: "elasto_plastic",
     keys: &{
-        let [a, b, c, d, e, f, g] = bristle::KEYS;
+        let [a, b, c, d, e, f, g, slip] = bristle::KEYS;
         let breakaway = Key::within(
             "breakaway",
             NumberRange::Between(0.0, 1.0),
             "the deflection up to which bristles are elastic over mu_c/s_0, below 1",
         );
-        [a, b, c, d, e, f, g, breakaway, SLIP]
+        [a, b, c, d, e, f, g, breakaway, slip]
     },
     read: |table| {
         let breakaway = table.number("breakaway")?;
@@ -43,7 +42,11 @@ pub struct ElastoPlastic {
     pub elastic_limit: f64,
 }
 
-impl ElastoPlastic {
+impl BristleLaw for ElastoPlastic {
+    fn bristle(&self) -> &Bristle {
+        &self.bristle
+    }
+
     fn alpha(&self, slip: f64, z: f64, g: f64) -> Plasticity {
         let constant = |value| Plasticity {
             value,
@@ -67,31 +70,8 @@ impl ElastoPlastic {
             by_coefficient: slope * (elastic - size) / width / self.bristle.stiffness,
         }
     }
-}
 
-impl FrictionLaw for ElastoPlastic {
-    fn state(&self) -> Option<InternalState> {
-        Some(Bristle::state())
-    }
-
-    fn force(&self, slip: f64, normal: f64, state: f64) -> TangentialForce {
-        let alpha = |g| self.alpha(slip, state, g);
-        self.bristle.force(slip, normal, state, alpha)
-    }
-
-    fn stored(&self, state: f64) -> [f64; 2] {
-        self.bristle.stored(state)
-    }
-
-    fn may_give_energy(&self, slip: f64) -> bool {
-        self.bristle.may_give_energy(slip)
-    }
-
-    fn largest_coefficient(&self) -> (&'static str, f64) {
-        ("mu_s", self.bristle.coefficient.static_)
-    }
-
-    fn describe(&self) -> String {
+    fn parameters(&self) -> String {
         format!(
             "elasto-plastic {}, elastic up to {} m",
             self.bristle.describe(),
