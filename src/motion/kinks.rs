@@ -96,16 +96,8 @@ impl Expression {
     /// # Errors
     /// The first kink; of the levels that jump there the lowest.
     pub(super) fn without_kinks(self, duration: f64) -> Result<Expression, Kink> {
-        let motion = Motion {
-            expression: &self,
-            duration,
-        };
-        let names: Vec<_> = motion.margins(0.0).iter().map(|m| m.name).collect();
-        if names.is_empty() {
-            return Ok(self);
-        }
-        let (courses, switchings) = motion.follow(names.len());
-        if let Some(kink) = motion.kinks(&names, &courses, switchings).first() {
+        let (courses, kinks) = self.follow(duration);
+        if let Some(kink) = kinks.first() {
             return Err(*kink);
         }
         let keeps = |course: &Course| course.first.filter(|_| !course.is_open);
@@ -115,21 +107,27 @@ impl Expression {
 
     /// The kinks from t = 0 to `duration` as knots.
     pub(super) fn knots(&self, duration: f64) -> Vec<Knot> {
+        let (_, kinks) = self.follow(duration);
+        let knot = |kink: &Kink| Knot {
+            sides: kink.within,
+            level: kink.level,
+        };
+        kinks.iter().map(knot).collect()
+    }
+
+    /// The course of each function that switches, and all kinks.
+    fn follow(&self, duration: f64) -> (Vec<Course>, Vec<Kink>) {
         let motion = Motion {
             expression: self,
             duration,
         };
         let names: Vec<_> = motion.margins(0.0).iter().map(|m| m.name).collect();
         if names.is_empty() {
-            return Vec::new();
+            return (Vec::new(), Vec::new());
         }
         let (courses, switchings) = motion.follow(names.len());
-        let kinks = motion.kinks(&names, &courses, switchings).into_iter();
-        let knot = |kink: Kink| Knot {
-            sides: kink.within,
-            level: kink.level,
-        };
-        kinks.map(knot).collect()
+        let kinks = motion.kinks(&names, &courses, switchings);
+        (courses, kinks)
     }
 }
 

@@ -36,9 +36,9 @@ pub struct MonotoneQuintic<const N: usize> {
 }
 
 impl<const N: usize> MonotoneQuintic<N> {
-    /// The times of its rows \[s\], at which its third derivative jumps.
-    pub(crate) fn times(&self) -> &[f64] {
-        &self.times
+    /// Its rows, at which its third derivative jumps.
+    pub(super) fn rows(&self) -> Vec<Knot> {
+        self.times.iter().map(|&t| Knot::at(t, 3)).collect()
     }
 
     /// An interpolant of values at increasing times, two at least.
@@ -209,7 +209,7 @@ impl Path for MonotoneQuintic<3> {
     }
 
     fn knots(&self, _: f64) -> Vec<Knot> {
-        self.times.iter().map(|&t| Knot::at(t, 3)).collect()
+        self.rows()
     }
 }
 

@@ -41,9 +41,9 @@ impl<const N: usize> CubicSpline<N> {
         }
     }
 
-    /// The times of its rows \[s\], at which its third derivative jumps.
-    pub(crate) fn times(&self) -> &[f64] {
-        &self.times
+    /// Its rows, at which its third derivative jumps.
+    pub(super) fn rows(&self) -> Vec<Knot> {
+        self.times.iter().map(|&t| Knot::at(t, 3)).collect()
     }
 
     /// The values of its rows.
@@ -140,6 +140,6 @@ impl Path for CubicSpline<3> {
     }
 
     fn knots(&self, _: f64) -> Vec<Knot> {
-        self.times.iter().map(|&t| Knot::at(t, 3)).collect()
+        self.rows()
     }
 }
