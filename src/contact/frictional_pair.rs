@@ -286,14 +286,9 @@ impl<G: Geometry> ContactPair for FrictionalPair<G> {
         self.state
     }
 
-    fn creep(&self, at: ContactState) -> Option<f64> {
-        let slip = self.sliding(at)?.slip.value;
-        self.law.creeps(slip).then_some(slip)
-    }
-
-    fn may_give_energy(&self, at: ContactState) -> bool {
-        let sliding = self.sliding(at);
-        sliding.is_some_and(|s| self.law.may_give_energy(s.slip.value))
+    fn slip(&self, at: ContactState) -> Option<(f64, &dyn FrictionLaw)> {
+        let sliding = self.sliding(at)?;
+        Some((sliding.slip.value, &*self.law))
     }
 
     fn entries(&self) -> Vec<&'static Entry> {

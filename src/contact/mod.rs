@@ -15,6 +15,7 @@ use crate::force::{LocalMatrix, WIDTH};
 use crate::ledger::{Entry, Powers};
 use crate::math::plane::Vec2;
 use crate::system::Weights;
+use friction::FrictionLaw;
 use geometry::Gap;
 
 /// Positions and velocities, and the memory of one contact: the impact velocity \[m/s\], 0 while the contact is open.
@@ -70,13 +71,9 @@ pub trait ContactPair: std::fmt::Debug + Send + Sync {
     }
     /// Stored energy of a closed contact \[J\].
     fn energy(&self, at: ContactState) -> f64;
-    /// The slip \[m/s\] of a touching contact that creeps: see [`friction::FrictionLaw::creeps`].
-    fn creep(&self, _at: ContactState) -> Option<f64> {
+    /// The slip \[m/s\] of a touching contact with friction, and its law.
+    fn slip(&self, _at: ContactState) -> Option<(f64, &dyn FrictionLaw)> {
         None
-    }
-    /// True of a touching contact whose friction law may give energy: see [`friction::FrictionLaw::may_give_energy`].
-    fn may_give_energy(&self, _at: ContactState) -> bool {
-        false
     }
     /// Its entries of the energy ledger.
     fn entries(&self) -> Vec<&'static Entry>;

@@ -3,6 +3,7 @@
 use super::memory::{contact_state, is_closed};
 use super::{Actuator, Model, PlacedEccentric, PlacedJoint, Reaction};
 use crate::body::{Pose, Strain};
+use crate::contact::friction::FrictionLaw;
 use crate::contact::geometry::Gap;
 use crate::force::Force;
 use crate::ledger::Side;
@@ -145,17 +146,11 @@ impl Model {
         self.contacts[index].pair.reaction(contact_state(at, index))
     }
 
-    /// The slip \[m/s\] of a contact whose friction law lets it creep.
-    pub fn creep(&self, contact: usize, at: &State) -> Option<f64> {
+    /// The slip \[m/s\] of a closed contact with friction, and its law.
+    pub fn slip(&self, contact: usize, at: &State) -> Option<(f64, &dyn FrictionLaw)> {
         let closed = is_closed(at, contact);
         let state = closed.then(|| contact_state(at, contact))?;
-        self.contacts[contact].pair.creep(state)
-    }
-
-    /// True of a closed contact whose friction law may give energy at its slip.
-    pub fn may_give_energy(&self, contact: usize, at: &State) -> bool {
-        let pair = &self.contacts[contact].pair;
-        is_closed(at, contact) && pair.may_give_energy(contact_state(at, contact))
+        self.contacts[contact].pair.slip(state)
     }
 
     /// Couple of the first side on the second of a joint that holds an angle \[N m\].

@@ -51,13 +51,14 @@ impl CreepWatch {
 
     /// A row is recorded.
     pub fn row(&mut self, model: &Model, at: &State) {
-        for (contact, from) in self.giving.iter_mut().enumerate() {
-            if from.is_none() && model.may_give_energy(contact, at) {
-                *from = Some(at.t);
+        let watched = self.now.iter_mut().zip(&mut self.longest);
+        for (contact, ((now, longest), giving)) in watched.zip(&mut self.giving).enumerate() {
+            let slip = model.slip(contact, at);
+            if slip.is_some_and(|(slip, law)| law.may_give_energy(slip)) {
+                giving.get_or_insert(at.t);
             }
-        }
-        for (contact, (now, longest)) in self.now.iter_mut().zip(&mut self.longest).enumerate() {
-            let slip = model.creep(contact, at).unwrap_or(0.0);
+            let creep = slip.filter(|(slip, law)| law.creeps(*slip));
+            let slip = creep.map_or(0.0, |(slip, _)| slip);
             *now = match slip * now.slip > 0.0 {
                 true => Creep {
                     to: at.t,
