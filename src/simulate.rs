@@ -453,22 +453,9 @@ impl Simulation {
         model.commit(state, crossings, tolerance, &mut |change| {
             changed.push(change)
         });
-        let mut switches = false;
-        for change in changed.iter() {
-            match *change {
-                Changed::Onset {
-                    contact,
-                    velocity,
-                    delta,
-                } => {
-                    self.counters.onsets += 1;
-                    self.impacts.begin(model, contact, [delta, velocity], state);
-                }
-                Changed::Loss { .. } => {}
-                Changed::Switch { .. } => switches = true,
-            }
-        }
-        if switches {
+        self.counters.onsets += self.impacts.begin_all(model, changed, state);
+        let is_switch = |change: &Changed| matches!(change, Changed::Switch { .. });
+        if changed.iter().any(is_switch) {
             self.make_consistent()?;
         }
         self.tell_onsets(observer)

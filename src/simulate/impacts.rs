@@ -5,7 +5,7 @@ use super::observer::{ContactEnd, ContactEvent, Observer, Onset};
 use crate::checkpoint::carried;
 use crate::model::Model;
 use crate::scene::Scene;
-use crate::system::State;
+use crate::system::{Changed, State};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io;
@@ -215,8 +215,25 @@ impl Impacts {
         }
     }
 
+    /// Begins those of these changes that are onsets, and counts them.
+    pub fn begin_all(&mut self, model: &Model, changed: &[Changed], at: &State) -> u64 {
+        let mut onsets = 0;
+        for change in changed {
+            if let Changed::Onset {
+                contact,
+                velocity,
+                delta,
+            } = *change
+            {
+                onsets += 1;
+                self.begin(model, contact, [delta, velocity], at);
+            }
+        }
+        onsets
+    }
+
     /// A contact has closed.
-    pub fn begin(&mut self, model: &Model, contact: usize, [delta, rate]: [f64; 2], at: &State) {
+    fn begin(&mut self, model: &Model, contact: usize, [delta, rate]: [f64; 2], at: &State) {
         let Some(joint) = model.contact_joint(contact) else {
             return;
         };

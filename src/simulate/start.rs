@@ -22,7 +22,7 @@ use crate::newton::Newton;
 use crate::record::{Record, Recorder};
 use crate::scene::{Analysis, Pace, Scene, SceneError};
 use crate::stepper::{Estimate, LocalError};
-use crate::system::{Changed, State, System};
+use crate::system::{State, System};
 use std::sync::{Arc, OnceLock};
 
 impl Simulation {
@@ -88,18 +88,7 @@ impl Simulation {
         }
         model.powers(&mut state, &mut work);
         let mut impacts = Impacts::new(scene, &model);
-        let mut onsets = 0;
-        for change in &changed {
-            if let Changed::Onset {
-                contact,
-                velocity,
-                delta,
-            } = *change
-            {
-                onsets += 1;
-                impacts.begin(&model, contact, [delta, velocity], &state);
-            }
-        }
+        let onsets = impacts.begin_all(&model, &changed, &state);
         let recorder = Recorder::new(scene, &model, model.energies(&state).total())?;
         let extremes = vec![Extreme::default(); recorder.channels().len()];
         let stepper = scene.integrator.method.stepper(model.shape());
