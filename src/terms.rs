@@ -73,6 +73,11 @@ impl Terms {
         });
         self.constraints.len() - 1
     }
+
+    /// Numbers of memory: those of contacts, then those of forces.
+    pub fn memory(&self) -> usize {
+        self.contacts.len() + self.slots
+    }
 }
 
 /// A constraint: the kinds that every mechanism has many of by themselves, so that the step loop calls them directly.

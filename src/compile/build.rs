@@ -109,7 +109,7 @@ pub(super) fn build(
         crossings: events
             .last()
             .map_or(terms.contacts.len(), |last| last.crossings.end),
-        memory: terms.contacts.len() + terms.slots,
+        memory: terms.memory(),
         entries: entries.len(),
     };
     let places = Places {
@@ -322,7 +322,7 @@ fn force_terms(c: &Compiler, numbering: &Numbering, terms: &mut Terms) -> Vec<(S
             bodies: &numbering.bodies,
             joints: &c.scene.joints,
             full_load,
-            memory: terms.contacts.len() + terms.slots,
+            memory: terms.memory(),
             states,
         };
         names.push((force.name.clone(), terms.forces.len()));

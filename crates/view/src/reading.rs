@@ -1,6 +1,6 @@
 //! Reads files of a result, all of the same run.
 
-use folder::{Kind, MANIFEST, OutputError, earlier_result, held, verify};
+use folder::{Kind, MANIFEST, OutputError, earlier_result, held, naming_read, verify};
 use looselink::output;
 use looselink::registry::Registry;
 use looselink::scene::SceneError;
@@ -99,7 +99,7 @@ pub(crate) fn read(folder: &Path, name: &str, has_ended: bool) -> Result<Vec<u8>
             folder.display()
         )),
         io::ErrorKind::NotFound => ViewError::Result(missing(folder, name)),
-        _ => naming(&path, e),
+        _ => naming_read(&path)(e).into(),
     })?;
     verify(folder, name, &bytes, has_ended).map_err(|e| match e {
         OutputError::Io(e) => e.into(),
@@ -118,11 +118,6 @@ fn missing(folder: &Path, name: &str) -> String {
         ),
         None => format!("`{place}` holds no result of `looselink run`: it has no `{name}`"),
     }
-}
-
-fn naming(path: &Path, error: io::Error) -> ViewError {
-    let message = format!("cannot read `{}`: {error}", path.display());
-    io::Error::new(error.kind(), message).into()
 }
 
 #[cfg(test)]

@@ -32,7 +32,8 @@ impl SweepProgress<'_> {
 /// Makes all runs of a shard that the store does not have. `told` is called after every run, by one thread at a time.
 ///
 /// # Errors
-/// [`SweepError::Interrupted`] after `stop` was raised; a row that cannot be written, or that somebody else has changed. Rows made before stay in the store.
+/// [`SweepError::Interrupted`] after `stop` was raised; a row that cannot be written, or that somebody else has changed. Rows made
+/// before stay in the store.
 pub fn execute(
     sweep: &Sweep,
     store: &mut Store,

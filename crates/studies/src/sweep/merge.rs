@@ -160,8 +160,8 @@ impl EnvelopePart {
 /// Writes all files.
 ///
 /// # Errors
-/// Runs that have not been made; rows that cannot be read, or that somebody else has changed; files that cannot be written; and, after all files are written, a
-/// bisection without an answer.
+/// Runs that have not been made; rows that cannot be read, or that somebody else has changed; files that cannot be written; and, after
+/// all files are written, a bisection without an answer.
 pub fn merge(sweep: &Sweep, store: &Store, folder: &Path) -> Result<Merged, SweepError> {
     let runs = all_runs(sweep, store)?;
     let columns = sweep.columns();
