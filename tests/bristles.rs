@@ -7,9 +7,8 @@ use ladder::{Rung, Worst};
 const BELT: &str = "belt.toml";
 const SLOPE: &str = "block-on-slope.toml";
 
-/// The instants at which x passes a level, upwards or downwards, by the cubic through values and rates at both ends of a row.
-fn passes(run: &TestRecording, [x, v, a]: [&str; 3], level: f64, up: bool) -> Vec<f64> {
-    let _ = x;
+/// The instants at which v passes a level, upwards or downwards, by the cubic through values and rates at both ends of a row.
+fn passes(run: &TestRecording, [v, a]: [&str; 2], level: f64, up: bool) -> Vec<f64> {
     let (t, v, a) = (run.get("t"), run.get(v), run.get(a));
     let side = |v: f64| if up { v - level } else { level - v };
     let rows = (1..t.len()).filter(|&k| side(v[k - 1]) < 0.0 && side(v[k]) >= 0.0);
@@ -44,7 +43,7 @@ fn a_block_on_a_belt_sticks_and_slips_when_it_should() {
     ];
     let (found, report) = run(BELT, &fine);
     assert_eq!(report.warnings(), Vec::<String>::new());
-    let block = ["block.x", "block.vx", "block.ax"];
+    let block = ["block.vx", "block.ax"];
     let worst = Worst::new();
     for (up, reference) in [
         // the slip is the speed of the belt less that of the block

@@ -3,8 +3,9 @@
 use super::{ASIDE, Bytes, EARLIER, NEW, arguments, rounds, start, status, whole};
 use crate::command_line::{TOP, expect, files, looselink, program, read, summary};
 use std::fs;
-use std::path::Path;
-use std::process::{Child, Stdio};
+use std::os::unix::fs::FileExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Output, Stdio};
 
 fn ended(mut children: Vec<Child>) -> Vec<Option<i32>> {
     let codes = children
@@ -124,27 +125,54 @@ fn pages_pictures_and_tables_are_made_at_the_same_time() {
     );
 }
 
+/// What somebody else does to a file.
+type Change = fn(&Path);
+
+fn cut(path: &Path, bytes: u64) {
+    let file = fs::File::options().write(true).open(path).unwrap();
+    file.set_len(bytes).unwrap();
+}
+
+fn edit(path: &Path, byte: u8, at: u64) {
+    let file = fs::File::options().write(true).open(path).unwrap();
+    file.write_all_at(&[byte], at).unwrap();
+}
+
+fn replace(path: &Path) {
+    let copy = path.with_extension("copy");
+    fs::copy(path, &copy).unwrap();
+    fs::rename(copy, path).unwrap();
+}
+
+/// Of a command during which somebody changes a file, once another one has so many bytes.
+fn meddled(
+    command: &[&str],
+    [grown, changed]: [&PathBuf; 2],
+    bytes: u64,
+    change: Change,
+) -> Output {
+    let mut child = program()
+        .args(command)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let size = || fs::metadata(grown).map_or(0, |file| file.len());
+    while size() < bytes && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    change(changed);
+    child.wait_with_output().unwrap()
+}
+
 /// A run whose rows somebody else takes away, cuts, replaces or edits does not call itself complete.
 #[test]
 fn rows_that_others_change_in_mid_run_are_not_complete() {
     let folder = tempfile::tempdir().unwrap();
-    type Change = fn(&Path);
     let changes: [(&str, Change); 5] = [
         ("deleted", |table| fs::remove_file(table).unwrap()),
-        ("cut", |table| {
-            let file = fs::File::options().write(true).open(table).unwrap();
-            file.set_len(100).unwrap();
-        }),
-        ("replaced", |table| {
-            let copy = table.with_extension("copy");
-            fs::copy(table, &copy).unwrap();
-            fs::rename(copy, table).unwrap();
-        }),
-        ("edited", |table| {
-            use std::os::unix::fs::FileExt;
-            let file = fs::File::options().write(true).open(table).unwrap();
-            file.write_all_at(b"9", 200).unwrap();
-        }),
+        ("cut", |table| cut(table, 100)),
+        ("replaced", replace),
+        ("edited", |table| edit(table, b'9', 200)),
         ("moved", |table| {
             let out = table.parent().unwrap();
             fs::rename(out, out.with_extension("elsewhere")).unwrap();
@@ -155,12 +183,7 @@ fn rows_that_others_change_in_mid_run_are_not_complete() {
             let out = folder.path().join(format!("{how}-{name}"));
             let table = out.join(name);
             let run = arguments(&out, &["simulation.duration=0.2"]);
-            let child = program().args(&run).stderr(Stdio::piped()).spawn().unwrap();
-            while fs::metadata(&table).map_or(0, |file| file.len()) < 10_000 {
-                std::thread::sleep(std::time::Duration::from_millis(1));
-            }
-            change(&table);
-            let output = child.wait_with_output().unwrap();
+            let output = meddled(&run, [&table, &table], 10_000, change);
             expect(&output, 1, "while the program wrote");
             expect(&output, 1, out.to_str().unwrap());
             let status = status(&out);
@@ -181,7 +204,6 @@ fn rows_that_others_change_in_mid_run_are_not_complete() {
 #[test]
 fn a_scene_that_others_change_in_mid_run_is_not_complete() {
     let folder = tempfile::tempdir().unwrap();
-    type Change = fn(&Path);
     let changes: [Change; 3] = [
         |scene| fs::remove_file(scene).unwrap(),
         |scene| fs::write(scene, "title = 'mine'\n").unwrap(),
@@ -189,16 +211,9 @@ fn a_scene_that_others_change_in_mid_run_is_not_complete() {
     ];
     for (n, change) in changes.into_iter().enumerate() {
         let out = folder.path().join(n.to_string());
-        let child = program()
-            .args(arguments(&out, &["simulation.duration=0.1"]))
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        while fs::metadata(out.join("channels.csv")).map_or(0, |file| file.len()) < 10_000 {
-            std::thread::sleep(std::time::Duration::from_millis(1));
-        }
-        change(&out.join("scene.toml"));
-        let output = child.wait_with_output().unwrap();
+        let run = arguments(&out, &["simulation.duration=0.1"]);
+        let files = ["channels.csv", "scene.toml"].map(|name| out.join(name));
+        let output = meddled(&run, files.each_ref(), 10_000, change);
         expect(&output, 1, "scene.toml` was ");
         let summary = summary(&out);
         assert_eq!(summary["status"], "failed");
@@ -213,28 +228,16 @@ fn rows_that_others_change_in_mid_sweep_make_no_tables() {
     let masses: Vec<String> = (1..=300).map(|mass| format!("{mass}.0")).collect();
     let masses = format!("[{}]", masses.join(", "));
     let study = super::foreign::study(folder.path(), "masses", &masses);
-    type Change = fn(&Path);
     let changes: [(&str, Change); 6] = [
         ("deleted", |rows| fs::remove_file(rows).unwrap()),
-        ("cut", |rows| {
-            let file = fs::File::options().write(true).open(rows).unwrap();
-            file.set_len(1000).unwrap();
-        }),
+        ("cut", |rows| cut(rows, 1000)),
         ("without lines", |rows| {
             let text = fs::read_to_string(rows).unwrap();
             let first: Vec<&str> = text.split_inclusive('\n').take(4).collect();
             fs::write(rows, first.concat()).unwrap();
         }),
-        ("replaced", |rows| {
-            let copy = rows.with_extension("copy");
-            fs::copy(rows, &copy).unwrap();
-            fs::rename(copy, rows).unwrap();
-        }),
-        ("edited", |rows| {
-            use std::os::unix::fs::FileExt;
-            let file = fs::File::options().write(true).open(rows).unwrap();
-            file.write_all_at(b"#", 900).unwrap();
-        }),
+        ("replaced", replace),
+        ("edited", |rows| edit(rows, b'#', 900)),
         ("without its manifest", |rows| {
             fs::remove_file(rows.with_file_name("manifest.jsonl")).unwrap();
         }),
@@ -246,16 +249,7 @@ fn rows_that_others_change_in_mid_sweep_make_no_tables() {
             let place = out.to_str().unwrap();
             let mut words = vec!["sweep", &study, "--quiet", "--out", place];
             words.extend(shard.iter().flat_map(|shard| ["--shard", shard]));
-            let child = program()
-                .args(&words)
-                .stderr(Stdio::piped())
-                .spawn()
-                .unwrap();
-            while fs::metadata(&rows).map_or(0, |file| file.len()) < 5000 {
-                std::thread::sleep(std::time::Duration::from_millis(1));
-            }
-            change(&rows);
-            let output = child.wait_with_output().unwrap();
+            let output = meddled(&words, [&rows, &rows], 5000, change);
             let file = if how == "without its manifest" {
                 "manifest"
             } else {
@@ -290,35 +284,19 @@ fn rows_of_others_that_change_in_mid_sweep_make_no_tables() {
     let masses: Vec<String> = (1..=300).map(|mass| format!("{mass}.0")).collect();
     let masses = format!("[{}]", masses.join(", "));
     let study = super::foreign::study(folder.path(), "masses", &masses);
-    type Change = fn(&Path);
     let changes: [Change; 3] = [
         |rows| fs::remove_file(rows).unwrap(),
-        |rows| {
-            let file = fs::File::options().write(true).open(rows).unwrap();
-            file.set_len(1000).unwrap();
-        },
+        |rows| cut(rows, 1000),
         // of which sweep they are
-        |rows| {
-            use std::os::unix::fs::FileExt;
-            let file = fs::File::options().write(true).open(rows).unwrap();
-            file.write_all_at(b"#", 20).unwrap();
-        },
+        |rows| edit(rows, b'#', 20),
     ];
     for (n, change) in changes.into_iter().enumerate() {
         let out = folder.path().join(n.to_string());
         let words = ["sweep", &study, "--quiet", "--out", out.to_str().unwrap()];
         let shard = [&words[..], &["--shard", "1/4"]].concat();
         expect(&looselink(&shard), 0, "");
-        let child = program()
-            .args(words)
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        while fs::metadata(out.join("runs.jsonl")).map_or(0, |file| file.len()) < 5000 {
-            std::thread::sleep(std::time::Duration::from_millis(1));
-        }
-        change(&out.join("runs-1-of-4.jsonl"));
-        let output = child.wait_with_output().unwrap();
+        let files = ["runs.jsonl", "runs-1-of-4.jsonl"].map(|name| out.join(name));
+        let output = meddled(&words, files.each_ref(), 5000, change);
         expect(&output, 1, "runs-1-of-4.jsonl` was ");
         assert!(!out.join("sweep.csv").exists(), "{n}");
     }
