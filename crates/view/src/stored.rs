@@ -114,8 +114,7 @@ impl StoredResult {
         let mut channels = columns(&folder.join(&table), &bytes, format.name)?;
         let times = channels.remove(0).values;
         if times.is_empty() {
-            let message = format!("`{}` holds no row yet", folder.display());
-            return Err(ViewError::Result(message));
+            return Err(without_rows(folder));
         }
         let place = folder.canonicalize();
         let name = place.iter().filter_map(|place| place.file_name()).next();
@@ -140,30 +139,34 @@ impl StoredRun {
     /// # Errors
     /// As [`StoredResult::load`], and a result without its motion.
     pub fn load(folder: &Path) -> Result<StoredRun, ViewError> {
-        let (mut result, bytes) = of_one_run(folder, || {
-            let result = StoredResult::load_once(folder)?;
+        let (result, names, motion) = of_one_run(folder, || {
+            let mut result = StoredResult::load_once(folder)?;
             if !result.scene.output.motion {
                 return Err(ViewError::Result(format!(
                     "`{}` has no motion to show: the scene says `output.motion = false`",
                     folder.display()
                 )));
             }
-            let motion = read(folder, "motion.bin", result.summary.has_ended())?;
-            Ok((result, motion))
+            let bytes = read(folder, "motion.bin", result.summary.has_ended())?;
+            let (names, mut motion) = rows(&folder.join("motion.bin"), &bytes)?;
+            // of a run under way one table can be some rows ahead of the other
+            let count = motion.len().min(result.times.len());
+            if count == 0 {
+                return Err(without_rows(folder));
+            }
+            motion.truncate(count);
+            result.times.truncate(count);
+            for channel in &mut result.channels {
+                channel.values.truncate(count);
+            }
+            Ok((result, names, motion))
         })?;
         let simulation = Simulation::new(&result.scene)?;
         let layout = MotionLayout::new(simulation.model());
-        let mut motion = rows(&folder.join("motion.bin"), &bytes, &layout)?;
-        // of a run under way one table can be some rows ahead of the other
-        let count = motion.len().min(result.times.len());
-        if count == 0 {
-            let message = format!("`{}` holds no row yet", folder.display());
-            return Err(ViewError::Result(message));
-        }
-        motion.truncate(count);
-        result.times.truncate(count);
-        for channel in &mut result.channels {
-            channel.values.truncate(count);
+        if names != layout.names() {
+            let message =
+                "its columns are not those of the scene; another version of the program wrote it";
+            return Err(damaged(&folder.join("motion.bin"), message));
         }
         Ok(StoredRun {
             result,
@@ -281,6 +284,10 @@ impl StoredRun {
     }
 }
 
+fn without_rows(folder: &Path) -> ViewError {
+    ViewError::Result(format!("`{}` holds no row yet", folder.display()))
+}
+
 fn damaged(path: &Path, message: &str) -> ViewError {
     ViewError::Result(format!("`{}`: {message}", path.display()))
 }
@@ -300,23 +307,21 @@ struct MotionHeader {
     columns: Vec<String>,
 }
 
-/// The whole rows of `motion.bin`.
-fn rows(path: &Path, bytes: &[u8], layout: &MotionLayout) -> Result<Vec<Vec<f64>>, ViewError> {
+/// The names of the columns of `motion.bin`, and its whole rows.
+fn rows(path: &Path, bytes: &[u8]) -> Result<(Vec<String>, Vec<Vec<f64>>), ViewError> {
     let end = bytes.iter().position(|b| *b == b'\n');
     let header = end.and_then(|end| serde_json::from_slice(&bytes[..end]).ok());
     let (Some(end), Some(MotionHeader { columns })) = (end, header) else {
         return Err(damaged(path, "its first line does not name its columns"));
     };
-    if columns != layout.names() {
-        let message =
-            "its columns are not those of the scene; another version of the program wrote it";
-        return Err(damaged(path, message));
+    if columns.is_empty() {
+        return Err(damaged(path, "it has no columns"));
     }
     let rows = bytes[end + 1..].chunks_exact(8 * columns.len());
     let number = |b: &[u8]| f64::from_le_bytes(std::array::from_fn(|i| b[i]));
-    Ok(rows
-        .map(|row| row.chunks_exact(8).map(number).collect())
-        .collect())
+    let rows = rows.map(|row| row.chunks_exact(8).map(number).collect());
+    let rows = rows.collect();
+    Ok((columns, rows))
 }
 
 /// The whole rows of a table of channels, column by column; the first is the time.

@@ -229,6 +229,38 @@ fn readers_see_one_result_while_it_is_replaced() {
     });
 }
 
+/// The motion of a run under way reaches the disk after its channels: a page waits for it.
+#[test]
+fn a_page_waits_for_the_first_rows_of_the_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    whole(&out, NEW);
+    let [summary, motion] = ["summary.json", "motion.bin"].map(|file| out.join(file));
+    let under_way = read(&out, "summary.json").replace("\"complete\"", "\"incomplete\"");
+    fs::write(&summary, under_way).unwrap();
+    // tables of a run under way have no digest
+    let listed = read(&out, "manifest.jsonl");
+    let lines = listed.lines().filter(|line| !line.contains("\"crc32\""));
+    let lines: String = lines.map(|line| format!("{line}\n")).collect();
+    fs::write(out.join("manifest.jsonl"), lines).unwrap();
+    let whole_motion = fs::read(&motion).unwrap();
+    let names = whole_motion.iter().position(|b| *b == b'\n').unwrap();
+    // without its first line, and without rows
+    for begun in [0, names + 1] {
+        fs::write(&motion, &whole_motion[..begun]).unwrap();
+        let mut view = program();
+        view.args(["view", out.to_str().unwrap()]);
+        let mut view = view.stdout(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(300));
+        assert!(
+            view.try_wait().unwrap().is_none(),
+            "{begun} bytes: it waits"
+        );
+        fs::write(&motion, &whole_motion).unwrap();
+        assert!(view.wait().unwrap().success(), "{begun} bytes");
+    }
+}
+
 /// A run that was killed before its first row: readers wait for it, then say where the earlier result is.
 #[test]
 fn a_result_without_rows_names_the_earlier_one() {
