@@ -120,7 +120,7 @@ pub enum RunError {
     #[error(transparent)]
     Drive(#[from] PrescribeError),
     /// The observer asked to stop.
-    #[error("interrupted at t = {t} s")]
+    #[error("interrupted at t = {} s", numbers::number(*t, 6))]
     Interrupted {
         /// When \[s\].
         t: f64,

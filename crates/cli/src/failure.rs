@@ -6,6 +6,7 @@ use looselink::scene::SceneError;
 use looselink::simulate::RunError;
 use messages::{Colors, run_failure, scene_fault};
 use std::fmt::Display;
+use std::io;
 use std::process::ExitCode;
 use studies::StudyError;
 use studies::sweep::SweepError;
@@ -103,10 +104,6 @@ impl From<SweepError> for CommandFailure {
     fn from(error: SweepError) -> CommandFailure {
         match error {
             SweepError::Study(error) => error.into(),
-            SweepError::Output(OutputError::Busy(folder)) => CommandFailure::bad_input(format!(
-                "another process is making this part of the sweep in `{}`",
-                folder.display()
-            )),
             SweepError::Output(error) => error.into(),
             SweepError::Interrupted { .. } => CommandFailure::new(INTERRUPTED, error),
             SweepError::NoAnswer(_) => CommandFailure::cannot_go_on(error),
@@ -119,7 +116,18 @@ impl From<ViewError> for CommandFailure {
         match error {
             ViewError::Result(message) => CommandFailure::bad_input(message),
             ViewError::Scene(error) => error.into(),
-            ViewError::Io(error) => CommandFailure::system(error),
+            ViewError::Io(error) => error.into(),
+            ViewError::Output(error) => error.into(),
+        }
+    }
+}
+
+impl From<io::Error> for CommandFailure {
+    /// A link, a pipe or a file with a second name in the place of a file is refused as other bad input is.
+    fn from(error: io::Error) -> CommandFailure {
+        match error.kind() {
+            io::ErrorKind::InvalidInput => CommandFailure::bad_input(error),
+            _ => CommandFailure::system(error),
         }
     }
 }
@@ -127,14 +135,16 @@ impl From<ViewError> for CommandFailure {
 impl From<OutputError> for CommandFailure {
     fn from(error: OutputError) -> CommandFailure {
         match error {
-            OutputError::Io(_) | OutputError::Changed { .. } => CommandFailure::system(error),
+            OutputError::Io(error) => error.into(),
+            OutputError::Changed { .. } => CommandFailure::system(error),
             OutputError::OfAnotherKind { .. } => {
                 CommandFailure::bad_input(error).and("; choose another folder")
             }
             OutputError::NotADirectory(_)
             | OutputError::NotAFile(_)
             | OutputError::Busy(_)
-            | OutputError::Foreign(_) => CommandFailure::bad_input(error),
+            | OutputError::Foreign(_)
+            | OutputError::NoManifest(_) => CommandFailure::bad_input(error),
             OutputError::NotResumable { .. } => CommandFailure::bad_input(error)
                 .and("; `looselink run` with --force begins the run anew"),
             OutputError::Occupied { .. } => CommandFailure::bad_input(error)

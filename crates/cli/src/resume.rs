@@ -10,7 +10,7 @@ use looselink::output::{Results, StoredCheckpoint};
 use looselink::registry::Registry;
 use looselink::simulate::Simulation;
 use std::path::PathBuf;
-use view::{PAGE, kind};
+use view::kind;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -24,7 +24,6 @@ pub struct Arguments {
 pub fn resume(arguments: &Arguments) -> Result<(), CommandFailure> {
     let interrupt = Interrupt::watch()?;
     let Arguments { folder, options } = arguments;
-    let mut options = options.clone();
     let checkpoint = StoredCheckpoint::read(folder, kind()).map_err(|error| match error {
         OutputError::OfAnotherKind { held, .. } => CommandFailure::bad_input(format!(
             "`{}` holds {held}, and only runs are resumed; an interrupted sweep goes on by the same command",
@@ -35,8 +34,6 @@ pub fn resume(arguments: &Arguments) -> Result<(), CommandFailure> {
     let scene = checkpoint.scene(&Registry::standard())?;
     options.check(&scene)?;
     let mut simulation = Simulation::new(&scene)?;
-    // a page of the part so far would be out of date
-    options.view |= folder.join(PAGE).exists();
     let t = checkpoint.t();
     interrupt.begin();
     let results = Results::resume(checkpoint, &scene, &mut simulation);
@@ -44,5 +41,5 @@ pub fn resume(arguments: &Arguments) -> Result<(), CommandFailure> {
     if !options.quiet {
         say(&format!("resumed at t = {t} s"));
     }
-    to_the_end(simulation, results, folder, true, &options, interrupt)
+    to_the_end(simulation, results, folder, true, options, interrupt)
 }

@@ -6,7 +6,6 @@ use super::failure::CommandFailure;
 use super::interrupt::Interrupt;
 use super::progress::{Display, remark, warn};
 use super::terminal::word;
-use super::view;
 use clap::Args;
 use folder::{Folder, OutputError, earlier_result};
 use looselink::model::Model;
@@ -18,6 +17,7 @@ use messages::Ticker;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use view::{has_page, keep_page};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -121,7 +121,7 @@ impl Observer for RunObserver {
 pub fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let interrupt = Interrupt::watch()?;
     let Arguments { out, force, .. } = arguments;
-    let folder = Folder::claim(out, ::view::kind(), *force).map_err(|error| match error {
+    let folder = Folder::claim(out, view::kind(), *force).map_err(|error| match error {
         OutputError::Occupied { .. } if StoredCheckpoint::is_in(out) => {
             let out = word(out);
             CommandFailure::from(error)
@@ -174,6 +174,8 @@ pub fn to_the_end(
     };
     observer.display.finish("");
     let folder = out.display();
+    // a page of the part so far would be out of date
+    let shows = options.view || (stored.is_ok() && has_page(out));
     if let Err(error) = ended {
         warn_of_all();
         // a run that cannot go on would stop there again
@@ -186,11 +188,15 @@ pub fn to_the_end(
             false => String::new(),
         };
         let kept = match stored {
-            Ok(()) if options.view => match view::beside(out) {
+            Ok(()) if shows => match keep_page(out, None).map_err(CommandFailure::from) {
                 Ok(page) => format!("; the motion up to that time is in `{}`", page.display()),
                 Err(second) => second.after("the page could not be written"),
             },
             Ok(()) => format!("; the results up to that time are in `{folder}`"),
+            // what has stopped the run
+            Err(second) if error.to_string() == second.to_string() => {
+                return Err(CommandFailure::run(&error).and(&earlier(out, replaces)));
+            }
             Err(second) => {
                 format!("; the result in `{folder}` could not be completed: {second}")
             }
@@ -209,8 +215,8 @@ pub fn to_the_end(
         observer.display.finish(&line);
     }
     warn_of_all();
-    if options.view {
-        let page = view::beside(out)?;
+    if shows {
+        let page = keep_page(out, None)?;
         observer
             .display
             .finish(&format!("open `{}` in a browser", page.display()));

@@ -3,11 +3,11 @@
 use super::failure::CommandFailure;
 use super::print;
 use clap::Args;
-use folder::{add, naming, replace};
+use folder::{naming, replace};
 use std::fs;
 use std::path::{Path, PathBuf};
 use view::frames::frames;
-use view::{PAGE, StoredRun, ViewError, kind, page};
+use view::{StoredRun, ViewError, keep_page, page};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -41,20 +41,19 @@ fn html(text: &str) -> Result<PathBuf, String> {
 
 /// Writes the page, or the pictures.
 pub fn view(arguments: &Arguments) -> Result<(), CommandFailure> {
-    let run = StoredRun::load(&arguments.dir)?;
+    let Arguments { dir, .. } = arguments;
     if let Some(folder) = &arguments.frames {
-        return pictures(&run, folder, arguments.count as usize);
+        return pictures(&StoredRun::load(dir)?, folder, arguments.count as usize);
     }
-    let ghost = arguments.ghost.iter().map(|dir| StoredRun::load(dir));
-    let runs = std::iter::once(Ok(run)).chain(ghost);
-    let runs: Vec<StoredRun> = runs.collect::<Result<_, _>>()?;
-    let page = page(&runs);
+    let ghost = arguments.ghost.as_deref().map(StoredRun::load).transpose();
     let path = match &arguments.output {
         Some(path) => {
-            replace(path, page.as_bytes())?;
+            let runs = std::iter::once(StoredRun::load(dir)?).chain(ghost?);
+            let runs: Vec<StoredRun> = runs.collect();
+            replace(path, page(&runs).as_bytes())?;
             path.clone()
         }
-        None => keep(&arguments.dir, &page)?,
+        None => keep_page(dir, ghost?)?,
     };
     print(format!("open `{}` in a browser\n", path.display()))
 }
@@ -78,14 +77,4 @@ fn pictures(run: &StoredRun, folder: &Path, count: usize) -> Result<(), CommandF
         )?;
     }
     print(format!("{count} pictures in `{}`\n", folder.display()))
-}
-
-/// Writes the page of a result into its folder.
-pub fn beside(dir: &Path) -> Result<PathBuf, CommandFailure> {
-    keep(dir, &page(&[StoredRun::load(dir)?]))
-}
-
-fn keep(dir: &Path, page: &str) -> Result<PathBuf, CommandFailure> {
-    add(dir, &kind(), &[(PAGE, page.as_bytes())])?;
-    Ok(dir.join(PAGE))
 }

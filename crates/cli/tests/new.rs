@@ -136,7 +136,7 @@ fn nothing_is_left_of_a_scene_that_cannot_be_written() {
     expect(&new(folder, &["empty", "absent/my.toml"]), 1, "absent");
     fs::create_dir(folder.join("my.toml")).unwrap();
     let output = new(folder, &["empty", "my.toml", "--force"]);
-    expect(&output, 1, "cannot write `my.toml`");
+    expect(&output, 2, "`my.toml` is not a file");
     assert_eq!(files(folder), ["looselink.schema.json", "my.toml"]);
 }
 

@@ -3,7 +3,7 @@
 use crate::claim::{refuse_another_kind, refuse_foreign, remove};
 use crate::error::{OutputError, naming, naming_read};
 use crate::kind::Kind;
-use crate::lock::opened;
+use crate::lock::{opened, turn};
 use crate::manifest::{MANIFEST, Manifest};
 use crate::read;
 use crate::replaced::forget;
@@ -11,23 +11,41 @@ use crate::temporary::{Temporary, remove_leftovers};
 use std::io;
 use std::path::Path;
 
-/// Puts files into a folder beside those that are there, such as pictures of a result: each is there as the program's already, or
-/// not there. Several programs may do so at the same time. Where the file that closes a result is among them and changes, it is
-/// away until all others are in their place, and others of the kind that are the program's are deleted. The result is whole then: one
-/// that it has replaced is deleted.
+/// As [`add_to`], whatever the folder holds.
 ///
 /// # Errors
-/// A file of somebody else; a file that cannot be written.
+/// As [`add_to`].
 pub fn add(
     folder: &Path,
     kind: &Kind,
     files: &[(&str, impl AsRef<[u8]>)],
 ) -> Result<(), OutputError> {
+    add_to(folder, kind, files, || true).map(drop)
+}
+
+/// Puts files into a folder beside those that are there, such as pictures of a result: each is there as the program's already, or
+/// not there. Several programs may do so at the same time. Where the file that closes a result is among them and changes, it is
+/// away until all others are in their place, and others of the kind that are the program's are deleted. The result is whole then: one
+/// that it has replaced is deleted. False where the files have become those of another result, and nothing is changed: `is_current` says
+/// so while no result begins or ends.
+///
+/// # Errors
+/// A file of somebody else; a file that cannot be written.
+pub fn add_to(
+    folder: &Path,
+    kind: &Kind,
+    files: &[(&str, impl AsRef<[u8]>)],
+    is_current: impl Fn() -> bool,
+) -> Result<bool, OutputError> {
     let names: Vec<String> = files.iter().map(|(name, _)| (*name).to_owned()).collect();
     let refuse = |held: &Manifest| {
         refuse_another_kind(folder, kind, held)?;
         refuse_foreign(folder, held, &names)
     };
+    let _turn = turn(folder);
+    if !is_current() {
+        return Ok(false);
+    }
     let held = kind.held(folder)?;
     refuse(&held)?;
     remove_leftovers(folder);
@@ -66,8 +84,8 @@ pub fn add(
     for ((name, _), temporary) in files.iter().zip(ready) {
         temporary.name(&folder.join(name))?;
     }
-    match closes {
-        Some(_) => Ok(forget(folder, kind, &manifest)?),
-        None => Ok(()),
+    if closes.is_some() {
+        forget(folder, kind, &manifest)?;
     }
+    Ok(true)
 }

@@ -3,11 +3,11 @@
 use crate::digest::Digest;
 use crate::error::{OutputError, naming, naming_read};
 use crate::kind::Kind;
-use crate::lock::{Lock, Sharing, is_at};
+use crate::lock::{Lock, Sharing, is_at, turn};
 use crate::manifest::{MANIFEST, Manifest};
 use crate::open;
-use crate::replaced::{self, PREVIOUS};
-use crate::temporary::{place, remove_left_folders, remove_leftovers};
+use crate::replaced::{self, PREVIOUS, remove_left_folders};
+use crate::temporary::{place, remove_leftovers};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -69,7 +69,7 @@ impl Folder {
             |kind: &Kind, manifest: &Manifest| refuse_occupied(path, kind, manifest, replaces);
         let folder = Folder::locked(path, kind, replaces, Sharing::Alone, refuse)?;
         remove_leftovers(path);
-        remove_left_folders(path);
+        remove_left_folders(path, &folder.kind);
         Ok(folder)
     }
 
@@ -137,6 +137,8 @@ impl Folder {
         let lock = lock.inspect_err(|_| undo.undo())?;
         let lock = lock.expect("it was to be created");
         undo.manifest = lock.created.map(|length| (lock.path().to_owned(), length));
+        // what is listed and what is there belong together
+        let _turn = turn(path);
         let folder = Folder::of(path, kind, replaces, undo, lock)?;
         refuse(&folder.kind, &folder.manifest)?;
         Ok(folder)
@@ -176,6 +178,7 @@ impl Folder {
     /// When a file cannot be written, moved or deleted.
     pub fn begin(&mut self, files: impl IntoIterator<Item = String>) -> Result<(), OutputError> {
         self.refuse_moved()?;
+        let _turn = turn(&self.path);
         if self.replaces {
             replaced::set_aside(&self.path, &self.kind, &self.manifest)?;
         }
@@ -209,6 +212,12 @@ impl Folder {
         files: impl IntoIterator<Item = (String, Option<Digest>)>,
     ) -> Result<(), OutputError> {
         let (file, path) = self.lock.file_and_path();
+        let there = Manifest::read(file).map_err(naming_read(path))?;
+        let is_there = |file| there.files.contains_key(file);
+        let is_emptied = self.manifest.kind.is_some() && there.kind != self.manifest.kind;
+        if is_emptied || !self.manifest.files.keys().all(is_there) {
+            return Err(changed(path, EDITED));
+        }
         let added = self.manifest.add(file, self.kind.name, files);
         self.undo = Undo::default();
         Ok(added.and_then(|()| file.sync_all()).map_err(naming(path))?)
@@ -234,6 +243,7 @@ impl Folder {
     /// When it cannot be written, or the folder is no longer in its place.
     pub fn replace(&self, file: &str, bytes: &[u8]) -> Result<(), OutputError> {
         self.refuse_moved()?;
+        let _turn = turn(&self.path);
         Ok(place(&self.path.join(file), bytes)?)
     }
 
@@ -298,7 +308,7 @@ pub(crate) fn refuse_another_kind(
     manifest: &Manifest,
 ) -> Result<(), OutputError> {
     match &manifest.kind {
-        None if manifest.is_foreign => Err(OutputError::Foreign(path.join(MANIFEST))),
+        None if manifest.is_foreign => Err(OutputError::NoManifest(path.join(MANIFEST))),
         Some(held) if held != kind.name => Err(OutputError::OfAnotherKind {
             folder: path.to_owned(),
             held: held.clone(),

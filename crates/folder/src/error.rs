@@ -25,6 +25,12 @@ pub enum OutputError {
     /// A file has the name of one of the result, and is somebody else's.
     #[error("`{}` is not a file of this program; move it, or choose another folder", .0.display())]
     Foreign(PathBuf),
+    /// The file of the manifest is somebody else's, or its first line is lost.
+    #[error(
+        "`{}` is not a file of this program, or its first line is damaged; move it, or choose another folder",
+        .0.display()
+    )]
+    NoManifest(PathBuf),
     /// The path of the folder is that of a file.
     #[error("`{}` is not a directory", .0.display())]
     NotADirectory(PathBuf),
@@ -40,7 +46,7 @@ pub enum OutputError {
         why: String,
     },
     /// Another program writes to the folder.
-    #[error("another run is writing to `{}`", .0.display())]
+    #[error("another looselink is writing to `{}`", .0.display())]
     Busy(PathBuf),
     /// A file is not as the program left it.
     #[error("`{}` {how}", path.display())]

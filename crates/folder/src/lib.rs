@@ -21,14 +21,14 @@ mod manifest;
 mod replaced;
 mod temporary;
 
-pub use add::add;
+pub use add::{add, add_to};
 pub use claim::{Folder, earlier_result, refuse_changed, refuse_moved};
 pub use digest::{Digest, Digesting};
 use error::failed;
 pub use error::{OutputError, naming, naming_read};
 pub use kind::Kind;
 pub use line::{line_of, value_of};
-pub use manifest::{MANIFEST, held, verify};
+pub use manifest::{MANIFEST, held, lists, verify};
 pub use temporary::replace;
 
 use serde::Serialize;
@@ -57,6 +57,10 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     }
 }
 
+fn a_link() -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, "it is a link")
+}
+
 fn no_file() -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, "it is not a file")
 }
@@ -83,7 +87,10 @@ pub fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
         if names > 1 {
             let message = "it has a second name (a hard link), whose content would change too; \
                            copy the folder, or its files, instead";
-            return Err(naming(path)(io::Error::other(message)));
+            return Err(naming(path)(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                message,
+            )));
         }
     }
     Ok(file)
@@ -99,11 +106,11 @@ fn open_unlinked(verb: &str, path: &Path, options: &mut OpenOptions) -> io::Resu
         options.custom_flags(libc::O_NOFOLLOW);
     }
     if cfg!(not(unix)) && path.is_symlink() {
-        return Err(failed(verb, path, &io::Error::other("it is a link")));
+        return Err(failed(verb, path, &a_link()));
     }
     options.open(path).map_err(|error| {
         let error = match path.is_symlink() {
-            true => io::Error::new(error.kind(), "it is a link"),
+            true => a_link(),
             false => error,
         };
         failed(verb, path, &error)

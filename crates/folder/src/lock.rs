@@ -87,6 +87,14 @@ impl Lock {
     }
 }
 
+/// Waits for the turn of this program to change which files a folder has; it ends when what is returned is closed. Whoever holds the lock
+/// of the manifest begins and closes results in its turn, others add files to them. Where a system does not lock folders, there are no
+/// turns.
+pub(crate) fn turn(folder: &Path) -> Option<File> {
+    let folder = File::open(folder).ok()?;
+    folder.lock().ok().map(|()| folder)
+}
+
 /// True of an open file that stands at a path itself, not behind a link there.
 pub(crate) fn is_at(file: &File, path: &Path) -> io::Result<bool> {
     let named = |e| naming(path)(e);

@@ -149,6 +149,12 @@ pub fn held(folder: &Path) -> Option<String> {
     Manifest::of(folder).ok()??.kind
 }
 
+/// True of a file of the program in a folder with a manifest.
+pub fn lists(folder: &Path, name: &str) -> bool {
+    let manifest = Manifest::of(folder).ok().flatten();
+    manifest.is_some_and(|manifest| manifest.files.contains_key(name))
+}
+
 /// Refuses the bytes of a file of a result that are not those that the program wrote. Where a result has not ended, and where an
 /// earlier version wrote it, which made no manifest, there may be no digest: then they are taken as they are.
 ///

@@ -4,7 +4,7 @@ use crate::claim::{is_there, remove};
 use crate::error::{OutputError, naming, naming_read};
 use crate::kind::Kind;
 use crate::manifest::{MANIFEST, Manifest};
-use crate::temporary::temporary_folder;
+use crate::temporary::{left_folders, temporary_folder};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
@@ -45,13 +45,27 @@ pub(crate) fn set_aside(folder: &Path, kind: &Kind, held: &Manifest) -> io::Resu
         return Ok(());
     }
     let temporary = temporary_folder(folder)?;
-    for file in present.keys() {
-        link(&folder.join(file), &temporary.join(file))?;
-    }
-    let path = temporary.join(MANIFEST);
-    fs::write(&path, Manifest::bytes(kind.name, &present)?).map_err(naming(&path))?;
+    let fill = || {
+        // what is left of it after a kill is known by the manifest
+        let path = temporary.join(MANIFEST);
+        fs::write(&path, Manifest::bytes(kind.name, &present)?).map_err(naming(&path))?;
+        let mut files = present.keys();
+        files.try_for_each(|file| link(&folder.join(file), &temporary.join(file)))
+    };
+    fill().inspect_err(|_| drop(empty(&temporary, kind)))?;
     discard(folder, kind)?;
     fs::rename(&temporary, &previous).map_err(naming(&previous))
+}
+
+/// Deletes what killed programs have left of results that they set aside.
+pub(crate) fn remove_left_folders(folder: &Path, kind: &Kind) {
+    for path in left_folders(folder) {
+        // what cannot be deleted does no harm
+        let _ = match is_there(&path.join(MANIFEST)) {
+            true => empty(&path, kind),
+            false => fs::remove_dir(&path),
+        };
+    }
 }
 
 /// Deletes the files of the program in a folder, first the one without which there is no result.
@@ -75,15 +89,23 @@ pub(crate) fn forget(folder: &Path, kind: &Kind, held: &Manifest) -> io::Result<
 /// Deletes what stands aside. What is not the program's stays.
 fn discard(folder: &Path, kind: &Kind) -> io::Result<()> {
     let path = folder.join(PREVIOUS);
-    if !path.exists() {
-        return Ok(());
+    match path.exists() {
+        true => empty(&path, kind),
+        false => Ok(()),
     }
-    delete(&path, kind, &kind.held(&path)?)?;
-    remove(&path.join(MANIFEST))?;
-    match fs::remove_dir(&path) {
+}
+
+/// Deletes the files of the program in a folder, and the folder where nothing else is in it.
+fn empty(path: &Path, kind: &Kind) -> io::Result<()> {
+    let held = kind.held(path)?;
+    delete(path, kind, &held)?;
+    if !held.is_foreign {
+        remove(&path.join(MANIFEST))?;
+    }
+    match fs::remove_dir(path) {
         // another program may have deleted it
         Err(e) if ![ErrorKind::DirectoryNotEmpty, ErrorKind::NotFound].contains(&e.kind()) => {
-            Err(naming(&path)(e))
+            Err(naming(path)(e))
         }
         _ => Ok(()),
     }

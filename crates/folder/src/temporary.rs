@@ -13,12 +13,15 @@ const SUFFIX: &str = ".tmp";
 /// Random letters and digits between.
 const RANDOM: usize = 6;
 
-/// Puts a whole file in its place at once: a reader sees the old one or the new one, never a part. A link in its place is
+/// Puts a whole file in its place at once: a reader sees the old one or the new one, never a part. A link to a file is
 /// replaced, not followed.
 ///
 /// # Errors
-/// When it cannot be written; the message names the file.
+/// A pipe, a device or a folder in its place; when it cannot be written. The message names the file.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+    if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+        return Err(OutputError::NotAFile(path.to_owned()));
+    }
     remove_leftovers(parent(path));
     Ok(place(path, bytes)?)
 }
@@ -108,11 +111,9 @@ pub(crate) fn remove_leftovers(folder: &Path) {
     }
 }
 
-/// Removes the temporary folders of a folder, which nobody else has claimed.
-pub(crate) fn remove_left_folders(folder: &Path) {
-    for path in named_like_temporaries(folder, fs::FileType::is_dir) {
-        let _ = fs::remove_dir_all(path);
-    }
+/// The temporary folders of a folder.
+pub(crate) fn left_folders(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    named_like_temporaries(folder, fs::FileType::is_dir)
 }
 
 fn named_like_temporaries(

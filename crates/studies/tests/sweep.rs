@@ -628,7 +628,7 @@ fn torn_lines_are_made_again_and_other_sweeps_are_refused() {
     assert!(anew.is_empty());
     let busy = Store::open(folder.path(), &sweep, Shard::WHOLE, false).unwrap_err();
     assert!(
-        busy.to_string().contains("another run is writing"),
+        busy.to_string().contains("another looselink is writing"),
         "{busy}"
     );
 }
@@ -760,7 +760,7 @@ fn a_new_beginning_waits_for_other_shards_and_leaves_no_old_table() {
     let other = Store::open(folder.path(), &sweep, "1/2".parse().unwrap(), false).unwrap();
     let busy = Store::open(folder.path(), &sweep, Shard::WHOLE, true).unwrap_err();
     assert!(
-        busy.to_string().contains("another run is writing"),
+        busy.to_string().contains("another looselink is writing"),
         "{busy}"
     );
     assert_eq!(Store::read(folder.path(), &sweep).unwrap().len(), 3);

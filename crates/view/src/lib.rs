@@ -11,12 +11,13 @@ mod reading;
 pub mod stored;
 pub mod tracks;
 
-pub use reading::{PAGE, ViewError, kind};
+pub use reading::{PAGE, ViewError, has_page, kind};
 pub use stored::{StoredChannel, StoredResult, StoredRun, StoredSummary};
 
 use drawing::RunDrawing;
 use pack::Pack;
 use serde::Serialize;
+use std::path::{Path, PathBuf};
 use texts::harmless;
 
 const TEMPLATE: &str = include_str!("../assets/viewer.html");
@@ -28,6 +29,21 @@ const PLACE: &str = "<!--DATA-->";
 struct Contents {
     runs: Vec<RunDrawing>,
     pack: String,
+}
+
+/// Writes the page of the result in a folder beside it, with another run as its ghost, if there is one; returns its file.
+///
+/// # Errors
+/// As [`StoredRun::load`]; files of somebody else, and a page that cannot be written.
+pub fn keep_page(folder: &Path, ghost: Option<StoredRun>) -> Result<PathBuf, ViewError> {
+    let mut ghosts: Vec<StoredRun> = ghost.into_iter().collect();
+    reading::keep_page(folder, || {
+        let mut runs = vec![StoredRun::load(folder)?];
+        runs.append(&mut ghosts);
+        let page = page(&runs);
+        ghosts = runs.split_off(1);
+        Ok(page)
+    })
 }
 
 /// The page of a run, with another one as its ghost if there are two.

@@ -1,11 +1,13 @@
 //! Reads files of a result, all of the same run.
 
-use folder::{Kind, MANIFEST, OutputError, earlier_result, held, naming_read, verify};
+use folder::{
+    Kind, MANIFEST, OutputError, add_to, earlier_result, held, lists, naming_read, verify,
+};
 use looselink::output;
 use looselink::registry::Registry;
 use looselink::scene::SceneError;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -29,6 +31,9 @@ pub enum ViewError {
     /// The system refused; the message names the file.
     #[error("{0}")]
     Io(#[from] io::Error),
+    /// The page cannot stand beside the result.
+    #[error(transparent)]
+    Output(#[from] OutputError),
 }
 
 impl From<SceneError> for ViewError {
@@ -46,18 +51,57 @@ const PAUSE: Duration = Duration::from_millis(5);
 /// Files by which runs are told apart: a repeated run differs by its timing only.
 const RUN: [&str; 4] = [MANIFEST, "summary.json", "scene.toml", output::TIMING];
 
+/// What tells a run in a folder from another one, and one under way from its end.
+#[derive(PartialEq)]
+struct Mark([Option<Vec<u8>>; RUN.len()]);
+
+impl Mark {
+    fn of(folder: &Path) -> Mark {
+        Mark(RUN.map(|file| folder::read(&folder.join(file)).ok()))
+    }
+}
+
+/// Puts a page beside the result that it shows: made again where that has ended or has been replaced meanwhile.
+pub(crate) fn keep_page(
+    folder: &Path,
+    mut page: impl FnMut() -> Result<String, ViewError>,
+) -> Result<PathBuf, ViewError> {
+    let started = Instant::now();
+    while started.elapsed() < PATIENCE {
+        let mark = Mark::of(folder);
+        let page = page()?;
+        let files = [(PAGE, page.as_bytes())];
+        if add_to(folder, &kind(), &files, || Mark::of(folder) == mark)? {
+            return Ok(folder.join(PAGE));
+        }
+    }
+    Err(replaced_again(folder))
+}
+
+/// True of a result with a page that the program has written.
+pub fn has_page(folder: &Path) -> bool {
+    lists(folder, PAGE) && folder.join(PAGE).is_file()
+}
+
+fn replaced_again(folder: &Path) -> ViewError {
+    let name = folder.display();
+    ViewError::Result(format!(
+        "`{name}` is being replaced by one run after the other"
+    ))
+}
+
 /// Reads files of a result, all of the same run: again where that has ended or has been replaced meanwhile, or has no rows yet.
 pub(crate) fn of_one_run<T>(
     folder: &Path,
     load: impl Fn() -> Result<T, ViewError>,
 ) -> Result<T, ViewError> {
-    let run = || RUN.map(|file| folder::read(&folder.join(file)).ok());
     let started = Instant::now();
     loop {
-        let before = run();
+        let before = Mark::of(folder);
         let loaded = load();
-        let is_of_one_run = run() == before;
-        let is_awaited = loaded.is_err() && is_under_way(folder, &before);
+        let is_of_one_run = Mark::of(folder) == before;
+        let is_late = matches!(loaded, Err(ViewError::Result(_)));
+        let is_awaited = is_late && is_under_way(folder, &before);
         if is_of_one_run && !is_awaited {
             return loaded;
         }
@@ -65,7 +109,6 @@ pub(crate) fn of_one_run<T>(
             sleep(PAUSE);
             continue;
         }
-        let name = folder.display();
         return match (loaded, earlier_result(folder)) {
             (Err(ViewError::Result(why)), Some(earlier)) if is_of_one_run => {
                 let earlier = earlier.display();
@@ -74,15 +117,13 @@ pub(crate) fn of_one_run<T>(
                 )))
             }
             (loaded, _) if is_of_one_run => loaded,
-            _ => Err(ViewError::Result(format!(
-                "`{name}` is being replaced by one run after the other"
-            ))),
+            _ => Err(replaced_again(folder)),
         };
     }
 }
 
 /// True of a folder to which a run writes, or wrote until it was killed.
-fn is_under_way(folder: &Path, [manifest, summary, ..]: &[Option<Vec<u8>>; RUN.len()]) -> bool {
+fn is_under_way(folder: &Path, Mark([manifest, summary, ..]): &Mark) -> bool {
     let read = |bytes: &Vec<u8>| serde_json::from_slice::<serde_json::Value>(bytes);
     let goes_on = |bytes| read(bytes).is_ok_and(|summary| summary["status"] == "incomplete");
     // for a moment the manifest of a result that begins is empty

@@ -114,7 +114,7 @@ impl StoredResult {
         let mut channels = columns(&folder.join(&table), &bytes, format.name)?;
         let times = channels.remove(0).values;
         if times.is_empty() {
-            return Err(without_rows(folder));
+            return Err(without_rows(folder, &summary));
         }
         let place = folder.canonicalize();
         let name = place.iter().filter_map(|place| place.file_name()).next();
@@ -151,8 +151,8 @@ impl StoredRun {
             let (names, mut motion) = rows(&folder.join("motion.bin"), &bytes)?;
             // of a run under way one table can be some rows ahead of the other
             let count = motion.len().min(result.times.len());
-            if count == 0 {
-                return Err(without_rows(folder));
+            if count == 0 && !result.summary.has_ended() {
+                return Err(without_rows(folder, &result.summary));
             }
             motion.truncate(count);
             result.times.truncate(count);
@@ -167,6 +167,9 @@ impl StoredRun {
             let message =
                 "its columns are not those of the scene; another version of the program wrote it";
             return Err(damaged(&folder.join("motion.bin"), message));
+        }
+        if motion.is_empty() {
+            return Err(without_rows(folder, &result.summary));
         }
         Ok(StoredRun {
             result,
@@ -284,8 +287,12 @@ impl StoredRun {
     }
 }
 
-fn without_rows(folder: &Path) -> ViewError {
-    ViewError::Result(format!("`{}` holds no row yet", folder.display()))
+fn without_rows(folder: &Path, summary: &StoredSummary) -> ViewError {
+    let name = folder.display();
+    ViewError::Result(match summary.has_ended() {
+        true => format!("the run in `{name}` ended before its first row"),
+        false => format!("`{name}` holds no row yet"),
+    })
 }
 
 fn damaged(path: &Path, message: &str) -> ViewError {

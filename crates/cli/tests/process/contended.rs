@@ -221,6 +221,28 @@ fn a_scene_that_others_change_in_mid_run_is_not_complete() {
     }
 }
 
+/// A manifest that lists nothing any more.
+#[test]
+fn a_manifest_that_others_change_in_mid_run_is_not_complete() {
+    let folder = tempfile::tempdir().unwrap();
+    let changes: [Change; 3] = [
+        |manifest| fs::write(manifest, "").unwrap(),
+        |manifest| edit(manifest, b'9', 3),
+        |manifest| fs::remove_file(manifest).unwrap(),
+    ];
+    for (n, change) in changes.into_iter().enumerate() {
+        let out = folder.path().join(n.to_string());
+        let run = arguments(&out, &["simulation.duration=0.1"]);
+        let files = ["channels.csv", "manifest.jsonl"].map(|name| out.join(name));
+        let output = meddled(&run, files.each_ref(), 10_000, change);
+        expect(&output, 1, "manifest.jsonl` was ");
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(told.matches("manifest.jsonl` was ").count(), 1, "{told}");
+        assert!(!told.contains("resume"), "{told}");
+        assert_ne!(status(&out).as_deref(), Some("complete"));
+    }
+}
+
 /// A sweep whose rows somebody else takes away, cuts, replaces or edits makes no tables, and the same command goes on.
 #[test]
 fn rows_that_others_change_in_mid_sweep_make_no_tables() {
@@ -326,7 +348,7 @@ fn a_folder_in_use_is_not_resumed_swept_or_studied() {
         ],
     ];
     for command in commands {
-        expect(&looselink(command), 2, "another run is writing to `");
+        expect(&looselink(command), 2, "another looselink is writing to `");
         assert!(Bytes::of(&out) == before && !out.join(ASIDE).exists());
     }
     drop(held);

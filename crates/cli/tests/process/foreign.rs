@@ -116,6 +116,29 @@ fn files_of_the_user_are_not_replaced_by_a_run() {
     assert_eq!(files(out), COMPLETE);
 }
 
+/// A folder with the name of one that a killed program has left, and one that it has left.
+#[test]
+fn folders_of_the_user_are_not_taken_for_leftovers() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    let [mine, left] = [".looselink-abcdef.tmp", ".looselink-ABCDEF.tmp"].map(|f| out.join(f));
+    fs::create_dir(&mine).unwrap();
+    fs::write(mine.join("summary.json"), "mine").unwrap();
+    whole(out, EARLIER);
+    fs::create_dir(&left).unwrap();
+    for name in ["manifest.jsonl", "summary.json"] {
+        fs::copy(out.join(name), left.join(name)).unwrap();
+    }
+    whole(&left.join("inner"), EARLIER);
+    expect(&looselink(&arguments(out, &[NEW, "--force"])), 0, "");
+    assert_eq!(read(&mine, "summary.json"), "mine");
+    // what is not the program's stays
+    assert_eq!(files(&left), ["inner"]);
+    fs::remove_dir_all(left.join("inner")).unwrap();
+    expect(&looselink(&arguments(out, &[NEW, "--force"])), 0, "");
+    assert!(!left.exists() && mine.exists());
+}
+
 /// A refused command leaves no folder, no manifest, nothing.
 #[test]
 fn a_refusal_has_no_side_effects() {
@@ -404,7 +427,7 @@ fn files_with_a_second_name_are_not_changed() {
     ] {
         expect(
             &looselink(&command),
-            1,
+            2,
             "it has a second name (a hard link)",
         );
         assert!(contents(folder.path()) == before, "{command:?}");
@@ -453,6 +476,36 @@ fn what_is_no_file_is_not_waited_for() {
             }
         }
     }
+}
+
+/// Not replaced by a picture or page either, nor behind a link.
+#[test]
+fn what_is_no_file_is_no_place_for_an_output() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    whole(&out, EARLIER);
+    let pipe = folder.path().join("pipe.svg");
+    let [place, pipe] = [&out, &pipe].map(|p| p.to_str().unwrap());
+    let made = Command::new("mkfifo").arg(pipe).status().unwrap();
+    assert!(made.success());
+    let [link, page] = ["link.svg", "page.html"].map(|f| folder.path().join(f));
+    symlink("/dev/null", &link).unwrap();
+    symlink("pipe.svg", &page).unwrap();
+    let [link, page] = [&link, &page].map(|p| p.to_str().unwrap());
+    let plot = |to| looselink(&["plot", place, "--channels", "error.x", "-o", to]);
+    for output in [
+        plot(pipe),
+        plot(link),
+        looselink(&["view", place, "-o", page]),
+    ] {
+        expect(&output, 2, "` is not a file");
+    }
+    assert_eq!(
+        files(folder.path()),
+        ["link.svg", "out", "page.html", "pipe.svg"]
+    );
+    assert!(fs::read_link(link).is_ok() && fs::read_link(page).is_ok());
+    assert!(!fs::metadata(pipe).unwrap().is_file());
 }
 
 #[test]

@@ -102,6 +102,28 @@ fn a_full_disk_ends_a_run_with_the_name_of_the_file() {
     );
 }
 
+/// An earlier result is set aside in a folder that does not stay where there is no room for its manifest.
+#[test]
+fn a_full_disk_leaves_nothing_of_what_it_sets_aside() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    expect(
+        &looselink(&arguments(&out, &["simulation.duration=2e-3"])),
+        0,
+        "",
+    );
+    let before = crate::command_line::contents(&out);
+    expect(
+        &limited(
+            0,
+            &arguments(&out, &["simulation.duration=3e-3", "--force"]),
+        ),
+        1,
+        "cannot write `",
+    );
+    assert!(crate::command_line::contents(&out) == before);
+}
+
 /// Places where nobody can write, root neither; nothing comes into being.
 #[test]
 fn unwritable_places_are_refused() {

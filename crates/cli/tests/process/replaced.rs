@@ -10,8 +10,12 @@ use crate::command_line::{
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
+
+fn ended(mut child: Child) {
+    assert!(child.wait().unwrap().success());
+}
 
 #[test]
 fn without_force_an_earlier_result_is_never_touched() {
@@ -72,7 +76,7 @@ fn a_running_result_is_not_replaced() {
     expect(
         &looselink(&arguments(&out, &[NEW, "--force"])),
         2,
-        "another run is writing to `",
+        "another looselink is writing to `",
     );
     assert_eq!(status(&out).as_deref(), Some("incomplete"));
     first.kill().unwrap();
@@ -211,9 +215,10 @@ fn readers_see_one_result_while_it_is_replaced() {
     let picture = folder.path().join("picture.svg");
     let [place, picture] = [&out, &picture].map(|path| path.to_str().unwrap());
     let page = folder.path().join("page.html");
-    let readers: [&[&str]; 2] = [
+    let readers: [&[&str]; 3] = [
         &["plot", place, "--channels", "error.*", "-o", picture],
         &["view", place, "-o", page.to_str().unwrap()],
+        &["view", place],
     ];
     std::thread::scope(|scope| {
         let runs = scope.spawn(|| {
@@ -227,6 +232,54 @@ fn readers_see_one_result_while_it_is_replaced() {
                 .for_each(|reader| expect(&looselink(reader), 0, ""));
         }
     });
+}
+
+/// A page that is under way while its result is replaced shows the new one.
+#[test]
+fn a_page_is_of_the_result_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let page = ["view", out.to_str().unwrap()];
+    for n in 0..rounds(5, 50) {
+        let title = |title: &str| format!("title=\"{title}\"");
+        let run = |title: &str, duration: &str| {
+            looselink(&arguments(&out, &[duration, "--set", title, "--force"]))
+        };
+        expect(
+            &run(&title("a long one"), "simulation.duration=0.05"),
+            0,
+            "",
+        );
+        let view = start(&page);
+        std::thread::sleep(Duration::from_millis(4 * n as u64));
+        expect(
+            &run(&title("a short one"), "simulation.duration=2e-3"),
+            0,
+            "",
+        );
+        ended(view);
+        let shown = read(&out, "view.html");
+        assert!(shown.contains("a short one"), "round {n}");
+    }
+}
+
+/// A page of a run under way is made again at its end.
+#[test]
+fn a_page_of_a_run_under_way_does_not_stay() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = start(&arguments(&out, &["simulation.duration=0.4"]));
+    let place = out.to_str().unwrap();
+    while status(&out).as_deref() != Some("incomplete") {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    // its rows reach the disk every second
+    expect(&looselink(&["view", place]), 0, "");
+    assert_eq!(status(&out).as_deref(), Some("incomplete"));
+    assert!(read(&out, "view.html").contains("\"incomplete\""));
+    ended(run);
+    assert_eq!(status(&out).as_deref(), Some("complete"));
+    assert!(read(&out, "view.html").contains("\"complete\""));
 }
 
 /// The motion of a run under way reaches the disk after its channels: a page waits for it.

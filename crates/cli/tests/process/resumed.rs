@@ -221,7 +221,7 @@ fn what_cannot_be_resumed_is_refused_by_name() {
     // another run holds the folder
     let held = fs::File::open(file("manifest.jsonl")).unwrap();
     held.lock().unwrap();
-    expect(&resume(), 2, "another run is writing to");
+    expect(&resume(), 2, "another looselink is writing to");
     drop(held);
 
     fs::remove_file(file("checkpoint.bin")).unwrap();

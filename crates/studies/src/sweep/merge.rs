@@ -221,9 +221,12 @@ fn all_runs(sweep: &Sweep, store: &Store) -> Result<usize, SweepError> {
     let named = pending.iter().take(NAMED).map(usize::to_string);
     let named = named.collect::<Vec<_>>().join(", ");
     let more = if pending.len() > NAMED { ", ..." } else { "" };
+    let (count, them) = match pending.len() {
+        1 => ("1 run has".to_owned(), "it"),
+        n => (format!("{n} runs have"), "them"),
+    };
     let message = format!(
-        "{} runs have not been made: {named}{more}; `looselink sweep` without --merge makes them",
-        pending.len()
+        "{count} not been made: {named}{more}; `looselink sweep` without --merge makes {them}"
     );
     Err(StudyError::Plain(message).into())
 }
