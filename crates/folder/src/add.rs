@@ -89,3 +89,29 @@ pub fn add_to(
     }
     Ok(true)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::add;
+    use crate::{Folder, Kind};
+
+    /// A page that joins a result after another one has claimed its folder goes with that result.
+    #[test]
+    fn what_joins_a_result_goes_with_it() {
+        let kind = || Kind {
+            name: "a run",
+            files: ["summary.json", "view.html"].map(str::to_owned).to_vec(),
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        for round in 0..3 {
+            let mut claimed = Folder::claim(path, kind(), true).unwrap();
+            if round > 0 {
+                add(path, &kind(), &[("view.html", "a page")]).unwrap();
+            }
+            claimed.begin(["summary.json".to_owned()]).unwrap();
+            assert!(!path.join("view.html").exists(), "round {round}");
+            claimed.replace("summary.json", b"{}").unwrap();
+        }
+    }
+}

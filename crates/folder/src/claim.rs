@@ -179,6 +179,9 @@ impl Folder {
     pub fn begin(&mut self, files: impl IntoIterator<Item = String>) -> Result<(), OutputError> {
         self.refuse_moved()?;
         let _turn = turn(&self.path);
+        // files that have joined the earlier result since the claim go with it
+        let (file, path) = self.lock.file_and_path();
+        self.manifest = Manifest::read(file).map_err(naming_read(path))?;
         if self.replaces {
             replaced::set_aside(&self.path, &self.kind, &self.manifest)?;
         }
