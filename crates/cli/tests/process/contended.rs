@@ -164,6 +164,13 @@ fn meddled(
     child.wait_with_output().unwrap()
 }
 
+/// Of a run during which somebody changes a file beside its rows.
+fn meddled_beside(out: &Path, name: &str, change: Change) -> Output {
+    let run = arguments(out, &["simulation.duration=0.1"]);
+    let files = ["channels.csv", name].map(|name| out.join(name));
+    meddled(&run, files.each_ref(), 10_000, change)
+}
+
 /// A run whose rows somebody else takes away, cuts, replaces or edits does not call itself complete.
 #[test]
 fn rows_that_others_change_in_mid_run_are_not_complete() {
@@ -211,9 +218,7 @@ fn a_scene_that_others_change_in_mid_run_is_not_complete() {
     ];
     for (n, change) in changes.into_iter().enumerate() {
         let out = folder.path().join(n.to_string());
-        let run = arguments(&out, &["simulation.duration=0.1"]);
-        let files = ["channels.csv", "scene.toml"].map(|name| out.join(name));
-        let output = meddled(&run, files.each_ref(), 10_000, change);
+        let output = meddled_beside(&out, "scene.toml", change);
         expect(&output, 1, "scene.toml` was ");
         let summary = summary(&out);
         assert_eq!(summary["status"], "failed");
@@ -232,9 +237,7 @@ fn a_manifest_that_others_change_in_mid_run_is_not_complete() {
     ];
     for (n, change) in changes.into_iter().enumerate() {
         let out = folder.path().join(n.to_string());
-        let run = arguments(&out, &["simulation.duration=0.1"]);
-        let files = ["channels.csv", "manifest.jsonl"].map(|name| out.join(name));
-        let output = meddled(&run, files.each_ref(), 10_000, change);
+        let output = meddled_beside(&out, "manifest.jsonl", change);
         expect(&output, 1, "manifest.jsonl` was ");
         let told = String::from_utf8(output.stderr).unwrap();
         assert_eq!(told.matches("manifest.jsonl` was ").count(), 1, "{told}");
